@@ -1,0 +1,1 @@
+"""Lissom: pose a drawing, set keyframes, get in-betweens that never fold."""

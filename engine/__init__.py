@@ -1,0 +1,1 @@
+"""Harmonic shape interpolation: pure numerics, free of files, windows and global state."""
