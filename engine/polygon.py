@@ -27,7 +27,7 @@ def box_diagonal(polygon: Complexes) -> float:
 def diameter(polygon: Complexes) -> float:
     """Return the largest distance between two vertices."""
     hull = shapely.get_coordinates(shapely.convex_hull(shapely.MultiPoint(as_xy(polygon))))
-    z = hull[:, 0] + 1j * hull[:, 1]
+    z: Complexes = hull[:, 0] + 1j * hull[:, 1]
     return float(np.abs(z[:, None] - z[None, :]).max())
 
 
@@ -59,14 +59,16 @@ def distance_to_segments(points: Complexes, starts: Complexes, ends: Complexes) 
     offset = points[:, None] - starts
     length2 = np.maximum(np.abs(along) ** 2, np.finfo(np.float64).tiny)
     parameter = np.clip((offset * along.conj()).real / length2, 0.0, 1.0)
-    return np.abs(offset - parameter * along)
+    distances: Floats = np.abs(offset - parameter * along)
+    return distances
 
 
 def distance_to_boundary(polygon: Complexes, points: Complexes) -> Floats:
     """Return the distance (p,) of each point from the closed polyline."""
     ring = shapely.LinearRing(as_xy(polygon))
     shapely.prepare(ring)
-    return np.asarray(shapely.distance(ring, shapely.points(as_xy(points))), dtype=np.float64)
+    distances: Floats = shapely.distance(ring, shapely.points(as_xy(points)))
+    return distances
 
 
 def contains(polygon: Complexes, points: Complexes, *, tolerance: float = 0.0) -> Booleans:

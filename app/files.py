@@ -1,0 +1,105 @@
+"""Reading and writing files so that the person's work is never half there."""
+
+import os
+import tempfile
+import zipfile
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import IO, Any
+
+import numpy as np
+import numpy.typing as npt
+
+from app.errors import LissomError
+
+
+def write_atomically(path: Path, write: Callable[[IO[bytes]], object]) -> None:
+    """Write a file so that at any moment the old or the new one is whole.
+
+    Parameters
+    ----------
+    path : Path
+        Used exactly as given; an existing file is replaced.
+    write : callable
+        Writes the contents to the open binary file that it is handed.
+
+    Raises
+    ------
+    LissomError
+        If `path` is a folder, its folder is missing, or the disk refuses.
+    """
+    check_writable(path)
+    try:
+        handle, name = tempfile.mkstemp(prefix=f".{path.name}.", suffix=".part", dir=path.parent)
+    except OSError as error:
+        raise LissomError(f"cannot write {path}: {_reason(error)}") from error
+    temporary = Path(name)
+    try:
+        with os.fdopen(handle, "wb") as file:
+            write(file)
+            file.flush()
+            os.fsync(file.fileno())
+        # mkstemp makes files private; a file made here gets what any other program would give it.
+        temporary.chmod(_mode_for(path))
+        temporary.replace(path)
+    except OSError as error:
+        raise LissomError(f"cannot write {path}: {_reason(error)}") from error
+    finally:
+        temporary.unlink(missing_ok=True)
+
+
+def check_writable(path: Path) -> None:
+    """Refuse an output path that cannot work, before any long computation."""
+    if path.is_dir():
+        raise LissomError(f"cannot write {path}: it is a folder; name a file")
+    if not path.parent.is_dir():
+        raise LissomError(f"cannot write {path}: the folder {path.parent} does not exist")
+
+
+def write_arrays(path: Path, arrays: Mapping[str, npt.ArrayLike]) -> None:
+    """Write named arrays as an NPZ file, atomically and under exactly this name."""
+    contents: dict[str, Any] = {name: np.asarray(values) for name, values in arrays.items()}
+    write_atomically(path, lambda file: np.savez(file, **contents))
+
+
+def read_arrays(
+    path: Path, *, required: tuple[str, ...], optional: tuple[str, ...] = ()
+) -> dict[str, npt.NDArray[Any]]:
+    """Read named arrays from an NPZ file.
+
+    Returns
+    -------
+    dict
+        The required arrays and those of the optional ones that the file holds.
+
+    Raises
+    ------
+    LissomError
+        If the file is missing, is not an NPZ file, is damaged, or lacks a required array.
+    """
+    try:
+        with np.load(path, allow_pickle=False) as archive:
+            if not isinstance(archive, np.lib.npyio.NpzFile):
+                raise LissomError(f"{path} is not an NPZ file")
+            missing = [name for name in required if name not in archive]
+            if missing:
+                raise LissomError(
+                    f"{path} lacks the array {missing[0]!r}; it holds {archive.files}"
+                )
+            return {name: archive[name] for name in (*required, *optional) if name in archive}
+    except OSError as error:
+        raise LissomError(f"cannot read {path}: {_reason(error)}") from error
+    except (ValueError, EOFError, KeyError, zipfile.BadZipFile) as error:
+        raise LissomError(f"{path} is not an NPZ file of numeric arrays, or is damaged") from error
+
+
+def _reason(error: OSError) -> str:
+    return error.strerror or str(error)
+
+
+def _mode_for(path: Path) -> int:
+    if path.exists():
+        return path.stat().st_mode & 0o777
+    mask = os.umask(0)
+    os.umask(mask)
+    return 0o666 & ~mask
