@@ -1,0 +1,126 @@
+"""Reading a picture file into straight-alpha RGBA pixels."""
+
+import io
+import struct
+import warnings
+import zlib
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from PIL import Image, ImageOps, UnidentifiedImageError
+
+from app.errors import LissomError
+from engine.arrays import Bytes, Floats, readonly
+
+# PostScript and PDF are left out on purpose: Pillow would run an interpreter for them.
+FORMATS = ("PNG", "JPEG", "GIF", "WEBP", "BMP", "TIFF", "PPM", "TGA", "ICO", "AVIF", "MPO")
+FORMATS_IN_WORDS = "PNG, JPEG, GIF, WebP, AVIF, TIFF, BMP, TGA, PPM or ICO"
+# Pillow's decoders let all of these through on damaged files.
+DECODER_ERRORS = (
+    OSError,
+    ValueError,
+    SyntaxError,
+    EOFError,
+    IndexError,
+    KeyError,
+    TypeError,
+    AttributeError,
+    OverflowError,
+    struct.error,
+    zlib.error,
+)
+EXIF_ORIENTATION = 0x0112
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Picture:
+    """A decoded picture.
+
+    Parameters
+    ----------
+    rgba : uint8, shape (h, w, 4)
+        Straight alpha, first row on top, rotated as its EXIF data asks.
+    notices : tuple of str
+        What was done to the file's contents, in words.
+    """
+
+    rgba: Bytes
+    notices: tuple[str, ...]
+
+    @property
+    def size(self) -> tuple[int, int]:
+        """Width and height in pixels."""
+        return self.rgba.shape[1], self.rgba.shape[0]
+
+
+def load_picture(path: Path) -> Picture:
+    """Read a picture file.
+
+    Raises
+    ------
+    LissomError
+        If the file is missing or unreadable, is no picture, is damaged, or is unreasonably large.
+    """
+    try:
+        data = path.read_bytes()
+    except OSError as error:
+        raise LissomError(f"cannot read {path}: {error.strerror or error}") from error
+    return decode_picture(data, str(path))
+
+
+def decode_picture(data: bytes, name: str) -> Picture:
+    """Decode the bytes of a picture file; `name` is what errors call it.
+
+    Raises
+    ------
+    LissomError
+        As `load_picture`.
+    """
+    if not data:
+        raise LissomError(f"{name} is empty")
+    try:
+        with warnings.catch_warnings():
+            # The warning comes at half the size of the error; we draw the line there.
+            warnings.simplefilter("ignore")
+            warnings.simplefilter("error", Image.DecompressionBombWarning)
+            return _decode(data)
+    except (Image.DecompressionBombWarning, Image.DecompressionBombError) as error:
+        raise LissomError(
+            f"{name} has more than {Image.MAX_IMAGE_PIXELS or 0:,} pixels; scale it down first"
+        ) from error
+    except UnidentifiedImageError as error:
+        raise LissomError(
+            f"{name} is not a picture that Lissom reads ({FORMATS_IN_WORDS})"
+        ) from error
+    except DECODER_ERRORS as error:
+        raise LissomError(f"{name} is damaged or cut short ({error})") from error
+
+
+def _decode(data: bytes) -> Picture:
+    notices = []
+    image: Image.Image = Image.open(io.BytesIO(data), formats=FORMATS)
+    frames = getattr(image, "n_frames", 1)
+    if frames > 1:
+        notices.append(f"used the first of {frames} frames")
+    image.load()
+    orientation = image.getexif().get(EXIF_ORIENTATION, 1)
+    if orientation in range(2, 9):
+        image = ImageOps.exif_transpose(image)
+        notices.append("turned upright as the camera noted")
+    if image.mode.startswith("I;16") or image.mode in {"I", "F"}:
+        greys = np.nan_to_num(np.asarray(image, dtype=np.float64))
+        image = Image.fromarray(_scale_deep_grey(greys, is_float=image.mode == "F"))
+        notices.append("reduced its deep greys to 8 bits")
+    return Picture(rgba=readonly(np.asarray(image.convert("RGBA"))), notices=tuple(notices))
+
+
+def _scale_deep_grey(greys: Floats, *, is_float: bool) -> Bytes:
+    """Map greys of more than 8 bits to 0 … 255.
+
+    Integers are 16 bits wide whatever their largest value; floating-point files write white as 1,
+    255 or 65535, whichever holds all of their values.
+    """
+    largest = float(greys.max(initial=0.0))
+    white = next((w for w in (1.0, 255.0) if is_float and largest <= w), max(65535.0, largest))
+    return np.rint(np.clip(greys / white, 0.0, 1.0) * 255.0).astype(np.uint8)
