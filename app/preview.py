@@ -16,7 +16,7 @@ MESH_COLOUR, OUTLINE_COLOUR, CAGE_COLOUR = (30, 40, 60, 70), (0, 120, 215, 255),
 
 
 def draw_preview(picture: Picture, domain: Domain) -> bytes:
-    """Return a PNG that shows the picture on a checkerboard, its mesh, outline (blue), cage (orange).
+    """Return a PNG of the picture on a checkerboard, its mesh, outline (blue) and cage (orange).
 
     Parameters
     ----------

@@ -25,7 +25,7 @@ class Domain:
     outline : complex128, shape (p,)
         The domain's boundary: simple, counter-clockwise, in pixels of the picture, y up.
     cage : complex128, shape (n,)
-        The polygon of the Cauchy coordinates: simple, counter-clockwise, strictly around the outline.
+        The polygon of the Cauchy coordinates: simple, counter-clockwise, around the outline.
     mesh : Mesh
         A triangulation of the inside of the outline.
     """

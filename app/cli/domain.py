@@ -3,6 +3,14 @@
 import argparse
 from pathlib import Path
 
+import numpy as np
+
+from app.cli.console import notice
+from app.files import check_writable, write_arrays, write_atomically
+from app.picture import load_picture
+from app.preview import draw_preview
+from engine.domain import build_domain, texture_coordinates
+
 EPILOG = """\
 The picture may be a PNG, JPEG, GIF, WebP, AVIF, TIFF, BMP, TGA, PPM or ICO. Transparent pixels are
 outside; from an opaque picture a plain background is removed. Whatever else had to be done (parts
@@ -53,14 +61,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Build the domain of a picture and write it."""
-    import numpy as np
-
-    from app.cli.main import notice
-    from app.files import check_writable, write_arrays, write_atomically
-    from app.picture import load_picture
-    from app.preview import draw_preview
-    from engine.domain import build_domain, texture_coordinates
-
     for path in (arguments.out, arguments.preview):
         if path is not None:
             check_writable(path)

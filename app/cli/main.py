@@ -6,37 +6,17 @@ import os
 import sys
 from collections.abc import Sequence
 from importlib.metadata import version
-from typing import NoReturn
 
+from app.cli.console import Parser, fail
 from app.errors import EXPECTED_ERRORS
 
-EXIT_ERROR = 2
 EXIT_INTERRUPTED = 130
 
-# Subcommand → the module in app.cli that defines `add_arguments(parser)` and `run(arguments)`.
+# Subcommand → its summary. The module of the same name in app.cli defines `add_arguments(parser)` and
+# `run(arguments)`; only the one that is asked for is loaded.
 COMMANDS = {
     "domain": "Find a picture's outline; build the cage and the triangulation.",
 }
-
-
-class Parser(argparse.ArgumentParser):
-    """An argument parser whose errors are one line, as those of every other failure."""
-
-    def error(self, message: str) -> NoReturn:
-        """Report bad usage and leave."""
-        fail(f"{message} (see '{self.prog} --help')")
-
-
-def fail(message: str) -> NoReturn:
-    """Print one line of error and leave with the exit status of bad input."""
-    line = " ".join(message.split())
-    print(f"lissom: error: {line}", file=sys.stderr)
-    raise SystemExit(EXIT_ERROR)
-
-
-def notice(message: str) -> None:
-    """Tell the person what was done on their behalf."""
-    print(f"lissom: {message}", file=sys.stderr)
 
 
 def main(argv: Sequence[str] | None = None) -> int:

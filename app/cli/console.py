@@ -1,0 +1,27 @@
+"""What a command says to the person who runs it."""
+
+import argparse
+import sys
+from typing import NoReturn
+
+EXIT_ERROR = 2
+
+
+class Parser(argparse.ArgumentParser):
+    """An argument parser whose errors are one line, as those of every other failure."""
+
+    def error(self, message: str) -> NoReturn:
+        """Report bad usage and leave."""
+        fail(f"{message} (see '{self.prog} --help')")
+
+
+def fail(message: str) -> NoReturn:
+    """Print one line of error and leave with the exit status of bad input."""
+    line = " ".join(message.split())
+    print(f"lissom: error: {line}", file=sys.stderr)
+    raise SystemExit(EXIT_ERROR)
+
+
+def notice(message: str) -> None:
+    """Tell the person what was done on their behalf."""
+    print(f"lissom: {message}", file=sys.stderr)
