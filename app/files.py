@@ -78,7 +78,9 @@ def read_arrays(
         If the file is missing, is not an NPZ file, is damaged, or lacks a required array.
     """
     try:
-        with np.load(path, allow_pickle=False) as archive:
+        # Opened here: NumPy leaves the file open where it turns out to be no archive.
+        with path.open("rb") as file:
+            archive = np.load(file, allow_pickle=False)
             if not isinstance(archive, np.lib.npyio.NpzFile):
                 raise LissomError(f"{path} is not an NPZ file")
             missing = [name for name in required if name not in archive]

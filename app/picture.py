@@ -14,7 +14,7 @@ from app.errors import LissomError
 from engine.arrays import Bytes, Floats, readonly
 
 # PostScript and PDF are left out on purpose: Pillow would run an interpreter for them.
-FORMATS = ("PNG", "JPEG", "GIF", "WEBP", "BMP", "TIFF", "PPM", "TGA", "ICO", "AVIF", "MPO")
+FORMATS = ("PNG", "JPEG", "GIF", "WEBP", "BMP", "TIFF", "PPM", "TGA", "ICO", "AVIF")
 FORMATS_IN_WORDS = "PNG, JPEG, GIF, WebP, AVIF, TIFF, BMP, TGA, PPM or ICO"
 # Pillow's decoders let all of these through on damaged files.
 DECODER_ERRORS = (

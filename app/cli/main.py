@@ -12,7 +12,7 @@ from app.errors import EXPECTED_ERRORS
 
 EXIT_INTERRUPTED = 130
 
-# Subcommand → its summary. The module of the same name in app.cli defines `add_arguments(parser)` and
+# Subcommand → its summary. The module of that name in app.cli defines `add_arguments(parser)` and
 # `run(arguments)`; only the one that is asked for is loaded.
 COMMANDS = {
     "domain": "Find a picture's outline; build the cage and the triangulation.",

@@ -1,0 +1,54 @@
+import subprocess
+import sys
+
+import pytest
+
+from app.cli.main import COMMANDS, main
+
+
+def run(*words: str) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(
+        [sys.executable, "-m", "app", *words], capture_output=True, text=True, check=False
+    )
+
+
+def error_line(text: str) -> str:
+    lines = [line for line in text.splitlines() if line.startswith("lissom: error:")]
+    assert len(lines) == 1, text
+    assert "Traceback" not in text
+    return lines[0]
+
+
+@pytest.mark.parametrize(
+    "words", [[], ["nonsense"], ["domain"], ["domain", "a.png", "--out"], ["--nonsense"]]
+)
+def test_bad_usage_is_one_line(words, capsys):
+    with pytest.raises(SystemExit) as leaving:
+        main(words)
+    assert leaving.value.code == 2
+    assert "--help" in error_line(capsys.readouterr().err)
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_every_command_explains_itself(command, capsys):
+    with pytest.raises(SystemExit) as leaving:
+        main([command, "--help"])
+    assert leaving.value.code == 0
+    text = capsys.readouterr().out
+    assert f"usage: lissom {command}" in text
+    assert "examples:" in text
+
+
+def test_the_program_runs_as_a_process(tmp_path):
+    refused = run("domain", str(tmp_path / "no\nsuch.png"), "--out", str(tmp_path / "out.npz"))
+    assert refused.returncode == 2
+    assert "no such.png" in error_line(refused.stderr)
+    assert refused.stdout == ""
+    assert list(tmp_path.iterdir()) == []
+    assert run("--version").stdout.startswith("lissom ")
+
+
+def test_help_does_not_load_the_numerics():
+    code = "import sys, app.cli.main as m; m.build_parser([]); print('numpy' in sys.modules)"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "False"
