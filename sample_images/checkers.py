@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-from curves import Ribbon, ribbon, rounded
-from paint import Canvas, Mark
-from shapely import union_all
+from curves import Ribbon, ribbon, rounded, weld
+from paint import Canvas, Mark, rgb
 
 _CREAM = "#fff4dc"
 _RAINBOW = ("#e4572e", "#f2a541", "#3fa796", "#3a7ca5", "#7d5ba6")
@@ -13,33 +12,38 @@ _RAINBOW = ("#e4572e", "#f2a541", "#3fa796", "#3a7ca5", "#7d5ba6")
 
 def _hue(share: float) -> str:
     """Colour of the rainbow at `share`, from 0 to 1."""
-    stops = np.array([[int(c[i : i + 2], 16) for i in (1, 3, 5)] for c in _RAINBOW])
+    stops = 255 * np.array([rgb(colour) for colour in _RAINBOW])
     place = np.linspace(0.0, 1.0, len(stops))
     red, green, blue = (round(np.interp(share, place, channel)) for channel in stops.T)
     return f"#{red:02x}{green:02x}{blue:02x}"
 
 
-def _checkered(canvas: Canvas, band: Ribbon, columns: int, rows: int, corner: float) -> None:
-    """Paint `band` with a checker of `columns` squares along it and `rows` across."""
+def _checkered(canvas: Canvas, band: Ribbon, columns: int, hues: list[float]) -> None:
+    """Paint `band` with a checker of three rows and `columns` columns.
+
+    Parameters
+    ----------
+    canvas : Canvas
+    band : Ribbon
+    columns : int
+    hues : list of float
+        Place in the rainbow, from 0 to 1, at even steps along the band.
+    """
     marks = []
     for column in range(columns):
         start, end = column / columns, (column + 1) / columns
-        for row in range(column % 2, rows, 2):
-            left, right = 2 * row / rows - 1, 2 * (row + 1) / rows - 1
-            square = band.strip(start, end, left, right)
-            # A closed band comes back to its first colour.
-            share = 1 - abs(2 * start - 1) if corner == 0 else start
-            marks.append(Mark(square, _hue(share)))
-    quarter = 0.25
-    parts = [band.strip(q * quarter, (q + 1) * quarter, -1.0, 1.0) for q in range(4)]
-    shape = rounded(union_all([part.buffer(0.5) for part in parts]), corner)
-    canvas.form(shape, _CREAM, *marks, ink=7, gloss=0.5)
+        hue = _hue(np.interp((start + end) / 2, np.linspace(0, 1, len(hues)), hues))
+        # The outer rows reach out of the band, so that no cream shows between them and the ink.
+        for left, right in ((-1.2, -1 / 3), (1 / 3, 1.2)) if column % 2 else ((-1 / 3, 1 / 3),):
+            marks.append(Mark(band.strip(start, end, left, right), hue))
+    halves = weld(band.strip(0.0, 0.5, -1.0, 1.0), band.strip(0.5, 1.0, -1.0, 1.0), radius=0.5)
+    canvas.form(rounded(halves, 18), _CREAM, *marks, ink=7, gloss=0.5)
 
 
 def bar() -> Canvas:
     """Draw a straight bar."""
     canvas = Canvas(1060, 260)
-    _checkered(canvas, ribbon([60 + 130j, 1000 + 130j], 141), columns=20, rows=3, corner=18)
+    _checkered(canvas, ribbon([60 + 130j, 1000 + 130j], 141), columns=20, hues=[0.0, 1.0])
     return canvas
 
 
@@ -61,7 +65,7 @@ def s() -> Canvas:
         300 + 895j,
         200 + 800j,
     ]
-    _checkered(canvas, ribbon(through, 150), columns=32, rows=3, corner=18)
+    _checkered(canvas, ribbon(through, 150), columns=32, hues=[0.0, 1.0])
     return canvas
 
 
@@ -69,5 +73,5 @@ def ring() -> Canvas:
     """Draw a ring."""
     canvas = Canvas(1060, 1060)
     through = [530 + 530j - 375j * np.exp(2j * np.pi * k / 16) for k in range(16)]
-    _checkered(canvas, ribbon(through, 180, closed=True), columns=36, rows=3, corner=0)
+    _checkered(canvas, ribbon(through, 180, closed=True), columns=36, hues=[0.0, 1.0, 0.0])
     return canvas

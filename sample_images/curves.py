@@ -15,8 +15,8 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.interpolate import CubicSpline, PchipInterpolator
 from shapely.geometry.base import BaseGeometry
 
-Points = Sequence[complex]
 Curve = NDArray[np.complex128]
+Points = Sequence[complex] | Curve
 
 _SAMPLES_PER_SPAN = 24
 
@@ -71,6 +71,11 @@ def ellipse(centre: complex, rx: float, ry: float | None = None, tilt: float = 0
     return polygon(centre + rim * np.exp(1j * np.deg2rad(tilt)))
 
 
+def mirrored(points: Points, axis: float) -> list[complex]:
+    """Mirror images of `points` about the vertical line x = `axis`."""
+    return [2 * axis - point.conjugate() for point in points]
+
+
 def weld(*shapes: BaseGeometry, radius: float) -> BaseGeometry:
     """Union of `shapes` with the inner corners between them filled to a rounding of `radius`."""
     return shapely.union_all(shapes).buffer(radius, quad_segs=16).buffer(-radius, quad_segs=16)
@@ -99,19 +104,22 @@ class Ribbon:
     tangent: Curve
     width: NDArray[np.float64]
 
-    def at(self, along: ArrayLike, side: ArrayLike = 0.0) -> Curve:
+    def at(self, along: ArrayLike, side: float = 0.0) -> Curve:
         """Points of the ribbon: side -1 is its left edge, 0 the curve, +1 its right edge.
 
         Right and left are those of a walker on the picture who follows the curve.
         """
-        tangent = self.heading(along)
-        half = np.interp(along, self.along, self.width) / 2
-        return np.interp(along, self.along, self.spine) + np.asarray(side) * half * 1j * tangent
+        place = np.asarray(along, dtype=float)
+        half = np.interp(place, self.along, self.width) / 2
+        middle: Curve = np.interp(place, self.along, self.spine)
+        points: Curve = middle + side * half * 1j * self.heading(along)
+        return points
 
     def heading(self, along: ArrayLike) -> Curve:
         """Unit tangents."""
-        tangent = np.interp(along, self.along, self.tangent)
-        return tangent / np.abs(tangent)
+        tangent: Curve = np.interp(np.asarray(along, dtype=float), self.along, self.tangent)
+        unit: Curve = tangent / np.abs(tangent)
+        return unit
 
     def strip(self, start: float, end: float, left: float, right: float) -> BaseGeometry:
         """The part of the ribbon between two arc lengths and two sides, with square ends."""

@@ -8,89 +8,152 @@ from face import eye
 from paint import INK, Canvas, Gradient, Mark
 from shapely.geometry.base import BaseGeometry
 
-_SCALES = Gradient(300 + 100j, 560 + 720j, "#62cf9f", "#23908f")
-_BELLY = "#ffe2a0"
-_SPIKE = Gradient(400 + 100j, 700 + 600j, "#ffb057", "#ee6a3c")
-_WING = Gradient(520 + 150j, 640 + 450j, "#ffb057", "#e4572e")
-_CLAW = "#fff4dc"
+_SCALES = Gradient(300 + 100j, 560 + 720j, "#6ad8a4", "#23908f")
+_DARK_SCALE = "#1d8482"
+_BELLY = "#ffe6ae"
+_SEAM = "#d99a5b"
+_FLAME = Gradient(560 + 180j, 660 + 600j, "#ffb959", "#e9603a")
+_IVORY = "#fff4dc"
+
+# Hip, knee, heel, ankle; thickness at the hip. The front legs first.
+_FAR_LEGS = (
+    ((380 + 560j, 362 + 640j, 338 + 720j, 322 + 780j), 104),
+    ((712 + 572j, 730 + 650j, 766 + 716j, 746 + 780j), 96),
+)
+_NEAR_LEGS = (
+    ((456 + 550j, 468 + 640j, 464 + 730j, 446 + 800j), 112),
+    ((646 + 556j, 616 + 646j, 644 + 730j, 612 + 800j), 160),
+)
 
 
 def _spike(back: Ribbon, along: float, size: float) -> BaseGeometry:
     """A spike on the left edge of `back`, bent backwards."""
-    foot, way = back.at(along, -0.85)[()], back.heading(along)[()]
-    tip = foot + size * (-1j + 0.55) * way
-    front, rear = foot - 0.62 * size * way, foot + 0.62 * size * way
+    foot, way = complex(back.at(along, -0.82)), complex(back.heading(along))
+    tip = foot + size * (0.5 - 1.3j) * way
+    front, rear = foot - 0.6 * size * way, foot + 0.6 * size * way
     return rounded(
         leaf(
-            [front, (front + tip) / 2 - 0.14j * size * way, tip],
-            [tip, (rear + tip) / 2 + 0.10j * size * way, rear],
+            [front, (front + tip) / 2 - 0.15j * size * way, tip],
+            [tip, (rear + tip) / 2 + 0.12 * size * way * (-1 + 0.4j), rear],
         ),
         2,
     )
 
 
-def _leg(hip: complex, knee: complex, ankle: complex, thigh: float) -> BaseGeometry:
-    leg = ribbon([hip, knee, ankle], [thigh, 70, 50]).shape
+def _leg(joints: tuple[complex, ...], thigh: float) -> BaseGeometry:
+    ankle = joints[-1]
     foot = blob(
-        ankle - 50 + 6j, ankle - 10 - 24j, ankle + 26 - 10j, ankle + 28 + 24j, ankle - 46 + 26j
+        ankle - 44 + 8j, ankle - 12 - 22j, ankle + 24 - 14j, ankle + 30 + 24j, ankle - 40 + 26j
     )
-    return weld(leg, foot, radius=10)
+    return weld(ribbon(joints, [thigh, 80, 54, 50]).shape, foot, radius=10)
 
 
 def _claws(canvas: Canvas, ankle: complex) -> None:
-    for k in (0, 1, 2):
-        toe = ankle - 52 + 22 * k + 18j
-        canvas.form(leaf([toe - 8 - 6j, toe - 14 + 9j], [toe - 14 + 9j, toe + 8 - 2j]), _CLAW, ink=4)
+    for toe in (ankle - 42 + 14j, ankle - 20 + 20j, ankle + 2 + 21j):
+        claw = leaf(
+            [toe + 8 - 8j, toe - 8 - 8j, toe - 13 + 9j], [toe - 13 + 9j, toe + 3 + 9j, toe + 8 - 8j]
+        )
+        canvas.form(claw, _IVORY, ink=4)
+
+
+def _wing(canvas: Canvas) -> None:
+    """A small wing: skin between the fingers, which spring from the wrist."""
+    shoulder, wrist, root = 490 + 480j, 560 + 216j, 580 + 462j
+    tips = (764 + 236j, 748 + 344j, 668 + 424j)
+    skin = leaf(
+        [shoulder, 490 + 424j, 514 + 320j, wrist],
+        [wrist, 664 + 196j, tips[0]],
+        [tips[0], 730 + 290j, tips[1]],
+        [tips[1], 690 + 374j, tips[2]],
+        [tips[2], 606 + 436j, root],
+        [root, 534 + 452j, shoulder],
+    )
+    canvas.form(rounded(skin, 2), _FLAME)
+    for tip, bend in zip((*tips[1:], root), (664 + 262j, 622 + 300j, 566 + 330j), strict=True):
+        canvas.line([wrist, bend, tip], 6)
+    canvas.form(
+        ribbon([shoulder + 6j, 486 + 424j, 510 + 320j, wrist], [10, 38, 30, 18]).shape,
+        _SCALES,
+        ink=5,
+    )
+    claw = leaf(
+        [wrist - 9 + 4j, wrist - 12 - 16j, wrist - 26 - 36j],
+        [wrist - 26 - 36j, wrist + 4 - 24j, wrist + 9 + 2j],
+    )
+    canvas.form(claw, _IVORY, ink=5)
+
+
+def _head(canvas: Canvas) -> None:
+    canvas.form(ribbon([258 + 150j, 270 + 92j, 316 + 54j], [34, 24, 7]).shape, _IVORY, dim=0.5)
+    canvas.form(ribbon([296 + 166j, 330 + 112j, 396 + 92j], [42, 28, 8]).shape, _IVORY)
+    fin = leaf(
+        [290 + 212j, 350 + 178j, 414 + 186j],
+        [414 + 186j, 384 + 206j, 398 + 236j],
+        [398 + 236j, 364 + 240j, 366 + 274j],
+        [366 + 274j, 320 + 276j, 284 + 262j],
+    )
+    canvas.form(rounded(fin, 2), _FLAME)
+    for end in (392 + 194j, 380 + 232j):
+        canvas.line([306 + 232j, (320 + 232j + end) / 2, end], 4)
+    skull = blob(
+        224 + 112j, 292 + 134j, 322 + 206j, 296 + 288j, 226 + 322j, 140 + 326j, 72 + 304j,
+        50 + 256j, 76 + 212j, 112 + 212j, 146 + 200j, 168 + 142j,
+    )  # fmt: skip
+    jaw = blob(40 + 286j, 130 + 302j, 226 + 298j, 240 + 350j, 120 + 350j)
+    marks = [
+        Mark(jaw, _BELLY, 1.0, 2),
+        Mark(ellipse(268 + 262j, 27, 18), "#ff8f6b", 0.75, 6),
+        *(
+            Mark(ellipse(z, r), _DARK_SCALE, 0.5)
+            for z, r in ((282 + 172j, 10), (300 + 200j, 7), (262 + 146j, 7))
+        ),
+    ]
+    canvas.form(skull, _SCALES, *marks)
+    canvas.flat(ellipse(88 + 240j, 7, 10, 35), INK)
+    canvas.line([66 + 288j, 126 + 302j, 190 + 292j, 232 + 254j], 7)
+    tooth = leaf([96 + 297j, 104 + 318j], [104 + 318j, 116 + 300j])
+    canvas.form(tooth, _IVORY, ink=3, gloss=0)
+    eye(canvas, 208 + 200j, 36, "#d9771a", look=-9 + 3j)
+    canvas.line([184 + 144j, 214 + 132j, 250 + 150j], 8)
 
 
 def dragon() -> Canvas:
     """Draw the dragon."""
     canvas = Canvas(1120, 900)
     back = ribbon(
-        [232 + 250j, 262 + 360j, 360 + 470j, 500 + 505j, 630 + 525j, 760 + 600j, 890 + 610j,
-         980 + 520j, 985 + 400j, 915 + 330j],
-        [112, 128, 176, 208, 180, 112, 74, 52, 36, 20],
+        [236 + 250j, 266 + 370j, 362 + 474j, 500 + 505j, 640 + 520j, 770 + 590j, 890 + 610j,
+         982 + 530j, 985 + 410j, 915 + 340j],
+        [112, 130, 176, 208, 184, 116, 78, 54, 36, 22],
     )  # fmt: skip
-    far = ((372 + 560j, 352 + 650j, 330 + 770j, 100), (640 + 580j, 700 + 660j, 660 + 770j, 120))
-    near = ((440 + 560j, 452 + 670j, 440 + 790j, 110), (600 + 570j, 590 + 680j, 560 + 790j, 150))
-    for leg in far:
-        canvas.form(_leg(*leg), _SCALES, dim=0.55, gloss=0.0)
-        _claws(canvas, leg[2])
-    for along in np.linspace(0.05, 0.93, 16):
-        canvas.form(_spike(back, along, np.interp(along, (0, 0.4, 1), (38, 50, 20))), _SPIKE)
-    tip = back.at(1.0)[()]
-    spade = leaf(
-        [tip + 22 - 4j, tip + 10 - 44j, tip - 84 - 40j], [tip - 84 - 40j, tip - 40 + 30j, tip + 6 + 22j]
-    )
-    canvas.form(spade, _SPIKE)
-    body = weld(back.shape, *(_leg(*leg) for leg in near), radius=12)
-    plates = [Mark(back.strip(0.0, 0.95, 0.42, 1.4), _BELLY)]
-    plates += [Mark(back.strip(a, a + 0.006, 0.42, 1.4), "#d99a5b") for a in np.arange(0.04, 0.9, 0.04)]
-    hips = [Mark(_leg(*leg), _SCALES) for leg in near]
-    canvas.form(body, _SCALES, *plates, *hips)
-    for leg in near:
-        _claws(canvas, leg[2])
-    wing = leaf(
-        [470 + 470j, 500 + 330j, 590 + 190j],
-        [590 + 190j, 650 + 240j, 740 + 250j],
-        [740 + 250j, 680 + 300j, 690 + 360j],
-        [690 + 360j, 620 + 370j, 600 + 420j],
-        [600 + 420j, 560 + 430j, 520 + 490j],
-    )
-    canvas.form(wing, _WING)
-    for end in (740 + 250j, 690 + 360j, 600 + 420j):
-        canvas.line([490 + 440j, (490 + 440j + end) / 2 - 20j, end], 5)
-    canvas.form(ribbon([486 + 480j, 505 + 330j, 590 + 190j], [44, 30, 16]).shape, _SCALES)
-
-    horn = ribbon([292 + 160j, 330 + 110j, 392 + 92j], [40, 26, 8]).shape
-    canvas.form(horn, _CLAW)
-    head = blob(
-        220 + 120j, 290 + 140j, 318 + 210j, 290 + 290j, 220 + 318j, 140 + 318j, 76 + 296j,
-        56 + 250j, 84 + 216j, 140 + 200j, 168 + 146j,
-    )  # fmt: skip
-    jaw = blob(60 + 290j, 140 + 296j, 230 + 300j, 220 + 340j, 120 + 340j)
-    canvas.form(head, _SCALES, Mark(jaw, _BELLY, 1.0, 3), Mark(ellipse(262 + 262j, 24, 16), "#ff8f6b", 0.7, 6))
-    canvas.flat(ellipse(90 + 240j, 7, 9, 30), INK)
-    canvas.line([72 + 282j, 130 + 290j, 190 + 280j, 224 + 250j], 6)
-    eye(canvas, 212 + 200j, 32, "#d97a1f", look=-8 + 2j)
+    for leg in _FAR_LEGS:
+        canvas.form(_leg(*leg), _SCALES, dim=0.6, gloss=0)
+        _claws(canvas, leg[0][-1])
+    for along in np.linspace(0.035, 0.93, 15):
+        canvas.form(_spike(back, along, np.interp(along, (0, 0.4, 1), (40, 52, 22))), _FLAME)
+    body = weld(back.shape, *(_leg(*leg) for leg in _NEAR_LEGS), radius=12)
+    plates = [Mark(back.strip(0.0, 0.97, 0.42, 1.4), _BELLY)]
+    plates += [
+        Mark(back.strip(a, a + 0.005, 0.42, 1.4), _SEAM) for a in np.arange(0.04, 0.95, 0.035)
+    ]
+    dots = [
+        Mark(ellipse(complex(back.at(along, side)), size, 0.75 * size, 30), _DARK_SCALE, 0.45)
+        for along, side, size in (
+            (0.14, -0.3, 7), (0.2, -0.1, 11), (0.23, -0.45, 8), (0.46, -0.4, 13), (0.5, -0.05, 9),
+            (0.54, -0.45, 8), (0.6, -0.2, 11), (0.65, -0.5, 6), (0.72, -0.1, 7),
+        )
+    ]  # fmt: skip
+    hips = [Mark(_leg(*leg), _SCALES) for leg in _NEAR_LEGS]
+    canvas.form(body, _SCALES, *plates, *hips, *dots)
+    canvas.line([410 + 520j, 399 + 556j, 404 + 604j], 6)
+    canvas.line([508 + 524j, 513 + 556j, 509 + 592j], 6)
+    canvas.line([573 + 606j, 566 + 558j, 594 + 504j, 656 + 478j], 6)
+    tip, way = complex(back.at(1.0)), complex(back.heading(1.0))
+    halves = [
+        [tip + way * z for z in side] for side in ((-14, 4 + 44j, 92 + 0j), (92, 4 - 44j, -14 + 0j))
+    ]
+    canvas.form(rounded(leaf(*halves), 3), _FLAME)
+    for leg in _NEAR_LEGS:
+        _claws(canvas, leg[0][-1])
+    _wing(canvas)
+    _head(canvas)
     return canvas

@@ -4,96 +4,123 @@ from __future__ import annotations
 
 import numpy as np
 import shapely
-from curves import blob, ellipse, leaf, ribbon, rounded, weld
+from curves import Ribbon, blob, ellipse, leaf, ribbon, rounded, weld
 from face import eye
 from paint import INK, Canvas, Gradient, Mark
 from shapely.geometry.base import BaseGeometry
 
-_HIDE = Gradient(400 + 100j, 520 + 760j, "#ffd37a", "#f9bb5c")
-_PATCH = Gradient(300 + 150j, 560 + 720j, "#c9743a", "#a9542c")
-_CREAM = "#fff0d0"
+_HIDE = Gradient(400 + 520j, 440 + 860j, "#ffd27a", "#ffe2a8")
+_PATCH = Gradient(300 + 150j, 560 + 720j, "#d8853f", "#bb612f")
+_CREAM = "#fff3d9"
 _MANE = "#8f4526"
 _HOOF = "#6b4136"
 
+_LEGS = {
+    "far front": (392 + 630j, 338 + 790j, 326 + 965j),
+    "far hind": (606 + 630j, 552 + 790j, 546 + 965j),
+    "near front": (426 + 640j, 424 + 805j, 414 + 985j),
+    "near hind": (630 + 620j, 658 + 805j, 642 + 985j),
+}
+
 
 def _patches(where: BaseGeometry) -> list[Mark]:
-    """Rounded Voronoi cells of seeds that lie closer together towards the head."""
-    rng = np.random.default_rng(5)
+    """Rounded Voronoi cells of seeds that lie closer together on the neck and the legs."""
+    rng = np.random.default_rng(15)
     left, top, right, bottom = where.bounds
     seeds: list[complex] = []
-    for x, y in rng.uniform((left, top), (right, bottom), (6000, 2)):
-        spacing = np.interp(y, (150, 520), (50, 84))
+    for x, y in rng.uniform((left - 40, top - 40), (right + 40, bottom + 40), (5000, 2)):
+        spacing = np.interp(y, (150, 480, 640, 800), (44, 74, 78, 44))
         if all(abs(x + 1j * y - seed) > spacing for seed in seeds):
             seeds.append(complex(x, y))
     cells = shapely.voronoi_polygons(shapely.MultiPoint([(z.real, z.imag) for z in seeds]))
-    rims = [rounded(cell.buffer(-5), 13) for cell in cells.geoms]
-    return [Mark(rim.intersection(where), _PATCH) for rim in rims if rim.intersects(where)]
+    rims = [rounded(cell.buffer(-6.5), 11) for cell in cells.geoms]
+    return [Mark(rim, _PATCH) for rim in rims if rim.intersection(where).area > 0.35 * rim.area]
 
 
 def _leg(hip: complex, knee: complex, ankle: complex, *, thigh: float) -> BaseGeometry:
-    calf = (knee + ankle) / 2
-    return ribbon([hip, (hip + knee) / 2, knee, calf, ankle], [thigh, 62, 46, 36, 40]).shape
+    joints = [hip, (hip + knee) / 2, knee, (knee + ankle) / 2, ankle]
+    return ribbon(joints, [thigh, 66, 50, 36, 40]).shape
 
 
 def _hoof(ankle: complex) -> BaseGeometry:
-    return leaf(
-        [ankle - 19 - 14j, ankle - 26 + 18j],
-        [ankle - 26 + 18j, ankle + 26 + 18j],
-        [ankle + 26 + 18j, ankle + 19 - 14j],
+    top, bottom = ankle - 12j, ankle + 26j
+    sides = (
+        [bottom - 30, bottom - 27 - 16j, top - 20],
+        [top - 20, top + 20],
+        [top + 20, bottom + 26],
     )
+    return rounded(leaf(*sides, [bottom + 26, bottom - 30]), 5)
+
+
+def _mane(neck: Ribbon) -> BaseGeometry:
+    """Tufts along the back of the neck, the tips bent towards the body."""
+    notches = np.linspace(0.98, 0.2, 11)
+    roots = neck.at(notches, 0.6)
+    outwards = 1j * neck.heading(notches) * np.interp(notches, (0.2, 0.4), (0.55, 1.0))
+    valleys = neck.at(notches, 1.0) + 14 * outwards
+    tips = (valleys[:-1] + 2 * valleys[1:]) / 3 + 26 * outwards[1:]
+    sides = [[roots[-1], roots[0]], [roots[0], valleys[0]]]
+    for valley, tip, following in zip(valleys, tips, valleys[1:], strict=False):
+        bulge = (valley + tip) / 2 + 0.2j * (valley - tip)
+        sides += [[valley, bulge, tip], [tip, following]]
+    return rounded(leaf(*sides, [valleys[-1], roots[-1]]), 3)
 
 
 def giraffe() -> Canvas:
     """Draw the giraffe."""
-    canvas = Canvas(840, 1080)
-    legs = {
-        "far front": (372 + 640j, 322 + 800j, 312 + 985j),
-        "far hind": (610 + 640j, 556 + 800j, 548 + 985j),
-        "near front": (420 + 650j, 412 + 810j, 404 + 1000j),
-        "near hind": (632 + 620j, 652 + 810j, 640 + 1000j),
-    }
-    tail = ribbon([665 + 560j, 712 + 610j, 730 + 690j, 724 + 760j], [26, 18, 15, 14])
+    canvas = Canvas(840, 1100)
+    tail = ribbon([664 + 560j, 728 + 596j, 764 + 676j, 766 + 756j], [30, 20, 15, 14])
+    tuft = leaf([757 + 738j, 736 + 800j, 762 + 874j], [762 + 874j, 802 + 812j, 775 + 738j])
     canvas.form(tail.shape, _HIDE)
-    tuft = leaf([718 + 745j, 700 + 800j, 722 + 862j], [722 + 862j, 752 + 805j, 734 + 745j])
     canvas.form(tuft, _MANE)
-
     for name in ("far front", "far hind"):
-        hip, knee, ankle = legs[name]
-        canvas.form(_leg(hip, knee, ankle, thigh=96), _HIDE, dim=0.55, gloss=0.0)
-        canvas.form(_hoof(ankle), _HOOF, dim=0.5, gloss=0.0)
+        leg = _leg(*_LEGS[name], thigh=100)
+        canvas.form(
+            leg, _HIDE, *_patches(leg.intersection(shapely.box(0, 0, 840, 800))), dim=0.6, gloss=0
+        )
+        canvas.form(_hoof(_LEGS[name][2]), _HOOF, dim=0.6, gloss=0)
 
     neck = ribbon(
-        [430 + 600j, 372 + 480j, 325 + 350j, 292 + 235j, 272 + 160j], [210, 150, 104, 80, 76]
+        [430 + 600j, 372 + 480j, 328 + 350j, 296 + 235j, 274 + 160j], [210, 152, 108, 84, 78]
     )
-    mane = ribbon([neck.at(a, 1.0)[()] for a in (0.2, 0.4, 0.6, 0.8, 1.0)], [12, 34, 38, 36, 24])
-    canvas.form(mane.shape, _MANE)
-
+    canvas.form(_mane(neck), _MANE, gloss=0.1)
     trunk = blob(
-        330 + 560j, 380 + 490j, 480 + 490j, 600 + 520j, 680 + 580j, 690 + 650j, 620 + 715j,
-        500 + 728j, 390 + 720j, 338 + 650j,
+        332 + 560j, 380 + 490j, 480 + 490j, 600 + 520j, 680 + 580j, 694 + 650j, 630 + 706j,
+        510 + 722j, 400 + 716j, 340 + 650j,
     )  # fmt: skip
-    near = [_leg(*legs[name], thigh=120) for name in ("near front", "near hind")]
+    near = [_leg(*_LEGS[name], thigh=126) for name in ("near front", "near hind")]
     body = weld(trunk, neck.shape, *near, radius=14)
-    coat = body.intersection(shapely.box(0, 140, 840, 800))
-    belly = blob(330 + 735j, 430 + 700j, 560 + 700j, 640 + 735j, 500 + 780j)
-    canvas.form(body, _HIDE, *_patches(coat), Mark(belly, _CREAM, 0.8, 6))
+    belly = blob(300 + 720j, 430 + 692j, 570 + 690j, 680 + 720j, 640 + 900j, 380 + 900j)
+    coat = (
+        body.difference(belly)
+        .union(weld(*near, radius=1))
+        .intersection(shapely.box(0, 140, 840, 815))
+    )
+    canvas.form(body, _HIDE, *_patches(coat))
     for name in ("near front", "near hind"):
-        canvas.form(_hoof(legs[name][2]), _HOOF)
+        canvas.form(_hoof(_LEGS[name][2]), _HOOF)
 
-    for foot, tip in ((292 + 100j, 300 + 42j), (250 + 100j, 246 + 38j)):
-        canvas.form(ribbon([foot, tip], [24, 18]).shape, _HIDE)
-        canvas.form(ellipse(tip, 17, 15), _MANE)
-    ear = leaf([310 + 132j, 360 + 90j, 408 + 92j], [408 + 92j, 388 + 142j, 318 + 160j])
+    for foot, tip in ((298 + 106j, 318 + 42j), (248 + 106j, 244 + 38j)):
+        canvas.form(ribbon([foot, tip], [26, 18]).shape, _HIDE)
+        canvas.form(ellipse(tip, 18, 16), _MANE)
+    ear = leaf([312 + 128j, 360 + 88j, 416 + 100j], [416 + 100j, 390 + 146j, 318 + 160j])
     canvas.form(ear, _HIDE, Mark(ear.buffer(-9), "#f5a07c"))
-
     head = blob(
-        250 + 88j, 306 + 100j, 330 + 160j, 300 + 222j, 240 + 240j, 190 + 262j, 138 + 258j,
-        112 + 222j, 136 + 184j, 186 + 150j, 212 + 106j,
+        254 + 86j, 310 + 100j, 334 + 162j, 302 + 224j, 242 + 246j, 190 + 272j, 136 + 270j,
+        106 + 232j, 130 + 190j, 186 + 154j, 212 + 106j,
     )  # fmt: skip
-    muzzle = ellipse(150 + 225j, 62, 46, -18)
-    cheek = ellipse(252 + 200j, 22, 15)
-    canvas.form(head, _HIDE, Mark(muzzle, _CREAM, 1.0, 5), Mark(cheek, "#f58f6c", 0.6, 6))
-    canvas.flat(ellipse(132 + 205j, 6, 8, 30), INK)
-    canvas.line([128 + 240j, 160 + 246j, 192 + 236j, 208 + 218j], 5)
-    eye(canvas, 240 + 150j, 23, "#5b3420", look=-6 + 1j)
+    marks = [
+        Mark(ellipse(144 + 236j, 66, 54, -20), _CREAM, 1.0, 4),
+        Mark(ellipse(252 + 208j, 25, 17), "#ff8a68", 0.65, 6),
+        *(
+            Mark(ellipse(z, r, 0.8 * r, 30), _PATCH)
+            for z, r in ((310 + 186j, 15), (316 + 150j, 9), (286 + 218j, 9))
+        ),
+    ]
+    canvas.form(head, _HIDE, *marks)
+    canvas.flat(ellipse(126 + 212j, 6, 9, 30), INK)
+    canvas.line([120 + 248j, 156 + 256j, 190 + 246j, 210 + 222j], 6)
+    eye(canvas, 236 + 154j, 27, "#7a4526", look=-6 + 2j)
+    for lash in ((256 + 126j, 272 + 108j), (264 + 136j, 284 + 122j)):
+        canvas.line([lash[0], (lash[0] + lash[1]) / 2 + 3j, lash[1]], 6)
     return canvas

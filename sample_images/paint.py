@@ -11,6 +11,7 @@ from pathlib import Path
 
 import numpy as np
 import scipy.sparse
+from curves import Points, ribbon
 from numpy.typing import NDArray
 from PIL import Image, ImageColor, ImageDraw
 from scipy.ndimage import gaussian_filter, map_coordinates
@@ -18,13 +19,11 @@ from scipy.sparse.linalg import spsolve
 from shapely.affinity import translate
 from shapely.geometry.base import BaseGeometry
 
-from curves import Points, ribbon
-
 Pixels = NDArray[np.float32]
 
 INK = "#2b1b38"
 _LIGHT = np.array([-0.46, -0.66, 0.59])
-_SHADOW = np.array([0.72, 0.56, 0.70])
+_SHADOW = np.array([0.71, 0.59, 0.69])
 _GLOW = np.array([1.0, 0.97, 0.86])
 _BOUNCE = np.array([0.72, 0.78, 1.0])
 
@@ -67,9 +66,21 @@ class _Window:
     right: int
     bottom: int
 
-    @property
-    def slices(self) -> tuple[slice, slice]:
-        return slice(self.top, self.bottom), slice(self.left, self.right)
+    def around(self, shape: BaseGeometry, pad: float) -> _Window:
+        """The part of this window within `pad` pixels of the box around `shape`."""
+        left, top, right, bottom = shape.bounds
+        # Of a window that misses the shape, nothing remains.
+        return _Window(
+            left=min(max(self.left, int(left - pad)), self.right),
+            top=min(max(self.top, int(top - pad)), self.bottom),
+            right=max(min(self.right, int(right + pad) + 2), self.left),
+            bottom=max(min(self.bottom, int(bottom + pad) + 2), self.top),
+        )
+
+    def within(self, outer: _Window) -> tuple[slice, slice]:
+        """Slices of this window in the arrays of a larger one."""
+        rows = slice(self.top - outer.top, self.bottom - outer.top)
+        return rows, slice(self.left - outer.left, self.right - outer.left)
 
     def coverage(self, shape: BaseGeometry) -> Pixels:
         """Share of every pixel that `shape` covers, float32 (h, w)."""
@@ -85,7 +96,7 @@ class _Window:
                 # Pillow's pixel centres lie on whole numbers.
                 points = (np.asarray(rim.coords) - corner) * scale - 0.5
                 draw.polygon(points.ravel().tolist(), fill=value)
-        return np.asarray(fine.reduce(scale), dtype=np.float32) / 255
+        return np.asarray(fine.reduce(scale), dtype=np.float32) / np.float32(255)
 
     def colours(self, colour: str | Gradient) -> NDArray[np.float64]:
         """Colours of the pixels, broadcastable to (h, w, 3)."""
@@ -132,17 +143,19 @@ def _inflate(mask: Pixels, step: int) -> NDArray[np.float64]:
         ones = np.ones(count)
         return scipy.sparse.diags_array((-ones[1:], 2 * ones, -ones[1:]), offsets=(-1, 0, 1))
 
-    laplace = scipy.sparse.kron(second_difference(rows), scipy.sparse.eye_array(columns))
-    laplace += scipy.sparse.kron(scipy.sparse.eye_array(rows), second_difference(columns))
+    down = scipy.sparse.kron(second_difference(rows), scipy.sparse.eye_array(columns))
+    across = scipy.sparse.kron(scipy.sparse.eye_array(rows), second_difference(columns))
     # Cells on the rim are held down by a spring, the stiffer the less of them is inside.
     spring = scipy.sparse.diags_array(1 / coarse.ravel()[inside] - 1)
     height = np.zeros(coarse.size)
-    matrix = laplace.tocsr()[inside][:, inside] + spring
+    matrix = (down + across).tocsr()[inside][:, inside] + spring
     height[inside] = spsolve(matrix.tocsc(), np.ones(len(inside)))
     y = (np.arange(mask.shape[0]) + 0.5) / step - 0.5
     x = (np.arange(mask.shape[1]) + 0.5) / step - 0.5
     places = np.meshgrid(y, x, indexing="ij")
-    fine = map_coordinates(height.reshape(rows, columns), places, order=3, mode="nearest")
+    fine: NDArray[np.float64] = map_coordinates(
+        height.reshape(rows, columns), places, order=3, mode="nearest"
+    )
     return step**2 * np.maximum(fine, 0.0)
 
 
@@ -156,19 +169,22 @@ def _lambert(mask: Pixels) -> NDArray[np.float64]:
     # The grid cells that the rim cuts are not to be trusted: continue from further inside.
     trust = np.clip(2 * gaussian_filter(mask, step) - 1, 0.0, 1.0) ** 2 + 1e-4 * mask
     blur = 1.5 * step
-    return gaussian_filter(trust * cosine, blur) / (gaussian_filter(trust, blur) + 1e-9)
+    filled: NDArray[np.float64] = gaussian_filter(trust * cosine, blur)
+    filled /= gaussian_filter(trust, blur) + 1e-9
+    return filled
 
 
 def _lit(colours: NDArray[np.float64], mask: Pixels, gloss: float) -> NDArray[np.float64]:
     """Light `colours` (h, w, 3) as the surface of the inflated `mask`."""
     lambert = _lambert(mask)
-    shadow = (1 - _step(0.02, 0.22, lambert))[..., None]
-    penumbra = (1 - _step(0.0, 0.62, lambert))[..., None]
+    shadow = (1 - _step(-0.08, 0.12, lambert))[..., None]
+    penumbra = (1 - _step(-0.1, 0.6, lambert))[..., None]
     bounce = (1 - _step(-0.8, -0.45, lambert))[..., None]
     glow = _step(0.88, 0.98, lambert)[..., None]
-    lit = colours * (1 - (0.5 * shadow + 0.25 * penumbra) * (1 - _SHADOW))
-    lit = lit + 0.14 * bounce * (_BOUNCE - lit)
-    return lit + gloss * glow * (_GLOW - lit)
+    lit: NDArray[np.float64] = colours * (1 - (0.5 * shadow + 0.25 * penumbra) * (1 - _SHADOW))
+    lit += 0.14 * bounce * (_BOUNCE - lit)
+    lit += gloss * glow * (_GLOW - lit)
+    return lit
 
 
 class Canvas:
@@ -178,20 +194,11 @@ class Canvas:
     """
 
     def __init__(self, width: int, height: int) -> None:
+        self._frame = _Window(left=0, top=0, right=width, bottom=height)
         self._pixels: Pixels = np.zeros((height, width, 4), dtype=np.float32)
 
-    def _window(self, shape: BaseGeometry, pad: float) -> _Window:
-        height, width = self._pixels.shape[:2]
-        left, top, right, bottom = shape.bounds
-        return _Window(
-            left=max(0, int(left - pad)),
-            top=max(0, int(top - pad)),
-            right=min(width, int(right + pad) + 2),
-            bottom=min(height, int(bottom + pad) + 2),
-        )
-
     def _blend(self, window: _Window, colours: NDArray[np.float64], alpha: Pixels) -> None:
-        target = self._pixels[window.slices]
+        target = self._pixels[window.within(self._frame)]
         alpha = alpha[..., None]
         target *= 1 - alpha
         target[..., :3] += colours * alpha
@@ -206,7 +213,7 @@ class Canvas:
         blur: float = 0.0,
     ) -> None:
         """Fill `shape` evenly, without light or ink."""
-        window = self._window(shape, 3 * blur + 1)
+        window = self._frame.around(shape, 3 * blur + 1)
         mask = opacity * window.coverage(shape)
         self._blend(window, window.colours(colour), gaussian_filter(mask, blur) if blur else mask)
 
@@ -237,13 +244,15 @@ class Canvas:
         if ink:
             line = shape.buffer(ink, quad_segs=16)
             self.flat(line.union(translate(line, 0.2 * ink, 0.3 * ink)), INK)
-        window = self._window(shape, 8)
+        window = self._frame.around(shape, 8)
         mask = window.coverage(shape)
-        colours = np.broadcast_to(window.colours(colour), (*mask.shape, 3))
+        colours = np.broadcast_to(window.colours(colour), (*mask.shape, 3)).copy()
         for mark in marks:
-            share = mark.opacity * window.coverage(mark.shape)
+            part = window.around(mark.shape, 3 * mark.blur + 1)
+            share = mark.opacity * part.coverage(mark.shape)
             share = (gaussian_filter(share, mark.blur) if mark.blur else share)[..., None]
-            colours = colours * (1 - share) + window.colours(mark.colour) * share
+            target = colours[part.within(window)]
+            target += share * (part.colours(mark.colour) - target)
         lit = _lit(colours, mask, gloss) * (1 - dim * (1 - _SHADOW))
         self._blend(window, lit, mask)
 

@@ -1,0 +1,75 @@
+"""The shipped sample pictures: sound subjects, and what the script beside them draws."""
+
+from __future__ import annotations
+
+import importlib.util
+from pathlib import Path
+from types import ModuleType
+
+import numpy as np
+import pytest
+from PIL import Image
+from scipy import ndimage
+
+SAMPLES = Path(__file__).parents[1] / "sample_images"
+NAMES = ("bar", "character", "dragon", "giraffe", "octopus", "ring", "s")
+VISIBLE = 8  # alpha from which the mask of a picture with a soft rim counts a pixel
+
+
+@pytest.fixture
+def draw(monkeypatch: pytest.MonkeyPatch) -> ModuleType:
+    """The drawing script, loaded as `python sample_images/draw.py` finds it."""
+    monkeypatch.syspath_prepend(str(SAMPLES))
+    spec = importlib.util.spec_from_file_location("draw", SAMPLES / "draw.py")
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+@pytest.fixture(params=NAMES)
+def picture(request: pytest.FixtureRequest) -> Image.Image:
+    """Each shipped picture in turn."""
+    with Image.open(SAMPLES / f"{request.param}.png") as image:
+        image.load()
+        image.info["name"] = request.param
+        return image
+
+
+def test_picture_has_alpha_and_the_promised_size(picture: Image.Image) -> None:
+    assert picture.mode == "RGBA"
+    assert 900 <= max(picture.size) <= 1100
+    assert (SAMPLES / f"{picture.info['name']}.png").stat().st_size < 400_000
+
+
+def test_subject_keeps_off_the_border(picture: Image.Image) -> None:
+    rows, columns = np.nonzero(np.asarray(picture)[..., 3])
+    clear = 0.03 * max(picture.size)
+    assert min(rows.min(), columns.min()) > clear
+    assert picture.height - 1 - rows.max() > clear
+    assert picture.width - 1 - columns.max() > clear
+
+
+def test_transparent_pixels_carry_no_colour(picture: Image.Image) -> None:
+    pixels = np.asarray(picture)
+    assert not pixels[pixels[..., 3] == 0].any()
+
+
+def test_subject_is_one_part_and_only_the_ring_has_a_hole(picture: Image.Image) -> None:
+    mask = np.asarray(picture)[..., 3] >= VISIBLE
+    _, parts = ndimage.label(mask)
+    _, outside = ndimage.label(~mask, structure=np.ones((3, 3)))
+    assert parts == 1
+    assert outside - 1 == (1 if picture.info["name"] == "ring" else 0)
+
+
+def test_script_draws_every_shipped_picture(draw: ModuleType) -> None:
+    assert set(draw.PICTURES) == {path.stem for path in SAMPLES.glob("*.png")} == set(NAMES)
+
+
+def test_script_draws_the_shipped_bar(draw: ModuleType, tmp_path: Path) -> None:
+    draw.main(["bar", "--out", str(tmp_path)])
+    with Image.open(tmp_path / "bar.png") as drawn, Image.open(SAMPLES / "bar.png") as shipped:
+        difference = np.asarray(drawn, dtype=int) - np.asarray(shipped, dtype=int)
+    assert np.abs(difference).max() <= 1
