@@ -1,0 +1,190 @@
+"""One piece without holes: specks dropped, parts joined by bridges, holes filled."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy import ndimage
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import minimum_spanning_tree
+
+from engine.arrays import Booleans, Complexes, Floats, Indices, Integers
+from engine.errors import EngineError
+
+SPECK = 2e-4  # of the subject's area: smaller parts are dropped
+MOST_PARTS = 150
+MOST_DROPPED = 0.05  # of the subject's area
+CLOUD = 6  # parts from which on gaps are closed as well as bridged
+CLOUD_GAP = 0.04  # of the diagonal: widest half gap that is closed in a cloud of parts
+BRIDGE_WIDTHS = (0.012, 0.05)  # of the diagonal
+EIGHT_NEIGHBOURS = np.ones((3, 3))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class WholePiece:
+    """A subject in one piece without holes.
+
+    Parameters
+    ----------
+    mask : bool, shape (h, w)
+    notices : tuple of str
+        What was joined, filled and dropped.
+    """
+
+    mask: Booleans
+    notices: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class _Bridges:
+    """The shortest bridges between parts: pairs of pixels at complex positions x + iy."""
+
+    starts: Complexes
+    ends: Complexes
+    widths: Floats
+
+
+def join_parts(mask: Booleans, diagonal: float) -> WholePiece:
+    """Make one piece without holes of a mask.
+
+    Parameters
+    ----------
+    mask : bool, shape (h, w)
+        With at least one free pixel all round.
+    diagonal : float
+        Of the subject's box, in pixels of the mask.
+
+    Raises
+    ------
+    EngineError
+        If the mask falls into too many parts to be joined.
+    """
+    labels, count = ndimage.label(mask, EIGHT_NEIGHBOURS)
+    areas = np.bincount(labels.ravel(), minlength=count + 1)[1:].astype(np.float64)
+    kept = areas >= SPECK * areas.sum()
+    _require_few_parts(areas, kept)
+    notices: list[str] = []
+    if not kept.all():
+        specks = int(np.count_nonzero(~kept))
+        notices.append(
+            f"{_counted(specks, 'speck')} dropped "
+            f"({areas[~kept].sum() / areas.sum():.2%} of the subject)"
+        )
+        numbers = np.where(kept, np.cumsum(kept), 0).astype(np.int32)
+        labels = np.append(np.zeros(1, dtype=np.int32), numbers)[labels]
+        mask, areas, count = labels > 0, areas[kept], int(kept.sum())
+    if count > 1:
+        mask = _bridged(mask, labels.astype(np.int32), areas, diagonal)
+        notices.append(f"{count} parts joined by invisible bridges")
+    mask, filled = _without_holes(mask)
+    return WholePiece(mask=mask, notices=(*notices, *filled))
+
+
+def _counted(number: int, noun: str) -> str:
+    """Return a number with its noun, in the plural where it is one."""
+    return f"{number:,} {noun}" if number == 1 else f"{number:,} {noun}s"
+
+
+def _require_few_parts(areas: Floats, kept: Booleans) -> None:
+    """Raise `EngineError` unless a few parts hold nearly all of the subject."""
+    dropped = areas[~kept].sum() / areas.sum()
+    if dropped > MOST_DROPPED or np.count_nonzero(kept) > MOST_PARTS:
+        raise EngineError(
+            f"The subject is too fragmented: {len(areas):,} parts, of which {dropped:.0%} of the "
+            f"area are specks; give a picture with at most {MOST_PARTS} parts."
+        )
+
+
+def _bridged(mask: Booleans, labels: Integers, areas: Floats, diagonal: float) -> Booleans:
+    """Join the labelled parts; gaps of a cloud of many parts are closed as well."""
+    bridges = _shortest_bridges(mask, labels, areas, diagonal)
+    joined = mask.copy()
+    for start, end, width in zip(bridges.starts, bridges.ends, bridges.widths, strict=True):
+        _draw_capsule(joined, complex(start), complex(end), float(width))
+    if len(areas) < CLOUD:
+        return joined
+    half_gap = float(np.abs(bridges.ends - bridges.starts).max()) / 2
+    return _closed(joined, min(half_gap, CLOUD_GAP * diagonal))
+
+
+def _shortest_bridges(mask: Booleans, labels: Integers, areas: Floats, diagonal: float) -> _Bridges:
+    """Return the minimum spanning tree of the parts.
+
+    Where the nearest part changes from one pixel to the next, the nearest pixels of both parts
+    make a candidate; the tree's edges are among these (it lies in the Delaunay graph).
+    """
+    nearest = ndimage.distance_transform_edt(~mask, return_distances=False, return_indices=True)
+    rows, columns = nearest
+    owner = labels[rows, columns]
+    pairs: list[Indices] = []
+    for here, there in (
+        (np.s_[:, :-1], np.s_[:, 1:]),
+        (np.s_[:-1, :], np.s_[1:, :]),
+    ):
+        change = owner[here] != owner[there]
+        pairs.append(
+            np.stack(
+                [part[side][change] for side in (here, there) for part in (owner, rows, columns)]
+            )
+        )
+    part0, y0, x0, part1, y1, x1 = np.concatenate(pairs, axis=1).astype(np.intp)
+    starts, ends = x0 + 1j * y0, x1 + 1j * y1
+    length = np.abs(ends - starts)
+    # The shortest candidate of each pair of parts.
+    low, high = np.minimum(part0, part1) - 1, np.maximum(part0, part1) - 1
+    order = np.lexsort((length, high, low))
+    key = low[order] * len(areas) + high[order]
+    chosen = order[np.flatnonzero(np.diff(key, prepend=-1))]
+    low, high, length = low[chosen], high[chosen], length[chosen]
+    shape = (len(areas), len(areas))
+    tree = minimum_spanning_tree(coo_array((length, (low, high)), shape=shape).tocsr()).tocoo()
+    used = np.isin(low * len(areas) + high, tree.row * len(areas) + tree.col)
+    side = np.sqrt(np.minimum(areas[low], areas[high]))[used]
+    narrowest, widest = BRIDGE_WIDTHS
+    widths = np.clip(0.5 * side, narrowest * diagonal, widest * diagonal)
+    return _Bridges(starts=starts[chosen][used], ends=ends[chosen][used], widths=widths)
+
+
+def _draw_capsule(mask: Booleans, start: complex, end: complex, width: float) -> None:
+    """Set the pixels within `width` / 2 of the segment, in place."""
+    radius = width / 2
+    low_x, high_x = sorted((start.real, end.real))
+    low_y, high_y = sorted((start.imag, end.imag))
+    rows = slice(max(0, int(low_y - radius)), int(high_y + radius) + 2)
+    columns = slice(max(0, int(low_x - radius)), int(high_x + radius) + 2)
+    window = mask[rows, columns]
+    y, x = np.ogrid[
+        rows.start : rows.start + window.shape[0],
+        columns.start : columns.start + window.shape[1],
+    ]
+    offset = x + 1j * y - start
+    along = (end - start) / max(abs(end - start), 1.0)
+    nearest = np.clip((offset * np.conj(along)).real, 0, abs(end - start)) * along
+    window |= np.abs(offset - nearest) <= radius
+
+
+def _closed(mask: Booleans, radius: float) -> Booleans:
+    """Close the gaps that no disc of `radius` fits into."""
+    padding = int(np.ceil(radius)) + 1
+    padded = np.pad(mask, padding)
+    grown = ndimage.distance_transform_edt(~padded) <= radius
+    kept = ndimage.distance_transform_edt(grown) > radius
+    inner = slice(padding, -padding)
+    return mask | kept[inner, inner]
+
+
+def _without_holes(mask: Booleans) -> tuple[Booleans, tuple[str, ...]]:
+    """Fill everything that the outside, found at pixel (0, 0), does not reach."""
+    labels, count = ndimage.label(~mask)
+    areas = np.bincount(labels.ravel(), minlength=count + 1).astype(np.float64)
+    outside = labels[0, 0]
+    areas[[0, outside]] = 0
+    if count == 1:
+        return mask, ()
+    filled = labels != outside
+    holes = int(np.count_nonzero(areas))
+    largest = areas.max() / np.count_nonzero(filled)
+    if holes == 1:
+        told = f"1 hole filled ({largest:.1%} of the subject)"
+    else:
+        told = f"{holes:,} holes filled, the largest {largest:.1%} of the subject"
+    return filled, (told,)
