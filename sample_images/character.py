@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 from curves import blob, ellipse, leaf, mirrored, polygon, ribbon, rounded, weld
 from face import eye
 from paint import Canvas, Gradient, Mark
@@ -19,33 +21,35 @@ _BOOT = Gradient(530 + 930j, 530 + 1050j, "#c9743a", "#8f4526")
 _BRASS = "#ffd25e"
 
 
-def _both(points: list[complex]) -> tuple[list[complex], list[complex]]:
-    return points, mirrored(points, _AXIS)
+# The left of the picture is drawn, the right is its mirror image.
+_SIDES = (list[complex], partial(mirrored, axis=_AXIS))
+
+
+def _both(*points: complex) -> list[list[complex]]:
+    return [side(points) for side in _SIDES]
 
 
 def _hands(canvas: Canvas) -> None:
-    palm = [172 + 516j, 124 + 502j, 72 + 512j, 46 + 544j, 70 + 580j, 124 + 588j, 172 + 572j]
-    thumb = [136 + 530j, 118 + 496j, 112 + 466j]
-    fingers = ([52 + 532j, 74 + 534j, 96 + 532j], [52 + 556j, 74 + 557j, 96 + 554j])
-    for flip in (0, 1):
-        shape = weld(
-            blob(*_both(palm)[flip]), ribbon(_both(thumb)[flip], [40, 34, 28]).shape, radius=8
+    palm = (172 + 516j, 124 + 502j, 72 + 512j, 46 + 544j, 70 + 580j, 124 + 588j, 172 + 572j)
+    thumb = (136 + 530j, 118 + 496j, 112 + 466j)
+    fingers = ((52 + 532j, 74 + 534j, 96 + 532j), (52 + 556j, 74 + 557j, 96 + 554j))
+    for side in _SIDES:
+        canvas.form(
+            weld(blob(*side(palm)), ribbon(side(thumb), [40, 34, 28]).shape, radius=8), _SKIN
         )
-        canvas.form(shape, _SKIN)
         for finger in fingers:
-            canvas.line(_both(finger)[flip], 5)
+            canvas.line(side(finger), 5)
 
 
 def _boots(canvas: Canvas) -> None:
-    shaft = [414 + 900j, 500 + 900j, 504 + 980j, 510 + 1028j]
-    toe = [510 + 1028j, 376 + 1028j]
-    front = [376 + 1028j, 374 + 988j, 408 + 964j, 414 + 900j]
-    sole = [300 + 1012j, 600 + 1012j, 600 + 1100j, 300 + 1100j]
-    for flip in (0, 1):
-        boot = rounded(leaf(*(_both(side)[flip] for side in (shaft, toe, front))), 12)
-        canvas.form(boot, _BOOT, Mark(polygon(_both(sole)[flip]), "#5b2c2c"))
-        lace = [400 + 984j, 430 + 974j, 462 + 978j]
-        canvas.line(_both(lace)[flip], 6, _CREAM)
+    shaft = (414 + 900j, 500 + 900j, 504 + 980j, 510 + 1028j)
+    front = (376 + 1028j, 374 + 988j, 408 + 964j, 414 + 900j)
+    sole = (300 + 1012j, 600 + 1012j, 600 + 1100j, 300 + 1100j)
+    gleam = (400 + 984j, 430 + 974j, 462 + 978j)
+    for side in _SIDES:
+        boot = rounded(leaf(side(shaft), side(front)), 12)
+        canvas.form(boot, _BOOT, Mark(polygon(side(sole)), "#5b2c2c"))
+        canvas.line(side(gleam), 6, _CREAM)
 
 
 def _sweater(canvas: Canvas) -> None:
@@ -53,42 +57,36 @@ def _sweater(canvas: Canvas) -> None:
         [168 + 544j, 330 + 538j, 530 + 545j, 730 + 538j, 892 + 544j], [70, 84, 118, 84, 70]
     )
     trunk = blob(
-        440 + 492j,
-        530 + 476j,
-        620 + 492j,
-        640 + 620j,
-        646 + 740j,
-        530 + 770j,
-        414 + 740j,
-        420 + 620j,
-    )
+        440 + 492j, 530 + 476j, 620 + 492j, 640 + 620j,
+        646 + 740j, 530 + 770j, 414 + 740j, 420 + 620j,
+    )  # fmt: skip
     marks = [
         Mark(sleeves.strip(a, a + 0.04, -1.2, 1.2), _CREAM)
         for a in (0.06, 0.145, 0.23, 0.73, 0.815, 0.9)
     ]
     canvas.form(weld(sleeves.strip(0, 1, -1, 1), trunk, radius=26), _WOOL, *marks)
-    for points in _both([168 + 512j, 164 + 544j, 168 + 576j]):
+    for points in _both(168 + 512j, 164 + 544j, 168 + 576j):
         canvas.form(ribbon(points, 26).shape, _CREAM)
 
 
 def _dungarees(canvas: Canvas) -> None:
     legs = [
         ribbon(points, [124, 98, 86]).strip(0, 1, -1, 1)
-        for points in _both([480 + 720j, 464 + 830j, 457 + 926j])
+        for points in _both(480 + 720j, 464 + 830j, 457 + 926j)
     ]
     hips = blob(428 + 690j, 530 + 670j, 632 + 690j, 642 + 760j, 530 + 800j, 418 + 760j)
     bib = rounded(polygon([452 + 588j, 608 + 588j, 622 + 700j, 438 + 700j]), 14)
     canvas.form(weld(weld(hips, bib, radius=60), *legs, radius=10), _DENIM)
-    for points in _both([410 + 924j, 457 + 930j, 502 + 924j]):
+    for points in _both(410 + 924j, 457 + 930j, 502 + 924j):
         canvas.form(ribbon(points, 34).strip(0, 1, -1, 1).buffer(3), _TURN_UP)
-    for points in _both([470 + 606j, 454 + 545j, 462 + 486j]):
+    for points in _both(470 + 606j, 454 + 545j, 462 + 486j):
         canvas.form(ribbon(points, 30).shape, _DENIM, ink=5)
-    for points in _both([470 + 612j]):
-        canvas.form(ellipse(points[0], 13), _BRASS, ink=4)
+    for [button] in _both(470 + 612j):
+        canvas.form(ellipse(button, 13), _BRASS, ink=4)
     pocket = rounded(polygon([486 + 640j, 574 + 640j, 570 + 700j, 530 + 716j, 490 + 700j]), 8)
     canvas.form(pocket, _DENIM, ink=4, gloss=0)
     canvas.line([490 + 660j, 530 + 661j, 570 + 660j], 4, _SEAM)
-    for points in _both([432 + 734j, 452 + 764j, 490 + 770j]):
+    for points in _both(432 + 734j, 452 + 764j, 490 + 770j):
         canvas.line(points, 5, _SEAM)
 
 
@@ -116,15 +114,14 @@ def _head(canvas: Canvas) -> None:
         ribbon([530 + 420j, 530 + 492j], [100, 124]).strip(0, 1, -1, 1), _SKIN, dim=0.5, gloss=0
     )
     canvas.form(ribbon([468 + 486j, 530 + 506j, 592 + 486j], 30).shape, _CREAM)
-    for points in _both([366 + 338j]):
-        canvas.form(
-            ellipse(points[0], 32, 38), _SKIN, Mark(ellipse(points[0], 17, 22), "#f08f78", 0.8, 2)
-        )
+    for [ear] in _both(366 + 338j):
+        shell = Mark(ellipse(ear, 17, 22), "#f08f78", 0.8, 2)
+        canvas.form(ellipse(ear, 32, 38), _SKIN, shell)
     face = blob(
         530 + 120j, 660 + 176j, 694 + 300j, 660 + 404j, 590 + 456j, 530 + 466j,
         470 + 456j, 400 + 404j, 366 + 300j, 400 + 176j,
     )  # fmt: skip
-    cheeks = [Mark(ellipse(points[0], 36, 22), "#ff7f6b", 0.7, 8) for points in _both([424 + 386j])]
+    cheeks = [Mark(ellipse(cheek, 36, 22), "#ff7f6b", 0.7, 8) for [cheek] in _both(424 + 386j)]
     shade = Mark(_fringe().buffer(12), "#d98a6f", 0.6, 4)
     canvas.form(face, _SKIN, *cheeks, shade, gloss=0)
     canvas.form(_fringe(), _HAIR)

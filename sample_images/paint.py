@@ -204,18 +204,10 @@ class Canvas:
         target[..., :3] += colours * alpha
         target[..., 3:] += alpha
 
-    def flat(
-        self,
-        shape: BaseGeometry,
-        colour: str | Gradient,
-        *,
-        opacity: float = 1.0,
-        blur: float = 0.0,
-    ) -> None:
+    def flat(self, shape: BaseGeometry, colour: str | Gradient) -> None:
         """Fill `shape` evenly, without light or ink."""
-        window = self._frame.around(shape, 3 * blur + 1)
-        mask = opacity * window.coverage(shape)
-        self._blend(window, window.colours(colour), gaussian_filter(mask, blur) if blur else mask)
+        window = self._frame.around(shape, 1)
+        self._blend(window, window.colours(colour), window.coverage(shape))
 
     def form(
         self,
@@ -256,13 +248,10 @@ class Canvas:
         lit = _lit(colours, mask, gloss) * (1 - dim * (1 - _SHADOW))
         self._blend(window, lit, mask)
 
-    def line(
-        self, points: Points, width: float = 4.0, colour: str = INK, *, opacity: float = 1.0
-    ) -> None:
+    def line(self, points: Points, width: float, colour: str = INK) -> None:
         """Draw a pen line that swells to `width` in its middle and tapers to both ends."""
         swell = np.sin(np.linspace(0.0, np.pi, len(points)))
-        taper = width * (0.35 + 0.65 * swell)
-        self.flat(ribbon(points, taper).shape, colour, opacity=opacity)
+        self.flat(ribbon(points, width * (0.35 + 0.65 * swell)).shape, colour)
 
     def image(self) -> Image.Image:
         """The picture with straight alpha, cropped to the subject and an even margin."""
