@@ -1,0 +1,1 @@
+"""Drawing with OpenGL: the only place that sees moderngl, for the window and without one."""

@@ -1,0 +1,188 @@
+"""OpenGL contexts without a window, and what of them works on this machine."""
+
+import ctypes
+import sys
+from dataclasses import dataclass
+from typing import Any, Final, Literal, get_args
+
+import moderngl
+
+from app.errors import LissomError
+
+Backend = Literal["egl", "osmesa", "native"]
+BACKENDS: Final[tuple[Backend, ...]] = get_args(Backend)
+# The system's own contexts (WGL, CGL) need no display on Windows and macOS; on Linux GLX does.
+AUTOMATIC: Final[tuple[Backend, ...]] = (
+    ("native",) if sys.platform in {"win32", "darwin"} else ("egl", "osmesa")
+)
+OPENGL: Final = 330  # the version that every shader is written for
+REMEDIES: Final[dict[Backend, str]] = {
+    "egl": "install EGL: sudo apt install libegl1 libgl1 libgl1-mesa-dri",
+    "osmesa": "install OSMesa: sudo apt install libosmesa6",
+    "native": "install a graphics driver with OpenGL 3.3, and run it where there is a display",
+}
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class BackendReport:
+    """What one way of drawing without a window offers on this machine.
+
+    Parameters
+    ----------
+    backend : Backend
+    problem : str
+        Why it does not work and what to install; empty where it works, as are the fields below
+        where it does not.
+    renderer, version : str
+        GL_RENDERER and GL_VERSION.
+    largest_size : int
+        Longest side of a picture or frame, in pixels.
+    most_samples : int
+        Largest number of samples a pixel.
+    """
+
+    backend: Backend
+    problem: str = ""
+    renderer: str = ""
+    version: str = ""
+    largest_size: int = 0
+    most_samples: int = 0
+
+
+def create_context(backend: Backend | None = None) -> moderngl.Context:
+    """Return a new OpenGL context without a window; the caller releases it.
+
+    Parameters
+    ----------
+    backend : Backend, optional
+        The only one to try; by default the first that works of EGL and OSMesa.
+
+    Raises
+    ------
+    LissomError
+        If none works; the message says what to install.
+    """
+    wanted = (backend,) if backend else AUTOMATIC
+    problems = []
+    for name in wanted:
+        try:
+            return _create(name)
+        except LissomError as error:
+            problems.append(str(error))
+    raise LissomError("cannot draw on this machine: " + "; or ".join(problems))
+
+
+def window_context() -> moderngl.Context:
+    """Return the OpenGL context of the window that is current."""
+    return moderngl.create_context(require=OPENGL)
+
+
+def probe(backend: Backend) -> BackendReport:
+    """Find out what a backend offers by making a context and letting it go again."""
+    try:
+        context = _create(backend)
+    except LissomError as error:
+        return BackendReport(backend=backend, problem=str(error))
+    try:
+        return BackendReport(
+            backend=backend,
+            renderer=context.info["GL_RENDERER"],
+            version=context.info["GL_VERSION"],
+            largest_size=largest_size(context),
+            most_samples=context.max_samples,
+        )
+    finally:
+        context.release()
+
+
+def largest_size(context: moderngl.Context) -> int:
+    """Return the longest side, in pixels, of a texture or frame that the context can hold."""
+    info = context.info
+    return int(
+        min(
+            info["GL_MAX_TEXTURE_SIZE"],
+            info["GL_MAX_RENDERBUFFER_SIZE"],
+            *info["GL_MAX_VIEWPORT_DIMS"],
+        )
+    )
+
+
+def _create(backend: Backend) -> moderngl.Context:
+    settings: dict[str, Any] = {"standalone": True}
+    if backend == "egl":
+        # By soname: looking the libraries up by name needs ldconfig or a compiler.
+        settings |= {"backend": "egl", "libegl": "libEGL.so.1", "libgl": "libGL.so.1"}
+    try:
+        if backend == "osmesa":
+            settings = {"context": _OSMesa()}
+        return moderngl.create_context(require=OPENGL, **settings)
+    except Exception as error:  # moderngl's loaders raise nothing more specific
+        raise LissomError(f"{backend}: {error} ({REMEDIES[backend]})") from error
+
+
+class _OSMesa:
+    """Mesa's off-screen context, in the form in which moderngl takes a context of our own."""
+
+    _NAMES = ("libOSMesa.so.8", "libOSMesa.so.6", "libOSMesa.8.dylib", "osmesa.dll")
+    _FORMAT, _RGBA = 0x22, 0x1908
+    _PROFILE, _CORE_PROFILE = 0x33, 0x34
+    _MAJOR, _MINOR = 0x36, 0x37
+    _UNSIGNED_BYTE = 0x1401
+
+    def __init__(self) -> None:
+        self._library = self._load_library()
+        wanted = {
+            self._FORMAT: self._RGBA,
+            self._PROFILE: self._CORE_PROFILE,
+            self._MAJOR: OPENGL // 100,
+            self._MINOR: OPENGL // 10 % 10,
+        }
+        pairs = [number for pair in wanted.items() for number in pair]
+        attributes = (ctypes.c_int * (len(pairs) + 1))(*pairs, 0)
+        self._context = self._library.OSMesaCreateContextAttribs(attributes, None)
+        if not self._context:
+            raise LissomError("no context with OpenGL 3.3")
+        # Everything is drawn to framebuffers of our own; OSMesa insists on one pixel of its own.
+        self._pixel = (ctypes.c_ubyte * 4)()
+        if not self._make_current():
+            raise LissomError("its context cannot be made current")
+
+    def _make_current(self) -> bool:
+        return bool(
+            self._library.OSMesaMakeCurrent(self._context, self._pixel, self._UNSIGNED_BYTE, 1, 1)
+        )
+
+    def _load_library(self) -> ctypes.CDLL:
+        for name in self._NAMES:
+            try:
+                library = ctypes.CDLL(name)
+            except OSError:
+                continue
+            pointer, integer = ctypes.c_void_p, ctypes.c_int
+            library.OSMesaCreateContextAttribs.restype = pointer
+            library.OSMesaCreateContextAttribs.argtypes = [pointer, pointer]
+            library.OSMesaMakeCurrent.argtypes = [pointer, pointer, ctypes.c_uint, integer, integer]
+            library.OSMesaDestroyContext.argtypes = [pointer]
+            library.OSMesaGetProcAddress.restype = pointer
+            library.OSMesaGetProcAddress.argtypes = [ctypes.c_char_p]
+            return library
+        raise LissomError(f"{self._NAMES[0]} not loaded")
+
+    def load_opengl_function(self, name: str) -> int:
+        """Return the address of an OpenGL function, 0 where there is none."""
+        return self._library.OSMesaGetProcAddress(name.encode()) or 0
+
+    load = load_opengl_function
+
+    def __enter__(self) -> None:
+        self._make_current()
+
+    def __exit__(self, *_: object) -> None:
+        pass
+
+    def release(self) -> None:
+        """Let the context go; nothing of it may be used any more."""
+        if self._context:
+            self._library.OSMesaMakeCurrent(None, None, 0, 0, 0)
+            self._library.OSMesaDestroyContext(self._context)
+            self._context = None
