@@ -117,24 +117,33 @@ def _head(canvas: Canvas) -> None:
     canvas.line([184 + 144j, 214 + 132j, 250 + 150j], 8)
 
 
-def dragon() -> Canvas:
-    """Draw the dragon."""
-    canvas = Canvas(1120, 900)
+def _far_legs(canvas: Canvas) -> None:
+    for joints, thigh in _FAR_LEGS:
+        canvas.form(_leg(joints, thigh), _SCALES, dim=0.6, gloss=0)
+        _claws(canvas, joints[-1])
+
+
+def _tail_tip(canvas: Canvas, back: Ribbon) -> None:
+    end, way = complex(back.at(1.0)), complex(back.heading(1.0))
+    sides = [[end + way * z for z in side] for side in ((-14, 4 + 44j, 92), (92, 4 - 44j, -14))]
+    canvas.form(rounded(leaf(*sides), 3), _FLAME)
+
+
+def _body(canvas: Canvas) -> None:
+    """Neck, trunk, tail and near legs in one piece, with the spikes behind it."""
     back = ribbon(
         [236 + 250j, 266 + 370j, 362 + 474j, 500 + 505j, 640 + 520j, 770 + 590j, 890 + 610j,
          982 + 530j, 985 + 410j, 915 + 340j],
         [112, 130, 176, 208, 184, 116, 78, 54, 36, 22],
     )  # fmt: skip
-    for leg in _FAR_LEGS:
-        canvas.form(_leg(*leg), _SCALES, dim=0.6, gloss=0)
-        _claws(canvas, leg[0][-1])
     for along in np.linspace(0.035, 0.93, 15):
         canvas.form(_spike(back, along, np.interp(along, (0, 0.4, 1), (40, 52, 22))), _FLAME)
-    body = weld(back.shape, *(_leg(*leg) for leg in _NEAR_LEGS), radius=12)
+    legs = [_leg(joints, thigh) for joints, thigh in _NEAR_LEGS]
     plates = [Mark(back.strip(0.0, 0.97, 0.42, 1.4), _BELLY)]
     plates += [
         Mark(back.strip(a, a + 0.005, 0.42, 1.4), _SEAM) for a in np.arange(0.04, 0.95, 0.035)
     ]
+    hips = [Mark(leg, _SCALES) for leg in legs]
     dots = [
         Mark(ellipse(complex(back.at(along, side)), size, 0.75 * size, 30), _DARK_SCALE, 0.45)
         for along, side, size in (
@@ -142,18 +151,22 @@ def dragon() -> Canvas:
             (0.54, -0.45, 8), (0.6, -0.2, 11), (0.65, -0.5, 6), (0.72, -0.1, 7),
         )
     ]  # fmt: skip
-    hips = [Mark(_leg(*leg), _SCALES) for leg in _NEAR_LEGS]
-    canvas.form(body, _SCALES, *plates, *hips, *dots)
-    canvas.line([410 + 520j, 399 + 556j, 404 + 604j], 6)
-    canvas.line([508 + 524j, 513 + 556j, 509 + 592j], 6)
-    canvas.line([573 + 606j, 566 + 558j, 594 + 504j, 656 + 478j], 6)
-    tip, way = complex(back.at(1.0)), complex(back.heading(1.0))
-    halves = [
-        [tip + way * z for z in side] for side in ((-14, 4 + 44j, 92 + 0j), (92, 4 - 44j, -14 + 0j))
-    ]
-    canvas.form(rounded(leaf(*halves), 3), _FLAME)
-    for leg in _NEAR_LEGS:
-        _claws(canvas, leg[0][-1])
+    canvas.form(weld(back.shape, *legs, radius=12), _SCALES, *plates, *hips, *dots)
+    for crease in (
+        (410 + 520j, 399 + 556j, 404 + 604j), (508 + 524j, 513 + 556j, 509 + 592j),
+        (573 + 606j, 566 + 558j, 594 + 504j, 656 + 478j),
+    ):  # fmt: skip
+        canvas.line(crease, 6)
+    _tail_tip(canvas, back)
+    for joints, _ in _NEAR_LEGS:
+        _claws(canvas, joints[-1])
+
+
+def dragon() -> Canvas:
+    """Draw the dragon."""
+    canvas = Canvas(1120, 900)
+    _far_legs(canvas)
+    _body(canvas)
     _wing(canvas)
     _head(canvas)
     return canvas

@@ -15,12 +15,16 @@ _CREAM = "#fff3d9"
 _MANE = "#8f4526"
 _HOOF = "#6b4136"
 
-_LEGS = {
-    "far front": (392 + 630j, 338 + 790j, 326 + 965j),
-    "far hind": (606 + 630j, 552 + 790j, 546 + 965j),
-    "near front": (426 + 640j, 424 + 805j, 414 + 985j),
-    "near hind": (630 + 620j, 658 + 805j, 642 + 985j),
-}
+# Hip, knee and ankle, the front legs first.
+_FAR_LEGS = (
+    (392 + 630j, 338 + 790j, 326 + 965j),
+    (606 + 630j, 552 + 790j, 546 + 965j),
+)
+_NEAR_LEGS = (
+    (426 + 640j, 424 + 805j, 414 + 985j),
+    (630 + 620j, 658 + 805j, 642 + 985j),
+)
+_KNEE = 808  # below it, the legs have no patches
 
 
 def _patches(where: BaseGeometry) -> list[Mark]:
@@ -66,20 +70,23 @@ def _mane(neck: Ribbon) -> BaseGeometry:
     return rounded(leaf(*sides, [valleys[-1], roots[-1]]), 3)
 
 
-def giraffe() -> Canvas:
-    """Draw the giraffe."""
-    canvas = Canvas(840, 1100)
+def _tail(canvas: Canvas) -> None:
     tail = ribbon([664 + 560j, 728 + 596j, 764 + 676j, 766 + 756j], [30, 20, 15, 14])
-    tuft = leaf([757 + 738j, 736 + 800j, 762 + 874j], [762 + 874j, 802 + 812j, 775 + 738j])
     canvas.form(tail.shape, _HIDE)
+    tuft = leaf([757 + 738j, 736 + 800j, 762 + 874j], [762 + 874j, 802 + 812j, 775 + 738j])
     canvas.form(tuft, _MANE)
-    for name in ("far front", "far hind"):
-        leg = _leg(*_LEGS[name], thigh=100)
-        canvas.form(
-            leg, _HIDE, *_patches(leg.intersection(shapely.box(0, 0, 840, 800))), dim=0.6, gloss=0
-        )
-        canvas.form(_hoof(_LEGS[name][2]), _HOOF, dim=0.6, gloss=0)
 
+
+def _far_legs(canvas: Canvas) -> None:
+    for joints in _FAR_LEGS:
+        leg = _leg(*joints, thigh=100)
+        coat = leg.intersection(shapely.box(0, 0, 840, _KNEE))
+        canvas.form(leg, _HIDE, *_patches(coat), dim=0.6, gloss=0)
+        canvas.form(_hoof(joints[-1]), _HOOF, dim=0.6, gloss=0)
+
+
+def _body(canvas: Canvas) -> None:
+    """Neck, trunk and near legs in one piece, so that the legs grow out of the trunk."""
     neck = ribbon(
         [430 + 600j, 372 + 480j, 328 + 350j, 296 + 235j, 274 + 160j], [210, 152, 108, 84, 78]
     )
@@ -88,18 +95,17 @@ def giraffe() -> Canvas:
         332 + 560j, 380 + 490j, 480 + 490j, 600 + 520j, 680 + 580j, 694 + 650j, 630 + 706j,
         510 + 722j, 400 + 716j, 340 + 650j,
     )  # fmt: skip
-    near = [_leg(*_LEGS[name], thigh=126) for name in ("near front", "near hind")]
-    body = weld(trunk, neck.shape, *near, radius=14)
+    legs = [_leg(*joints, thigh=126) for joints in _NEAR_LEGS]
     belly = blob(300 + 720j, 430 + 692j, 570 + 690j, 680 + 720j, 640 + 900j, 380 + 900j)
-    coat = (
-        body.difference(belly)
-        .union(weld(*near, radius=1))
-        .intersection(shapely.box(0, 140, 840, 815))
-    )
-    canvas.form(body, _HIDE, *_patches(coat))
-    for name in ("near front", "near hind"):
-        canvas.form(_hoof(_LEGS[name][2]), _HOOF)
+    body = weld(trunk, neck.shape, *legs, radius=14)
+    coat = shapely.union_all([body.difference(belly), *legs])
+    patches = _patches(coat.intersection(shapely.box(0, 140, 840, _KNEE)))
+    canvas.form(body, _HIDE, *patches)
+    for joints in _NEAR_LEGS:
+        canvas.form(_hoof(joints[-1]), _HOOF)
 
+
+def _head(canvas: Canvas) -> None:
     for foot, tip in ((298 + 106j, 318 + 42j), (248 + 106j, 244 + 38j)):
         canvas.form(ribbon([foot, tip], [26, 18]).shape, _HIDE)
         canvas.form(ellipse(tip, 18, 16), _MANE)
@@ -123,4 +129,13 @@ def giraffe() -> Canvas:
     eye(canvas, 236 + 154j, 27, "#7a4526", look=-6 + 2j)
     for lash in ((256 + 126j, 272 + 108j), (264 + 136j, 284 + 122j)):
         canvas.line([lash[0], (lash[0] + lash[1]) / 2 + 3j, lash[1]], 6)
+
+
+def giraffe() -> Canvas:
+    """Draw the giraffe."""
+    canvas = Canvas(840, 1100)
+    _tail(canvas)
+    _far_legs(canvas)
+    _body(canvas)
+    _head(canvas)
     return canvas
