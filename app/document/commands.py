@@ -1,0 +1,48 @@
+"""Commands: changes of a document as values, with the words that undo and redo show.
+
+A command is defined as a pure function of a document and arguments; called with the arguments
+alone it gives a `Command` that waits for its document:
+
+    history.do(rename_handle(3, "nose"))
+
+A command raises a `LissomError` where it is not possible, and returns the very same document where
+it changes nothing.
+"""
+
+import functools
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Concatenate, ParamSpec
+
+from app.document.model import Document
+
+Arguments = ParamSpec("Arguments")
+
+
+@dataclass(frozen=True, slots=True)
+class Command:
+    """A pure function from document to document, and what it does in words."""
+
+    label: str
+    change: Callable[[Document], Document]
+
+    def __call__(self, document: Document) -> Document:
+        """Return the changed document."""
+        return self.change(document)
+
+
+def command(
+    label: str,
+) -> Callable[[Callable[Concatenate[Document, Arguments], Document]], Callable[Arguments, Command]]:
+    """Make a function `(document, *arguments) → document` one `(*arguments) → Command`."""
+
+    def make(
+        change: Callable[Concatenate[Document, Arguments], Document],
+    ) -> Callable[Arguments, Command]:
+        @functools.wraps(change)
+        def bind(*args: Arguments.args, **kwargs: Arguments.kwargs) -> Command:
+            return Command(label, lambda document: change(document, *args, **kwargs))
+
+        return bind
+
+    return make

@@ -1,0 +1,114 @@
+"""How time runs inside an interval between two keys."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Self
+
+from app.errors import LissomError
+
+# Halvings of [0, 1] until neighbouring doubles meet.
+HALVINGS = 54
+
+
+@dataclass(frozen=True, slots=True)
+class Easing:
+    """A monotone map of [0, 1] to itself, or a hold.
+
+    Parameters
+    ----------
+    curve : tuple of 4 floats, or None
+        x1, y1, x2, y2 of a cubic Bézier curve from (0, 0) to (1, 1). With all four in [0, 1] both
+        coordinates are monotone, so that the blend stays convex, as the bounds on the distortion
+        require. None holds the first key until the second one.
+
+    Raises
+    ------
+    LissomError
+        If there are not four numbers, or one is outside [0, 1].
+    """
+
+    curve: tuple[float, float, float, float] | None
+
+    def __post_init__(self) -> None:
+        if self.curve is not None and not (
+            len(self.curve) == 4 and all(0.0 <= value <= 1.0 for value in self.curve)
+        ):
+            raise LissomError(
+                f"An easing curve is four numbers from 0 to 1, not {self.curve!r}: outside them "
+                "the in-betweens could leave their bounds."
+            )
+
+    def __call__(self, s: float) -> float:
+        """Return the weight of the second key at the fraction s of the interval."""
+        if s <= 0.0:
+            return 0.0
+        if s >= 1.0:
+            return 1.0
+        if self.curve is None:
+            return 0.0
+        x1, y1, x2, y2 = self.curve
+        if (x1, x2) == (y1, y2):
+            return s
+        # Bisection needs no slope (it may be 0 or infinite) and is exactly monotone in s, whatever
+        # the rounding of x does.
+        low, high = 0.0, 1.0
+        for _ in range(HALVINGS):
+            middle = (low + high) / 2
+            if _bezier(x1, x2, middle) < s:
+                low = middle
+            else:
+                high = middle
+        return min(1.0, _bezier(y1, y2, high))
+
+    def reversed(self) -> Self:
+        """Return the easing of the interval played backwards; a hold stays a hold."""
+        if self.curve is None:
+            return self
+        x1, y1, x2, y2 = self.curve
+        return type(self)((1.0 - x2, 1.0 - y2, 1.0 - x1, 1.0 - y1))
+
+    @property
+    def name(self) -> str:
+        """Name of the preset with this curve, or "custom"."""
+        return next((name for name, preset in PRESETS.items() if preset == self), "custom")
+
+    @classmethod
+    def parse(cls, value: object) -> "Easing":
+        """Return the easing written as the name of a preset or as a list of four numbers."""
+        if isinstance(value, str):
+            if value not in PRESETS:
+                raise LissomError(
+                    f"There is no easing {value!r}; take one of {', '.join(PRESETS)}, or four "
+                    "numbers from 0 to 1."
+                )
+            return PRESETS[value]
+        if not isinstance(value, Sequence) or not all(
+            isinstance(number, (int, float))
+            and not isinstance(number, bool)
+            and math.isfinite(number)
+            for number in value
+        ):
+            raise LissomError(f"An easing is a name or four numbers from 0 to 1, not {value!r}.")
+        return cls(tuple(float(number) for number in value))  # type: ignore[arg-type]
+
+    def written(self) -> str | list[float]:
+        """Return what `parse` reads back as this easing."""
+        name = self.name
+        return name if self.curve is None or name != "custom" else list(self.curve)
+
+
+def _bezier(first: float, second: float, parameter: float) -> float:
+    rest = 1.0 - parameter
+    return parameter * (3.0 * rest * (rest * first + parameter * second) + parameter * parameter)
+
+
+LINEAR = Easing((0.0, 0.0, 1.0, 1.0))
+HOLD = Easing(None)
+PRESETS = {
+    "linear": LINEAR,
+    "in": Easing((0.42, 0.0, 1.0, 1.0)),
+    "out": Easing((0.0, 0.0, 0.58, 1.0)),
+    "in-out": Easing((0.42, 0.0, 0.58, 1.0)),
+    "hold": HOLD,
+}

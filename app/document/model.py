@@ -1,0 +1,412 @@
+"""The document: one picture, its domain, handles and keyframes, and how they play and export.
+
+Every value is frozen, and every document that exists is valid: the constructors refuse anything
+else, so that commands, history and the project file need no checks of their own.
+"""
+
+import hashlib
+import math
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from types import MappingProxyType
+from typing import Any, Literal, get_args
+
+import numpy as np
+
+from app.document.easing import LINEAR, Easing
+from app.errors import LissomError
+from engine.arrays import Complexes, as_points
+from engine.deform.bounds import Bounds
+from engine.deform.certificate import Certificate
+from engine.domain import Domain
+from engine.harmonic_map import HarmonicMap
+from engine.outline import Detail
+from engine.polygon import box_diagonal, contains
+
+Variant = Literal["metric", "nu", "scaled-eta", "eta", "linear"]
+ExportFormat = Literal["png", "apng", "gif", "webp", "spritesheet", "mp4"]
+Framing = Literal["canvas", "fit"]
+VARIANTS: tuple[Variant, ...] = get_args(Variant)
+EXPORT_FORMATS: tuple[ExportFormat, ...] = get_args(ExportFormat)
+FRAMINGS: tuple[Framing, ...] = get_args(Framing)
+
+LAST_FRAME = 999_999
+FASTEST = 1000.0
+WIDEST = 65_535
+# Handles may sit on the outline itself, where rounding decides on which side they are.
+ON_OUTLINE = 1e-9
+# Fields of a project file that this version does not know and hands on.
+Unknown = Mapping[str, Any]
+NOTHING: Unknown = MappingProxyType({})
+
+
+def require(condition: bool, message: str) -> None:  # noqa: FBT001 - reads as a sentence
+    """Raise a `LissomError` with the message unless the condition holds."""
+    if not condition:
+        raise LissomError(message)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class PictureFile:
+    """The picture as it was opened, byte for byte.
+
+    Parameters
+    ----------
+    data : bytes
+        Contents of the picture file.
+    suffix : str
+        Of its name, such as ".png".
+    size : tuple of int
+        Width and height in pixels as shown (after rotation by EXIF data).
+    """
+
+    data: bytes = field(repr=False)
+    suffix: str
+    size: tuple[int, int]
+    sha256: str = field(init=False)
+
+    def __post_init__(self) -> None:
+        require(len(self.data) > 0, "The picture is empty.")
+        require(
+            re.fullmatch(r"\.[a-z0-9]{1,8}", self.suffix) is not None,
+            f"A picture's file name ends as in '.png', not {self.suffix!r}.",
+        )
+        _require_size(self.size, "picture")
+        object.__setattr__(self, "sha256", hashlib.sha256(self.data).hexdigest())
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Meshing:
+    """What the domain was built with: the parameters of `engine.domain.build_domain`."""
+
+    detail: Detail = "normal"
+    triangles: int = 100_000
+    tolerance: int = 18
+
+    def __post_init__(self) -> None:
+        details = get_args(Detail)
+        require(self.detail in details, f"The detail is one of {details}, not {self.detail!r}.")
+        require(self.triangles > 0, f"There must be triangles, not {self.triangles}.")
+        require(
+            0 <= self.tolerance <= 255,
+            f"The tolerance is between 0 and 255 levels, not {self.tolerance}.",
+        )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Handle:
+    """A named point of the picture by which poses are pulled.
+
+    Parameters
+    ----------
+    id : int
+        Never given twice in one document.
+    name : str
+        Unique in the document.
+    position : complex
+        Where it sits in the picture at rest, in pixels, y up.
+    weight : float
+        How strongly it pulls, relative to others.
+    """
+
+    id: int
+    name: str
+    position: complex
+    weight: float = 1.0
+    unknown: Unknown = field(default=NOTHING, repr=False)
+
+    def __post_init__(self) -> None:
+        require(self.id >= 0, f"A handle's id is not negative, unlike {self.id}.")
+        require(bool(self.name.strip()), "A handle needs a name.")
+        require_finite(self.position, f"The position of handle {self.name!r}")
+        require(
+            0 < self.weight < math.inf,
+            f"The weight of handle {self.name!r} must be above 0, not {self.weight:g}.",
+        )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Target:
+    """Where a pose wants a handle.
+
+    Parameters
+    ----------
+    position : complex
+        In pixels of the picture, y up; it may lie outside the picture.
+    rotation : float, optional
+        By how much the shape turns at the handle, in radians; None leaves that free.
+    """
+
+    position: complex
+    rotation: float | None = None
+    unknown: Unknown = field(default=NOTHING, repr=False)
+
+    def __post_init__(self) -> None:
+        require_finite(self.position, "The target of a handle")
+        require(
+            self.rotation is None or math.isfinite(self.rotation),
+            f"The rotation of a handle must be finite, not {self.rotation}.",
+        )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Pose:
+    """A map with the wishes that it was solved for.
+
+    Parameters
+    ----------
+    targets : mapping of int to Target
+        One for each handle of the document, by the handle's id.
+    phi, psi : complex128, shape (n,)
+        Coefficients of the map over the domain's cage.
+    certificate : Certificate
+        What the solver vouches for. It is a record: whoever relies on it certifies again.
+    """
+
+    targets: Mapping[int, Target]
+    phi: Complexes
+    psi: Complexes
+    certificate: Certificate
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "targets", MappingProxyType(dict(self.targets)))
+        object.__setattr__(self, "phi", as_points(self.phi, "phi", at_least=3))
+        object.__setattr__(self, "psi", as_points(self.psi, "psi", at_least=3))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Keyframe:
+    """A pose at a frame, and how time runs from there to the next key."""
+
+    frame: int
+    pose: Pose
+    easing: Easing = LINEAR
+    unknown: Unknown = field(default=NOTHING, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class FrameRange:
+    """The frames from `first` to `last`, both included."""
+
+    first: int
+    last: int
+
+    def __post_init__(self) -> None:
+        require(
+            0 <= self.first <= self.last <= LAST_FRAME,
+            f"Frames {self.first} to {self.last} are no range: it goes from 0 or later to the "
+            f"same frame or a later one, at most {LAST_FRAME:,}.",
+        )
+
+    def __contains__(self, frame: float) -> bool:
+        return self.first <= frame <= self.last
+
+    def clamp(self, frame: int) -> int:
+        """Return the frame of the range that is nearest to `frame`."""
+        return min(max(frame, self.first), self.last)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ExportSettings:
+    """What the person last chose for exports.
+
+    Parameters
+    ----------
+    format : str
+        One of `EXPORT_FORMATS`.
+    size : tuple of int, optional
+        Width and height in pixels; None takes the picture's.
+    background : str
+        "transparent" or "#rrggbb".
+    framing : str
+        "canvas" shows the picture's own frame, "fit" all of the motion.
+    frames : FrameRange, optional
+        None exports the work range, or everything where there is none.
+    """
+
+    format: ExportFormat = "png"
+    size: tuple[int, int] | None = None
+    background: str = "transparent"
+    framing: Framing = "canvas"
+    frames: FrameRange | None = None
+
+    def __post_init__(self) -> None:
+        require(
+            self.format in EXPORT_FORMATS,
+            f"The export format is one of {', '.join(EXPORT_FORMATS)}, not {self.format!r}.",
+        )
+        if self.size is not None:
+            _require_size(self.size, "export")
+        require(
+            re.fullmatch(r"transparent|#[0-9a-fA-F]{6}", self.background) is not None,
+            f"The background is 'transparent' or a colour '#rrggbb', not {self.background!r}.",
+        )
+        require(
+            self.framing in FRAMINGS,
+            f"The framing is one of {', '.join(FRAMINGS)}, not {self.framing!r}.",
+        )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Document:
+    """Everything that a project file holds.
+
+    Parameters
+    ----------
+    picture : PictureFile
+    domain : Domain
+    meshing : Meshing
+        What the domain was built with.
+    handles : tuple of Handle
+    next_handle : int
+        The id that the next handle will get.
+    keys : tuple of Keyframe
+        In the order of their frames; there is always one.
+    frames : FrameRange
+        All frames of the animation; every key lies in it.
+    work : FrameRange, optional
+        The part of them that plays; None plays everything.
+    fps : float
+        Frames per second.
+    loop : bool
+        Whether the last frame leads back to the first one: both are the same moment.
+    anchor : complex, optional
+        The point of the picture whose place and turn are blended directly; None lets the engine
+        choose it.
+    variant : str
+        One of `VARIANTS`.
+    bounds : Bounds
+        Distortion that the solver allows in new poses.
+    export : ExportSettings
+    """
+
+    picture: PictureFile
+    domain: Domain
+    meshing: Meshing
+    handles: tuple[Handle, ...] = ()
+    next_handle: int = 0
+    keys: tuple[Keyframe, ...]
+    frames: FrameRange = FrameRange(0, 48)
+    work: FrameRange | None = None
+    fps: float = 24.0
+    loop: bool = False
+    anchor: complex | None = None
+    variant: Variant = "metric"
+    bounds: Bounds = Bounds()
+    export: ExportSettings = ExportSettings()
+    unknown: Unknown = field(default=NOTHING, repr=False)
+
+    def __post_init__(self) -> None:
+        self._check_handles()
+        self._check_keys()
+        require(
+            self.work is None or (self.work.first in self.frames and self.work.last in self.frames),
+            f"The work range {self.work} is not within {self.frames}.",
+        )
+        require(
+            0 < self.fps <= FASTEST,
+            f"The speed must be above 0 and at most {FASTEST:g} frames per second, "
+            f"not {self.fps:g}.",
+        )
+        require(
+            self.variant in VARIANTS,
+            f"The variant is one of {', '.join(VARIANTS)}, not {self.variant!r}.",
+        )
+
+    @property
+    def played(self) -> FrameRange:
+        """The frames that play: the work range, or all."""
+        return self.work or self.frames
+
+    def handle(self, identity: int) -> Handle:
+        """Return the handle with this id."""
+        for handle in self.handles:
+            if handle.id == identity:
+                return handle
+        raise LissomError(f"There is no handle with the id {identity}.")
+
+    def key(self, frame: int) -> Keyframe:
+        """Return the key at this frame."""
+        for key in self.keys:
+            if key.frame == frame:
+                return key
+        raise LissomError(f"There is no key at frame {frame}.")
+
+    def map_of(self, pose: Pose) -> HarmonicMap:
+        """Return the map of a pose."""
+        return HarmonicMap(cage=self.domain.cage, phi=pose.phi, psi=pose.psi)
+
+    def lags(self, pose: Pose) -> Mapping[int, float]:
+        """Return by how many pixels each handle, by its id, falls short of its target."""
+        reached = self.map_of(pose)(np.array([handle.position for handle in self.handles], complex))
+        return {
+            handle.id: abs(pose.targets[handle.id].position - complex(place))
+            for handle, place in zip(self.handles, reached, strict=True)
+        }
+
+    def _check_handles(self) -> None:
+        for what, values in (
+            ("id", [handle.id for handle in self.handles]),
+            ("name", [handle.name for handle in self.handles]),
+            ("place", [handle.position for handle in self.handles]),
+        ):
+            seen = set()
+            for value in values:
+                require(value not in seen, f"Two handles have the {what} {value!r}.")
+                seen.add(value)
+        require(
+            all(handle.id < self.next_handle for handle in self.handles),
+            f"The next handle's id {self.next_handle} is taken.",
+        )
+        places = {f"handle {handle.name!r}": handle.position for handle in self.handles}
+        if self.anchor is not None:
+            require_finite(self.anchor, "The anchor")
+            places["anchor"] = self.anchor
+        if places:
+            outline = self.domain.outline
+            points = np.array(list(places.values()), dtype=np.complex128)
+            inside = contains(outline, points, tolerance=ON_OUTLINE * box_diagonal(outline))
+            for (name, place), is_inside in zip(places.items(), inside, strict=True):
+                require(
+                    bool(is_inside),
+                    f"The {name} at ({place.real:g}, {place.imag:g}) lies outside the shape; "
+                    "move it onto the shape or remove it.",
+                )
+
+    def _check_keys(self) -> None:
+        require(len(self.keys) > 0, "An animation has at least one key.")
+        identities = {handle.id for handle in self.handles}
+        frame = -1
+        for key in self.keys:
+            require(key.frame != frame, f"Two keys are at frame {frame}.")
+            require(key.frame > frame, f"The keys at frames {frame} and {key.frame} are mixed up.")
+            frame = key.frame
+            require(
+                frame in self.frames,
+                f"The key at frame {frame} lies outside the animation's frames "
+                f"{self.frames.first} to {self.frames.last}.",
+            )
+            require(
+                key.pose.targets.keys() == identities,
+                f"The key at frame {frame} does not have one target for each handle.",
+            )
+            require(
+                len(key.pose.phi) == len(key.pose.psi) == len(self.domain.cage),
+                f"The key at frame {frame} has coefficients for a cage of {len(key.pose.phi)} "
+                f"vertices, not of {len(self.domain.cage)}.",
+            )
+
+
+def require_finite(value: complex, name: str) -> None:
+    """Raise a `LissomError` unless the number is finite."""
+    require(
+        math.isfinite(value.real) and math.isfinite(value.imag), f"{name} must be finite: {value}."
+    )
+
+
+def _require_size(size: tuple[int, int], what: str) -> None:
+    require(
+        len(size) == 2 and all(1 <= pixels <= WIDEST for pixels in size),
+        f"The size of the {what} must be 1 to {WIDEST:,} pixels each way, not {size}.",
+    )

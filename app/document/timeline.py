@@ -1,0 +1,106 @@
+"""Which two keys a moment lies between, and how far it is from one to the other."""
+
+from bisect import bisect_right
+from fractions import Fraction
+from typing import NamedTuple
+
+from app.document.model import Document, FrameRange
+from app.errors import LissomError
+
+
+class Moment(NamedTuple):
+    """A blend of key `interval` and the key after it (the first one after the last).
+
+    Parameters
+    ----------
+    interval : int
+    weight : float
+        Of the later key, in [0, 1].
+    """
+
+    interval: int
+    weight: float
+
+
+def time_of(document: Document, frame: float) -> Moment:
+    """Return the moment that a frame shows.
+
+    Before the first key and after the last one their poses stand still. In a loop the last key
+    leads on to the first one across the end of the animation, whose last frame is its first one
+    again; frames beyond the ends come round.
+
+    Parameters
+    ----------
+    document : Document
+    frame : float
+        Frame number; fractions lie between frames.
+    """
+    keys = document.keys
+    period = document.frames.last - document.frames.first
+    if document.loop and period and frame not in document.frames:
+        frame = document.frames.first + (frame - document.frames.first) % period
+    first, last = keys[0].frame, keys[-1].frame
+    if len(keys) == 1:
+        return Moment(0, 0.0)
+    if first <= frame < last:
+        index = bisect_right(keys, frame, key=lambda key: key.frame) - 1
+        start, end = keys[index].frame, keys[index + 1].frame
+    elif closes(document) and frame != last:
+        index, start, end = len(keys) - 1, last, first + period
+        frame = frame if frame > last else frame + period
+    else:
+        return Moment(0, 0.0) if frame < first else Moment(len(keys) - 2, 1.0)
+    return Moment(index, keys[index].easing((frame - start) / (end - start)))
+
+
+def closes(document: Document) -> bool:
+    """Tell whether there are frames that blend the last key into the first one."""
+    between = document.keys[-1].frame - document.keys[0].frame
+    period = document.frames.last - document.frames.first
+    return document.loop and 0 < between < period
+
+
+def intervals(document: Document) -> tuple[tuple[int, int], ...]:
+    """Return the indices of the two keys of each interval, in the order of `Moment.interval`."""
+    count = len(document.keys)
+    pairs = tuple((index, index + 1) for index in range(count - 1))
+    return (*pairs, (count - 1, 0)) if closes(document) else pairs
+
+
+def exported_frames(document: Document) -> FrameRange:
+    """Return the frames that an export covers unless told otherwise.
+
+    Of a loop that is exported whole, the last frame is left out: it is the first one again.
+    """
+    if document.export.frames is not None:
+        return document.export.frames
+    played = document.played
+    if document.loop and played == document.frames and played.first < played.last:
+        return FrameRange(played.first, played.last - 1)
+    return played
+
+
+def frame_times(document: Document, frames: FrameRange, fps: float | None = None) -> list[float]:
+    """Return the frame, whole or between two, that each picture of an export shows.
+
+    Parameters
+    ----------
+    document : Document
+    frames : FrameRange
+        Both ends included; the last one only if the export's rate falls on it.
+    fps : float, optional
+        Pictures per second; the document's own rate by default.
+
+    Raises
+    ------
+    LissomError
+        If the rate is not a positive number.
+    """
+    if fps is None:
+        return [float(frame) for frame in range(frames.first, frames.last + 1)]
+    if not 0 < fps <= 100 * document.fps:
+        raise LissomError(f"The export's frames per second must be above 0, not {fps:g}.")
+    # In exact arithmetic, so that rounding neither drops the last picture nor adds one.
+    step = Fraction(document.fps) / Fraction(fps)
+    count = (frames.last - frames.first) // step + 1
+    return [float(frames.first + index * step) for index in range(count)]
