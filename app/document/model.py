@@ -114,7 +114,7 @@ class Handle:
     name: str
     position: complex
     weight: float = 1.0
-    unknown: Unknown = field(default=NOTHING, repr=False)
+    unknown: Unknown = field(default_factory=lambda: NOTHING, repr=False, hash=False)
 
     def __post_init__(self) -> None:
         require(self.id >= 0, f"A handle's id is not negative, unlike {self.id}.")
@@ -140,7 +140,7 @@ class Target:
 
     position: complex
     rotation: float | None = None
-    unknown: Unknown = field(default=NOTHING, repr=False)
+    unknown: Unknown = field(default_factory=lambda: NOTHING, repr=False, hash=False)
 
     def __post_init__(self) -> None:
         require_finite(self.position, "The target of a handle")
@@ -182,7 +182,7 @@ class Keyframe:
     frame: int
     pose: Pose
     easing: Easing = LINEAR
-    unknown: Unknown = field(default=NOTHING, repr=False)
+    unknown: Unknown = field(default_factory=lambda: NOTHING, repr=False, hash=False)
 
 
 @dataclass(frozen=True, slots=True)
@@ -295,7 +295,7 @@ class Document:
     variant: Variant = "metric"
     bounds: Bounds = Bounds()
     export: ExportSettings = ExportSettings()
-    unknown: Unknown = field(default=NOTHING, repr=False)
+    unknown: Unknown = field(default_factory=lambda: NOTHING, repr=False, hash=False)
 
     def __post_init__(self) -> None:
         self._check_handles()
@@ -396,6 +396,16 @@ class Document:
                 f"The key at frame {frame} has coefficients for a cage of {len(key.pose.phi)} "
                 f"vertices, not of {len(self.domain.cage)}.",
             )
+
+
+def new_document(picture: PictureFile, domain: Domain, meshing: Meshing) -> Document:
+    """Return the document of a picture just opened: one key at frame 0, as it was drawn."""
+    identity = HarmonicMap.identity(domain.cage)
+    undistorted = Certificate(k=0.0, sigma_a=1.0, sigma_b=1.0, winding=0, certified=True)
+    pose = Pose(targets={}, phi=identity.phi, psi=identity.psi, certificate=undistorted)
+    return Document(
+        picture=picture, domain=domain, meshing=meshing, keys=(Keyframe(frame=0, pose=pose),)
+    )
 
 
 def require_finite(value: complex, name: str) -> None:
