@@ -61,12 +61,20 @@ def offset_cage(outline: Complexes, offset: float) -> Complexes:
         if not faulty.any():
             break
         offsets[faulty | np.roll(faulty, 1)] *= SHRINKING
-    if faulty.any() or distance_to_boundary(cage, outline).min() < least:
+    if faulty.any() or _distance_between(outline, cage) < least:
         raise EngineError(
             f"The outline comes too close to itself for a cage around its {len(outline)} vertices; "
             "choose a coarser detail, or widen the gap in the picture."
         )
     return readonly(cage)
+
+
+def _distance_between(outline: Complexes, cage: Complexes) -> float:
+    """Return the least distance between two polygons that do not cross."""
+    return min(
+        float(distance_to_boundary(outline, cage).min()),
+        float(distance_to_boundary(cage, outline).min()),
+    )
 
 
 def _miters(outline: Complexes) -> Complexes:

@@ -5,7 +5,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from engine.arrays import Bytes, Complexes, Floats
-from engine.cage import offset_cage
 from engine.errors import EngineError
 from engine.mask import subject_mask
 from engine.mesh import Mesh
@@ -69,9 +68,8 @@ def build_domain(
         )
     subject = subject_mask(rgba, tolerance=tolerance)
     outline = trace_outline(subject.mask, detail=detail)
-    cage = offset_cage(outline.points, outline.offset)
     mesh = triangulate(outline.points, triangles)
-    domain = Domain(outline=outline.points, cage=cage, mesh=mesh)
+    domain = Domain(outline=outline.points, cage=outline.cage, mesh=mesh)
     return domain, subject.notices + outline.notices
 
 

@@ -1,4 +1,4 @@
-"""From the mask of a subject to its outline: a polygon of few edges around it."""
+"""From the mask of a subject to its outline, a polygon of few edges, and the cage around it."""
 
 from dataclasses import dataclass
 from typing import Literal
@@ -7,10 +7,11 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from engine.arrays import Booleans, Complexes, Floats, readonly
+from engine.cage import offset_cage
 from engine.crossings import self_crossings
 from engine.curve import arc_lengths, at_arc_lengths, smooth
 from engine.errors import EngineError
-from engine.margin import MarginCurve, curve_at_margin, distance_field
+from engine.margin import DistanceField, MarginCurve, curve_at_margin, distance_field
 from engine.parts import join_parts
 from engine.polygon import as_xy, contains, edges
 from engine.simplify import choose_vertices
@@ -19,39 +20,52 @@ from engine.working_grid import working_grid
 Detail = Literal["coarse", "normal", "fine"]
 MARGINS: dict[Detail, float] = {"coarse": 0.012, "normal": 0.006, "fine": 0.003}  # of the diagonal
 LEAST_MARGIN = 0.8  # pixels of an enlarged subject: enough to straighten staircases
-WIDENINGS = (1.0, 1.4, 2.0)  # of the margin, until the outline has few vertices
-MOST_VERTICES = 180  # aimed at
+LARGEST_OFFSET = 0.02  # of the diagonal: above, the Cauchy coordinates become ill-conditioned
+NARROWEST_GAP = 0.0018  # of the diagonal: below, two cages have no room in a gap
+MOST_VERTICES = 180  # aimed at, by widening the margin
+WIDENING, MOST_WIDENED = 1.4, 2.0
+MOST_DRAFTS = 6
+LEAST_TOLD = 0.001  # of the subject's area
 FEWEST_EDGES = 40
 SHORTEST_EDGE, LONGEST_EDGE = 0.0012, 0.07  # of the diagonal
 SPACING = 0.5  # of the local margin, between the points that may become vertices
 LEASH, INNER, OUTER = 0.3, 0.5, 0.6  # of the local margin: smoothing; edges within, without
 SMOOTHING = 4  # rounds
 TIGHTENING = 0.6
-MOST_ATTEMPTS = 12
+MOST_ATTEMPTS = 10
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Outline:
-    """The polygon around a subject.
+    """The polygon around a subject, and the cage around that.
 
     Parameters
     ----------
-    points : complex128, shape (p,)
+    points : complex128, shape (n,)
         Simple, counter-clockwise, in pixels of the picture: origin at the lower left corner of
         the picture, y up.
-    offset : float
-        The distance, in pixels, at which the cage is to follow.
+    cage : complex128, shape (n,)
+        Simple, counter-clockwise, strictly around the points, one vertex for each of them.
     notices : tuple of str
         What had to be done to the subject, in words.
     """
 
     points: Complexes
-    offset: float
+    cage: Complexes
     notices: tuple[str, ...]
 
 
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class _Draft:
+    """An outline and its cage in cells, and the area enclosed where the outline met itself."""
+
+    points: Complexes
+    cage: Complexes
+    enclosed: float
+
+
 def trace_outline(mask: Booleans, *, detail: Detail) -> Outline:
-    """Find the outline of a subject.
+    """Find the outline of a subject, and the cage around it.
 
     Parameters
     ----------
@@ -64,48 +78,70 @@ def trace_outline(mask: Booleans, *, detail: Detail) -> Outline:
     Returns
     -------
     Outline
-        Around every pixel of the mask, except specks; no edge shorter than 0.1 % of the diagonal.
+        Around every pixel of the mask, except specks. No edge is shorter than 0.1 % of the
+        diagonal or longer than 7 %.
 
     Raises
     ------
     EngineError
-        If the subject falls into too many parts.
+        If the subject falls into too many parts, or is too intricate for an outline.
     """
     grid = working_grid(mask)
     piece = join_parts(grid.mask, grid.diagonal)
     field = distance_field(piece.mask)
-    corners = _boundary_corners(piece.mask)
-    least = LEAST_MARGIN * max(1.0, 1 / grid.cell)
+    wanted = max(MARGINS[detail] * grid.diagonal, LEAST_MARGIN * max(1.0, 1 / grid.cell))
+    closing = narrowest = NARROWEST_GAP * grid.diagonal
+    widening = 1.0
+    best: _Draft | None = None
+    for _ in range(MOST_DRAFTS):
+        draft = _draft(field, margin=widening * wanted, closing=closing, diagonal=grid.diagonal)
+        best = draft or best
+        if draft is not None:
+            if len(draft.points) <= MOST_VERTICES or widening == MOST_WIDENED:
+                break
+            widening = min(MOST_WIDENED, WIDENING * widening)
+        closing *= 2
+    if best is None:
+        raise EngineError(
+            "The subject is too intricate for an outline; choose another detail, or close its "
+            "finest gaps in the picture."
+        )
     notices = list(piece.notices)
-    wanted = max(MARGINS[detail] * grid.diagonal, least)
-    for widening in WIDENINGS:
-        margin = widening * wanted
-        curve = curve_at_margin(field, margin=margin, offset=margin, diagonal=grid.diagonal)
-        polygon = _polygon_around(corners, curve, grid.diagonal)
-        if len(polygon) <= MOST_VERTICES:
-            break
+    if closing > narrowest:
+        notices.append(f"gaps narrower than {closing * grid.cell:.1f} pixels closed")
     if widening > 1:
         notices.append(f"margin widened {widening:g} times to keep the outline to few vertices")
-    share = curve.enclosed / np.count_nonzero(piece.mask)
-    if share >= 0.001:
-        notices.append(f"narrow gap closed: it encloses {share:.1%} of the subject")
+    share = best.enclosed / np.count_nonzero(piece.mask)
+    if share >= LEAST_TOLD:
+        notices.append(f"the outline closes over gaps of {share:.1%} of the subject")
     return Outline(
-        points=readonly(grid.to_picture(polygon)), offset=margin * grid.cell, notices=tuple(notices)
+        points=readonly(grid.to_picture(best.points)),
+        cage=readonly(grid.to_picture(best.cage)),
+        notices=tuple(notices),
     )
 
 
-def _boundary_corners(mask: Booleans) -> Complexes:
-    """Return the corners of cells at which the mask and its surroundings meet."""
-    padded = np.pad(mask, 1)
-    around = padded[:-1, :-1].astype(np.uint8) + padded[:-1, 1:] + padded[1:, :-1] + padded[1:, 1:]
-    rows, columns = np.nonzero((around > 0) & (around < 4))
-    return columns + 1j * rows
+def _draft(
+    field: DistanceField, *, margin: float, closing: float, diagonal: float
+) -> _Draft | None:
+    """Draw outline and cage at a margin; return None if the subject is too intricate for it."""
+    offset = min(margin, LARGEST_OFFSET * diagonal)
+    curve = curve_at_margin(field, margin=margin, offset=offset, closing=closing, diagonal=diagonal)
+    points = _polygon_around(field.boundary(), curve, diagonal)
+    if points is None:
+        return None
+    try:
+        cage = offset_cage(points, offset)
+    except EngineError:
+        return None
+    return _Draft(points=points, cage=cage, enclosed=curve.enclosed)
 
 
-def _polygon_around(corners: Complexes, curve: MarginCurve, diagonal: float) -> Complexes:
+def _polygon_around(corners: Complexes, curve: MarginCurve, diagonal: float) -> Complexes | None:
     """Return a simple polygon of few edges along the curve, around all corners.
 
-    Where it crosses itself or leaves out a corner, it is drawn again, closer to the curve.
+    Where it crosses itself or leaves out a corner, it is drawn again, closer to the curve; None
+    is returned if that does not help.
     """
     points, margins = _graded(curve, SHORTEST_EDGE * diagonal)
     longest = min(LONGEST_EDGE * diagonal, float(np.abs(edges(points)).sum()) / FEWEST_EDGES)
@@ -125,15 +161,13 @@ def _polygon_around(corners: Complexes, curve: MarginCurve, diagonal: float) -> 
             return polygon
         distance, _ = cKDTree(as_xy(faults)).query(as_xy(points))
         slack[distance < 3 * margins] *= TIGHTENING
-    raise EngineError(
-        "No simple outline fits around the subject; choose another detail, or close fine gaps."
-    )
+    return None
 
 
 def _graded(curve: MarginCurve, shortest: float) -> tuple[Complexes, Floats]:
     """Return points along the curve, closer where the margin is small, and their margins."""
     arcs = arc_lengths(curve.points)
-    spacing = np.maximum(SPACING * curve.margins, 1.1 * shortest)
+    spacing = np.maximum(SPACING * curve.margins, 0.5 * shortest)
     # Equal steps of the integral of 1 / spacing.
     density = np.diff(arcs) / spacing
     places = np.concatenate([[0.0], np.cumsum(density)])

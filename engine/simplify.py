@@ -6,7 +6,7 @@ from engine.arrays import Complexes, Floats, Indices
 
 FARTHEST = 40  # points along the curve that one edge may span
 FIDELITY = 3.0  # cost of an edge with the whole tolerance as root mean square error, in edges
-FORBIDDEN = 1e6  # in edges, times span²: single steps along the curve are the last resort
+LAST_RESORT = 1e3  # cost of an edge that is too short, in edges
 
 
 def choose_vertices(
@@ -25,7 +25,7 @@ def choose_vertices(
     inner, outer : float64, shape (n,)
         Tolerances at each point.
     shortest, longest : float
-        Lengths of an edge. An edge to the next point may be shorter, at a high cost.
+        Lengths of an edge. Shorter ones are taken only where nothing else fits.
 
     Returns
     -------
@@ -69,9 +69,12 @@ def _edge_costs(
             error = np.hypot(offset.imag, past) / tolerance
             np.maximum(worst, error, out=worst)
             squares += error**2
-        costs[span - 1] = 1 + FIDELITY * squares / max(span - 1, 1)
-        bad = (worst > 1) | (length < shortest) | (length > longest)
-        costs[span - 1, bad] = FORBIDDEN * span**2
+        cost = 1 + FIDELITY * squares / max(span - 1, 1)
+        cost[length < shortest] += LAST_RESORT
+        # One step along the curve is always allowed, so that there is a polygon at all.
+        if span > 1:
+            cost[(worst > 1) | (length > longest)] = np.inf
+        costs[span - 1] = cost
     return costs
 
 

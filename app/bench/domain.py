@@ -8,7 +8,6 @@ import numpy as np
 from app.assets import sample_images
 from app.bench.table import Row, Table, measure
 from app.picture import decode_picture
-from engine.cage import offset_cage
 from engine.cauchy import cauchy_coordinates, cauchy_derivatives, evaluate
 from engine.domain import build_domain
 from engine.mask import subject_mask
@@ -49,8 +48,10 @@ def _stages(data: bytes) -> Table:
     rows = [
         Row(name="decode", seconds=measure(lambda: decode_picture(data, ""))),
         Row(name="mask", seconds=measure(lambda: subject_mask(rgba))),
-        Row(name="outline", seconds=measure(lambda: trace_outline(subject.mask, detail="normal"))),
-        Row(name="cage", seconds=measure(lambda: offset_cage(outline.points, outline.offset))),
+        Row(
+            name="outline and cage",
+            seconds=measure(lambda: trace_outline(subject.mask, detail="normal")),
+        ),
     ]
     for count in (10_000, 100_000, 1_000_000):
         seconds = measure(lambda count=count: triangulate(outline.points, count), repeats=3)
