@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any, cast
 
 from app.document.easing import LINEAR, Easing
-from app.document.model import LAST_FRAME, VARIANTS, Variant
+from app.document.settings import LAST_FRAME, VARIANTS, Variant
 from app.errors import LissomError
 from engine.deform.bounds import Bounds
 

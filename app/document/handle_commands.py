@@ -6,7 +6,8 @@ from dataclasses import replace
 import numpy as np
 
 from app.document.commands import command
-from app.document.model import Document, Handle, Keyframe, Target
+from app.document.keyframe import Handle, Keyframe, Target
+from app.document.model import Document
 
 
 @command("Add handle")

@@ -6,7 +6,9 @@ from dataclasses import replace
 
 from app.document.commands import command
 from app.document.easing import LINEAR, Easing
-from app.document.model import Document, FrameRange, Keyframe, Pose
+from app.document.keyframe import Keyframe, Pose
+from app.document.model import Document
+from app.document.settings import FrameRange
 from app.errors import LissomError
 
 

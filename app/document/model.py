@@ -5,46 +5,31 @@ else, so that commands, history and the project file need no checks of their own
 """
 
 import hashlib
-import math
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from types import MappingProxyType
-from typing import Any, Literal, get_args
 
 import numpy as np
 
-from app.document.easing import LINEAR, Easing
+from app.document.checks import NOTHING, Unknown, require, require_finite, require_size
+from app.document.keyframe import Handle, Keyframe, Pose
+from app.document.settings import (
+    FASTEST,
+    VARIANTS,
+    ExportSettings,
+    FrameRange,
+    Meshing,
+    Variant,
+)
 from app.errors import LissomError
-from engine.arrays import Complexes, as_points
 from engine.deform.bounds import Bounds
 from engine.deform.certificate import Certificate
 from engine.domain import Domain
 from engine.harmonic_map import HarmonicMap
-from engine.outline import Detail
 from engine.polygon import box_diagonal, contains
 
-Variant = Literal["metric", "nu", "scaled-eta", "eta", "linear"]
-ExportFormat = Literal["png", "apng", "gif", "webp", "spritesheet", "mp4"]
-Framing = Literal["canvas", "fit"]
-VARIANTS: tuple[Variant, ...] = get_args(Variant)
-EXPORT_FORMATS: tuple[ExportFormat, ...] = get_args(ExportFormat)
-FRAMINGS: tuple[Framing, ...] = get_args(Framing)
-
-LAST_FRAME = 999_999
-FASTEST = 1000.0
-WIDEST = 65_535
 # Handles may sit on the outline itself, where rounding decides on which side they are.
 ON_OUTLINE = 1e-9
-# Fields of a project file that this version does not know and hands on.
-Unknown = Mapping[str, Any]
-NOTHING: Unknown = MappingProxyType({})
-
-
-def require(condition: bool, message: str) -> None:  # noqa: FBT001 - reads as a sentence
-    """Raise a `LissomError` with the message unless the condition holds."""
-    if not condition:
-        raise LissomError(message)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -72,180 +57,8 @@ class PictureFile:
             re.fullmatch(r"\.[a-z0-9]{1,8}", self.suffix) is not None,
             f"A picture's file name ends as in '.png', not {self.suffix!r}.",
         )
-        _require_size(self.size, "picture")
+        require_size(self.size, "picture")
         object.__setattr__(self, "sha256", hashlib.sha256(self.data).hexdigest())
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Meshing:
-    """What the domain was built with: the parameters of `engine.domain.build_domain`."""
-
-    detail: Detail = "normal"
-    triangles: int = 100_000
-    tolerance: int = 18
-
-    def __post_init__(self) -> None:
-        details = get_args(Detail)
-        require(self.detail in details, f"The detail is one of {details}, not {self.detail!r}.")
-        require(self.triangles > 0, f"There must be triangles, not {self.triangles}.")
-        require(
-            0 <= self.tolerance <= 255,
-            f"The tolerance is between 0 and 255 levels, not {self.tolerance}.",
-        )
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Handle:
-    """A named point of the picture by which poses are pulled.
-
-    Parameters
-    ----------
-    id : int
-        Never given twice in one document.
-    name : str
-        Unique in the document.
-    position : complex
-        Where it sits in the picture at rest, in pixels, y up.
-    weight : float
-        How strongly it pulls, relative to others.
-    """
-
-    id: int
-    name: str
-    position: complex
-    weight: float = 1.0
-    unknown: Unknown = field(default_factory=lambda: NOTHING, repr=False, hash=False)
-
-    def __post_init__(self) -> None:
-        require(self.id >= 0, f"A handle's id is not negative, unlike {self.id}.")
-        require(bool(self.name.strip()), "A handle needs a name.")
-        require_finite(self.position, f"The position of handle {self.name!r}")
-        require(
-            0 < self.weight < math.inf,
-            f"The weight of handle {self.name!r} must be above 0, not {self.weight:g}.",
-        )
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Target:
-    """Where a pose wants a handle.
-
-    Parameters
-    ----------
-    position : complex
-        In pixels of the picture, y up; it may lie outside the picture.
-    rotation : float, optional
-        By how much the shape turns at the handle, in radians; None leaves that free.
-    """
-
-    position: complex
-    rotation: float | None = None
-    unknown: Unknown = field(default_factory=lambda: NOTHING, repr=False, hash=False)
-
-    def __post_init__(self) -> None:
-        require_finite(self.position, "The target of a handle")
-        require(
-            self.rotation is None or math.isfinite(self.rotation),
-            f"The rotation of a handle must be finite, not {self.rotation}.",
-        )
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Pose:
-    """A map with the wishes that it was solved for.
-
-    Parameters
-    ----------
-    targets : mapping of int to Target
-        One for each handle of the document, by the handle's id.
-    phi, psi : complex128, shape (n,)
-        Coefficients of the map over the domain's cage.
-    certificate : Certificate
-        What the solver vouches for. It is a record: whoever relies on it certifies again.
-    """
-
-    targets: Mapping[int, Target]
-    phi: Complexes
-    psi: Complexes
-    certificate: Certificate
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "targets", MappingProxyType(dict(self.targets)))
-        object.__setattr__(self, "phi", as_points(self.phi, "phi", at_least=3))
-        object.__setattr__(self, "psi", as_points(self.psi, "psi", at_least=3))
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Keyframe:
-    """A pose at a frame, and how time runs from there to the next key."""
-
-    frame: int
-    pose: Pose
-    easing: Easing = LINEAR
-    unknown: Unknown = field(default_factory=lambda: NOTHING, repr=False, hash=False)
-
-
-@dataclass(frozen=True, slots=True)
-class FrameRange:
-    """The frames from `first` to `last`, both included."""
-
-    first: int
-    last: int
-
-    def __post_init__(self) -> None:
-        require(
-            0 <= self.first <= self.last <= LAST_FRAME,
-            f"Frames {self.first} to {self.last} are no range: it goes from 0 or later to the "
-            f"same frame or a later one, at most {LAST_FRAME:,}.",
-        )
-
-    def __contains__(self, frame: float) -> bool:
-        return self.first <= frame <= self.last
-
-    def clamp(self, frame: int) -> int:
-        """Return the frame of the range that is nearest to `frame`."""
-        return min(max(frame, self.first), self.last)
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ExportSettings:
-    """What the person last chose for exports.
-
-    Parameters
-    ----------
-    format : str
-        One of `EXPORT_FORMATS`.
-    size : tuple of int, optional
-        Width and height in pixels; None takes the picture's.
-    background : str
-        "transparent" or "#rrggbb".
-    framing : str
-        "canvas" shows the picture's own frame, "fit" all of the motion.
-    frames : FrameRange, optional
-        None exports the work range, or everything where there is none.
-    """
-
-    format: ExportFormat = "png"
-    size: tuple[int, int] | None = None
-    background: str = "transparent"
-    framing: Framing = "canvas"
-    frames: FrameRange | None = None
-
-    def __post_init__(self) -> None:
-        require(
-            self.format in EXPORT_FORMATS,
-            f"The export format is one of {', '.join(EXPORT_FORMATS)}, not {self.format!r}.",
-        )
-        if self.size is not None:
-            _require_size(self.size, "export")
-        require(
-            re.fullmatch(r"transparent|#[0-9a-fA-F]{6}", self.background) is not None,
-            f"The background is 'transparent' or a colour '#rrggbb', not {self.background!r}.",
-        )
-        require(
-            self.framing in FRAMINGS,
-            f"The framing is one of {', '.join(FRAMINGS)}, not {self.framing!r}.",
-        )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -405,18 +218,4 @@ def new_document(picture: PictureFile, domain: Domain, meshing: Meshing) -> Docu
     pose = Pose(targets={}, phi=identity.phi, psi=identity.psi, certificate=undistorted)
     return Document(
         picture=picture, domain=domain, meshing=meshing, keys=(Keyframe(frame=0, pose=pose),)
-    )
-
-
-def require_finite(value: complex, name: str) -> None:
-    """Raise a `LissomError` unless the number is finite."""
-    require(
-        math.isfinite(value.real) and math.isfinite(value.imag), f"{name} must be finite: {value}."
-    )
-
-
-def _require_size(size: tuple[int, int], what: str) -> None:
-    require(
-        len(size) == 2 and all(1 <= pixels <= WIDEST for pixels in size),
-        f"The size of the {what} must be 1 to {WIDEST:,} pixels each way, not {size}.",
     )

@@ -4,15 +4,9 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from app.document.commands import command
-from app.document.model import (
-    Document,
-    ExportSettings,
-    FrameRange,
-    Keyframe,
-    Meshing,
-    Pose,
-    Variant,
-)
+from app.document.keyframe import Keyframe, Pose
+from app.document.model import Document
+from app.document.settings import ExportSettings, FrameRange, Meshing, Variant
 from app.errors import LissomError
 from engine.deform.bounds import Bounds
 from engine.domain import Domain

@@ -4,7 +4,8 @@ from bisect import bisect_right
 from fractions import Fraction
 from typing import NamedTuple
 
-from app.document.model import Document, FrameRange
+from app.document.model import Document
+from app.document.settings import FrameRange
 from app.errors import LissomError
 
 

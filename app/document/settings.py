@@ -1,0 +1,99 @@
+"""What is chosen once for a document: frames, interpolation, meshing, export."""
+
+import re
+from dataclasses import dataclass
+from typing import Literal, get_args
+
+from app.document.checks import require, require_size
+from engine.outline import Detail
+
+Variant = Literal["metric", "nu", "scaled-eta", "eta", "linear"]
+ExportFormat = Literal["png", "apng", "gif", "webp", "spritesheet", "mp4"]
+Framing = Literal["canvas", "fit"]
+VARIANTS: tuple[Variant, ...] = get_args(Variant)
+EXPORT_FORMATS: tuple[ExportFormat, ...] = get_args(ExportFormat)
+FRAMINGS: tuple[Framing, ...] = get_args(Framing)
+
+LAST_FRAME = 999_999
+FASTEST = 1000.0
+
+
+@dataclass(frozen=True, slots=True)
+class FrameRange:
+    """The frames from `first` to `last`, both included."""
+
+    first: int
+    last: int
+
+    def __post_init__(self) -> None:
+        require(
+            0 <= self.first <= self.last <= LAST_FRAME,
+            f"Frames {self.first} to {self.last} are no range: it goes from 0 or later to the "
+            f"same frame or a later one, at most {LAST_FRAME:,}.",
+        )
+
+    def __contains__(self, frame: float) -> bool:
+        return self.first <= frame <= self.last
+
+    def clamp(self, frame: int) -> int:
+        """Return the frame of the range that is nearest to `frame`."""
+        return min(max(frame, self.first), self.last)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ExportSettings:
+    """What the person last chose for exports.
+
+    Parameters
+    ----------
+    format : str
+        One of `EXPORT_FORMATS`.
+    size : tuple of int, optional
+        Width and height in pixels; None takes the picture's.
+    background : str
+        "transparent" or "#rrggbb".
+    framing : str
+        "canvas" shows the picture's own frame, "fit" all of the motion.
+    frames : FrameRange, optional
+        None exports the work range, or everything where there is none.
+    """
+
+    format: ExportFormat = "png"
+    size: tuple[int, int] | None = None
+    background: str = "transparent"
+    framing: Framing = "canvas"
+    frames: FrameRange | None = None
+
+    def __post_init__(self) -> None:
+        require(
+            self.format in EXPORT_FORMATS,
+            f"The export format is one of {', '.join(EXPORT_FORMATS)}, not {self.format!r}.",
+        )
+        if self.size is not None:
+            require_size(self.size, "export")
+        require(
+            re.fullmatch(r"transparent|#[0-9a-fA-F]{6}", self.background) is not None,
+            f"The background is 'transparent' or a colour '#rrggbb', not {self.background!r}.",
+        )
+        require(
+            self.framing in FRAMINGS,
+            f"The framing is one of {', '.join(FRAMINGS)}, not {self.framing!r}.",
+        )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Meshing:
+    """What the domain was built with: the parameters of `engine.domain.build_domain`."""
+
+    detail: Detail = "normal"
+    triangles: int = 100_000
+    tolerance: int = 18
+
+    def __post_init__(self) -> None:
+        details = get_args(Detail)
+        require(self.detail in details, f"The detail is one of {details}, not {self.detail!r}.")
+        require(self.triangles > 0, f"There must be triangles, not {self.triangles}.")
+        require(
+            0 <= self.tolerance <= 255,
+            f"The tolerance is between 0 and 255 levels, not {self.tolerance}.",
+        )
