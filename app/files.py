@@ -3,7 +3,8 @@
 import os
 import tempfile
 import zipfile
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
 from pathlib import Path
 from typing import IO, Any
 
@@ -28,6 +29,19 @@ def write_atomically(path: Path, write: Callable[[IO[bytes]], object]) -> None:
     LissomError
         If `path` is a folder, its folder is missing, or the disk refuses.
     """
+    with atomic_file(path) as file:
+        write(file)
+
+
+@contextmanager
+def atomic_file(path: Path) -> Iterator[IO[bytes]]:
+    """Open a file that takes the place of `path` when the `with` block ends without an error.
+
+    Raises
+    ------
+    LissomError
+        As `write_atomically`; an `OSError` of the block counts as the disk's refusal.
+    """
     check_writable(path)
     try:
         handle, name = tempfile.mkstemp(prefix=f".{path.name}.", suffix=".part", dir=path.parent)
@@ -36,7 +50,7 @@ def write_atomically(path: Path, write: Callable[[IO[bytes]], object]) -> None:
     temporary = Path(name)
     try:
         with os.fdopen(handle, "wb") as file:
-            write(file)
+            yield file
             file.flush()
             os.fsync(file.fileno())
         # mkstemp makes files private; a file made here gets what any other program would give it.
