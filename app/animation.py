@@ -1,0 +1,165 @@
+"""The in-betweens of a document at any frame: the one way to them for window, export and checks."""
+
+import threading
+from collections.abc import Sequence
+
+import numpy as np
+
+from app.document.keyframe import Pose
+from app.document.model import Document
+from app.document.settings import Variant
+from app.document.timeline import Moment, intervals, time_of
+from engine import interpolation
+from engine.arrays import Complexes, Floats
+from engine.complex_log import root_sheets
+from engine.domain import Domain
+from engine.harmonic_map import HarmonicMap
+from engine.hilbert import HilbertTransform
+from engine.interpolation import Frame, Inbetweens, Sites, prepare_inbetweens, prepare_sites
+from engine.keyframes import KeyframeSamples, sample_keyframes
+
+
+class Stage:
+    """Points of a domain at which in-betweens are wanted, with all that poses share there.
+
+    It keeps the samples of each pose that it met; poses are frozen, so that they stay true.
+
+    Parameters
+    ----------
+    domain : Domain
+    anchor : complex, optional
+        None lets the engine choose it.
+    points : complex128, shape (m,), optional
+        By default the vertices of the domain's mesh.
+
+    Raises
+    ------
+    EngineError
+        If a point or the anchor is outside the domain.
+    """
+
+    def __init__(
+        self, domain: Domain, *, anchor: complex | None, points: Complexes | None = None
+    ) -> None:
+        self.domain = domain
+        self.anchor = anchor
+        mesh = domain.mesh
+        self.sites: Sites = prepare_sites(
+            domain.outline,
+            domain.cage,
+            mesh.vertices if points is None else points,
+            triangles=mesh.triangles if points is None else None,
+            anchor=anchor,
+        )
+        self._lock = threading.RLock()
+        self._samples: dict[Pose, KeyframeSamples] = {}
+        self._inbetweens: dict[tuple[Pose, Pose, Variant], Inbetweens] = {}
+        self._transform: HilbertTransform | None = None
+
+    def keep_only(self, poses: Sequence[Pose]) -> None:
+        """Forget what was kept for other poses."""
+        wanted = set(poses)
+        with self._lock:
+            self._samples = {p: s for p, s in self._samples.items() if p in wanted}
+            self._inbetweens = {
+                key: kept for key, kept in self._inbetweens.items() if wanted.issuperset(key[:2])
+            }
+
+    def samples(self, pose: Pose) -> KeyframeSamples:
+        """Return the samples of a pose's map."""
+        with self._lock:
+            if pose not in self._samples:
+                f = HarmonicMap(cage=self.domain.cage, phi=pose.phi, psi=pose.psi)
+                (self._samples[pose],) = sample_keyframes(
+                    [f], self.sites.paths, self.sites.outline_samples
+                )
+            return self._samples[pose]
+
+    def inbetweens(self, first: Pose, second: Pose, variant: Variant) -> Inbetweens:
+        """Return the in-betweens of two poses."""
+        with self._lock:
+            key = (first, second, variant)
+            if key not in self._inbetweens:
+                pair = [self.samples(first), self.samples(second)]
+                if variant == "metric" and self._transform is None:
+                    self._transform = HilbertTransform.on(self.domain.outline, self.domain.cage)
+                self._inbetweens[key] = prepare_inbetweens(
+                    interpolation.Variant(variant),
+                    self.sites,
+                    pair,
+                    root_sheets(np.array([sample.anchor_fz for sample in pair])),
+                    transform=self._transform if variant == "metric" else None,
+                )
+            return self._inbetweens[key]
+
+
+class Animation:
+    """A document's motion at the points of a stage.
+
+    Parameters
+    ----------
+    document : Document
+    variant : str, optional
+        The document's own by default.
+    points : complex128, shape (m,), optional
+        By default the vertices of the domain's mesh.
+    stage : Stage, optional
+        An earlier animation's; it is used again if its domain and anchor are the document's, and
+        then only poses that changed cost anything.
+    """
+
+    def __init__(
+        self,
+        document: Document,
+        variant: Variant | None = None,
+        *,
+        points: Complexes | None = None,
+        stage: Stage | None = None,
+    ) -> None:
+        self.document = document
+        self.variant: Variant = document.variant if variant is None else variant
+        if (
+            stage is None
+            or stage.domain is not document.domain
+            or stage.anchor != document.anchor
+            or (points is not None and points is not stage.sites.points)
+        ):
+            stage = Stage(document.domain, anchor=document.anchor, points=points)
+        self.stage = stage
+        stage.keep_only([key.pose for key in document.keys])
+
+    def positions(self, frame: float) -> Complexes:
+        """Return where the points (m,) are at a frame, which may lie between two numbers."""
+        moment = time_of(self.document, frame)
+        resting = self._resting_pose(moment)
+        if resting is not None:
+            return self.stage.samples(resting).positions
+        return self._inbetweens(moment.interval).frame(_weights(moment)).positions
+
+    def frame(self, frame: float) -> Frame:
+        """Return positions and derivatives of the points at a frame."""
+        moment = time_of(self.document, frame)
+        resting = self._resting_pose(moment)
+        if resting is None:
+            return self._inbetweens(moment.interval).frame(_weights(moment))
+        positions = self.stage.samples(resting).positions
+        fz, fzbar = self.document.map_of(resting).derivatives(self.stage.sites.points)
+        return Frame(positions=positions, fz=fz, fzbar=fzbar, rho=None)
+
+    def _resting_pose(self, moment: Moment) -> Pose | None:
+        """Return the pose of the one key that the moment shows, if it is one."""
+        keys = self.document.keys
+        if moment.weight == 0.0:
+            return keys[moment.interval].pose
+        if moment.weight == 1.0:
+            return keys[(moment.interval + 1) % len(keys)].pose
+        return None
+
+    def _inbetweens(self, interval: int) -> Inbetweens:
+        first, second = intervals(self.document)[interval]
+        keys = self.document.keys
+        return self.stage.inbetweens(keys[first].pose, keys[second].pose, self.variant)
+
+
+def _weights(moment: Moment) -> Floats:
+    return np.array([1.0 - moment.weight, moment.weight])
