@@ -2,6 +2,7 @@
 
 import argparse
 import json
+import math
 from pathlib import Path
 
 from app.certification import Report, certify_document
@@ -10,9 +11,9 @@ from app.document.settings import VARIANTS
 
 EPILOG = """\
 Keyframes are certified: their k, sigma_a and sigma_b hold at every point of the shape, not only at
-samples. For each interval between two keys the extremes of the in-betweens over time and space stand
-beside the two keys' own. The exit status is 0 if every keyframe is certified and every interval is
-within its keyframes' bounds, 1 if not.
+samples. For each interval between two keys the extremes of the in-betweens over time and space
+stand beside the two keys' own. The exit status is 0 if every keyframe is certified and every
+interval is within its keyframes' bounds, 1 if not.
 
 examples:
   lissom certify wave.lissom
@@ -43,7 +44,7 @@ def _as_json(report: Report) -> str:
         "keys": [
             {
                 "frame": frame,
-                "k": certificate.k,
+                "k": _finite(certificate.k),
                 "sigma_a": certificate.sigma_a,
                 "sigma_b": certificate.sigma_b,
                 "certified": certificate.certified,
@@ -65,6 +66,11 @@ def _as_json(report: Report) -> str:
         ],
     }
     return json.dumps(content, indent=2)
+
+
+def _finite(value: float) -> float | None:
+    """Return the number, or None (JSON null) where nothing is proven: JSON has no infinity."""
+    return value if math.isfinite(value) else None
 
 
 def _as_table(report: Report) -> str:
