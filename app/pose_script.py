@@ -1,7 +1,6 @@
 """An animation written as a small JSON text: handles, keys and where each key drags the handles."""
 
 import json
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from itertools import pairwise
@@ -11,6 +10,14 @@ from typing import Any, cast
 from app.document.easing import LINEAR, Easing
 from app.document.settings import LAST_FRAME, VARIANTS, Variant
 from app.errors import LissomError
+from app.json_values import (
+    JsonObject,
+    as_flag,
+    as_number,
+    as_object,
+    as_point,
+    without_repeats,
+)
 from engine.deform.bounds import Bounds
 
 SCHEMA = 1
@@ -59,7 +66,7 @@ def load_pose_script(path: Path) -> PoseScript:
     except UnicodeDecodeError as error:
         raise LissomError(f"{path} is not a text file in UTF-8") from error
     try:
-        return parse_pose_script(json.loads(text, object_pairs_hook=_without_repeats))
+        return parse_pose_script(json.loads(text, object_pairs_hook=without_repeats))
     except json.JSONDecodeError as error:
         raise LissomError(
             f"{path} is not JSON: {error.msg} in line {error.lineno}, column {error.colno}"
@@ -87,8 +94,8 @@ def parse_pose_script(content: object) -> PoseScript:
         if name not in script:
             raise LissomError(f"{name} is missing")
     handles = {
-        name: _point(place, f"handle {name!r}")
-        for name, place in _object(script["handles"], "handles").items()
+        name: as_point(place, f"handle {name!r}")
+        for name, place in as_object(script["handles"], "handles").items()
     }
     keys = script["keys"]
     if not isinstance(keys, list) or not keys:
@@ -104,11 +111,9 @@ def _options(script: Mapping[str, Any]) -> dict[str, Any]:
     """Return those of the optional settings that the script gives."""
     options: dict[str, Any] = {}
     if "fps" in script:
-        options["fps"] = _number(script["fps"], "fps")
+        options["fps"] = as_number(script["fps"], "fps")
     if "loop" in script:
-        if not isinstance(script["loop"], bool):
-            raise LissomError(f"loop must be true or false, not {json.dumps(script['loop'])}")
-        options["loop"] = script["loop"]
+        options["loop"] = as_flag(script["loop"], "loop")
     if "variant" in script:
         if script["variant"] not in VARIANTS:
             raise LissomError(
@@ -117,9 +122,9 @@ def _options(script: Mapping[str, Any]) -> dict[str, Any]:
         options["variant"] = cast(Variant, script["variant"])
     if "bounds" in script:
         bounds = _object(script["bounds"], "bounds", BOUND_FIELDS)
-        options["bounds"] = Bounds(**{k: _number(v, f"bounds.{k}") for k, v in bounds.items()})
+        options["bounds"] = Bounds(**{k: as_number(v, f"bounds.{k}") for k, v in bounds.items()})
     if script.get("anchor") is not None:
-        options["anchor"] = _point(script["anchor"], "anchor")
+        options["anchor"] = as_point(script["anchor"], "anchor")
     return options
 
 
@@ -132,8 +137,8 @@ def _key(content: object, index: int, handles: Mapping[str, complex]) -> PoseKey
             f"{where}.frame must be a whole number from 0 to {LAST_FRAME}, not {json.dumps(frame)}"
         )
     targets = {
-        name: _point(place, f"{where}.targets.{name}")
-        for name, place in _object(key.get("targets", {}), f"{where}.targets").items()
+        name: as_point(place, f"{where}.targets.{name}")
+        for name, place in as_object(key.get("targets", {}), f"{where}.targets").items()
     }
     for name in targets:
         if name not in handles:
@@ -144,38 +149,10 @@ def _key(content: object, index: int, handles: Mapping[str, complex]) -> PoseKey
     return PoseKey(frame=frame, targets=targets, ease=ease)
 
 
-def _object(content: object, where: str, fields: tuple[str, ...] | None = None) -> dict[str, Any]:
-    if not isinstance(content, dict):
-        raise LissomError(f"{where} must be an object {{...}}, not {_shown(content)}")
-    for name in content:
-        if fields is not None and name not in fields:
+def _object(content: object, where: str, fields: tuple[str, ...]) -> JsonObject:
+    """Return an object that has none but these fields."""
+    read = as_object(content, where)
+    for name in read:
+        if name not in fields:
             raise LissomError(f"{where} has an unknown field {name!r}; it may have {fields}")
-    return content
-
-
-def _number(content: object, where: str) -> float:
-    if isinstance(content, bool) or not isinstance(content, (int, float)):
-        raise LissomError(f"{where} must be a number, not {_shown(content)}")
-    if not math.isfinite(content):
-        raise LissomError(f"{where} must be finite, not {_shown(content)}")
-    return float(content)
-
-
-def _point(content: object, where: str) -> complex:
-    if not isinstance(content, list) or len(content) != 2:
-        raise LissomError(f"{where} must be a point [x, y], not {_shown(content)}")
-    return complex(_number(content[0], f"{where}[0]"), _number(content[1], f"{where}[1]"))
-
-
-def _shown(content: object) -> str:
-    text = json.dumps(content)
-    return text if len(text) <= 60 else f"{text[:57]}..."
-
-
-def _without_repeats(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
-    content = dict(pairs)
-    if len(content) < len(pairs):
-        names = [name for name, _ in pairs]
-        repeated = next(name for name in names if names.count(name) > 1)
-        raise LissomError(f"the field {repeated!r} stands twice in one object")
-    return content
+    return read
