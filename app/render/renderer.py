@@ -1,0 +1,130 @@
+"""Draws scenes: the same for the window and without one."""
+
+from collections.abc import Mapping
+from typing import Final
+
+import moderngl
+
+from app.render.gpu_mesh import Pose
+from app.render.overlay import Overlay
+from app.render.programs import Programs, Stages
+from app.render.ramp import heat_ramp
+from app.render.scene import Background, Colour, Ghost, Heat, Scene, Wireframe
+from app.render.target import Target
+from app.render.view import View
+
+_BACKGROUND: Final = Stages(vertex=("screen.vert",), fragment=("background.frag",))
+_PICTURE: Final = Stages(vertex=("mesh.vert",), fragment=("picture.frag", "sample.glsl"))
+_HEAT: Final = Stages(vertex=("heat.vert",), fragment=("heat.frag", "sample.glsl"))
+_WIRE: Final = Stages(vertex=("mesh.vert",), geometry="wire.geom", fragment=("wire.frag",))
+_GHOST: Final = Stages(vertex=("screen.vert",), fragment=("ghost.frag",))
+_PICTURE_UNIT, _RAMP_UNIT, _LAYER_UNIT = 0, 1, 0
+
+
+class Renderer:
+    """Owner of the programs of a context and of what is drawn on the way."""
+
+    def __init__(self, context: moderngl.Context) -> None:
+        self.programs = Programs(context)
+        self._context = context
+        self._overlay = Overlay(self.programs)
+        self._layer: Target | None = None
+        ramp = heat_ramp()
+        self._ramp = context.texture((len(ramp), 1), 3, ramp.tobytes())
+        self._ramp.repeat_x = self._ramp.repeat_y = False
+
+    def draw(self, target: Target, view: View, scene: Scene) -> None:
+        """Draw a scene in place of whatever the target holds, and leave the target bound.
+
+        Parameters
+        ----------
+        target : Target
+        view : View
+            Of the target's size.
+        scene : Scene
+        """
+        if view.size != target.size:
+            raise ValueError(f"a view of {view.size} pixels cannot fill a frame of {target.size}")
+        target.framebuffer.use()
+        self._draw_background(scene.background, view, target.oversampling)
+        for ghost in scene.ghosts:
+            self._draw_ghost(ghost, target, view)
+        self._blend_over()
+        if scene.pose is not None:
+            self._draw_pose(scene.pose, view, scene.heat)
+        if scene.pose is not None and scene.wireframe is not None:
+            self._draw_wireframe(scene.pose, view, scene.wireframe)
+        self._overlay.draw(view, scene.lines, scene.discs)
+
+    def _blend_over(self) -> None:
+        self._context.enable_only(moderngl.BLEND)
+        self._context.blend_func = (moderngl.ONE, moderngl.ONE_MINUS_SRC_ALPHA)
+
+    def _draw_background(self, background: Background, view: View, samples: int) -> None:
+        self._context.enable_only(moderngl.NOTHING)
+        width, height = view.size
+        origin_x, origin_y = view.transform[2:]
+        checks = background.colour if background.checks is None else background.checks
+        uniforms = {
+            "light": _premultiplied(background.colour),
+            "dark": _premultiplied(checks),
+            "origin": ((origin_x + 1) / 2 * width * samples, (origin_y + 1) / 2 * height * samples),
+            "square": background.square * samples,
+        }
+        self.programs.draw_screen(_BACKGROUND, uniforms)
+
+    def _draw_pose(self, pose: Pose, view: View, heat: Heat | None) -> None:
+        uniforms: dict[str, object] = {"view": view.transform, "picture": _PICTURE_UNIT}
+        with pose.picture.bound(_PICTURE_UNIT):
+            if heat is None:
+                pose.draw(_PICTURE, uniforms)
+                return
+            self._ramp.use(_RAMP_UNIT)
+            uniforms |= {
+                "ramp": _RAMP_UNIT,
+                "limits": (heat.low, heat.high),
+                "contours": float(heat.contours),
+                "strength": heat.strength,
+            }
+            pose.draw(_HEAT, uniforms)
+
+    def _draw_wireframe(self, pose: Pose, view: View, wireframe: Wireframe) -> None:
+        uniforms: Mapping[str, object] = {
+            "view": view.transform,
+            "frame_size": view.size,
+            "ink": wireframe.colour,
+            "width": wireframe.width,
+        }
+        pose.draw(_WIRE, uniforms)
+
+    def _draw_ghost(self, ghost: Ghost, target: Target, view: View) -> None:
+        # On a layer of its own: limbs that overlap would shine through each other.
+        wanted = (target.size, target.oversampling)
+        if self._layer is None or (self._layer.size, self._layer.oversampling) != wanted:
+            self._release_layer()
+            self._layer = Target(self.programs, *wanted)
+        self._layer.framebuffer.use()
+        self._layer.framebuffer.clear()
+        self._blend_over()
+        self._draw_pose(ghost.pose, view, None)
+        target.framebuffer.use()
+        self._layer.texture.use(_LAYER_UNIT)
+        uniforms = {"frame": _LAYER_UNIT, "tint": ghost.tint, "opacity": ghost.opacity}
+        self.programs.draw_screen(_GHOST, uniforms)
+
+    def _release_layer(self) -> None:
+        if self._layer is not None:
+            self._layer.release()
+            self._layer = None
+
+    def release(self) -> None:
+        """Let everything go that the renderer made; targets, poses and pictures are not its own."""
+        self._release_layer()
+        self._ramp.release()
+        self._overlay.release()
+        self.programs.release()
+
+
+def _premultiplied(colour: Colour) -> Colour:
+    red, green, blue, alpha = colour
+    return red * alpha, green * alpha, blue * alpha, alpha

@@ -1,0 +1,96 @@
+"""Which part of the plane a frame shows, at which scale."""
+
+from dataclasses import dataclass, replace
+
+from app.errors import LissomError
+from engine.arrays import Complexes
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class View:
+    """A camera that looks straight at the plane.
+
+    Parameters
+    ----------
+    centre : complex
+        The point, x + iy with y up, in the middle of the frame.
+    scale : float
+        Pixels of the frame per unit of the plane.
+    size : tuple of int
+        Width and height of the frame in pixels.
+    """
+
+    centre: complex
+    scale: float
+    size: tuple[int, int]
+
+    def __post_init__(self) -> None:
+        if min(self.size) < 1:
+            raise LissomError(
+                f"a frame needs at least 1 × 1 pixels, not {self.size[0]} × {self.size[1]}"
+            )
+        if not self.scale > 0:
+            raise LissomError(f"the scale of a view must be positive, not {self.scale}")
+
+    @property
+    def transform(self) -> tuple[float, float, float, float]:
+        """Factors and offsets (x, y, x, y) from the plane to OpenGL's -1 … 1, for the shaders."""
+        x, y = 2 * self.scale / self.size[0], 2 * self.scale / self.size[1]
+        return x, y, -x * self.centre.real, -y * self.centre.imag
+
+    def to_pixels(self, points: Complexes) -> Complexes:
+        """Return pixels x + iy, from the frame's upper left corner with y down, of points."""
+        offset = (points - self.centre).conj() * self.scale
+        pixels: Complexes = offset + complex(*self.size) / 2
+        return pixels
+
+    def to_plane(self, pixel: complex) -> complex:
+        """Return the point under a pixel; the inverse of `to_pixels`."""
+        return self.centre + (pixel - complex(*self.size) / 2).conjugate() / self.scale
+
+    def panned(self, pixels: complex) -> "View":
+        """Return the view after dragging its contents by x + iy pixels, y down."""
+        return replace(self, centre=self.centre - pixels.conjugate() / self.scale)
+
+    def zoomed(self, factor: float, pixel: complex) -> "View":
+        """Return the view magnified by `factor`; the point under `pixel` stays where it is."""
+        fixed = self.to_plane(pixel)
+        centre = fixed + (self.centre - fixed) / factor
+        return replace(self, centre=centre, scale=self.scale * factor)
+
+
+def canvas_view(picture: tuple[int, int], size: tuple[int, int] | None = None) -> View:
+    """Return the view of the source picture's own rectangle.
+
+    Parameters
+    ----------
+    picture : tuple of int
+        Width and height of the source picture; the plane is measured in its pixels.
+    size : tuple of int, optional
+        Size of the frame, the picture's own by default. The picture is centred in it, as large as
+        it fits.
+    """
+    return fit_view(0j, complex(*picture), size or picture)
+
+
+def fit_view(lower: complex, upper: complex, size: tuple[int, int], *, margin: float = 0.0) -> View:
+    """Return the view that shows a whole box as large as possible.
+
+    Parameters
+    ----------
+    lower, upper : complex
+        Lower left and upper right corner of the box.
+    size : tuple of int
+        Width and height of the frame in pixels.
+    margin : float
+        Pixels to leave free at each side of the frame.
+    """
+    extent = upper - lower
+    free = [max(side - 2 * margin, 1.0) for side in size]
+    # A box without width or height is limited by its other side alone, a point by neither.
+    scales = [
+        side / length
+        for side, length in zip(free, (extent.real, extent.imag), strict=True)
+        if length > 0
+    ]
+    return View(centre=(lower + upper) / 2, scale=min(scales, default=1.0), size=size)

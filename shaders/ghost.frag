@@ -1,0 +1,15 @@
+// Another frame of the drawing, laid under the current one in one colour.
+
+uniform sampler2D frame;   // premultiplied
+uniform vec3 tint;
+uniform float opacity;
+
+out vec4 colour;
+
+const vec3 LUMA = vec3(0.299, 0.587, 0.114);
+
+void main() {
+    vec4 drawing = texelFetch(frame, ivec2(gl_FragCoord.xy), 0);
+    vec3 tinted = mix(tint * drawing.a, vec3(dot(drawing.rgb, LUMA)), 0.35);
+    colour = vec4(tinted, drawing.a) * opacity;
+}

@@ -1,0 +1,11 @@
+// The drawing as it is.
+
+in vec2 texture_uv;
+
+out vec4 colour;
+
+vec4 picture_at(vec2 uv);
+
+void main() {
+    colour = picture_at(texture_uv);
+}
