@@ -1,0 +1,316 @@
+"""A triangulation that can be edited in bulk: edge flips, new points, split boundary edges.
+
+Half-edge 3t + k leads from corner k of triangle t to the next corner, counter-clockwise. Its twin
+is the same edge in the neighbouring triangle. Every operation takes many half-edges or triangles at
+once and keeps the triangulation a conforming manifold, whatever the coordinates are.
+"""
+
+import numpy as np
+import numpy.typing as npt
+
+from engine.arrays import Booleans, Complexes, Floats, Indices
+
+OUTLINE = -1
+"""Twin of a half-edge on the outline."""
+SEAM = -2
+"""Twin of a half-edge on which a part of the mesh begins that is not edited."""
+
+ROUNDING = 1e-11
+"""Where a sign decides, smaller numbers count as zero. The region must be of size 1."""
+
+FLAT = 1e-6
+"""A point in a triangle lies on one of its edges if the height over it is less, over its length."""
+
+LONGEST_WALK = 1_000
+"""Triangles after which a walk is given up."""
+
+
+def following(half_edges: Indices) -> Indices:
+    """Return the next half-edge in the same triangle."""
+    return np.where(half_edges % 3 == 2, half_edges - 2, half_edges + 1)
+
+
+def preceding(half_edges: Indices) -> Indices:
+    """Return the previous half-edge in the same triangle."""
+    return np.where(half_edges % 3 == 0, half_edges + 2, half_edges - 1)
+
+
+def disjoint(*claims: Indices, among: int) -> Booleans:
+    """Choose rows that may be edited together: no two of them claim the same triangle.
+
+    Of rows that claim the same triangle the last one wins; the last row is always chosen.
+
+    Parameters
+    ----------
+    *claims : intp, shape (r,)
+        Triangles that each row needs for itself; a negative number is no claim.
+    among : int
+        Number of triangles.
+    """
+    row = np.arange(len(claims[0]))
+    owner = np.full(among + 1, -1)  # The last entry takes what is no claim.
+    for claim in claims:
+        np.maximum.at(owner, claim, row)
+    kept = [(claim < 0) | (owner[claim] == row) for claim in claims]
+    return np.asarray(np.all(kept, axis=0))
+
+
+class HalfEdgeMesh:
+    """A triangulation of a region, under work.
+
+    Parameters
+    ----------
+    points : complex128, shape (v,)
+    triangles : intp, shape (m, 3)
+        Counter-clockwise; each edge in one or two triangles.
+
+    Attributes
+    ----------
+    points : complex128, shape (v,)
+    origins : intp, shape (3 m,)
+        Vertex at which each half-edge starts.
+    twins : intp, shape (3 m,)
+        Half-edge of the neighbour, or `OUTLINE` or `SEAM`.
+    waiting : intp, shape (w,)
+        Vertices without triangles whose places are kept track of.
+    places : intp, shape (w,)
+        Triangle that each waiting vertex lies in, kept up to date by `flip` and `insert`.
+    """
+
+    __slots__ = ("origins", "places", "points", "twins", "waiting")
+
+    def __init__(self, points: Complexes, triangles: Indices) -> None:
+        self.points = points
+        self.origins = np.ascontiguousarray(triangles, dtype=np.intp).ravel()
+        self.twins = self._match()
+        self.waiting = self.places = np.empty(0, dtype=np.intp)
+
+    def _match(self) -> Indices:
+        """Return the twin of each half-edge, found by its two ends."""
+        starts, ends = self.ends(np.arange(len(self.origins)))
+        forward = starts * len(self.points) + ends
+        backward = ends * len(self.points) + starts
+        order = np.argsort(forward)
+        place = np.minimum(np.searchsorted(forward, backward, sorter=order), len(order) - 1)
+        return np.where(forward[order[place]] == backward, order[place], OUTLINE)
+
+    @property
+    def triangles(self) -> Indices:
+        """The corners (m, 3) of the triangles."""
+        return self.origins.reshape(-1, 3)
+
+    @property
+    def count(self) -> int:
+        """The number of triangles."""
+        return len(self.origins) // 3
+
+    def ends(self, half_edges: Indices) -> tuple[Indices, Indices]:
+        """Return the vertices where half-edges start and end."""
+        return self.origins[half_edges], self.origins[following(half_edges)]
+
+    def end_points(self, half_edges: Indices) -> tuple[Complexes, Complexes]:
+        """Return the points where half-edges start and end."""
+        start, end = self.ends(half_edges)
+        return self.points[start], self.points[end]
+
+    def add_points(self, points: Complexes) -> Indices:
+        """Append points that no triangle uses yet, and return their indices."""
+        first = len(self.points)
+        self.points = np.concatenate([self.points, points])
+        return np.arange(first, len(self.points))
+
+    def flip(self, half_edges: Indices) -> Indices:
+        """Replace inner edges a-b of triangles abc, bad by the other diagonals c-d.
+
+        No triangle may be concerned twice. Returns the half-edges around the quadrilaterals.
+        """
+        ab, ba = half_edges, self.twins[half_edges]
+        ca, db = preceding(ab), preceding(ba)
+        bc, ad = following(ab), following(ba)
+        c, d = self.origins[ca], self.origins[db]
+        # abc becomes dbc and bad becomes cad. Edges b-c and a-d stay in their places, d-b moves to
+        # where a-b was, and c-a to where b-a was; the diagonal takes the places that they leave.
+        self._move(np.concatenate([db, ca]), np.concatenate([ab, ba]))
+        self.origins[ab], self.origins[ba] = d, c
+        self._join(ca, db)
+        self._follow_flips(ab, ba)
+        return np.concatenate([ab, bc, ba, ad])
+
+    def insert_where_possible(
+        self, vertices: Indices, triangles: Indices
+    ) -> tuple[Booleans, Indices]:
+        """Insert vertices into the triangles that they lie in, as many as is possible at once.
+
+        Returns
+        -------
+        inserted : bool, shape (r,)
+            Which of them are now corners of triangles.
+        suspects : intp, shape (s,)
+            Half-edges that may not be Delaunay any more.
+        """
+        corners = self.points[self.triangles[triangles]]
+        along = np.roll(corners, -1, axis=1) - corners
+        height = _height(corners, along, self.points[vertices]) / np.abs(along)
+        nearest = np.argmin(height, axis=1)
+        # A point on an edge makes a flat triangle with it, to be flipped away at once.
+        flat = height.min(axis=1, initial=1.0) < FLAT
+        across = np.where(flat, self.twins[3 * triangles + nearest] // 3, -1)
+        inserted = disjoint(triangles, across, among=self.count)
+        around = self.insert(vertices[inserted], triangles[inserted])
+        flat &= across >= 0
+        flattened = around[nearest[inserted], np.arange(around.shape[1])][flat[inserted]]
+        return inserted, np.concatenate([around.ravel(), self.flip(flattened)])
+
+    def insert(self, vertices: Indices, triangles: Indices) -> Indices:
+        """Join each new vertex to the corners of the triangle that it lies in.
+
+        Returns the half-edges around the former triangles, those of edge k of every triangle in
+        row k, shape (3, r).
+        """
+        ab = 3 * triangles
+        bc = 3 * (self.count + np.arange(len(vertices)))
+        ca = bc + 3 * len(vertices)
+        a, b, c = self.origins[ab], self.origins[ab + 1], self.origins[ab + 2]
+        self._grow(2 * len(vertices))
+        self._move(np.concatenate([ab + 1, ab + 2]), np.concatenate([bc, ca]))
+        for first, start, end in ((ab, a, b), (bc, b, c), (ca, c, a)):
+            self.origins[first], self.origins[first + 1] = start, end
+            self.origins[first + 2] = vertices
+        for first, second in ((ab, bc), (bc, ca), (ca, ab)):
+            self._join(first + 1, second + 2)
+        self._follow_inserts(ab, bc, ca)
+        return np.stack([ab, bc, ca])
+
+    def split_border(self, vertices: Indices, half_edges: Indices) -> Indices:
+        """Split half-edges a-b without twin at new vertices, and their triangles abc in two.
+
+        No triangle may be concerned twice. Returns the half-edges around the former triangles.
+        """
+        ab, bc, ca = half_edges, following(half_edges), preceding(half_edges)
+        b, c = self.origins[bc], self.origins[ca]
+        rest = 3 * (self.count + np.arange(len(vertices)))
+        border = self.twins[ab]
+        self._grow(len(vertices))
+        self._move(bc, rest + 1)
+        self.origins[bc] = vertices
+        self.origins[rest], self.origins[rest + 1], self.origins[rest + 2] = vertices, b, c
+        self.twins[rest] = border
+        self._join(bc, rest + 2)
+        return np.concatenate([ab, ca, rest, rest + 1])
+
+    def restore_delaunay(self, suspects: Indices) -> None:
+        """Flip edges until all are Delaunay, given every half-edge that may not be."""
+        while len(suspects):
+            twins = self.twins[suspects]
+            once = np.zeros(len(self.twins), dtype=np.bool_)
+            once[np.minimum(suspects, twins)[twins >= 0]] = True
+            suspects = np.flatnonzero(once)
+            suspects = suspects[self._violates_delaunay(suspects)]
+            chosen = disjoint(suspects // 3, self.twins[suspects] // 3, among=self.count)
+            around = self.flip(suspects[chosen])
+            suspects = np.concatenate([suspects[~chosen], around])
+
+    def _violates_delaunay(self, half_edges: Indices) -> Booleans:
+        """Tell which inner edges a-b have opposite angles at c and d that sum to over 180°.
+
+        For triangles that are positive this makes acbd convex, up to rounding, which is therefore
+        asked for as well.
+        """
+        twins = self.twins[half_edges]
+        a, b = self.end_points(half_edges)
+        c = self.points[self.origins[preceding(half_edges)]]
+        d = self.points[self.origins[preceding(twins)]]
+        product = (b - c) * (a - c).conj() * (a - d) * (b - d).conj()
+        across = c - d
+        convex = ((across.conj() * (b - d)).imag < 0) & ((across.conj() * (a - d)).imag > 0)
+        return np.asarray(convex & (product.imag < -ROUNDING * np.abs(product)))
+
+    def walk(self, starts: Indices, targets: Complexes) -> tuple[Indices, Indices]:
+        """Go straight from the middle of triangles to targets, as far as the region reaches.
+
+        Returns
+        -------
+        triangles : intp, shape (r,)
+            Where the walks ended.
+        exits : intp, shape (r,)
+            -1 where the target lies in that triangle, else the half-edge on the border that the
+            walk would have crossed. (If rounding made a walk circle, any half-edge.)
+        """
+        triangles, exits = starts.copy(), np.full(len(starts), -1)
+        sources = self.points[self.triangles[starts]].mean(axis=1)
+        walking = np.arange(len(starts))
+        for _ in range(LONGEST_WALK):
+            if not len(walking):
+                break
+            leaving, edge = self._exit(triangles[walking], sources[walking], targets[walking])
+            walking, edge = walking[leaving], edge[leaving]
+            twins = self.twins[edge]
+            exits[walking[twins < 0]] = edge[twins < 0]
+            walking, twins = walking[twins >= 0], twins[twins >= 0]
+            triangles[walking] = twins // 3
+        exits[walking] = 3 * triangles[walking]
+        return triangles, exits
+
+    def _exit(
+        self, triangles: Indices, sources: Complexes, targets: Complexes
+    ) -> tuple[Booleans, Indices]:
+        """Tell which targets lie outside of triangles, and the edges that lead towards them."""
+        corners = self.points[self.triangles[triangles]]
+        along = np.roll(corners, -1, axis=1) - corners
+        outside = _height(corners, along, targets) < -ROUNDING
+        side = ((targets - sources).conj()[:, None] * (corners - sources[:, None])).imag
+        ahead = (side <= 0) & (np.roll(side, -1, axis=1) >= 0)
+        edge = np.argmax(outside * (1 + ahead), axis=1)
+        return np.asarray(outside.any(axis=1)), 3 * triangles + edge
+
+    def _grow(self, triangles: int) -> None:
+        """Make room for more triangles."""
+        empty = np.full(3 * triangles, OUTLINE)
+        self.origins = np.concatenate([self.origins, empty])
+        self.twins = np.concatenate([self.twins, empty])
+
+    def _move(self, old: Indices, new: Indices) -> None:
+        """Let the half-edges at the places `old` be at the places `new`, as their twins see it."""
+        place: npt.NDArray[np.intp] = np.arange(len(self.twins))
+        place[old] = new
+        twins = self.twins[old]
+        inner = twins >= 0
+        # Twins may be moved at the same time.
+        twins[inner] = place[twins[inner]]
+        self.twins[new] = twins
+        self.twins[twins[inner]] = new[inner]
+
+    def _follow_flips(self, left: Indices, right: Indices) -> None:
+        """Keep track of waiting vertices, given half-edges d-b and c-a of new pairs dbc, cad."""
+        row, pair = self._waiting_in(left // 3, right // 3)
+        c, d = self.points[self.origins[right[pair]]], self.points[self.origins[left[pair]]]
+        is_left = ((d - c).conj() * (self.points[self.waiting[row]] - c)).imag >= 0
+        self.places[row] = np.where(is_left, left[pair], right[pair]) // 3
+
+    def _follow_inserts(self, *around: Indices) -> None:
+        """Keep track of waiting vertices, given the edges opposite to the inserted ones."""
+        row, which = self._waiting_in(around[0] // 3)
+        inner = np.stack([half_edges[which] for half_edges in around])
+        middle = self.points[self.origins[preceding(inner[0])]]
+        spokes = self.points[self.origins[inner]] - middle
+        side = (spokes.conj() * (self.points[self.waiting[row]] - middle)).imag
+        sector = np.argmax(np.minimum(side, -np.roll(side, -1, axis=0)), axis=0)
+        self.places[row] = inner[sector, np.arange(len(row))] // 3
+
+    def _waiting_in(self, *triangles: Indices) -> tuple[Indices, Indices]:
+        """Return the rows of `waiting` that lie in triangles, and the columns of these."""
+        column = np.full(self.count, -1)
+        for row in triangles:
+            column[row] = np.arange(len(row))
+        column = column[self.places]
+        found = np.flatnonzero(column >= 0)
+        return found, column[found]
+
+    def _join(self, first: Indices, second: Indices) -> None:
+        """Make half-edges each other's twins."""
+        self.twins[first], self.twins[second] = second, first
+
+
+def _height(corners: Complexes, along: Complexes, points: Complexes) -> Floats:
+    """Return the distance (r, 3) of points to the left of the three edges of their triangle."""
+    return np.asarray((along.conj() * (points[:, None] - corners)).imag / np.abs(along))

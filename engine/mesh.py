@@ -1,0 +1,57 @@
+"""Triangulations as values, and the quantities that are read off them."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from engine.arrays import Complexes, Floats, Indices, Integers, readonly
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Mesh:
+    """A triangulation of a plane domain.
+
+    Parameters
+    ----------
+    vertices : complex128, shape (v,)
+    triangles : int32, shape (m, 3)
+        Indices of the vertices of each triangle, counter-clockwise.
+    """
+
+    vertices: Complexes
+    triangles: Integers
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "vertices", readonly(self.vertices))
+        object.__setattr__(self, "triangles", readonly(self.triangles))
+
+    def areas(self) -> Floats:
+        """Return the signed area (m,) of each triangle, positive where counter-clockwise."""
+        return signed_areas(self.vertices, self.triangles)
+
+    def smallest_angles(self) -> Floats:
+        """Return the smallest angle (m,) of each triangle, in degrees."""
+        return smallest_angles(self.vertices, self.triangles)
+
+    def edges(self) -> Integers:
+        """Return the undirected edges (e, 2), each once, the smaller index first, in order."""
+        ends = np.concatenate([self.triangles[:, [k, (k + 1) % 3]] for k in range(3)])
+        ends.sort(axis=1)
+        # One 64-bit key an edge: much faster than `np.unique` over rows.
+        keys = np.unique(ends[:, 0].astype(np.int64) << 32 | ends[:, 1])
+        return np.column_stack([keys >> 32, keys & 0xFFFFFFFF]).astype(np.int32)
+
+
+def signed_areas(vertices: Complexes, triangles: Integers | Indices) -> Floats:
+    """Return the signed area (m,) of each triangle, positive where counter-clockwise."""
+    a, b, c = (vertices[triangles[:, k]] for k in range(3))
+    # From edge vectors, not from coordinates: exact enough far from the origin, too.
+    return 0.5 * ((b - a).conj() * (c - a)).imag
+
+
+def smallest_angles(vertices: Complexes, triangles: Integers | Indices) -> Floats:
+    """Return the smallest angle (m,) of each triangle, in degrees, 0 for a flat one."""
+    a, b, c = (vertices[triangles[:, k]] for k in range(3))
+    corners = [(c - a) * (b - a).conj(), (a - b) * (c - b).conj(), (b - c) * (a - c).conj()]
+    smallest = np.min([np.arctan2(np.maximum(w.imag, 0.0), w.real) for w in corners], axis=0)
+    return np.asarray(np.degrees(smallest))
