@@ -1,0 +1,64 @@
+"""Small pictures of files, as textures for the window."""
+
+from pathlib import Path
+from typing import NamedTuple
+
+import moderngl
+from PIL import Image
+
+SIDE = 320  # pixels
+
+
+class Thumbnail(NamedTuple):
+    """A texture's OpenGL name, and its width and height in pixels."""
+
+    texture: int
+    size: tuple[int, int]
+
+
+class Thumbnails:
+    """Owner of one small texture for each picture file that was asked for.
+
+    Parameters
+    ----------
+    context : moderngl.Context
+    """
+
+    def __init__(self, context: moderngl.Context) -> None:
+        self._context = context
+        self._textures: dict[Path, moderngl.Texture | None] = {}
+        self._fresh = True
+
+    def begin_frame(self) -> None:
+        """Allow one more file to be read: one a frame, so that the window opens at once."""
+        self._fresh = True
+
+    def get(self, path: Path) -> Thumbnail | None:
+        """Return a picture's thumbnail; None while it is not read, or where it cannot be."""
+        if path not in self._textures and self._fresh:
+            self._textures[path] = self._read(path)
+            self._fresh = False
+        texture = self._textures.get(path)
+        return None if texture is None else Thumbnail(texture.glo, texture.size)
+
+    def textures(self) -> list[moderngl.Texture]:
+        """Return all that are ready."""
+        return [texture for texture in self._textures.values() if texture is not None]
+
+    def release(self) -> None:
+        """Let the textures go."""
+        for texture in self.textures():
+            texture.release()
+        self._textures.clear()
+
+    def _read(self, path: Path) -> moderngl.Texture | None:
+        try:
+            with Image.open(path) as image:
+                small = image.convert("RGBA")
+                small.thumbnail((SIDE, SIDE))
+        except (OSError, ValueError, SyntaxError):
+            return None
+        texture = self._context.texture(small.size, 4, small.tobytes())
+        texture.repeat_x = texture.repeat_y = False
+        texture.build_mipmaps()
+        return texture

@@ -1,0 +1,1 @@
+"""The window: panels are functions that read the session and return actions."""

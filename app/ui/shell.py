@@ -1,0 +1,172 @@
+"""The window's frame: layout, bars, dialogs, and the one place where actions are applied."""
+
+import traceback
+from collections.abc import Callable, Sequence
+from functools import partial
+from pathlib import Path
+
+from imgui_bundle import ImVec2, hello_imgui, imgui, implot
+
+from app.actions import editing, playback
+from app.actions.action import Action, do
+from app.errors import EXPECTED_ERRORS
+from app.render.thumbnails import Thumbnail
+from app.session import Session
+from app.ui import bars, dialogs, toasts, welcome
+from app.ui.guard import allow_recovery, guard
+from app.ui.panel import Panel
+from app.ui.shortcuts import pressed
+from app.ui.theme import FONT_SIZE, PALETTES, Look, apply_theme, load_fonts
+
+SIDE, BOTTOM = 0.25, 0.27  # parts of the window that tabs and timeline take at first
+# Saved layouts of another number are forgotten: they name other panels.
+LAYOUT = 1
+IDLE_FPS = 10.0
+
+
+class Shell:
+    """Draws the window's contents from a session, once a frame, and applies what was asked for.
+
+    Parameters
+    ----------
+    session : Session
+    panels : sequence of Panel
+    thumbnail : callable
+        Returns the thumbnail of a picture file.
+    """
+
+    def __init__(
+        self,
+        session: Session,
+        panels: Sequence[Panel],
+        thumbnail: Callable[[Path], Thumbnail | None],
+    ) -> None:
+        self.session = session
+        self._thumbnail = thumbnail
+        self._panels = panels
+        self._fonts: tuple[imgui.ImFont, imgui.ImFont] | None = None
+        self._themed: tuple[str, float] | None = None
+        self._actions: list[Action] = []
+
+    def runner_params(self) -> hello_imgui.RunnerParams:
+        """Return what Hello ImGui needs to know; platform and renderer are left to the caller."""
+        params = hello_imgui.RunnerParams()
+        params.app_window_params.window_title = "Lissom"
+        window = params.imgui_window_params
+        window.default_imgui_window_type = (
+            hello_imgui.DefaultImGuiWindowType.provide_full_screen_dock_space
+        )
+        window.show_menu_bar = window.show_status_bar = True
+        window.show_menu_app = window.show_menu_view = window.show_status_fps = False
+        params.docking_params = self._layout()
+        calls = params.callbacks
+        calls.load_additional_fonts = self._load_fonts
+        calls.setup_imgui_config = self._configure
+        calls.setup_imgui_style = self._apply_theme
+        calls.pre_new_frame = self._begin_frame
+        calls.show_menus = self._part("The menu", bars.draw_menus)
+        calls.show_status = self._part("The status bar", bars.draw_status)
+        calls.show_gui = self._draw_over_panels
+        calls.before_imgui_render = self._apply_actions
+        options = hello_imgui.EdgeToolbarOptions()
+        options.size_em = 2.7
+        options.window_padding_em = ImVec2(0.35, 0.5)
+        calls.add_edge_toolbar(
+            hello_imgui.EdgeToolbarType.left, self._part("The icon bar", bars.draw_icons), options
+        )
+        params.fps_idling.fps_idle = IDLE_FPS
+        return params
+
+    @property
+    def look(self) -> Look:
+        """What panels draw with at present."""
+        if self._fonts is None:
+            raise RuntimeError("the window has no fonts before its first frame")
+        bold, mono = self._fonts
+        preferences = self.session.preferences
+        return Look(
+            palette=PALETTES[preferences.theme],
+            bold=bold,
+            mono=mono,
+            em=imgui.get_font_size() or FONT_SIZE * preferences.scale,
+        )
+
+    def _layout(self) -> hello_imgui.DockingParams:
+        layout = hello_imgui.DockingParams()
+        layout.layout_name = f"Layout {LAYOUT}"
+        layout.docking_splits = [
+            hello_imgui.DockingSplit("MainDockSpace", "bottom", imgui.Dir.down, BOTTOM),
+            hello_imgui.DockingSplit("MainDockSpace", "side", imgui.Dir.right, SIDE),
+        ]
+        layout.main_dock_space_node_flags = imgui.DockNodeFlags_.none
+        layout.dockable_windows = [self._window(panel) for panel in self._panels]
+        return layout
+
+    def _window(self, panel: Panel) -> hello_imgui.DockableWindow:
+        draw = self._part(f"The panel {panel.title}", panel.draw)
+        window = hello_imgui.DockableWindow(panel.label, panel.place, draw)
+        window.can_be_closed = False
+        if panel.place == "MainDockSpace":
+            window.imgui_window_flags = (
+                imgui.WindowFlags_.no_scrollbar | imgui.WindowFlags_.no_scroll_with_mouse
+            )
+        return window
+
+    def _part(self, what: str, draw: Callable[[Session, Look], list[Action]]) -> Callable[[], None]:
+        """Return a callback that draws a part under the guard and collects its actions."""
+
+        def collect() -> None:
+            self._actions += draw(self.session, self.look)
+
+        return partial(guard, what, collect, self._report)
+
+    def _report(self, text: str, details: str) -> None:
+        self.session.tell(text, tone="error", details=details)
+
+    def _load_fonts(self) -> None:
+        self._fonts = load_fonts()
+
+    def _configure(self) -> None:
+        io = imgui.get_io()
+        io.config_flags |= imgui.ConfigFlags_.docking_enable
+        io.config_windows_move_from_title_bar_only = True
+        allow_recovery()
+        implot.create_context()
+
+    def _apply_theme(self) -> None:
+        preferences = self.session.preferences
+        self._themed = (preferences.theme, preferences.scale)
+        apply_theme(PALETTES[preferences.theme], preferences.scale)
+
+    def _begin_frame(self) -> None:
+        session = self.session
+        if self._themed != (session.preferences.theme, session.preferences.scale):
+            self._apply_theme()
+        self._attempt(session.jobs.deliver)
+        playback.halt_at_end(session)
+        moving = session.project is not None and session.project.playhead.since is not None
+        busy = moving or bool(session.jobs.kinds or session.toasts)
+        hello_imgui.get_runner_params().fps_idling.enable_idling = not busy
+
+    def _draw_over_panels(self) -> None:
+        session = self.session
+        self._actions += pressed(session)
+        if session.project is None:
+            self._part("The welcome view", partial(welcome.draw, thumbnail=self._thumbnail))()
+        self._part("The dialog", dialogs.draw)()
+        self._part("The messages", toasts.draw)()
+        held = imgui.is_any_item_active() or imgui.is_mouse_down(imgui.MouseButton_.left)
+        self._actions.append(do(editing.hold, held))
+
+    def _apply_actions(self) -> None:
+        actions, self._actions = self._actions, []
+        for action in actions:
+            self._attempt(partial(action.apply, self.session))
+
+    def _attempt(self, change: Callable[[], None]) -> None:
+        try:
+            change()
+        except EXPECTED_ERRORS as error:
+            self.session.tell(str(error), tone="error")
+        except Exception as error:  # noqa: BLE001 - part of the frame guard
+            self._report(f"That did not work: {error}", traceback.format_exc())

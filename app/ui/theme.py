@@ -1,0 +1,234 @@
+"""The two themes: colours, spacing, rounding and type, given to Dear ImGui in one place."""
+
+from dataclasses import dataclass
+
+from imgui_bundle import ImVec2, ImVec4, hello_imgui, imgui
+
+FONT_SIZE = 15.0  # pixels at scale 1
+SMALL, LARGE, TITLE = 0.87, 1.2, 2.1  # sizes of type, relative to the text's
+
+
+def rgb(code: str, alpha: float = 1.0) -> ImVec4:
+    """Return the colour written `rrggbb`."""
+    red, green, blue = (int(code[i : i + 2], 16) / 255 for i in (0, 2, 4))
+    return ImVec4(red, green, blue, alpha)
+
+
+def ink(colour: ImVec4, alpha: float = 1.0) -> int:
+    """Return a colour as draw lists take it, more transparent by `alpha`."""
+    return imgui.color_convert_float4_to_u32(ImVec4(colour.x, colour.y, colour.z, colour.w * alpha))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Palette:
+    """The colours of a theme, named by what they are for."""
+
+    is_dark: bool
+    desk: ImVec4  # behind everything, and around the drawing
+    panel: ImVec4
+    raised: ImVec4  # fields and buttons
+    hovered: ImVec4
+    pressed: ImVec4
+    line: ImVec4
+    text: ImVec4
+    dim: ImVec4
+    accent: ImVec4
+    on_accent: ImVec4
+    good: ImVec4
+    warning: ImVec4  # also: a pose that no key holds
+    danger: ImVec4
+    anchor: ImVec4
+    handle: ImVec4
+    paper: ImVec4  # the two squares of the checker
+    check: ImVec4
+
+
+DARK = Palette(
+    is_dark=True,
+    desk=rgb("17181c"),
+    panel=rgb("1f2126"),
+    raised=rgb("2b2e35"),
+    hovered=rgb("363a43"),
+    pressed=rgb("41454f"),
+    line=rgb("33363e"),
+    text=rgb("e3e5ea"),
+    dim=rgb("989daa"),
+    accent=rgb("7b8cff"),
+    on_accent=rgb("10121c"),
+    good=rgb("5fc796"),
+    warning=rgb("f2a65a"),
+    danger=rgb("f0736f"),
+    anchor=rgb("3fd0e6"),
+    handle=rgb("ffd166"),
+    paper=rgb("2a2c32"),
+    check=rgb("25272d"),
+)
+LIGHT = Palette(
+    is_dark=False,
+    desk=rgb("e6e7eb"),
+    panel=rgb("f8f8fa"),
+    raised=rgb("e9eaef"),
+    hovered=rgb("dcdfe7"),
+    pressed=rgb("cdd1dc"),
+    line=rgb("d5d7de"),
+    text=rgb("23252b"),
+    dim=rgb("666a77"),
+    accent=rgb("4a5be0"),
+    on_accent=rgb("ffffff"),
+    good=rgb("218a59"),
+    warning=rgb("c96a12"),
+    danger=rgb("cf3f3c"),
+    anchor=rgb("0796b0"),
+    handle=rgb("e09f00"),
+    paper=rgb("ffffff"),
+    check=rgb("f1f1f4"),
+)
+PALETTES = {"dark": DARK, "light": LIGHT}
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Look:
+    """What panels draw with: colours, fonts and the size of one text line's em."""
+
+    palette: Palette
+    bold: imgui.ImFont
+    mono: imgui.ImFont
+    em: float  # pixels
+
+
+def load_fonts() -> tuple[imgui.ImFont, imgui.ImFont]:
+    """Load the text font (with icons) as the default; return the bold and the fixed-width one."""
+    _load_with_icons("Roboto/Roboto-Regular.ttf")
+    bold = _load_with_icons("Roboto/Roboto-Bold.ttf")
+    mono = hello_imgui.load_font("fonts/Inconsolata-Medium.ttf", FONT_SIZE)
+    return bold, mono
+
+
+def _load_with_icons(name: str) -> imgui.ImFont:
+    font = hello_imgui.load_font(f"fonts/{name}", FONT_SIZE)
+    icons = hello_imgui.FontLoadingParams(merge_to_last_font=True)
+    hello_imgui.load_font("fonts/Font_Awesome_6_Free-Solid-900.otf", 0.9 * FONT_SIZE, icons)
+    return font
+
+
+def apply_theme(palette: Palette, scale: float) -> None:
+    """Give Dear ImGui the theme's colours and, enlarged by `scale`, its sizes."""
+    style = imgui.get_style()
+    dpi = style.font_scale_dpi
+    fresh = imgui.Style()
+    for name in _SIZES:
+        setattr(style, name, getattr(fresh, name))
+    for name, size in _SIZES.items():
+        setattr(style, name, ImVec2(*size) if isinstance(size, tuple) else size)
+    style.scale_all_sizes(scale * dpi)
+    style.font_size_base = FONT_SIZE
+    style.font_scale_main = scale
+    _colour(style, palette)
+
+
+_SIZES: dict[str, float | tuple[float, float]] = {
+    "window_padding": (12, 10),
+    "window_rounding": 0,
+    "window_border_size": 0,
+    "child_rounding": 8,
+    "child_border_size": 1,
+    "popup_rounding": 8,
+    "popup_border_size": 1,
+    "frame_padding": (9, 5),
+    "frame_rounding": 6,
+    "frame_border_size": 0,
+    "item_spacing": (8, 7),
+    "item_inner_spacing": (7, 5),
+    "cell_padding": (6, 4),
+    "indent_spacing": 16,
+    "scrollbar_size": 11,
+    "scrollbar_rounding": 6,
+    "grab_min_size": 11,
+    "grab_rounding": 6,
+    "tab_rounding": 6,
+    "tab_border_size": 0,
+    "tab_bar_border_size": 1,
+    "tab_bar_overline_size": 0,
+    "separator_size": 1,
+    "separator_text_border_size": 1,
+    "separator_text_padding": (0, 6),
+    "docking_separator_size": 2,
+    "menu_item_rounding": 5,
+    "selectable_rounding": 5,
+    "disabled_alpha": 0.42,
+}
+
+
+def _colour(style: imgui.Style, palette: Palette) -> None:
+    none = ImVec4(0, 0, 0, 0)
+
+    def faint(colour: ImVec4, alpha: float) -> ImVec4:
+        return ImVec4(colour.x, colour.y, colour.z, alpha)
+
+    colours = {
+        "text": palette.text,
+        "text_disabled": palette.dim,
+        "window_bg": palette.panel,
+        "child_bg": none,
+        "popup_bg": palette.panel,
+        "border": palette.line,
+        "border_shadow": none,
+        "frame_bg": palette.raised,
+        "frame_bg_hovered": palette.hovered,
+        "frame_bg_active": palette.pressed,
+        "title_bg": palette.desk,
+        "title_bg_active": palette.desk,
+        "title_bg_collapsed": palette.desk,
+        "menu_bar_bg": palette.desk,
+        "scrollbar_bg": none,
+        "scrollbar_grab": palette.hovered,
+        "scrollbar_grab_hovered": palette.pressed,
+        "scrollbar_grab_active": palette.dim,
+        "check_mark": palette.accent,
+        "checkbox_selected_bg": palette.raised,
+        "slider_grab": palette.accent,
+        "slider_grab_active": palette.accent,
+        "button": palette.raised,
+        "button_hovered": palette.hovered,
+        "button_active": palette.pressed,
+        "header": faint(palette.accent, 0.20),
+        "header_hovered": palette.hovered,
+        "header_active": palette.pressed,
+        "separator": palette.line,
+        "separator_hovered": palette.accent,
+        "separator_active": palette.accent,
+        "resize_grip": none,
+        "resize_grip_hovered": palette.hovered,
+        "resize_grip_active": palette.accent,
+        "input_text_cursor": palette.accent,
+        "tab_hovered": palette.hovered,
+        "tab": palette.desk,
+        "tab_selected": palette.panel,
+        "tab_selected_overline": palette.accent,
+        "tab_dimmed": palette.desk,
+        "tab_dimmed_selected": palette.panel,
+        "tab_dimmed_selected_overline": none,
+        "docking_preview": faint(palette.accent, 0.4),
+        "docking_empty_bg": palette.desk,
+        "plot_lines": palette.accent,
+        "plot_lines_hovered": palette.accent,
+        "plot_histogram": palette.accent,
+        "plot_histogram_hovered": palette.accent,
+        "table_header_bg": palette.raised,
+        "table_border_strong": palette.line,
+        "table_border_light": palette.line,
+        "table_row_bg": none,
+        "table_row_bg_alt": none,
+        "text_link": palette.accent,
+        "text_selected_bg": faint(palette.accent, 0.35),
+        "tree_lines": palette.line,
+        "drag_drop_target": palette.accent,
+        "drag_drop_target_bg": faint(palette.accent, 0.1),
+        "unsaved_marker": palette.text,
+        "nav_cursor": palette.accent,
+        "nav_windowing_highlight": palette.accent,
+        "nav_windowing_dim_bg": faint(palette.desk, 0.5),
+        "modal_window_dim_bg": faint(rgb("000000"), 0.45),
+    }
+    for name, colour in colours.items():
+        style.set_color_(imgui.Col_[name], colour)

@@ -1,0 +1,147 @@
+"""What is shown before a picture is opened: samples, recent files, and how to begin."""
+
+from collections.abc import Callable
+from pathlib import Path
+
+from imgui_bundle import ImVec2, imgui
+from imgui_bundle import icons_fontawesome_6 as icons
+
+from app.actions import files
+from app.actions.action import Action, do
+from app.render.thumbnails import Thumbnail
+from app.session import Session
+from app.ui.shortcuts import BINDINGS
+from app.ui.theme import LARGE, TITLE, Look, ink
+from app.ui.widgets import main_button, small
+
+Look_up = Callable[[Path], Thumbnail | None]
+CARD, GAP = 11.5, 1.0  # em
+WIDTH = 4 * CARD + 3 * GAP
+MOST_RECENT = 5
+FLAGS = (
+    imgui.WindowFlags_.no_title_bar
+    | imgui.WindowFlags_.no_resize
+    | imgui.WindowFlags_.no_collapse
+    | imgui.WindowFlags_.no_docking
+    | imgui.WindowFlags_.no_saved_settings
+    | imgui.WindowFlags_.no_move
+    | imgui.WindowFlags_.no_nav_focus
+)
+
+
+def draw(session: Session, look: Look, thumbnail: Look_up) -> list[Action]:
+    """Cover the window with samples to open and the ways to open one's own picture."""
+    viewport = imgui.get_main_viewport()
+    imgui.set_next_window_pos(viewport.work_pos)
+    status = imgui.get_frame_height() + look.em
+    imgui.set_next_window_size(ImVec2(viewport.work_size.x, viewport.work_size.y - status))
+    imgui.push_style_var(imgui.StyleVar_.window_rounding, 0.0)
+    imgui.push_style_color(imgui.Col_.window_bg, look.palette.desk)
+    imgui.begin("Welcome", flags=FLAGS)
+    imgui.pop_style_color()
+    imgui.pop_style_var()
+    left = max(GAP * look.em, (viewport.work_size.x - WIDTH * look.em) / 2)
+    imgui.set_cursor_pos(ImVec2(left, max(1.5 * look.em, 0.1 * viewport.work_size.y)))
+    imgui.begin_group()
+    actions = _greeting(session, look)
+    actions += _samples(look, thumbnail)
+    actions += _recent(session, look)
+    imgui.end_group()
+    imgui.end()
+    return actions
+
+
+def _greeting(session: Session, look: Look) -> list[Action]:
+    actions: list[Action] = []
+    base = imgui.get_style().font_size_base
+    imgui.push_font(look.bold, TITLE * base)
+    imgui.text("Lissom")
+    imgui.pop_font()
+    imgui.push_font(None, LARGE * base)
+    imgui.text_colored(
+        look.palette.dim, "Pose a drawing with a few handles, and get in-betweens that never fold."
+    )
+    imgui.pop_font()
+    imgui.dummy(ImVec2(0, 0.8 * look.em))
+    binding = BINDINGS["open"]
+    if main_button(look, f"{icons.ICON_FA_FOLDER_OPEN}  Open image or project…", 16 * look.em):
+        actions.append(binding.action)
+    imgui.same_line(0, look.em)
+    imgui.align_text_to_frame_padding()
+    busy = next((kind for kind in session.jobs.kinds), None)
+    imgui.text_colored(look.palette.dim, f"{busy}…" if busy else "or drop a picture here")
+    imgui.dummy(ImVec2(0, 1.0 * look.em))
+    return actions
+
+
+def _samples(look: Look, thumbnail: Look_up) -> list[Action]:
+    actions: list[Action] = []
+    imgui.push_font(look.bold, 0)
+    imgui.text("Try one of these")
+    imgui.pop_font()
+    imgui.dummy(ImVec2(0, 0.2 * look.em))
+    for index, sample in enumerate(files.samples()):
+        if index % 4:
+            imgui.same_line(0, GAP * look.em)
+        if _card(look, sample, thumbnail(sample.picture)):
+            actions.append(do(files.open_file, sample.file))
+    return actions
+
+
+def _card(look: Look, sample: files.Sample, image: Thumbnail | None) -> bool:
+    palette = look.palette
+    size = ImVec2(CARD * look.em, 0.88 * CARD * look.em)
+    corner = imgui.get_cursor_screen_pos()
+    pressed = imgui.invisible_button(f"sample {sample.name}", size)
+    hovered = imgui.is_item_hovered()
+    opposite = ImVec2(corner.x + size.x, corner.y + size.y)
+    draw_list = imgui.get_window_draw_list()
+    rounding = 0.6 * look.em
+    draw_list.add_rect_filled(
+        corner, opposite, ink(palette.raised if hovered else palette.panel), rounding
+    )
+    draw_list.add_rect(
+        corner,
+        opposite,
+        ink(palette.accent if hovered else palette.line),
+        rounding,
+        1.5 if hovered else 1.0,
+    )
+    foot = 2.3 * look.em
+    if image is not None:
+        room = ImVec2(size.x - 1.4 * look.em, size.y - foot - 0.8 * look.em)
+        scale = min(room.x / image.size[0], room.y / image.size[1])
+        width, height = scale * image.size[0], scale * image.size[1]
+        x = corner.x + (size.x - width) / 2
+        y = corner.y + 0.7 * look.em + (room.y - height) / 2
+        draw_list.add_image(
+            imgui.ImTextureRef(image.texture), ImVec2(x, y), ImVec2(x + width, y + height)
+        )
+    text = ImVec2(corner.x + 0.9 * look.em, opposite.y - foot + 0.45 * look.em)
+    draw_list.add_text(text, ink(palette.text), sample.name)
+    end = ImVec2(opposite.x - 0.9 * look.em - imgui.calc_text_size(sample.what).x, text.y)
+    draw_list.add_text(end, ink(palette.dim), sample.what)
+    return pressed
+
+
+def _recent(session: Session, look: Look) -> list[Action]:
+    actions: list[Action] = []
+    recent = session.preferences.recent[:MOST_RECENT]
+    if not recent:
+        return actions
+    imgui.dummy(ImVec2(0, 0.8 * look.em))
+    imgui.push_font(look.bold, 0)
+    imgui.text("Recent")
+    imgui.pop_font()
+    for path in recent:
+        clicked, _ = imgui.selectable(
+            f"{icons.ICON_FA_CLOCK_ROTATE_LEFT}  {path.name}###{path}",
+            False,  # noqa: FBT003
+            0,
+            ImVec2(WIDTH * look.em, 0),
+        )
+        imgui.same_line(16 * look.em)
+        small(look, str(path.parent))
+        if clicked:
+            actions.append(do(files.open_file, path))
+    return actions

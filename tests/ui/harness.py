@@ -1,0 +1,153 @@
+"""The whole window without a display: a null platform, an EGL framebuffer, ImGui's test engine."""
+
+from collections.abc import Callable
+from pathlib import Path
+
+from imgui_bundle import ImVec2, hello_imgui, imgui
+from PIL import Image
+
+from app.jobs import Jobs
+from app.render.context import create_context
+from app.render.draw_lists import DrawLists
+from app.session import Preferences, Session
+from app.ui.window import Window
+
+Robot = imgui.test_engine.TestContext
+FRAME = 1 / 60
+MOST_FRAMES = 5000
+
+
+class Clock:
+    """A clock that goes only when it is told to."""
+
+    def __init__(self) -> None:
+        self.now = 0.0
+
+    def __call__(self) -> float:
+        return self.now
+
+
+class Harness:
+    """One window a process: Hello ImGui cannot be set up twice on the null platform."""
+
+    Key = imgui.Key
+
+    def __init__(self, size: tuple[int, int] = (1280, 800)) -> None:
+        self.clock = Clock()
+        self.session = Session(clock=self.clock, jobs=Jobs())
+        self.gl = create_context()
+        self._set_size(size)
+        self._lists: DrawLists | None = None
+        self._tests = 0
+        self.window = Window(self.session, lambda: self.gl)
+        self._params = self._headless_params()
+        hello_imgui.manual_render.setup_from_runner_params(self._params)
+        self._engine = hello_imgui.get_imgui_test_engine()
+        settings = imgui.test_engine.get_io(self._engine)
+        settings.config_run_speed = imgui.test_engine.TestRunSpeed.fast
+        settings.config_log_to_tty = False
+        self.frames(3)
+
+    def resize(self, size: tuple[int, int], scale: float = 1.0) -> None:
+        """Give the window another size in pixels, and its contents another scale."""
+        self._target.color_attachments[0].release()
+        self._target.release()
+        self._set_size(size)
+        self.session.preferences = Preferences(scale=scale, theme=self.session.preferences.theme)
+        self.frames(3)
+
+    def reset(self) -> None:
+        """Go back to the welcome view of a person who opens Lissom for the first time."""
+        fresh = Session(clock=self.clock, jobs=self.session.jobs)
+        self.session.jobs.settle()
+        self.session.jobs.deliver()
+        for name in ("project", "overlays", "preferences", "toasts", "dialog", "quitting"):
+            setattr(self.session, name, getattr(fresh, name))
+        self.frames(3)
+
+    def text_height(self) -> float:
+        """Return the height of a line of text in pixels."""
+        return imgui.get_style().font_size_base * imgui.get_style().font_scale_main
+
+    def frames(self, count: int = 1) -> None:
+        """Draw some frames, with the clock going on."""
+        for _ in range(count):
+            self.clock.now += FRAME
+            # Other tests of this process have contexts of their own.
+            with self.gl:
+                hello_imgui.manual_render.render()
+
+    def settle(self) -> None:
+        """Draw frames until no job is left."""
+        for _ in range(MOST_FRAMES):
+            self.frames()
+            if not self.session.jobs.kinds:
+                break
+            assert self.session.jobs.settle(), self.session.jobs.kinds
+        self.frames(2)
+
+    def run(self, play: Callable[[Robot], None]) -> None:
+        """Let the test engine's robot do something with the window, as a person would."""
+        self._tests += 1
+        failures: list[BaseException] = []
+        test = imgui.test_engine.register_test(self._engine, "lissom", f"{self._tests}")
+
+        def body(robot: Robot) -> None:
+            try:
+                play(robot)
+            except BaseException as error:  # noqa: BLE001 - raised again below
+                failures.append(error)
+                robot.finish(imgui.test_engine.TestStatus.error)
+
+        test.test_func = body
+        imgui.test_engine.queue_test(self._engine, test)
+        for _ in range(MOST_FRAMES):
+            self.frames()
+            if imgui.test_engine.is_test_queue_empty(self._engine):
+                break
+        if failures:
+            raise failures[0]
+        assert test.output.status == imgui.test_engine.TestStatus.success, (
+            test.output.log.get_text()
+        )
+
+    def picture(self) -> Image.Image:
+        """Return what is on the screen."""
+        pixels = self._target.read(components=3, alignment=1)
+        return Image.frombytes("RGB", self._target.size, pixels).transpose(
+            Image.Transpose.FLIP_TOP_BOTTOM
+        )
+
+    def save_picture(self, path: Path) -> None:
+        """Write what is on the screen as a PNG file."""
+        self.picture().save(path)
+
+    def _set_size(self, size: tuple[int, int]) -> None:
+        self._target = self.gl.framebuffer([self.gl.texture(size, 4)])
+
+    def _headless_params(self) -> hello_imgui.RunnerParams:
+        params = self.window.runner_params()
+        params.platform_backend_type = hello_imgui.PlatformBackendType.null
+        params.renderer_backend_type = hello_imgui.RendererBackendType.null
+        params.use_imgui_test_engine = True
+        params.ini_disable = True
+        calls = params.callbacks
+        begin = calls.pre_new_frame
+
+        def begin_frame() -> None:
+            imgui.get_io().display_size = ImVec2(*self._target.size)
+            begin()
+
+        calls.pre_new_frame = begin_frame
+        calls.enqueue_post_init(self._attach)
+        calls.after_swap = self._draw
+        return params
+
+    def _attach(self) -> None:
+        self._lists = DrawLists(self.gl)
+
+    def _draw(self) -> None:
+        data = imgui.get_draw_data()
+        self._target.clear(0.0, 0.0, 0.0, 1.0)
+        if self._lists is not None and data is not None and data.valid:
+            self._lists.draw(self._target, self.window.textures())

@@ -1,0 +1,101 @@
+import threading
+
+import pytest
+
+from app.jobs import Job, Jobs
+
+
+def job(kind, work, results, *, urgent=False):
+    return Job(
+        kind=kind,
+        work=work,
+        done=lambda result: results.append((kind, result)),
+        failed=lambda error: results.append((kind, error)),
+        urgent=urgent,
+    )
+
+
+@pytest.fixture
+def busy():
+    """Jobs whose worker waits at a gate, so that everything put in afterwards queues up."""
+    jobs, gate, begun = Jobs(), threading.Event(), threading.Event()
+
+    def wait():
+        begun.set()
+        gate.wait(10)
+
+    jobs.put(job("gate", wait, []))
+    assert begun.wait(10)
+    yield jobs, gate
+    gate.set()
+    assert jobs.settle()
+
+
+def test_results_come_on_delivery():
+    jobs, results = Jobs(), []
+    jobs.put(job("sum", lambda: 1 + 1, results))
+    assert jobs.settle()
+    assert results == []
+    jobs.deliver()
+    assert results == [("sum", 2)]
+
+
+def test_failure_is_handed_over():
+    jobs, results = Jobs(), []
+    jobs.put(job("division", lambda: 1 / 0, results))
+    assert jobs.settle()
+    jobs.deliver()
+    assert isinstance(results[0][1], ZeroDivisionError)
+
+
+def test_newest_of_a_kind_wins(busy):
+    jobs, gate = busy
+    results = []
+    for number in range(5):
+        jobs.put(job("frame", lambda number=number: number, results))
+    assert jobs.kinds == ("gate", "frame")
+    gate.set()
+    assert jobs.settle()
+    jobs.deliver()
+    assert results == [("frame", 4)]
+
+
+def test_running_job_that_was_replaced_is_stale():
+    jobs, results = Jobs(), []
+    gate, begun = threading.Event(), threading.Event()
+
+    def slow():
+        begun.set()
+        gate.wait(10)
+        return "old"
+
+    jobs.put(job("pose", slow, results))
+    assert begun.wait(10)
+    jobs.put(job("pose", lambda: "new", results))
+    gate.set()
+    assert jobs.settle()
+    jobs.deliver()
+    assert results == [("pose", "new")]
+
+
+def test_dropped_job_never_delivers(busy):
+    jobs, gate = busy
+    results = []
+    jobs.put(job("pose", lambda: 1, results))
+    jobs.drop("pose")
+    gate.set()
+    assert jobs.settle()
+    jobs.deliver()
+    assert results == []
+
+
+def test_urgent_jobs_go_first(busy):
+    jobs, gate = busy
+    results = []
+    jobs.put(job("in-betweens", lambda: 1, results))
+    jobs.put(job("pose", lambda: 2, results, urgent=True))
+    assert jobs.kinds == ("gate", "pose", "in-betweens")
+    gate.set()
+    assert jobs.settle()
+    jobs.deliver()
+    assert [kind for kind, _ in results] == ["pose", "in-betweens"]
