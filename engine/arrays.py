@@ -53,7 +53,7 @@ def as_points(values: npt.ArrayLike, name: str, *, at_least: int = 0) -> Complex
         raise EngineError(f"{name} must be one-dimensional, not of shape {array.shape}.")
     if len(array) < at_least:
         raise EngineError(f"{name} must have at least {at_least} entries, not {len(array)}.")
-    points = readonly(array.astype(np.complex128))
+    points = readonly(array.astype(np.complex128, copy=False))
     if not np.isfinite(points).all():
         bad = int(np.flatnonzero(~np.isfinite(points))[0])
         raise EngineError(f"{name} must be finite, but entry {bad} is {points[bad]}.")

@@ -125,8 +125,11 @@ def _held_only_by(old: Document, new: Document) -> int:
         mesh = old.domain.mesh
         arrays = (old.domain.outline, old.domain.cage, mesh.vertices, mesh.triangles)
         held += sum(array.nbytes for array in arrays)
-    shared = {id(key.pose) for key in new.keys}
+    poses = {id(key.pose) for key in new.keys}
+    maps = {id(key.pose.phi) for key in new.keys}
     for key in old.keys:
-        if id(key.pose) not in shared:
-            held += POSE_BYTES + key.pose.phi.nbytes + key.pose.psi.nbytes
+        if id(key.pose) not in poses:
+            held += POSE_BYTES
+        if id(key.pose.phi) not in maps:
+            held += key.pose.phi.nbytes + key.pose.psi.nbytes
     return held

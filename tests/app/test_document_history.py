@@ -1,0 +1,197 @@
+import numpy as np
+import pytest
+from documents import CENTRE, differences, disc_document, full_document, random_command
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from app.document import handle_commands, settings_commands
+from app.document.commands import Command
+from app.document.history import History
+from app.errors import LissomError
+
+seeds = st.lists(st.integers(0, 2**32 - 1), max_size=25)
+
+
+def set_fps(fps):
+    return settings_commands.set_fps(fps)
+
+
+def do_at_random(history, seed):
+    """Run a random command; tell whether it was possible and changed something."""
+    before = history.document
+    command = random_command(np.random.default_rng(seed), before)
+    try:
+        history.do(command)
+    except LissomError:
+        assert history.document is before
+    return history.document is not before
+
+
+@settings(max_examples=60)
+@given(seeds, st.booleans())
+def test_undo_and_redo_give_back_the_very_same_documents(seeds, is_full):
+    first = full_document() if is_full else disc_document()
+    history = History(first, saved=True)
+    documents = [first] + [history.document for seed in seeds if do_at_random(history, seed)]
+    for document in reversed(documents):
+        assert history.document is document
+        history.undo()
+    assert history.document is first
+    assert history.undo_label is None
+    for document in documents:
+        assert history.document is document
+        history.redo()
+    assert history.redo_label is None
+
+
+@settings(max_examples=40)
+@given(seeds)
+def test_commands_leave_the_document_before_them_as_it_was(seeds):
+    history = History(disc_document(), saved=True)
+    for seed in seeds:
+        before = history.document
+        copies = [key.pose.phi.tobytes() for key in before.keys]
+        do_at_random(history, seed)
+        assert [key.pose.phi.tobytes() for key in before.keys] == copies
+    while history.undo_label:
+        history.undo()
+    assert not differences(history.document, disc_document())
+
+
+def test_a_command_after_undo_forgets_what_was_undone():
+    history = History(disc_document(), saved=False)
+    for fps in (10, 11, 12):
+        history.do(set_fps(fps))
+    history.undo()
+    history.undo()
+    assert (history.undo_label, history.redo_label) == ("Set frames per second",) * 2
+    history.do(handle_commands.add_handle(CENTRE))
+    assert (history.undo_label, history.redo_label) == ("Add handle", None)
+    assert history.document.fps == 10
+    history.undo()
+    history.undo()
+    history.undo()
+    assert history.document.fps == 24
+
+
+def test_a_gesture_is_one_step():
+    history = History(disc_document(), saved=False)
+    drag = object()
+    history.do(set_fps(10))
+    for fps in (11, 12, 13):
+        history.do(set_fps(fps), gesture=drag)
+    history.do(set_fps(14), gesture=object())
+    history.undo()
+    assert history.document.fps == 13
+    history.undo()
+    assert history.document.fps == 10
+    history.redo()
+    assert history.document.fps == 13
+
+
+def test_anything_between_ends_a_gesture():
+    history = History(disc_document(), saved=False)
+    drag = object()
+    for fps in (10, 11):
+        history.do(set_fps(fps), gesture=drag)
+    history.undo()
+    history.redo()
+    history.do(set_fps(12), gesture=drag)
+    history.do(set_fps(13))
+    history.do(set_fps(14), gesture=drag)
+    seen = []
+    while history.undo_label:
+        seen.append(history.document.fps)
+        history.undo()
+    assert seen == [14, 13, 12, 11]
+
+
+def test_a_command_that_changes_nothing_or_fails_is_no_step():
+    history = History(disc_document(), saved=True)
+    history.do(set_fps(24))
+    with pytest.raises(LissomError):
+        history.do(set_fps(-1))
+    assert history.undo_label is None
+    history.do(set_fps(10))
+    history.undo()
+    history.do(set_fps(24))
+    with pytest.raises(LissomError):
+        history.do(set_fps(-1))
+    assert history.redo_label == "Set frames per second"
+    assert history.is_saved
+
+
+def test_what_is_saved_follows_undo():
+    history = History(disc_document(), saved=False)
+    assert not history.is_saved
+    history.do(set_fps(10))
+    history.mark_saved(history.document)
+    assert history.is_saved
+    history.do(set_fps(11))
+    assert not history.is_saved
+    history.undo()
+    assert history.is_saved
+    # A save that ends while the person has gone on.
+    older = history.document
+    history.do(set_fps(12))
+    history.mark_saved(older)
+    assert not history.is_saved
+    history.do(set_fps(10))
+    assert not history.is_saved
+
+
+def test_memory_is_bounded_by_forgetting_the_oldest_steps():
+    history = History(disc_document(), saved=False, memory=20_000)
+    for fps in range(30, 130):
+        history.do(set_fps(fps))
+    newest, steps = history.document, 0
+    while history.undo_label:
+        history.undo()
+        steps += 1
+    assert steps == 10
+    assert history.document.fps == 129 - steps
+    for _ in range(steps):
+        history.redo()
+    assert history.document is newest
+
+
+def test_one_step_is_kept_however_large():
+    history = History(disc_document(), saved=False, memory=0)
+    for fps in (30, 31, 32):
+        history.do(set_fps(fps))
+    history.undo()
+    assert history.document.fps == 31
+    assert history.undo_label is None
+
+
+def test_arrays_that_are_shared_are_counted_once():
+    history = History(full_document(), saved=False, memory=4_000_000)
+    domain = history.document.domain
+    large = type(domain)(
+        outline=domain.outline,
+        cage=domain.cage,
+        mesh=type(domain.mesh)(
+            vertices=np.resize(domain.mesh.vertices, 100_000), triangles=domain.mesh.triangles
+        ),
+    )
+    poses = [key.pose for key in history.document.keys]
+    meshing = history.document.meshing
+    history.do(settings_commands.replace_domain(large, meshing, poses))
+    for fps in range(30, 430):
+        history.do(set_fps(fps))
+    history.do(settings_commands.replace_domain(domain, meshing, poses))
+    # 1.6 MB of one mesh, and 400 times next to nothing.
+    for _ in range(402):
+        history.undo()
+    assert history.undo_label is None
+    assert history.document.domain is domain
+
+
+def test_ten_thousand_steps_can_be_undone():
+    first = disc_document()
+    history = History(first, saved=False)
+    for step in range(10_000):
+        history.do(Command("Step", set_fps(25 + step % 7).change))
+    while history.undo_label:
+        history.undo()
+    assert history.document is first
