@@ -1,0 +1,91 @@
+"""Animated PNG: the data of ordinary PNG files, each with a frame control chunk before it.
+
+Source: https://www.w3.org/TR/png-3/#apng-frame-based-animation
+"""
+
+import struct
+import zlib
+from collections.abc import Iterator
+from fractions import Fraction
+from typing import IO, Final
+
+from app.export.plan import ExportPlan
+from app.export.png import encode_png
+from engine.arrays import Bytes
+
+_SIGNATURE: Final = b"\x89PNG\r\n\x1a\n"
+# A frame lasts a fraction of two numbers of 16 bits, in seconds; with some room for rounding.
+_LARGEST: Final = 65_000
+# Every frame replaces all of the one before it, transparent parts included.
+_DISPOSE_NONE, _BLEND_SOURCE = 0, 0
+
+
+class ApngWriter:
+    """Writes an animated PNG file frame by frame.
+
+    Parameters
+    ----------
+    file : binary file
+    plan : ExportPlan
+    """
+
+    def __init__(self, file: IO[bytes], plan: ExportPlan) -> None:
+        self._file = file
+        self._plan = plan
+        self._chunks = 0  # of those that are numbered
+        self._started = False
+
+    def encode(self, index: int, frame: Bytes) -> bytes:  # noqa: ARG002 - all frames are alike
+        """Return a PNG file of the frame."""
+        return encode_png(frame)
+
+    def add(self, encoded: bytes) -> None:
+        """Take the picture data out of a PNG file and into the animation."""
+        chunks = list(_chunks(encoded))
+        is_first = not self._started
+        if is_first:
+            self._start(next(data for kind, data in chunks if kind == b"IHDR"))
+        self._write(b"fcTL", self._frame_control())
+        for kind, data in chunks:
+            if kind == b"IDAT":
+                # Readers that know no animation show what stands in ordinary data chunks.
+                self._write(*((b"IDAT", data) if is_first else (b"fdAT", self._number() + data)))
+
+    def finish(self) -> None:
+        """Write the closing chunk."""
+        self._write(b"IEND", b"")
+
+    def _start(self, header: bytes) -> None:
+        self._started = True
+        self._file.write(_SIGNATURE)
+        self._write(b"IHDR", header)
+        plays = 0 if self._plan.loop else 1  # 0 goes on for ever
+        self._write(b"acTL", struct.pack(">II", len(self._plan.times), plays))
+
+    def _frame_control(self) -> bytes:
+        seconds = min(1 / Fraction(self._plan.fps), Fraction(_LARGEST))
+        # 24 stays 1/24 of a second, 23.976 becomes 125/2997.
+        seconds = seconds.limit_denominator(int(_LARGEST / max(Fraction(1), seconds)))
+        place = (*self._plan.view.size, 0, 0)
+        delay = (seconds.numerator, seconds.denominator)
+        return self._number() + struct.pack(
+            ">IIIIHHBB", *place, *delay, _DISPOSE_NONE, _BLEND_SOURCE
+        )
+
+    def _number(self) -> bytes:
+        number = struct.pack(">I", self._chunks)
+        self._chunks += 1
+        return number
+
+    def _write(self, kind: bytes, data: bytes) -> None:
+        check = zlib.crc32(kind + data)
+        self._file.write(struct.pack(">I", len(data)) + kind + data + struct.pack(">I", check))
+
+
+def _chunks(png: bytes) -> Iterator[tuple[bytes, bytes]]:
+    """Yield the kind and the data of each chunk of a PNG file."""
+    start = len(_SIGNATURE)
+    while start < len(png):
+        (length,) = struct.unpack_from(">I", png, start)
+        yield png[start + 4 : start + 8], png[start + 8 : start + 8 + length]
+        start += length + 12

@@ -1,0 +1,27 @@
+"""What turns the frames of an export into files."""
+
+from typing import Protocol
+
+from engine.arrays import Bytes
+
+
+class FrameWriter(Protocol):
+    """One format's way to files.
+
+    `encode` is called once for each frame, on several threads and out of order; all else on one
+    thread, in the order of the frames.
+    """
+
+    def encode(self, index: int, frame: Bytes) -> bytes:
+        """Do the long part of the work for a frame, uint8 (h, w, 4) with straight alpha."""
+
+    def add(self, encoded: bytes) -> None:
+        """Put the next frame, as `encode` returned it, where it belongs."""
+
+    def finish(self) -> None:
+        """Write what comes after the last frame."""
+
+
+def duration(index: int, fps: float, *, per_second: int) -> int:
+    """Return how many ticks of a clock a frame lasts, so that the sum never drifts."""
+    return round((index + 1) * per_second / fps) - round(index * per_second / fps)

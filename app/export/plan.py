@@ -1,0 +1,232 @@
+"""What an export will make, settled and checked before the first frame is drawn."""
+
+import importlib.util
+import re
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Final, Protocol
+
+import numpy as np
+
+from app.document.model import Document
+from app.document.settings import ExportFormat, ExportSettings, FrameRange
+from app.document.timeline import exported_frames, frame_times
+from app.errors import LissomError
+from app.export.framing import Box, box_around, frame_view, shown_box
+from app.files import check_writable
+from app.render.view import View
+from engine.arrays import Complexes
+
+# The ends of the file names that each format goes by; PNG frames go to a folder.
+SUFFIXES: Final[dict[ExportFormat, tuple[str, ...]]] = {
+    "png": (),
+    "apng": (".apng", ".png"),
+    "gif": (".gif",),
+    "webp": (".webp",),
+    "spritesheet": (".png",),
+    "mp4": (".mp4",),
+}
+VIDEO_REMEDY: Final = "pip install 'lissom[video]'"
+_FRAME_NAME: Final = re.compile(r"frame_\d{4,}\.png")
+# Less than this, in pixels, is seen by nobody.
+_OUTSIDE: Final = 1.0
+
+
+class Motion(Protocol):
+    """Where the vertices of a document's mesh are at any time."""
+
+    def positions(self, frame: float) -> Complexes:
+        """Return the vertices, complex128 (v,), at a frame, whole or between two."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ExportRequest:
+    """What the person asks for.
+
+    Parameters
+    ----------
+    out : Path
+        A folder for PNG frames, a file for every other format.
+    settings : ExportSettings
+        The document's own, or others for this once.
+    fps : float, optional
+        Pictures per second; the document's rate by default.
+    """
+
+    out: Path
+    settings: ExportSettings
+    fps: float | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ExportPlan:
+    """What an export makes.
+
+    Parameters
+    ----------
+    out : Path
+    format : str
+        One of `EXPORT_FORMATS`.
+    view : View
+        What every frame shows, and its size.
+    background : tuple of 3 ints, optional
+        Red, green and blue; None leaves transparent what is so.
+    times : tuple of float
+        The frame of the timeline, whole or between two, that each picture shows.
+    first : int
+        Number of the first picture; the next ones count on from there, whatever the rate.
+    fps : float
+        Pictures per second.
+    loop : bool
+        Whether an animation plays for ever, or once.
+    notices : tuple of str
+        What the person should know about it.
+    """
+
+    out: Path
+    format: ExportFormat
+    view: View
+    background: tuple[int, int, int] | None
+    times: tuple[float, ...]
+    first: int
+    fps: float
+    loop: bool
+    notices: tuple[str, ...] = ()
+
+    def frame_name(self, index: int) -> str:
+        """Return the file name of a picture of a PNG sequence; all have equally many digits."""
+        digits = max(4, len(str(self.first + len(self.times) - 1)))
+        return f"frame_{self.first + index:0{digits}d}.png"
+
+
+def check_request(document: Document, request: ExportRequest) -> None:
+    """Refuse what cannot work, before anything long begins.
+
+    Raises
+    ------
+    LissomError
+        If the output path does not suit the format, the frames are not the animation's, or the
+        format cannot be written.
+    """
+    settings = request.settings
+    frames = _frames(document, settings)
+    if frames.first not in document.frames or frames.last not in document.frames:
+        raise LissomError(
+            f"frames {frames.first} to {frames.last} are not all in the animation, which has "
+            f"frames {document.frames.first} to {document.frames.last}"
+        )
+    frame_times(document, frames, request.fps)
+    if settings.format == "png":
+        _check_folder(request.out)
+    else:
+        _check_file(request.out, settings.format)
+    if settings.format == "mp4":
+        if settings.background == "transparent":
+            raise LissomError(
+                "mp4 has no transparency: choose a background colour such as #ffffff, or the "
+                "format apng or webp"
+            )
+        if importlib.util.find_spec("av") is None:
+            raise LissomError(f"mp4 needs PyAV, which is not installed: {VIDEO_REMEDY}")
+
+
+def plan_export(document: Document, request: ExportRequest, motion: Motion) -> ExportPlan:
+    """Settle an export whose request has passed `check_request`.
+
+    Parameters
+    ----------
+    document : Document
+    request : ExportRequest
+    motion : Motion
+        The document's.
+
+    Raises
+    ------
+    LissomError
+        If the motion fails at some frame.
+    """
+    settings = request.settings
+    frames = _frames(document, settings)
+    times = tuple(frame_times(document, frames, request.fps))
+    reach = _reach(motion, times)
+    plan = ExportPlan(
+        out=request.out,
+        format=settings.format,
+        view=frame_view(settings, document.picture.size, reach),
+        background=_colour(settings.background),
+        times=times,
+        first=frames.first,
+        fps=document.fps if request.fps is None else request.fps,
+        loop=document.loop,
+    )
+    # The mesh has a margin around the drawing, which may lie off the canvas from the start.
+    shown = shown_box(plan.view).joined(box_around(document.domain.mesh.vertices))
+    return replace(plan, notices=(*_left_out(shown, reach), *_strange_frames(plan)))
+
+
+def _frames(document: Document, settings: ExportSettings) -> FrameRange:
+    return settings.frames or exported_frames(document)
+
+
+def _reach(motion: Motion, times: tuple[float, ...]) -> Box:
+    """Return the box around all vertices at all times."""
+    corners: list[complex] = []
+    for time in times:
+        corners += box_around(motion.positions(time))
+        if not np.isfinite(corners[-2:]).all():
+            raise LissomError(f"frame {time:g} cannot be drawn: its points are not all finite")
+    return box_around(np.array(corners))
+
+
+def _check_folder(out: Path) -> None:
+    if out.is_dir():
+        return
+    if out.exists():
+        raise LissomError(f"cannot write frames to {out}: it is a file; name a folder")
+    if out.suffix.lower() in _all_suffixes():
+        raise LissomError(
+            f"PNG frames go to a folder, but {out} is named like a file; name a folder, or choose "
+            "the format of the name"
+        )
+    if not out.parent.is_dir():
+        raise LissomError(f"cannot write {out}: the folder {out.parent} does not exist")
+
+
+def _check_file(out: Path, format_: ExportFormat) -> None:
+    check_writable(out)
+    suffixes = SUFFIXES[format_]
+    if out.suffix.lower() in _all_suffixes().difference(suffixes):
+        raise LissomError(
+            f"{out} is not named like {format_}; let the name end in {' or '.join(suffixes)}"
+        )
+
+
+def _all_suffixes() -> set[str]:
+    return {suffix for suffixes in SUFFIXES.values() for suffix in suffixes}
+
+
+def _colour(background: str) -> tuple[int, int, int] | None:
+    if background == "transparent":
+        return None
+    red, green, blue = bytes.fromhex(background[1:])
+    return red, green, blue
+
+
+def _left_out(shown: Box, reach: Box) -> list[str]:
+    if shown.contains(reach, slack=_OUTSIDE):
+        return []
+    return ["the motion leaves the canvas; the framing 'fit' shows all of it"]
+
+
+def _strange_frames(plan: ExportPlan) -> list[str]:
+    """Tell of frames in the folder that this export will not write again."""
+    if plan.format != "png" or not plan.out.is_dir():
+        return []
+    names = {path.name for path in plan.out.iterdir() if _FRAME_NAME.fullmatch(path.name)}
+    others = sorted(names.difference(plan.frame_name(index) for index in range(len(plan.times))))
+    if not others:
+        return []
+    which = others[0] if len(others) == 1 else f"{others[0]} … {others[-1]}"
+    return [
+        f"{plan.out} holds {len(others)} frames of another export ({which}); they stay as they are"
+    ]

@@ -1,0 +1,69 @@
+"""All frames side by side in one PNG, row by row."""
+
+import math
+from typing import IO, Final
+
+import numpy as np
+from PIL import Image
+
+from app.errors import LissomError
+from app.export.plan import ExportPlan
+from app.export.png import COMPRESSION
+from engine.arrays import Bytes
+
+LARGEST: Final = 16_384  # pixels each way: what graphics cards hold, and a gigabyte at most
+
+
+class SpritesheetWriter:
+    """Collects the frames and writes the sheet in the end.
+
+    Parameters
+    ----------
+    file : binary file
+    plan : ExportPlan
+
+    Raises
+    ------
+    LissomError
+        If the sheet would be too large.
+    """
+
+    def __init__(self, file: IO[bytes], plan: ExportPlan) -> None:
+        self._file = file
+        self._width, self._height = plan.view.size
+        self._columns, rows = sheet_grid(plan)
+        self._sheet = np.zeros((rows * self._height, self._columns * self._width, 4), np.uint8)
+
+    def encode(self, index: int, frame: Bytes) -> bytes:
+        """Put the frame in its place."""
+        row, column = divmod(index, self._columns)
+        top, left = row * self._height, column * self._width
+        self._sheet[top : top + self._height, left : left + self._width] = frame
+        return b""
+
+    def add(self, encoded: bytes) -> None:
+        """Do nothing: the frame is in its place already."""
+
+    def finish(self) -> None:
+        """Write the sheet."""
+        Image.fromarray(self._sheet).save(self._file, "PNG", compress_level=COMPRESSION)
+
+
+def sheet_grid(plan: ExportPlan) -> tuple[int, int]:
+    """Return the columns and rows of the sheet that is nearest to a square.
+
+    Raises
+    ------
+    LissomError
+        If it would be too large.
+    """
+    (width, height), count = plan.view.size, len(plan.times)
+    most = min(LARGEST // width, count)
+    columns = max(1, min(most, math.ceil(math.sqrt(count * height / width))))
+    rows = math.ceil(count / columns)
+    if max(columns * width, rows * height) > LARGEST:
+        raise LissomError(
+            f"{count} frames of {width} × {height} pixels do not fit on a sheet of {LARGEST:,} × "
+            f"{LARGEST:,}; choose fewer frames or a smaller size"
+        )
+    return columns, rows

@@ -1,0 +1,280 @@
+import itertools
+import threading
+from fractions import Fraction
+from pathlib import Path
+
+import av
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose, assert_array_equal
+from PIL import Image, ImageSequence
+
+from app.errors import LissomError
+from app.export.plan import ExportPlan
+from app.export.png import PngSequence
+from app.export.run import AHEAD, export
+from app.export.spritesheet import sheet_grid
+from app.render.view import canvas_view
+from engine.arrays import Bytes
+
+SIZE = (37, 22)
+FRAMES = 7
+
+
+def plan_for(out: Path, format_: str, **changes: object) -> ExportPlan:
+    values: dict[str, object] = {
+        "out": out,
+        "format": format_,
+        "view": canvas_view(SIZE),
+        "background": None,
+        "times": tuple(float(number) for number in range(FRAMES)),
+        "first": 0,
+        "fps": 24.0,
+        "loop": True,
+    }
+    return ExportPlan(**(values | changes))  # type: ignore[arg-type]
+
+
+def draw(time: float, size: tuple[int, int] = SIZE) -> Bytes:
+    """A disc with a soft edge and a gradient that moves to the right."""
+    y, x = np.mgrid[: size[1], : size[0]]
+    edge = 8.5 - np.hypot(x - 8 - 2 * time, y - 10)
+    frame = np.zeros((size[1], size[0], 4), dtype=np.uint8)
+    frame[..., 3] = np.clip(128 + 60 * edge, 0, 255)
+    frame[..., 0], frame[..., 1], frame[..., 2] = 40 + 5 * x, 200 - 6 * y, 90
+    frame[frame[..., 3] == 0] = 0
+    return frame
+
+
+def run(plan: ExportPlan, drawing=draw) -> None:
+    assert list(export(plan, drawing)) == list(range(1, len(plan.times) + 1))
+
+
+def rgba_frames(path: Path) -> list[Bytes]:
+    with Image.open(path) as image:
+        return [np.asarray(frame.convert("RGBA")) for frame in ImageSequence.Iterator(image)]
+
+
+def test_png_frames_are_exact_and_numbered_from_the_first_ones_own_number(tmp_path):
+    plan = plan_for(tmp_path / "frames", "png", first=9998, times=(9998.0, 9999.0, 10000.0))
+    run(plan, lambda time: draw(time - 9998))
+    names = ["frame_09998.png", "frame_09999.png", "frame_10000.png"]
+    assert sorted(path.name for path in plan.out.iterdir()) == names
+    for index, name in enumerate(names):
+        assert_array_equal(rgba_frames(plan.out / name)[0], draw(index))
+    run(plan_for(tmp_path / "frames", "png", first=12, times=(12.0,)))
+    assert (plan.out / "frame_0012.png").is_file()
+
+
+@pytest.mark.parametrize("format_", ["apng", "webp"])
+@pytest.mark.parametrize("loop", [True, False])
+def test_animations_hold_every_frame_exactly(tmp_path, format_, loop):
+    plan = plan_for(tmp_path / f"animation.{format_}", format_, loop=loop)
+    run(plan)
+    frames = rgba_frames(plan.out)
+    assert len(frames) == FRAMES
+    for index, frame in enumerate(frames):
+        assert_array_equal(frame[..., 3], draw(index)[..., 3])
+        seen = frame[..., 3] > 0
+        assert_array_equal(frame[seen], draw(index)[seen])
+    with Image.open(plan.out) as image:
+        assert image.info["loop"] == (0 if loop else 1)
+
+
+def test_durations_add_up_without_drift(tmp_path):
+    for format_, tolerance in (("apng", 1e-9), ("webp", 0.5), ("gif", 5.0)):
+        plan = plan_for(tmp_path / f"animation.{format_}", format_, fps=23.976)
+        run(plan)
+        lasts = []
+        with Image.open(plan.out) as image:
+            for frame in ImageSequence.Iterator(image):
+                frame.load()
+                lasts.append(frame.info["duration"])
+        assert_allclose(sum(lasts), 1000 * FRAMES / 23.976, rtol=0, atol=tolerance)
+        assert_allclose(lasts, 1000 / 23.976, rtol=0, atol=2 * tolerance)
+
+
+def test_a_still_apng_is_a_png_that_every_reader_shows(tmp_path):
+    plan = plan_for(tmp_path / "still.png", "apng", times=(3.0,))
+    run(plan)
+    assert_array_equal(rgba_frames(plan.out)[0], draw(3))
+
+
+def test_extreme_rates_fit_into_the_formats(tmp_path):
+    for fps in (1e-6, 50.0):
+        for format_ in ("apng", "webp", "gif"):
+            plan = plan_for(tmp_path / f"animation.{format_}", format_, fps=fps, times=(0.0, 1.0))
+            run(plan)
+            assert len(rgba_frames(plan.out)) == 2
+
+
+def test_gif_has_hard_edges_in_the_drawings_own_colours(tmp_path):
+    plan = plan_for(tmp_path / "animation.gif", "gif")
+    run(plan)
+    frames = rgba_frames(plan.out)
+    assert len(frames) == FRAMES
+    for index, frame in enumerate(frames):
+        drawn = draw(index)
+        assert_array_equal(frame[..., 3], np.where(drawn[..., 3] >= 128, 255, 0))
+        seen = frame[..., 3] > 0
+        assert np.abs(frame[seen].astype(int) - drawn[seen])[:, :3].max() <= 6
+    with Image.open(plan.out) as image:
+        assert image.info["loop"] == 0
+
+
+def test_gif_frames_may_be_empty_or_have_few_colours(tmp_path):
+    empty, plain = np.zeros((22, 37, 4), dtype=np.uint8), np.full((22, 37, 4), 255, dtype=np.uint8)
+    plan = plan_for(tmp_path / "animation.gif", "gif", times=(0.0, 1.0, 2.0), loop=False)
+    run(plan, lambda time: plain if time == 1 else empty)
+    frames = rgba_frames(plan.out)
+    assert_array_equal([frame[..., 3].max() for frame in frames], [0, 255, 0])
+    assert frames[1].min() == 255
+    with Image.open(plan.out) as image:
+        assert "loop" not in image.info
+
+
+def test_gif_refuses_rates_that_programs_would_slow_down(tmp_path):
+    with pytest.raises(LissomError, match="50 pictures a second"):
+        run(plan_for(tmp_path / "animation.gif", "gif", fps=60.0))
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_spritesheet_is_a_grid_of_the_frames(tmp_path):
+    plan = plan_for(tmp_path / "sheet.png", "spritesheet")
+    columns, rows = sheet_grid(plan)
+    assert columns * rows >= FRAMES > columns * (rows - 1)
+    run(plan)
+    (sheet,) = rgba_frames(plan.out)
+    assert sheet.shape == (rows * 22, columns * 37, 4)
+    for index in range(FRAMES):
+        top, left = 22 * (index // columns), 37 * (index % columns)
+        assert_array_equal(sheet[top : top + 22, left : left + 37], draw(index))
+    assert not sheet[-22:, 37 * (FRAMES % columns or columns) :].any()
+
+
+@pytest.mark.parametrize(
+    ("format_", "size", "count"),
+    [("spritesheet", (4000, 4000), 17), ("spritesheet", (16_385, 10), 1), ("webp", (16_384, 4), 1)],
+)
+def test_frames_too_large_for_a_format_are_refused(tmp_path, format_, size, count):
+    times = tuple(float(number) for number in range(count))
+    plan = plan_for(tmp_path / "out", format_, view=canvas_view(size), times=times)
+    with pytest.raises(LissomError, match="smaller size"):
+        run(plan)
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("count", [1, 2, 16])
+def test_sheets_use_what_fits(tmp_path, count):
+    times = tuple(float(number) for number in range(count))
+    plan = plan_for(tmp_path / "out", "spritesheet", view=canvas_view((4096, 4096)), times=times)
+    assert sheet_grid(plan) == {1: (1, 1), 2: (2, 1), 16: (4, 4)}[count]
+
+
+def test_video_has_the_colours_the_rate_and_even_sides(tmp_path):
+    size = (65, 37)
+
+    def on_blue(time: float) -> Bytes:
+        frame = np.empty((37, 65, 4), dtype=np.uint8)
+        frame[:] = (20, 60, 200, 255)
+        frame[8:24, 8 + 2 * int(time) : 24 + 2 * int(time)] = (220, 180, 40, 255)
+        return frame
+
+    plan = plan_for(
+        tmp_path / "video.mp4", "mp4", view=canvas_view(size), background=(20, 60, 200), fps=23.976
+    )
+    run(plan, on_blue)
+    with av.open(plan.out) as video:
+        stream = video.streams.video[0]
+        assert stream.average_rate == Fraction(2997, 125)
+        assert (stream.codec_context.colorspace, stream.codec_context.color_range) == (1, 1)
+        frames = [frame.to_ndarray(format="rgb24") for frame in video.decode(video=0)]
+    assert len(frames) == FRAMES
+    for index, frame in enumerate(frames):
+        assert frame.shape == (38, 66, 3)
+        inner = frame[10:22, 10 + 2 * index : 22 + 2 * index].reshape(-1, 3)
+        assert_allclose(inner.mean(axis=0), (220, 180, 40), rtol=0, atol=4)
+        assert_allclose(frame[30:, :].reshape(-1, 3).mean(axis=0), (20, 60, 200), rtol=0, atol=4)
+
+
+@pytest.mark.parametrize("format_", ["png", "apng", "gif", "webp", "spritesheet", "mp4"])
+def test_the_same_export_twice_is_the_same_bytes(tmp_path, format_):
+    outputs = [tmp_path / "first", tmp_path / "second"]
+    for out in outputs:
+        run(plan_for(out, format_, background=(1, 2, 3)))
+    first, second = (
+        {path.name: path.read_bytes() for path in out.iterdir()}
+        if out.is_dir()
+        else out.read_bytes()
+        for out in outputs
+    )
+    assert first == second
+
+
+@pytest.mark.parametrize("format_", ["png", "apng", "gif", "webp", "spritesheet", "mp4"])
+@pytest.mark.parametrize("ending", ["failed", "closed", "interrupted"])
+def test_an_export_that_ends_early_leaves_whole_frames_only(tmp_path, format_, ending):
+    def failing(time: float) -> Bytes:
+        if time == 5 and ending == "failed":
+            raise LissomError("frame 5 cannot be drawn")
+        if time == 5 and ending == "interrupted":
+            raise KeyboardInterrupt
+        return draw(time)
+
+    plan = plan_for(tmp_path / "out", format_, background=(1, 2, 3))
+    steps = export(plan, failing)
+    if ending == "closed":
+        next(itertools.islice(steps, 4, None))
+        steps.close()
+    else:
+        with pytest.raises(LissomError if ending == "failed" else KeyboardInterrupt):
+            list(steps)
+    if format_ == "png":
+        names = {path.name for path in plan.out.iterdir()}
+        assert names <= {plan.frame_name(index) for index in range(5)}
+        assert plan.frame_name(0) in names
+        for name in names:
+            assert_array_equal(rgba_frames(plan.out / name)[0], draw(int(name[6:10])))
+    else:
+        assert list(tmp_path.iterdir()) == []
+
+
+def test_a_file_of_before_survives_an_export_that_fails(tmp_path):
+    plan = plan_for(tmp_path / "animation.gif", "gif")
+    plan.out.write_bytes(b"before")
+
+    def failing(time: float) -> Bytes:
+        raise LissomError(f"frame {time} cannot be drawn")
+
+    with pytest.raises(LissomError):
+        list(export(plan, failing))
+    assert plan.out.read_bytes() == b"before"
+
+
+def test_a_frame_that_cannot_be_written_is_an_error(tmp_path):
+    plan = plan_for(tmp_path / "frames", "png")
+    (plan.out / plan.frame_name(2)).mkdir(parents=True)
+    with pytest.raises(LissomError, match="frame_0002"):
+        run(plan)
+
+
+def test_drawing_waits_for_the_encoders(tmp_path, monkeypatch):
+    drawn: list[float] = []
+    others_are_done = threading.Event()
+    drawn_meanwhile = []
+
+    def encode(_self: PngSequence, index: int, _frame: Bytes) -> bytes:
+        if index == 0:
+            others_are_done.wait()
+            drawn_meanwhile.append(len(drawn))
+        if index == AHEAD:
+            others_are_done.set()
+        return b""
+
+    def counted(time: float) -> Bytes:
+        drawn.append(time)
+        return draw(time)
+
+    monkeypatch.setattr(PngSequence, "encode", encode)
+    run(plan_for(tmp_path / "frames", "png", times=tuple(map(float, range(200)))), counted)
+    assert drawn_meanwhile == [AHEAD + 1]
