@@ -1,28 +1,47 @@
-// The source picture at a place in it: exact where the sample lies on a pixel's centre.
+// The source picture at a place in it: exact where the sample lies on a pixel's centre, smooth where
+// it is enlarged, and without aliasing or needless blur where it is squeezed along one axis.
 
-uniform sampler2D picture;   // premultiplied; transparent outside
+uniform sampler2D picture;   // premultiplied, mip-mapped, transparent outside
 
 // Rasterisation moves vertices by up to 1/512 pixel, float32 by as much again on the largest
 // pictures. Without this zone around the centres, in texels, a frame at 1:1 would mix in a trace
 // of its neighbours, and at a soft edge that trace is many levels of a faint pixel's colour.
 const float EXACT_ZONE = 1.0 / 64.0;
 
+// Our own anisotropic filter: Mesa's drivers fray the edges with theirs, even enlarged ones.
+const float MOST_TAPS = 8.0;
+
 vec4 picture_at(vec2 uv) {
     ivec2 size = textureSize(picture, 0);
-    vec2 across = dFdx(uv);
-    vec2 along = dFdy(uv);
-    vec2 texel = uv * vec2(size) - 0.5;
-    vec2 centre = round(texel);
-    vec2 offset = texel - centre;
+    vec2 texels = vec2(size);
+    vec2 place = uv * texels - 0.5;
+    vec2 step_x = dFdx(place);
+    vec2 step_y = dFdy(place);
+    bool x_is_longer = dot(step_x, step_x) > dot(step_y, step_y);
+    vec2 along = x_is_longer ? step_x : step_y;
+    float longest = length(along);
+
+    vec2 centre = round(place);
+    vec2 offset = place - centre;
     // The rest of the way to the neighbour is stretched, so that there is no seam.
     offset = sign(offset) * max(abs(offset) - EXACT_ZONE, 0.0) / (1.0 - 2.0 * EXACT_ZONE);
-    vec2 step_x = across * vec2(size);
-    vec2 step_y = along * vec2(size);
-    bool shrunk = max(dot(step_x, step_x), dot(step_y, step_y)) > 1.5;
-    if (offset == vec2(0.0) && !shrunk) {
+    if (offset == vec2(0.0) && longest < 1.2) {
         ivec2 pixel = ivec2(centre);
         bool inside = all(greaterThanEqual(pixel, ivec2(0))) && all(lessThan(pixel, size));
         return inside ? texelFetch(picture, pixel, 0) : vec4(0.0);
     }
-    return textureGrad(picture, (centre + offset + 0.5) / vec2(size), across, along);
+
+    // Samples as wide as the pixel's footprint is narrow, side by side along its length.
+    float area = abs(step_x.x * step_y.y - step_x.y * step_y.x);
+    float narrow = max(area / max(longest, 1e-6), 1.0);
+    // Whole numbers: compared as floats, garbage in lanes that draw nothing holds up software OpenGL.
+    int taps = max(int(min(longest / narrow + 0.75, MOST_TAPS)), 1);
+    float level = log2(max(longest / float(taps), 1.0));
+    vec2 stride = along / float(taps) / texels;
+    vec2 first = (centre + offset + 0.5) / texels - 0.5 * float(taps - 1) * stride;
+    vec4 sum = vec4(0.0);
+    for (int k = 0; k < taps; ++k) {
+        sum += textureLod(picture, first + float(k) * stride, level);
+    }
+    return sum / float(taps);
 }

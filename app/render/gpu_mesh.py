@@ -141,6 +141,8 @@ class Pose:
         binding.render(moderngl.TRIANGLES)
 
     def _bind(self, program: moderngl.Program) -> moderngl.VertexArray:
+        if "heat" in program and self._heat is None:
+            raise ValueError("a heat map is to be drawn of a pose that was given no values")
         available = [*self._source.attributes(), (self._mesh.uv, "2f", "uv")]
         if self._heat is not None:
             available.append((self._heat, "1f", "heat"))

@@ -16,7 +16,6 @@ from engine.arrays import Bytes
 _LEVELS = np.arange(256) / 255
 _PRODUCTS: Final = np.outer(_LEVELS, _LEVELS).astype(np.float16).ravel()
 _BLOCK = 1 << 20  # pixels premultiplied at a time
-_ANISOTROPY: Final = 8.0
 
 
 class GpuPicture:
@@ -27,9 +26,6 @@ class GpuPicture:
     context : moderngl.Context
     straight : uint8, shape (h, w, 4)
         Straight alpha, first row on top.
-    anisotropy : float
-        How many times as far the texture is sampled along one axis than along the other: sharper
-        where the drawing is squeezed. With 1, software OpenGL draws twice as fast.
 
     Raises
     ------
@@ -37,9 +33,7 @@ class GpuPicture:
         If the picture is larger than the context's textures can be.
     """
 
-    def __init__(
-        self, context: moderngl.Context, straight: Bytes, *, anisotropy: float = _ANISOTROPY
-    ) -> None:
+    def __init__(self, context: moderngl.Context, straight: Bytes) -> None:
         height, width, _ = straight.shape
         limit = largest_size(context)
         if max(width, height) > limit:
@@ -57,7 +51,6 @@ class GpuPicture:
         self._texture.build_mipmaps()
         self._sampler = context.sampler(
             filter=(moderngl.LINEAR_MIPMAP_LINEAR, moderngl.LINEAR),
-            anisotropy=min(context.max_anisotropy, anisotropy),
             border_color=(0.0, 0.0, 0.0, 0.0),
         )
 

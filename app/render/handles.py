@@ -68,19 +68,19 @@ def mark_handles(
 def _leash(place: complex, wish: complex, scale: float, style: HandleStyle) -> list[Line]:
     way = np.array([wish, place])
     return [
-        # Dark underneath, so that the dashes are seen on a drawing of their own colour.
-        Line(points=way, colour=style.shadow, width=4.0 * scale),
-        Line(points=way, colour=style.wish, width=2.0 * scale, dash=6.0 * scale),
+        # On white, so that the dashes are seen on a drawing of their own colour.
+        Line(points=way, colour=style.shadow, width=4.5 * scale),
+        Line(points=way, colour=style.rim, width=2.5 * scale),
+        Line(points=way, colour=style.wish, width=2.5 * scale, dash=5.0 * scale),
     ]
 
 
 def _wish(wish: complex, scale: float, style: HandleStyle) -> list[Disc]:
-    hollow = (*style.wish[:3], 0.25)
     radius = 0.75 * style.radius * scale
     rim_width = style.rim_width * scale
     return [
         _shadow(wish, radius, scale, style),
-        Disc(centre=wish, radius=radius, fill=hollow, rim=style.wish, rim_width=rim_width),
+        Disc(centre=wish, radius=radius, fill=style.rim, rim=style.wish, rim_width=rim_width),
     ]
 
 
