@@ -3,7 +3,7 @@
 import moderngl
 import numpy as np
 
-from app.render.gpu_mesh import GpuMesh, Pose, StreamedVertices
+from app.render.gpu_mesh import GpuMesh, Pose, StreamedVertices, singles
 from app.render.gpu_picture import GpuPicture
 from app.render.renderer import Renderer
 from app.render.scene import Scene
@@ -28,7 +28,7 @@ class Easel:
 
     def pose(self, mesh: GpuMesh, points: Complexes) -> Pose:
         source = StreamedVertices(self.gl, len(points))
-        source.write(np.column_stack([points.real, points.imag]).astype(np.float32))
+        source.write(singles(points))
         pose = Pose(mesh, source)
         self._owned.append(pose)
         return pose

@@ -11,11 +11,25 @@ import numpy.typing as npt
 from app.errors import LissomError
 from app.render.gpu_picture import GpuPicture
 from app.render.programs import Programs, Stages, set_uniforms
-from engine.arrays import Complexes, Integers
+from engine.arrays import Complexes, Integers, readonly
 
 Singles = npt.NDArray[np.float32]
 Attribute = tuple[moderngl.Buffer, str, str]
 """A buffer, its format, and the attribute of the shader that it feeds."""
+
+
+def singles(points: Complexes) -> Singles:
+    """Return points (v,) as the float32 (v, 2) that are uploaded."""
+    return points.astype(np.complex64).view(np.float32).reshape(-1, 2)
+
+
+def border_edges(triangles: Integers) -> Integers:
+    """Return the edges (e, 2) that only one triangle has, the triangle on their left."""
+    edges = np.concatenate([triangles[:, [k, (k + 1) % 3]] for k in range(3)]).astype(np.int64)
+    keys = edges.min(axis=1) << 32 | edges.max(axis=1)
+    _, first, count = np.unique(keys, return_index=True, return_counts=True)
+    border: Integers = edges[first[count == 1]].astype(np.int32)
+    return border
 
 
 class VertexSource(Protocol):
@@ -98,11 +112,23 @@ class GpuMesh:
         uv = np.column_stack([rest.real / width, rest.imag / height])
         self.uv = context.buffer(uv.astype(np.float32).tobytes())
         self.triangles = context.buffer(np.asarray(triangles, dtype=np.uint32).tobytes())
+        self._corners = readonly(triangles)
+        self._border: moderngl.Buffer | None = None
+
+    @property
+    def border(self) -> moderngl.Buffer:
+        """The edges of the border, two vertices each, the mesh on their left."""
+        if self._border is None:
+            edges = border_edges(self._corners)
+            self._border = self.programs.context.buffer(edges.astype(np.uint32).tobytes())
+        return self._border
 
     def release(self) -> None:
         """Let the buffers go."""
         self.uv.release()
         self.triangles.release()
+        if self._border is not None:
+            self._border.release()
 
 
 class Pose:
@@ -133,14 +159,23 @@ class Pose:
 
     def draw(self, stages: Stages, uniforms: Mapping[str, object]) -> None:
         """Draw the triangles with a mesh program, that is `stages` and the source's shader."""
-        stages = replace(stages, vertex=(*stages.vertex, self._source.shader))
-        if stages not in self._bindings:
-            self._bindings[stages] = self._bind(self._mesh.programs.get(stages))
-        binding = self._bindings[stages]
+        binding = self._bound(stages, self._mesh.triangles)
         set_uniforms(binding.program, uniforms)
         binding.render(moderngl.TRIANGLES)
 
-    def _bind(self, program: moderngl.Program) -> moderngl.VertexArray:
+    def draw_border(self, stages: Stages, uniforms: Mapping[str, object]) -> None:
+        """Draw the edges of the border with a program of their own."""
+        binding = self._bound(stages, self._mesh.border)
+        set_uniforms(binding.program, uniforms)
+        binding.render(moderngl.LINES)
+
+    def _bound(self, stages: Stages, indices: moderngl.Buffer) -> moderngl.VertexArray:
+        if stages not in self._bindings:
+            linked = replace(stages, vertex=(*stages.vertex, self._source.shader))
+            self._bindings[stages] = self._bind(self._mesh.programs.get(linked), indices)
+        return self._bindings[stages]
+
+    def _bind(self, program: moderngl.Program, indices: moderngl.Buffer) -> moderngl.VertexArray:
         if "heat" in program and self._heat is None:
             raise ValueError("a heat map is to be drawn of a pose that was given no values")
         available = [*self._source.attributes(), (self._mesh.uv, "2f", "uv")]
@@ -149,7 +184,7 @@ class Pose:
         # A compiler drops the attributes that come to nothing in a program.
         content = [attribute for attribute in available if attribute[2] in program]
         return self._mesh.programs.context.vertex_array(
-            program, content, index_buffer=self._mesh.triangles, index_element_size=4
+            program, content, index_buffer=indices, index_element_size=4
         )
 
     def release(self) -> None:

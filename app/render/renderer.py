@@ -1,6 +1,7 @@
 """Draws scenes: the same for the window and without one."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import Final
 
 import moderngl
@@ -17,6 +18,7 @@ _BACKGROUND: Final = Stages(vertex=("screen.vert",), fragment=("background.frag"
 _PICTURE: Final = Stages(vertex=("mesh.vert",), fragment=("picture.frag", "sample.glsl"))
 _HEAT: Final = Stages(vertex=("heat.vert",), fragment=("heat.frag", "sample.glsl"))
 _WIRE: Final = Stages(vertex=("mesh.vert",), geometry="wire.geom", fragment=("wire.frag",))
+_BORDER: Final = replace(_WIRE, geometry="border.geom")
 _GHOST: Final = Stages(vertex=("screen.vert",), fragment=("ghost.frag",))
 _PICTURE_UNIT, _RAMP_UNIT, _LAYER_UNIT = 0, 1, 0
 
@@ -96,6 +98,7 @@ class Renderer:
             "width": wireframe.width,
         }
         pose.draw(_WIRE, uniforms)
+        pose.draw_border(_BORDER, uniforms)
 
     def _draw_ghost(self, ghost: Ghost, target: Target, view: View) -> None:
         # On a layer of its own: limbs that overlap would shine through each other.

@@ -8,7 +8,7 @@ from drawings import Easel, grid_mesh, soft_blob
 from numpy.testing import assert_allclose, assert_array_equal
 
 from app.errors import LissomError
-from app.render.gpu_mesh import GpuMesh, Pose, StreamedVertices
+from app.render.gpu_mesh import GpuMesh, Pose, StreamedVertices, border_edges, singles
 from app.render.gpu_picture import GpuPicture
 from app.render.handles import HandleMark, mark_handles
 from app.render.scene import Background, Disc, Ghost, Heat, Line, Scene, Wireframe
@@ -95,6 +95,26 @@ def test_outline_cage_and_handles(easel, check_golden):
     check_golden("overlay", easel.frame(VIEW, scene))
 
 
+def test_an_edge_of_the_wireframe_has_its_width_within_and_on_the_border(easel):
+    corners = np.array([0, 40, 40 + 40j, 40j])
+    turned = (corners - 20 - 20j) * np.exp(0.3j)
+    wireframe = Wireframe(colour=(1.0, 1.0, 1.0, 0.5), width=3.0)
+    transparent = easel.mesh(
+        np.zeros((40, 40, 4), np.uint8), corners, np.array([[0, 1, 2], [0, 2, 3]], np.int32)
+    )
+    scene = Scene(pose=easel.pose(transparent, turned), wireframe=wireframe)
+    alpha = easel.frame(View(centre=0j, scale=2.0, size=(160, 160)), scene)[..., 3]
+    assert alpha.max() == 128
+    lengths = 4 * 80 + np.sqrt(2) * 80
+    assert_allclose(alpha.sum() / 128, 3 * lengths, rtol=0.04)  # lines meet without their corners
+    # Along the lower border, from just past one corner to the next.
+    ends = singles(turned[[0, 1]] * 2).astype(float)
+    places = ends[0] + np.linspace(0.1, 0.9, 200)[:, None] * (ends[1] - ends[0])
+    outside = places + 0.7 * np.array([np.sin(0.3), -np.cos(0.3)])
+    columns, rows = (80 + outside[:, 0]).astype(int), (80 - outside[:, 1]).astype(int)
+    assert alpha[rows, columns].min() > 60
+
+
 def test_an_overlay_at_twice_the_scale_has_twice_the_pixels(easel):
     marks = [HandleMark(place=0j, wish=20 + 5j, anchor=True, selected=True)]
     frames = []
@@ -106,6 +126,12 @@ def test_an_overlay_at_twice_the_scale_has_twice_the_pixels(easel):
     halved = frames[1].reshape(80, 2, 160, 2, 4).mean(axis=(1, 3))
     assert np.abs(halved - frames[0]).mean() < 2
     assert (frames[0] < 250).any()
+
+
+def test_the_border_has_the_mesh_on_its_left():
+    triangles = np.array([[0, 1, 2], [0, 2, 3], [3, 2, 4]], np.int32)
+    wanted = {(0, 1), (1, 2), (2, 4), (4, 3), (3, 0)}
+    assert {tuple(edge) for edge in border_edges(triangles).tolist()} == wanted
 
 
 def test_later_triangles_lie_on_top(easel):
@@ -155,6 +181,15 @@ def test_dashes_are_as_long_as_their_gaps(easel):
     inked = frame[10, 12:88, 3] > 127
     lengths = np.diff(np.flatnonzero(np.diff(inked.astype(int))))
     assert_array_equal(lengths, 8)
+
+
+def test_dashes_run_on_over_the_points_of_a_line(easel):
+    view = View(centre=50 + 0j, scale=1.0, size=(100, 20))
+    frames = [
+        easel.frame(view, Scene(lines=(Line(points=points + 0j, colour=(0, 0, 0, 1), dash=6.0),)))
+        for points in (np.array([5.0, 95.0]), np.array([5.0, 9.0, 31.0, 60.0, 62.0, 95.0]))
+    ]
+    assert_allclose(frames[1].astype(int), frames[0].astype(int), rtol=0, atol=1)
 
 
 def test_a_disc_has_its_radius_whatever_the_zoom(easel):
