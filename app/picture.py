@@ -62,11 +62,21 @@ def load_picture(path: Path) -> Picture:
     LissomError
         If the file is missing or unreadable, is no picture, is damaged, or is unreasonably large.
     """
+    return decode_picture(read_picture_file(path), str(path))
+
+
+def read_picture_file(path: Path) -> bytes:
+    """Return the bytes of a picture file.
+
+    Raises
+    ------
+    LissomError
+        If the file is missing or unreadable.
+    """
     try:
-        data = path.read_bytes()
+        return path.read_bytes()
     except OSError as error:
         raise LissomError(f"cannot read {path}: {error.strerror or error}") from error
-    return decode_picture(data, str(path))
 
 
 def decode_picture(data: bytes, name: str) -> Picture:

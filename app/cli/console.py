@@ -25,3 +25,19 @@ def fail(message: str) -> NoReturn:
 def notice(message: str) -> None:
     """Tell the person what was done on their behalf."""
     print(f"lissom: {message}", file=sys.stderr)
+
+
+class StatusLine:
+    """One line on a terminal that tells what is going on; without a terminal it says nothing."""
+
+    def __init__(self) -> None:
+        self._is_seen = sys.stderr.isatty()
+
+    def show(self, text: str) -> None:
+        """Put a text in place of the one before."""
+        if self._is_seen:
+            print(f"\r\x1b[K{text}", end="", file=sys.stderr, flush=True)
+
+    def clear(self) -> None:
+        """Leave the line empty for whatever is printed next."""
+        self.show("")

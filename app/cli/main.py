@@ -16,6 +16,11 @@ EXIT_INTERRUPTED = 130
 # `run(arguments)`; only the one that is asked for is loaded.
 COMMANDS = {
     "domain": "Find a picture's outline; build the cage and the triangulation.",
+    "pose": "Make a project from a picture and a script of handles and keys.",
+    "certify": "Tell how far an animation distorts its drawing, and prove its keyframes.",
+    "interpolate": "In-betweens of harmonic maps at points, from file to file.",
+    "export": "Render an animation to picture files or video.",
+    "doctor": "Tell what works on this machine, and what to install where it does not.",
     "bench": "Measure the speed of every part on this machine.",
 }
 
