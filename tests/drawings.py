@@ -44,6 +44,7 @@ class Easel:
         for owner in reversed(self._owned):
             owner.release()
         self.renderer.release()
+        assert self.gl.error == "GL_NO_ERROR"
 
 
 def all_levels() -> Bytes:

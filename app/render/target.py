@@ -63,6 +63,9 @@ class Target:
 
     def release(self) -> None:
         """Let the frame go."""
+        # moderngl binds again what was bound when it makes the next framebuffer, which is an error
+        # of OpenGL if that is gone by then.
+        self._programs.context.detect_framebuffer(0).use()
         for framebuffer in filter(None, (self.framebuffer, self._straight)):
             attachments = framebuffer.color_attachments
             framebuffer.release()
