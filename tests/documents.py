@@ -63,9 +63,9 @@ def random_pose(rng: np.random.Generator, document: Document, domain: Domain | N
         phi=cage * np.exp(1j * rng.normal()) + noise[0] + 1j * noise[1],
         psi=noise[2] + 1j * noise[3],
         certificate=Certificate(
-            k=rng.choice([rng.random(), inf]),
+            k=float(rng.choice([rng.random(), inf])),
             sigma_a=1 + rng.random(),
-            sigma_b=rng.choice([rng.random(), -inf]),
+            sigma_b=float(rng.choice([rng.random(), -inf])),
             winding=rng.choice([0, 1, None]),
             certified=bool(rng.integers(2)),
         ),
@@ -203,37 +203,35 @@ def full_document() -> Document:
 
 def differences(first: object, second: object, where: str = "document") -> list[str]:
     """Return the places at which two values are not the same to the last bit."""
-    if dataclasses.is_dataclass(first) and type(first) is type(second):
-        return [
-            place
-            for field in dataclasses.fields(first)
-            for place in differences(
-                getattr(first, field.name), getattr(second, field.name), f"{where}.{field.name}"
-            )
-        ]
-    if isinstance(first, np.ndarray) and isinstance(second, np.ndarray):
+    if type(first) is not type(second) and not isinstance(first, Mapping):
+        return [where]
+    if isinstance(first, np.ndarray):
         same = (first.dtype, first.shape) == (second.dtype, second.shape)
         return [] if same and first.tobytes() == second.tobytes() else [where]
-    if isinstance(first, Mapping) and isinstance(second, Mapping):
-        if list(first) != list(second) and sorted(first) != sorted(second):
-            return [where]
-        return [
-            place for key in first for place in differences(first[key], second[key], f"{where}[{key!r}]")
-        ]
-    if isinstance(first, (tuple, list)) and type(first) is type(second):
-        if len(first) != len(second):
-            return [where]
-        return [
-            place
-            for index, pair in enumerate(zip(first, second, strict=True))
-            for place in differences(*pair, f"{where}[{index}]")
-        ]
-    return [] if _bits(first) == _bits(second) else [where]
+    parts, others = _parts(first), _parts(second)
+    if not parts:
+        return [] if _bits(first) == _bits(second) else [where]
+    if parts.keys() != others.keys():
+        return [where]
+    return [
+        place
+        for name, part in parts.items()
+        for place in differences(part, others[name], f"{where}.{name}")
+    ]
+
+
+def _parts(value: object) -> dict[object, object]:
+    if dataclasses.is_dataclass(value):
+        return {field.name: getattr(value, field.name) for field in dataclasses.fields(value)}
+    if isinstance(value, Mapping):
+        return dict(value)
+    return dict(enumerate(value)) if isinstance(value, (tuple, list)) else {}
 
 
 def _bits(value: object) -> object:
+    """Return something that is equal for equal bits only, and for empty containers."""
     if isinstance(value, complex):
         return struct.pack("<dd", value.real, value.imag)
     if isinstance(value, float):
         return struct.pack("<d", value)
-    return type(value), value
+    return dict(value) if isinstance(value, Mapping) else value

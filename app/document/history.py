@@ -104,7 +104,6 @@ class History:
         """Go forward again by one step; without one, stay."""
         if self._now + 1 < len(self._steps):
             self._now += 1
-            self._gesture = None
 
     def _forget(self) -> None:
         excess = sum(self._held) - self._memory

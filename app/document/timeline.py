@@ -100,7 +100,10 @@ def frame_times(document: Document, frames: FrameRange, fps: float | None = None
     if fps is None:
         return [float(frame) for frame in range(frames.first, frames.last + 1)]
     if not 0 < fps <= 100 * document.fps:
-        raise LissomError(f"The export's frames per second must be above 0, not {fps:g}.")
+        raise LissomError(
+            f"The export's frames per second must be above 0 and at most {100 * document.fps:g}, "
+            f"a hundred times the document's own, not {fps:g}."
+        )
     # In exact arithmetic, so that rounding neither drops the last picture nor adds one.
     step = Fraction(document.fps) / Fraction(fps)
     count = (frames.last - frames.first) // step + 1

@@ -119,6 +119,7 @@ def test_posing_and_inserting_keys():
     grown = keys.insert_key(5, pose)(document)
     assert frames_of(grown) == [0, 5, 10]
     assert grown.key(5).easing == HOLD
+    assert keys.insert_key(15, pose)(document).key(15).easing == LINEAR
     assert keys.insert_key(5, pose, easing=LINEAR)(document).key(5).easing == LINEAR
     assert keys.insert_key(70, pose)(document).frames == FrameRange(0, 70)
 
