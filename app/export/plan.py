@@ -32,7 +32,7 @@ _FRAME_NAME: Final = re.compile(r"frame_\d{4,}\.png")
 _OUTSIDE: Final = 1.0
 
 
-class Motion(Protocol):
+class Poses(Protocol):
     """Where the vertices of a document's mesh are at any time."""
 
     def positions(self, frame: float) -> Complexes:
@@ -130,14 +130,14 @@ def check_request(document: Document, request: ExportRequest) -> None:
             raise LissomError(f"mp4 needs PyAV, which is not installed: {VIDEO_REMEDY}")
 
 
-def plan_export(document: Document, request: ExportRequest, motion: Motion) -> ExportPlan:
+def plan_export(document: Document, request: ExportRequest, poses: Poses) -> ExportPlan:
     """Settle an export whose request has passed `check_request`.
 
     Parameters
     ----------
     document : Document
     request : ExportRequest
-    motion : Motion
+    poses : Poses
         The document's.
 
     Raises
@@ -148,7 +148,7 @@ def plan_export(document: Document, request: ExportRequest, motion: Motion) -> E
     settings = request.settings
     frames = _frames(document, settings)
     times = tuple(frame_times(document, frames, request.fps))
-    reach = _reach(motion, times)
+    reach = _reach(poses, times)
     plan = ExportPlan(
         out=request.out,
         format=settings.format,
@@ -168,11 +168,11 @@ def _frames(document: Document, settings: ExportSettings) -> FrameRange:
     return settings.frames or exported_frames(document)
 
 
-def _reach(motion: Motion, times: tuple[float, ...]) -> Box:
+def _reach(poses: Poses, times: tuple[float, ...]) -> Box:
     """Return the box around all vertices at all times."""
     corners: list[complex] = []
     for time in times:
-        corners += box_around(motion.positions(time))
+        corners += box_around(poses.positions(time))
         if not np.isfinite(corners[-2:]).all():
             raise LissomError(f"frame {time:g} cannot be drawn: its points are not all finite")
     return box_around(np.array(corners))
@@ -215,7 +215,7 @@ def _colour(background: str) -> tuple[int, int, int] | None:
 def _left_out(shown: Box, reach: Box) -> list[str]:
     if shown.contains(reach, slack=_OUTSIDE):
         return []
-    return ["the motion leaves the canvas; the framing 'fit' shows all of it"]
+    return ["the motion leaves the frame; the framing 'fit' shows all of it"]
 
 
 def _strange_frames(plan: ExportPlan) -> list[str]:

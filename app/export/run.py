@@ -2,7 +2,7 @@
 
 import importlib
 from collections import deque
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Generator
 from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import ExitStack
 from typing import IO, Final
@@ -25,7 +25,7 @@ ENCODERS: Final = 2  # threads
 AHEAD: Final = 4  # frames that are drawn but not yet encoded
 
 
-def export(plan: ExportPlan, draw: Draw) -> Iterator[int]:
+def export(plan: ExportPlan, draw: Draw) -> Generator[int]:
     """Make what was planned, one frame at each step.
 
     Parameters
@@ -58,7 +58,7 @@ def export(plan: ExportPlan, draw: Draw) -> Iterator[int]:
             yield from _write(plan, draw, _writer(file, plan, cleanup))
 
 
-def _write(plan: ExportPlan, draw: Draw, writer: FrameWriter) -> Iterator[int]:
+def _write(plan: ExportPlan, draw: Draw, writer: FrameWriter) -> Generator[int]:
     waiting: deque[Future[bytes]] = deque()
     encoders = ThreadPoolExecutor(ENCODERS, thread_name_prefix="encoder")
     try:

@@ -1,0 +1,86 @@
+"""The pictures of an export, drawn by the renderer that the window draws with."""
+
+from collections.abc import Iterator
+from contextlib import ExitStack, contextmanager
+from typing import Final
+
+import moderngl
+
+from app.document.model import Document
+from app.errors import EXPECTED_ERRORS, LissomError
+from app.export.plan import ExportPlan, Poses
+from app.export.run import Draw
+from app.render.gpu_mesh import GpuMesh, Pose, StreamedVertices, singles
+from app.render.gpu_picture import GpuPicture
+from app.render.renderer import Renderer
+from app.render.scene import TRANSPARENT, Background, Colour, Scene
+from app.render.target import Target
+from engine.arrays import Bytes
+
+_NO_ERROR: Final = "GL_NO_ERROR"
+
+
+@contextmanager
+def painter(
+    context: moderngl.Context, document: Document, picture: Bytes, poses: Poses, plan: ExportPlan
+) -> Iterator[Draw]:
+    """Lend a function that draws frames, for as long as a `with` block lasts.
+
+    Parameters
+    ----------
+    context : moderngl.Context
+        Current on the thread that draws.
+    document : Document
+    picture : uint8, shape (h, w, 4)
+        The document's picture, decoded.
+    poses : Poses
+        The document's.
+    plan : ExportPlan
+
+    Raises
+    ------
+    LissomError
+        If the picture or the frames are too large for the context. The function raises it where a
+        frame cannot be drawn.
+    """
+    mesh = document.domain.mesh
+    with ExitStack() as owned:
+        renderer = Renderer(context)
+        owned.callback(renderer.release)
+        # At its own size the drawing comes out exact from one sample a pixel; shown smaller it is
+        # finer from four.
+        target = Target(renderer.programs, plan.view.size, 2 if plan.view.scale < 1 else 1)
+        owned.callback(target.release)
+        # Errors up to here are not this export's: moderngl, for one, binds the framebuffer of
+        # before again, which may be gone. A target without memory has raised by itself.
+        while context.error != _NO_ERROR:
+            pass
+        texture = GpuPicture(context, picture)
+        owned.callback(texture.release)
+        gpu_mesh = GpuMesh(renderer.programs, texture, rest=mesh.vertices, triangles=mesh.triangles)
+        owned.callback(gpu_mesh.release)
+        vertices = StreamedVertices(context, len(mesh.vertices))
+        pose = Pose(gpu_mesh, vertices)
+        owned.callback(pose.release)
+        scene = Scene(background=Background(colour=_colour(plan)), pose=pose)
+
+        def draw(frame: float) -> Bytes:
+            try:
+                vertices.write(singles(poses.positions(frame)))
+                renderer.draw(target, plan.view, scene)
+                pixels = target.read_straight_rgba()
+            except (*EXPECTED_ERRORS, moderngl.Error) as error:
+                raise LissomError(f"frame {frame:g} cannot be drawn: {error}") from error
+            # OpenGL goes on after an error, with pictures that are black or of another frame.
+            if context.error != _NO_ERROR:
+                raise LissomError(f"frame {frame:g} cannot be drawn: OpenGL failed; try again")
+            return pixels
+
+        yield draw
+
+
+def _colour(plan: ExportPlan) -> Colour:
+    if plan.background is None:
+        return TRANSPARENT
+    red, green, blue = (level / 255 for level in plan.background)
+    return red, green, blue, 1.0

@@ -1,0 +1,174 @@
+import importlib.util
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from animations import BLOB, Sliding, still_document
+from numpy.testing import assert_allclose
+
+from app.document.model import Document
+from app.document.settings import ExportSettings, FrameRange
+from app.errors import LissomError
+from app.export.plan import ExportPlan, ExportRequest, Poses, check_request, plan_export
+
+SIZE = (BLOB.shape[1], BLOB.shape[0])
+
+
+@pytest.fixture(scope="module")
+def document() -> Document:
+    return replace(still_document(), frames=FrameRange(0, 10))
+
+
+def plan_of(
+    document: Document,
+    out: Path,
+    poses: Poses | None = None,
+    *,
+    fps: float | None = None,
+    **settings: object,
+) -> ExportPlan:
+    request = ExportRequest(out=out, settings=replace(document.export, **settings), fps=fps)
+    check_request(document, request)
+    return plan_export(document, request, poses or Sliding(document, 0))
+
+
+def test_by_default_every_frame_shows_the_pictures_own_canvas(document, tmp_path):
+    plan = plan_of(document, tmp_path / "frames")
+    assert plan.view.size == SIZE
+    assert plan.view.scale == 1
+    assert plan.view.centre == complex(*SIZE) / 2
+    assert plan.times == tuple(range(11))
+    assert (plan.first, plan.fps, plan.background, plan.notices) == (0, 24.0, None, ())
+    assert plan.frame_name(7) == "frame_0007.png"
+
+
+def test_a_loop_leaves_out_its_last_frame_unless_it_is_asked_for(document, tmp_path):
+    loop = replace(document, loop=True)
+    assert plan_of(loop, tmp_path / "frames").times[-1] == 9
+    assert plan_of(loop, tmp_path / "frames").loop
+    asked = plan_of(loop, tmp_path / "frames", frames=FrameRange(8, 10))
+    assert asked.times == (8, 9, 10)
+
+
+def test_another_rate_numbers_its_pictures_on_from_the_first_frame(document, tmp_path):
+    plan = plan_of(document, tmp_path / "frames", fps=16.0, frames=FrameRange(4, 10))
+    assert plan.times == (4, 5.5, 7, 8.5, 10)
+    assert plan.fps == 16
+    assert [plan.frame_name(index) for index in (0, 4)] == ["frame_0004.png", "frame_0008.png"]
+
+
+@pytest.mark.parametrize(("last", "name"), [(9999, "frame_0001.png"), (10_000, "frame_00001.png")])
+def test_all_names_have_as_many_digits_as_the_longest_needs(document, tmp_path, last, name):
+    plan = replace(plan_of(document, tmp_path / "frames"), first=1, times=(0.0,) * last)
+    assert plan.frame_name(0) == name
+    assert plan.frame_name(last - 1) == f"frame_{last}.png"
+
+
+def test_fitted_frames_show_all_of_the_motion_on_the_pictures_own_pixels(document, tmp_path):
+    poses = Sliding(document, 12.3 - 4.1j)
+    plan = plan_of(document, tmp_path / "frames", poses, framing="fit")
+    view = plan.view
+    assert view.scale == 1
+    assert all(side % 2 == 0 for side in view.size)
+    corner = view.to_pixels(np.array([0j]))
+    assert_allclose(corner, np.rint(corner), rtol=0, atol=1e-9)
+    pixels = view.to_pixels(np.concatenate([poses.positions(time) for time in plan.times]))
+    for extent, side in ((pixels.real, view.size[0]), (pixels.imag, view.size[1])):
+        assert extent.min() > 1
+        assert extent.max() < side - 1
+        assert extent.min() + side - extent.max() < 0.06 * max(view.size) + 3
+    assert plan.notices == ()
+
+
+def test_fitted_frames_of_a_given_size_show_all_of_the_motion_as_large_as_possible(
+    document, tmp_path
+):
+    poses = Sliding(document, 12.3 - 4.1j)
+    plan = plan_of(document, tmp_path / "frames", poses, framing="fit", size=(50, 301))
+    pixels = plan.view.to_pixels(np.concatenate([poses.positions(time) for time in plan.times]))
+    assert plan.view.size == (50, 301)
+    assert 0.9 * 50 < np.ptp(pixels.real) < 50
+    assert 0 < pixels.real.min() < pixels.real.max() < 50
+
+
+def test_a_motion_that_leaves_the_frame_is_told(document, tmp_path):
+    plan = plan_of(document, tmp_path / "frames", Sliding(document, 12))
+    assert len(plan.notices) == 1
+    assert "leaves the frame" in plan.notices[0]
+
+
+def test_frames_of_another_export_are_told_and_kept(document, tmp_path):
+    for name in ("frame_0009.png", "frame_0011.png", "frame_00003.png", "frame_12.png", "other"):
+        (tmp_path / name).write_bytes(b"kept")
+    (notice,) = plan_of(document, tmp_path).notices
+    assert "2 frames of another export (frame_00003.png … frame_0011.png)" in notice
+    assert len(list(tmp_path.iterdir())) == 5
+
+
+def test_backgrounds_are_colours_or_none(document, tmp_path):
+    assert plan_of(document, tmp_path / "f", background="#0aF080").background == (10, 240, 128)
+
+
+def test_a_pose_that_is_not_finite_is_refused_before_anything_is_written(document, tmp_path):
+    class Broken(Sliding):
+        def positions(self, frame: float):
+            places = super().positions(frame)
+            if frame == 3:
+                places[5] = complex("nan")
+            return places
+
+    for framing in ("canvas", "fit"):
+        with pytest.raises(LissomError, match="frame 3 cannot be drawn"):
+            plan_of(document, tmp_path / "frames", Broken(document, 0), framing=framing)
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize(
+    ("out", "settings", "reason"),
+    [
+        ("file", {}, "is a file; name a folder"),
+        ("missing/frames", {}, "missing does not exist"),
+        ("frames.gif", {}, "named like a file"),
+        ("still.png", {}, "named like a file"),
+        ("folder", {"format": "gif"}, "is a folder; name a file"),
+        ("missing/a.gif", {"format": "gif"}, "missing does not exist"),
+        ("a.png", {"format": "gif"}, "end in .gif"),
+        ("a.gif", {"format": "apng"}, "end in .apng or .png"),
+        ("a.mp4", {"format": "mp4"}, "background colour"),
+        ("frames", {"frames": FrameRange(0, 11)}, "0 to 10"),
+        ("frames", {"frames": FrameRange(12, 13)}, "0 to 10"),
+    ],
+)
+def test_what_cannot_work_is_refused(document, tmp_path, out, settings, reason):
+    (tmp_path / "file").write_bytes(b"")
+    (tmp_path / "folder").mkdir()
+    with pytest.raises(LissomError, match=reason):
+        plan_of(document, tmp_path / out, **settings)
+
+
+@pytest.mark.parametrize("fps", [0.0, -1.0, float("nan"), float("inf"), 1e9])
+def test_impossible_rates_are_refused(document, tmp_path, fps):
+    with pytest.raises(LissomError, match="frames per second"):
+        plan_of(document, tmp_path / "frames", fps=fps)
+
+
+def test_any_name_without_the_end_of_another_format_will_do(document, tmp_path):
+    for name in ("name", "v1.2", "a.GIF"):
+        assert plan_of(document, tmp_path / name, format="gif").out == tmp_path / name
+    (tmp_path / "frames.gif").mkdir()
+    assert plan_of(document, tmp_path / "frames.gif").format == "png"
+
+
+def test_mp4_says_how_to_install_what_it_needs(document, tmp_path, monkeypatch):
+    settings = {"format": "mp4", "background": "#ffffff"}
+    assert plan_of(document, tmp_path / "a.mp4", **settings).background == (255, 255, 255)
+    monkeypatch.setattr(importlib.util, "find_spec", lambda _: None)
+    with pytest.raises(LissomError, match=r"pip install 'lissom\[video\]'"):
+        plan_of(document, tmp_path / "a.mp4", **settings)
+
+
+def test_the_documents_own_settings_are_what_is_not_given(document, tmp_path):
+    own = ExportSettings(format="webp", size=(64, 48), background="#010203", framing="fit")
+    plan = plan_of(replace(document, export=own), tmp_path / "a.webp")
+    assert (plan.format, plan.view.size, plan.background) == ("webp", (64, 48), (1, 2, 3))
