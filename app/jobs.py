@@ -35,8 +35,8 @@ class Job:
 class Jobs:
     """The queue and its worker thread.
 
-    A job whose kind was put in again, or dropped, before it was finished is stale: if it waits it
-    never starts, if it runs its result is thrown away.
+    A job is unfinished until its result is delivered. One whose kind was put in again or dropped
+    before that is stale: if it waits it never starts, and its result is thrown away.
     """
 
     def __init__(self) -> None:
@@ -44,7 +44,7 @@ class Jobs:
         self._waiting: list[Job] = []
         self._running: Job | None = None
         self._running_is_stale = False
-        self._finished: list[Callable[[], None]] = []
+        self._finished: list[tuple[str, Callable[[], None]]] = []
         self._thread: threading.Thread | None = None
 
     def put(self, job: Job) -> None:
@@ -65,22 +65,27 @@ class Jobs:
 
     @property
     def kinds(self) -> tuple[str, ...]:
-        """The kinds that are unfinished, the running one first."""
+        """The kinds that are unfinished, in the order in which they come."""
         with self._condition:
-            kinds = [job.kind for job in self._waiting]
+            kinds = [kind for kind, _ in self._finished]
             if self._running is not None and not self._running_is_stale:
-                kinds.insert(0, self._running.kind)
-            return tuple(kinds)
+                kinds.append(self._running.kind)
+            return (*kinds, *(job.kind for job in self._waiting))
 
     def deliver(self) -> None:
         """Hand over what is finished; on the main thread, once a frame."""
         with self._condition:
-            finished, self._finished = self._finished, []
-        for hand_over in finished:
+            due = len(self._finished)
+        for _ in range(due):
+            with self._condition:
+                # One at a time: what is handed over may make the next one stale.
+                if not self._finished:
+                    return
+                _, hand_over = self._finished.pop(0)
             hand_over()
 
     def settle(self, timeout: float = 60.0) -> bool:
-        """Wait until nothing is unfinished; return whether that came in time."""
+        """Wait until all that is left is to deliver; return whether that came in time."""
         with self._condition:
             return self._condition.wait_for(
                 lambda: self._running is None and not self._waiting, timeout
@@ -88,6 +93,7 @@ class Jobs:
 
     def _forget(self, kind: str) -> None:
         self._waiting = [job for job in self._waiting if job.kind != kind]
+        self._finished = [done for done in self._finished if done[0] != kind]
         if self._running is not None and self._running.kind == kind:
             self._running_is_stale = True
 
@@ -100,7 +106,7 @@ class Jobs:
             hand_over = _attempt(job)
             with self._condition:
                 if not self._running_is_stale:
-                    self._finished.append(hand_over)
+                    self._finished.append((job.kind, hand_over))
                 self._running = None
                 self._condition.notify_all()
 

@@ -1,18 +1,21 @@
 """The state of one window: everything that may change, and nothing that is drawn."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Literal
 
 from app.actions.action import Action
 from app.document.history import History
-from app.document.keyframe import Pose
+from app.document.keyframe import Pose, Target
 from app.document.model import Document
 from app.document.playhead import Playhead
 from app.jobs import Jobs
+from app.motion import Motion
 from app.picture import Picture
+from app.posing import Drag, Rig
 from app.render.view import View, fit_view
+from app.shown import Shown
 
 HeatMap = Literal["none", "k", "sigma_a", "sigma_b"]
 ThemeName = Literal["dark", "light"]
@@ -113,19 +116,98 @@ class ShortcutSheet:
 Dialog = FileDialog | Question | ShortcutSheet
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Pulling:
+    """The pointer pulls handles; `places` are theirs at the start, by id, in the plane."""
+
+    start: complex
+    places: tuple[tuple[int, complex], ...] = ()
+    moved: bool = False
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Turning:
+    """The pointer turns the shape around a handle, from an angle of `turn` radians on."""
+
+    identity: int
+    centre: complex
+    start: complex
+    turn: float
+    moved: bool = False
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Boxing:
+    """The pointer spans a box to select what is in it; `keeps` what is selected already."""
+
+    start: complex
+    keeps: bool
+
+
+Gesture = Pulling | Turning | Boxing
+
+
+@dataclass(slots=True, kw_only=True, eq=False)
+class Grab:
+    """Handles that are being pulled, and how far the solver has followed.
+
+    Parameters
+    ----------
+    frame : int
+        Where the pose belongs.
+    targets : mapping
+        What is wished now, for every handle.
+    pose : Pose, optional
+        Where it began; None where that is an in-between, which the worker has to find a map for.
+    drag : Drag, optional
+        None until the solver's first steps are done.
+    held : bool
+        Whether the person still pulls.
+    steps : int
+        Newton steps since the wish changed last.
+    """
+
+    frame: int
+    targets: Mapping[int, Target]
+    pose: Pose | None
+    drag: Drag | None = None
+    held: bool = True
+    steps: int = 0
+
+
 @dataclass(slots=True, kw_only=True, eq=False)
 class Project:
-    """The document that is open, and how the person looks at it."""
+    """The document that is open, and how the person looks at it.
+
+    Parameters
+    ----------
+    sketch, full : Motion
+        What can be shown of it, on a coarse mesh and on its own; `full` may not be there yet.
+    loose : Pose, optional
+        Posed with auto-key off, held by no key.
+    camera : View, optional
+        None fits the picture into the viewport.
+    unmovable : Document, optional
+        Its in-betweens failed; they are not tried again until it changes.
+    gesture : object, optional
+        Commands given while it lasts make one step of undo together.
+    """
 
     history: History
     picture: Picture
     path: Path | None
+    sketch: Motion
+    full: Motion | None = None
+    rig: Rig | None = None
+    grab: Grab | None = None
+    shown: Shown | None = None
+    unmovable: Document | None = None
     playhead: Playhead = field(default_factory=Playhead)
     selected: frozenset[int] = frozenset()  # ids of handles
     chosen: frozenset[int] = frozenset()  # frames of keys
-    loose: Pose | None = None  # posed with auto-key off, held by no key
-    camera: View | None = None  # None: fit the picture into the viewport
-    gesture: object | None = None  # commands given while it lasts make one step of undo
+    loose: Pose | None = None
+    camera: View | None = None
+    gesture: object | None = None
 
     @property
     def document(self) -> Document:
@@ -150,8 +232,13 @@ class Session:
     project: Project | None = None
     overlays: Overlays = field(default_factory=Overlays)
     screen: tuple[int, int] = (640, 480)  # pixels of the viewport
+    full_detail: bool = True  # whether this machine draws the full mesh fast enough to move
+    solver_seconds: float = 0.0
     toasts: list[Toast] = field(default_factory=list)
     dialog: Dialog | None = None
+    pointer: Gesture | None = None
+    space_used: bool = False  # Space was held to move the view
+    hovered: int | None = None  # the handle under the pointer
     hint: str = ""  # about what is under the pointer
     quitting: bool = False
 

@@ -1,6 +1,7 @@
 """Changes of the document: commands, undo, and what is selected."""
 
-from app.document import handle_commands, key_commands
+from app.actions import posing
+from app.document import key_commands
 from app.document.commands import Command
 from app.session import Session
 
@@ -21,6 +22,7 @@ def hold(session: Session, held: bool) -> None:  # noqa: FBT001 - the only argum
 def undo(session: Session) -> None:
     """Take the last step back."""
     if session.project:
+        posing.drop(session)
         session.project.history.undo()
         _forget_what_is_gone(session)
 
@@ -28,6 +30,7 @@ def undo(session: Session) -> None:
 def redo(session: Session) -> None:
     """Do the step that was taken back again."""
     if session.project:
+        posing.drop(session)
         session.project.history.redo()
         _forget_what_is_gone(session)
 
@@ -58,7 +61,7 @@ def delete(session: Session) -> None:
     if project and project.chosen:
         edit(session, key_commands.delete_keys(project.chosen))
     elif project and project.selected:
-        edit(session, handle_commands.remove_handles(project.selected))
+        posing.remove_handles(session, project.selected)
     _forget_what_is_gone(session)
 
 

@@ -1,20 +1,21 @@
 """Opening pictures and projects."""
 
-import traceback
 from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple
 
 from app.actions.action import Action, do
+from app.actions.failures import report
 from app.assets import sample_images
 from app.document.history import History
-from app.document.model import Document, PictureFile, new_document
+from app.document.model import Document
+from app.document.project_file import load_project
 from app.document.settings import Meshing
-from app.errors import EXPECTED_ERRORS, LissomError
 from app.jobs import Job
+from app.motion import Figure, Motion, prepare_motion
+from app.opening import open_picture
 from app.picture import Picture, decode_picture
 from app.session import FileDialog, Project, Question, Session
-from engine.domain import build_domain
 
 PROJECT = ".lissom"
 PICTURES = (
@@ -56,6 +57,7 @@ class Opened(NamedTuple):
 
     document: Document
     picture: Picture
+    sketch: Motion
     notices: tuple[str, ...]
 
 
@@ -83,9 +85,9 @@ def load(session: Session, path: Path) -> None:
     session.jobs.put(
         Job(
             kind=f"{OPENING} {path.name}",
-            work=lambda: _read_picture(path),
+            work=lambda: _read(path),
             done=lambda opened: show(session, path, opened),
-            failed=lambda error: fail(session, f"{path.name} cannot be opened", error),
+            failed=lambda error: report(session, f"{path.name} cannot be opened", error),
         )
     )
 
@@ -96,6 +98,7 @@ def show(session: Session, path: Path, opened: Opened) -> None:
     session.project = Project(
         history=History(opened.document, saved=True),
         picture=opened.picture,
+        sketch=opened.sketch,
         path=path if is_project else None,
     )
     recent = (path, *(other for other in session.preferences.recent if other != path))
@@ -109,30 +112,21 @@ def close(session: Session) -> None:
     session.project = None
 
 
-def fail(session: Session, what: str, error: Exception) -> None:
-    """Tell that a job failed, and why."""
-    expected = isinstance(error, EXPECTED_ERRORS)
-    text = f"{what}: {error}" if expected else f"{what}."
-    details = "" if expected else "".join(traceback.format_exception(error))
-    session.tell(text, tone="error", details=details)
+def _read(path: Path) -> Opened:
+    return _read_project(path) if path.suffix.lower() == PROJECT else _read_picture(path)
+
+
+def _read_project(path: Path) -> Opened:
+    document = load_project(path)
+    picture = decode_picture(document.picture.data, f"the picture of {path.name}")
+    rest = Motion.at_rest(document, Figure.sketch(document.domain))
+    return Opened(document, picture, prepare_motion(document, rest), ())
 
 
 def _read_picture(path: Path) -> Opened:
-    try:
-        data = path.read_bytes()
-    except OSError as error:
-        raise LissomError(f"cannot read {path}: {error.strerror or error}") from error
-    picture = decode_picture(data, path.name)
-    meshing = Meshing()
-    domain, notices = build_domain(
-        picture.rgba,
-        triangles=meshing.triangles,
-        detail=meshing.detail,
-        tolerance=meshing.tolerance,
-    )
-    file = PictureFile(data=data, suffix=path.suffix.lower(), size=picture.size)
-    document = new_document(file, domain, meshing)
-    return Opened(document, picture, picture.notices + notices)
+    document, picture, notices = open_picture(path, Meshing())
+    sketch = Motion.at_rest(document, Figure.sketch(document.domain))
+    return Opened(document, picture, sketch, notices)
 
 
 def _folder(session: Session) -> Path:

@@ -12,6 +12,8 @@ def seek(session: Session, frame: int) -> None:
         frame = project.document.frames.clamp(frame)
         project.playhead = project.playhead.seek(frame, session.clock())
         project.loose = None
+        if project.grab is not None and project.grab.frame != frame:
+            project.grab = None
 
 
 def toggle_play(session: Session) -> None:
@@ -22,6 +24,13 @@ def toggle_play(session: Session) -> None:
         turn = project.playhead.play if project.playhead.since is None else project.playhead.pause
         project.playhead = turn(project.document, now)
         project.loose = None
+
+
+def tap_space(session: Session) -> None:
+    """Play or halt where Space is let go, unless it was held to move the view."""
+    if not session.space_used:
+        toggle_play(session)
+    session.space_used = False
 
 
 def halt(session: Session) -> None:

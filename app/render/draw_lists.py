@@ -33,6 +33,10 @@ void main() {
 CHUNK = 1 << 16  # bytes that the buffers start with
 
 
+Textures = dict[int, moderngl.Texture]
+"""Textures by their OpenGL names."""
+
+
 class DrawLists:
     """Owner of the GL objects that turn ImGui's draw data into pixels of a framebuffer.
 
@@ -48,21 +52,21 @@ class DrawLists:
         self._vertices = gl.buffer(reserve=CHUNK, dynamic=True)
         self._indices = gl.buffer(reserve=CHUNK, dynamic=True)
         self._array = self._make_array()
-        self._textures: dict[int, moderngl.Texture] = {}
+        self._textures: Textures = {}
         imgui.get_io().backend_flags |= imgui.BackendFlags_.renderer_has_textures
         limit = int(gl.info["GL_MAX_TEXTURE_SIZE"])
         platform = imgui.get_platform_io()
         platform.renderer_texture_max_width = limit
         platform.renderer_texture_max_height = limit
 
-    def draw(self, target: moderngl.Framebuffer, textures: dict[int, moderngl.Texture]) -> None:
+    def draw(self, target: moderngl.Framebuffer, textures: Textures) -> None:
         """Draw what ImGui rendered last.
 
         Parameters
         ----------
         target : moderngl.Framebuffer
         textures : dict
-            Those that the panels show as images, by their GL names.
+            Those that the panels show as images.
         """
         data = imgui.get_draw_data()
         self._update_textures()

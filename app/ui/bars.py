@@ -15,7 +15,18 @@ MENUS: dict[str, tuple[str, ...]] = {
         *("fit", "actual size", "", "handles", "wireframe", "outline", "heat map", "onion skin"),
         *("", "theme", "larger", "smaller"),
     ),
-    "Time": ("play", "start", "end", "back", "on", "previous key", "next key", "", "auto-key"),
+    "Time": (
+        "play",
+        "start",
+        "end",
+        "back",
+        "on",
+        "previous key",
+        "next key",
+        "",
+        "insert key",
+        "auto-key",
+    ),
     "Help": ("shortcuts",),
 }
 ICON_BAR = ("fit", "", "handles", "wireframe", "outline", "heat map", "onion skin", "", "auto-key")

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from imgui_bundle import ImVec2, hello_imgui, imgui, implot
 
-from app.actions import editing, playback
+from app.actions import editing, playback, upkeep
 from app.actions.action import Action, do
 from app.errors import EXPECTED_ERRORS
 from app.render.thumbnails import Thumbnail
@@ -98,7 +98,7 @@ class Shell:
             hello_imgui.DockingSplit("MainDockSpace", "bottom", imgui.Dir.down, BOTTOM),
             hello_imgui.DockingSplit("MainDockSpace", "side", imgui.Dir.right, SIDE),
         ]
-        layout.main_dock_space_node_flags = imgui.DockNodeFlags_.none
+        layout.main_dock_space_node_flags = imgui.DockNodeFlags_.auto_hide_tab_bar
         layout.dockable_windows = [self._window(panel) for panel in self._panels]
         return layout
 
@@ -162,6 +162,7 @@ class Shell:
         actions, self._actions = self._actions, []
         for action in actions:
             self._attempt(partial(action.apply, self.session))
+        self._attempt(partial(upkeep.keep_up, self.session))
 
     def _attempt(self, change: Callable[[], None]) -> None:
         try:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
-from app.actions import editing, files, playback, viewing
+from app.actions import editing, files, playback, posing, viewing
 from app.actions.action import Action, do
 from app.session import Session
 
@@ -279,6 +279,14 @@ BINDINGS: dict[str, Binding] = {
         possible=_no_handles_selected,
         repeats=True,
     ),
+    "insert key": Binding(
+        label="Insert key",
+        action=do(posing.insert_key),
+        group="Time",
+        keys=(Key.i,),
+        icon=icons.ICON_FA_DIAMOND,
+        hint="Hold the pose that is shown in a key",
+    ),
     "auto-key": Binding(
         label="Auto-key",
         action=do(viewing.toggle_auto_key),
@@ -310,4 +318,25 @@ def pressed(session: Session) -> list[Action]:
             flags |= imgui.InputFlags_.repeat
         if any(imgui.shortcut(keys, flags) for keys in binding.keys) and binding.possible(session):
             actions.append(binding.action)
-    return actions
+    return actions + _nudges(session) + _space(session)
+
+
+def _nudges(session: Session) -> list[Action]:
+    if session.project is None or not session.project.selected:
+        return []
+    reach = 10.0 if imgui.get_io().key_shift else 1.0
+    return [
+        do(posing.nudge, reach * direction)
+        for key, direction in ARROWS.items()
+        if imgui.is_key_pressed(key)
+    ]
+
+
+def _space(session: Session) -> list[Action]:
+    """Return playing where Space was tapped, and not held to move the view."""
+    if session.project is None or not imgui.is_key_released(Key.space):
+        return []
+    return [do(playback.tap_space)]
+
+
+ARROWS = {Key.left_arrow: -1, Key.right_arrow: 1, Key.up_arrow: 1j, Key.down_arrow: -1j}

@@ -122,6 +122,7 @@ def apply_theme(palette: Palette, scale: float) -> None:
         setattr(style, name, ImVec2(*size) if isinstance(size, tuple) else size)
     style.scale_all_sizes(scale * dpi)
     style.font_size_base = FONT_SIZE
+    style.window_menu_button_position = imgui.Dir.none
     style.font_scale_main = scale
     _colour(style, palette)
 

@@ -9,6 +9,7 @@ from PIL import Image
 from app.jobs import Jobs
 from app.render.context import create_context
 from app.render.draw_lists import DrawLists
+from app.render.renderer import Renderer
 from app.session import Preferences, Session
 from app.ui.window import Window
 
@@ -39,7 +40,7 @@ class Harness:
         self._set_size(size)
         self._lists: DrawLists | None = None
         self._tests = 0
-        self.window = Window(self.session, lambda: self.gl)
+        self.window = Window(self.session, lambda: Renderer(self.gl))
         self._params = self._headless_params()
         hello_imgui.manual_render.setup_from_runner_params(self._params)
         self._engine = hello_imgui.get_imgui_test_engine()
@@ -50,9 +51,10 @@ class Harness:
 
     def resize(self, size: tuple[int, int], scale: float = 1.0) -> None:
         """Give the window another size in pixels, and its contents another scale."""
-        self._target.color_attachments[0].release()
-        self._target.release()
-        self._set_size(size)
+        with self.gl:
+            self._target.color_attachments[0].release()
+            self._target.release()
+            self._set_size(size)
         self.session.preferences = Preferences(scale=scale, theme=self.session.preferences.theme)
         self.frames(3)
 
@@ -113,7 +115,8 @@ class Harness:
 
     def picture(self) -> Image.Image:
         """Return what is on the screen."""
-        pixels = self._target.read(components=3, alignment=1)
+        with self.gl:
+            pixels = self._target.read(components=3, alignment=1)
         return Image.frombytes("RGB", self._target.size, pixels).transpose(
             Image.Transpose.FLIP_TOP_BOTTOM
         )

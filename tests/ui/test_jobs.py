@@ -89,6 +89,25 @@ def test_dropped_job_never_delivers(busy):
     assert results == []
 
 
+def test_job_is_unfinished_until_it_is_delivered():
+    jobs, results = Jobs(), []
+    jobs.put(job("pose", lambda: 1, results))
+    assert jobs.settle()
+    assert jobs.kinds == ("pose",)
+    jobs.drop("pose")
+    jobs.deliver()
+    assert results == []
+
+
+def test_result_may_make_the_next_one_stale():
+    jobs, results = Jobs(), []
+    jobs.put(Job(kind="undo", work=int, done=lambda _: jobs.drop("pose"), failed=results.append))
+    jobs.put(job("pose", lambda: 1, results))
+    assert jobs.settle()
+    jobs.deliver()
+    assert results == []
+
+
 def test_urgent_jobs_go_first(busy):
     jobs, gate = busy
     results = []

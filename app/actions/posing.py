@@ -1,0 +1,236 @@
+"""Pulling handles: the wish comes from the pointer, the worker's solver follows."""
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+import numpy as np
+
+from app.actions import playback
+from app.actions.failures import report
+from app.document import handle_commands, key_commands
+from app.document.keyframe import Pose, Target
+from app.document.model import Document
+from app.document.settings_commands import set_anchor
+from app.jobs import Job
+from app.posing import Drag, Rig, pose_at
+from app.session import Grab, Project, Session
+
+POSING, INSERTING = "Posing", "Inserting a key"
+# Newton steps of one job: the picture follows the hand after each.
+STEPS = 2
+# Steps after the hand let go; a drag that is free to come to rest needs far fewer.
+MOST_STEPS = 300
+
+
+def pull(session: Session, wishes: Mapping[int, Target]) -> None:
+    """Wish handles elsewhere in the pose that is shown; the others keep their wishes."""
+    project = session.project
+    if project is None or project.shown is None:
+        return
+    if project.grab is None or not project.grab.held:
+        project.grab = _grab(session, project)
+    grab = project.grab
+    grab.targets = {**grab.targets, **wishes}
+    grab.steps = 0
+    _follow(session, project, grab)
+
+
+def let_go(session: Session) -> None:
+    """End the pull; the solver goes on until it rests."""
+    if session.project and session.project.grab:
+        session.project.grab.held = False
+        _end_if_over(session.project, session.project.grab)
+
+
+def drop(session: Session) -> None:
+    """End the pull where the solver is."""
+    if session.project and session.project.grab:
+        session.jobs.drop(POSING)
+        session.project.grab = None
+
+
+def nudge(session: Session, step: complex) -> None:
+    """Move the selected handles by a few pixels of the picture."""
+    project = session.project
+    if project is None or project.shown is None or not project.selected:
+        return
+    targets = project.grab.targets if project.grab else _wishes(project)
+    moved = {
+        identity: replace(targets[identity], position=targets[identity].position + step)
+        for identity in project.selected
+    }
+    pull(session, moved)
+    let_go(session)
+
+
+def add_handle(session: Session, place: complex) -> None:
+    """Add a handle where the shape is at a place of the screen's plane; nothing moves."""
+    project = session.project
+    if project is None or project.shown is None:
+        return
+    drop(session)
+    shown = project.shown
+    found = shown.figure.locate(np.array([place]), shown.positions)
+    rest = complex(found.on(shown.figure.domain.mesh.vertices)[0])
+    identity = project.document.next_handle
+    project.history.do(handle_commands.add_handle(rest))
+    if project.loose is not None:
+        project.loose = _retargeted(project.document, project.loose)
+    project.selected, project.chosen = frozenset({identity}), frozenset()
+
+
+def remove_handles(session: Session, identities: frozenset[int]) -> None:
+    """Delete handles; every pose stays as it is."""
+    project = session.project
+    if project is None:
+        return
+    drop(session)
+    project.history.do(handle_commands.remove_handles(identities))
+    project.selected -= identities
+    if project.loose is not None:
+        project.loose = _retargeted(project.document, project.loose)
+
+
+def anchor_at(session: Session, identity: int) -> None:
+    """Make a handle's point the anchor, or let the engine choose again if it is already."""
+    project = session.project
+    if project is None:
+        return
+    place = project.document.handle(identity).position
+    project.history.do(set_anchor(None if project.document.anchor == place else place))
+
+
+def free_turn(session: Session, identity: int) -> None:
+    """Let the shape turn freely at a handle in the pose that is shown."""
+    project = session.project
+    if project is None or project.shown is None:
+        return
+    targets = project.grab.targets if project.grab else _wishes(project)
+    pull(session, {identity: replace(targets[identity], rotation=None)})
+    let_go(session)
+
+
+def insert_key(session: Session) -> None:
+    """Hold the pose that is shown in a key at the present frame."""
+    project = session.project
+    if project is None:
+        return
+    drop(session)
+    document = project.document
+    frame = playback.current_frame(session, project)
+    playback.halt(session)
+    if project.loose is not None:
+        _hold(project, frame, project.loose, gesture=None)
+        project.loose = None
+    elif all(key.frame != frame for key in document.keys):
+        rig = Rig.of(document, project.rig)
+        session.jobs.put(
+            Job(
+                kind=INSERTING,
+                work=lambda: pose_at(rig, frame),
+                done=lambda pose: _insert(session, project, document, frame, pose),
+                failed=lambda error: report(session, "The key could not be inserted", error),
+                urgent=True,
+            )
+        )
+
+
+def _insert(session: Session, project: Project, document: Document, frame: int, pose: Pose) -> None:
+    if project is session.project and project.document is document:
+        project.history.do(key_commands.insert_key(frame, pose))
+        project.chosen = frozenset({frame})
+
+
+def _grab(session: Session, project: Project) -> Grab:
+    playback.halt(session)
+    session.jobs.drop(POSING)
+    frame = playback.current_frame(session, project)
+    pose = project.loose or (project.shown.pose if project.shown else None)
+    return Grab(frame=frame, targets=_wishes(project), pose=pose)
+
+
+def _wishes(project: Project) -> Mapping[int, Target]:
+    """Return what is wished of each handle in the pose that is shown."""
+    shown = project.shown
+    pose = project.loose or (shown.pose if shown else None)
+    if pose is not None:
+        return pose.targets
+    if shown is None:
+        return {}
+    return {
+        handle.id: Target(position=complex(place))
+        for handle, place in zip(shown.document.handles, shown.handle_places, strict=True)
+    }
+
+
+def _follow(session: Session, project: Project, grab: Grab) -> None:
+    """Let the worker go on, unless it is at it: then it goes on when that is delivered."""
+    if POSING in session.jobs.kinds:
+        return
+    targets, drag, document = grab.targets, grab.drag, project.document
+    rig = project.rig
+    clock = session.clock
+
+    def work() -> tuple[Drag, float]:
+        begun = clock()
+        start = drag
+        if start is None:
+            mine = Rig.of(document, rig)
+            pose = grab.pose or pose_at(mine, grab.frame)
+            start = Drag.begin(mine, pose)
+        return start.towards(targets, STEPS), clock() - begun
+
+    def done(result: tuple[Drag, float]) -> None:
+        if session.project is not project or project.grab is not grab:
+            return
+        grab.drag, session.solver_seconds = result
+        project.rig = grab.drag.rig
+        grab.steps += STEPS
+        _keep(session, project, grab, targets)
+        if not _end_if_over(project, grab) and not (grab.drag.is_over and grab.targets == targets):
+            _follow(session, project, grab)
+
+    def failed(error: Exception) -> None:
+        project.grab = None
+        report(session, "This pose could not be solved", error)
+
+    session.jobs.put(Job(kind=POSING, work=work, done=done, failed=failed, urgent=True))
+
+
+def _keep(session: Session, project: Project, grab: Grab, targets: Mapping[int, Target]) -> None:
+    """Put the solver's newest map into the document, or show it unkeyed."""
+    if grab.drag is None:
+        return
+    pose = grab.drag.pose(targets)
+    if session.preferences.auto_key:
+        _hold(project, grab.frame, pose, gesture=grab)
+        project.loose = None
+    else:
+        project.loose = pose
+
+
+def _hold(project: Project, frame: int, pose: Pose, gesture: object) -> None:
+    if any(key.frame == frame for key in project.document.keys):
+        project.history.do(key_commands.pose_key(frame, pose), gesture=gesture)
+    else:
+        project.history.do(key_commands.insert_key(frame, pose), gesture=gesture)
+
+
+def _end_if_over(project: Project, grab: Grab) -> bool:
+    over = grab.drag is not None and (grab.drag.is_over or grab.steps >= MOST_STEPS)
+    if not grab.held and over:
+        project.grab = None
+        return True
+    return False
+
+
+def _retargeted(document: Document, pose: Pose) -> Pose:
+    """Return a pose with a target for each handle of a document: its own, or where it is."""
+    places = document.map_of(pose)(
+        np.array([handle.position for handle in document.handles], dtype=np.complex128)
+    )
+    targets = {
+        handle.id: pose.targets.get(handle.id, Target(position=complex(place)))
+        for handle, place in zip(document.handles, places, strict=True)
+    }
+    return replace(pose, targets=targets)

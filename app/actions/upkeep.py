@@ -1,0 +1,81 @@
+"""What follows the document by itself: in-betweens, and the pose on the screen."""
+
+from functools import partial
+
+from app.actions import playback
+from app.actions.failures import report
+from app.document.model import Document
+from app.jobs import Job
+from app.motion import Figure, Motion, prepare_motion
+from app.session import Project, Session
+from app.shown import show
+
+SKETCHING, REFINING = "In-betweens", "Finer in-betweens"
+
+
+def keep_up(session: Session) -> None:
+    """Ask the worker for in-betweens that are missing, and settle what is drawn; once a frame."""
+    project = session.project
+    if project is None:
+        return
+    document = project.document
+    if project.unmovable is not document:
+        _ask(session, project, document)
+    project.shown = show(
+        document,
+        playback.current_frame(session, project),
+        project.loose,
+        _motions(session, project),
+        project.shown,
+    )
+
+
+def _ask(session: Session, project: Project, document: Document) -> None:
+    is_pulled = project.grab is not None and project.grab.held
+    if not project.sketch.knows(document):
+        # While the hand pulls, in-betweens cost the solver its time; ghosts are worth it.
+        if session.overlays.onion or not is_pulled:
+            _prepare(session, project, SKETCHING)
+    elif project.grab is None and (project.full is None or not project.full.knows(document)):
+        _prepare(session, project, REFINING)
+
+
+def _prepare(session: Session, project: Project, kind: str) -> None:
+    if kind in session.jobs.kinds:
+        return
+    document = project.document
+    earlier = project.sketch if kind == SKETCHING else project.full
+
+    def done(motion: Motion) -> None:
+        if kind == SKETCHING:
+            project.sketch = motion
+        else:
+            project.full = motion
+
+    session.jobs.put(
+        Job(
+            kind=kind,
+            work=partial(_motion, document, earlier, kind),
+            done=done,
+            failed=lambda error: _give_up(session, project, document, error),
+        )
+    )
+
+
+def _motion(document: Document, earlier: Motion | None, kind: str) -> Motion:
+    if earlier is None or earlier.figure.source is not document.domain:
+        make = Figure.sketch if kind == SKETCHING else Figure.full
+        earlier = Motion.at_rest(document, make(document.domain))
+    return prepare_motion(document, earlier)
+
+
+def _give_up(session: Session, project: Project, document: Document, error: Exception) -> None:
+    project.unmovable = document
+    report(session, "The in-betweens of these keys cannot be made", error)
+
+
+def _motions(session: Session, project: Project) -> tuple[Motion, ...]:
+    is_moving = project.grab is not None or project.playhead.since is not None
+    if project.full is None or (is_moving and not session.full_detail):
+        return (project.sketch,)
+    return (project.full, project.sketch)

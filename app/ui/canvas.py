@@ -1,0 +1,277 @@
+"""What the viewport shows: the drawing, its ghosts, and all that marks it."""
+
+import numpy as np
+from imgui_bundle import ImVec4
+
+from app.document.timeline import time_of
+from app.motion import Figure
+from app.render.gpu_mesh import GpuMesh, Pose, StreamedVertices
+from app.render.gpu_picture import GpuPicture
+from app.render.handles import HandleMark, HandleStyle, mark_handles
+from app.render.renderer import Renderer
+from app.render.scene import Background, Colour, Disc, Ghost, Heat, Line, Scene, Wireframe
+from app.render.target import Target
+from app.session import HeatMap, Project, Session
+from app.shown import Shown
+from app.ui.theme import PALETTES, Palette
+from engine import distortion
+from engine.arrays import Complexes, Floats
+
+GHOST_BEFORE, GHOST_AFTER = (0.93, 0.36, 0.36), (0.30, 0.62, 0.98)
+GHOST_OPACITY = 0.38
+LAG = 4.0  # pixels of the screen that a handle may lack before its wish is shown
+
+
+class Canvas:
+    """Owner of everything that the viewport's picture is drawn from.
+
+    Parameters
+    ----------
+    renderer : Renderer
+    """
+
+    def __init__(self, renderer: Renderer) -> None:
+        self._renderer = renderer
+        self._target: Target | None = None
+        self._retired: Target | None = None
+        self._drawing: _Drawing | None = None
+
+    @property
+    def texture(self) -> int | None:
+        """OpenGL's name of the picture; None before the first one."""
+        return None if self._target is None else self._target.texture.glo
+
+    @property
+    def target(self) -> Target | None:
+        """Where the picture is."""
+        return self._target
+
+    def draw(self, session: Session) -> None:
+        """Draw the project of a session as it is shown now."""
+        project = session.project
+        if project is None or project.shown is None:
+            return
+        self._fit_target(session.screen)
+        if self._drawing is None or self._drawing.project is not project:
+            self._forget_drawing()
+            self._drawing = _Drawing(self._renderer, project)
+        scene = _scene(session, project, project.shown, self._drawing)
+        if self._target is not None:
+            self._renderer.draw(self._target, project.view(session.screen), scene)
+
+    def release(self) -> None:
+        """Let everything go."""
+        self._forget_drawing()
+        for target in filter(None, (self._target, self._retired)):
+            target.release()
+        self._target = self._retired = None
+
+    def _fit_target(self, size: tuple[int, int]) -> None:
+        if self._target is not None and self._target.size == size:
+            return
+        # ImGui may still show the last one in this frame.
+        if self._retired is not None:
+            self._retired.release()
+        self._retired, self._target = self._target, Target(self._renderer.programs, size)
+
+    def _forget_drawing(self) -> None:
+        if self._drawing is not None:
+            self._drawing.release()
+            self._drawing = None
+
+
+class _Drawing:
+    """The picture of a project and its figures on the graphics card."""
+
+    def __init__(self, renderer: Renderer, project: Project) -> None:
+        self.project = project
+        self._renderer = renderer
+        self._picture = GpuPicture(renderer.programs.context, project.picture.rgba)
+        self._meshes: dict[Figure, GpuMesh] = {}
+        self._layers: dict[tuple[Figure, int], _Layer] = {}
+
+    def layer(self, figure: Figure, number: int = 0) -> "_Layer":
+        """Return the vertex buffer of a figure with this number, 0 for the drawing itself."""
+        if (figure, number) not in self._layers:
+            self._layers[figure, number] = _Layer(self._renderer, self._mesh(figure))
+        return self._layers[figure, number]
+
+    def keep_only(self, figures: tuple[Figure, ...]) -> None:
+        """Let the buffers of other figures go."""
+        for figure, number in [key for key in self._layers if key[0] not in figures]:
+            self._layers.pop((figure, number)).pose.release()
+        for figure in [figure for figure in self._meshes if figure not in figures]:
+            self._meshes.pop(figure).release()
+
+    def release(self) -> None:
+        self.keep_only(())
+        self._picture.release()
+
+    def _mesh(self, figure: Figure) -> GpuMesh:
+        if figure not in self._meshes:
+            mesh = figure.domain.mesh
+            self._meshes[figure] = GpuMesh(
+                self._renderer.programs,
+                self._picture,
+                rest=mesh.vertices,
+                triangles=mesh.triangles,
+            )
+        return self._meshes[figure]
+
+
+class _Layer:
+    """One pose of a figure; positions and heat are uploaded when they are others than before."""
+
+    def __init__(self, renderer: Renderer, mesh: GpuMesh) -> None:
+        self._vertices = StreamedVertices(renderer.programs.context, mesh.count)
+        self.pose = Pose(mesh, self._vertices)
+        self._positions: Complexes | None = None
+        self._heat: tuple[Complexes, HeatMap] | None = None
+
+    def place(self, positions: Complexes) -> Pose:
+        if positions is not self._positions:
+            # Pairs of single-precision numbers are what complex numbers consist of.
+            self._vertices.write(positions.astype(np.complex64).view(np.float32).reshape(-1, 2))
+            self._positions = positions
+        return self.pose
+
+    def heat(self, shown: Shown, heat_map: HeatMap) -> None:
+        if self._heat is None or self._heat[0] is not shown.positions or self._heat[1] != heat_map:
+            values = measure(shown, heat_map)
+            self.pose.write_heat(values.astype(np.float32))
+            self._heat = (shown.positions, heat_map)
+
+
+def measure(shown: Shown, heat_map: HeatMap) -> Floats:
+    """Return one of the distortions at the vertices of what is shown, (v,)."""
+    fz, fzbar = shown.figure.derivatives(shown.positions)
+    match heat_map:
+        case "sigma_a":
+            return distortion.sigma_a(fz, fzbar)
+        case "sigma_b":
+            return distortion.sigma_b(fz, fzbar)
+        case _:
+            return distortion.k(fz, fzbar)
+
+
+def heat_limits(project: Project, heat_map: HeatMap) -> tuple[float, float]:
+    """Return the values at the two ends of the colours: from none to all that the bounds allow."""
+    bounds = project.document.bounds
+    match heat_map:
+        case "sigma_a":
+            return 1.0, bounds.sigma_a
+        case "sigma_b":
+            return 1.0, bounds.sigma_b
+        case _:
+            return 0.0, bounds.k
+
+
+def _scene(session: Session, project: Project, shown: Shown, drawing: _Drawing) -> Scene:
+    palette = PALETTES[session.preferences.theme]
+    overlays = session.overlays
+    figures = [motion.figure for motion in (project.sketch, project.full) if motion is not None]
+    drawing.keep_only((*figures, shown.figure))
+    layer = drawing.layer(shown.figure)
+    heat = None
+    if overlays.heat_map != "none":
+        layer.heat(shown, overlays.heat_map)
+        low, high = heat_limits(project, overlays.heat_map)
+        heat = Heat(low=low, high=high)
+    wireframe = Wireframe(colour=_colour(palette.text, 0.35)) if overlays.wireframe else None
+    lines, discs = _marks(session, project, shown, palette)
+    return Scene(
+        background=_background(session, palette),
+        pose=layer.place(shown.positions),
+        heat=heat,
+        wireframe=wireframe,
+        ghosts=_ghosts(session, project, shown, drawing) if overlays.onion else (),
+        lines=lines,
+        discs=discs,
+    )
+
+
+def _background(session: Session, palette: Palette) -> Background:
+    backdrop = session.overlays.backdrop
+    if backdrop == "checker":
+        return Background(
+            colour=_colour(palette.paper),
+            checks=_colour(palette.check),
+            square=12.0 * session.preferences.scale,
+        )
+    red, green, blue = (channel / 255 for channel in bytes.fromhex(backdrop[1:]))
+    return Background(colour=(red, green, blue, 1.0))
+
+
+def _ghosts(
+    session: Session, project: Project, shown: Shown, drawing: _Drawing
+) -> tuple[Ghost, ...]:
+    overlays, document = session.overlays, project.document
+    if project.playhead.since is not None:
+        return ()
+    ghosts = []
+    sides = ((-1, overlays.ghosts_before, GHOST_BEFORE), (1, overlays.ghosts_after, GHOST_AFTER))
+    number = 0
+    for direction, count, tint in sides:
+        for step in range(count, 0, -1):
+            number += 1
+            frame = shown.frame + direction * step * overlays.ghost_step
+            if frame not in document.frames and not document.loop:
+                continue
+            positions = project.sketch.positions(document, frame)
+            if positions is None or time_of(document, frame) == time_of(document, shown.frame):
+                continue
+            pose = drawing.layer(project.sketch.figure, number).place(positions)
+            ghosts.append(Ghost(pose=pose, tint=tint, opacity=GHOST_OPACITY / step**0.5))
+    return tuple(ghosts)
+
+
+def _marks(
+    session: Session, project: Project, shown: Shown, palette: Palette
+) -> tuple[tuple[Line, ...], tuple[Disc, ...]]:
+    scale = session.preferences.scale
+    document = shown.document
+    lines: list[Line] = []
+    if session.overlays.outline:
+        lines += _outlines(shown, palette, scale)
+    if not session.overlays.handles or project.playhead.since is not None:
+        return tuple(lines), ()
+    style = HandleStyle()
+    wishes = project.grab.targets if project.grab else None
+    if wishes is None and shown.pose is not None:
+        wishes = shown.pose.targets
+    zoom = project.view(session.screen).scale
+    marks = []
+    for handle, place in zip(document.handles, shown.handle_places, strict=True):
+        wish = wishes.get(handle.id) if wishes else None
+        lags = wish is not None and abs(wish.position - place) * zoom > LAG * scale
+        marks.append(
+            HandleMark(
+                place=complex(place),
+                wish=wish.position if lags and wish is not None else None,
+                anchor=handle.position == document.anchor,
+                selected=handle.id in project.selected,
+                hovered=handle.id == session.hovered,
+            )
+        )
+    handle_lines, discs = mark_handles(marks, scale=scale, style=style)
+    return (*lines, *handle_lines), discs
+
+
+def _outlines(shown: Shown, palette: Palette, scale: float) -> list[Line]:
+    """Return the outline, moved with the shape, and the cage around the shape at rest."""
+    count = len(shown.figure.domain.outline)
+    outline = shown.positions[:count]
+    return [
+        Line(
+            points=shown.figure.domain.cage,
+            colour=_colour(palette.warning, 0.8),
+            width=1.5 * scale,
+            dash=5.0 * scale,
+            closed=True,
+        ),
+        Line(points=outline, colour=_colour(palette.accent), width=1.5 * scale, closed=True),
+    ]
+
+
+def _colour(colour: ImVec4, alpha: float = 1.0) -> Colour:
+    return colour.x, colour.y, colour.z, alpha * colour.w
