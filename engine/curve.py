@@ -24,12 +24,6 @@ def at_arc_lengths(curve: Complexes, wanted: Floats) -> Complexes:
     return np.asarray(np.interp(wanted, arc_lengths(curve), closed))
 
 
-def arc_between(arcs: Floats, length: float) -> Floats:
-    """Return the shorter of the two ways round for differences `arcs` of arc lengths."""
-    direct = np.abs(arcs)
-    return np.minimum(direct, length - direct)
-
-
 def outward_normals(curve: Complexes, reach: int) -> Complexes:
     """Return the outward unit normals of a counter-clockwise curve.
 

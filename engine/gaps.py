@@ -4,8 +4,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from engine.arrays import Complexes, Floats
-from engine.curve import arc_between, arc_lengths
-from engine.polygon import as_xy
+from engine.polygon import as_xy, edges
 
 FACING = 0.2  # cosine between the outward normal and what lies opposite, at least
 SQUARE_ON = 0.7  # cosine from which on the opposite side counts as straight ahead
@@ -38,15 +37,17 @@ def half_gaps(curve: Complexes, normals: Complexes, *, reach: float, separation:
     past what is nearest to them; that only makes the gap look narrower.
     """
     radius = np.full(len(curve), np.inf)
-    arcs = arc_lengths(curve)
-    pairs = cKDTree(as_xy(curve)).query_pairs(2 * reach, output_type="ndarray")
-    first, second = pairs[:, 0], pairs[:, 1]
+    spacing = float(np.abs(edges(curve)).mean())
+    first, second = cKDTree(as_xy(curve)).query_pairs(2 * reach, output_type="ndarray").T
+    steps = second - first
+    apart = np.minimum(steps, len(curve) - steps)
+    # Most pairs are neighbours along the curve: these go first.
+    limbs = apart > separation / spacing
+    first, second, apart = first[limbs], second[limbs], apart[limbs]
     across = curve[second] - curve[first]
+    limbs = apart * spacing > DETOUR * np.abs(across)
+    first, second, across = first[limbs], second[limbs], across[limbs]
     distance = np.abs(across)
-    apart = arc_between(arcs[second] - arcs[first], arcs[-1])
-    limbs = apart > np.maximum(separation, DETOUR * distance)
-    first, second = first[limbs], second[limbs]
-    across, distance = across[limbs], distance[limbs]
     for here, direction in ((first, across), (second, -across)):
         cosine = (direction * normals[here].conj()).real / np.maximum(distance, 1e-300)
         facing = cosine > FACING

@@ -5,6 +5,7 @@ from typing import cast
 
 import contourpy
 import numpy as np
+import shapely
 from scipy import ndimage
 from scipy.spatial import cKDTree
 
@@ -19,6 +20,7 @@ SEPARATION = 0.08  # of the diagonal: arc length from which on two points can fa
 SAMPLING = 0.0015  # of the diagonal: spacing at which gaps are looked for
 GROWTH = 0.35  # by which the margin may grow along the curve, per arc length
 NORMAL_REACH = 3  # samples before and after, over which normals are taken
+SLIT = 0.5  # of the width of closed gaps: what is left of a gap between the margins
 SKIN = 0.25  # cells: margin of the curve on which gaps are looked for
 
 
@@ -104,21 +106,33 @@ def curve_at_margin(
     closed = room < closing / 2
     share = min(GAP_MARGIN, GAP_ROOM * margin / (margin + offset))
     margins = np.where(closed, margin, np.minimum(margin, share * room))
-    # A closed stretch keeps its full margin, or the gap would open again.
-    margins = np.where(closed, margin, limit_growth(margins, arc_lengths(skin), GROWTH))
+    margins = limit_growth(margins, arc_lengths(skin), GROWTH)
+    # Both sides of a closed gap must meet, whatever the margins beside it.
+    margins[closed] = np.maximum(margin, room[closed] + 1)
     tree = cKDTree(as_xy(skin))
-    if margins.min() < 0.999 * margin:
-        ring, enclosed = _outer_ring(field.distance - _spread(field, tree, margins, margin))
-    else:
-        ring, enclosed = _outer_ring(field.distance - margin)
+    everywhere = np.allclose(margins, margin)
+    level = margin if everywhere else _spread(field, tree, margins, margin)
+    ring, enclosed = _outer_ring(field.distance - level)
+    ring = _without_slits(ring, SLIT * closing)
     _, nearest = tree.query(as_xy(ring))
     return MarginCurve(points=ring, margins=margins[nearest], enclosed=enclosed)
+
+
+def _without_slits(ring: Complexes, width: float) -> Complexes:
+    """Close the slits outside a ring that are narrower than `width`: no edges fit into them."""
+    area = (
+        shapely.Polygon(as_xy(ring)).buffer(width / 2, quad_segs=2).buffer(-width / 2, quad_segs=2)
+    )
+    parts = shapely.get_parts(area)
+    exterior = parts[shapely.area(parts).argmax()].exterior
+    xy = shapely.get_coordinates(shapely.orient_polygons(shapely.Polygon(exterior)))
+    return np.asarray(xy[:-1, 0] + 1j * xy[:-1, 1])
 
 
 def _spread(field: DistanceField, tree: cKDTree, margins: Floats, margin: float) -> Floats:
     """Return for every node the margin (h + 1, w + 1) at the mask's node nearest to it."""
     spread = np.full(field.distance.shape, margin)
-    near = (field.distance > 0) & (field.distance < margin + 2)
+    near = (field.distance > 0) & (field.distance < margins.max() + 2)
     rows, columns = field.rows[near], field.columns[near]
     # Each node of the mask is looked up once.
     nodes, members = np.unique(rows.astype(np.intp) * near.shape[1] + columns, return_inverse=True)

@@ -20,8 +20,11 @@ from engine.working_grid import working_grid
 Detail = Literal["coarse", "normal", "fine"]
 MARGINS: dict[Detail, float] = {"coarse": 0.012, "normal": 0.006, "fine": 0.003}  # of the diagonal
 LEAST_MARGIN = 0.8  # pixels of an enlarged subject: enough to straighten staircases
-LARGEST_OFFSET = 0.02  # of the diagonal: above, the Cauchy coordinates become ill-conditioned
-NARROWEST_GAP = 0.0018  # of the diagonal: below, two cages have no room in a gap
+LEAST_OFFSET, MOST_OFFSET = (
+    0.005,
+    0.02,
+)  # of the diagonal: between boundary spikes and bad conditioning
+NARROWEST_GAP = 0.002  # of the diagonal: below, two cages have no room in a gap
 MOST_VERTICES = 180  # aimed at, by widening the margin
 WIDENING, MOST_WIDENED = 1.4, 2.0
 MOST_DRAFTS = 6
@@ -32,6 +35,7 @@ SPACING = 0.5  # of the local margin, between the points that may become vertice
 LEASH, INNER, OUTER = 0.3, 0.5, 0.6  # of the local margin: smoothing; edges within, without
 SMOOTHING = 4  # rounds
 TIGHTENING = 0.6
+MOST_TURN = np.radians(160)  # at a vertex: sharper spikes have no room for triangles or a cage
 MOST_ATTEMPTS = 10
 
 
@@ -110,7 +114,7 @@ def trace_outline(mask: Booleans, *, detail: Detail) -> Outline:
     if closing > narrowest:
         notices.append(f"gaps narrower than {closing * grid.cell:.1f} pixels closed")
     if widening > 1:
-        notices.append(f"margin widened {widening:g} times to keep the outline to few vertices")
+        notices.append(f"margin widened {widening:.1f} times for an outline of few vertices")
     share = best.enclosed / np.count_nonzero(piece.mask)
     if share >= LEAST_TOLD:
         notices.append(f"the outline closes over gaps of {share:.1%} of the subject")
@@ -125,7 +129,7 @@ def _draft(
     field: DistanceField, *, margin: float, closing: float, diagonal: float
 ) -> _Draft | None:
     """Draw outline and cage at a margin; return None if the subject is too intricate for it."""
-    offset = min(margin, LARGEST_OFFSET * diagonal)
+    offset = float(np.clip(margin, LEAST_OFFSET * diagonal, MOST_OFFSET * diagonal))
     curve = curve_at_margin(field, margin=margin, offset=offset, closing=closing, diagonal=diagonal)
     points = _polygon_around(field.boundary(), curve, diagonal)
     if points is None:
@@ -140,8 +144,8 @@ def _draft(
 def _polygon_around(corners: Complexes, curve: MarginCurve, diagonal: float) -> Complexes | None:
     """Return a simple polygon of few edges along the curve, around all corners.
 
-    Where it crosses itself or leaves out a corner, it is drawn again, closer to the curve; None
-    is returned if that does not help.
+    Where it crosses itself, turns back or leaves out a corner, it is drawn again, closer to the
+    curve; None is returned if that does not help.
     """
     points, margins = _graded(curve, SHORTEST_EDGE * diagonal)
     longest = min(LONGEST_EDGE * diagonal, float(np.abs(edges(points)).sum()) / FEWEST_EDGES)
@@ -178,7 +182,11 @@ def _graded(curve: MarginCurve, shortest: float) -> tuple[Complexes, Floats]:
 
 
 def _faults(polygon: Complexes, corners: Complexes) -> Complexes:
-    """Return the places where a polygon crosses itself or leaves out a corner."""
+    """Return the places where a polygon crosses itself, turns back or leaves out a corner."""
+    along = edges(polygon)
+    sharp = np.abs(np.angle(along / np.roll(along, 1))) > MOST_TURN
+    if sharp.any():
+        return np.asarray(polygon[sharp])
     crossing = self_crossings(polygon).any(axis=1)
     if crossing.any():
         return np.concatenate([polygon[crossing], np.roll(polygon, -1)[crossing]])

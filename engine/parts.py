@@ -183,8 +183,6 @@ def _without_holes(mask: Booleans) -> tuple[Booleans, tuple[str, ...]]:
     filled = labels != outside
     holes = int(np.count_nonzero(areas))
     largest = areas.max() / np.count_nonzero(filled)
-    if holes == 1:
-        told = f"1 hole filled ({largest:.1%} of the subject)"
-    else:
-        told = f"{holes:,} holes filled, the largest {largest:.1%} of the subject"
-    return filled, (told,)
+    size = f"{largest:.1%}" if largest >= 0.001 else "under 0.1%"
+    told = f"{_counted(holes, 'hole')} filled, the largest {size} of the subject"
+    return filled, (told.replace(", the largest", ",") if holes == 1 else told,)

@@ -63,7 +63,13 @@ def letter(text: str, size: int) -> Bytes:
 def stick_figure(size: int = 400, line: int = 1) -> Bytes:
     """Head, body, arms and legs in lines of `line` pixels, not antialiased."""
     s = size / 100
-    strokes = [(50, 30, 50, 62), (20, 32, 50, 42), (80, 32, 50, 42), (50, 62, 28, 96), (50, 62, 72, 96)]
+    strokes = [
+        (50, 30, 50, 62),
+        (20, 32, 50, 42),
+        (80, 32, 50, 42),
+        (50, 62, 28, 96),
+        (50, 62, 72, 96),
+    ]
 
     def drawing(draw: ImageDraw.ImageDraw) -> None:
         draw.ellipse((40 * s, 8 * s, 60 * s, 30 * s), outline=255, width=line)
