@@ -16,6 +16,7 @@ EXIT_INTERRUPTED = 130
 # `run(arguments)`; only the one that is asked for is loaded.
 COMMANDS = {
     "domain": "Find a picture's outline; build the cage and the triangulation.",
+    "deform": "Drag handles of a shape within bounds, from file to file.",
     "pose": "Make a project from a picture and a script of handles and keys.",
     "certify": "Tell how far an animation distorts its drawing, and prove its keyframes.",
     "interpolate": "In-betweens of harmonic maps at points, from file to file.",

@@ -1,0 +1,62 @@
+"""The energy of one sample as a function of a = |f_z| and b = |f_z̄|, with its derivatives.
+
+Every isotropic energy density and every bound of the method depends on the Jacobian by a and b
+alone, so that its gradient and Hessian with respect to F = f_z and G = conj(f_z̄) follow from six
+numbers. In the frames F / a and G / b the Hessian of a density h(a, b) is the radial block
+[[h_aa, h_ab], [h_ab, h_bb]] and the tangential entries h_a / a and h_b / b (Chen and Weber 2017).
+For the densities here the radial block is positive semidefinite, h_b ≥ 0, and the only eigenvalue
+that can be negative is h_a / a.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from engine.arrays import Floats
+
+
+class Radial(NamedTuple):
+    """A density h(a, b) and its derivatives at each sample, float64 (m,) each.
+
+    `b_per_b` is h_b / b, which stays smooth at b = 0.
+    """
+
+    value: Floats
+    a: Floats
+    b_per_b: Floats
+    aa: Floats
+    ab: Floats
+    bb: Floats
+
+    def plus(self, other: "Radial") -> "Radial":
+        """Return the sum of two densities."""
+        return Radial(*(mine + its for mine, its in zip(self, other, strict=True)))
+
+
+def symmetric_dirichlet(a: Floats, b: Floats) -> Floats:
+    """Symmetric Dirichlet density (a² + b²)(1 + (a² − b²)⁻²): 2 for an isometry, ∞ where a ≤ b.
+
+    Half of σ_a² + σ_b² + σ_a⁻² + σ_b⁻².
+    """
+    if not np.all(a > b):
+        return np.full(np.shape(a), np.inf)
+    x, y = a * a, b * b
+    density: Floats = (x + y) * (1.0 + (x - y) ** -2)
+    return density
+
+
+def symmetric_dirichlet_derivatives(a: Floats, b: Floats) -> Radial:
+    """Return the symmetric Dirichlet density with its derivatives, for a > b ≥ 0."""
+    x, y = a * a, b * b
+    cubed = (x - y) ** 3
+    stretch, squeeze = (a + b) ** -4, (a - b) ** -4
+    # In σ_a and σ_b the density splits, so that its second derivatives are 1 + 3 σ⁻⁴ each.
+    second = 2.0 + 3.0 * (stretch + squeeze)
+    return Radial(
+        value=symmetric_dirichlet(a, b),
+        a=2.0 * a * (1.0 - (x + 3.0 * y) / cubed),
+        b_per_b=2.0 * (1.0 + (3.0 * x + y) / cubed),
+        aa=second,
+        ab=3.0 * (stretch - squeeze),
+        bb=second,
+    )

@@ -1,0 +1,155 @@
+"""Points of the shape that a person holds, and what holding them costs."""
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from engine.arrays import Complexes, Floats, as_points, readonly
+from engine.cauchy import cauchy_coordinates, cauchy_derivatives
+from engine.deform.boundary import Boundary
+from engine.errors import EngineError
+from engine.polygon import contains
+
+# λ = STIFFNESS / L² for a handle of weight 1.
+STIFFNESS = 1e4
+# A prescribed rotation is as stiff as two handles this far (of L) on either side of the point.
+ARM = 0.02
+# Handles nearer than this (of L) are one point, and cannot be in two places.
+COINCIDENT = 1e-9
+
+
+class Wish(NamedTuple):
+    """Where the handles should be.
+
+    Parameters
+    ----------
+    positions : complex128, shape (h,)
+    rotations : float64, shape (h,)
+        Angle in radians of the closest rotation, arg f_z, at each handle; NaN where it is free.
+        Angles that differ by whole turns are the same wish.
+    """
+
+    positions: Complexes
+    rotations: Floats
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Handles:
+    """The handles of a shape, with the coordinates of their points.
+
+    Build it with `Handles.place`.
+
+    Parameters
+    ----------
+    points : complex128, shape (h,)
+        Where the handles sit in the shape at rest.
+    stiffness : float64, shape (h,)
+        λ of each: the energy is Σ λ |f(point) − target|².
+    arm : float
+        Length that turns a rotation into a distance: an angle δ costs 2 λ (arm · δ)².
+    coordinates, derivatives : complex128, shape (h, n)
+        C_j and C_j' at the points.
+    hessian : float64, shape (4n − 2, 4n − 2)
+        Of the energy of the positions, in the order of `Objective`.
+    coincident : tuple of (int, int)
+        Pairs of handles at one point.
+    """
+
+    points: Complexes
+    stiffness: Floats
+    arm: float
+    coordinates: Complexes
+    derivatives: Complexes
+    hessian: Floats
+    coincident: tuple[tuple[int, int], ...]
+
+    @classmethod
+    def place(
+        cls, boundary: Boundary, points: Complexes, weights: npt.ArrayLike | None = None
+    ) -> "Handles":
+        """Place handles on a shape.
+
+        Parameters
+        ----------
+        boundary : Boundary
+        points : complex128, shape (h,)
+            In the closed outline; none at all is allowed.
+        weights : array_like of float, shape (h,), optional
+            Relative stiffnesses, 1 by default.
+
+        Raises
+        ------
+        EngineError
+            If a point is outside the outline or not finite, or a weight is not positive.
+        """
+        points = as_points(points, "handles")
+        inside = contains(boundary.outline, points, tolerance=COINCIDENT * boundary.size)
+        if not inside.all():
+            bad = int(np.flatnonzero(~inside)[0])
+            raise EngineError(
+                f"Handle {bad} at {points[bad]:.6g} is outside the outline; place it on the shape."
+            )
+        stiffness = _weights(weights, len(points)) * STIFFNESS / boundary.size**2
+        coordinates = cauchy_coordinates(boundary.cage, points)
+        distances = np.abs(points[:, None] - points)
+        first, second = np.nonzero(np.triu(distances <= COINCIDENT * boundary.size, 1))
+        return cls(
+            points=points,
+            stiffness=readonly(stiffness),
+            arm=ARM * boundary.size,
+            coordinates=readonly(coordinates),
+            derivatives=readonly(cauchy_derivatives(boundary.cage, points)),
+            hessian=readonly(_hessian(coordinates, stiffness)),
+            coincident=tuple(zip(first.tolist(), second.tolist(), strict=True)),
+        )
+
+    def wish(self, positions: Complexes, rotations: npt.ArrayLike | None = None) -> Wish:
+        """Check what is asked of the handles.
+
+        Raises
+        ------
+        EngineError
+            If there are not as many targets as handles, one is not finite, or two handles at one
+            point are to be at different places.
+        """
+        targets = as_points(positions, "targets")
+        if len(targets) != len(self.points):
+            raise EngineError(
+                f"{len(self.points)} handles need as many targets, not {len(targets)}."
+            )
+        for i, j in self.coincident:
+            if abs(targets[i] - targets[j]) > COINCIDENT * self.arm / ARM:
+                raise EngineError(
+                    f"Handles {i} and {j} are the same point of the shape but have different "
+                    "targets; remove one of them."
+                )
+        if rotations is None:
+            return Wish(targets, np.full(len(targets), np.nan))
+        angles = np.asarray(rotations, dtype=np.float64)
+        if angles.shape != targets.shape or np.isinf(angles).any():
+            raise EngineError(
+                f"Rotations must be {len(targets)} finite angles, or NaN where a handle may turn "
+                f"freely; got {angles.shape} {angles}."
+            )
+        return Wish(targets, angles)
+
+
+def _weights(weights: npt.ArrayLike | None, count: int) -> Floats:
+    factors = np.ones(count) if weights is None else np.asarray(weights, dtype=np.float64)
+    if factors.shape != (count,):
+        raise EngineError(f"{count} handles need as many weights, not {factors.shape}.")
+    if not (np.isfinite(factors) & (factors > 0)).all():
+        bad = int(np.flatnonzero(~(np.isfinite(factors) & (factors > 0)))[0])
+        raise EngineError(f"The weight of handle {bad} must be positive, not {factors[bad]:g}.")
+    return factors
+
+
+def _hessian(coordinates: Complexes, stiffness: Floats) -> Floats:
+    root = np.sqrt(2.0 * stiffness)[:, None] * coordinates
+    # Re f = Re(Σ C φ + Σ C ψ), Im f = Im(Σ C φ − Σ C ψ).
+    real, imaginary = np.hstack([root, root[:, 1:]]), -1j * np.hstack([root, -root[:, 1:]])
+    rows = np.concatenate([real, imaginary]).view(np.float64)
+    hessian: Floats = rows.T @ rows
+    return hessian

@@ -1,0 +1,219 @@
+"""What a step of a drag minimises: energy, barrier and handles, with gradient and Hessian.
+
+The unknowns are φ and ψ without ψ_0 (the gauge: (φ + c, ψ − conj(c)) is the same map). As a real
+vector they are the real and imaginary parts, alternating, of the conjugates of φ and ψ_1, ψ_2, …;
+with that order Re Σ P_j φ_j is the plain product with the parts of a complex row P, and matrices
+need no rearrangement.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+
+from engine.arrays import Booleans, Complexes, Floats, Indices
+from engine.deform.barrier import Barrier
+from engine.deform.boundary import Boundary
+from engine.deform.energy import Radial, symmetric_dirichlet, symmetric_dirichlet_derivatives
+from engine.deform.handles import Handles, Wish
+
+# The Hessian takes one sample in four, with the coefficients of its neighbours summed, as long as
+# that leaves this many for each unknown; samples with coefficients this far above the mean (near a
+# bound) enter one by one.
+STRIDE = 4
+SAMPLES_PER_VERTEX = 3
+STRONG = 3.0
+
+
+class Jet(NamedTuple):
+    """Everything the objective knows of a map; real-linear in its coefficients.
+
+    Parameters
+    ----------
+    f, g : complex128, shape (m,)
+        f_z and conj(f_z̄) at the samples.
+    positions, fz : complex128, shape (h,)
+        The map and f_z at the handles.
+    """
+
+    f: Complexes
+    g: Complexes
+    positions: Complexes
+    fz: Complexes
+
+    def advanced(self, length: float, direction: "Jet") -> "Jet":
+        """Return the jet of the map that lies `length` steps along a direction."""
+        return Jet(*(here + length * there for here, there in zip(self, direction, strict=True)))
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Objective:
+    """Energy + barrier + handle terms.
+
+    Parameters
+    ----------
+    boundary : Boundary
+    handles : Handles
+    wish : Wish
+    barrier : Barrier or None
+    """
+
+    boundary: Boundary
+    handles: Handles
+    wish: Wish
+    barrier: Barrier | None = None
+
+    @cached_property
+    def _turning(self) -> Booleans:
+        return np.isfinite(self.wish.rotations)
+
+    def jet(self, phi: Complexes, psi: Complexes) -> Jet:
+        """Measure a map, or a change of a map."""
+        # Constants do not matter to derivatives; without them a far shape loses no digits.
+        values = self.boundary.derivatives @ np.column_stack([phi - phi[0], psi - psi[0]])
+        coordinates = self.handles.coordinates
+        return Jet(
+            f=np.ascontiguousarray(values[:, 0]),
+            g=np.ascontiguousarray(values[:, 1]),
+            positions=coordinates @ phi + (coordinates @ psi).conj(),
+            fz=self.handles.derivatives @ (phi - phi[0]),
+        )
+
+    def value(self, jet: Jet) -> float:
+        """Return the objective, ∞ where the map folds or leaves the walls."""
+        a, b = np.abs(jet.f), np.abs(jet.g)
+        density = symmetric_dirichlet(a, b)
+        if self.barrier is not None:
+            density = density + self.barrier.value(a, b)
+        pull = np.abs(jet.positions - self.wish.positions) ** 2
+        value = self.boundary.weights @ density + self.handles.stiffness @ pull
+        if self._turning.any():
+            value += self._turning_stiffness @ self._turning_angles(jet) ** 2
+        return float(value)
+
+    def within(self, jet: Jet) -> bool:
+        """Tell whether the samples are strictly within the walls."""
+        a, b = np.abs(jet.f), np.abs(jet.g)
+        if self.barrier is None:
+            return bool(np.all(a > b))
+        return bool(np.all(self.barrier.slacks(a, b) > 0))
+
+    def radial(self, jet: Jet) -> Radial:
+        """Return the density of energy and barrier with its derivatives at the samples."""
+        a, b = np.abs(jet.f), np.abs(jet.g)
+        density = symmetric_dirichlet_derivatives(a, b)
+        return density if self.barrier is None else density.plus(self.barrier.derivatives(a, b))
+
+    def gradient(self, jet: Jet, radial: Radial) -> Floats:
+        """Return the gradient (4n − 2,)."""
+        weights, derivatives = self.boundary.weights, self.boundary.derivatives
+        by_f = weights * radial.a * jet.f.conj() / np.abs(jet.f)
+        by_g = weights * radial.b_per_b * jet.g.conj()
+        pull = 2.0 * self.handles.stiffness * (jet.positions - self.wish.positions)
+        by_phi = by_f @ derivatives + pull.conj() @ self.handles.coordinates
+        by_psi = by_g @ derivatives + pull @ self.handles.coordinates
+        if self._turning.any():
+            # d arg F = Im(dF / F) = Re(−i dF / F).
+            angle = 2.0 * self._turning_stiffness * self._turning_angles(jet)
+            by_phi += (-1j * angle / jet.fz[self._turning]) @ self._turning_rows
+        return np.concatenate([by_phi, by_psi[1:]]).view(np.float64)
+
+    def hessian(self, jet: Jet, radial: Radial) -> Floats:
+        """Return the positive semidefinite part of the Hessian (4n − 2, 4n − 2), upper triangle.
+
+        Notes
+        -----
+        In the frames F / |F|, G / |G| of each sample the exact Hessian has the radial block
+        [[h_aa, h_ab], [h_ab, h_bb]] and the tangential entries h_a / a, h_b / b, of which only
+        h_a / a can be negative: max(h_a / a, 0) is the exact projection. The sum over the samples
+        is a quadrature, coarser than that of energy and gradient. Cost: 24 s n² for s samples.
+        """
+        n = len(self.boundary.cage)
+        which, entries = self._quadrature(jet, radial)
+        rows = self.boundary.derivatives[which]
+        f, g = jet.f[which], jet.g[which]
+        b = np.abs(g)
+        frame_f = f.conj() / np.abs(f)
+        frame_g = np.where(b > 0, g.conj(), 1.0) / np.where(b > 0, b, 1.0)
+        radial_f, tangential_f, radial_g, tangential_g, cross = entries
+        root_f, root_g = np.sqrt(radial_f), np.sqrt(radial_g)
+        by_phi = np.concatenate(
+            [
+                rows * (root_f * frame_f)[:, None],
+                rows * (-1j * np.sqrt(tangential_f) * frame_f)[:, None],
+                *self._turning_roots(jet),
+            ]
+        ).view(np.float64)
+        rows = rows[:, 1:]
+        by_psi = np.concatenate(
+            [
+                rows * (root_g * frame_g)[:, None],
+                rows * (-1j * np.sqrt(tangential_g) * frame_g)[:, None],
+            ]
+        ).view(np.float64)
+        s = len(which)
+        hessian = self.handles.hessian.copy()
+        hessian[: 2 * n, : 2 * n] += by_phi.T @ by_phi
+        hessian[2 * n :, 2 * n :] += by_psi.T @ by_psi
+        hessian[: 2 * n, 2 * n :] += by_phi[:s].T @ (
+            (cross / (root_f * root_g))[:, None] * by_psi[:s]
+        )
+        return hessian
+
+    def _quadrature(self, jet: Jet, radial: Radial) -> tuple[Indices, Floats]:
+        """Return the samples that enter the Hessian, with their five coefficients (5, s)."""
+        weights = self.boundary.weights
+        entries = weights * np.array(
+            [
+                radial.aa,
+                np.maximum(radial.a / np.abs(jet.f), 0.0),
+                radial.bb,
+                radial.b_per_b,
+                radial.ab,
+            ]
+        )
+        m, n = len(weights), len(self.boundary.cage)
+        stride = min(STRIDE, m // (SAMPLES_PER_VERTEX * n))
+        if stride <= 1:
+            return np.arange(m), entries
+        density = radial.aa + radial.bb
+        strong = density > STRONG * float(weights @ density)
+        starts = np.arange(0, m, stride)
+        alone = np.flatnonzero(strong)
+        summed = np.add.reduceat(np.where(strong, 0.0, entries), starts, axis=1)
+        middles = np.minimum(starts + stride // 2, m - 1)
+        some = summed[0] > 0
+        return (
+            np.concatenate([middles[some], alone]),
+            np.hstack([summed[:, some], entries[:, alone]]),
+        )
+
+    @cached_property
+    def _turning_stiffness(self) -> Floats:
+        return 2.0 * self.handles.arm**2 * self.handles.stiffness[self._turning]
+
+    @cached_property
+    def _turning_rows(self) -> Complexes:
+        return self.handles.derivatives[self._turning]
+
+    def _turning_angles(self, jet: Jet) -> Floats:
+        wished = np.exp(-1j * self.wish.rotations[self._turning])
+        angles: Floats = np.angle(jet.fz[self._turning] * wished)
+        return angles
+
+    def _turning_roots(self, jet: Jet) -> list[Complexes]:
+        """Return the rows whose Gram matrix is the projected Hessian of the rotation terms.
+
+        With dF / F = x + iy the term c δ² has the Hessian 2c [[0, −δ], [−δ, 1]]; its one positive
+        eigenvalue is c (1 + root) with root² = 1 + 4 δ², for the vector (−2δ, 1 + root).
+        """
+        if not self._turning.any():
+            return []
+        delta = self._turning_angles(jet)
+        positive = 1.0 + np.sqrt(1.0 + 4.0 * delta**2)
+        vector = np.hypot(2.0 * delta, positive)
+        # x vx + y vy = Re((vx − i vy) dF / F).
+        scale = np.sqrt(self._turning_stiffness * positive) / vector
+        frame = scale * (-2.0 * delta - 1j * positive) / jet.fz[self._turning]
+        return [frame[:, None] * self._turning_rows]
