@@ -5,10 +5,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from engine.arrays import Bytes, Complexes, Floats
+from engine.draw_order import with_limbs_on_top
 from engine.errors import EngineError
 from engine.mask import subject_mask
 from engine.mesh import Mesh
 from engine.outline import Detail, trace_outline
+from engine.polygon import deepest_point
 from engine.triangulation import triangulate
 
 FEWEST_TRIANGLES = 1_000
@@ -68,7 +70,7 @@ def build_domain(
         )
     subject = subject_mask(rgba, tolerance=tolerance)
     outline = trace_outline(subject.mask, detail=detail)
-    mesh = triangulate(outline.points, triangles)
+    mesh = with_limbs_on_top(triangulate(outline.points, triangles), deepest_point(outline.points))
     domain = Domain(outline=outline.points, cage=outline.cage, mesh=mesh)
     return domain, subject.notices + outline.notices
 

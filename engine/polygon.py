@@ -71,6 +71,15 @@ def distance_to_boundary(polygon: Complexes, points: Complexes) -> Floats:
     return distances
 
 
+def deepest_point(polygon: Complexes) -> complex:
+    """Return the point inside the polygon that is farthest from it, to 1e-4 of its box diagonal."""
+    radius = shapely.maximum_inscribed_circle(
+        shapely.Polygon(as_xy(polygon)), tolerance=1e-4 * box_diagonal(polygon)
+    )
+    x, y = shapely.get_coordinates(radius)[0]
+    return complex(x, y)
+
+
 def contains(polygon: Complexes, points: Complexes, *, tolerance: float = 0.0) -> Booleans:
     """Tell for each point whether it lies in the closed polygon or within `tolerance` of it.
 
