@@ -1,0 +1,110 @@
+"""Spanning trees of graphs, and sums along their paths (Section 7).
+
+Nodes are numbered in depth-first order, so that a path's neighbours are neighbours in memory, and
+the sum from the root to every node is one cumulative sum along the Euler tour: each edge is passed
+once downwards with its value and once upwards with the opposite one.
+"""
+
+from dataclasses import dataclass
+from typing import TypeVar
+
+import numpy as np
+from scipy.sparse import csr_array
+from scipy.sparse.csgraph import breadth_first_order, depth_first_order
+
+from engine.arrays import Complexes, Floats, Indices, readonly
+
+type_ = TypeVar("type_", Complexes, Floats)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class SpanningTree:
+    """A tree whose nodes are numbered in depth-first order, the root being node 0.
+
+    Parameters
+    ----------
+    parent : intp, shape (s,)
+        Parent of each node; the root is its own.
+    down, up : intp, shape (s,)
+        Steps of the Euler tour at which the edge from the parent is passed.
+    """
+
+    parent: Indices
+    down: Indices
+    up: Indices
+
+    @classmethod
+    def of_parents(cls, parent: Indices) -> "SpanningTree":
+        """Build the tour from the parents of nodes that are already in depth-first order."""
+        depth = _depths(parent)
+        down = 2 * np.arange(len(parent)) - depth
+        up = down + 2 * _subtree_sizes(parent, depth) - 1
+        return cls(parent=readonly(parent), down=readonly(down), up=readonly(up))
+
+    def sums(self, steps: type_) -> type_:
+        """Return for each node the sum of `steps` (s,) over its path from the root.
+
+        `steps` holds the value of each node's edge from its parent; the root's own is its start.
+        """
+        tour = np.zeros(2 * len(steps), dtype=steps.dtype)
+        tour[self.down] = steps
+        tour[self.up] = -steps
+        np.cumsum(tour, out=tour)
+        sums: type_ = tour[self.down]
+        return sums
+
+
+def breadth_first_parents(count: int, edges: Indices, root: int) -> Indices:
+    """Return the parents (count,) on the paths with the fewest edges; −1 where there is none.
+
+    Parameters
+    ----------
+    count : int
+        Number of nodes.
+    edges : intp, shape (e, 2)
+        Undirected edges.
+    root : int
+        The root; it is its own parent.
+    """
+    ones = np.ones(len(edges), dtype=np.int8)
+    graph = csr_array((ones, (edges[:, 0], edges[:, 1])), shape=(count, count))
+    order, predecessors = breadth_first_order(graph, root, directed=False)
+    parents = np.full(count, -1, dtype=np.intp)
+    parents[order] = predecessors[order]
+    parents[root] = root
+    return parents
+
+
+def depth_first_numbering(parents: Indices, root: int) -> Indices:
+    """Return the nodes (s,) of a tree in depth-first order from the root.
+
+    Nodes whose parent is −1 belong to no tree and are left out.
+    """
+    children = np.flatnonzero(parents >= 0)
+    children = children[children != root]
+    ones = np.ones(len(children), dtype=np.int8)
+    size = len(parents)
+    tree = csr_array((ones, (parents[children], children)), shape=(size, size))
+    order: Indices = depth_first_order(tree, root, return_predecessors=False).astype(np.intp)
+    return order
+
+
+def _depths(parent: Indices) -> Indices:
+    """Count the edges from the root: after round r each node has looked 2^r ancestors up."""
+    depth: Indices = (np.arange(len(parent)) != parent).astype(np.intp)
+    ancestor = parent
+    while ancestor.any():
+        depth = depth + depth[ancestor]
+        ancestor = ancestor[ancestor]
+    return depth
+
+
+def _subtree_sizes(parent: Indices, depth: Indices) -> Indices:
+    """Count the nodes of each node's subtree, itself included, from the deepest level upwards."""
+    sizes = np.ones(len(parent), dtype=np.intp)
+    by_depth = np.argsort(depth, kind="stable")
+    starts = np.searchsorted(depth[by_depth], np.arange(1, depth.max(initial=0) + 2))
+    for level in range(len(starts) - 2, -1, -1):
+        nodes = by_depth[starts[level] : starts[level + 1]]
+        np.add.at(sizes, parent[nodes], sizes[nodes])
+    return sizes
