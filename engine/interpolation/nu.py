@@ -1,0 +1,46 @@
+"""The ν variant (Sections 5.1 and 5.2)."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from engine.arrays import Floats, Integers
+from engine.interpolation.derivatives import Derivatives, blended_log_fz, weighted
+from engine.keyframes import KeyframeSamples
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class NuBlend:
+    """log f_z and ν linear in the weights, Equations (3) and (4): Properties 1 to 5 and 7.
+
+    Parameters
+    ----------
+    keyframes : tuple of KeyframeSamples
+    sheets : int32, shape (q,)
+        Branch of each logarithm, from `root_sheets`. A change of one by a full turn changes the
+        shape of the in-betweens, not only how it turns.
+    """
+
+    keyframes: tuple[KeyframeSamples, ...]
+    sheets: Integers
+
+    @property
+    def nbytes(self) -> int:
+        """Memory beyond the keyframes' own, in bytes."""
+        return 0
+
+    def derivatives(self, weights: Floats) -> Derivatives:
+        """Blend f_z logarithmically and ν linearly.
+
+        Departs from the paper: Equation (5) lost its second bar; it reads
+        f_z̄ = conj(ν) conj(f_z), that is Ψ' = ν Φ'.
+        """
+        logarithm, log_slope = blended_log_fz(self.keyframes, self.sheets, weights)
+        fz = np.exp(logarithm)
+        nu = weighted([key.nu for key in self.keyframes], weights)
+        nu_slope = weighted([key.nu_slope for key in self.keyframes], weights)
+        nu_slope += nu * log_slope
+        nu_slope *= fz
+        log_slope *= fz
+        nu *= fz
+        return Derivatives(fz=fz, fz_slope=log_slope, g=nu, g_slope=nu_slope)

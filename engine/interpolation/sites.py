@@ -1,0 +1,165 @@
+"""Where in-betweens are wanted: what belongs to the domain and the points, not to a keyframe."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+import shapely
+
+from engine.arrays import Complexes, as_points, readonly
+from engine.cauchy import edge_logarithms
+from engine.errors import EngineError
+from engine.integration_paths import IntegrationPaths, lay_paths
+from engine.path_network import ON_OUTLINE, mesh_network, scattered_network
+from engine.polygon import (
+    as_xy,
+    box_diagonal,
+    contains,
+    deepest_point,
+    diameter,
+    require_simple,
+    sample_graded,
+)
+
+# Segments between the samples of the outline, over the distance to the nearest cage vertex and over
+# the box diagonal: some 200 samples an edge, graded.
+RATIO = 0.1
+LONGEST = 1 / 1000
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Sites:
+    """A domain with the points at which its in-betweens are wanted, shared by all keyframes.
+
+    Build it with `prepare_sites`.
+
+    Parameters
+    ----------
+    outline, cage : complex128, shapes (p,) and (n,)
+    diameter : float
+        Largest distance between two vertices of the outline.
+    points : complex128, shape (m,)
+    paths : IntegrationPaths
+        From the anchor to the points.
+    outline_samples : complex128, shape (r,)
+        In order along the outline, its vertices among them.
+    """
+
+    outline: Complexes
+    cage: Complexes
+    diameter: float
+    points: Complexes
+    paths: IntegrationPaths
+    outline_samples: Complexes
+
+    @property
+    def anchor(self) -> complex:
+        """The point whose pose is given."""
+        return complex(self.paths.nodes[0])
+
+    @property
+    def nbytes(self) -> int:
+        """Memory that the arrays take, in bytes."""
+        return self.points.nbytes + self.outline_samples.nbytes + self.paths.nbytes
+
+
+def prepare_sites(
+    outline: npt.ArrayLike,
+    cage: npt.ArrayLike,
+    points: npt.ArrayLike,
+    *,
+    triangles: npt.ArrayLike | None = None,
+    anchor: npt.ArrayLike | None = None,
+) -> Sites:
+    """Find paths inside the domain from the anchor to every point.
+
+    Parameters
+    ----------
+    outline : complex, shape (p,)
+        The domain's boundary: simple, counter-clockwise.
+    cage : complex, shape (n,)
+        The polygon of the Cauchy coordinates, counter-clockwise around the outline.
+    points : complex, shape (m,)
+        In the closed domain, to 1e-9 of its diameter.
+    triangles : int, shape (t, 3), optional
+        Triangles of the points; the paths then follow their edges. Without them the engine finds
+        its own paths.
+    anchor : complex, optional
+        By default the centre of the largest disc in the domain: farthest from the cage, where the
+        maps are smoothest and their arguments least extreme.
+
+    Raises
+    ------
+    EngineError
+        If a polygon, a point, a triangle or the anchor is not as said.
+    """
+    outline = as_points(outline, "outline", at_least=3)
+    cage = as_points(cage, "cage", at_least=3)
+    points = as_points(points, "points", at_least=1)
+    require_simple(outline, "outline")
+    _require_around(cage, outline)
+    tolerance = ON_OUTLINE * diameter(outline)
+    root = np.array([deepest_point(outline)]) if anchor is None else _single(anchor)
+    _require_inside(outline, root, tolerance, "anchor")
+    _require_inside(outline, points, tolerance, "point")
+    if triangles is None:
+        network = scattered_network(outline, points, root)
+    else:
+        network = mesh_network(outline, points, _as_triangles(triangles), root)
+    samples = sample_graded(outline, cage, ratio=RATIO, longest=LONGEST * box_diagonal(outline))
+    return Sites(
+        outline=outline,
+        cage=cage,
+        diameter=diameter(outline),
+        points=points,
+        paths=lay_paths(network, outline, cage),
+        outline_samples=readonly(samples),
+    )
+
+
+def _single(anchor: npt.ArrayLike) -> Complexes:
+    if np.size(anchor) != 1:
+        raise EngineError(
+            f"One anchor is needed, not {np.size(anchor)}: its pose fixes the in-betweens, and a "
+            "second could not be met. Leave it out, and the engine chooses one."
+        )
+    return as_points(np.reshape(anchor, (1,)), "anchor")
+
+
+def _as_triangles(values: npt.ArrayLike) -> npt.NDArray[np.int32]:
+    triangles = np.asarray(values)
+    if triangles.ndim != 2 or triangles.shape[1] != 3 or triangles.dtype.kind not in "iu":
+        raise EngineError(
+            f"triangles must be integers of shape (t, 3), not {triangles.dtype} of shape "
+            f"{triangles.shape}."
+        )
+    return triangles.astype(np.int32)
+
+
+def _require_inside(outline: Complexes, points: Complexes, tolerance: float, name: str) -> None:
+    outside = np.flatnonzero(~contains(outline, points, tolerance=tolerance))
+    if len(outside):
+        number = f" {outside[0]}" if len(points) > 1 else ""
+        count = f" ({len(outside)} points are)" if len(outside) > 1 else ""
+        z = points[outside[0]]
+        raise EngineError(
+            f"The {name}{number} at ({z.real:.6g}, {z.imag:.6g}) is outside the outline{count}; "
+            "in-betweens exist only inside it."
+        )
+
+
+def _require_around(cage: Complexes, outline: Complexes) -> None:
+    """Refuse a cage that does not wind once around the outline, with room between them.
+
+    Only that: published cages are known that cross themselves elsewhere.
+    """
+    touching = shapely.intersects(
+        shapely.LinearRing(as_xy(cage)), shapely.LinearRing(as_xy(outline))
+    )
+    if touching or np.any(np.isin(outline, cage)):
+        raise EngineError("The cage touches or crosses the outline; it must lie around it.")
+    angle = edge_logarithms(cage, outline[:1]).imag.sum()
+    if round(angle / (2 * np.pi)) != 1:
+        raise EngineError(
+            "The cage does not run once counter-clockwise around the outline; check its order."
+        )
