@@ -65,6 +65,14 @@ def test_adding_a_handle_changes_no_map_and_takes_the_place_where_it_is_now():
         assert_allclose(grown.lags(new.pose)[handle.id], 0.0, rtol=0, atol=1e-10)
 
 
+def test_handles_may_sit_on_the_outline_itself():
+    document = disc_document()
+    outline = document.domain.outline
+    for fraction in (0.0, 0.3, 0.7):
+        for place in outline + fraction * (np.roll(outline, -1) - outline):
+            assert handles.add_handle(complex(place))(document).handles
+
+
 def test_lags_are_the_distances_from_the_targets():
     document = handles.add_handle(CENTRE)(disc_document())
     pose = document.keys[0].pose

@@ -96,6 +96,13 @@ def test_the_same_document_gives_the_same_bytes_whenever_it_is_saved(tmp_path):
         assert {member.date_time for member in archive.infolist()} == {(1980, 1, 1, 0, 0, 0)}
 
 
+def test_a_save_never_writes_into_the_old_file(tmp_path):
+    save_project(tmp_path / "a", disc_document())
+    (tmp_path / "the same file").hardlink_to(tmp_path / "a")
+    save_project(tmp_path / "a", full_document())
+    assert not differences(load_project(tmp_path / "the same file"), disc_document())
+
+
 def test_the_layout_of_the_file(tmp_path, members):
     path = tmp_path / "a.lissom"
     save_project(path, full_document())
@@ -234,24 +241,27 @@ def test_every_field_is_needed(tmp_path, members):
             load_project(pack(tmp_path / "a", broken))
 
 
+@pytest.mark.parametrize("text", [b"", b"{", b"\xff\xfe", b"[]", b"null", b"[" * 100_000])
+def test_text_that_is_no_object_is_refused(tmp_path, members, text):
+    with pytest.raises(LissomError, match=r"project\.json"):
+        load_project(pack(tmp_path / "a", members | {"project.json": text}))
+
+
 @pytest.mark.parametrize(
-    "text",
+    ("field", "message"),
     [
-        b"",
-        b"{",
-        b"\xff\xfe",
-        b"[]",
-        b"null",
-        b"[" * 100_000,
-        b'{"schema": 1, "schema": 1}',
-        b'{"schema": NaN}',
-        b'{"schema": 1, "x": 1e999}',
-        b'{"schema": 1, "x": ' + b"[" * 45 + b"]" * 45 + b"}",
-        b'{"schema": 1' + b"0" * 5000 + b"}",
+        (b'"x": NaN', "holds NaN"),
+        (b'"x": -Infinity', "holds -Infinity"),
+        (b'"x": 1e999', "holds 1e999"),
+        (b'"x": ' + b"[" * 45 + b"]" * 45, "nested too deeply"),
+        (b'"x": ' + b'{"x":' * 45 + b"1" + b"}" * 45, "nested too deeply"),
+        (b'"x": 1' + b"0" * 5000, "not JSON"),
+        (b'"fps": 24', "'fps' stands twice"),
     ],
 )
-def test_text_that_is_no_project_is_refused(tmp_path, members, text):
-    with pytest.raises(LissomError, match=r"project\.json|stands twice"):
+def test_what_could_not_be_written_again_is_refused(tmp_path, members, field, message):
+    text = members["project.json"].replace(b"{", b"{" + field + b",", 1)
+    with pytest.raises(LissomError, match=message):
         load_project(pack(tmp_path / "a", members | {"project.json": text}))
 
 
