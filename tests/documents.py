@@ -113,6 +113,7 @@ def _random_key_command(rng: np.random.Generator, document: Document) -> Command
         key_commands.scale_time(rng.choice([0.5, 1.0, 1.5, 2.0])),
         key_commands.match_ends(),
         key_commands.set_easing(frames, easing),
+        key_commands.set_turns(frames, int(rng.integers(-1, 2))),
     ]
     return commands[rng.integers(len(commands))]
 
@@ -180,7 +181,7 @@ def full_document() -> Document:
         next_handle=9,
         keys=(
             Keyframe(frame=3, pose=bent, easing=PRESETS["in-out"], unknown=more),
-            Keyframe(frame=10, pose=folded, easing=Easing((0.1, 0.2, 1 / 3, 1.0))),
+            Keyframe(frame=10, pose=folded, easing=Easing((0.1, 0.2, 1 / 3, 1.0)), turns=-1),
             Keyframe(frame=40, pose=bent, easing=HOLD),
         ),
         frames=FrameRange(1, 60),

@@ -68,13 +68,13 @@ def reverse_keys(document: Document, frames: Collection[int]) -> Document:
     if len(keys) < 2:
         return document
     ends = keys[0].frame + keys[-1].frame
-    # An easing belongs to the interval after its key: those between the keys turn round with them,
-    # and the one after the last key stays where it is.
-    easings = [key.easing.reversed() for key in keys[:-1]]
-    easings = [keys[-1].easing, *easings]
+    # Easing and turns belong to the interval after their key: those between the keys turn round
+    # with them, and those after the last key stay where they are.
+    ways = [(keys[-1].easing, keys[-1].turns)]
+    ways += [(key.easing.reversed(), -key.turns) for key in keys[:-1]]
     turned = {
-        key.frame: replace(key, frame=ends - key.frame, easing=easing)
-        for key, easing in zip(keys, easings, strict=True)
+        key.frame: replace(key, frame=ends - key.frame, easing=easing, turns=turns)
+        for key, (easing, turns) in zip(keys, ways, strict=True)
     }
     return _exchange(document, turned)
 
@@ -131,6 +131,15 @@ def set_easing(document: Document, frames: Collection[int], easing: Easing) -> D
     if not keys:
         return document
     return _exchange(document, {key.frame: replace(key, easing=easing) for key in keys})
+
+
+@command("Set turns")
+def set_turns(document: Document, frames: Collection[int], turns: int) -> Document:
+    """Set how often the shape turns round on the way from the keys at some frames."""
+    keys = [key for key in _keys_at(document, frames) if key.turns != turns]
+    if not keys:
+        return document
+    return _exchange(document, {key.frame: replace(key, turns=turns) for key in keys})
 
 
 def _keys_at(document: Document, frames: Iterable[int]) -> list[Keyframe]:

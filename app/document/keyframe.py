@@ -94,9 +94,20 @@ class Pose:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Keyframe:
-    """A pose at a frame, and how time runs from there to the next key."""
+    """A pose at a frame, and the way from there to the next key.
+
+    Parameters
+    ----------
+    frame : int
+    pose : Pose
+    easing : Easing
+        How time runs until the next key.
+    turns : int
+        Whole turns, counter-clockwise, that the anchor makes on the way beyond the shorter way.
+    """
 
     frame: int
     pose: Pose
     easing: Easing = LINEAR
+    turns: int = 0
     unknown: Unknown = field(default_factory=lambda: NOTHING, repr=False, hash=False)

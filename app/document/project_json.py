@@ -179,6 +179,7 @@ def _write_key(key: Keyframe) -> Json:
     known = {
         "frame": key.frame,
         "easing": key.easing.written(),
+        "turns": key.turns,
         "targets": [_write_target(i, target) for i, target in key.pose.targets.items()],
         "certificate": {
             "k": _write_number(certificate.k),
@@ -203,6 +204,7 @@ def _read_key(content: object, where: str, phi: Complexes, psi: Complexes) -> Ke
         frame=as_whole(fields["frame"], f"{where}.frame"),
         pose=pose,
         easing=Easing.parse(fields["easing"]),
+        turns=as_whole(fields["turns"], f"{where}.turns"),
     )
     return replace(key, unknown=_unknown_of(fields, _write_key(key)))
 

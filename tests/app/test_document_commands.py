@@ -20,10 +20,11 @@ from app.document import settings_commands as settings
 from app.document.easing import HOLD, LINEAR, PRESETS
 from app.document.keyframe import Handle, Keyframe, Target
 from app.document.model import Document, PictureFile, new_document
-from app.document.settings import ExportSettings, FrameRange, Meshing
+from app.document.settings import VARIANTS, ExportSettings, FrameRange, Meshing
 from app.errors import LissomError
 from engine.deform.bounds import Bounds
 from engine.errors import EngineError
+from engine.interpolation import Variant as EngineVariant
 
 
 def animated(*frames: int, count: int = 2, seed: int = 3) -> Document:
@@ -71,6 +72,10 @@ def test_handles_may_sit_on_the_outline_itself():
     for fraction in (0.0, 0.3, 0.7):
         for place in outline + fraction * (np.roll(outline, -1) - outline):
             assert handles.add_handle(complex(place))(document).handles
+
+
+def test_the_variants_are_those_of_the_engine():
+    assert set(VARIANTS) == {variant.value for variant in EngineVariant}
 
 
 def test_lags_are_the_distances_from_the_targets():
@@ -154,7 +159,9 @@ def test_reversing_keys_turns_the_motion_round():
     document = keys.set_easing({0}, PRESETS["in"])(document)
     document = keys.set_easing({10}, HOLD)(document)
     document = keys.set_easing({30}, PRESETS["out"])(document)
+    document = keys.set_turns({10, 30}, 1)(document)
     turned = keys.reverse_keys({0, 10, 30})(document)
+    assert [key.turns for key in turned.keys] == [-1, 0, 1]
     assert frames_of(turned) == [0, 20, 30]
     assert [key.pose for key in turned.keys] == [key.pose for key in reversed(document.keys)]
     assert [key.easing for key in turned.keys] == [
@@ -234,6 +241,7 @@ def test_bounds_and_a_new_domain_come_with_solved_poses():
         keys.scale_keys({10}, 2.0),
         keys.scale_time(1.0),
         keys.set_easing({0, 10}, LINEAR),
+        keys.set_turns({0, 10}, 0),
         settings.set_fps(24.0),
         settings.set_frames(FrameRange(0, 48)),
         settings.set_work_range(None),

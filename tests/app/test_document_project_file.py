@@ -201,6 +201,7 @@ def test_a_newer_schema_need_have_nothing_else_in_common(tmp_path):
         (["keys"], [], "at least one key"),
         (["keys", 1, "frame"], 3, "Two keys are at frame 3"),
         (["keys", 1, "frame"], 2, "mixed up"),
+        (["keys", 1, "turns"], 0.5, "turns must be a whole number"),
         (["keys", 1, "easing"], "bounce", "no easing 'bounce'"),
         (["keys", 1, "easing"], [0, 0, 2, 0], "easing curve"),
         (["keys", 1, "targets"], [], "one target for each handle"),
