@@ -17,6 +17,7 @@ from app.render.scene import TRANSPARENT, Background, Colour, Scene
 from app.render.target import Target
 from engine.arrays import Bytes
 
+_SMALL: Final = 0.75  # pixels of the frame per pixel of the picture
 _NO_ERROR: Final = "GL_NO_ERROR"
 
 
@@ -47,9 +48,9 @@ def painter(
     with ExitStack() as owned:
         renderer = Renderer(context)
         owned.callback(renderer.release)
-        # At its own size the drawing comes out exact from one sample a pixel; shown smaller it is
-        # finer from four.
-        target = Target(renderer.programs, plan.view.size, 2 if plan.view.scale < 1 else 1)
+        # At its own size the drawing comes out exact from one sample a pixel; made much smaller it
+        # is finer from four.
+        target = Target(renderer.programs, plan.view.size, 2 if plan.view.scale < _SMALL else 1)
         owned.callback(target.release)
         # Errors up to here are not this export's: moderngl, for one, binds the framebuffer of
         # before again, which may be gone. A target without memory has raised by itself.
