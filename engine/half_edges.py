@@ -81,7 +81,7 @@ class HalfEdgeMesh:
 
     def __init__(self, points: Complexes, triangles: Indices) -> None:
         self.points = points
-        self.origins = np.ascontiguousarray(triangles, dtype=np.intp).ravel()
+        self.origins = np.array(triangles, dtype=np.intp).ravel()  # A copy, to be edited.
         self.twins = self._match()
         self.waiting = self.places = np.empty(0, dtype=np.intp)
 

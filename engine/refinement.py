@@ -12,10 +12,10 @@ from engine.half_edges import OUTLINE, HalfEdgeMesh, disjoint, following, preced
 from engine.mesh import smallest_angles
 
 MOST_ROUNDS = 100
-"""Rounds of refinement; a bad outline takes about 30."""
+"""Rounds of refinement; a bad outline takes about 40."""
 
 SHORTEST_EDGE = 1e-6
-"""Outline edges are never split to below this fraction of the outline's size."""
+"""Edges of the outline must be longer, and are never split below this, over its size."""
 
 
 def refine(mesh: HalfEdgeMesh, sharp: Booleans, smallest: float) -> None:
@@ -46,6 +46,8 @@ def refine(mesh: HalfEdgeMesh, sharp: Booleans, smallest: float) -> None:
         split = np.unique(np.concatenate([hidden, encroached[encroached >= 0]]))
         touched = _split_outline(mesh, sharp, split)
         suspects = _insert(mesh, centres[reached], triangles[reached], touched)
+        if not len(touched) + len(suspects):
+            break
         mesh.restore_delaunay(np.concatenate([touched, suspects]))
 
 

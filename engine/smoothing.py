@@ -1,42 +1,74 @@
-"""Laplacian smoothing of a triangulation that never makes a poor triangle poorer."""
+"""Smoothing of a triangulation: every vertex goes where its triangles would be equilateral."""
 
 import numpy as np
 
 from engine.arrays import Complexes, Indices
-from engine.half_edges import HalfEdgeMesh
+from engine.half_edges import OUTLINE, HalfEdgeMesh, following, preceding
 from engine.mesh import smallest_angles
 
-GOOD_ANGLE = 35.0
+GOOD_ANGLE = 30.0
 """Degrees: a triangle may lose quality as long as its smallest angle stays above this."""
 
 
-def smooth(mesh: HalfEdgeMesh, sweeps: int) -> None:
-    """Move vertices off the border to the middle of their neighbours and flip edges to match.
+def smooth(mesh: HalfEdgeMesh, corners: int, sweeps: int) -> None:
+    """Move vertices, those on the outline along it, and flip edges to match.
 
     Parameters
     ----------
     mesh : HalfEdgeMesh
         Constrained Delaunay; changed in place and left so.
+    corners : int
+        So many vertices, the first ones, are the outline's own and stay, as does the seam.
     sweeps : int
         How often every vertex moves.
     """
-    half_edges = np.arange(len(mesh.origins))
-    movable = np.zeros(len(mesh.points), dtype=np.bool_)
-    movable[mesh.origins] = True
-    movable[mesh.origins[mesh.twins < 0]] = False
+    border = np.flatnonzero(mesh.twins < 0)
+    fixed = np.ones(len(mesh.points), dtype=np.bool_)
+    fixed[mesh.origins] = False
+    fixed[mesh.origins[border]] = True
+    before, sliding, after = _cuts(mesh, corners)
     for _ in range(sweeps):
-        target = np.where(movable, _middle_of_neighbours(mesh, half_edges), mesh.points)
+        best = _best_places(mesh)
+        target = np.where(fixed, mesh.points, best)
+        start, end = mesh.points[before], mesh.points[after]
+        target[sliding] = _project(best[sliding], start, end)
         mesh.points = _safe_move(mesh, target)
-        mesh.restore_delaunay(half_edges)
+        mesh.restore_delaunay(np.arange(len(mesh.origins)))
 
 
-def _middle_of_neighbours(mesh: HalfEdgeMesh, half_edges: Indices) -> Complexes:
-    """Return the mean of the neighbours (v,) of each vertex, right for those off the border."""
-    start, end = mesh.ends(half_edges)
+def _cuts(mesh: HalfEdgeMesh, corners: int) -> tuple[Indices, Indices, Indices]:
+    """Return the vertices that cut an edge of the outline, with those before and after them."""
+    start, end = mesh.ends(np.flatnonzero(mesh.twins == OUTLINE))
+    before = np.empty(len(mesh.points), dtype=np.intp)
+    before[end] = start
+    cut = start >= corners
+    return before[start[cut]], start[cut], end[cut]
+
+
+def _best_places(mesh: HalfEdgeMesh) -> Complexes:
+    """Return for each vertex (v,) the mean of where its triangles would be equilateral.
+
+    Each counts by the inverse of its edge opposite to the vertex, which keeps small triangles
+    small. (With equal weights a vertex inside would go to the mean of its neighbours.)
+    """
+    corner = np.arange(len(mesh.origins))
+    p, q = (
+        mesh.points[mesh.origins[following(corner)]],
+        mesh.points[mesh.origins[preceding(corner)]],
+    )
+    weight = 1 / np.abs(q - p)
+    apex = weight * ((p + q) / 2 + 1j * np.sqrt(0.75) * (q - p))
     size = len(mesh.points)
-    x = np.bincount(start, mesh.points.real[end], size)
-    y = np.bincount(start, mesh.points.imag[end], size)
-    return np.asarray((x + 1j * y) / np.maximum(np.bincount(start, minlength=size), 1))
+    total = np.bincount(mesh.origins, weight, size)
+    x = np.bincount(mesh.origins, apex.real, size)
+    y = np.bincount(mesh.origins, apex.imag, size)
+    return np.asarray((x + 1j * y) / np.where(total > 0, total, 1.0))
+
+
+def _project(points: Complexes, starts: Complexes, ends: Complexes) -> Complexes:
+    """Return the points of the lines from `starts` to `ends` next to some others."""
+    direction = (ends - starts) / np.abs(ends - starts)
+    return np.asarray(starts + ((points - starts) * direction.conj()).real * direction)
 
 
 def _safe_move(mesh: HalfEdgeMesh, target: Complexes) -> Complexes:
@@ -49,5 +81,4 @@ def _safe_move(mesh: HalfEdgeMesh, target: Complexes) -> Complexes:
             return points
         # A triangle is only spoilt if one of its corners moved: each round leaves fewer that do.
         back = mesh.triangles[spoilt].ravel()
-        points = points.copy()
         points[back] = mesh.points[back]
