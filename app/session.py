@@ -14,23 +14,13 @@ from app.jobs import Jobs
 from app.motion import Motion
 from app.picture import Picture
 from app.posing import Drag, Rig
+from app.preferences import Preferences
 from app.render.view import View, fit_view
 from app.shown import Shown
 
 HeatMap = Literal["none", "k", "sigma_a", "sigma_b"]
-ThemeName = Literal["dark", "light"]
 Tone = Literal["info", "good", "error"]
 FIT_MARGIN = 0.08  # of the viewport, left free around a picture that is fitted into it
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Preferences:
-    """What the person chose for all projects."""
-
-    theme: ThemeName = "dark"
-    scale: float = 1.0
-    auto_key: bool = True
-    recent: tuple[Path, ...] = ()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -147,6 +137,37 @@ class Boxing:
 Gesture = Pulling | Turning | Boxing
 
 
+@dataclass(frozen=True, slots=True)
+class Scrubbing:
+    """The pointer moves the playhead."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Shifting:
+    """The pointer moves the chosen keys, or copies of them, from a frame by some frames."""
+
+    start: int
+    by: int = 0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Lassoing:
+    """The pointer spans a stretch of time to choose the keys in it."""
+
+    start: float
+    keeps: bool
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Trimming:
+    """The pointer moves an end of the work range."""
+
+    last: bool
+
+
+TimeGesture = Scrubbing | Shifting | Lassoing | Trimming
+
+
 @dataclass(slots=True, kw_only=True, eq=False)
 class Grab:
     """Handles that are being pulled, and how far the solver has followed.
@@ -181,6 +202,10 @@ class Project:
 
     Parameters
     ----------
+    name : str
+        Of the picture or the project, without its suffix.
+    path : Path, optional
+        Of the project file; None for a new one.
     sketch, full : Motion
         What can be shown of it, on a coarse mesh and on its own; `full` may not be there yet.
     loose : Pose, optional
@@ -189,10 +214,15 @@ class Project:
         None fits the picture into the viewport.
     unmovable : Document, optional
         Its in-betweens failed; they are not tried again until it changes.
+    span : tuple of float, optional
+        First and last frame that the timeline shows; None shows all.
+    kept : Document, optional
+        The one that the autosave holds, from the time `kept_at` on.
     gesture : object, optional
         Commands given while it lasts make one step of undo together.
     """
 
+    name: str
     history: History
     picture: Picture
     path: Path | None
@@ -202,6 +232,9 @@ class Project:
     grab: Grab | None = None
     shown: Shown | None = None
     unmovable: Document | None = None
+    span: tuple[float, float] | None = None
+    kept: Document | None = None
+    kept_at: float = 0.0
     playhead: Playhead = field(default_factory=Playhead)
     selected: frozenset[int] = frozenset()  # ids of handles
     chosen: frozenset[int] = frozenset()  # frames of keys
@@ -228,6 +261,7 @@ class Session:
 
     clock: Callable[[], float]
     jobs: Jobs
+    folder: Path  # for settings and unsaved work
     preferences: Preferences = field(default_factory=Preferences)
     project: Project | None = None
     overlays: Overlays = field(default_factory=Overlays)
@@ -237,6 +271,7 @@ class Session:
     toasts: list[Toast] = field(default_factory=list)
     dialog: Dialog | None = None
     pointer: Gesture | None = None
+    time_pointer: TimeGesture | None = None
     space_used: bool = False  # Space was held to move the view
     hovered: int | None = None  # the handle under the pointer
     hint: str = ""  # about what is under the pointer

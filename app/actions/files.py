@@ -1,12 +1,14 @@
 """Opening pictures and projects."""
 
-from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple
 
-from app.actions.action import Action, do
+from app.actions import saving
+from app.actions.action import do
 from app.actions.failures import report
+from app.actions.saving import PROJECT
 from app.assets import sample_images
+from app.autosave import find_leftovers, forget_autosave, write_autosave
 from app.document.history import History
 from app.document.model import Document
 from app.document.project_file import load_project
@@ -17,13 +19,11 @@ from app.opening import open_picture
 from app.picture import Picture, decode_picture
 from app.session import FileDialog, Project, Question, Session
 
-PROJECT = ".lissom"
 PICTURES = (
     *(".png", ".jpg", ".jpeg", ".gif", ".webp", ".bmp", ".tif", ".tiff", ".ppm", ".tga", ".ico"),
     ".avif",
 )
 OPENING = "Opening"
-MOST_RECENT = 10
 
 
 class Sample(NamedTuple):
@@ -73,11 +73,8 @@ def ask_open(session: Session) -> None:
 
 
 def open_file(session: Session, path: Path) -> None:
-    """Open a picture or a project, unless there are changes to be lost; then ask first."""
-    if _has_changes(session):
-        session.dialog = _question(session, do(load, path))
-    else:
-        load(session, path)
+    """Open a picture or a project, after a question if there are changes to be lost."""
+    saving.unless_unsaved(session, do(load, path))
 
 
 def load(session: Session, path: Path) -> None:
@@ -95,21 +92,17 @@ def load(session: Session, path: Path) -> None:
 def show(session: Session, path: Path, opened: Opened) -> None:
     """Make what was read the project of the window."""
     is_project = path.suffix == PROJECT
+    forget_autosave(session.folder)
     session.project = Project(
+        name=path.stem,
         history=History(opened.document, saved=True),
         picture=opened.picture,
         sketch=opened.sketch,
         path=path if is_project else None,
     )
-    recent = (path, *(other for other in session.preferences.recent if other != path))
-    session.preferences = replace(session.preferences, recent=recent[:MOST_RECENT])
+    session.preferences = session.preferences.with_recent(path)
     for notice in opened.notices:
         session.tell(notice[:1].upper() + notice[1:] + ".")
-
-
-def close(session: Session) -> None:
-    """Go back to the welcome view."""
-    session.project = None
 
 
 def _read(path: Path) -> Opened:
@@ -134,14 +127,46 @@ def _folder(session: Session) -> Path:
     return recent[0] if recent else Path.home()
 
 
-def _has_changes(session: Session) -> bool:
-    return session.project is not None and not session.project.history.is_saved
+def offer_recovery(session: Session) -> None:
+    """Ask whether to open what was not saved when Lissom ended last."""
+    leftovers = find_leftovers(session.folder)
+    if leftovers:
+        session.dialog = Question(
+            title="Unsaved work",
+            text="Lissom was not closed properly last time. Its unsaved work was kept.",
+            answers=(
+                ("Open it", do(recover, leftovers[0])),
+                ("Throw it away", do(throw_away, leftovers[0])),
+            ),
+        )
 
 
-def _question(session: Session, then: Action) -> Question:
-    name = session.project.path.name if session.project and session.project.path else "this project"
-    return Question(
-        title="Unsaved changes",
-        text=f"The changes of {name} are not saved.",
-        answers=(("Discard them", then),),
+def recover(session: Session, path: Path) -> None:
+    """Open unsaved work; it stays unsaved, and is kept until it is saved."""
+    session.jobs.put(
+        Job(
+            kind=f"{OPENING} unsaved work",
+            work=lambda: _read(path),
+            done=lambda opened: _show_recovered(session, path, opened),
+            failed=lambda error: report(session, "The unsaved work cannot be opened", error),
+        )
     )
+
+
+def throw_away(session: Session, path: Path) -> None:
+    """Delete unsaved work."""
+    path.unlink(missing_ok=True)
+    session.tell("The unsaved work was thrown away.")
+
+
+def _show_recovered(session: Session, path: Path, opened: Opened) -> None:
+    session.project = Project(
+        name="recovered",
+        history=History(opened.document, saved=False),
+        picture=opened.picture,
+        path=None,
+        sketch=opened.sketch,
+    )
+    write_autosave(session.folder, opened.document)
+    path.unlink(missing_ok=True)
+    session.tell("This is the work that was not saved. Save it now.", tone="good")

@@ -16,6 +16,12 @@ def seek(session: Session, frame: int) -> None:
             project.grab = None
 
 
+def scrub(session: Session, frame: int) -> None:
+    """Halt, and put the playhead on a frame."""
+    halt(session)
+    seek(session, frame)
+
+
 def toggle_play(session: Session) -> None:
     """Play, or halt."""
     if session.project:

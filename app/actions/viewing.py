@@ -4,10 +4,11 @@ from dataclasses import replace
 from typing import Any, Literal
 
 from app.actions.action import Action
+from app.preferences import LARGEST_SCALE, SMALLEST_SCALE, ThemeName
 from app.render.view import View
-from app.session import Dialog, HeatMap, Session, ShortcutSheet, ThemeName, Toast
+from app.session import Dialog, HeatMap, Session, ShortcutSheet, Toast
 
-SMALLEST_SCALE, LARGEST_SCALE, SCALE_STEP = 0.75, 3.0, 0.25
+SCALE_STEP = 0.25
 MOST_GHOSTS = 6
 Overlay = Literal["handles", "wireframe", "outline", "onion"]
 HEAT_MAPS: tuple[HeatMap, ...] = ("none", "k", "sigma_a", "sigma_b")

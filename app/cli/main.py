@@ -15,6 +15,7 @@ EXIT_INTERRUPTED = 130
 # Subcommand → its summary. The module of that name in app.cli defines `add_arguments(parser)` and
 # `run(arguments)`; only the one that is asked for is loaded.
 COMMANDS = {
+    "window": "Open the window, with a picture or a project if one is named.",
     "domain": "Find a picture's outline; build the cage and the triangulation.",
     "deform": "Drag handles of a shape within bounds, from file to file.",
     "pose": "Make a project from a picture and a script of handles and keys.",
@@ -33,6 +34,8 @@ def main(argv: Sequence[str] | None = None) -> int:
     for variable in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
         os.environ.setdefault(variable, "1")
     words = list(sys.argv[1:] if argv is None else argv)
+    if not words or (words[0] not in COMMANDS and not words[0].startswith("-")):
+        words = ["window", *words]
     arguments = build_parser(words).parse_args(words)
     try:
         return int(importlib.import_module(f"app.cli.{arguments.command}").run(arguments))

@@ -77,6 +77,12 @@ def window_context() -> moderngl.Context:
     return moderngl.create_context(require=OPENGL)
 
 
+def is_software(context: moderngl.Context) -> bool:
+    """Tell whether the processor draws, because there is no graphics card or no driver for it."""
+    renderer = context.info["GL_RENDERER"].lower()
+    return any(name in renderer for name in ("llvmpipe", "softpipe", "swiftshader", "swr"))
+
+
 def probe(backend: Backend) -> BackendReport:
     """Find out what a backend offers by making a context and letting it go again."""
     try:

@@ -9,7 +9,7 @@ from app.ui.theme import Look, ink
 from app.ui.widgets import icon_button
 
 MENUS: dict[str, tuple[str, ...]] = {
-    "File": ("open",),
+    "File": ("open", "", "save", "save as", "", "close", "quit"),
     "Edit": ("undo", "redo", "", "select all", "delete"),
     "View": (
         *("fit", "actual size", "", "handles", "wireframe", "outline", "heat map", "onion skin"),
@@ -25,6 +25,7 @@ MENUS: dict[str, tuple[str, ...]] = {
         "next key",
         "",
         "insert key",
+        "loop",
         "auto-key",
     ),
     "Help": ("shortcuts",),

@@ -35,6 +35,7 @@ class Canvas:
         self._target: Target | None = None
         self._retired: Target | None = None
         self._drawing: _Drawing | None = None
+        self._drawn: tuple[object, ...] = ()
 
     @property
     def texture(self) -> int | None:
@@ -55,9 +56,11 @@ class Canvas:
         if self._drawing is None or self._drawing.project is not project:
             self._forget_drawing()
             self._drawing = _Drawing(self._renderer, project)
-        scene = _scene(session, project, project.shown, self._drawing)
-        if self._target is not None:
+        inputs = _inputs(session, project)
+        if self._target is not None and inputs != self._drawn:
+            scene = _scene(session, project, project.shown, self._drawing)
             self._renderer.draw(self._target, project.view(session.screen), scene)
+            self._drawn = inputs
 
     def release(self) -> None:
         """Let everything go."""
@@ -73,6 +76,7 @@ class Canvas:
         if self._retired is not None:
             self._retired.release()
         self._retired, self._target = self._target, Target(self._renderer.programs, size)
+        self._drawn = ()
 
     def _forget_drawing(self) -> None:
         if self._drawing is not None:
@@ -140,6 +144,22 @@ class _Layer:
             values = measure(shown, heat_map)
             self.pose.write_heat(values.astype(np.float32))
             self._heat = (shown.positions, heat_map)
+
+
+def _inputs(session: Session, project: Project) -> tuple[object, ...]:
+    """Return all that the picture depends on: while it stays the same, so does the picture."""
+    return (
+        project.shown,
+        project.sketch if session.overlays.onion else None,
+        project.grab.targets if project.grab else None,
+        project.selected,
+        project.view(session.screen),
+        project.playhead.since is None,
+        session.hovered,
+        session.overlays,
+        session.preferences.theme,
+        session.preferences.scale,
+    )
 
 
 def measure(shown: Shown, heat_map: HeatMap) -> Floats:

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from imgui_bundle import ImVec2, hello_imgui, imgui, implot
 
-from app.actions import editing, playback, upkeep
+from app.actions import editing, playback, saving, upkeep
 from app.actions.action import Action, do
 from app.errors import EXPECTED_ERRORS
 from app.render.thumbnails import Thumbnail
@@ -68,6 +68,7 @@ class Shell:
         calls.show_status = self._part("The status bar", bars.draw_status)
         calls.show_gui = self._draw_over_panels
         calls.before_imgui_render = self._apply_actions
+        calls.confirm_exit = self._may_exit
         options = hello_imgui.EdgeToolbarOptions()
         options.size_em = 2.7
         options.window_padding_em = ImVec2(0.35, 0.5)
@@ -163,6 +164,14 @@ class Shell:
         for action in actions:
             self._attempt(partial(action.apply, self.session))
         self._attempt(partial(upkeep.keep_up, self.session))
+        self._attempt(partial(saving.autosave, self.session))
+        if self.session.quitting:
+            hello_imgui.get_runner_params().app_shall_exit = True
+
+    def _may_exit(self) -> bool:
+        # The window's own close button; the answer comes as an action.
+        self._actions.append(do(saving.quit_lissom))
+        return False
 
     def _attempt(self, change: Callable[[], None]) -> None:
         try:

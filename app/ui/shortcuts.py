@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
-from app.actions import editing, files, playback, posing, viewing
+from app.actions import editing, files, playback, posing, saving, timing, viewing
 from app.actions.action import Action, do
 from app.session import Session
 
@@ -109,6 +109,24 @@ BINDINGS: dict[str, Binding] = {
         keys=(CTRL | Key.o,),
         icon=icons.ICON_FA_FOLDER_OPEN,
         hint="Open a picture or a project",
+        possible=always,
+    ),
+    "save": Binding(
+        label="Save",
+        action=do(saving.save),
+        group="File",
+        keys=(CTRL | Key.s,),
+        icon=icons.ICON_FA_FLOPPY_DISK,
+    ),
+    "save as": Binding(
+        label="Save as…", action=do(saving.save_as), group="File", keys=(CTRL | SHIFT | Key.s,)
+    ),
+    "close": Binding(label="Close", action=do(saving.close), group="File", keys=(CTRL | Key.w,)),
+    "quit": Binding(
+        label="Quit",
+        action=do(saving.quit_lissom),
+        group="File",
+        keys=(CTRL | Key.q,),
         possible=always,
     ),
     "undo": Binding(
@@ -278,6 +296,14 @@ BINDINGS: dict[str, Binding] = {
         keys=(Key.up_arrow,),
         possible=_no_handles_selected,
         repeats=True,
+    ),
+    "loop": Binding(
+        label="Loop",
+        action=do(timing.toggle_loop),
+        group="Time",
+        keys=(Key.l,),
+        icon=icons.ICON_FA_REPEAT,
+        active=lambda session: session.project is not None and session.project.document.loop,
     ),
     "insert key": Binding(
         label="Insert key",

@@ -3,17 +3,23 @@
 from collections.abc import Callable
 from pathlib import Path
 
-from imgui_bundle import hello_imgui
+from imgui_bundle import glfw_utils, hello_imgui  # before glfw: it brings the library itself
 from imgui_bundle import icons_fontawesome_6 as icons
 
+import glfw  # isort: skip
+
+from app.actions import files
+from app.render.context import is_software
 from app.render.draw_lists import Textures
 from app.render.renderer import Renderer
 from app.render.thumbnails import Thumbnail, Thumbnails
 from app.session import Session
 from app.ui.canvas import Canvas
 from app.ui.panel import Panel
-from app.ui.panels import viewport
+from app.ui.panels import timeline, viewport
 from app.ui.shell import Shell
+
+SIZE = (1280, 800)
 
 
 class Window:
@@ -31,6 +37,7 @@ class Window:
         self._connect = connect
         self._thumbnails: Thumbnails | None = None
         self._canvas: Canvas | None = None
+        self._renderer: Renderer | None = None
         self._shell = Shell(session, self._panels(), self._thumbnail)
 
     def runner_params(self) -> hello_imgui.RunnerParams:
@@ -43,6 +50,22 @@ class Window:
         )
         calls.pre_new_frame = hello_imgui.sequence_functions(self._begin_frame, calls.pre_new_frame)
         return params
+
+    def run(self) -> None:
+        """Show the window on the screen until the person closes it."""
+        params = self.runner_params()
+        params.callbacks.enqueue_post_init(self._accept_files)
+        params.ini_folder_type = hello_imgui.IniFolderType.absolute_path
+        params.ini_filename = str(self.session.folder / "window.ini")
+        params.app_window_params.window_geometry.size = SIZE
+        params.app_window_params.restore_previous_geometry = True
+        hello_imgui.manual_render.setup_from_runner_params(params)
+        try:
+            while not params.app_shall_exit:
+                hello_imgui.manual_render.render()
+        finally:
+            self._release()
+            hello_imgui.manual_render.tear_down()
 
     def textures(self) -> Textures:
         """Return the textures that the panels show, by their OpenGL names."""
@@ -59,6 +82,7 @@ class Window:
                 place="MainDockSpace",
                 draw=lambda session, look: viewport.draw(session, look, self._texture),
             ),
+            Panel(title="Timeline", icon=icons.ICON_FA_FILM, place="bottom", draw=timeline.draw),
         ]
 
     @property
@@ -66,13 +90,33 @@ class Window:
         return self._canvas.texture if self._canvas else None
 
     def _start(self) -> None:
-        renderer = self._connect()
+        renderer = self._renderer = self._connect()
+        self.session.full_detail = not is_software(renderer.programs.context)
         self._canvas = Canvas(renderer)
         self._thumbnails = Thumbnails(renderer.programs.context)
 
+    def _accept_files(self) -> None:
+        """Open what is dropped on the window."""
+        window = glfw_utils.glfw_window_hello_imgui()
+        glfw.set_drop_callback(window, self._take_dropped)  # type: ignore[arg-type]  # a list of paths
+
+    def _take_dropped(self, _: object, paths: list[str]) -> None:
+        if paths:
+            files.open_file(self.session, Path(paths[0]))
+
+    def _release(self) -> None:
+        for owner in (self._canvas, self._thumbnails, self._renderer):
+            if owner is not None:
+                owner.release()
+
     def _draw_canvas(self) -> None:
-        if self._canvas is not None:
-            self._canvas.draw(self.session)
+        if self._canvas is None or self._renderer is None:
+            return
+        self._canvas.draw(self.session)
+        # ImGui draws to whatever is bound, and that is to be the screen.
+        screen = self._renderer.programs.context.screen
+        if screen is not None:
+            screen.use()
 
     def _begin_frame(self) -> None:
         if self._thumbnails is not None:

@@ -1,5 +1,6 @@
 """The whole window without a display: a null platform, an EGL framebuffer, ImGui's test engine."""
 
+import tempfile
 from collections.abc import Callable
 from pathlib import Path
 
@@ -7,10 +8,11 @@ from imgui_bundle import ImVec2, hello_imgui, imgui
 from PIL import Image
 
 from app.jobs import Jobs
+from app.preferences import Preferences
 from app.render.context import create_context
 from app.render.draw_lists import DrawLists
 from app.render.renderer import Renderer
-from app.session import Preferences, Session
+from app.session import Session
 from app.ui.window import Window
 
 Robot = imgui.test_engine.TestContext
@@ -35,7 +37,8 @@ class Harness:
 
     def __init__(self, size: tuple[int, int] = (1280, 800)) -> None:
         self.clock = Clock()
-        self.session = Session(clock=self.clock, jobs=Jobs())
+        self.folder = Path(tempfile.mkdtemp(prefix="lissom-test-"))
+        self.session = Session(clock=self.clock, jobs=Jobs(), folder=self.folder)
         self.gl = create_context()
         self._set_size(size)
         self._lists: DrawLists | None = None
@@ -60,7 +63,7 @@ class Harness:
 
     def reset(self) -> None:
         """Go back to the welcome view of a person who opens Lissom for the first time."""
-        fresh = Session(clock=self.clock, jobs=self.session.jobs)
+        fresh = Session(clock=self.clock, jobs=self.session.jobs, folder=self.folder)
         self.session.jobs.settle()
         self.session.jobs.deliver()
         for name in ("project", "overlays", "preferences", "toasts", "dialog", "quitting"):

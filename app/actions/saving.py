@@ -1,0 +1,139 @@
+"""Saving, and what must not be lost: questions before, autosave, recovery."""
+
+from pathlib import Path
+
+from app.actions.action import Action, do
+from app.actions.failures import report
+from app.autosave import SECONDS, forget_autosave, write_autosave
+from app.document.project_file import save_project
+from app.jobs import Job
+from app.session import FileDialog, Project, Question, Session
+
+PROJECT = ".lissom"
+SAVING, AUTOSAVING = "Saving", "Autosaving"
+
+
+def save(session: Session) -> None:
+    """Save the project where it was saved or opened, or ask where."""
+    save_then(session, None)
+
+
+def save_as(session: Session) -> None:
+    """Ask where to save the project."""
+    _ask_where(session, None)
+
+
+def save_then(session: Session, then: Action | None) -> None:
+    """Save the project, and do something else once that has worked."""
+    project = session.project
+    if project is None:
+        return
+    if project.path is None:
+        _ask_where(session, then)
+    else:
+        write(session, project.path, then)
+
+
+def write(session: Session, path: Path, then: Action | None) -> None:
+    """Save the project in a file."""
+    project = session.project
+    if project is None:
+        return
+    document = project.document
+
+    def done(_: None) -> None:
+        project.history.mark_saved(document)
+        project.path = path
+        session.preferences = session.preferences.with_recent(path)
+        session.tell(f"Saved {path.name}.", tone="good")
+        if then is not None:
+            then.apply(session)
+
+    session.jobs.put(
+        Job(
+            kind=SAVING,
+            work=lambda: save_project(path, document),
+            done=done,
+            failed=lambda error: report(session, "The project was not saved", error),
+            urgent=True,
+        )
+    )
+
+
+def unless_unsaved(session: Session, then: Action) -> None:
+    """Do something that gives up the project, but ask first if it has changes."""
+    project = session.project
+    if project is None or project.history.is_saved:
+        then.apply(session)
+        return
+    name = project.path.name if project.path else "This project"
+    session.dialog = Question(
+        title="Unsaved changes",
+        text=f"{name} has changes that are not saved.",
+        answers=(("Save", do(save_then, then)), ("Don't save", then)),
+    )
+
+
+def close(session: Session) -> None:
+    """Go back to the welcome view, after a question if there are changes."""
+    unless_unsaved(session, do(give_up))
+
+
+def give_up(session: Session) -> None:
+    """Close the project, whatever it holds."""
+    session.project = None
+    forget_autosave(session.folder)
+
+
+def quit_lissom(session: Session) -> None:
+    """Close the window, after a question if there are changes."""
+    unless_unsaved(session, do(leave))
+
+
+def leave(session: Session) -> None:
+    """Close the window."""
+    session.quitting = True
+
+
+def autosave(session: Session) -> None:
+    """Keep changes that are not saved, every now and then; called once a frame."""
+    project = session.project
+    now = session.clock()
+    if project is None or project.grab is not None or project.kept is project.document:
+        return
+    if project.history.is_saved:
+        if project.kept is not None:
+            project.kept = None
+            forget_autosave(session.folder)
+        return
+    if now - project.kept_at >= SECONDS and AUTOSAVING not in session.jobs.kinds:
+        _keep(session, project, now)
+
+
+def _keep(session: Session, project: Project, now: float) -> None:
+    document, folder = project.document, session.folder
+    project.kept, project.kept_at = document, now
+    session.jobs.put(
+        Job(
+            kind=AUTOSAVING,
+            work=lambda: write_autosave(folder, document),
+            done=lambda _: None,
+            failed=lambda error: report(session, "Unsaved work cannot be kept", error),
+        )
+    )
+
+
+def _ask_where(session: Session, then: Action | None) -> None:
+    project = session.project
+    if project is None:
+        return
+    recent = [path.parent for path in session.preferences.recent if path.parent.is_dir()]
+    folder = project.path.parent if project.path else recent[0] if recent else Path.home()
+    session.dialog = FileDialog(
+        title="Save the project",
+        folder=folder,
+        name=project.path.name if project.path else f"{project.name}{PROJECT}",
+        suffixes=(PROJECT,),
+        writes=True,
+        chosen=lambda path: do(write, path, then),
+    )

@@ -1,0 +1,53 @@
+"""`lissom` and `lissom FILE`: the window."""
+
+import argparse
+import time
+from pathlib import Path
+
+from app.actions import files
+from app.cli.console import fail
+from app.jobs import Jobs
+from app.preferences import load_preferences, save_preferences, settings_folder
+from app.render.context import window_context
+from app.render.renderer import Renderer
+from app.session import Session
+from app.ui.window import Window
+
+EPILOG = """\
+Without FILE the window opens with samples to try. `lissom FILE` is short for `lissom window FILE`.
+
+examples:
+  lissom
+  lissom giraffe.png
+  lissom wave.lissom
+"""
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare the options of `lissom window`."""
+    parser.epilog = EPILOG
+    parser.add_argument(
+        "file", metavar="FILE", nargs="?", type=Path, help="a picture or a .lissom project"
+    )
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Open the window, and close it when the person does."""
+    if arguments.file is not None and not arguments.file.is_file():
+        fail(f"{arguments.file} is no command and no file (see 'lissom --help')")
+    folder = settings_folder()
+    folder.mkdir(parents=True, exist_ok=True)
+    session = Session(
+        clock=time.perf_counter,
+        jobs=Jobs(),
+        folder=folder,
+        preferences=load_preferences(folder),
+    )
+    files.offer_recovery(session)
+    if arguments.file is not None:
+        files.load(session, arguments.file.resolve())
+    try:
+        Window(session, lambda: Renderer(window_context())).run()
+    finally:
+        save_preferences(folder, session.preferences)
+    return 0
