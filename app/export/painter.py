@@ -52,8 +52,8 @@ def painter(
         # is finer from four.
         target = Target(renderer.programs, plan.view.size, 2 if plan.view.scale < _SMALL else 1)
         owned.callback(target.release)
-        # Errors up to here are not this export's: moderngl, for one, binds the framebuffer of
-        # before again, which may be gone. A target without memory has raised by itself.
+        # Errors up to here are a window's, or of moderngl, which binds the framebuffer of before
+        # again though it may be gone. A target without memory has raised by itself.
         while context.error != _NO_ERROR:
             pass
         texture = GpuPicture(context, picture)

@@ -14,7 +14,7 @@ _CODEC: Final = "libx264"
 # Nearly lossless to the eye; a short look-ahead bounds the memory. Without the last option one file
 # in three hundred came out with a byte more or less, though with the same pictures.
 _OPTIONS: Final = {"crf": "15", "rc-lookahead": "10", "x264-params": "cpu-independent=1"}
-_BT709 = _LIMITED = 1  # as FFmpeg numbers colours and ranges
+_BT709: Final = 1  # as FFmpeg numbers colour spaces, primaries and transfer curves
 
 
 class VideoWriter:
@@ -48,9 +48,9 @@ class VideoWriter:
             self._stream.width, self._stream.height = self._size
             self._stream.pix_fmt = "yuv420p"
             context = self._stream.codec_context
-            # What players take a video for that says nothing; this one says so, too.
+            # What players take a video for that says nothing; this one says so, too. (Its frames
+            # tell their range themselves.)
             context.colorspace = context.color_primaries = context.color_trc = _BT709
-            context.color_range = _LIMITED
             self._container.start_encoding()
         except (av.FFmpegError, ValueError) as error:
             raise LissomError(

@@ -115,6 +115,11 @@ def test_a_frame_that_fails_is_an_error_that_names_it(gl, document):
         assert_array_equal(draw(4.0), draw(1.0))
 
 
+def test_errors_of_others_are_not_the_exports(gl, document):
+    gl.enable_direct(0xFFFF)
+    assert_array_equal(still(gl, document)[SEEN], BLOB[SEEN])
+
+
 def test_frames_too_large_for_the_machine_are_refused(gl, document):
     with pytest.raises(LissomError, match="too large"):
         still(gl, document, size=(65_535, 10))

@@ -98,6 +98,12 @@ def test_a_motion_that_leaves_the_frame_is_told(document, tmp_path):
     assert "leaves the frame" in plan.notices[0]
 
 
+def test_a_drawing_that_fills_its_canvas_does_not_leave_it(tmp_path):
+    full = still_document(np.full((600, 800, 4), 255, dtype=np.uint8))
+    assert full.domain.mesh.vertices.real.min() < -2
+    assert plan_of(full, tmp_path / "frames").notices == ()
+
+
 def test_frames_of_another_export_are_told_and_kept(document, tmp_path):
     for name in ("frame_0009.png", "frame_0011.png", "frame_00003.png", "frame_12.png", "other"):
         (tmp_path / name).write_bytes(b"kept")
