@@ -50,7 +50,7 @@ class SpritesheetWriter:
 
 
 def sheet_grid(plan: ExportPlan) -> tuple[int, int]:
-    """Return the columns and rows of the sheet that is nearest to a square.
+    """Return the columns and rows of a sheet that is nearly a square.
 
     Raises
     ------
@@ -66,4 +66,4 @@ def sheet_grid(plan: ExportPlan) -> tuple[int, int]:
             f"{count} frames of {width} × {height} pixels do not fit on a sheet of {LARGEST:,} × "
             f"{LARGEST:,}; choose fewer frames or a smaller size"
         )
-    return columns, rows
+    return math.ceil(count / rows), rows  # without columns that stay empty
