@@ -53,7 +53,7 @@ class Stage:
         )
         self._lock = threading.RLock()
         self._samples: dict[Pose, KeyframeSamples] = {}
-        self._inbetweens: dict[tuple[Pose, Pose, Variant], Inbetweens] = {}
+        self._inbetweens: dict[tuple[Pose, Pose, int, Variant], Inbetweens] = {}
         self._transform: HilbertTransform | None = None
 
     def keep_only(self, poses: Sequence[Pose]) -> None:
@@ -75,10 +75,12 @@ class Stage:
                 )
             return self._samples[pose]
 
-    def inbetweens(self, first: Pose, second: Pose, variant: Variant) -> Inbetweens:
-        """Return the in-betweens of two poses."""
+    def inbetweens(
+        self, first: Pose, second: Pose, variant: Variant, *, turns: int = 0
+    ) -> Inbetweens:
+        """Return the in-betweens of two poses, with whole turns beyond the shorter way."""
         with self._lock:
-            key = (first, second, variant)
+            key = (first, second, turns, variant)
             if key not in self._inbetweens:
                 pair = [self.samples(first), self.samples(second)]
                 if variant == "metric" and self._transform is None:
@@ -87,7 +89,7 @@ class Stage:
                     interpolation.Variant(variant),
                     self.sites,
                     pair,
-                    root_sheets(np.array([sample.anchor_fz for sample in pair])),
+                    root_sheets(np.array([sample.anchor_fz for sample in pair]), [turns]),
                     transform=self._transform if variant == "metric" else None,
                 )
             return self._inbetweens[key]
@@ -158,7 +160,9 @@ class Animation:
     def _inbetweens(self, interval: int) -> Inbetweens:
         first, second = intervals(self.document)[interval]
         keys = self.document.keys
-        return self.stage.inbetweens(keys[first].pose, keys[second].pose, self.variant)
+        return self.stage.inbetweens(
+            keys[first].pose, keys[second].pose, self.variant, turns=keys[first].turns
+        )
 
 
 def _weights(moment: Moment) -> Floats:

@@ -107,7 +107,9 @@ def certify_document(document: Document, variant: Variant | None = None) -> Repo
         poses = document.keys[first].pose, document.keys[last].pose
         ends = [_extremes(*document.map_of(pose).derivatives(boundary.points)) for pose in poses]
         bound = ends[0].joined(ends[1])
-        inbetweens = animation.stage.inbetweens(*poses, animation.variant)
+        inbetweens = animation.stage.inbetweens(
+            *poses, animation.variant, turns=document.keys[first].turns
+        )
         reached = bound
         for t in np.linspace(0.0, 1.0, TIMES)[1:-1]:
             frame = inbetweens.frame(np.array([1.0 - t, t]))

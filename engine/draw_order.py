@@ -28,8 +28,8 @@ def with_limbs_on_top(mesh: Mesh, centre: complex) -> Mesh:
     ends = mesh.edges()
     lengths = np.abs(mesh.vertices[ends[:, 1]] - mesh.vertices[ends[:, 0]])
     count = len(mesh.vertices)
-    graph = scipy.sparse.csr_matrix((lengths, (ends[:, 0], ends[:, 1])), shape=(count, count))
+    graph = scipy.sparse.csr_array((lengths, (ends[:, 0], ends[:, 1])), shape=(count, count))
     root = int(np.argmin(np.abs(mesh.vertices - centre)))
-    distances = np.asarray(dijkstra(graph, directed=False, indices=root))
+    distances = dijkstra(graph, directed=False, indices=[root])[0]
     order = np.argsort(distances[mesh.triangles].sum(axis=1), kind="stable")
     return Mesh(vertices=mesh.vertices, triangles=readonly(mesh.triangles[order]))
