@@ -1,0 +1,16 @@
+"""In-betweens at the cost of a linear blend: series in time, built once for an interval."""
+
+from engine.streaming.build import build_series, finish
+from engine.streaming.channels import Channels, Distortions, Positions
+from engine.streaming.series import Piece, Series, Singles
+
+__all__ = [
+    "Channels",
+    "Distortions",
+    "Piece",
+    "Positions",
+    "Series",
+    "Singles",
+    "build_series",
+    "finish",
+]

@@ -1,0 +1,146 @@
+"""A piece of motion as a few arrays, blended with weights that depend on time alone."""
+
+from bisect import bisect_right
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from engine.arrays import Floats
+from engine.chebyshev import basis
+from engine.errors import EngineError
+
+Singles = npt.NDArray[np.float32]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class ScalarSeries:
+    """A function of time as Chebyshev series on pieces of (0, 1), and 1 at both ends.
+
+    ρ jumps at a keyframe where f_z̄ has a zero.
+
+    Parameters
+    ----------
+    breaks : tuple of float
+        Ends of the b pieces, from 0 to 1.
+    coefficients : float64, shape (b, n)
+    """
+
+    breaks: tuple[float, ...]
+    coefficients: Floats
+
+    @property
+    def nbytes(self) -> int:
+        """Memory that the arrays take, in bytes."""
+        return self.coefficients.nbytes
+
+    def __call__(self, time: float) -> float:
+        """Return the value at a time in [0, 1]."""
+        if not 0.0 < time < 1.0:
+            return 1.0
+        piece = bisect_right(self.breaks, time) - 1
+        start, end = self.breaks[piece : piece + 2]
+        coefficients = self.coefficients[piece]
+        x = (2 * time - start - end) / (end - start)
+        return float(basis(x, len(coefficients)) @ coefficients)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Piece:
+    """The motion from one time to another: Σ_j w_j(t) rows_j.
+
+    The first two rows are the values at both ends, with the weights of a linear blend. The other
+    rows' weights vanish at keyframes.
+
+    Parameters
+    ----------
+    start, end : float
+    functions : float64, shape (n, r)
+        Chebyshev coefficients of the weights.
+    scaled_functions : float64, shape (n, r), or None
+        Of what is added to the weights, times ρ(t) − 1; None where Ψ is not scaled.
+    rows : float32, shape (r, c)
+    """
+
+    start: float
+    end: float
+    functions: Floats
+    scaled_functions: Floats | None
+    rows: Singles
+
+    @property
+    def nbytes(self) -> int:
+        """Memory that the arrays take, in bytes."""
+        scaled = 0 if self.scaled_functions is None else self.scaled_functions.nbytes
+        return self.rows.nbytes + self.functions.nbytes + scaled
+
+    def weights(self, time: float, rho: float) -> Singles:
+        """Return the weights (r,) at a time from `start` to `end`, exact at keyframes."""
+        if time in (0.0, 1.0):
+            keyframe = np.zeros(len(self.rows), dtype=np.float32)
+            keyframe[int(time)] = 1.0
+            return keyframe
+        x = (2 * time - self.start - self.end) / (self.end - self.start)
+        polynomials = basis(x, len(self.functions))
+        exact = polynomials @ self.functions
+        if self.scaled_functions is not None:
+            exact += (rho - 1.0) * (polynomials @ self.scaled_functions)
+        return exact.astype(np.float32)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Series:
+    """What an interval between two keyframes does at many points; build it with `build_series`.
+
+    Parameters
+    ----------
+    pieces : tuple of Piece
+        One after the other, from time 0 to time 1.
+    rho : ScalarSeries or None
+        None where Ψ is not scaled.
+    error : float
+        The largest difference from the direct path that was found between the nodes, in units of
+        the values.
+    """
+
+    pieces: tuple[Piece, ...]
+    rho: ScalarSeries | None
+    error: float
+
+    @property
+    def size(self) -> int:
+        """Number of values, c."""
+        return len(self.pieces[0].rows[0])
+
+    @property
+    def nbytes(self) -> int:
+        """Memory that the arrays take, in bytes."""
+        own = sum(piece.nbytes for piece in self.pieces)
+        return own + (0 if self.rho is None else self.rho.nbytes)
+
+    def blend(self, time: float) -> tuple[Piece, Singles]:
+        """Return the piece at a time in [0, 1], and the weights (r,) of its rows.
+
+        Raises
+        ------
+        EngineError
+            If the time is out of range.
+        """
+        if not 0.0 <= time <= 1.0:
+            raise EngineError(f"A series runs from time 0 to 1; {time:g} is outside.")
+        starts = [piece.start for piece in self.pieces]
+        piece = self.pieces[bisect_right(starts, time) - 1]
+        rho = 1.0 if self.rho is None else self.rho(time)
+        return piece, piece.weights(time, rho)
+
+    def values(self, time: float, out: Singles | None = None) -> Singles:
+        """Return the values (c,) at a time in [0, 1]: one small matrix-vector product.
+
+        Parameters
+        ----------
+        time : float
+        out : float32, shape (c,), optional
+            Where to write them.
+        """
+        piece, weights = self.blend(time)
+        return np.dot(weights, piece.rows, out=out)
