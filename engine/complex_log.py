@@ -91,7 +91,8 @@ def _turns_along(
         along = np.linspace(0.0, 1.0, pieces + 1)
         samples = starts[todo, None] + (ends - starts)[todo, None] * along
         values = evaluate(samples.ravel()).reshape(samples.shape)
-        each = np.angle(values[:, 1:] / values[:, :-1])
+        ratios = values[:, 1:] * values[:, :-1].conj()
+        each = np.where(ratios == 0, np.pi, np.angle(ratios))
         turns[todo] = each.sum(axis=1)
         todo = todo[np.abs(each).max(axis=1) > LARGEST_TURN]
         if not len(todo):

@@ -28,6 +28,7 @@ from engine.product_integration import is_near, panel_weights
 
 MOST_NODES = 9_000  # 650 MB, and some ten seconds to factorise
 COARSEST = 4.0
+EDGE_DEPTH, CORNER_DEPTH = 1e-9, 1e-13  # of points on the outline, over its size
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -66,6 +67,11 @@ class HilbertTransform:
                     f"The outline needs {len(panels) * NODES} nodes for the metric variant, above "
                     f"{MOST_NODES}; smooth it, widen its narrow gaps, or use scaled-eta."
                 )
+        return cls.of(outline, panels)
+
+    @classmethod
+    def of(cls, outline: Complexes, panels: Panels) -> Self:
+        """Factorise the integral equation on given panels of an outline."""
         factors, pivots = scipy.linalg.lu_factor(
             _matrix(panels), overwrite_a=True, check_finite=False
         )
@@ -108,27 +114,28 @@ class HilbertTransform:
 def _strictly_inside(outline: Complexes, points: Complexes) -> Complexes:
     """Move points on the outline, or outside it by rounding, a hair's breadth inside.
 
-    There the limit from inside is meant, and 1e-13 of the size is far enough to say so.
+    There the limit from inside is meant. Where two panels meet on an edge, the logarithms of both
+    cancel only as far as the point's distance is known: 1e-9 of the size leaves seven digits. At a
+    corner both panels start from the same point, and 1e-13 keeps the root of a distance small.
     """
     size = box_diagonal(outline)
-    close = distance_to_boundary(outline, points) < 1e-12 * size
+    close = distance_to_boundary(outline, points) < EDGE_DEPTH * size
     close |= ~contains(outline, points)
     moved = points.copy()
     z = points[close, None]
     sides = edges(outline)
+    direction = sides / np.abs(sides)
     along = np.clip(((z - outline) * sides.conj()).real / np.abs(sides) ** 2, 0.0, 1.0)
     feet = outline + along * sides
     rows, nearest = np.arange(len(z)), np.abs(z - feet).argmin(axis=1)
-    foot = feet[rows, nearest]
-    direction = sides / np.abs(sides)
-    inward = 1j * direction[nearest]
+    inside = feet[rows, nearest] + 1j * EDGE_DEPTH * size * direction[nearest]
     interior_angle = np.pi - np.angle(direction / np.roll(direction, 1))
     bisector = direction * np.exp(0.5j * interior_angle)
-    to_vertex = np.abs(foot[:, None] - outline)
+    to_vertex = np.abs(z - outline)
     vertex = to_vertex.argmin(axis=1)
-    at_corner = to_vertex[rows, vertex] < 1e-12 * size
-    inward = np.where(at_corner, bisector[vertex], inward)
-    moved[close] = np.where(at_corner, outline[vertex], foot) + 1e-13 * size * inward
+    at_corner = to_vertex[rows, vertex] < 4 * EDGE_DEPTH * size
+    corner = outline[vertex] + CORNER_DEPTH * size * bisector[vertex]
+    moved[close] = np.where(at_corner, corner, inside)
     return moved
 
 

@@ -10,10 +10,10 @@ from engine.path_network import Network
 from engine.polygon import as_xy, box_diagonal
 from engine.spanning_tree import SpanningTree, depth_first_numbering
 
-LONGEST = 1 / 250  # longest step, over the box diagonal of the outline
+LONGEST = 1 / 125  # longest step, over the box diagonal of the outline
 # Longest step over its distance to the nearest singularity of the integrand. The error of a step of
 # length h at the distance d from a logarithmic singularity of strength c is c h (h/d)^4 / 120.
-RATIO = 0.35
+RATIO = 0.3
 SHORTEST = 2e-5  # steps are not cut below this, over the box diagonal
 
 

@@ -54,9 +54,9 @@ def narrow_u(gap: float = 0.04) -> Shape:
 
 
 @cache
-def spiral(turns: float = 2.6) -> Shape:
+def spiral(turns: float = 2.3) -> Shape:
     """An arm that winds around itself, with gaps a third of its width."""
-    angle = np.linspace(np.pi, 2 * np.pi * turns, 60)
+    angle = np.linspace(np.pi, 2 * np.pi * turns, 32)
     pitch = 0.2
     middle = pitch * angle / (2 * np.pi) * np.exp(1j * angle)
     normal = np.gradient(middle)

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from typing import Self
 
 import numpy as np
+import numpy.typing as npt
 
 from engine.arrays import Complexes, Floats, Integers, readonly
 from engine.hilbert import HilbertTransform
@@ -35,14 +36,16 @@ class MetricBlend:
         Of the two keyframes.
     series : TimeSeries
         c_j.
-    shapes, shape_slopes : complex128, shape (j, s)
-        H_j and its derivative at the nodes.
+    shapes : complex128, shape (j, s)
+        H_j at the nodes.
+    shape_slopes : complex64, shape (j, s)
+        H_j' at the nodes: the square of a step multiplies it, and single precision is plenty.
     """
 
     eta: EtaBlend
     series: TimeSeries
     shapes: Complexes
-    shape_slopes: Complexes
+    shape_slopes: npt.NDArray[np.complex64]
 
     @classmethod
     def of(
@@ -64,7 +67,7 @@ class MetricBlend:
             eta=EtaBlend.of(keyframes, sheets),
             series=series,
             shapes=readonly(values.T),
-            shape_slopes=readonly(slopes.T),
+            shape_slopes=readonly(slopes.T.astype(np.complex64)),
         )
 
     @property
@@ -78,6 +81,7 @@ class MetricBlend:
         logarithm, log_slope = blended_log_fz(self.eta.keyframes, self.eta.sheets, weights)
         coefficients = self.series(float(weights[1]))
         # As reals: a complex product with real coefficients would do half its work on zeros.
-        for total, shapes in ((logarithm, self.shapes), (log_slope, self.shape_slopes)):
-            total.view(np.float64)[:] += coefficients @ shapes.view(np.float64)
+        logarithm.view(np.float64)[:] += coefficients @ self.shapes.view(np.float64)
+        single = coefficients.astype(np.float32)
+        log_slope.view(np.float64)[:] += single @ self.shape_slopes.view(np.float32)
         return self.eta.with_log_fz(logarithm, log_slope, weights)

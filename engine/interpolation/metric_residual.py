@@ -14,7 +14,7 @@ from numpy.polynomial import chebyshev
 from engine.arrays import Complexes, Floats, readonly
 
 DEGREE = 24  # of the series of a piece of time
-TOLERANCE = 1e-11  # of the series' last terms, and of the shapes left out, in ln |f_z|
+TOLERANCE = 1e-10  # of the series' last terms, and of the shapes left out, in ln |f_z|
 LAST_TERMS = 3
 SHORTEST = 2.0**-30  # pieces of time are not halved below this
 
@@ -91,7 +91,7 @@ def separate(metric: OutlineMetric) -> tuple[Floats, TimeSeries]:
     -------
     shapes : float64, shape (N, j)
     series : TimeSeries
-        Of the j coefficients; the residuals are `shapes @ series(t)` to about 1e-11.
+        Of the j coefficients; the residuals are `shapes @ series(t)` to about 1e-10.
     """
     x = chebyshev.chebpts2(DEGREE + 1)
     to_coefficients = np.linalg.inv(chebyshev.chebvander(x, DEGREE)).T

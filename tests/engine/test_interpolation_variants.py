@@ -99,7 +99,7 @@ def test_property_2_in_betweens_are_harmonic_with_the_derivatives_they_tell(vari
 
 @pytest.mark.parametrize("variant", [Variant.NU, Variant.SCALED_ETA, Variant.METRIC])
 @given(case=cases, time=times)
-@settings(max_examples=8)
+@settings(max_examples=5)
 def test_property_3_no_in_between_folds(variant, case, time):
     name, seed = case
     points = np.concatenate([outline_samples(SHAPES[name]), inner_points(SHAPES[name][0], 50, 1)])
@@ -177,7 +177,7 @@ def test_pointwise_scaled_eta_keeps_properties_5_to_7_inside_too(case, time):
 
 
 @given(case=cases, time=times)
-@settings(max_examples=12)
+@settings(max_examples=6)
 def test_metric_keeps_properties_5_to_7_globally(case, time):
     name, seed = case
     maps = pair(name, seed)
