@@ -7,7 +7,7 @@ import numpy as np
 import shapely
 
 from engine.arrays import Complexes, Floats, Indices, as_points, readonly
-from engine.cauchy import cauchy_derivatives, edge_logarithms
+from engine.cauchy import cauchy_coordinates, cauchy_derivatives, edge_logarithms
 from engine.errors import EngineError
 from engine.polygon import (
     as_xy,
@@ -46,6 +46,8 @@ class Boundary:
     curvature_kernel : float64, shape (m, n)
         1 / (2π d_j²) with d_j the distance of cage vertex j from the segment: times the jumps of
         the slopes of Φ it bounds |Φ'''| on the segment.
+    vertex_coordinates : complex128, shape (p, n)
+        C_j at the outline's vertices.
     """
 
     outline: Complexes
@@ -56,6 +58,7 @@ class Boundary:
     half_lengths: Floats
     derivatives: Complexes
     curvature_kernel: Floats
+    vertex_coordinates: Complexes
 
     @classmethod
     def sample(cls, outline: Complexes, cage: Complexes) -> Self:
@@ -92,6 +95,7 @@ class Boundary:
             half_lengths=readonly(half),
             derivatives=readonly(cauchy_derivatives(cage, points)),
             curvature_kernel=readonly(_curvature_kernel(cage, points, ends)),
+            vertex_coordinates=readonly(cauchy_coordinates(cage, outline)),
         )
 
     def refined(self, segments: Indices) -> Self:

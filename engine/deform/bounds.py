@@ -42,7 +42,7 @@ class Bounds:
 
     def allow(self, *, k: float, sigma_a: float, sigma_b: float) -> bool:
         """Tell whether distortions up to these values are within the bounds."""
-        return k <= self.k and sigma_a <= self.sigma_a and sigma_b >= self.sigma_b
+        return bool(k <= self.k and sigma_a <= self.sigma_a and sigma_b >= self.sigma_b)
 
     def towards_identity(self, fraction: float) -> Self:
         """Return the bounds tightened by a fraction of what lies between them and the identity."""

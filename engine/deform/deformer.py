@@ -30,6 +30,10 @@ from engine.harmonic_map import HarmonicMap
 # A handle is pulled towards a point at most this far (of L) ahead of it, and turned by at most this
 # angle; both times the reach, between SHORTEST_REACH and 1.
 LEASH, TURN_LEASH, SHORTEST_REACH = 0.02, 0.2, 0.1
+# Handles whose correlation with their targets is weaker have no common rotation.
+CORRELATED = 0.5
+# No point of the shape moves farther (of L) in one step: removed handles make no jump.
+FARTHEST = 0.05
 # Barrier weight: at the start, at most, and at least while handles move and when they have arrived.
 FIRST, MOST, LEAST_MOVING, LEAST_RESTING = 1e-2, 3.0, 1e-3, 1e-6
 RAISE, LOWER = 4.0, 0.5
@@ -38,9 +42,9 @@ SHORT, FULL = 0.3, 0.7
 # The walls stand inside the bounds by this part of the way to the identity; a step leaves at least
 # KEPT of the slack between them and the map.
 MARGIN, KEPT = 1e-4, 0.1
-# While a map is outside its bounds the limits follow it at this relative distance, and the barrier
-# weighs at least this much.
-FOLLOW, LEAST_TIGHTENING = 0.02, 0.1
+# While a map is outside its bounds the limits follow it at this relative distance, the barrier
+# weighs at least this much, and the handles are this much softer.
+FOLLOW, LEAST_TIGHTENING, SOFTNESS = 0.005, 0.3, 0.01
 # A step whose map is not certified is halved this many times.
 HALVINGS = 5
 # Added samples are dropped when they outnumber those of the shape itself.
@@ -171,6 +175,38 @@ class Deformer:
             )
         return State(map=first, certificate=certificate, limits=self.bounds, boundary=self.boundary)
 
+    def resume(self, harmonic_map: HarmonicMap) -> State:
+        """Return the state of a drag that starts from a map that may be outside the bounds.
+
+        The steps from there walk into the bounds; until then the status is tightening.
+
+        Raises
+        ------
+        EngineError
+            If the map is not proven to be locally injective.
+        """
+        certificate = certify(harmonic_map, self.boundary, self.bounds)
+        if certificate.certified:
+            return self.start(harmonic_map)
+        k, sigma_a, sigma_b = certificate.k, certificate.sigma_a, certificate.sigma_b
+        if not (k < 1 and sigma_b > 0):
+            raise EngineError(
+                "The start map folds, or nearly: it is not proven to be locally injective. Start "
+                "from another map."
+            )
+        limits = Bounds(
+            k=max(self.bounds.k, k + FOLLOW * (1 - k)),
+            sigma_a=max(self.bounds.sigma_a, sigma_a * (1 + FOLLOW)),
+            sigma_b=min(self.bounds.sigma_b, sigma_b * (1 - FOLLOW)),
+        )
+        return State(
+            map=harmonic_map,
+            certificate=certify(harmonic_map, self.boundary, limits),
+            limits=limits,
+            status=Status.TIGHTENING,
+            boundary=self.boundary,
+        )
+
     def positions(self, state: State) -> Complexes:
         """Return where the handles are now, complex128 (h,)."""
         coordinates = self.handles.coordinates
@@ -210,10 +246,16 @@ class Deformer:
             wish_now = Wish(jet.positions, np.full(len(jet.positions), np.nan))
             leashed = False
         else:
-            wish_now, leashed = _leash(state.boundary.size * state.reach, state.reach, jet, wish)
+            wish_now, leashed = _leash(self.handles, self.boundary.size, state.reach, jet, wish)
         barrier = Barrier(walls=walls, weight=weight, duals=state.duals)
-        objective = replace(free, wish=wish_now, barrier=barrier)
-        direction = newton_direction(objective, jet)
+        handles = self.handles.softened(SOFTNESS) if tightening else self.handles
+        # A step that was cut in the open may have overshot between the samples of a sketch.
+        last = state.statistics
+        sketched = leashed or last is None or last.length > FULL
+        objective = replace(
+            free, handles=handles, wish=wish_now, barrier=barrier, sketched=sketched
+        )
+        direction = _moderate(newton_direction(objective, jet), state.boundary)
         value = objective.value(jet)
         taken = _certified_step(state, objective, jet, direction, required)
         ahead = jet.advanced(1.0, direction.jet)
@@ -380,16 +422,43 @@ def _extremes(a: Floats, b: Floats) -> tuple[float, float, float]:
     return float((b / a).max()), float((a + b).max()), float((a - b).min())
 
 
-def _leash(distance: float, reach: float, jet: Jet, wish: Wish) -> tuple[Wish, bool]:
-    """Return the wish cut to the leash, and whether that cut anything."""
-    pull = wish.positions - jet.positions
-    cut = LEASH * distance / np.maximum(np.abs(pull), LEASH * distance)
-    most = TURN_LEASH * reach
+def _moderate(direction: Direction, boundary: Boundary) -> Direction:
+    """Return the direction, shortened if it moves the outline too far."""
+    coordinates = boundary.vertex_coordinates
+    moves = coordinates @ direction.phi + (coordinates @ direction.psi).conj()
+    farthest = float(np.abs(moves).max()) / (FARTHEST * boundary.size)
+    return direction if farthest <= 1 else direction.scaled(1 / farthest)
+
+
+def _leash(handles: Handles, size: float, reach: float, jet: Jet, wish: Wish) -> tuple[Wish, bool]:
+    """Return the wish cut to the leash, and whether that cut anything.
+
+    What all handles want to turn together, they turn: straight ways to a wish that is mainly a
+    rotation would squeeze the shape.
+    """
+    distance, most = LEASH * size * reach, TURN_LEASH * reach
+    positions = _turned(handles, jet.positions, wish.positions, most)
+    pull = wish.positions - positions
+    cut = distance / np.maximum(np.abs(pull), distance)
     # Free handles have NaN, which passes through.
     turn = np.angle(np.exp(1j * wish.rotations) * jet.fz.conj())
     near = np.angle(jet.fz) + np.clip(turn, -most, most)
     leashed = bool(np.any(cut < 1.0) or np.any(np.abs(turn) > most))
-    return Wish(jet.positions + cut * pull, near), leashed
+    return Wish(positions + cut * pull, near), leashed
+
+
+def _turned(handles: Handles, positions: Complexes, targets: Complexes, most: float) -> Complexes:
+    """Return the positions turned as a whole towards the targets (Procrustes), up to an angle."""
+    weights = handles.stiffness / handles.stiffness.sum()
+    centre = weights @ positions
+    from_centre, wanted = positions - centre, targets - weights @ targets
+    correlation = weights @ (from_centre.conj() * wanted)
+    scale = weights @ (np.abs(from_centre) * np.abs(wanted))
+    if abs(correlation) <= CORRELATED * scale:
+        return positions
+    angle = np.clip(np.angle(correlation), -most, most)
+    turned: Complexes = centre + np.exp(1j * angle) * from_centre
+    return turned
 
 
 def _with_samples(

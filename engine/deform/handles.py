@@ -1,6 +1,6 @@
 """Points of the shape that a person holds, and what holding them costs."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -103,6 +103,14 @@ class Handles:
             derivatives=readonly(cauchy_derivatives(boundary.cage, points)),
             hessian=readonly(_hessian(coordinates, stiffness)),
             coincident=tuple(zip(first.tolist(), second.tolist(), strict=True)),
+        )
+
+    def softened(self, factor: float) -> "Handles":
+        """Return the same handles with `factor` times the stiffness."""
+        return replace(
+            self,
+            stiffness=readonly(factor * self.stiffness),
+            hessian=readonly(factor * self.hessian),
         )
 
     def wish(self, positions: Complexes, rotations: npt.ArrayLike | None = None) -> Wish:

@@ -36,6 +36,11 @@ class Direction(NamedTuple):
     jet: Jet
     slope: float
 
+    def scaled(self, factor: float) -> "Direction":
+        """Return the direction times a factor."""
+        jet = Jet(*(factor * part for part in self.jet))
+        return Direction(factor * self.phi, factor * self.psi, jet, factor * self.slope)
+
 
 def newton_direction(objective: Objective, jet: Jet) -> Direction:
     """Solve for the step that minimises the projected quadratic model of the objective."""

@@ -18,12 +18,14 @@ from engine.deform.boundary import Boundary
 from engine.deform.energy import Radial, symmetric_dirichlet, symmetric_dirichlet_derivatives
 from engine.deform.handles import Handles, Wish
 
-# A sketched Hessian takes one sample in four, with the coefficients of its neighbours summed, as long
-# as that leaves this many for each unknown; samples with coefficients this far above the mean (near
-# a bound) enter one by one.
+# A sketched Hessian takes one sample in four, with the coefficients of its neighbours summed, as
+# long as that leaves this many for each cage vertex; samples with coefficients this far above the
+# mean (near a bound) enter one by one.
 STRIDE = 4
 SAMPLES_PER_VERTEX = 3
 STRONG = 3.0
+# Stiffness of a step against turning the whole shape by an angle; handles have some 1e3.
+DAMPING = 1e-4
 
 
 class Jet(NamedTuple):
@@ -148,6 +150,7 @@ class Objective:
                 rows * (root_f * frame_f)[:, None],
                 rows * (-1j * np.sqrt(tangential_f) * frame_f)[:, None],
                 *self._turning_roots(jet),
+                self._damping_root(jet),
             ]
         ).view(np.float64)
         rows = rows[:, 1:]
@@ -193,6 +196,15 @@ class Objective:
             np.concatenate([middles[some], alone]),
             np.hstack([summed[:, some], entries[:, alone]]),
         )
+
+    def _damping_root(self, jet: Jet) -> Complexes:
+        """Return the row of a tiny stiffness against turning as a whole.
+
+        One handle leaves the rotation of the shape free; rounding alone would then turn it.
+        """
+        per_sample = -1j * np.sqrt(DAMPING) * self.boundary.weights / jet.f
+        row: Complexes = per_sample[None, :] @ self.boundary.derivatives
+        return row
 
     @cached_property
     def _turning_stiffness(self) -> Floats:
