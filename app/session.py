@@ -17,6 +17,7 @@ from app.posing import Drag, Rig
 from app.preferences import Preferences
 from app.render.view import View, fit_view
 from app.shown import Shown
+from app.timing import Timing
 
 HeatMap = Literal["none", "k", "sigma_a", "sigma_b"]
 Tone = Literal["info", "good", "error"]
@@ -137,37 +138,6 @@ class Boxing:
 Gesture = Pulling | Turning | Boxing
 
 
-@dataclass(frozen=True, slots=True)
-class Scrubbing:
-    """The pointer moves the playhead."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Shifting:
-    """The pointer moves the chosen keys, or copies of them, from a frame by some frames."""
-
-    start: int
-    by: int = 0
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Lassoing:
-    """The pointer spans a stretch of time to choose the keys in it."""
-
-    start: float
-    keeps: bool
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Trimming:
-    """The pointer moves an end of the work range."""
-
-    last: bool
-
-
-TimeGesture = Scrubbing | Shifting | Lassoing | Trimming
-
-
 @dataclass(slots=True, kw_only=True, eq=False)
 class Grab:
     """Handles that are being pulled, and how far the solver has followed.
@@ -214,8 +184,6 @@ class Project:
         None fits the picture into the viewport.
     unmovable : Document, optional
         Its in-betweens failed; they are not tried again until it changes.
-    span : tuple of float, optional
-        First and last frame that the timeline shows; None shows all.
     kept : Document, optional
         The one that the autosave holds, from the time `kept_at` on.
     gesture : object, optional
@@ -232,10 +200,10 @@ class Project:
     grab: Grab | None = None
     shown: Shown | None = None
     unmovable: Document | None = None
-    span: tuple[float, float] | None = None
     kept: Document | None = None
     kept_at: float = 0.0
     playhead: Playhead = field(default_factory=Playhead)
+    timing: Timing = field(default_factory=Timing)
     selected: frozenset[int] = frozenset()  # ids of handles
     chosen: frozenset[int] = frozenset()  # frames of keys
     loose: Pose | None = None
@@ -271,7 +239,6 @@ class Session:
     toasts: list[Toast] = field(default_factory=list)
     dialog: Dialog | None = None
     pointer: Gesture | None = None
-    time_pointer: TimeGesture | None = None
     space_used: bool = False  # Space was held to move the view
     hovered: int | None = None  # the handle under the pointer
     hint: str = ""  # about what is under the pointer

@@ -65,20 +65,6 @@ def delete(session: Session) -> None:
     _forget_what_is_gone(session)
 
 
-def move_keys(session: Session, by: int) -> None:
-    """Move the chosen keys in time."""
-    if session.project:
-        edit(session, key_commands.move_keys(session.project.chosen, by))
-        session.project.chosen = frozenset(frame + by for frame in session.project.chosen)
-
-
-def copy_keys(session: Session, by: int) -> None:
-    """Repeat the chosen keys at another time."""
-    if session.project:
-        edit(session, key_commands.copy_keys(session.project.chosen, by))
-        session.project.chosen = frozenset(frame + by for frame in session.project.chosen)
-
-
 def _forget_what_is_gone(session: Session) -> None:
     project = session.project
     if project:

@@ -27,6 +27,10 @@ MENUS: dict[str, tuple[str, ...]] = {
         "insert key",
         "loop",
         "auto-key",
+        "",
+        "work start",
+        "work end",
+        "fit time",
     ),
     "Help": ("shortcuts",),
 }

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
-from app.actions import editing, files, playback, posing, saving, timing, viewing
+from app.actions import editing, files, keys, playback, posing, saving, timing, viewing
 from app.actions.action import Action, do
 from app.session import Session
 
@@ -299,11 +299,29 @@ BINDINGS: dict[str, Binding] = {
     ),
     "loop": Binding(
         label="Loop",
-        action=do(timing.toggle_loop),
+        action=do(keys.toggle_loop),
         group="Time",
         keys=(Key.l,),
         icon=icons.ICON_FA_REPEAT,
+        hint="Loop: the end leads back to the beginning",
         active=lambda session: session.project is not None and session.project.document.loop,
+    ),
+    "fit time": Binding(
+        label="Fit timeline",
+        action=do(timing.fit),
+        group="Time",
+        keys=(SHIFT | Key.home,),
+        icon=icons.ICON_FA_ARROWS_LEFT_RIGHT_TO_LINE,
+        hint="Show all frames",
+    ),
+    "work start": Binding(
+        label="Start work range here",
+        action=do(keys.start_work_here),
+        group="Time",
+        keys=(Key.b,),
+    ),
+    "work end": Binding(
+        label="End work range here", action=do(keys.end_work_here), group="Time", keys=(Key.n,)
     ),
     "insert key": Binding(
         label="Insert key",

@@ -1,0 +1,104 @@
+"""Where times are on the screen, for all that is drawn in the timeline."""
+
+from imgui_bundle import ImVec2, imgui
+
+from app.session import Project
+from app.timing import Strip
+from app.ui.theme import Look
+
+WORK, RULER, OVERVIEW = 0.7, 1.55, 0.75  # em: heights of the bands above and below the track
+BAR, BAR_SHARE = 3.6, 0.62  # em: height of intervals at most, and as a part of the track's
+ROUNDING = 0.4  # em
+
+
+class Track:
+    """The bands of the timeline, and the way between frames and pixels.
+
+    Parameters
+    ----------
+    look : Look
+    project : Project
+    """
+
+    def __init__(self, look: Look, project: Project) -> None:
+        self.look = look
+        self.project = project
+        self.corner = imgui.get_cursor_screen_pos()
+        self.size = imgui.get_content_region_avail()
+        self.left, self.top = self.corner.x, self.corner.y
+        self.right, self.bottom = self.left + self.size.x, self.top + self.size.y
+        self.ruler_top = self.top + WORK * look.em
+        self.track_top = self.ruler_top + RULER * look.em
+        self.track_bottom = self.bottom - OVERVIEW * look.em
+        self.middle = (self.track_top + self.track_bottom) / 2
+        height = min(BAR * look.em, BAR_SHARE * (self.track_bottom - self.track_top))
+        self.bar_top, self.bar_bottom = self.middle - height / 2, self.middle + height / 2
+        timing = project.timing
+        fitting = Strip.fitting(project.document.frames, self.width)
+        self.strip = timing.held or timing.strip or fitting
+
+    @property
+    def width(self) -> float:
+        """Its width in em."""
+        return self.size.x / self.look.em
+
+    @property
+    def is_usable(self) -> bool:
+        """Whether there is room to draw anything."""
+        return self.width > 4 and self.bar_bottom - self.bar_top > self.look.em
+
+    def x(self, frame: float) -> float:
+        """Return where a frame is, in pixels of the window."""
+        return self.left + self.strip.place(frame) * self.look.em
+
+    def frame(self, x: float) -> float:
+        """Return the frame at a place of the window."""
+        return self.strip.frame((x - self.left) / self.look.em)
+
+    @property
+    def pointed(self) -> float:
+        """The frame under the pointer."""
+        return self.frame(imgui.get_mouse_pos().x)
+
+    def shows(self, low: float, high: float) -> bool:
+        """Tell whether a stretch of pixels is on the screen."""
+        return high > self.left and low < self.right
+
+    def button(self, name: str, low: ImVec2, high: ImVec2, *, right: bool = False) -> bool:
+        """Lay an invisible button over a box; return whether it was clicked.
+
+        Parameters
+        ----------
+        name : str
+        low, high : ImVec2
+        right : bool
+            Whether the right button of the mouse counts as well.
+        """
+        imgui.set_cursor_screen_pos(low)
+        imgui.set_next_item_allow_overlap()
+        flags = imgui.ButtonFlags_.mouse_button_left
+        if right:
+            flags |= imgui.ButtonFlags_.mouse_button_right
+        size = ImVec2(max(high.x - low.x, 1.0), max(high.y - low.y, 1.0))
+        return imgui.invisible_button(name, size, flags)
+
+
+def in_hand() -> bool:
+    """Tell whether the pointer is over the last item, or holds it."""
+    return imgui.is_item_hovered() or imgui.is_item_active()
+
+
+def is_pressed() -> bool:
+    """Tell whether the left button of the mouse was pressed on the last item just now."""
+    return imgui.is_item_activated() and imgui.is_mouse_clicked(imgui.MouseButton_.left)
+
+
+def was_dragged() -> bool:
+    """Tell whether the pointer went somewhere since the button was pressed."""
+    delta = imgui.get_mouse_drag_delta(imgui.MouseButton_.left)
+    return bool(delta.x or delta.y)
+
+
+def in_seconds(frame: float, fps: float) -> str:
+    """Return the time of a frame in words."""
+    return f"{frame / fps:.2f}".rstrip("0").rstrip(".") + " s"
