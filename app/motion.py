@@ -190,12 +190,17 @@ class Motion:
             and all(_pair(*poses, document.variant) in self.pieces for poses in _poses(document))
         )
 
+    def inbetweens(self, first: Pose, second: Pose, variant: Variant) -> Inbetweens | None:
+        """Return the in-betweens of two poses; None where they are not prepared."""
+        piece = self.pieces.get(_pair(first, second, variant))
+        return None if piece is None else piece.inbetweens
+
     def _piece(self, document: Document, moment: Moment) -> Inbetweens | None:
         first, second = intervals(document)[moment.interval]
         keys = document.keys
-        pair = _pair(keys[first].pose, keys[second].pose, document.variant)
-        piece = self.pieces.get(pair) if document.anchor == self.document.anchor else None
-        return None if piece is None else piece.inbetweens
+        if document.anchor != self.document.anchor:
+            return None
+        return self.inbetweens(keys[first].pose, keys[second].pose, document.variant)
 
 
 def prepare_motion(document: Document, earlier: Motion) -> Motion:

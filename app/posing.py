@@ -11,7 +11,7 @@ from app.document.keyframe import Pose, Target
 from app.document.model import Document
 from app.document.timeline import time_of
 from app.motion import resting_pose
-from engine.arrays import Complexes
+from engine.arrays import Booleans, Complexes
 from engine.deform.boundary import Boundary
 from engine.deform.bounds import Bounds
 from engine.deform.certificate import certify
@@ -153,7 +153,8 @@ def pose_at(rig: Rig, frame: float) -> Pose:
     keys = document.keys
     after = moment.weight > 0.5
     near = keys[(moment.interval + after) % len(keys)].pose
-    fitted = _fit(Animation(document, points=boundary.points), frame, boundary)
+    blended = Animation(document, points=boundary.points).frame(frame)
+    fitted = fit_map(boundary, blended.fz, blended.fzbar, blended.positions)
     for share in (1.0, 0.5, 0.25, 0.0):
         phi = share * fitted.phi + (1.0 - share) * near.phi
         psi = share * fitted.psi + (1.0 - share) * near.psi
@@ -171,19 +172,32 @@ def pose_at(rig: Rig, frame: float) -> Pose:
     return Pose(targets=targets, phi=mixed.phi, psi=mixed.psi, certificate=certificate)
 
 
-def _fit(animation: Animation, frame: float, boundary: Boundary) -> HarmonicMap:
-    """Return the map over the cage that is nearest to an in-between, by its derivatives."""
-    blended = animation.frame(frame)
-    root = np.sqrt(boundary.weights)[:, None]
+def fit_map(
+    boundary: Boundary,
+    fz: Complexes,
+    fzbar: Complexes,
+    positions: Complexes,
+    *,
+    inside: Booleans | None = None,
+) -> HarmonicMap:
+    """Return the map over a cage that is nearest to another one, by its derivatives on the outline.
+
+    Parameters
+    ----------
+    boundary : Boundary
+    fz, fzbar, positions : complex128, shape (s,)
+        f_z, f_z̄ and f of the other map at the boundary's samples.
+    inside : bool, shape (m,), optional
+        Which samples they are for, by default all.
+    """
+    chosen = slice(None) if inside is None else inside
+    weights = boundary.weights[chosen]
+    root = np.sqrt(weights)[:, None]
     # Constants have no derivative: they are left to the places of the outline.
-    matrix = root * boundary.derivatives[:, 1:]
-    wanted = root * np.column_stack([blended.fz, blended.fzbar.conj()])
+    matrix = root * boundary.derivatives[chosen, 1:]
+    wanted = root * np.column_stack([fz, fzbar.conj()])
     solved, *_ = np.linalg.lstsq(matrix, wanted, rcond=None)
     phi, psi = (np.concatenate([[0], column]) for column in solved.T)
     shape = HarmonicMap(cage=boundary.cage, phi=phi, psi=psi)
-    offset = _mean(blended.positions - shape(boundary.points), boundary)
+    offset = weights @ (positions - shape(boundary.points[chosen])) / weights.sum()
     return HarmonicMap(cage=boundary.cage, phi=phi + offset, psi=psi)
-
-
-def _mean(values: Complexes, boundary: Boundary) -> complex:
-    return complex(boundary.weights @ values)

@@ -10,7 +10,10 @@ from app.document.history import History
 from app.document.keyframe import Pose, Target
 from app.document.model import Document
 from app.document.playhead import Playhead
+from app.document.settings import Meshing
+from app.export.plan import ExportPlan, Poses
 from app.jobs import Jobs
+from app.measuring import Curves
 from app.motion import Motion
 from app.picture import Picture
 from app.posing import Drag, Rig
@@ -18,6 +21,7 @@ from app.preferences import Preferences
 from app.render.view import View, fit_view
 from app.shown import Shown
 from app.timing import Timing
+from engine.arrays import Bytes
 
 HeatMap = Literal["none", "k", "sigma_a", "sigma_b"]
 Tone = Literal["info", "good", "error"]
@@ -184,6 +188,16 @@ class Project:
         None fits the picture into the viewport.
     unmovable : Document, optional
         Its in-betweens failed; they are not tried again until it changes.
+    unmeasurable : Document, optional
+        Likewise for its distortion.
+    curves : Curves, optional
+        Distortion over time, of the document that it names.
+    meshing : Meshing, optional
+        What the domain will be rebuilt with; None as long as that is what it has.
+    is_opaque : bool
+        Whether the picture has no transparency, and its background was found by its colour.
+    exported_to : Path, optional
+        Where the last export went.
     kept : Document, optional
         The one that the autosave holds, from the time `kept_at` on.
     gesture : object, optional
@@ -200,6 +214,11 @@ class Project:
     grab: Grab | None = None
     shown: Shown | None = None
     unmovable: Document | None = None
+    unmeasurable: Document | None = None
+    curves: Curves | None = None
+    meshing: Meshing | None = None
+    is_opaque: bool = False
+    exported_to: Path | None = None
     kept: Document | None = None
     kept_at: float = 0.0
     playhead: Playhead = field(default_factory=Playhead)
@@ -223,6 +242,17 @@ class Project:
         return fit_view(0j, complex(*self.picture.size), screen, margin=margin)
 
 
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class ExportRun:
+    """An export that is under way: what it draws, how, and how many frames are drawn."""
+
+    document: Document
+    picture: Bytes
+    poses: Poses
+    plan: ExportPlan
+    done: int = 0
+
+
 @dataclass(slots=True, kw_only=True, eq=False)
 class Session:
     """Everything that one window changes while it runs."""
@@ -238,11 +268,18 @@ class Session:
     solver_seconds: float = 0.0
     toasts: list[Toast] = field(default_factory=list)
     dialog: Dialog | None = None
+    export: ExportRun | None = None
     pointer: Gesture | None = None
     space_used: bool = False  # Space was held to move the view
     hovered: int | None = None  # the handle under the pointer
     hint: str = ""  # about what is under the pointer
     quitting: bool = False
+
+    @property
+    def usual_folder(self) -> Path:
+        """Where the person's files were last."""
+        folders = [path.parent for path in self.preferences.recent if path.parent.is_dir()]
+        return folders[0] if folders else Path.home()
 
     def tell(
         self,

@@ -24,6 +24,7 @@ PICTURES = (
     ".avif",
 )
 OPENING = "Opening"
+OPAQUE = 255
 
 
 class Sample(NamedTuple):
@@ -65,7 +66,7 @@ def ask_open(session: Session) -> None:
     """Ask for a picture or a project."""
     session.dialog = FileDialog(
         title="Open image or project",
-        folder=_folder(session),
+        folder=session.usual_folder,
         suffixes=(PROJECT, *PICTURES),
         writes=False,
         chosen=lambda path: do(open_file, path),
@@ -122,11 +123,6 @@ def _read_picture(path: Path) -> Opened:
     return Opened(document, picture, sketch, notices)
 
 
-def _folder(session: Session) -> Path:
-    recent = [path.parent for path in session.preferences.recent if path.parent.is_dir()]
-    return recent[0] if recent else Path.home()
-
-
 def offer_recovery(session: Session) -> None:
     """Ask whether to open what was not saved when Lissom ended last."""
     leftovers = find_leftovers(session.folder)
@@ -166,6 +162,7 @@ def _show_recovered(session: Session, path: Path, opened: Opened) -> None:
         picture=opened.picture,
         path=None,
         sketch=opened.sketch,
+        is_opaque=bool((opened.picture.rgba[..., 3] == OPAQUE).all()),
     )
     write_autosave(session.folder, opened.document)
     path.unlink(missing_ok=True)

@@ -100,6 +100,12 @@ def anchor_at(session: Session, identity: int) -> None:
     project.history.do(set_anchor(None if project.document.anchor == place else place))
 
 
+def wish(session: Session, wishes: Mapping[int, Target]) -> None:
+    """Wish handles elsewhere, as a field of the panel says."""
+    pull(session, wishes)
+    let_go(session)
+
+
 def free_turn(session: Session, identity: int) -> None:
     """Let the shape turn freely at a handle in the pose that is shown."""
     project = session.project

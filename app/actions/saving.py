@@ -127,11 +127,9 @@ def _ask_where(session: Session, then: Action | None) -> None:
     project = session.project
     if project is None:
         return
-    recent = [path.parent for path in session.preferences.recent if path.parent.is_dir()]
-    folder = project.path.parent if project.path else recent[0] if recent else Path.home()
     session.dialog = FileDialog(
         title="Save the project",
-        folder=folder,
+        folder=project.path.parent if project.path else session.usual_folder,
         name=project.path.name if project.path else f"{project.name}{PROJECT}",
         suffixes=(PROJECT,),
         writes=True,

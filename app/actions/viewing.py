@@ -4,6 +4,7 @@ from dataclasses import replace
 from typing import Any, Literal
 
 from app.actions.action import Action
+from app.document.settings import Meshing
 from app.preferences import LARGEST_SCALE, SMALLEST_SCALE, ThemeName
 from app.render.view import View
 from app.session import Dialog, HeatMap, Session, ShortcutSheet, Toast
@@ -65,6 +66,12 @@ def set_ghosts(session: Session, before: int, after: int, step: int) -> None:
 def set_backdrop(session: Session, backdrop: str) -> None:
     """Choose what lies behind the drawing: "checker" or "#rrggbb"."""
     session.overlays = replace(session.overlays, backdrop=backdrop)
+
+
+def draft_meshing(session: Session, meshing: Meshing) -> None:
+    """Choose what the domain will be rebuilt with."""
+    if session.project:
+        session.project.meshing = meshing
 
 
 def toggle_theme(session: Session) -> None:

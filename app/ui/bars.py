@@ -9,7 +9,7 @@ from app.ui.theme import Look, ink
 from app.ui.widgets import icon_button
 
 MENUS: dict[str, tuple[str, ...]] = {
-    "File": ("open", "", "save", "save as", "", "close", "quit"),
+    "File": ("open", "", "save", "save as", "", "export", "export again", "", "close", "quit"),
     "Edit": ("undo", "redo", "", "select all", "delete"),
     "View": (
         *("fit", "actual size", "", "handles", "wireframe", "outline", "heat map", "onion skin"),

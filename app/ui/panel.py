@@ -17,6 +17,7 @@ class Panel:
     ----------
     title : str
     icon : str
+        In its tab; none where tabs are many.
     place : str
         Where it is docked at first.
     draw : callable
@@ -31,4 +32,4 @@ class Panel:
     @property
     def label(self) -> str:
         """The tab's text; its id is the title."""
-        return f"{self.icon}  {self.title}###{self.title}"
+        return f"{self.icon}  {self.title}###{self.title}" if self.icon else self.title

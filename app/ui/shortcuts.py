@@ -6,7 +6,17 @@ from dataclasses import dataclass
 from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
-from app.actions import editing, files, keys, playback, posing, saving, timing, viewing
+from app.actions import (
+    editing,
+    exporting,
+    files,
+    keys,
+    playback,
+    posing,
+    saving,
+    timing,
+    viewing,
+)
 from app.actions.action import Action, do
 from app.session import Session
 
@@ -120,6 +130,19 @@ BINDINGS: dict[str, Binding] = {
     ),
     "save as": Binding(
         label="Save as…", action=do(saving.save_as), group="File", keys=(CTRL | SHIFT | Key.s,)
+    ),
+    "export": Binding(
+        label="Export…",
+        action=do(exporting.ask),
+        group="File",
+        keys=(CTRL | Key.e,),
+        icon=icons.ICON_FA_FILE_EXPORT,
+    ),
+    "export again": Binding(
+        label="Export again",
+        action=do(exporting.repeat),
+        group="File",
+        keys=(CTRL | SHIFT | Key.e,),
     ),
     "close": Binding(label="Close", action=do(saving.close), group="File", keys=(CTRL | Key.w,)),
     "quit": Binding(

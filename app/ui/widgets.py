@@ -122,9 +122,10 @@ def segments(look: Look, name: str, options: Sequence[tuple[str, str]], current:
     """
     chosen = None
     palette = look.palette
+    spacing = imgui.get_style().item_spacing.y
     width = imgui.get_content_region_avail().x
     imgui.push_id(name)
-    imgui.push_style_var(imgui.StyleVar_.item_spacing, ImVec2(0.12 * look.em, 0))
+    imgui.push_style_var(imgui.StyleVar_.item_spacing, ImVec2(0.12 * look.em, spacing))
     each = (width - 0.12 * look.em * (len(options) - 1)) / len(options)
     for index, (value, text) in enumerate(options):
         if index:

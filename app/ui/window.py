@@ -15,8 +15,9 @@ from app.render.renderer import Renderer
 from app.render.thumbnails import Thumbnail, Thumbnails
 from app.session import Session
 from app.ui.canvas import Canvas
+from app.ui.exporter import Exporter
 from app.ui.panel import Panel
-from app.ui.panels import timeline, viewport
+from app.ui.panels import deform, distortion, domain, export, handle, timeline, viewport
 from app.ui.shell import Shell
 
 SIZE = (1280, 800)
@@ -37,6 +38,7 @@ class Window:
         self._connect = connect
         self._thumbnails: Thumbnails | None = None
         self._canvas: Canvas | None = None
+        self._exporter: Exporter | None = None
         self._renderer: Renderer | None = None
         self._shell = Shell(session, self._panels(), self._thumbnail)
 
@@ -83,6 +85,16 @@ class Window:
                 draw=lambda session, look: viewport.draw(session, look, self._texture),
             ),
             Panel(title="Timeline", icon=icons.ICON_FA_FILM, place="bottom", draw=timeline.draw),
+            Panel(title="Handle", icon="", place="side", draw=handle.draw),
+            Panel(title="Deform", icon="", place="side", draw=deform.draw),
+            Panel(
+                title="Distortion",
+                icon="",
+                place="side",
+                draw=distortion.draw,
+            ),
+            Panel(title="Domain", icon="", place="side", draw=domain.draw),
+            Panel(title="Export", icon="", place="side", draw=export.draw),
         ]
 
     @property
@@ -93,6 +105,7 @@ class Window:
         renderer = self._renderer = self._connect()
         self.session.full_detail = not is_software(renderer.programs.context)
         self._canvas = Canvas(renderer)
+        self._exporter = Exporter(renderer)
         self._thumbnails = Thumbnails(renderer.programs.context)
 
     def _accept_files(self) -> None:
@@ -105,7 +118,7 @@ class Window:
             files.open_file(self.session, Path(paths[0]))
 
     def _release(self) -> None:
-        for owner in (self._canvas, self._thumbnails, self._renderer):
+        for owner in (self._exporter, self._canvas, self._thumbnails, self._renderer):
             if owner is not None:
                 owner.release()
 
@@ -113,6 +126,8 @@ class Window:
         if self._canvas is None or self._renderer is None:
             return
         self._canvas.draw(self.session)
+        if self._exporter is not None:
+            self._exporter.go_on(self.session)
         # ImGui draws to whatever is bound, and that is to be the screen.
         screen = self._renderer.programs.context.screen
         if screen is not None:

@@ -1,0 +1,99 @@
+"""Distortion over time at the worst points of a drawing, as the paper plots it (Section 8)."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from app.document.model import Document
+from app.document.timeline import intervals
+from app.files import write_atomically
+from app.motion import Motion
+from engine import distortion
+from engine.arrays import Floats
+
+POINTS = 100
+TIMES = 24  # in each interval
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Curves:
+    """Distortion of an animation at its worst points.
+
+    Parameters
+    ----------
+    document : Document
+    frames : float64, shape (t,)
+    k, tau : float64, shape (t, p)
+        At the points where each is the largest over all time.
+    k_share, tau_share : float64, shape (t, p)
+        The same, at each point as a share of the larger one of the two keys around: bounded
+        in-betweens never exceed 1. τ counts from 1, where nothing is distorted.
+    """
+
+    document: Document
+    frames: Floats
+    k: Floats
+    tau: Floats
+    k_share: Floats
+    tau_share: Floats
+
+
+def measure_curves(document: Document, motion: Motion) -> Curves | None:
+    """Measure a document at the vertices of a motion's figure; None where nothing moves."""
+    spans = intervals(document)
+    if not spans:
+        return None
+    keys = document.keys
+    period = document.frames.last - document.frames.first
+    frames, ks, taus = [], [], []
+    for first, last in spans:
+        piece = motion.inbetweens(keys[first].pose, keys[last].pose, document.variant)
+        if piece is None:
+            return None
+        start = keys[first].frame
+        end = keys[last].frame if last > first else keys[last].frame + period
+        for t in np.linspace(0.0, 1.0, TIMES):
+            blended = piece.frame(np.array([1.0 - t, t]))
+            frames.append(start + t * (end - start))
+            ks.append(distortion.k(blended.fz, blended.fzbar))
+            taus.append(distortion.tau(blended.fz, blended.fzbar))
+    k, tau = _worst(np.array(ks)), _worst(np.array(taus))
+    return Curves(
+        document=document,
+        frames=np.array(frames, dtype=np.float64),
+        k=k,
+        tau=tau,
+        k_share=_shares(k),
+        tau_share=_shares(tau - 1.0),
+    )
+
+
+def write_curves(path: Path, curves: Curves) -> None:
+    """Write the curves as comma-separated values, one row for each time."""
+    count = curves.k.shape[1]
+    names = ["frame"]
+    for name in ("k", "k_share"):
+        names += [f"{name}_{point}" for point in range(count)]
+    for name in ("tau", "tau_share"):
+        names += [f"{name}_{point}" for point in range(count)]
+    table = np.column_stack([curves.frames, curves.k, curves.k_share, curves.tau, curves.tau_share])
+    rows = [",".join(names), *(",".join(f"{value:.9g}" for value in row) for row in table)]
+    text = ("\n".join(rows) + "\n").encode()
+    write_atomically(path, lambda file: file.write(text))
+
+
+def _worst(values: Floats) -> Floats:
+    """Return the columns (t, p) of the points with the largest values at any time."""
+    order = np.argsort(values.max(axis=0))[::-1][:POINTS]
+    return values[:, order]
+
+
+def _shares(values: Floats) -> Floats:
+    """Return values (t, p) relative to the larger end of each interval, 0 where that is nothing."""
+    shares = np.zeros_like(values)
+    for start in range(0, len(values), TIMES):
+        block = values[start : start + TIMES]
+        largest = np.maximum(block[0], block[-1])
+        np.divide(block, largest, out=shares[start : start + TIMES], where=largest > 1e-9)
+    return shares
