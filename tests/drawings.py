@@ -3,7 +3,7 @@
 import moderngl
 import numpy as np
 
-from app.render.gpu_mesh import GpuMesh, Pose, StreamedVertices, singles
+from app.render.gpu_mesh import GpuMesh, Pose, StreamedVertices, VertexSource, singles
 from app.render.gpu_picture import GpuPicture
 from app.render.renderer import Renderer
 from app.render.scene import Scene
@@ -29,6 +29,9 @@ class Easel:
     def pose(self, mesh: GpuMesh, points: Complexes) -> Pose:
         source = StreamedVertices(self.gl, len(points))
         source.write(singles(points))
+        return self.pose_of(mesh, source)
+
+    def pose_of(self, mesh: GpuMesh, source: VertexSource) -> Pose:
         pose = Pose(mesh, source)
         self._owned.append(pose)
         return pose

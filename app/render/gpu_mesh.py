@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import replace
+from types import MappingProxyType
 from typing import Final, Protocol
 
 import moderngl
@@ -39,6 +40,14 @@ class VertexSource(Protocol):
     def shader(self) -> str:
         """The file in shaders/ that defines `vec2 vertex_position()`."""
 
+    @property
+    def constants(self) -> tuple[tuple[str, int], ...]:
+        """What the shader is compiled with."""
+
+    @property
+    def uniforms(self) -> Mapping[str, object]:
+        """What the shader is drawn with in this frame."""
+
     def attributes(self) -> tuple[Attribute, ...]:
         """Return what feeds the shader, one entry of each buffer a vertex."""
 
@@ -57,6 +66,8 @@ class StreamedVertices:
     """
 
     shader: Final = "streamed.glsl"
+    constants: Final = ()
+    uniforms: Final[Mapping[str, object]] = MappingProxyType({})
 
     def __init__(self, context: moderngl.Context, count: int) -> None:
         self._shape = (count, 2)
@@ -160,18 +171,20 @@ class Pose:
     def draw(self, stages: Stages, uniforms: Mapping[str, object]) -> None:
         """Draw the triangles with a mesh program, that is `stages` and the source's shader."""
         binding = self._bound(stages, self._mesh.triangles)
-        set_uniforms(binding.program, uniforms)
+        set_uniforms(binding.program, {**uniforms, **self._source.uniforms})
         binding.render(moderngl.TRIANGLES)
 
     def draw_border(self, stages: Stages, uniforms: Mapping[str, object]) -> None:
         """Draw the edges of the border with a program of their own."""
         binding = self._bound(stages, self._mesh.border)
-        set_uniforms(binding.program, uniforms)
+        set_uniforms(binding.program, {**uniforms, **self._source.uniforms})
         binding.render(moderngl.LINES)
 
     def _bound(self, stages: Stages, indices: moderngl.Buffer) -> moderngl.VertexArray:
         if stages not in self._bindings:
-            linked = replace(stages, vertex=(*stages.vertex, self._source.shader))
+            source = self._source
+            vertex = (*stages.vertex, source.shader)
+            linked = replace(stages, vertex=vertex, constants=source.constants)
             self._bindings[stages] = self._bind(self._mesh.programs.get(linked), indices)
         return self._bindings[stages]
 

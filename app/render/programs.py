@@ -20,11 +20,14 @@ class Stages:
     vertex, fragment : tuple of str
     geometry : str
         Empty where the program has no geometry stage.
+    constants : tuple of (name, value)
+        Known to the vertex stage.
     """
 
     vertex: tuple[str, ...]
     fragment: tuple[str, ...]
     geometry: str = ""
+    constants: tuple[tuple[str, int], ...] = ()
 
 
 class Programs:
@@ -39,7 +42,7 @@ class Programs:
         """Return a program, compiled when it is asked for first."""
         if stages not in self._compiled:
             self._compiled[stages] = self.context.program(
-                vertex_shader=_join(*stages.vertex),
+                vertex_shader=_join(*stages.vertex, constants=stages.constants),
                 fragment_shader=_join(*stages.fragment),
                 geometry_shader=_join(stages.geometry) if stages.geometry else None,
             )
@@ -69,7 +72,8 @@ def set_uniforms(program: moderngl.Program, values: Mapping[str, object]) -> Non
         program[name] = value
 
 
-def _join(*names: str) -> str:
+def _join(*names: str, constants: tuple[tuple[str, int], ...] = ()) -> str:
+    definitions = "".join(f"#define {name} {value}\n" for name, value in constants)
     # The numbers make a compiler's message name the file, counted from 0, and its line.
     texts = (f"#line 1 {number}\n{shader_source(name)}" for number, name in enumerate(names))
-    return HEADER + "\n".join(texts)
+    return HEADER + definitions + "\n".join(texts)

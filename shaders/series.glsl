@@ -1,0 +1,13 @@
+// Vertex source: a series in time. Its functions of time are the same for all vertices and come as
+// weights, so that what is left of Clenshaw's sum is one product a row.
+
+in vec4 rows[ROW_PAIRS];            // two rows of the series each
+uniform vec2 weights[ROW_PAIRS];
+
+vec2 vertex_position() {
+    vec2 sum = vec2(0.0);
+    for (int k = 0; k < ROW_PAIRS; ++k) {
+        sum += weights[k].x * rows[k].xy + weights[k].y * rows[k].zw;
+    }
+    return sum;
+}
