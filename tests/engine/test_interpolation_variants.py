@@ -4,6 +4,7 @@ from functools import cache
 
 import numpy as np
 import pytest
+from deform_shapes import STAR_POINTS, star
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from interpolation_shapes import (
@@ -311,3 +312,32 @@ def test_the_anchor_moves_eta_and_metric_only_rigidly(variant):
     assert_allclose(second.fz, turn * first.fz, rtol=1e-5, atol=0)
     difference = second.positions - turn * first.positions
     assert_allclose(difference, difference[0], rtol=0, atol=1e-5)
+
+
+@given(seed=st.integers(0, 10_000), time=times)
+@settings(max_examples=5)
+def test_in_betweens_of_dragged_and_certified_keyframes_keep_their_bounds(seed, time):
+    deformer = star()
+    rng = np.random.default_rng(seed)
+    state, maps, proven = deformer.start(), [], []
+    for _ in range(2):
+        targets = np.exp(1j * rng.uniform(-1, 1)) * STAR_POINTS
+        targets += 0.4 * (rng.normal(size=len(targets)) + 1j * rng.normal(size=len(targets)))
+        for _ in range(15):
+            state = deformer.step(state, deformer.handles.wish(targets))
+        assert state.certificate.certified
+        maps.append(state.map)
+        proven.append(state.certificate)
+    boundary = deformer.boundary
+    points = np.concatenate([boundary.points, inner_points(boundary.outline, 50, seed)])
+    most_a, least_b, most_k = (
+        max(c.sigma_a for c in proven),
+        min(c.sigma_b for c in proven),
+        max(c.k for c in proven),
+    )
+    for variant in (Variant.NU, Variant.SCALED_ETA, Variant.METRIC):
+        frame = prepare(maps, points, outline=boundary.outline, variant=variant).frame(time)
+        sigma_a, sigma_b, k = distortions(frame)
+        assert k.max() <= most_k + 1e-5
+        assert sigma_b.min() >= least_b - 1e-5
+        assert variant == Variant.NU or sigma_a.max() <= most_a + 1e-5
