@@ -8,7 +8,7 @@ import numpy as np
 from app.document.keyframe import Pose
 from app.document.model import Document
 from app.document.settings import Variant
-from app.document.timeline import Moment, intervals, time_of
+from app.document.timeline import Moment, intervals, resting_pose, time_of
 from engine import interpolation
 from engine.arrays import Complexes, Floats
 from engine.complex_log import root_sheets
@@ -133,7 +133,7 @@ class Animation:
     def positions(self, frame: float) -> Complexes:
         """Return where the points (m,) are at a frame, which may lie between two numbers."""
         moment = time_of(self.document, frame)
-        resting = self._resting_pose(moment)
+        resting = resting_pose(self.document, moment)
         if resting is not None:
             return self.stage.samples(resting).positions
         return self._inbetweens(moment.interval).frame(_weights(moment)).positions
@@ -141,21 +141,12 @@ class Animation:
     def frame(self, frame: float) -> Frame:
         """Return positions and derivatives of the points at a frame."""
         moment = time_of(self.document, frame)
-        resting = self._resting_pose(moment)
+        resting = resting_pose(self.document, moment)
         if resting is None:
             return self._inbetweens(moment.interval).frame(_weights(moment))
         positions = self.stage.samples(resting).positions
         fz, fzbar = self.document.map_of(resting).derivatives(self.stage.sites.points)
         return Frame(positions=positions, fz=fz, fzbar=fzbar, rho=None)
-
-    def _resting_pose(self, moment: Moment) -> Pose | None:
-        """Return the pose of the one key that the moment shows, if it is one."""
-        keys = self.document.keys
-        if moment.weight == 0.0:
-            return keys[moment.interval].pose
-        if moment.weight == 1.0:
-            return keys[(moment.interval + 1) % len(keys)].pose
-        return None
 
     def _inbetweens(self, interval: int) -> Inbetweens:
         first, second = intervals(self.document)[interval]

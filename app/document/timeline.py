@@ -4,6 +4,7 @@ from bisect import bisect_right
 from fractions import Fraction
 from typing import NamedTuple
 
+from app.document.keyframe import Pose
 from app.document.model import Document
 from app.document.settings import FrameRange
 from app.errors import LissomError
@@ -68,17 +69,39 @@ def intervals(document: Document) -> tuple[tuple[int, int], ...]:
     return (*pairs, (count - 1, 0)) if closes(document) else pairs
 
 
+def resting_pose(document: Document, moment: Moment) -> Pose | None:
+    """Return the pose of the one key that a moment shows unblended; None where it blends two."""
+    keys = document.keys
+    if moment.weight == 0.0:
+        return keys[moment.interval].pose
+    if moment.weight == 1.0:
+        return keys[(moment.interval + 1) % len(keys)].pose
+    return None
+
+
 def exported_frames(document: Document) -> FrameRange:
     """Return the frames that an export covers unless told otherwise.
 
-    Of a loop that is exported whole, the last frame is left out: it is the first one again.
+    Of a loop that is exported whole, the last frame is left out where it is the first one again.
     """
     if document.export.frames is not None:
         return document.export.frames
     played = document.played
-    if document.loop and played == document.frames and played.first < played.last:
+    whole = document.loop and played == document.frames and played.first < played.last
+    if whole and _is_same(document, played.first, played.last):
         return FrameRange(played.first, played.last - 1)
     return played
+
+
+def _is_same(document: Document, first: int, second: int) -> bool:
+    """Tell whether two frames show the same pose, or two that were solved for the same wishes."""
+    moments = time_of(document, first), time_of(document, second)
+    if moments[0] == moments[1]:
+        return True
+    poses = [resting_pose(document, moment) for moment in moments]
+    if poses[0] is None or poses[1] is None:
+        return False
+    return poses[0] is poses[1] or poses[0].targets == poses[1].targets
 
 
 def frame_times(document: Document, frames: FrameRange, fps: float | None = None) -> list[float]:

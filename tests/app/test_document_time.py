@@ -10,6 +10,8 @@ from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
 from app.document.easing import HOLD, PRESETS
+from app.document.handle_commands import add_handle
+from app.document.key_commands import pose_key
 from app.document.keyframe import Keyframe
 from app.document.playhead import Playhead
 from app.document.settings import FrameRange
@@ -115,11 +117,22 @@ def test_intervals():
     assert intervals(keyed(0, 9, 48, loop=True)) == ((0, 1), (1, 2))
 
 
+def test_exports_keep_the_last_frame_of_a_loop_that_ends_elsewhere():
+    document = add_handle(EMPTY.domain.mesh.vertices[0])(keyed(0, 48, loop=True))
+    assert exported_frames(document) == FrameRange(0, 47)
+    pose = document.keys[1].pose
+    moved = {i: replace(target, position=0j) for i, target in pose.targets.items()}
+    posed = pose_key(48, replace(pose, targets=moved))(document)
+    assert exported_frames(posed) == FrameRange(0, 48)
+
+
 def test_exports_leave_out_the_frame_that_a_loop_repeats():
     assert exported_frames(keyed(0, 9)) == FrameRange(0, 48)
     assert exported_frames(keyed(0, 9, loop=True)) == FrameRange(0, 47)
     assert exported_frames(keyed(0, last=0, loop=True)) == FrameRange(0, 0)
     assert exported_frames(keyed(0, 9, loop=True, work=FrameRange(3, 8))) == FrameRange(3, 8)
+    assert exported_frames(keyed(0, 48, loop=True)) == FrameRange(0, 47)
+    assert exported_frames(keyed(10, 30, loop=True)) == FrameRange(0, 47)
     chosen = replace(EMPTY.export, frames=FrameRange(5, 48))
     assert exported_frames(keyed(0, 9, loop=True, export=chosen)) == FrameRange(5, 48)
 
