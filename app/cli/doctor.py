@@ -9,12 +9,11 @@ import sys
 from importlib.metadata import PackageNotFoundError, version
 from typing import Final, NamedTuple
 
-import moderngl
 import numpy as np
 
 from app.errors import LissomError
 from app.export.plan import VIDEO_REMEDY
-from app.render.context import AUTOMATIC, Backend, create_context, probe
+from app.render.context import AUTOMATIC, Backend, GlError, create_context, probe
 from app.render.gpu_mesh import GpuMesh, Pose, StreamedVertices, singles
 from app.render.gpu_picture import GpuPicture
 from app.render.renderer import Renderer
@@ -79,7 +78,7 @@ def _rendering(backend: Backend) -> Finding:
         if _draws_exactly(backend):
             return Finding(name, text)
         problem = "the pictures come out wrong"
-    except (LissomError, moderngl.Error) as error:
+    except (LissomError, GlError) as error:
         problem = f"drawing fails: {error}"
     return Finding(name, f"{text}, but {problem}; install another graphics driver", works=False)
 

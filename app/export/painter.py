@@ -4,12 +4,11 @@ from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
 from typing import Final
 
-import moderngl
-
 from app.document.model import Document
 from app.errors import EXPECTED_ERRORS, LissomError
 from app.export.plan import ExportPlan, Poses
 from app.export.run import Draw
+from app.render.context import Context, GlError
 from app.render.gpu_mesh import GpuMesh, Pose, StreamedVertices, singles
 from app.render.gpu_picture import GpuPicture
 from app.render.renderer import Renderer
@@ -23,13 +22,13 @@ _NO_ERROR: Final = "GL_NO_ERROR"
 
 @contextmanager
 def painter(
-    context: moderngl.Context, document: Document, picture: Bytes, poses: Poses, plan: ExportPlan
+    context: Context, document: Document, picture: Bytes, poses: Poses, plan: ExportPlan
 ) -> Iterator[Draw]:
     """Lend a function that draws frames, for as long as a `with` block lasts.
 
     Parameters
     ----------
-    context : moderngl.Context
+    context : Context
         Current on the thread that draws.
     document : Document
     picture : uint8, shape (h, w, 4)
@@ -70,7 +69,7 @@ def painter(
                 vertices.write(singles(poses.positions(frame)))
                 renderer.draw(target, plan.view, scene)
                 pixels = target.read_straight_rgba()
-            except (*EXPECTED_ERRORS, moderngl.Error) as error:
+            except (*EXPECTED_ERRORS, GlError) as error:
                 raise LissomError(f"frame {frame:g} cannot be drawn: {error}") from error
             # OpenGL goes on after an error, with pictures that are black or of another frame.
             if context.error != _NO_ERROR:

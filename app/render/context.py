@@ -9,6 +9,10 @@ import moderngl
 
 from app.errors import LissomError
 
+# What others need to name; only this package imports ModernGL.
+Context = moderngl.Context
+GlError = moderngl.Error
+
 Backend = Literal["egl", "osmesa", "native"]
 BACKENDS: Final[tuple[Backend, ...]] = get_args(Backend)
 # The system's own contexts (WGL, CGL) need no display on Windows and macOS; on Linux GLX does.
