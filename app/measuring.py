@@ -53,9 +53,10 @@ def measure_curves(document: Document, motion: Motion) -> Curves | None:
             return None
         start = keys[first].frame
         end = keys[last].frame if last > first else keys[last].frame + period
-        for t in np.linspace(0.0, 1.0, TIMES):
+        for share in np.linspace(0.0, 1.0, TIMES):
+            t = keys[first].easing(float(share))
             blended = piece.frame(np.array([1.0 - t, t]))
-            frames.append(start + t * (end - start))
+            frames.append(start + share * (end - start))
             ks.append(distortion.k(blended.fz, blended.fzbar))
             taus.append(distortion.tau(blended.fz, blended.fzbar))
     k, tau = _worst(np.array(ks)), _worst(np.array(taus))
@@ -67,6 +68,16 @@ def measure_curves(document: Document, motion: Motion) -> Curves | None:
         k_share=_shares(k),
         tau_share=_shares(tau - 1.0),
     )
+
+
+def broken_lines(curves: Curves, values: Floats) -> tuple[Floats, Floats]:
+    """Return frames and values (t, p) of all points as one line, broken by NaN at each key."""
+    intervals = len(curves.frames) // TIMES
+    blocks = values.T.reshape(-1, intervals, TIMES)
+    broken = np.concatenate([blocks, np.full((*blocks.shape[:2], 1), np.nan)], axis=2)
+    frames = curves.frames.reshape(intervals, TIMES)
+    frames = np.concatenate([frames, np.full((intervals, 1), np.nan)], axis=1)
+    return np.tile(frames.ravel(), len(blocks)), broken.ravel()
 
 
 def write_curves(path: Path, curves: Curves) -> None:

@@ -16,7 +16,7 @@ from engine.deform.boundary import Boundary
 from engine.deform.bounds import Bounds
 from engine.deform.certificate import certify
 from engine.deform.deformer import Deformer, State, Status
-from engine.deform.handles import Handles
+from engine.deform.handles import Handles, Wish
 from engine.harmonic_map import HarmonicMap
 
 # A pose that the present bounds do not allow is the start of a drag back into them: its own
@@ -60,6 +60,14 @@ class Rig:
         return cls(
             document=document,
             deformer=Deformer(boundary=boundary, handles=handles, bounds=document.bounds),
+        )
+
+    def wish(self, targets: Mapping[int, Target]) -> Wish:
+        """Return where handles are wanted, as the deformer takes it."""
+        wanted = [targets[handle.id] for handle in self.document.handles]
+        return self.deformer.handles.wish(
+            np.array([target.position for target in wanted], dtype=np.complex128),
+            [np.nan if target.rotation is None else target.rotation for target in wanted],
         )
 
     def within_bounds_of(self, pose: Pose) -> Deformer:
@@ -117,11 +125,7 @@ class Drag:
 
     def towards(self, targets: Mapping[int, Target], steps: int) -> "Drag":
         """Return the drag after some steps towards the targets, or fewer if it comes to rest."""
-        wanted = [targets[handle.id] for handle in self.rig.document.handles]
-        wish = self.deformer.handles.wish(
-            np.array([target.position for target in wanted], dtype=np.complex128),
-            [np.nan if target.rotation is None else target.rotation for target in wanted],
-        )
+        wish = self.rig.wish(targets)
         state = self.state
         for _ in range(steps):
             state = self.deformer.step(state, wish)

@@ -1,107 +1,153 @@
-"""Other bounds or another domain under the same animation: every key is solved again."""
+"""Other bounds or another domain under the same animation: its keys are solved again."""
 
-from collections.abc import Mapping
-from dataclasses import replace
-from typing import NamedTuple
+from dataclasses import dataclass, replace
 
-from app.document.keyframe import Pose, Target
+from app.document.commands import Command
+from app.document.keyframe import Keyframe, Pose
 from app.document.model import Document
 from app.document.settings import Meshing
-from app.posing import Drag, Rig, fit_map
+from app.document.settings_commands import replace_domain, set_bounds
+from app.posing import Rig, fit_map
 from engine.arrays import Bytes
+from engine.deform.bounds import Bounds
 from engine.deform.certificate import certify
 from engine.domain import Domain, build_domain
+from engine.errors import EngineError
 from engine.harmonic_map import HarmonicMap
 from engine.polygon import contains
 
-MOST_STEPS = 600
+MOST_STEPS = 600  # for one key
 
 
-class Rebuilt(NamedTuple):
-    """Another domain, the keys' poses over its cage, and what was remedied, in words."""
-
-    domain: Domain
-    poses: tuple[Pose, ...]
-    notices: tuple[str, ...]
-
-
-def solve_keys(document: Document) -> tuple[Pose, ...]:
-    """Return each key's pose, pulled to its targets again within the document's bounds.
-
-    Each begins with the key's own map, or where the bounds do not allow that, with the drawing at
-    rest.
-    """
-    rig = Rig.of(document)
-    return tuple(
-        _pulled(rig, key.pose if _is_within(document, key.pose) else _rest(rig), key.pose.targets)
-        for key in document.keys
-    )
-
-
-def rebuild_domain(document: Document, picture: Bytes, meshing: Meshing) -> Rebuilt:
-    """Build a domain from the picture again, and bring the keys over to it.
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Renewal:
+    """A document on its way to other bounds or another domain.
 
     Parameters
     ----------
-    document : Document
+    before : Document
+    bounds : Bounds
+        Of the poses to come.
+    meshing : Meshing, optional
+        What the domain is built anew with; None keeps it.
+    pulls : bool
+        Whether keys that are within the bounds already are pulled to their targets again, too.
+    domain : Domain, optional
+        The new one, once it is built.
+    rig : Rig, optional
+        None before the first key.
+    poses : tuple of Pose
+        Of the keys that are solved.
+    outside : tuple of int
+        Frames of those that found no way into the bounds, and stay as they were.
+    notices : tuple of str
+        What was remedied, in words.
+    """
+
+    before: Document
+    bounds: Bounds
+    meshing: Meshing | None = None
+    pulls: bool = True
+    domain: Domain | None = None
+    rig: Rig | None = None
+    poses: tuple[Pose, ...] = ()
+    outside: tuple[int, ...] = ()
+    notices: tuple[str, ...] = ()
+
+    @property
+    def is_over(self) -> bool:
+        """Whether every key is solved."""
+        return len(self.poses) == len(self.before.keys)
+
+    @property
+    def progress(self) -> float:
+        """The part of its steps that is done, 0 to 1."""
+        builds = self.meshing is not None
+        done = len(self.poses) + (self.domain is not None)
+        return done / (len(self.before.keys) + builds)
+
+    @property
+    def now(self) -> str:
+        """What the next step does, in words."""
+        if self.meshing is not None and self.domain is None:
+            return "Building the domain"
+        return f"Solving key {len(self.poses) + 1} of {len(self.before.keys)}"
+
+    @property
+    def command(self) -> Command:
+        """What makes one step of undo of all of it."""
+        if self.meshing is None or self.domain is None:
+            return set_bounds(self.bounds, self.poses)
+        return replace_domain(self.domain, self.meshing, self.poses)
+
+
+def go_on(renewal: Renewal, picture: Bytes) -> Renewal:
+    """Take the next step: the domain, then one key after the other; on the worker thread.
+
+    Parameters
+    ----------
+    renewal : Renewal
+        One that is not over.
     picture : uint8, shape (h, w, 4)
         The document's, decoded.
-    meshing : Meshing
 
     Raises
     ------
     EngineError, LissomError
         If there is no domain, or a handle lies outside of it.
     """
+    if renewal.meshing is not None and renewal.domain is None:
+        return _with_domain(renewal, picture, renewal.meshing)
+    rig = renewal.rig or Rig.of(replace(renewal.before, bounds=renewal.bounds))
+    key = renewal.before.keys[len(renewal.poses)]
+    pose = _solved(renewal, rig, key)
+    outside = renewal.outside if pose.certificate.certified else (*renewal.outside, key.frame)
+    return replace(renewal, rig=rig, poses=(*renewal.poses, pose), outside=outside)
+
+
+def _with_domain(renewal: Renewal, picture: Bytes, meshing: Meshing) -> Renewal:
     domain, notices = build_domain(
         picture,
         triangles=meshing.triangles,
         detail=meshing.detail,
         tolerance=meshing.tolerance,
     )
-    rig = Rig.of(_on_domain(document, domain))
-    poses = tuple(
-        _pulled(rig, _carried_over(document, key.pose, rig), key.pose.targets)
-        for key in document.keys
-    )
-    return Rebuilt(domain, poses, notices)
-
-
-def _on_domain(document: Document, domain: Domain) -> Document:
-    """Return the document over another domain, with the drawing at rest in every key."""
     rest = HarmonicMap.identity(domain.cage)
+    before = renewal.before
     keys = tuple(
-        replace(key, pose=replace(key.pose, phi=rest.phi, psi=rest.psi)) for key in document.keys
+        replace(key, pose=replace(key.pose, phi=rest.phi, psi=rest.psi)) for key in before.keys
     )
-    return replace(document, domain=domain, keys=keys)
+    rig = Rig.of(replace(before, domain=domain, keys=keys, bounds=renewal.bounds))
+    return replace(renewal, domain=domain, rig=rig, notices=notices)
 
 
-def _rest(rig: Rig) -> Pose:
-    rest = HarmonicMap.identity(rig.document.domain.cage)
-    certificate = certify(rest, rig.deformer.boundary, rig.deformer.bounds)
-    return Pose(targets={}, phi=rest.phi, psi=rest.psi, certificate=certificate)
-
-
-def _is_within(document: Document, pose: Pose) -> bool:
-    certificate = pose.certificate
-    return document.bounds.allow(
-        k=certificate.k, sigma_a=certificate.sigma_a, sigma_b=certificate.sigma_b
+def _solved(renewal: Renewal, rig: Rig, key: Keyframe) -> Pose:
+    """Return a key's pose over the rig's cage, within its bounds, pulled to its targets."""
+    boundary, bounds = rig.deformer.boundary, rig.deformer.bounds
+    first = (
+        renewal.before.map_of(key.pose)
+        if renewal.domain is None
+        else _carried_over(renewal.before, key.pose, rig)
     )
+    if not renewal.pulls and certify(first, boundary, bounds).certified:
+        return key.pose
+    try:
+        state = rig.deformer.resume(first)
+    except EngineError:
+        # It folds over the new cage: from the drawing at rest every pose can be reached.
+        state = rig.deformer.start()
+    state, _ = rig.deformer.settle(state, rig.wish(key.pose.targets), at_most=MOST_STEPS)
+    certificate = certify(state.map, boundary, bounds)
+    if renewal.domain is None and not certificate.certified:
+        return replace(key.pose, certificate=certify(first, boundary, bounds))
+    return replace(key.pose, phi=state.map.phi, psi=state.map.psi, certificate=certificate)
 
 
-def _pulled(rig: Rig, start: Pose, targets: Mapping[int, Target]) -> Pose:
-    drag = Drag.begin(rig, start)
-    return drag.towards(targets, MOST_STEPS).pose(targets)
-
-
-def _carried_over(document: Document, pose: Pose, rig: Rig) -> Pose:
-    """Return the pose over the rig's cage that is nearest to one over the document's."""
+def _carried_over(document: Document, pose: Pose, rig: Rig) -> HarmonicMap:
+    """Return the map over the rig's cage that is nearest to a pose over the document's."""
     boundary = rig.deformer.boundary
     inside = contains(document.domain.outline, boundary.points)
     points = boundary.points[inside]
-    fz, fzbar = document.map_of(pose).derivatives(points)
-    fitted = fit_map(boundary, fz, fzbar, document.map_of(pose)(points), inside=inside)
-    certificate = certify(fitted, boundary, rig.deformer.bounds)
-    if not certificate.certified:
-        return _rest(rig)
-    return Pose(targets=pose.targets, phi=fitted.phi, psi=fitted.psi, certificate=certificate)
+    shape = document.map_of(pose)
+    fz, fzbar = shape.derivatives(points)
+    return fit_map(boundary, fz, fzbar, shape(points), inside=inside)

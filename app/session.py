@@ -11,6 +11,7 @@ from app.document.keyframe import Pose, Target
 from app.document.model import Document
 from app.document.playhead import Playhead
 from app.document.settings import Meshing
+from app.export.framing import Box
 from app.export.plan import ExportPlan, Poses
 from app.jobs import Jobs
 from app.measuring import Curves
@@ -18,12 +19,16 @@ from app.motion import Motion
 from app.picture import Picture
 from app.posing import Drag, Rig
 from app.preferences import Preferences
+from app.reach import Reach
+from app.rebuild import Renewal
 from app.render.view import View, fit_view
 from app.shown import Shown
 from app.timing import Timing
 from engine.arrays import Bytes
+from engine.deform.bounds import Bounds
 
 HeatMap = Literal["none", "k", "sigma_a", "sigma_b"]
+CurveKind = Literal["relative", "absolute"]
 Tone = Literal["info", "good", "error"]
 FIT_MARGIN = 0.08  # of the viewport, left free around a picture that is fitted into it
 
@@ -35,6 +40,7 @@ class Overlays:
     handles: bool = True
     wireframe: bool = False
     outline: bool = False
+    cage: bool = False
     onion: bool = False
     heat_map: HeatMap = "none"
     ghosts_before: int = 2
@@ -196,8 +202,16 @@ class Project:
         What the domain will be rebuilt with; None as long as that is what it has.
     is_opaque : bool
         Whether the picture has no transparency, and its background was found by its colour.
-    exported_to : Path, optional
-        Where the last export went.
+    drafted_bounds : Bounds, optional
+        What the person drags them to.
+    renewal : Renewal, optional
+        Keys that are being solved again.
+    export_to : Path, optional
+        Where the next export goes: where the last one went, or was told to.
+    reach : Reach, optional
+        Of the motion, as it was when the export's frame was looked at last.
+    unreachable : tuple
+        What of a document its reach could not be measured from.
     kept : Document, optional
         The one that the autosave holds, from the time `kept_at` on.
     gesture : object, optional
@@ -218,7 +232,11 @@ class Project:
     curves: Curves | None = None
     meshing: Meshing | None = None
     is_opaque: bool = False
-    exported_to: Path | None = None
+    drafted_bounds: Bounds | None = None
+    renewal: Renewal | None = None
+    export_to: Path | None = None
+    reach: Reach | None = None
+    unreachable: tuple[object, ...] = ()
     kept: Document | None = None
     kept_at: float = 0.0
     playhead: Playhead = field(default_factory=Playhead)
@@ -269,6 +287,9 @@ class Session:
     toasts: list[Toast] = field(default_factory=list)
     dialog: Dialog | None = None
     export: ExportRun | None = None
+    export_frame: Box | None = None  # shown in the viewport while the export's settings are
+    keeps_aspect: bool = True  # of an export whose size is entered
+    curves: CurveKind = "relative"
     pointer: Gesture | None = None
     space_used: bool = False  # Space was held to move the view
     hovered: int | None = None  # the handle under the pointer

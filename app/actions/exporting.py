@@ -3,50 +3,60 @@
 import os
 import subprocess
 import sys
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
 from app.actions import editing, posing
-from app.actions.action import do
+from app.actions.action import Action, do
 from app.actions.failures import report
 from app.animation import Animation
 from app.document import settings_commands
 from app.document.settings import ExportSettings
 from app.errors import LissomError
+from app.export.framing import Box
 from app.export.plan import SUFFIXES, ExportRequest, check_request, plan_export
 from app.jobs import Job
-from app.session import ExportRun, FileDialog, Session
+from app.reach import Reach, measure_reach, source_of
+from app.session import ExportRun, FileDialog, Project, Session
 
-PREPARING = "Preparing the export"
+PREPARING, MEASURING = "Preparing the export", "Measuring the motion"
 
 
 def ask(session: Session) -> None:
-    """Ask where to export to."""
-    project = session.project
-    if project is None or session.export is not None:
-        return
-    format_ = project.document.export.format
-    suffixes = SUFFIXES[format_]
-    name = f"{project.name}{suffixes[0]}" if suffixes else f"{project.name} frames"
-    out = project.exported_to
-    folder = out.parent if out is not None else session.usual_folder
-    session.dialog = FileDialog(
-        title="Export into a file" if suffixes else "Export into a folder",
-        folder=folder,
-        name=out.name if out is not None and out.suffix in (suffixes or ("",)) else name,
-        suffixes=suffixes,
-        writes=True,
-        chosen=lambda path: do(start, path),
-    )
+    """Ask where to export to, and begin."""
+    _ask(session, lambda path: do(start, path))
+
+
+def choose(session: Session) -> None:
+    """Ask where the next export goes; it does not begin yet."""
+    _ask(session, lambda path: do(export_to, path))
+
+
+def export_to(session: Session, out: Path) -> None:
+    """Note where the next export goes."""
+    if session.project:
+        session.project.export_to = out
 
 
 def repeat(session: Session) -> None:
-    """Export again where the last export went, or ask if there was none."""
-    project = session.project
-    if project is not None and project.exported_to is not None:
-        start(session, project.exported_to)
+    """Export where it was told to go, or where the last one went; ask if there is neither."""
+    out = destination(session.project) if session.project else None
+    if out is not None:
+        start(session, out)
     else:
         ask(session)
+
+
+def destination(project: Project) -> Path | None:
+    """Return where the next export goes, with the ending of its format; None if that is open."""
+    out = project.export_to
+    if out is None:
+        return None
+    suffixes = SUFFIXES[project.document.export.format]
+    if out.suffix.lower() in (suffixes or ("",)):
+        return out
+    return out.with_suffix(suffixes[0]) if suffixes else out.with_name(f"{out.stem} frames")
 
 
 def start(session: Session, out: Path) -> None:
@@ -67,7 +77,7 @@ def start(session: Session, out: Path) -> None:
 
     def done(run: ExportRun) -> None:
         session.export = run
-        project.exported_to = out
+        project.export_to = out
 
     session.jobs.put(
         Job(
@@ -120,6 +130,44 @@ def set_export(session: Session, export: ExportSettings) -> None:
     editing.edit(session, settings_commands.set_export(export))
 
 
+def keep_aspect(session: Session, keeps: bool) -> None:  # noqa: FBT001 - the only argument
+    """Let width and height of an export change together, or each alone."""
+    session.keeps_aspect = keeps
+
+
+def show_frame(session: Session, box: Box) -> None:
+    """Show what an export shows in the viewport, until the next frame of the window."""
+    session.export_frame = box
+
+
+def keep_reach(session: Session) -> None:
+    """Measure how far the motion reaches, unless that is known."""
+    project = session.project
+    if project is None or project.grab is not None or MEASURING in session.jobs.kinds:
+        return
+    document, motion = project.document, project.sketch
+    source = source_of(document)
+    is_known = project.reach is not None and project.reach.source == source
+    if is_known or not motion.knows(document) or project.unreachable == source:
+        return
+
+    def done(reach: Reach | None) -> None:
+        project.reach = reach
+
+    def failed(error: Exception) -> None:
+        project.unreachable = source
+        report(session, "The motion's reach could not be measured", error)
+
+    session.jobs.put(
+        Job(
+            kind=MEASURING,
+            work=lambda: measure_reach(document, motion),
+            done=done,
+            failed=failed,
+        )
+    )
+
+
 def open_folder(session: Session, folder: Path) -> None:
     """Show a folder in the system's file manager."""
     try:
@@ -131,3 +179,22 @@ def open_folder(session: Session, folder: Path) -> None:
     except OSError:
         raise LissomError(f"no file manager was found; the folder is {folder}") from None
     session.hint = str(folder)
+
+
+def _ask(session: Session, chosen: Callable[[Path], Action]) -> None:
+    project = session.project
+    if project is None or session.export is not None:
+        return
+    suffixes = SUFFIXES[project.document.export.format]
+    out = destination(project)
+    if out is None:
+        name = f"{project.name}{suffixes[0]}" if suffixes else f"{project.name} frames"
+        out = session.usual_folder / name
+    session.dialog = FileDialog(
+        title="Export into a file" if suffixes else "Export into a folder",
+        folder=out.parent,
+        name=out.name,
+        suffixes=suffixes,
+        writes=True,
+        chosen=chosen,
+    )

@@ -8,7 +8,7 @@ from app.curve_picture import draw_curves
 from app.files import write_atomically
 from app.jobs import Job
 from app.measuring import Curves, measure_curves, write_curves
-from app.session import FileDialog, Project, Session
+from app.session import CurveKind, FileDialog, Project, Session
 
 MEASURING = "Measuring"
 
@@ -35,6 +35,11 @@ def keep_up(session: Session) -> None:
             failed=failed,
         )
     )
+
+
+def show_curves(session: Session, kind: CurveKind) -> None:
+    """Show the curves relative to the keys, or as they are."""
+    session.curves = kind
 
 
 def ask_csv(session: Session) -> None:

@@ -1,74 +1,105 @@
-"""Solving all keys again, over other bounds or another domain."""
+"""Other bounds and another domain: the worker solves the keys again, one job for each."""
 
-from app.actions import posing
+from app.actions import editing, posing
 from app.actions.failures import report
-from app.document import settings_commands
-from app.document.keyframe import Pose
-from app.document.model import Document
-from app.document.settings import Meshing
+from app.document.settings_commands import set_bounds
 from app.jobs import Job
-from app.rebuild import Rebuilt, rebuild_domain, solve_keys
+from app.rebuild import Renewal, go_on
 from app.session import Project, Session
+from engine.deform.bounds import Bounds
 
-SOLVING, REBUILDING = "Solving the keys", "Rebuilding the domain"
+RENEWING = "Solving the keys"
+
+
+def draft_bounds(session: Session, bounds: Bounds) -> None:
+    """Try bounds while their knob is dragged; nothing is solved yet."""
+    if session.project:
+        session.project.drafted_bounds = bounds
+
+
+def choose_bounds(session: Session, bounds: Bounds) -> None:
+    """Set the bounds; keys that are outside of them are solved again."""
+    project = session.project
+    if project is None:
+        return
+    project.drafted_bounds = None
+    certificates = [key.pose.certificate for key in project.document.keys]
+    if all(bounds.allow(k=c.k, sigma_a=c.sigma_a, sigma_b=c.sigma_b) for c in certificates):
+        cancel(session)
+        editing.edit(session, set_bounds(bounds))
+    elif bounds != project.document.bounds:
+        _begin(session, Renewal(before=project.document, bounds=bounds, pulls=False))
 
 
 def solve_again(session: Session) -> None:
-    """Pull every key to its handles' places again, within the bounds of now."""
-    project = session.project
-    if project is None:
-        return
-    posing.drop(session)
-    document = project.document
-    session.jobs.put(
-        Job(
-            kind=SOLVING,
-            work=lambda: solve_keys(document),
-            done=lambda poses: _keep_poses(session, project, document, poses),
-            failed=lambda error: report(session, "The keys could not be solved", error),
-        )
-    )
+    """Pull every key's handles to their places again, within the bounds of now."""
+    if session.project:
+        document = session.project.document
+        _begin(session, Renewal(before=document, bounds=document.bounds))
 
 
-def rebuild(session: Session, meshing: Meshing) -> None:
+def rebuild(session: Session) -> None:
     """Find the outline and build the mesh again; handles stay, keys are solved again."""
     project = session.project
-    if project is None:
-        return
-    posing.drop(session)
-    document, picture = project.document, project.picture.rgba
-    session.jobs.put(
-        Job(
-            kind=REBUILDING,
-            work=lambda: rebuild_domain(document, picture, meshing),
-            done=lambda built: _keep_domain(session, project, document, meshing, built),
-            failed=lambda error: report(session, "The domain could not be rebuilt", error),
-        )
-    )
+    if project:
+        document = project.document
+        meshing = project.meshing or document.meshing
+        _begin(session, Renewal(before=document, bounds=document.bounds, meshing=meshing))
 
 
 def cancel(session: Session) -> None:
     """Give up what is being solved or rebuilt."""
-    session.jobs.drop(SOLVING)
-    session.jobs.drop(REBUILDING)
+    session.jobs.drop(RENEWING)
+    if session.project:
+        session.project.renewal = None
 
 
-def _keep_poses(
-    session: Session, project: Project, document: Document, poses: tuple[Pose, ...]
-) -> None:
-    if project.document is not document:
-        session.tell("The keys changed meanwhile, so they were not solved again.")
+def _begin(session: Session, renewal: Renewal) -> None:
+    posing.drop(session)
+    if session.project:
+        _go_on(session, session.project, renewal)
+
+
+def _go_on(session: Session, project: Project, renewal: Renewal) -> None:
+    if session.project is not project:
         return
-    project.history.do(settings_commands.set_bounds(document.bounds, poses))
-
-
-def _keep_domain(
-    session: Session, project: Project, document: Document, meshing: Meshing, built: Rebuilt
-) -> None:
-    if project.document is not document:
-        session.tell("The project changed meanwhile, so its domain was not rebuilt.")
+    if project.document is not renewal.before:
+        project.renewal = None
+        session.tell("The project changed meanwhile, so its keys were not solved again.")
         return
-    project.history.do(settings_commands.replace_domain(built.domain, meshing, built.poses))
-    project.loose = None
-    for notice in built.notices:
+    if renewal.is_over:
+        _keep(session, project, renewal)
+        return
+    project.renewal = renewal
+    picture = project.picture.rgba
+
+    def failed(error: Exception) -> None:
+        project.renewal = None
+        builds = renewal.meshing is not None
+        report(session, f"The {'domain' if builds else 'bounds'} stayed as before", error)
+
+    session.jobs.put(
+        Job(
+            kind=RENEWING,
+            work=lambda: go_on(renewal, picture),
+            done=lambda further: _go_on(session, project, further),
+            failed=failed,
+        )
+    )
+
+
+def _keep(session: Session, project: Project, renewal: Renewal) -> None:
+    project.renewal = None
+    project.history.do(renewal.command)
+    if renewal.domain is not None:
+        project.loose = project.meshing = None
+    for notice in renewal.notices:
         session.tell(notice[:1].upper() + notice[1:] + ".")
+    if renewal.outside:
+        frames = ", ".join(map(str, renewal.outside))
+        poses = "pose" if len(renewal.outside) == 1 else "poses"
+        session.tell(
+            f"No way into the bounds was found for the {poses} at frame {frames}. "
+            "Move the handles there nearer to the drawing, or undo.",
+            tone="error",
+        )

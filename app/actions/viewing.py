@@ -11,7 +11,7 @@ from app.session import Dialog, HeatMap, Session, ShortcutSheet, Toast
 
 SCALE_STEP = 0.25
 MOST_GHOSTS = 6
-Overlay = Literal["handles", "wireframe", "outline", "onion"]
+Overlay = Literal["handles", "wireframe", "outline", "cage", "onion"]
 HEAT_MAPS: tuple[HeatMap, ...] = ("none", "k", "sigma_a", "sigma_b")
 
 

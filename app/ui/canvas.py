@@ -4,6 +4,7 @@ import numpy as np
 from imgui_bundle import ImVec4
 
 from app.document.timeline import time_of
+from app.export.framing import Box
 from app.motion import Figure
 from app.render.gpu_mesh import GpuMesh, Pose, StreamedVertices
 from app.render.gpu_picture import GpuPicture
@@ -157,6 +158,7 @@ def _inputs(session: Session, project: Project) -> tuple[object, ...]:
         project.playhead.since is None,
         session.hovered,
         session.overlays,
+        session.export_frame,
         session.preferences.theme,
         session.preferences.scale,
     )
@@ -252,7 +254,11 @@ def _marks(
     document = shown.document
     lines: list[Line] = []
     if session.overlays.outline:
-        lines += _outlines(shown, palette, scale)
+        lines.append(_outline(shown, palette, scale))
+    if session.overlays.cage:
+        lines.append(_cage(shown, palette, scale))
+    if session.export_frame is not None:
+        lines.append(_frame(session.export_frame, palette, scale))
     if not session.overlays.handles or project.playhead.since is not None:
         return tuple(lines), ()
     style = HandleStyle()
@@ -277,20 +283,30 @@ def _marks(
     return (*lines, *handle_lines), discs
 
 
-def _outlines(shown: Shown, palette: Palette, scale: float) -> list[Line]:
-    """Return the outline, moved with the shape, and the cage around the shape at rest."""
-    count = len(shown.figure.domain.outline)
-    outline = shown.positions[:count]
-    return [
-        Line(
-            points=shown.figure.domain.cage,
-            colour=_colour(palette.warning, 0.8),
-            width=1.5 * scale,
-            dash=5.0 * scale,
-            closed=True,
-        ),
-        Line(points=outline, colour=_colour(palette.accent), width=1.5 * scale, closed=True),
-    ]
+def _outline(shown: Shown, palette: Palette, scale: float) -> Line:
+    """Return the outline, moved with the shape."""
+    points = shown.positions[: len(shown.figure.domain.outline)]
+    return Line(points=points, colour=_colour(palette.accent), width=1.5 * scale, closed=True)
+
+
+def _cage(shown: Shown, palette: Palette, scale: float) -> Line:
+    """Return the cage, which stays around the shape at rest."""
+    return Line(
+        points=shown.figure.domain.cage,
+        colour=_colour(palette.warning, 0.8),
+        width=1.5 * scale,
+        dash=5.0 * scale,
+        closed=True,
+    )
+
+
+def _frame(box: Box, palette: Palette, scale: float) -> Line:
+    """Return the edge of what an export shows."""
+    low, high = box
+    corners = [low, complex(high.real, low.imag), high, complex(low.real, high.imag)]
+    return Line(
+        points=np.array(corners), colour=_colour(palette.accent), width=1.5 * scale, closed=True
+    )
 
 
 def _colour(colour: ImVec4, alpha: float = 1.0) -> Colour:

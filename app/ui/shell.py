@@ -143,6 +143,8 @@ class Shell:
         session = self.session
         if self._themed != (session.preferences.theme, session.preferences.scale):
             self._apply_theme()
+        # The tab that shows it asks for it in every frame.
+        session.export_frame = None
         self._attempt(session.jobs.deliver)
         playback.halt_at_end(session)
         moving = session.project is not None and session.project.playhead.since is not None

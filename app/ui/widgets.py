@@ -39,6 +39,12 @@ def label(look: Look, text: str) -> None:
     imgui.set_next_item_width(-1)
 
 
+def at_end(width: float) -> None:
+    """Go on at the end of the line, where `width` pixels are left."""
+    imgui.same_line()
+    imgui.set_cursor_pos_x(imgui.get_cursor_pos_x() + imgui.get_content_region_avail().x - width)
+
+
 def tip(text: str, keys: str = "") -> None:
     """Explain the last item where the pointer rests on it, and name its keys."""
     if imgui.is_item_hovered(imgui.HoveredFlags_.for_tooltip) and imgui.begin_tooltip():
@@ -108,7 +114,14 @@ def choice(name: str, options: Sequence[str], current: str) -> str | None:
     return chosen
 
 
-def segments(look: Look, name: str, options: Sequence[tuple[str, str]], current: str) -> str | None:
+def segments(
+    look: Look,
+    name: str,
+    options: Sequence[tuple[str, str]],
+    current: str,
+    *,
+    room: float = 0.0,
+) -> str | None:
     """Draw alternatives side by side; return the one that was newly chosen.
 
     Parameters
@@ -119,11 +132,13 @@ def segments(look: Look, name: str, options: Sequence[tuple[str, str]], current:
     options : sequence of (value, text)
     current : str
         The value that is chosen now.
+    room : float
+        Pixels to leave free at the end of the line.
     """
     chosen = None
     palette = look.palette
     spacing = imgui.get_style().item_spacing.y
-    width = imgui.get_content_region_avail().x
+    width = imgui.get_content_region_avail().x - room
     imgui.push_id(name)
     imgui.push_style_var(imgui.StyleVar_.item_spacing, ImVec2(0.12 * look.em, spacing))
     each = (width - 0.12 * look.em * (len(options) - 1)) / len(options)

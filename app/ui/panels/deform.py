@@ -1,106 +1,233 @@
-"""How far poses may distort the drawing, and how far the one that is shown does."""
+"""How far poses may distort the drawing, how far they do, and what the solver is at."""
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 from imgui_bundle import ImVec2, imgui
+from imgui_bundle import icons_fontawesome_6 as icons
 
-from app.actions import editing, rebuilding
+from app.actions import playback, rebuilding
 from app.actions.action import Action, do
-from app.document import settings_commands
+from app.document.timeline import intervals, time_of
 from app.session import Project, Session
-from app.ui.theme import Look, ink
-from app.ui.widgets import heading, label, main_button, small, tip
+from app.ui.sliders import FIELD, Scale, number, track
+from app.ui.theme import SMALL, Look
+from app.ui.widgets import at_end, heading, icon_button, main_button, small, tip
 from engine.deform.bounds import Bounds
 from engine.deform.certificate import Certificate
 
+NEAR = 0.85  # of a bound: from here on a bar warns
+ARRIVED = 1.0  # pixels of the picture within which a handle is where it should be
+
+
+@dataclass(frozen=True, slots=True)
+class Limit:
+    """One of the bounds: its field in `Bounds` and `Certificate`, and how it is shown."""
+
+    field: str
+    name: str
+    symbol: str
+    hint: str
+    scale: Scale
+    unit: str = ""
+
+
+# From no distortion at the left to what hardly bounds anything at the right.
+LIMITS = (
+    Limit(
+        "k",
+        "Shear",
+        "k",
+        "Conformal distortion: 0 keeps every angle, 1 is a collapse",
+        Scale(left=0.0, right=0.98),
+    ),
+    Limit(
+        "sigma_a",
+        "Stretch",
+        "σa",
+        "The largest stretch in any direction",
+        Scale(left=1.0, right=20.0, logarithmic=True),
+        " ×",
+    ),
+    Limit(
+        "sigma_b",
+        "Squeeze",
+        "σb",
+        "The smallest stretch in any direction",
+        Scale(left=1.0, right=0.05, logarithmic=True),
+        " ×",
+    ),
+)
+LEAST = {"k": 0.05, "sigma_a": 1.05, "sigma_b": 0.95}  # the tightest bounds on the tracks
+
 
 def draw(session: Session, look: Look) -> list[Action]:
-    """Draw the bounds and what the pose makes of them."""
+    """Draw the bounds with what the pose makes of them, the solver's state, and all keys."""
     project = session.project
-    if project is None:
+    if project is None or project.shown is None:
         return []
-    actions = _bounds(look, project.document.bounds)
-    certificate = shown_certificate(project)
-    heading(look, "This pose")
-    if certificate is None:
-        small(look, "An in-between stays within what its two keys have, whatever the bounds.")
-    else:
-        _meters(look, certificate, project.document.bounds)
-    outside = sum(
-        not project.document.bounds.allow(
-            k=key.pose.certificate.k,
-            sigma_a=key.pose.certificate.sigma_a,
-            sigma_b=key.pose.certificate.sigma_b,
-        )
-        for key in project.document.keys
+    bounds = _wanted_bounds(project)
+    reached, what = _reached(project)
+    actions = _heading_with_reset(look, bounds)
+    small(look, f"No pose goes beyond them, anywhere. Bars: what {what} uses.")
+    for limit in LIMITS:
+        actions += _limit(look, limit, bounds, reached)
+    imgui.dummy(ImVec2(0, 0.2 * look.em))
+    heading(look, "Solver")
+    _solver(session, look, project)
+    heading(look, "Keys")
+    actions += _keys(session, look, project)
+    return actions + _solving(look, project)
+
+
+def _wanted_bounds(project: Project) -> Bounds:
+    if project.drafted_bounds is not None:
+        return project.drafted_bounds
+    return project.document.bounds if project.renewal is None else project.renewal.bounds
+
+
+def _reached(project: Project) -> tuple[tuple[Certificate, ...], str]:
+    """Return the certificates of the pose that is shown, or of the two keys around it."""
+    shown, document = project.shown, project.document
+    if shown is not None and shown.pose is not None:
+        return (shown.pose.certificate,), "this pose"
+    pair = intervals(document)[time_of(document, shown.frame if shown else 0).interval]
+    return tuple(document.keys[index].pose.certificate for index in pair), "the keys around it"
+
+
+def _heading_with_reset(look: Look, bounds: Bounds) -> list[Action]:
+    heading(look, "Bounds")
+    at_end(1.15 * imgui.get_frame_height())
+    is_default = bounds == Bounds()
+    if icon_button(
+        look,
+        icons.ICON_FA_ARROW_ROTATE_LEFT,
+        "reset bounds",
+        "Set the bounds that new drawings have",
+        enabled=not is_default,
+    ):
+        return [do(rebuilding.choose_bounds, Bounds())]
+    return []
+
+
+def _limit(
+    look: Look, limit: Limit, bounds: Bounds, reached: tuple[Certificate, ...]
+) -> list[Action]:
+    """Draw one bound: its name and value on one line, under them the track that it ends."""
+    palette = look.palette
+    bound = float(getattr(bounds, limit.field))
+    used = max((float(getattr(c, limit.field)) for c in reached), key=limit.scale.share)
+    imgui.align_text_to_frame_padding()
+    imgui.text_unformatted(limit.name)
+    imgui.same_line(0, 0.35 * look.em)
+    imgui.text_colored(palette.dim, limit.symbol)
+    tip(limit.hint)
+    text = f"{used:.2f}{limit.unit}  of"
+    room = FIELD * look.em + imgui.get_style().item_inner_spacing.x
+    at_end(room + imgui.calc_text_size(text).x)
+    colour = _colour(look, limit, used, bound)
+    imgui.text_colored(colour, text)
+    imgui.same_line(0, imgui.get_style().item_inner_spacing.x)
+    imgui.set_next_item_width(-1)
+    entered = number(f"bound {limit.field}", bound)
+    tip(f"{limit.hint}: the bound")
+    moved = track(
+        look,
+        f"bound {limit.field} track",
+        bound,
+        limit.scale,
+        imgui.get_content_region_avail().x,
+        colour=colour,
+        used=used,
     )
-    heading(look, "All keys")
-    keys = "1 key is" if outside == 1 else f"{outside} keys are"
-    small(look, f"{keys} outside the bounds." if outside else "Every key is within the bounds.")
-    if main_button(look, "Solve all keys again", -1):
-        actions.append(do(rebuilding.solve_again))
-    tip("Pull every key's handles to their places again, within the bounds of now")
+    tip(f"{limit.hint}: drag the bound")
+    if entered is not None:
+        return [do(rebuilding.choose_bounds, replace(bounds, **{limit.field: entered}))]
+    if moved is None:
+        return []
+    strictest, widest = LEAST[limit.field], limit.scale.right
+    value = min(max(moved.value, min(strictest, widest)), max(strictest, widest))
+    wanted = replace(bounds, **{limit.field: round(value, 2)})
+    return [do(rebuilding.choose_bounds if moved.is_final else rebuilding.draft_bounds, wanted)]
+
+
+def _colour(look: Look, limit: Limit, used: float, bound: float) -> imgui.ImVec4:
+    palette, scale = look.palette, limit.scale
+    share = scale.share(used) / max(scale.share(bound), 1e-6)
+    return palette.danger if share > 1.0 else palette.warning if share > NEAR else palette.good
+
+
+def _solver(session: Session, look: Look, project: Project) -> None:
+    palette, shown = look.palette, project.shown
+    pose = shown.pose if shown is not None else None
+    if project.grab is not None and project.grab.drag is not None:
+        _status(look, icons.ICON_FA_ARROWS_SPIN, palette.accent, "Following the handles")
+        small(look, f"{1000 * session.solver_seconds:.0f} ms for the last steps")
+        return
+    if pose is None:
+        _status(look, icons.ICON_FA_FILM, palette.dim, "An in-between of two keys")
+        small(look, "It stays within what the two keys have.")
+        return
+    lags = [lag for lag in project.document.lags(pose).values() if lag > ARRIVED]
+    if not pose.certificate.certified:
+        _status(look, icons.ICON_FA_TRIANGLE_EXCLAMATION, palette.danger, "Outside the bounds")
+    elif lags:
+        count = "1 handle is" if len(lags) == 1 else f"{len(lags)} handles are"
+        _status(look, icons.ICON_FA_HAND, palette.warning, "Held back by the bounds")
+        small(look, f"{count} out of reach, by up to {max(lags):.0f} px")
+    else:
+        _status(look, icons.ICON_FA_CIRCLE_CHECK, palette.good, "Every handle is in its place")
+    if pose.certificate.certified:
+        small(look, "Proven: nothing folds, and no point goes beyond the bounds.")
+
+
+def _status(look: Look, icon: str, colour: imgui.ImVec4, text: str) -> None:
+    imgui.text_colored(colour, icon)
+    imgui.same_line(1.9 * look.em)
+    imgui.text_unformatted(text)
+
+
+def _keys(session: Session, look: Look, project: Project) -> list[Action]:
+    """List what every key reaches; a click goes there."""
+    actions: list[Action] = []
+    document, palette = project.document, look.palette
+    flags = imgui.TableFlags_.sizing_stretch_prop | imgui.TableFlags_.pad_outer_x
+    if not imgui.begin_table("keys", 1 + len(LIMITS), flags):
+        return actions
+    imgui.push_font(None, SMALL * imgui.get_style().font_size_base)
+    imgui.table_next_row()
+    for title in ("Frame", *(limit.symbol for limit in LIMITS)):
+        imgui.table_next_column()
+        imgui.text_colored(palette.dim, title)
+    now = playback.current_frame(session, project)
+    for key in document.keys:
+        certificate = key.pose.certificate
+        imgui.table_next_row()
+        imgui.table_next_column()
+        clicked, _ = imgui.selectable(
+            f"{key.frame}###key {key.frame}",
+            key.frame == now,
+            imgui.SelectableFlags_.span_all_columns,
+        )
+        if clicked:
+            actions.append(do(playback.seek, key.frame))
+        for limit in LIMITS:
+            imgui.table_next_column()
+            value = float(getattr(certificate, limit.field))
+            beyond = limit.scale.share(value) > limit.scale.share(
+                getattr(document.bounds, limit.field)
+            )
+            imgui.text_colored(palette.danger if beyond else palette.text, f"{value:.2f}")
+    imgui.pop_font()
+    imgui.end_table()
     return actions
 
 
-def shown_certificate(project: Project) -> Certificate | None:
-    """Return what is proven about the pose that is shown; None for an in-between."""
-    if project.shown is None or project.shown.pose is None:
-        return None
-    return project.shown.pose.certificate
-
-
-def _bounds(look: Look, bounds: Bounds) -> list[Action]:
-    heading(look, "Bounds")
-    small(look, "No pose goes beyond them, anywhere in the drawing.")
-    label(look, "Shear  k")
-    changed_k, k = imgui.slider_float("##k", bounds.k, 0.05, 0.98, "at most %.2f")
-    tip("Conformal distortion: 0 keeps every angle, 1 is a collapse")
-    label(look, "Stretch  σa")
-    changed_a, sigma_a = imgui.slider_float(
-        "##sigma_a", bounds.sigma_a, 1.05, 20.0, "at most %.2f ×", imgui.SliderFlags_.logarithmic
-    )
-    tip("The largest stretch in any direction")
-    label(look, "Squeeze  σb")
-    changed_b, sigma_b = imgui.slider_float(
-        "##sigma_b", bounds.sigma_b, 0.02, 0.95, "at least %.2f ×"
-    )
-    tip("The smallest stretch in any direction")
-    if not (changed_k or changed_a or changed_b):
-        return []
-    chosen = replace(
-        bounds,
-        k=k if changed_k else bounds.k,
-        sigma_a=sigma_a if changed_a else bounds.sigma_a,
-        sigma_b=sigma_b if changed_b else bounds.sigma_b,
-    )
-    return [do(editing.edit, settings_commands.set_bounds(chosen))]
-
-
-def _meters(look: Look, certificate: Certificate, bounds: Bounds) -> None:
-    _meter(look, "k", certificate.k / bounds.k, f"{certificate.k:.3f} of {bounds.k:.2f}")
-    stretched = (certificate.sigma_a - 1.0) / (bounds.sigma_a - 1.0)
-    _meter(look, "σa", stretched, f"{certificate.sigma_a:.2f} of {bounds.sigma_a:.2f}")
-    squeezed = (1.0 - certificate.sigma_b) / (1.0 - bounds.sigma_b)
-    _meter(look, "σb", squeezed, f"{certificate.sigma_b:.2f} of {bounds.sigma_b:.2f}")
-    if certificate.certified:
-        imgui.text_colored(look.palette.good, "Proven: nothing folds, all within the bounds")
-    else:
-        imgui.text_colored(look.palette.warning, "Not proven within these bounds")
-
-
-def _meter(look: Look, name: str, share: float, text: str) -> None:
-    palette, draw_list = look.palette, imgui.get_window_draw_list()
-    label(look, name)
-    corner = imgui.get_cursor_screen_pos()
-    width, height = imgui.get_content_region_avail().x, imgui.get_frame_height()
-    bar = 0.3 * look.em
-    low = ImVec2(corner.x, corner.y + height - bar)
-    full = ImVec2(corner.x + width, corner.y + height)
-    draw_list.add_rect_filled(low, full, ink(palette.raised), bar / 2)
-    share = min(max(share, 0.0), 1.0)
-    colour = palette.danger if share > 0.98 else palette.warning if share > 0.8 else palette.good
-    end = ImVec2(corner.x + max(bar, share * width), corner.y + height)
-    draw_list.add_rect_filled(low, end, ink(colour), bar / 2)
-    draw_list.add_text(ImVec2(corner.x, corner.y), ink(palette.text), text)
-    imgui.dummy(ImVec2(width, height))
+def _solving(look: Look, project: Project) -> list[Action]:
+    if project.renewal is not None and project.renewal.meshing is None:
+        imgui.progress_bar(project.renewal.progress, ImVec2(-1, 0), project.renewal.now)
+        return [do(rebuilding.cancel)] if imgui.button("Cancel###stop", ImVec2(-1, 0)) else []
+    is_possible = project.renewal is None and bool(project.document.handles)
+    if main_button(look, "Solve all keys again", -1, enabled=is_possible):
+        return [do(rebuilding.solve_again)]
+    tip("Pull every key's handles to their places again, within the bounds of now")
+    return []

@@ -1,20 +1,36 @@
-"""How far the drawing is distorted: on the drawing, over its points, and over time."""
+"""How far the drawing is distorted: on the drawing, over its area, and over time."""
+
+from functools import lru_cache
+from typing import NamedTuple
 
 import numpy as np
 from imgui_bundle import ImVec2, ImVec4, imgui, implot
+from imgui_bundle import icons_fontawesome_6 as icons
 
-from app.actions import measuring, viewing
+from app.actions import measuring, playback, viewing
 from app.actions.action import Action, do
-from app.measuring import TIMES, Curves
-from app.session import HeatMap, Project, Session
+from app.measuring import Curves, broken_lines
+from app.render.ramp import heat_ramp
+from app.session import CurveKind, HeatMap, Project, Session
+from app.shown import Shown
 from app.ui.canvas import heat_limits, measure
-from app.ui.theme import Look
-from app.ui.widgets import heading, segments, small
+from app.ui.theme import Look, ink
+from app.ui.widgets import heading, segments, small, tip
 from engine.arrays import Floats
+from engine.deform.bounds import Bounds
 
 HEAT_MAPS = (("none", "Off"), ("k", "k"), ("sigma_a", "σa"), ("sigma_b", "σb"))
-BINS = 40
-PLOT = 9.0  # em
+NAMES = {"k": "Shear k", "sigma_a": "Stretch σa", "sigma_b": "Squeeze σb"}
+KINDS = (("relative", "Relative to the keys"), ("absolute", "Absolute"))
+BINS = 48
+HISTOGRAM, PLOT, STRIP = 7.0, 8.5, 0.45  # em
+QUIET = (
+    implot.Flags_.no_legend
+    | implot.Flags_.no_mouse_text
+    | implot.Flags_.no_menus
+    | implot.Flags_.no_inputs
+    | implot.Flags_.no_title
+)
 
 
 def draw(session: Session, look: Look) -> list[Action]:
@@ -22,107 +38,196 @@ def draw(session: Session, look: Look) -> list[Action]:
     project = session.project
     if project is None or project.shown is None:
         return []
-    actions: list[Action] = []
+    _style_plots(look)
     heading(look, "On the drawing")
+    actions: list[Action] = []
     heat_map = session.overlays.heat_map
     match segments(look, "heat map", HEAT_MAPS, heat_map):
         case "none" | "k" | "sigma_a" | "sigma_b" as chosen:
             actions.append(do(viewing.show_heat_map, chosen))
-    _colour_plots(look)
-    _histogram(look, project, "k" if heat_map == "none" else heat_map)
+    _spread(look, project, project.shown, "k" if heat_map == "none" else heat_map)
     heading(look, "Over time")
-    curves = project.curves
     if len(project.document.keys) < 2:
-        small(look, "There is nothing to compare yet: make a second key.")
+        small(look, "Make a second key: then this shows how the in-betweens distort.")
         return actions
-    actions.append(do(measuring.keep_up))
-    if curves is not None:
-        actions += _curves(look, curves)
-    return actions
+    return [*actions, do(measuring.keep_up), *_over_time(session, look, project)]
 
 
-def _colour_plots(look: Look) -> None:
+def _style_plots(look: Look) -> None:
     style = implot.get_style()
     clear = ImVec4(0, 0, 0, 0)
     for slot, colour in (
         (implot.Col_.frame_bg, clear),
         (implot.Col_.plot_bg, look.palette.desk),
-        (implot.Col_.plot_border, look.palette.line),
+        (implot.Col_.plot_border, clear),
         (implot.Col_.axis_text, look.palette.dim),
         (implot.Col_.axis_grid, look.palette.line),
         (implot.Col_.axis_tick, look.palette.line),
     ):
         style.set_color_(slot, colour)
-    style.plot_padding = ImVec2(0.2 * look.em, 0.4 * look.em)
+    style.plot_padding = ImVec2(0.1 * look.em, 0.4 * look.em)
+    style.label_padding = ImVec2(0.35 * look.em, 0.35 * look.em)
     style.plot_border_size = 0.0
 
 
-def _histogram(look: Look, project: Project, heat_map: HeatMap) -> None:
-    if project.shown is None:
-        return
-    values = measure(project.shown, heat_map)
-    bound = heat_limits(project, heat_map)[1]
-    low, high = (0.0, max(bound, 0.01)) if heat_map == "k" else sorted((1.0, bound))
-    counts, edges = np.histogram(values, bins=BINS, range=(low, max(high, float(values.max()))))
-    share = 100.0 * counts / max(len(values), 1)
-    centres = (edges[:-1] + edges[1:]) / 2
-    flags = implot.Flags_.no_legend | implot.Flags_.no_mouse_text | implot.Flags_.no_inputs
-    if implot.begin_plot("##histogram", ImVec2(-1, 0.75 * PLOT * look.em), flags):
-        axis = implot.AxisFlags_.no_highlight
-        implot.setup_axes("", "", axis, axis | implot.AxisFlags_.no_decorations)
-        implot.setup_axes_limits(
-            float(edges[0]),
-            float(max(edges[-1], bound) * 1.02),
-            0.0,
-            float(share.max() * 1.1 + 1e-9),
-            implot.Cond_.always,
-        )
-        bars = implot.Spec()
-        bars.fill_color = look.palette.accent
-        bars.line_color = look.palette.accent
-        implot.plot_bars("points", centres, share, 0.9 * float(edges[1] - edges[0]), bars)
-        _limit(look, bound, vertical=True)
-        implot.end_plot()
+class _Histogram(NamedTuple):
+    """Which parts of the area (b,) have values between edges (b + 1,), and the worst value."""
+
+    shares: Floats
+    edges: Floats
+    worst: float
+
+
+@lru_cache(maxsize=2)
+def _histogram(shown: Shown, heat_map: HeatMap, low: float, high: float) -> _Histogram:
+    values = measure(shown, heat_map)
+    mesh = shown.figure.domain.mesh
+    areas = np.bincount(mesh.triangles.ravel(), np.repeat(mesh.areas(), 3), len(mesh.vertices))
+    ends = np.array([low, high, values.min(), values.max()])
+    shares, edges = np.histogram(
+        values, BINS, range=(float(ends.min()), float(ends.max())), weights=areas / areas.sum()
+    )
     worst = values.min() if heat_map == "sigma_b" else values.max()
-    small(look, f"Worst {worst:.3f}; the line is the bound, {bound:.2f}")
+    return _Histogram(shares, edges, float(worst))
 
 
-def _curves(look: Look, curves: Curves) -> list[Action]:
-    actions: list[Action] = []
-    for name, title, shares in (
-        ("k", "k, each point's share of its keys'", curves.k_share),
-        ("tau", "τ − 1, each point's share of its keys'", curves.tau_share),
+def _spread(look: Look, project: Project, shown: Shown, heat_map: HeatMap) -> None:
+    """Draw which part of the drawing has how much, in the colours of the heat map."""
+    low, high = heat_limits(project, heat_map)
+    histogram = _histogram(shown, heat_map, low, high)
+    edges = histogram.edges
+    axis = implot.AxisFlags_.no_highlight | implot.AxisFlags_.no_grid_lines
+    inverted = implot.AxisFlags_.invert if heat_map == "sigma_b" else 0
+    if implot.begin_plot("##histogram", ImVec2(-1, HISTOGRAM * look.em), QUIET):
+        implot.setup_axes("", "", axis | inverted, axis | implot.AxisFlags_.no_decorations)
+        room = 0.02 * float(edges[-1] - edges[0])
+        top = float(histogram.shares.max()) * 1.08
+        implot.setup_axes_limits(
+            float(edges[0]) - room, float(edges[-1]) + room, 0.0, top, implot.Cond_.always
+        )
+        _bars(look, histogram, low, high)
+        _limit(look, high, vertical=True)
+        implot.end_plot()
+    name = NAMES[heat_map]
+    small(look, f"{name} over the area: at worst {histogram.worst:.2f}, the bound is {high:.2f}")
+
+
+def _bars(look: Look, histogram: _Histogram, low: float, high: float) -> None:
+    """Draw the bars, and under them the colours that the drawing has."""
+    ramp = heat_ramp()
+    draw_list = implot.get_plot_draw_list()
+    implot.push_plot_clip_rect()
+    floor = implot.get_plot_pos().y + implot.get_plot_size().y
+    strip = STRIP * look.em
+    for share, left, right in zip(
+        histogram.shares, histogram.edges, histogram.edges[1:], strict=False
     ):
-        flags = implot.Flags_.no_legend | implot.Flags_.no_mouse_text | implot.Flags_.no_menus
-        if implot.begin_plot(f"##{name}", ImVec2(-1, PLOT * look.em), flags):
-            implot.setup_axes("", "", 0, 0)
-            top = max(1.15, float(shares.max()) * 1.05)
-            first, last = float(curves.frames[0]), float(curves.frames[-1])
-            implot.setup_axes_limits(first, last, 0.0, top, implot.Cond_.once)
-            line = implot.Spec()
-            accent = look.palette.accent
-            line.line_color = ImVec4(accent.x, accent.y, accent.z, 0.28)
-            implot.plot_line("##points", *_joined(curves.frames, shares), line)
-            _limit(look, 1.0, vertical=False)
-            implot.end_plot()
-        small(look, title)
-    if imgui.button("Save as CSV…"):
-        actions.append(do(measuring.ask_csv))
-    imgui.same_line()
-    if imgui.button("Save as PNG…"):
+        place = ((left + right) / 2 - low) / (high - low)
+        red, green, blue = ramp[round(255 * min(max(place, 0.0), 1.0))] / 255
+        colour = imgui.color_convert_float4_to_u32(ImVec4(red, green, blue, 1.0))
+        first = implot.plot_to_pixels(float(left), float(share))
+        last = implot.plot_to_pixels(float(right), 0.0)
+        ends = sorted((first.x, last.x))
+        top = min(first.y, floor) - strip
+        draw_list.add_rect_filled(
+            ImVec2(ends[0] + 0.5, top), ImVec2(ends[1] - 0.5, floor - strip - 1), colour
+        )
+        draw_list.add_rect_filled(
+            ImVec2(ends[0], floor - strip), ImVec2(ends[1] + 0.5, floor), colour
+        )
+    implot.pop_plot_clip_rect()
+
+
+def _over_time(session: Session, look: Look, project: Project) -> list[Action]:
+    actions: list[Action] = []
+    match segments(look, "curves", KINDS, session.curves):
+        case "relative" | "absolute" as kind:
+            actions.append(do(measuring.show_curves, kind))
+    curves = project.curves
+    if curves is None:
+        small(look, "Measuring…")
+        return actions
+    is_stale = curves.document is not project.document
+    for plot in _plots(session.curves, curves, project.document.bounds):
+        actions += _plot(session, look, curves, plot)
+    if session.curves == "relative":
+        small(look, "Each point relative to its larger key. Red: the bound of the theory.")
+    else:
+        small(look, "Red: the bounds that poses keep to.")
+    gap = imgui.get_style().item_spacing.x
+    half = ImVec2((imgui.get_content_region_avail().x - gap) / 2, 0)
+    imgui.begin_disabled(is_stale)
+    if imgui.button(f"{icons.ICON_FA_IMAGE}  Save as PNG…###png", half):
         actions.append(do(measuring.ask_png))
+    imgui.same_line()
+    if imgui.button(f"{icons.ICON_FA_TABLE}  Save as CSV…###csv", half):
+        actions.append(do(measuring.ask_csv))
+    imgui.end_disabled()
     return actions
 
 
-def _joined(frames: Floats, shares: Floats) -> tuple[Floats, Floats]:
-    """Return all curves (t, p) as one line, broken by NaN after each interval."""
-    intervals = len(frames) // TIMES
-    blocks = shares.T.reshape(-1, intervals, TIMES)
-    broken = np.concatenate([blocks, np.full((*blocks.shape[:2], 1), np.nan)], axis=2)
-    times = np.concatenate(
-        [frames.reshape(intervals, TIMES), np.full((intervals, 1), np.nan)], axis=1
+class _Plot(NamedTuple):
+    """What is drawn over time: a line of all points, and the range and bound of its values."""
+
+    title: str
+    frames: Floats
+    values: Floats
+    least: float
+    bound: float
+
+    @property
+    def top(self) -> float:
+        largest = max(self.bound, float(np.nanmax(self.values)))
+        return self.least + 1.15 * (largest - self.least)
+
+
+@lru_cache(maxsize=2)
+def _plots(kind: CurveKind, curves: Curves, bounds: Bounds) -> tuple[_Plot, _Plot]:
+    if kind == "relative":
+        return (
+            _Plot("k", *broken_lines(curves, curves.k_share), 0.0, 1.0),
+            _Plot("τ − 1", *broken_lines(curves, curves.tau_share), 0.0, 1.0),
+        )
+    farthest = max(bounds.sigma_a, 1.0 / bounds.sigma_b)
+    return (
+        _Plot("k", *broken_lines(curves, curves.k), 0.0, bounds.k),
+        _Plot("τ = max(σa, 1/σb)", *broken_lines(curves, curves.tau), 1.0, farthest),
     )
-    return np.tile(times.ravel(), len(blocks)), broken.ravel()
+
+
+def _plot(session: Session, look: Look, curves: Curves, plot: _Plot) -> list[Action]:
+    """Draw the curves of the worst points; a click moves the playhead."""
+    actions: list[Action] = []
+    project, palette = session.project, look.palette
+    if project is None or not implot.begin_plot(
+        f"##over time {plot.title}", ImVec2(-1, PLOT * look.em), QUIET
+    ):
+        return actions
+    quiet = implot.AxisFlags_.no_highlight
+    implot.setup_axes("", "", quiet | implot.AxisFlags_.no_grid_lines, quiet)
+    first, last = float(curves.frames[0]), float(curves.frames[-1])
+    implot.setup_axes_limits(first, last, plot.least, plot.top, implot.Cond_.always)
+    keys = implot.Spec()
+    keys.line_color = palette.line
+    frames = [float(key.frame) for key in project.document.keys]
+    implot.plot_inf_lines("##keys", np.array(frames), keys)
+    line = implot.Spec()
+    alpha = 0.10 if curves.document is not project.document else 0.30
+    line.line_color = ImVec4(palette.accent.x, palette.accent.y, palette.accent.z, alpha)
+    implot.plot_line("##points", plot.frames, plot.values, line)
+    _limit(look, plot.bound, vertical=False)
+    now = implot.Spec()
+    now.line_color = palette.text
+    frame = playback.current_frame(session, project)
+    implot.plot_inf_lines("##now", np.array([float(frame)]), now)
+    corner = implot.get_plot_pos()
+    place = ImVec2(corner.x + 0.5 * look.em, corner.y + 0.3 * look.em)
+    implot.get_plot_draw_list().add_text(place, ink(palette.dim), plot.title)
+    if implot.is_plot_hovered() and imgui.is_mouse_clicked(imgui.MouseButton_.left):
+        actions.append(do(playback.seek, round(implot.get_plot_mouse_pos().x)))
+    implot.end_plot()
+    tip("Click to go to a frame")
+    return actions
 
 
 def _limit(look: Look, value: float, *, vertical: bool) -> None:
@@ -131,4 +236,4 @@ def _limit(look: Look, value: float, *, vertical: bool) -> None:
     limit.line_weight = 1.6
     if not vertical:
         limit.flags = implot.InfLinesFlags_.horizontal
-    implot.plot_inf_lines("bound", np.array([value]), limit)
+    implot.plot_inf_lines("##bound", np.array([value]), limit)

@@ -1,65 +1,113 @@
 """The outline, the cage and the mesh: how they are made, and a look at them."""
 
+from dataclasses import replace
+from functools import lru_cache
+
 from imgui_bundle import ImVec2, imgui
+from imgui_bundle import icons_fontawesome_6 as icons
 
 from app.actions import rebuilding, viewing
 from app.actions.action import Action, do
+from app.actions.viewing import Overlay
 from app.document.settings import Meshing
-from app.session import Project, Session
+from app.session import Overlays, Project, Session
+from app.ui.sliders import Scale, slider
 from app.ui.theme import Look
 from app.ui.widgets import heading, label, main_button, segments, small, tip
+from engine.mesh import Mesh
 
 DETAILS = (("coarse", "Coarse"), ("normal", "Normal"), ("fine", "Fine"))
+TRIANGLES = Scale(left=2_000, right=1_000_000, logarithmic=True)
+TOLERANCES = Scale(left=0, right=120)
+SHOWN: tuple[tuple[Overlay, str, str], ...] = (
+    ("outline", "Outline", "The edge of the domain, which moves with the drawing"),
+    ("cage", "Cage", "The polygon around the drawing at rest that all maps are made of"),
+    ("wireframe", "Mesh", "The triangles that the drawing is cut into"),
+)
 
 
 def draw(session: Session, look: Look) -> list[Action]:
-    """Draw the settings of the domain."""
+    """Draw what the domain is like, and the settings to build another one."""
     project = session.project
     if project is None:
         return []
-    domain = project.document.domain
-    small(
-        look,
-        f"{len(domain.outline)} points of outline and cage, "
-        f"{len(domain.mesh.triangles):,} triangles.",
-    )
-    actions: list[Action] = []
-    overlays = session.overlays
-    if imgui.checkbox("Show outline and cage", overlays.outline)[0]:
-        actions.append(do(viewing.toggle, "outline"))
-    if imgui.checkbox("Show the triangles", overlays.wireframe)[0]:
-        actions.append(do(viewing.toggle, "wireframe"))
-    heading(look, "Make it again")
-    draft = project.meshing or project.document.meshing
+    heading(look, "Show")
+    actions = _toggles(session.overlays)
+    heading(look, "Facts")
+    _facts(look, project)
+    heading(look, "Build it again")
+    document = project.document
+    draft = project.meshing or document.meshing
     chosen = _settings(look, project, draft)
     if chosen != draft:
         actions.append(do(viewing.draft_meshing, chosen))
     imgui.dummy(ImVec2(0, 0.2 * look.em))
-    if rebuilding.REBUILDING in session.jobs.kinds:
-        if imgui.button("Cancel", ImVec2(-1, 0)):
+    renewal = project.renewal
+    if renewal is not None and renewal.meshing is not None:
+        imgui.progress_bar(renewal.progress, ImVec2(-1, 0), renewal.now)
+        if imgui.button("Cancel###stop", ImVec2(-1, 0)):
             actions.append(do(rebuilding.cancel))
-    elif main_button(look, "Rebuild", -1, enabled=chosen != project.document.meshing):
-        actions.append(do(rebuilding.rebuild, chosen))
-    small(look, "Handles stay; every key is solved again. Undo brings all of it back.")
+    else:
+        is_new = chosen != document.meshing and renewal is None
+        text = f"{icons.ICON_FA_ARROWS_ROTATE}  Rebuild###rebuild"
+        if main_button(look, text, -1, enabled=is_new):
+            actions.append(do(rebuilding.rebuild))
+        if is_new and imgui.button("Keep it as it is###forget", ImVec2(-1, 0)):
+            actions.append(do(viewing.draft_meshing, document.meshing))
+    small(look, "Handles stay, and every key is solved again. Undo brings all of it back.")
     return actions
 
 
+def _toggles(overlays: Overlays) -> list[Action]:
+    actions: list[Action] = []
+    column = imgui.get_content_region_avail().x / len(SHOWN)
+    left = imgui.get_cursor_pos_x()
+    for index, (overlay, text, hint) in enumerate(SHOWN):
+        if index:
+            imgui.same_line(left + index * column)
+        if imgui.checkbox(text, getattr(overlays, overlay))[0]:
+            actions.append(do(viewing.toggle, overlay))
+        tip(hint)
+    return actions
+
+
+def _facts(look: Look, project: Project) -> None:
+    domain = project.document.domain
+    width, height = project.picture.size
+    _fact(look, "Picture", f"{width} × {height} pixels")
+    _fact(look, "Outline", f"{len(domain.outline):,} points")
+    _fact(look, "Cage", f"{len(domain.cage):,} points")
+    _fact(look, "Triangles", f"{len(domain.mesh.triangles):,}")
+    _fact(look, "Vertices", f"{len(domain.mesh.vertices):,}")
+    _fact(look, "Flattest", f"{_smallest_angle(domain.mesh):.1f}° is the smallest angle")
+
+
+def _fact(look: Look, name: str, text: str) -> None:
+    label(look, name)
+    imgui.text_unformatted(text)
+
+
+@lru_cache(maxsize=2)
+def _smallest_angle(mesh: Mesh) -> float:
+    return float(mesh.smallest_angles().min())
+
+
 def _settings(look: Look, project: Project, draft: Meshing) -> Meshing:
-    detail, triangles, tolerance = draft.detail, draft.triangles, draft.tolerance
     label(look, "Outline")
-    picked = segments(look, "detail", DETAILS, detail)
+    match segments(look, "detail", DETAILS, draft.detail):
+        case "coarse" | "normal" | "fine" as detail:
+            draft = replace(draft, detail=detail)
     tip("How closely the outline follows the drawing")
     label(look, "Triangles")
-    changed, count = imgui.slider_int(
-        "##triangles", triangles, 2_000, 1_000_000, "%d", imgui.SliderFlags_.logarithmic
-    )
-    if changed:
-        triangles = min(max(round(count, -3), 2_000), 1_000_000)
+    hint = "How many triangles to aim at: more bend more smoothly, fewer draw faster"
+    entered = slider(look, "triangles", draft.triangles, TRIANGLES, text="%.0f", hint=hint)
+    if entered is not None:
+        digits = 0 if entered.is_final and entered.value < 10_000 else -3
+        draft = replace(draft, triangles=int(round(entered.value, digits)))
     if project.is_opaque:
         label(look, "Tolerance")
-        changed, tolerance = imgui.slider_int("##tolerance", tolerance, 0, 120)
-        tip("How far the background may vary in colour, in levels")
-    match picked:
-        case "coarse" | "normal" | "fine":
-            detail = picked
-    return Meshing(detail=detail, triangles=triangles, tolerance=tolerance)
+        hint = "How far the background may vary in colour, in levels of 255"
+        entered = slider(look, "tolerance", draft.tolerance, TOLERANCES, text="%.0f", hint=hint)
+        if entered is not None:
+            draft = replace(draft, tolerance=round(entered.value))
+    return draft

@@ -1,19 +1,23 @@
-"""What the next export makes, and how far it is."""
+"""What the next export makes, where to, and how far it is."""
 
+import importlib.util
 from dataclasses import replace
+from functools import cache
 
 from imgui_bundle import ImVec2, imgui
 from imgui_bundle import icons_fontawesome_6 as icons
 
 from app.actions import exporting
 from app.actions.action import Action, do
-from app.document.settings import EXPORT_FORMATS, ExportFormat, ExportSettings
+from app.document.settings import EXPORT_FORMATS, ExportFormat, ExportSettings, FrameRange
 from app.document.timeline import exported_frames
-from app.export.framing import box_around, frame_view
+from app.export.framing import Box, box_around, frame_view, shown_box
+from app.export.plan import VIDEO_REMEDY
+from app.render.view import View
 from app.session import Project, Session
 from app.ui.shortcuts import BINDINGS
 from app.ui.theme import Look, ink
-from app.ui.widgets import heading, label, main_button, segments, small, tip
+from app.ui.widgets import heading, icon_button, label, main_button, segments, small, tip
 
 FORMAT_NAMES: dict[ExportFormat, str] = {
     "png": "PNG frames",
@@ -23,142 +27,239 @@ FORMAT_NAMES: dict[ExportFormat, str] = {
     "spritesheet": "Sprite sheet",
     "mp4": "MP4 video",
 }
+BACKGROUNDS = (("transparent", "Clear"), ("colour", "Colour"))
 FRAMINGS = (("canvas", "Canvas"), ("fit", "All motion"))
-PREVIEW = 9.0  # em
+RANGES = (("played", "What plays"), ("own", "From – to"))
+WHITE = "#ffffff"
+LARGEST = 65_535
+PREVIEW = 7.5  # em
 
 
 def draw(session: Session, look: Look) -> list[Action]:
-    """Draw the settings of the export, or its progress."""
+    """Draw the settings of the export with a preview of its frame, or its progress."""
     project = session.project
-    if project is None:
+    if project is None or project.shown is None:
         return []
     settings = project.document.export
-    actions: list[Action] = []
-    chosen = _settings(look, project, settings)
+    reach = project.reach.box if project.reach else box_around(project.shown.positions)
+    view = frame_view(settings, project.picture.size, reach)
+    box = shown_box(view)
+    actions = [do(exporting.show_frame, box), do(exporting.keep_reach)]
+    heading(look, "Picture")
+    chosen = _picture(look, settings)
+    chosen, more = _size(session, look, chosen, view)
+    actions += more
+    _preview(look, project, settings, box, reach)
+    heading(look, "Frames")
+    chosen = _frames(look, project, chosen)
     if chosen != settings:
         actions.append(do(exporting.set_export, chosen))
-    _preview(look, project, settings)
-    frames = exported_frames(project.document)
-    count = frames.last - frames.first + 1
-    small(look, f"Frames {frames.first} to {frames.last}, {count} in all")
-    imgui.dummy(ImVec2(0, 0.2 * look.em))
-    if session.export is not None or exporting.PREPARING in session.jobs.kinds:
-        return actions + _progress(session)
-    if main_button(look, f"{icons.ICON_FA_FILE_EXPORT}  Export…", -1):
-        actions.append(do(exporting.ask))
-    tip("Choose where to, and export", BINDINGS["export"].keys_in_words)
-    if project.exported_to is not None:
-        if imgui.button(f"Again into {project.exported_to.name}", ImVec2(-1, 0)):
-            actions.append(do(exporting.repeat))
-        tip(str(project.exported_to), BINDINGS["export again"].keys_in_words)
-    return actions
+    heading(look, "Output")
+    return actions + _output(session, look, project)
 
 
-def _settings(look: Look, project: Project, settings: ExportSettings) -> ExportSettings:
-    heading(look, "What")
+def _picture(look: Look, settings: ExportSettings) -> ExportSettings:
     label(look, "Format")
     if imgui.begin_combo("##format", FORMAT_NAMES[settings.format]):
         for format_ in EXPORT_FORMATS:
             if imgui.selectable(FORMAT_NAMES[format_], format_ == settings.format)[0]:
                 settings = replace(settings, format=format_)
         imgui.end_combo()
+    if settings.format == "mp4":
+        if settings.background == "transparent":
+            settings = replace(settings, background=WHITE)
+        if not _has_video():
+            small(look, f"Videos need PyAV: {VIDEO_REMEDY}")
     label(look, "Background")
-    is_clear = settings.background == "transparent"
-    match segments(
-        look,
-        "background",
-        (("transparent", "Clear"), ("colour", "Colour")),
-        "transparent" if is_clear else "colour",
-    ):
-        case "transparent":
-            settings = replace(settings, background="transparent")
-        case "colour":
-            settings = replace(settings, background="#ffffff")
-    if settings.background != "transparent":
-        settings = _colour(look, settings)
+    settings = _background(look, settings)
     label(look, "Framing")
     match segments(look, "framing", FRAMINGS, settings.framing):
         case "canvas" | "fit" as framing:
             settings = replace(settings, framing=framing)
-    return _size(look, project, settings)
+    return settings
 
 
-def _colour(look: Look, settings: ExportSettings) -> ExportSettings:
-    label(look, "Colour")
+@cache
+def _has_video() -> bool:
+    return importlib.util.find_spec("av") is not None
+
+
+def _background(look: Look, settings: ExportSettings) -> ExportSettings:
+    is_clear = settings.background == "transparent"
+    size = 0.0 if is_clear else imgui.get_frame_height() + imgui.get_style().item_inner_spacing.x
+    imgui.begin_disabled(settings.format == "mp4")
+    chosen = segments(
+        look, "background", BACKGROUNDS, "transparent" if is_clear else "colour", room=size
+    )
+    imgui.end_disabled()
+    if settings.format == "mp4":
+        tip("Videos have no transparency")
+    match chosen:
+        case "transparent":
+            return replace(settings, background="transparent")
+        case "colour":
+            return replace(settings, background=WHITE)
+    if is_clear:
+        return settings
+    imgui.same_line(0, imgui.get_style().item_inner_spacing.x)
     values = [level / 255 for level in bytes.fromhex(settings.background[1:])]
-    changed, values = imgui.color_edit3("##colour", values)
+    changed, values = imgui.color_edit3("##colour", values, imgui.ColorEditFlags_.no_inputs)
     if not changed:
         return settings
     code = "".join(f"{round(255 * min(max(value, 0.0), 1.0)):02x}" for value in values[:3])
     return replace(settings, background=f"#{code}")
 
 
-def _size(look: Look, project: Project, settings: ExportSettings) -> ExportSettings:
+def _size(
+    session: Session, look: Look, settings: ExportSettings, view: View
+) -> tuple[ExportSettings, list[Action]]:
+    """Draw width and height, a lock of their ratio, and the way back to the drawing's own size."""
+    actions: list[Action] = []
     label(look, "Size")
-    own = settings.size is None
-    match segments(
-        look, "size", (("own", "As drawn"), ("other", "Other")), "own" if own else "other"
+    gap = imgui.get_style().item_inner_spacing.x
+    button = 1.15 * imgui.get_frame_height()
+    times = imgui.calc_text_size("×").x
+    each = (imgui.get_content_region_avail().x - 2 * button - times - 4 * gap) / 2
+    width, height = view.size
+    imgui.set_next_item_width(each)
+    _, wide = imgui.input_int("##width", width, 0)
+    by_width = imgui.is_item_deactivated_after_edit()
+    tip("Width in pixels")
+    imgui.same_line(0, gap)
+    imgui.text_disabled("×")
+    imgui.same_line(0, gap)
+    imgui.set_next_item_width(each)
+    _, high = imgui.input_int("##height", height, 0)
+    by_height = imgui.is_item_deactivated_after_edit()
+    tip("Height in pixels")
+    imgui.same_line(0, gap)
+    keeps = session.keeps_aspect
+    icon = icons.ICON_FA_LOCK if keeps else icons.ICON_FA_LOCK_OPEN
+    if icon_button(look, icon, "keep ratio", "Keep the ratio of width and height", active=keeps):
+        actions.append(do(exporting.keep_aspect, not keeps))
+    imgui.same_line(0, gap)
+    if icon_button(
+        look,
+        icons.ICON_FA_ARROW_ROTATE_LEFT,
+        "own size",
+        "Back to the size of the drawing",
+        enabled=settings.size is not None,
     ):
+        return replace(settings, size=None), actions
+    if by_width and wide > 0:
+        high = round(wide * height / width) if keeps else height
+    elif by_height and high > 0:
+        wide = round(high * width / height) if keeps else width
+    else:
+        return settings, actions
+    entered = (min(max(wide, 1), LARGEST), min(max(high, 1), LARGEST))
+    return (settings if entered == view.size else replace(settings, size=entered)), actions
+
+
+def _frames(look: Look, project: Project, settings: ExportSettings) -> ExportSettings:
+    document = project.document
+    frames = exported_frames(document)
+    label(look, "Range")
+    match segments(look, "range", RANGES, "played" if settings.frames is None else "own"):
+        case "played":
+            settings = replace(settings, frames=None)
         case "own":
-            return replace(settings, size=None)
-        case "other":
-            return replace(settings, size=project.picture.size)
-    if settings.size is not None:
-        label(look, "Pixels")
-        changed, size = imgui.input_int2("##pixels", list(settings.size))
-        if changed and min(size[:2]) >= 1 and max(size[:2]) <= 65_535:
-            return replace(settings, size=(size[0], size[1]))
+            settings = replace(settings, frames=frames)
+    label(look, "First, last")
+    gap = imgui.get_style().item_inner_spacing.x
+    each = (imgui.get_content_region_avail().x - gap) / 2
+    imgui.begin_disabled(settings.frames is None)
+    ends = []
+    for index, (name, frame) in enumerate((("first", frames.first), ("last", frames.last))):
+        if index:
+            imgui.same_line(0, gap)
+        imgui.set_next_item_width(each)
+        _, entered = imgui.input_int(f"##{name} frame", frame, 0)
+        done = imgui.is_item_deactivated_after_edit()
+        ends.append(document.frames.clamp(entered) if done else frame)
+    imgui.end_disabled()
+    if settings.frames is not None and ends != [frames.first, frames.last]:
+        first, last = sorted(ends)
+        settings = replace(settings, frames=FrameRange(first, last))
+    count = frames.last - frames.first + 1
+    text = "1 picture" if count == 1 else f"{count} pictures"
+    small(look, f"{text}, {count / document.fps:.1f} s at {document.fps:g} fps")
     return settings
 
 
-def _preview(look: Look, project: Project, settings: ExportSettings) -> None:
-    """Draw the export's frame around the picture and all that moves."""
-    if project.shown is None:
-        return
-    reach = box_around(project.shown.positions)
-    view = frame_view(settings, project.picture.size, reach)
-    half = complex(*view.size) / (2 * view.scale)
-    frame = (view.centre - half, view.centre + half)
-    canvas = (0j, complex(*project.picture.size))
-    boxes = [frame, canvas, (reach.lower, reach.upper)]
-    low = complex(min(b[0].real for b in boxes), min(b[0].imag for b in boxes))
-    high = complex(max(b[1].real for b in boxes), max(b[1].imag for b in boxes))
+def _output(session: Session, look: Look, project: Project) -> list[Action]:
+    actions: list[Action] = []
+    out = exporting.destination(project)
+    label(look, "File" if project.document.export.format != "png" else "Folder")
+    button = 1.15 * imgui.get_frame_height()
+    gap = imgui.get_style().item_inner_spacing.x
+    imgui.set_next_item_width(imgui.get_content_region_avail().x - button - gap)
+    imgui.begin_disabled(True)  # noqa: FBT003 - chosen by the button beside it
+    imgui.input_text("##out", out.name if out else "not chosen yet")
+    imgui.end_disabled()
+    tip(str(out) if out else "Choose where to")
+    imgui.same_line(0, gap)
+    if icon_button(look, icons.ICON_FA_FOLDER_OPEN, "choose output", "Choose where to…"):
+        actions.append(do(exporting.choose))
+    run = session.export
+    if run is not None or exporting.PREPARING in session.jobs.kinds:
+        if run is None:
+            imgui.progress_bar(-0.5 * imgui.get_time(), ImVec2(-1, 0), "Preparing…")
+        else:
+            total = len(run.plan.times)
+            imgui.progress_bar(run.done / total, ImVec2(-1, 0), f"{run.done} of {total}")
+        if imgui.button("Cancel###stop", ImVec2(-1, 0)):
+            actions.append(do(exporting.cancel))
+        return actions
+    if main_button(look, f"{icons.ICON_FA_FILE_EXPORT}  Export###start", -1):
+        actions.append(do(exporting.repeat))
+    tip("Export now", BINDINGS["export again"].keys_in_words)
+    return actions
+
+
+def _preview(
+    look: Look, project: Project, settings: ExportSettings, frame: Box, reach: Box
+) -> None:
+    """Draw the export's frame around the drawing and all that moves."""
+    canvas = Box(0j, complex(*project.picture.size))
+    around = frame.joined(canvas).joined(reach)
     width, height = imgui.get_content_region_avail().x, PREVIEW * look.em
     corner = imgui.get_cursor_screen_pos()
-    extent = high - low
-    scale = 0.9 * min(width / extent.real, height / extent.imag)
-    middle = (low + high) / 2
+    extent = around.upper - around.lower
+    inner = 0.5 * look.em
+    scale = min((width - 2 * inner) / extent.real, (height - 2 * inner) / extent.imag)
+    middle = (around.lower + around.upper) / 2
 
     def place(point: complex) -> ImVec2:
         offset = (point - middle) * scale
         return ImVec2(corner.x + width / 2 + offset.real, corner.y + height / 2 - offset.imag)
 
+    def ends(box: Box) -> tuple[ImVec2, ImVec2]:
+        upper_left = complex(box.lower.real, box.upper.imag)
+        return place(upper_left), place(complex(box.upper.real, box.lower.imag))
+
     palette, draw_list = look.palette, imgui.get_window_draw_list()
-
-    def box(ends: tuple[complex, complex], colour: int, *, fill: bool) -> None:
-        upper_left = place(complex(ends[0].real, ends[1].imag))
-        lower_right = place(complex(ends[1].real, ends[0].imag))
-        paint = draw_list.add_rect_filled if fill else draw_list.add_rect
-        paint(upper_left, lower_right, colour)
-
-    box(frame, ink(palette.desk), fill=True)
-    box(canvas, ink(palette.dim, 0.5), fill=False)
-    outline = project.shown.positions[: len(project.shown.figure.domain.outline)]
-    for point in outline:
-        draw_list.path_line_to(place(complex(point)))
-    draw_list.path_stroke(ink(palette.dim), 1.2, imgui.ImDrawFlags_.closed)
-    box((reach.lower, reach.upper), ink(palette.warning, 0.7), fill=False)
-    box(frame, ink(palette.accent), fill=False)
+    rounding = 0.4 * look.em
+    opposite = ImVec2(corner.x + width, corner.y + height)
+    draw_list.add_rect_filled(corner, opposite, ink(palette.desk), rounding)
+    colour = ink(palette.raised)
+    if settings.background != "transparent":
+        red, green, blue = bytes.fromhex(settings.background[1:])
+        colour = imgui.IM_COL32(red, green, blue, 255)
+    draw_list.add_rect_filled(*ends(frame), colour)
+    if project.shown is not None:
+        count = len(project.shown.figure.domain.outline)
+        for point in project.shown.positions[:count]:
+            draw_list.path_line_to(place(complex(point)))
+        draw_list.path_fill_concave(ink(palette.dim))
+    draw_list.add_rect(*ends(canvas), ink(palette.dim, 0.6))
+    draw_list.add_rect(*ends(reach), ink(palette.warning, 0.8))
+    draw_list.add_rect(*ends(frame), ink(palette.accent), 0.0, 1.6)
     imgui.dummy(ImVec2(width, height))
-    tip("Blue: the frame. Grey: the picture's canvas. Orange: where the motion reaches.")
-    small(look, f"{view.size[0]} × {view.size[1]} pixels")
-
-
-def _progress(session: Session) -> list[Action]:
-    run = session.export
-    if run is None:
-        imgui.progress_bar(-0.5 * imgui.get_time(), ImVec2(-1, 0), "Preparing…")
-    else:
-        total = len(run.plan.times)
-        imgui.progress_bar(run.done / total, ImVec2(-1, 0), f"{run.done} of {total}")
-    return [do(exporting.cancel)] if imgui.button("Cancel", ImVec2(-1, 0)) else []
+    tip(
+        "Blue: what the export shows, as in the viewport. Grey: the picture's canvas.\n"
+        "Orange: where the motion reaches."
+    )
+    is_left = not frame.contains(reach, slack=1.0)
+    if is_left and project.reach is not None:
+        small(look, "The motion leaves the frame; “All motion” shows all of it.")

@@ -1,4 +1,4 @@
-"""The handles: their names, weights and wishes."""
+"""The handles: their names, weights and wishes, and the anchor."""
 
 import math
 from dataclasses import replace
@@ -8,13 +8,16 @@ from imgui_bundle import icons_fontawesome_6 as icons
 
 from app.actions import editing, posing
 from app.actions.action import Action, do
-from app.document import handle_commands
-from app.document.keyframe import Handle
+from app.document import handle_commands, settings_commands
+from app.document.keyframe import Handle, Target
 from app.session import Project, Session
+from app.ui.sliders import Scale, number, slider
 from app.ui.theme import Look
-from app.ui.widgets import heading, label, small
+from app.ui.widgets import at_end, heading, icon_button, label, small, tip
 
-ROWS = 9.0  # em of the list
+ROW, MOST_ROWS = 1.75, 7.5  # em; rows
+WEIGHTS = Scale(left=0.01, right=100.0, logarithmic=True)
+ARRIVED = 1.0  # pixels of the picture within which a handle is where it should be
 
 
 def draw(session: Session, look: Look) -> list[Action]:
@@ -24,34 +27,65 @@ def draw(session: Session, look: Look) -> list[Action]:
         return []
     document = project.document
     if not document.handles:
-        small(look, "There are no handles yet. Click on the drawing to add one.")
+        heading(look, "Handles")
+        small(look, "There are none yet. Click on the drawing to add one, then drag it.")
         return []
-    actions = _list(look, project)
-    if len(project.selected) > 1:
-        heading(look, f"{len(project.selected)} handles")
-        small(look, "Dragging one moves them all. Arrows nudge them.")
-        return actions + _delete(project.selected)
-    chosen = next((h for h in document.handles if h.id in project.selected), None)
-    if chosen is None:
+    actions = _heading_with_delete(look, project)
+    actions += _list(look, project)
+    chosen = [handle for handle in document.handles if handle.id in project.selected]
+    if len(chosen) == 1:
+        actions += _details(look, project, chosen[0])
+    elif chosen:
+        heading(look, f"{len(chosen)} handles")
+        small(look, "Dragging one of them moves them all; arrows nudge them.")
+    else:
         small(look, "Select a handle to see its settings.")
-        return actions
-    return actions + _details(look, project, chosen) + _delete(frozenset({chosen.id}))
+    heading(look, "Anchor")
+    return actions + _anchor(look, project, chosen)
+
+
+def _heading_with_delete(look: Look, project: Project) -> list[Action]:
+    heading(look, "Handles")
+    at_end(1.15 * imgui.get_frame_height())
+    if icon_button(
+        look,
+        icons.ICON_FA_TRASH,
+        "delete handles",
+        "Delete the selected handles; the pose stays",
+        keys="Del",
+        enabled=bool(project.selected),
+    ):
+        return [do(posing.remove_handles, project.selected)]
+    return []
 
 
 def _list(look: Look, project: Project) -> list[Action]:
     actions: list[Action] = []
-    height = min(ROWS, 0.8 + 1.75 * len(project.document.handles)) * look.em
+    document, palette = project.document, look.palette
+    pose = project.shown.pose if project.shown else None
+    lags = document.lags(pose) if pose is not None else {}
+    height = (0.9 + ROW * min(len(document.handles), MOST_ROWS)) * look.em
     imgui.begin_child("handles", ImVec2(0, height), imgui.ChildFlags_.borders)
-    for handle in project.document.handles:
-        is_anchor = handle.position == project.document.anchor
-        icon = icons.ICON_FA_ANCHOR if is_anchor else icons.ICON_FA_CIRCLE_DOT
+    for handle in document.handles:
+        is_anchor = handle.position == document.anchor
         clicked, _ = imgui.selectable(
-            f"{icon}  {handle.name}###{handle.id}", handle.id in project.selected
+            f"###handle {handle.id}",
+            handle.id in project.selected,
+            imgui.SelectableFlags_.allow_overlap,
         )
         if clicked:
             chosen = frozenset({handle.id})
             keeps = imgui.get_io().key_shift or imgui.get_io().key_ctrl
             actions.append(do(editing.select, project.selected ^ chosen if keeps else chosen))
+        imgui.same_line(0.5 * look.em)
+        icon = icons.ICON_FA_ANCHOR if is_anchor else icons.ICON_FA_CIRCLE_DOT
+        imgui.text_colored(palette.anchor if is_anchor else palette.dim, icon)
+        imgui.same_line(2.3 * look.em)
+        imgui.text_unformatted(handle.name)
+        if lags.get(handle.id, 0.0) > ARRIVED:
+            text = f"{lags[handle.id]:.0f} px"
+            at_end(imgui.calc_text_size(text).x + 0.3 * look.em)
+            imgui.text_colored(palette.warning, text)
     imgui.end_child()
     return actions
 
@@ -60,55 +94,114 @@ def _details(look: Look, project: Project, handle: Handle) -> list[Action]:
     actions: list[Action] = []
     heading(look, handle.name)
     label(look, "Name")
-    entered, name = imgui.input_text(
-        "##name", handle.name, imgui.InputTextFlags_.enter_returns_true
-    )
-    if entered and name.strip():
+    _, name = imgui.input_text("##name", handle.name)
+    if imgui.is_item_deactivated_after_edit() and name.strip() and name != handle.name:
         actions.append(do(editing.edit, handle_commands.rename_handle(handle.id, name.strip())))
     label(look, "Weight")
-    changed, weight = imgui.slider_float(
-        "##weight", handle.weight, 0.01, 100.0, "%.2f", imgui.SliderFlags_.logarithmic
+    hint = "How strongly it pulls, relative to the others"
+    weighed = slider(look, "weight", handle.weight, WEIGHTS, hint=hint)
+    if weighed is not None:
+        command = handle_commands.weigh_handle(handle.id, float(f"{weighed.value:.3g}"))
+        actions.append(do(editing.edit, command))
+    placed = _point(
+        look,
+        "At rest",
+        "rest",
+        handle.position,
+        "Where it sits on the drawing as it was, in pixels from the lower left corner",
     )
-    if changed:
-        actions.append(do(editing.edit, handle_commands.weigh_handle(handle.id, weight)))
-    actions += _wish(look, project, handle)
-    imgui.dummy(ImVec2(0, 0.2 * look.em))
-    is_anchor = handle.position == project.document.anchor
-    changed, _ = imgui.checkbox("Anchor of the in-betweens", is_anchor)
-    if changed:
-        actions.append(do(posing.anchor_at, handle.id))
-    return actions
+    if placed is not None:
+        actions.append(do(editing.edit, handle_commands.move_handle(handle.id, placed)))
+    return actions + _wish(look, project, handle)
 
 
 def _wish(look: Look, project: Project, handle: Handle) -> list[Action]:
     actions: list[Action] = []
     pose = project.shown.pose if project.shown else None
     if pose is None or handle.id not in pose.targets:
-        small(look, "Between keys a handle follows the shape. Drag it to make a key here.")
+        small(look, "Between keys it goes with the shape. Drag it to make a key here.")
         return actions
     target = pose.targets[handle.id]
-    label(look, "Place")
-    place = [target.position.real, target.position.imag]
-    changed, place = imgui.drag_float2("##place", place, 0.5, 0.0, 0.0, "%.1f")
-    if changed:
-        moved = replace(target, position=complex(*place))
-        actions.append(do(posing.wish, {handle.id: moved}))
-    label(look, "Turn")
-    degrees = 0.0 if target.rotation is None else math.degrees(target.rotation)
-    wording = "free" if target.rotation is None else "%.0f°"
-    changed, degrees = imgui.drag_float("##turn", degrees, 0.5, -720.0, 720.0, wording)
-    if changed:
-        turned = replace(target, rotation=math.radians(degrees))
-        actions.append(do(posing.wish, {handle.id: turned}))
-    if target.rotation is not None and imgui.small_button("Let it turn freely"):
-        actions.append(do(posing.free_turn, handle.id))
+    wished = _point(
+        look, "Target", "target", target.position, "Where this pose wants it, in the same pixels"
+    )
+    if wished is not None:
+        actions.append(do(posing.wish, {handle.id: replace(target, position=wished)}))
+    actions += _turn(look, project, handle, target)
     lag = project.document.lags(pose).get(handle.id, 0.0)
-    if lag > 1.0:
-        imgui.text_colored(look.palette.warning, f"{lag:.1f} px short of its place")
+    if lag > ARRIVED:
+        is_coming = project.grab is not None
+        why = "on its way" if is_coming else "held back by the bounds"
+        imgui.push_text_wrap_pos(0.0)
+        imgui.text_colored(look.palette.warning, f"Out of reach by {lag:.0f} px, {why}")
+        imgui.pop_text_wrap_pos()
     return actions
 
 
-def _delete(handles: frozenset[int]) -> list[Action]:
-    if imgui.button(f"{icons.ICON_FA_TRASH}  Delete"):
-        return [do(posing.remove_handles, handles)]
-    return []
+def _turn(look: Look, project: Project, handle: Handle, target: Target) -> list[Action]:
+    """Draw whether the pose turns the shape at a handle, and by how much."""
+    label(look, "Turn")
+    is_turned = target.rotation is not None
+    changed, turns = imgui.checkbox("##turns", is_turned)
+    tip("Turn the shape at this handle by an angle; otherwise it turns freely")
+    if changed and not turns:
+        return [do(posing.free_turn, handle.id)]
+    if changed and project.shown is not None:
+        index = [other.id for other in project.document.handles].index(handle.id)
+        now = project.shown.handle_turns[index]
+        return [do(posing.wish, {handle.id: replace(target, rotation=now)})]
+    imgui.same_line()
+    if target.rotation is None:
+        imgui.text_colored(look.palette.dim, "freely, as the shape likes")
+        return []
+    imgui.set_next_item_width(-1)
+    entered = number("angle", math.degrees(target.rotation), "%.1f°")
+    tip("Counter-clockwise, in degrees; Alt+drag turns it in the viewport")
+    if entered is None:
+        return []
+    return [do(posing.wish, {handle.id: replace(target, rotation=math.radians(entered))})]
+
+
+def _point(look: Look, text: str, name: str, place: complex, hint: str) -> complex | None:
+    """Draw two fields for a place; return it where one was entered."""
+    label(look, text)
+    gap = imgui.get_style().item_inner_spacing.x
+    each = (imgui.get_content_region_avail().x - gap) / 2
+    imgui.set_next_item_width(each)
+    x = number(f"{name} x", place.real, "%.1f")
+    tip(hint)
+    imgui.same_line(0, gap)
+    imgui.set_next_item_width(each)
+    y = number(f"{name} y", place.imag, "%.1f")
+    tip(hint)
+    if x is None and y is None:
+        return None
+    return complex(place.real if x is None else x, place.imag if y is None else y)
+
+
+def _anchor(look: Look, project: Project, chosen: list[Handle]) -> list[Action]:
+    """Tell what the in-betweens' place and turn follow, and let that be chosen."""
+    document = project.document
+    holder = next((h.name for h in document.handles if h.position == document.anchor), None)
+    if document.anchor is None:
+        small(look, "In-betweens follow the middle of the shape.")
+    elif holder is not None:
+        small(look, f"In-betweens follow “{holder}”: its way is the straightest.")
+    else:
+        anchor = document.anchor
+        small(look, f"In-betweens follow the point {anchor.real:.0f}, {anchor.imag:.0f}.")
+    is_chosen = len(chosen) == 1 and chosen[0].position != document.anchor
+    gap = imgui.get_style().item_spacing.x
+    half = ImVec2((imgui.get_content_region_avail().x - gap) / 2, 0)
+    actions: list[Action] = []
+    imgui.begin_disabled(not is_chosen)
+    if imgui.button(f"{icons.ICON_FA_ANCHOR}  Follow this handle###anchor here", half):
+        actions.append(do(posing.anchor_at, chosen[0].id))
+    imgui.end_disabled()
+    tip("Let in-betweens follow the selected handle", "Ctrl+click")
+    imgui.same_line()
+    imgui.begin_disabled(document.anchor is None)
+    if imgui.button("Choose for me###clear anchor", half):
+        actions.append(do(editing.edit, settings_commands.set_anchor(None)))
+    imgui.end_disabled()
+    return actions
