@@ -1,0 +1,55 @@
+"""Where the vertices of a figure are in a frame: known, or as a series in time tells."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from engine.arrays import Complexes
+from engine.streaming import Series
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Placed:
+    """Vertices whose positions, complex128 (v,), are worked out already."""
+
+    positions: Complexes
+
+
+class Streamed:
+    """Vertices as a series places them; a graphics card can do that without the processor.
+
+    Parameters
+    ----------
+    series : Series
+        Of the positions.
+    distortions : Series or None
+        Of f_z and f_z̄, where they are wanted.
+    time : float
+        In [0, 1].
+    """
+
+    def __init__(self, series: Series, distortions: Series | None, time: float) -> None:
+        self.series = series
+        self.distortions = distortions
+        self.time = time
+
+    @cached_property
+    def positions(self) -> Complexes:
+        """The positions (v,), worked out when they are first asked for."""
+        return _complexes(self.series, self.time)
+
+    @cached_property
+    def derivatives(self) -> tuple[Complexes, Complexes] | None:
+        """f_z and f_z̄ at the vertices, each (v,); None where they are not streamed."""
+        if self.distortions is None:
+            return None
+        fz, fzbar = _complexes(self.distortions, self.time).reshape(2, -1)
+        return fz, fzbar
+
+
+Vertices = Placed | Streamed
+
+
+def _complexes(series: Series, time: float) -> Complexes:
+    return series.values(time).view(np.complex64).astype(np.complex128)
