@@ -73,7 +73,7 @@ class History:
         command : Command
         gesture : object, optional
             Commands of one gesture, that is with one and the same object here and nothing in
-            between, make up one step together.
+            between, make up one step together; none if they end with the document before it.
 
         Raises
         ------
@@ -86,6 +86,11 @@ class History:
         del self._steps[self._now + 1 :], self._held[self._now + 1 :]
         if gesture is not None and gesture is self._gesture:
             del self._steps[-1], self._held[-1]
+            if document is self._steps[-1].document:
+                self._now -= 1
+                self._held[-1] = 0
+                self._gesture = None
+                return
         else:
             self._now += 1
             self._gesture = gesture

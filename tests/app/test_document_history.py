@@ -89,6 +89,22 @@ def test_a_gesture_is_one_step():
     assert history.document.fps == 13
 
 
+def test_a_gesture_back_to_where_it_began_is_no_step():
+    first = disc_document()
+    history, drag = History(first, saved=True), object()
+    history.do(set_fps(10), gesture=object())
+    before = history.document
+    history.do(set_fps(11), gesture=drag)
+    history.do(Command("Set frames per second", lambda _: before), gesture=drag)
+    assert history.document is before
+    assert history.redo_label is None
+    history.do(set_fps(12), gesture=drag)
+    history.undo()
+    assert history.document is before
+    history.undo()
+    assert history.document is first
+
+
 def test_anything_between_ends_a_gesture():
     history = History(disc_document(), saved=False)
     drag = object()
