@@ -127,7 +127,9 @@ class KeyBox:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Scrub:
-    """The pointer moves the playhead."""
+    """The pointer moves the playhead, which is `offset` frames later than the pointer."""
+
+    offset: float = 0.0
 
 
 TimeGesture = KeyDrag | EdgeDrag | KeyBox | Scrub

@@ -64,8 +64,8 @@ def move(session: Session, frame: float) -> None:
             low, high = sorted((box.start, frame))
             inside = {key.frame for key in project.document.keys if low <= key.frame <= high}
             editing.choose_keys(session, box.keeps | inside)
-        case Scrub():
-            playback.scrub(session, round(frame))
+        case Scrub(offset=offset):
+            playback.scrub(session, round(frame + offset))
 
 
 def end(session: Session) -> None:

@@ -1,5 +1,7 @@
 """The bar above the track: playing, keys, the numbers of time, and how in-betweens are made."""
 
+from collections.abc import Callable
+
 from imgui_bundle import ImVec2, imgui
 from imgui_bundle import icons_fontawesome_6 as icons
 
@@ -125,29 +127,41 @@ def _frame(session: Session, look: Look, project: Project) -> list[Action]:
 
 
 def _right(session: Session, look: Look, project: Project) -> list[Action]:
-    """Draw speed, onion skin, the kind of in-betweens and the zoom, at the right."""
-    em = look.em
-    square = 1.15 * imgui.get_frame_height()
-    widths = (5.2 * em, 4.4 * em, square, 8.0 * em, square)
-    total = sum(widths) + 4 * GAP * em
-    start = imgui.get_window_width() - imgui.get_style().window_padding.x - total
+    """Draw at the right what there is room for: the last of these first."""
+    em, square = look.em, 1.15 * imgui.get_frame_height()
+    parts: list[tuple[float, Callable[[], list[Action]]]] = [
+        (8.0 * em, lambda: _variant(project)),
+        (square, lambda: _onion_skin(session, look)),
+        (4.4 * em, lambda: _speed(project)),
+        (5.2 * em, lambda: _fps(project)),
+        (square, lambda: bound_button(session, look, "fit time")),
+    ]
     imgui.same_line(0, WIDE * em)
-    imgui.set_cursor_pos_x(max(imgui.get_cursor_pos_x(), start))
-    imgui.set_next_item_width(widths[0])
+    begin = imgui.get_cursor_pos_x()
+    end = imgui.get_window_width() - imgui.get_style().window_padding.x
+    while parts and begin + _width(look, parts) > end:
+        del parts[0]
+    imgui.set_cursor_pos_x(max(begin, end - _width(look, parts)))
+    actions: list[Action] = []
+    for index, (width, draw) in enumerate(parts):
+        if index:
+            imgui.same_line(0, GAP * em)
+        imgui.set_next_item_width(width)
+        actions += draw()
+    if not parts:
+        imgui.new_line()
+    return actions
+
+
+def _width(look: Look, parts: list[tuple[float, Callable[[], list[Action]]]]) -> float:
+    return sum(width for width, _ in parts) + max(len(parts) - 1, 0) * GAP * look.em
+
+
+def _fps(project: Project) -> list[Action]:
     fps = project.document.fps
     changed, wanted = imgui.drag_float("##fps", fps, 0.1, SLOWEST, FASTEST, "%.4g fps")
     tip("Frames per second: drag, or double-click to type")
-    actions = [do(keys.set_fps, round(wanted, 3))] if changed and wanted > 0 else []
-    imgui.same_line(0, GAP * em)
-    imgui.set_next_item_width(widths[1])
-    actions += _speed(project)
-    imgui.same_line(0, GAP * em)
-    actions += _onion_skin(session, look)
-    imgui.same_line(0, GAP * em)
-    imgui.set_next_item_width(widths[3])
-    actions += _variant(project)
-    imgui.same_line(0, GAP * em)
-    return actions + bound_button(session, look, "fit time")
+    return [do(keys.set_fps, round(wanted, 3))] if changed and wanted > 0 else []
 
 
 def _speed(project: Project) -> list[Action]:

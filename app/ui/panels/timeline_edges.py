@@ -5,7 +5,7 @@ from imgui_bundle import ImVec2, imgui
 from app.actions import keys, timing
 from app.actions.action import Action, do
 from app.timing import Edge, EdgeDrag
-from app.ui.panels.timeline_track import WORK, Track, in_hand, is_pressed
+from app.ui.panels.timeline_track import WORK, Track, in_hand, is_pressed, write_tag
 from app.ui.theme import ink
 from app.ui.widgets import tip
 
@@ -91,6 +91,9 @@ def _animation_end(track: Track) -> list[Action]:
         imgui.set_mouse_cursor(imgui.MouseCursor_.resize_ew)
     tip(f"The animation ends at frame {last}: drag to make it longer or shorter")
     actions = [begin_drag(track, "animation end")] if is_pressed() else []
+    gesture = track.project.timing.gesture
+    if isinstance(gesture, EdgeDrag) and gesture.edge == "animation end":
+        write_tag(track, x, f"{last}")
     colour = ink(palette.accent if hot else palette.dim, 1.0 if hot else 0.8)
     bounds = ImVec2(track.left, track.top), ImVec2(track.right, track.bottom)
     draw_list.push_clip_rect(*bounds, intersect_with_current_clip_rect=True)

@@ -7,7 +7,7 @@ from app.actions import editing, keys, timing
 from app.actions.action import Action, do
 from app.document.keyframe import Keyframe
 from app.session import Project
-from app.timing import KeyBox, KeyDrag
+from app.timing import KeyBox, KeyDrag, TimeGesture
 from app.ui.panels.timeline_menus import key_menu, track_menu
 from app.ui.panels.timeline_track import (
     ROUNDING,
@@ -16,6 +16,7 @@ from app.ui.panels.timeline_track import (
     in_seconds,
     is_pressed,
     was_dragged,
+    write_tag,
 )
 from app.ui.theme import ink
 
@@ -95,7 +96,8 @@ def draw_keys(track: Track) -> list[Action]:
         if not track.shows(x - grip, x + grip):
             continue
         box = ImVec2(x - grip, track.middle - grip), ImVec2(x + grip, track.middle + grip)
-        track.button(f"key {key.frame}", *box, right=True)
+        origin = _origin(gesture, key.frame)
+        track.button(f"key {origin}", *box, right=True)
         is_held = isinstance(gesture, KeyDrag) and key.frame == gesture.pressed + gesture.by
         _draw_key(track, key, hovered=in_hand() or is_held)
         if is_pressed():
@@ -109,6 +111,13 @@ def draw_keys(track: Track) -> list[Action]:
         actions += key_menu(track, key)
     draw_list.pop_clip_rect()
     return actions
+
+
+def _origin(gesture: TimeGesture | None, frame: int) -> int:
+    """Return at which frame a key was before the drag, so that its button stays the same one."""
+    if isinstance(gesture, KeyDrag) and not gesture.copies and frame - gesture.by in gesture.keys:
+        return frame - gesture.by
+    return frame
 
 
 def _press(track: Track, frame: int) -> list[Action]:
@@ -136,6 +145,9 @@ def _draw_key(track: Track, key: Keyframe, *, hovered: bool) -> None:
         _diamond(ImVec2(x, y), reach + 0.24 * em, ink(palette.accent, 0.35))
     _diamond(ImVec2(x, y), reach + 0.12 * em, ink(palette.desk))
     _diamond(ImVec2(x, y), reach, ink(fill))
+    gesture = track.project.timing.gesture
+    if isinstance(gesture, KeyDrag) and gesture.by and key.frame == gesture.pressed + gesture.by:
+        write_tag(track, x, f"{key.frame}  ({gesture.by:+d})")
     if warns and chosen:
         _diamond(ImVec2(x, y), 0.45 * reach, ink(warns))
     if warns:

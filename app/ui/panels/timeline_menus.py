@@ -1,6 +1,5 @@
 """What can be done with keys, in menus."""
 
-from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
 from app.actions import keys, playback
@@ -13,12 +12,7 @@ from app.ui.panels.timeline_track import Track
 from app.ui.shortcuts import BINDINGS
 from app.ui.theme import Look
 
-FACTORS = (
-    (0.5, "Half as long"),
-    (2 / 3, "Two thirds"),
-    (1.5, "Half as long again"),
-    (2.0, "Twice as long"),
-)
+FACTORS = ((0.5, "Half as long"), (2.0, "Twice as long"))
 
 
 def key_menu(track: Track, key: Keyframe) -> list[Action]:
@@ -30,9 +24,7 @@ def key_menu(track: Track, key: Keyframe) -> list[Action]:
     frames = project.chosen | {key.frame}
     many = f" {len(frames)} keys" if len(frames) > 1 else ""
     delete = BINDINGS["delete"]
-    if imgui.menu_item_simple(
-        f"{icons.ICON_FA_TRASH}  Delete{many}###Delete", delete.keys_in_words
-    ):
+    if imgui.menu_item_simple(f"Delete{many}###Delete", delete.keys_in_words):
         actions.append(delete.action)
     if imgui.menu_item_simple("Go to this key", "Click"):
         actions.append(do(playback.scrub, key.frame))
@@ -54,7 +46,7 @@ def track_menu(track: Track) -> list[Action]:
         return actions
     opened = imgui.get_mouse_pos_on_opening_current_popup()
     frame = track.project.document.frames.clamp(round(track.frame(opened.x)))
-    if imgui.menu_item_simple(f"{icons.ICON_FA_PLUS}  Insert key at frame {frame}###Insert key"):
+    if imgui.menu_item_simple(f"Insert key at frame {frame}###Insert key"):
         actions.append(do(keys.insert_at, frame))
     imgui.separator()
     actions += _time_items(track.look, track.project)
@@ -82,9 +74,14 @@ def _time_items(look: Look, project: Project) -> list[Action]:
         actions += [
             do(keys.scale, factor) for factor, name in FACTORS if imgui.menu_item_simple(name)
         ]
-        imgui.set_next_item_width(7 * look.em)
+        imgui.set_next_item_width(5 * look.em)
         entered, percent = imgui.input_float(
-            "##percent", 100.0, 0, 0, "%.4g %%", imgui.InputTextFlags_.enter_returns_true
+            "of its time###percent",
+            100.0,
+            0,
+            0,
+            "%.4g %%",
+            imgui.InputTextFlags_.enter_returns_true,
         )
         if entered:
             actions.append(do(keys.scale, percent / 100))

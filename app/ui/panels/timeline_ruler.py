@@ -16,7 +16,9 @@ MULTIPLES = (2, 5, 10, 30, 60, 120, 300, 600, 1800, 3600, 7200, 18000)
 def draw_ruler(track: Track) -> list[Action]:
     """Draw frame numbers and seconds; a press there takes the playhead along."""
     track.button("ruler", ImVec2(track.left, track.ruler_top), ImVec2(track.right, track.track_top))
-    actions = [do(timing.begin, Scrub(), track.strip)] if is_pressed() else []
+    actions: list[Action] = []
+    if is_pressed():
+        actions += [do(timing.begin, Scrub(), track.strip), do(timing.move, track.pointed)]
     if imgui.is_item_hovered():
         imgui.set_mouse_cursor(imgui.MouseCursor_.resize_ew)
     imgui.push_font(None, SMALL * imgui.get_style().font_size_base)
@@ -77,7 +79,8 @@ def draw_playhead(track: Track, frame: int) -> list[Action]:
     if track.shows(low.x, high.x):
         track.button("playhead", low, high)
         if is_pressed():
-            actions.append(do(timing.begin, Scrub(), track.strip))
+            scrub = Scrub(offset=frame - track.pointed)
+            actions.append(do(timing.begin, scrub, track.strip))
         colour = palette.warning if track.project.loose is not None else palette.accent
         if in_hand():
             imgui.set_mouse_cursor(imgui.MouseCursor_.resize_ew)
@@ -110,7 +113,7 @@ def draw_overview(track: Track, frame: int) -> list[Action]:
     strip, frames, em = track.strip, track.project.document.frames, track.look.em
     end = strip.frame(track.width)
     low, high = min(frames.first, strip.start), max(frames.last, end)
-    if track.project.timing.strip is None or high - low <= end - strip.start:
+    if track.is_cramped or track.project.timing.strip is None or high - low <= end - strip.start:
         return []
     palette, draw_list = track.look.palette, imgui.get_window_draw_list()
     top, bottom = track.bottom - 0.5 * em, track.bottom

@@ -4,10 +4,11 @@ from imgui_bundle import ImVec2, imgui
 
 from app.session import Project
 from app.timing import Strip
-from app.ui.theme import Look
+from app.ui.theme import Look, ink
 
 WORK, RULER, OVERVIEW = 0.7, 1.55, 0.75  # em: heights of the bands above and below the track
 BAR, BAR_SHARE = 3.6, 0.62  # em: height of intervals at most, and as a part of the track's
+CRAMPED, CRAMPED_SHARE = 5.5, 0.85  # em: below this height bars take more, and the overview goes
 ROUNDING = 0.4  # em
 
 
@@ -29,9 +30,11 @@ class Track:
         self.right, self.bottom = self.left + self.size.x, self.top + self.size.y
         self.ruler_top = self.top + WORK * look.em
         self.track_top = self.ruler_top + RULER * look.em
-        self.track_bottom = self.bottom - OVERVIEW * look.em
+        self.is_cramped = self.size.y < CRAMPED * look.em
+        self.track_bottom = self.bottom - (0 if self.is_cramped else OVERVIEW * look.em)
         self.middle = (self.track_top + self.track_bottom) / 2
-        height = min(BAR * look.em, BAR_SHARE * (self.track_bottom - self.track_top))
+        share = CRAMPED_SHARE if self.is_cramped else BAR_SHARE
+        height = min(BAR * look.em, share * (self.track_bottom - self.track_top))
         self.bar_top, self.bar_bottom = self.middle - height / 2, self.middle + height / 2
         timing = project.timing
         fitting = Strip.fitting(project.document.frames, self.width)
@@ -45,7 +48,7 @@ class Track:
     @property
     def is_usable(self) -> bool:
         """Whether there is room to draw anything."""
-        return self.width > 4 and self.bar_bottom - self.bar_top > self.look.em
+        return self.width > 4 and self.bar_bottom - self.bar_top > 0.5 * self.look.em
 
     def x(self, frame: float) -> float:
         """Return where a frame is, in pixels of the window."""
@@ -81,6 +84,20 @@ class Track:
             flags |= imgui.ButtonFlags_.mouse_button_right
         size = ImVec2(max(high.x - low.x, 1.0), max(high.y - low.y, 1.0))
         return imgui.invisible_button(name, size, flags)
+
+
+def write_tag(track: Track, x: float, text: str) -> None:
+    """Write something short below the ruler, over what is dragged."""
+    palette, em = track.look.palette, track.look.em
+    draw_list = imgui.get_window_draw_list()
+    size = imgui.calc_text_size(text)
+    width, height = size.x + em, 1.4 * em
+    left = min(max(x - width / 2, track.left), track.right - width)
+    low = ImVec2(left, track.track_top + 0.15 * em)
+    high = ImVec2(low.x + width, low.y + height)
+    draw_list.add_rect_filled(low, high, ink(palette.accent), 0.3 * em)
+    place = ImVec2(low.x + em / 2, low.y + (height - size.y) / 2)
+    draw_list.add_text(place, ink(palette.on_accent), text)
 
 
 def in_hand() -> bool:
