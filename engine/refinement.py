@@ -1,8 +1,8 @@
 """Chew's second algorithm: new points until no triangle has a needlessly small angle.
 
 Source: L. P. Chew, "Guaranteed-quality mesh generation for curved surfaces" (1993); off-centres
-after A. Üngör (2004); small angles of the outline as in J. R. Shewchuk, "Delaunay refinement
-algorithms for triangular mesh generation" (2002).
+after A. Üngör, "Off-centers: a new type of Steiner points" (2004). Unlike Chew's, a point that an
+outline edge would see at over 90° is never inserted, but the edge split (J. Ruppert, 1995).
 """
 
 import numpy as np
@@ -18,7 +18,7 @@ SHORTEST_EDGE = 1e-6
 """Edges of the outline must be longer, and are never split below this, over its size."""
 
 
-def refine(mesh: HalfEdgeMesh, sharp: Booleans, smallest: float) -> None:
+def refine(mesh: HalfEdgeMesh, smallest: float) -> None:
     """Insert points into a constrained Delaunay triangulation until all angles are large enough.
 
     Only angles of the outline itself remain smaller. The triangulation stays constrained Delaunay.
@@ -27,9 +27,6 @@ def refine(mesh: HalfEdgeMesh, sharp: Booleans, smallest: float) -> None:
     ----------
     mesh : HalfEdgeMesh
         Of size 1; changed in place.
-    sharp : bool, shape (p,)
-        Which of the first p vertices are sharp corners of the outline. Edges there are split at
-        powers of two, so that the splits of the two edges match.
     smallest : float
         Angle in degrees that is asked for; up to about 28 is reached on all outlines.
     """
@@ -44,7 +41,7 @@ def refine(mesh: HalfEdgeMesh, sharp: Booleans, smallest: float) -> None:
         encroached = _encroached(mesh, triangles[reached], centres[reached])
         reached[reached] = encroached < 0
         split = np.unique(np.concatenate([hidden, encroached[encroached >= 0]]))
-        touched = _split_outline(mesh, sharp, split)
+        touched = _split_outline(mesh, split)
         suspects = _insert(mesh, centres[reached], triangles[reached], touched)
         if not len(touched) + len(suspects):
             break
@@ -101,20 +98,13 @@ def _encroached(mesh: HalfEdgeMesh, triangles: Indices, points: Complexes) -> In
     return np.where(cosine[row, widest] < 0, half_edges[row, widest], -1)
 
 
-def _split_outline(mesh: HalfEdgeMesh, sharp: Booleans, half_edges: Indices) -> Indices:
-    """Split outline edges, one a triangle, near the middle; return the half-edges around."""
+def _split_outline(mesh: HalfEdgeMesh, half_edges: Indices) -> Indices:
+    """Split outline edges, one a triangle, in the middle; return the half-edges around."""
     a, b = mesh.end_points(half_edges)
     half_edges = half_edges[np.abs(b - a) > SHORTEST_EDGE]
     half_edges = half_edges[disjoint(half_edges // 3, among=mesh.count)]
     a, b = mesh.end_points(half_edges)
-    from_sharp, to_sharp = (
-        (vertex < len(sharp)) & sharp[np.minimum(vertex, len(sharp) - 1)]
-        for vertex in mesh.ends(half_edges)
-    )
-    length = np.abs(b - a)
-    shell = np.exp2(np.round(np.log2(length / 2))) / length
-    fraction = np.select([from_sharp & ~to_sharp, to_sharp & ~from_sharp], [shell, 1 - shell], 0.5)
-    return mesh.split_border(mesh.add_points(a + fraction * (b - a)), half_edges)
+    return mesh.split_border(mesh.add_points((a + b) / 2), half_edges)
 
 
 def _insert(mesh: HalfEdgeMesh, points: Complexes, triangles: Indices, touched: Indices) -> Indices:

@@ -36,9 +36,6 @@ RELAXED_ANGLE = 20.0
 SWEEPS = 4
 """Sweeps of smoothing."""
 
-SHARP = np.radians(60.0)
-"""Interior angles of the outline below this are sharp: its two edges are split alike."""
-
 CLOSE_ENOUGH = 0.03
 """Relative error of the number of triangles that is accepted."""
 
@@ -151,7 +148,7 @@ def _fill(outline: Complexes, spacing: float, smallest: float) -> Mesh:
     strip = triangulate_strip(outline, ring, shallow, np.flatnonzero(loose))
     band = HalfEdgeMesh(points, np.concatenate([strip, units[~core]]))
     _mark_seam(band, deep)
-    refine(band, _sharp_corners(outline), smallest)
+    refine(band, smallest)
     smooth(band, len(outline), SWEEPS)
     return _compact(band.points, np.concatenate([band.triangles, units[core]]))
 
@@ -170,12 +167,6 @@ def _mark_seam(mesh: HalfEdgeMesh, deep: Booleans) -> None:
     border = np.flatnonzero(mesh.twins == OUTLINE)
     start, end = mesh.ends(border)
     mesh.twins[border[deep[start] & deep[end]]] = SEAM
-
-
-def _sharp_corners(outline: Complexes) -> Booleans:
-    """Tell which corners have an interior angle below `SHARP`."""
-    along = edges(outline)
-    return np.asarray(np.angle(-np.roll(along, 1) / along) % (2 * np.pi) < SHARP)
 
 
 def _compact(points: Complexes, triangles: Indices) -> Mesh:

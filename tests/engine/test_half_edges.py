@@ -126,25 +126,30 @@ def test_a_walk_ends_at_the_border_that_hides_its_target() -> None:
     assert set(mesh.origins[[exits[0], following(exits)[0]]]) == {1, 2}
 
 
-@pytest.mark.parametrize("smallest", [20.0, 28.0])
-def test_refinement_leaves_no_small_angle_and_splits_the_outline_only_on_its_edges(
-    smallest: float,
-) -> None:
+def test_a_walk_goes_straight_and_not_around_what_hides_its_target() -> None:
+    # In a U: past the inner corner at the lower left (vertex 5), the line leaves the left leg.
+    outline = np.array([0, 3, 3 + 4j, 2 + 4j, 2 + 1j, 1 + 1j, 1 + 4j, 4j]) / 8
+    legs = np.array([[0, 5, 7], [5, 6, 7], [0, 1, 4], [0, 4, 5], [1, 2, 4], [2, 3, 4]])
+    mesh = HalfEdgeMesh(outline, legs)
+    _, exits = mesh.walk(np.array([0]), np.array([2.5 + 0.3j]) / 8)
+    np.testing.assert_array_equal(mesh.ends(exits), [[5], [6]])
+
+
+@pytest.mark.parametrize(("smallest", "most"), [(20.0, 36), (28.0, 90)])
+def test_refinement_leaves_no_small_angle_and_is_sparing(smallest: float, most: int) -> None:
     mesh = square_with(np.array([0.02 + 0.01j, 0.021 + 0.012j]))
-    refine(mesh, np.zeros(4, dtype=np.bool_), smallest)
+    refine(mesh, smallest)
     assert_consistent(mesh, 0.25)
-    angles = smallest_angles(mesh.points, mesh.triangles)
-    assert angles.min() >= smallest
+    assert smallest_angles(mesh.points, mesh.triangles).min() >= smallest
+    assert mesh.count <= most
     border = mesh.points[mesh.origins[mesh.twins == OUTLINE]]
-    aside = np.minimum(
-        np.minimum(border.real, border.imag), 0.5 - np.maximum(border.real, border.imag)
-    )
-    np.testing.assert_allclose(aside, 0, rtol=0, atol=1e-15)
+    nearest = np.min([border.real, border.imag, 0.5 - border.real, 0.5 - border.imag], axis=0)
+    np.testing.assert_allclose(nearest, 0, rtol=0, atol=1e-15)
 
 
 def test_smoothing_improves_the_mean_and_keeps_corners_and_border() -> None:
     mesh = square_with(points_inside_disc(0.24, 300, 3) + 0.25 + 0.25j)
-    refine(mesh, np.zeros(4, dtype=np.bool_), 20.0)
+    refine(mesh, 20.0)
     before = smallest_angles(mesh.points, mesh.triangles)
     smooth(mesh, 4, 5)
     after = smallest_angles(mesh.points, mesh.triangles)
@@ -152,3 +157,20 @@ def test_smoothing_improves_the_mean_and_keeps_corners_and_border() -> None:
     np.testing.assert_array_equal(mesh.points[:4], SQUARE)
     assert after.mean() > before.mean() + 2
     assert after.min() >= before.min()
+
+
+def test_smoothing_leaves_the_mesh_delaunay() -> None:
+    mesh = square_with(points_inside_disc(0.24, 300, 3) + 0.25 + 0.25j)
+    smooth(mesh, 4, 1)
+    corners = mesh.triangles.copy()
+    mesh.restore_delaunay(np.arange(3 * mesh.count))
+    np.testing.assert_array_equal(mesh.triangles, corners)
+
+
+def test_smoothing_does_not_pull_a_vertex_out_of_a_notched_outline() -> None:
+    # The mean of the four vertices around the inner one lies below the notch.
+    arrowhead = np.array([-0.4 - 0.4j, 0.3j, 0.4 - 0.4j, 0.5j, 0.4j])
+    fan = np.array([[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]])
+    mesh = HalfEdgeMesh(arrowhead, fan)
+    smooth(mesh, 4, 3)
+    assert_consistent(mesh, 0.08)

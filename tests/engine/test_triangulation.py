@@ -105,6 +105,7 @@ SHAPES = {
     "star": star(10, 0.35),
     "comb": comb(8, 0.3, 0.1),
     "thin comb": comb(8, 0.1, 0.01),
+    "very thin comb": comb(8, 0.03, 0.01),
     "spiral": spiral(3, 0.06),
     "thin spiral": spiral(5, 0.02),
     "bar 40:1": subdivided([0, 40, 40 + 1j, 1j], 20) * np.exp(0.3j),
@@ -209,9 +210,9 @@ def test_edges_of_very_mixed_lengths(outline: Complexes, count: int) -> None:
 
 
 @pytest.mark.parametrize("move", [1e4 - 3e3j, 0j])
-@pytest.mark.parametrize("scale", [1e-3, 1.0, 1e4])
+@pytest.mark.parametrize("scale", [1e-7, 1e-3, 1.0, 1e4])
 def test_place_and_scale_do_not_matter(move: complex, scale: float) -> None:
-    outline = scale * (SHAPES["spiral"] + move)
+    outline = scale * (SHAPES["neck"] + move)
     mesh = triangulate(outline, 5_000)
     assert_conforming(outline, mesh)
     assert_well_shaped(outline, mesh)
