@@ -7,7 +7,6 @@ import moderngl
 import numpy as np
 
 from app.errors import LissomError
-from app.render.context import is_software
 from app.render.gpu_mesh import Attribute
 from engine.streaming import Piece, Series
 
@@ -90,12 +89,3 @@ class SeriesVertices:
 def most_rows(context: moderngl.Context) -> int:
     """Return how many rows of a series a shader of this context takes."""
     return 2 * (int(context.info["GL_MAX_VERTEX_ATTRIBS"]) - _RESERVED)
-
-
-def places_vertices(context: moderngl.Context, rows: int) -> bool:
-    """Tell whether the shader should place the vertices from so many rows, not the processor.
-
-    Where the processor draws, its matrix-vector product is the faster of the two: `lissom bench
-    streaming` measures both. A card has the rows in its own memory.
-    """
-    return rows <= most_rows(context) and not is_software(context)

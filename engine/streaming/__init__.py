@@ -1,10 +1,11 @@
 """In-betweens at the cost of a linear blend: series in time, built once for an interval."""
 
-from engine.streaming.build import build_series, finish
+from engine.streaming.build import MOST_ROWS, build_series, finish
 from engine.streaming.channels import Channels, Distortions, Positions
 from engine.streaming.series import Piece, Series, Singles
 
 __all__ = [
+    "MOST_ROWS",
     "Channels",
     "Distortions",
     "Piece",

@@ -8,14 +8,15 @@ from numpy.testing import assert_allclose, assert_array_equal
 from app.assets import shader_source
 from app.errors import LissomError
 from app.render.gpu_mesh import GpuMesh, Pose
+from app.render.layer import Layer, shader_is_faster
 from app.render.programs import set_uniforms
 from app.render.scene import Background, Ghost, Heat, Scene, Wireframe
-from app.render.series_vertices import SeriesVertices, most_rows, places_vertices
+from app.render.series_vertices import SeriesVertices, most_rows
 from app.render.target import Target
 from app.render.view import View
+from app.vertices import Placed, Streamed
 from engine.arrays import Complexes
-from engine.streaming import Piece, Series
-from engine.streaming.build import MOST_ROWS
+from engine.streaming import MOST_ROWS, Piece, Series
 
 WIDTH, HEIGHT = 120, 90
 SIZE = abs(complex(WIDTH, HEIGHT))
@@ -129,10 +130,34 @@ def test_what_does_not_fit_is_refused(easel):
     with pytest.raises(LissomError, match="rows of a series, not 99"):
         SeriesVertices(easel.gl, len(rest), 99)
     assert most_rows(easel.gl) >= MOST_ROWS
-    assert not places_vertices(easel.gl, 2)  # both contexts draw on the processor
     source = SeriesVertices(easel.gl, len(rest), 4)
     with pytest.raises(LissomError, match="a piece of 7 rows"):
         source.place(bending(rest), 0.1)
     with pytest.raises(LissomError, match="does not fit"):
         source.place(bending(rest[1:], rows=4), 0.1)
     source.release()
+
+
+@pytest.mark.parametrize("by_shader", [False, True])
+def test_a_layer_shows_what_it_was_given_last(easel, by_shader):
+    mesh, rest = blob_mesh(easel)
+    series, long = bending(rest), bending(rest * 0.8, rows=MOST_ROWS + 3)
+    layer = Layer(mesh, by_shader=by_shader)
+    for vertices in (
+        Placed(positions=rest),
+        Streamed(series, None, 0.3),
+        Streamed(series, None, 0.9),
+        Placed(positions=0.5 * rest),
+        Streamed(long, None, 0.2),
+        Streamed(series, None, 0.1),
+    ):
+        pose = layer.place(vertices)
+        assert layer.place(vertices) is pose
+        frame = easel.frame(VIEW, Scene(pose=pose)).astype(int)
+        expected = easel.frame(VIEW, Scene(pose=easel.pose(mesh, vertices.positions)))
+        assert (np.abs(frame - expected).max(axis=2) > 2).mean() < 2e-3
+    layer.release()
+
+
+def test_only_a_graphics_card_places_vertices_by_itself(gl):
+    assert not shader_is_faster(gl)  # both backends draw on the processor here

@@ -1,0 +1,66 @@
+"""A mesh that is posed anew for each frame, by the processor or by the graphics card."""
+
+import moderngl
+
+from app.render.context import is_software
+from app.render.gpu_mesh import GpuMesh, Pose, StreamedVertices, singles
+from app.render.series_vertices import SeriesVertices
+from app.vertices import Streamed, Vertices
+from engine.streaming import MOST_ROWS, Series
+
+
+class Layer:
+    """Owner of the poses of a mesh.
+
+    Parameters
+    ----------
+    mesh : GpuMesh
+        Released after it.
+    by_shader : bool
+        Whether streamed vertices are placed by the shader; `shader_is_faster` tells.
+    """
+
+    def __init__(self, mesh: GpuMesh, *, by_shader: bool) -> None:
+        self._mesh = mesh
+        self._context = mesh.programs.context
+        self._by_shader = by_shader
+        self._written = StreamedVertices(self._context, mesh.count)
+        self._pose = Pose(mesh, self._written)
+        self._series: SeriesVertices | None = None
+        self._series_pose: Pose | None = None
+        self._current: tuple[Vertices, Pose] | None = None
+
+    def place(self, vertices: Vertices) -> Pose:
+        """Return the pose with its vertices there; they are uploaded if they are others now."""
+        if self._current is None or self._current[0] is not vertices:
+            self._current = vertices, self._placed(vertices)
+        return self._current[1]
+
+    def release(self) -> None:
+        """Let the poses go."""
+        self._pose.release()
+        if self._series_pose is not None:
+            self._series_pose.release()
+
+    def _placed(self, vertices: Vertices) -> Pose:
+        if isinstance(vertices, Streamed) and self._by_shader and _fits(vertices.series):
+            if self._series is None or self._series_pose is None:
+                self._series = SeriesVertices(self._context, self._mesh.count, MOST_ROWS)
+                self._series_pose = Pose(self._mesh, self._series)
+            self._series.place(vertices.series, vertices.time)
+            return self._series_pose
+        self._written.write(singles(vertices.positions))
+        return self._pose
+
+
+def shader_is_faster(context: moderngl.Context) -> bool:
+    """Tell whether the shader should place streamed vertices, and not the processor.
+
+    Where the processor draws, its matrix-vector product with an upload is the faster of the two:
+    `lissom bench streaming` measures both. A graphics card needs nothing but the weights.
+    """
+    return not is_software(context)
+
+
+def _fits(series: Series) -> bool:
+    return all(len(piece.rows) <= MOST_ROWS for piece in series.pieces)
