@@ -110,13 +110,14 @@ def _no_handles_selected(session: Session) -> bool:
     return session.project is not None and not session.project.selected
 
 
+# Whole numbers: combined as members, these keys fail to form a flag in Python 3.11.2.
 CTRL, SHIFT = int(Key.mod_ctrl), int(Key.mod_shift)
 BINDINGS: dict[str, Binding] = {
     "open": Binding(
         label="Open…",
         action=do(files.ask_open),
         group="File",
-        keys=(CTRL | Key.o,),
+        keys=(CTRL | int(Key.o),),
         icon=icons.ICON_FA_FOLDER_OPEN,
         hint="Open a picture or a project",
         possible=always,
@@ -125,38 +126,40 @@ BINDINGS: dict[str, Binding] = {
         label="Save",
         action=do(saving.save),
         group="File",
-        keys=(CTRL | Key.s,),
+        keys=(CTRL | int(Key.s),),
         icon=icons.ICON_FA_FLOPPY_DISK,
     ),
     "save as": Binding(
-        label="Save as…", action=do(saving.save_as), group="File", keys=(CTRL | SHIFT | Key.s,)
+        label="Save as…", action=do(saving.save_as), group="File", keys=(CTRL | SHIFT | int(Key.s),)
     ),
     "export": Binding(
         label="Export…",
         action=do(exporting.ask),
         group="File",
-        keys=(CTRL | Key.e,),
+        keys=(CTRL | int(Key.e),),
         icon=icons.ICON_FA_FILE_EXPORT,
     ),
     "export again": Binding(
         label="Export again",
         action=do(exporting.repeat),
         group="File",
-        keys=(CTRL | SHIFT | Key.e,),
+        keys=(CTRL | SHIFT | int(Key.e),),
     ),
-    "close": Binding(label="Close", action=do(saving.close), group="File", keys=(CTRL | Key.w,)),
+    "close": Binding(
+        label="Close", action=do(saving.close), group="File", keys=(CTRL | int(Key.w),)
+    ),
     "quit": Binding(
         label="Quit",
         action=do(saving.quit_lissom),
         group="File",
-        keys=(CTRL | Key.q,),
+        keys=(CTRL | int(Key.q),),
         possible=always,
     ),
     "undo": Binding(
         label="Undo",
         action=do(editing.undo),
         group="Edit",
-        keys=(CTRL | Key.z,),
+        keys=(CTRL | int(Key.z),),
         icon=icons.ICON_FA_ARROW_ROTATE_LEFT,
         possible=_undoable,
         repeats=True,
@@ -165,7 +168,7 @@ BINDINGS: dict[str, Binding] = {
         label="Redo",
         action=do(editing.redo),
         group="Edit",
-        keys=(CTRL | SHIFT | Key.z, CTRL | Key.y),
+        keys=(CTRL | SHIFT | int(Key.z), CTRL | int(Key.y)),
         icon=icons.ICON_FA_ARROW_ROTATE_RIGHT,
         possible=_redoable,
         repeats=True,
@@ -174,7 +177,7 @@ BINDINGS: dict[str, Binding] = {
         label="Select all handles",
         action=do(editing.select_all),
         group="Edit",
-        keys=(CTRL | Key.a,),
+        keys=(CTRL | int(Key.a),),
     ),
     "delete": Binding(
         label="Delete",
@@ -254,14 +257,14 @@ BINDINGS: dict[str, Binding] = {
         label="Larger interface",
         action=do(viewing.scale_up),
         group="View",
-        keys=(CTRL | Key.equal, CTRL | Key.keypad_add),
+        keys=(CTRL | int(Key.equal), CTRL | int(Key.keypad_add)),
         possible=always,
     ),
     "smaller": Binding(
         label="Smaller interface",
         action=do(viewing.scale_down),
         group="View",
-        keys=(CTRL | Key.minus, CTRL | Key.keypad_subtract),
+        keys=(CTRL | int(Key.minus), CTRL | int(Key.keypad_subtract)),
         possible=always,
     ),
     "play": Binding(
@@ -278,14 +281,14 @@ BINDINGS: dict[str, Binding] = {
         label="First frame",
         action=do(playback.to_start),
         group="Time",
-        keys=(CTRL | Key.page_up,),
+        keys=(CTRL | int(Key.page_up),),
         icon=icons.ICON_FA_BACKWARD_FAST,
     ),
     "end": Binding(
         label="Last frame",
         action=do(playback.to_end),
         group="Time",
-        keys=(CTRL | Key.page_down,),
+        keys=(CTRL | int(Key.page_down),),
         icon=icons.ICON_FA_FORWARD_FAST,
     ),
     "back": Binding(
@@ -333,7 +336,7 @@ BINDINGS: dict[str, Binding] = {
         label="Fit timeline",
         action=do(timing.fit),
         group="Time",
-        keys=(SHIFT | Key.home,),
+        keys=(SHIFT | int(Key.home),),
         icon=icons.ICON_FA_ARROWS_LEFT_RIGHT_TO_LINE,
         hint="Show all frames",
     ),
