@@ -31,6 +31,8 @@ class Stage:
         None lets the engine choose it.
     points : complex128, shape (m,), optional
         By default the vertices of the domain's mesh.
+    kin : Stage, optional
+        With the same outline and cage; what depends on them alone is shared with it.
 
     Raises
     ------
@@ -39,7 +41,12 @@ class Stage:
     """
 
     def __init__(
-        self, domain: Domain, *, anchor: complex | None, points: Complexes | None = None
+        self,
+        domain: Domain,
+        *,
+        anchor: complex | None,
+        points: Complexes | None = None,
+        kin: "Stage | None" = None,
     ) -> None:
         self.domain = domain
         self.anchor = anchor
@@ -54,7 +61,21 @@ class Stage:
         self._lock = threading.RLock()
         self._samples: dict[Pose, KeyframeSamples] = {}
         self._inbetweens: dict[tuple[Pose, Pose, int, Variant], Inbetweens] = {}
+        self._kin = kin
         self._transform: HilbertTransform | None = None
+
+    @property
+    def transform(self) -> HilbertTransform:
+        """The Hilbert transform of the outline, worked out when it is asked for first."""
+        with self._lock:
+            if self._transform is None:
+                self._transform = (
+                    HilbertTransform.on(self.domain.outline, self.domain.cage)
+                    if self._kin is None
+                    else self._kin.transform
+                )
+                self._kin = None
+            return self._transform
 
     def keep_only(self, poses: Sequence[Pose]) -> None:
         """Forget what was kept for other poses."""
@@ -83,14 +104,12 @@ class Stage:
             key = (first, second, turns, variant)
             if key not in self._inbetweens:
                 pair = [self.samples(first), self.samples(second)]
-                if variant == "metric" and self._transform is None:
-                    self._transform = HilbertTransform.on(self.domain.outline, self.domain.cage)
                 self._inbetweens[key] = prepare_inbetweens(
                     interpolation.Variant(variant),
                     self.sites,
                     pair,
                     root_sheets(np.array([sample.anchor_fz for sample in pair]), [turns]),
-                    transform=self._transform if variant == "metric" else None,
+                    transform=self.transform if variant == "metric" else None,
                 )
             return self._inbetweens[key]
 

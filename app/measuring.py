@@ -47,8 +47,8 @@ def measure_curves(document: Document, motion: Motion) -> Curves | None:
     keys = document.keys
     period = document.frames.last - document.frames.first
     frames, ks, taus = [], [], []
-    for first, last in spans:
-        piece = motion.inbetweens(keys[first].pose, keys[last].pose, document.variant)
+    for interval, (first, last) in enumerate(spans):
+        piece = motion.inbetweens(document, interval)
         if piece is None:
             return None
         start = keys[first].frame

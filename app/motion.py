@@ -29,7 +29,7 @@ from engine.triangulation import triangulate
 SKETCH_TRIANGLES = 12_000
 EDGE = 1e-6  # barycentric weights that rounding may lack of 0
 # By what two poses' in-betweens are known: the maps alone, since handles may come and go.
-Pair = tuple[int, int, int, int, Variant]
+Pair = tuple[int, int, int, int, int, Variant]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -179,49 +179,43 @@ class Motion:
         resting = resting_pose(document, moment)
         if resting is not None:
             return self.figure.posed(resting)
-        piece = self._piece(document, moment)
+        piece = self.inbetweens(document, moment.interval)
         return None if piece is None else piece.frame(_weights(moment)).positions
 
     def knows(self, document: Document) -> bool:
         """Tell whether all in-betweens of a document are prepared."""
-        return (
-            document.domain is self.figure.source
-            and document.anchor == self.document.anchor
-            and all(_pair(*poses, document.variant) in self.pieces for poses in _poses(document))
+        return document.domain is self.figure.source and all(
+            self.inbetweens(document, interval) is not None
+            for interval in range(len(intervals(document)))
         )
 
-    def inbetweens(self, first: Pose, second: Pose, variant: Variant) -> Inbetweens | None:
-        """Return the in-betweens of two poses; None where they are not prepared."""
-        piece = self.pieces.get(_pair(first, second, variant))
-        return None if piece is None else piece.inbetweens
-
-    def _piece(self, document: Document, moment: Moment) -> Inbetweens | None:
-        first, second = intervals(document)[moment.interval]
-        keys = document.keys
+    def inbetweens(self, document: Document, interval: int) -> Inbetweens | None:
+        """Return the in-betweens of one of a document's intervals; None if not prepared."""
         if document.anchor != self.document.anchor:
             return None
-        return self.inbetweens(keys[first].pose, keys[second].pose, document.variant)
+        piece = self.pieces.get(_pair(document, interval))
+        return None if piece is None else piece.inbetweens
 
 
-def prepare_motion(document: Document, earlier: Motion) -> Motion:
+def prepare_motion(document: Document, earlier: Motion, kin: Stage | None = None) -> Motion:
     """Return the motion of a document with all its in-betweens; on the worker thread.
 
-    What an earlier motion on the same figure prepared is used again.
+    What an earlier motion on the same figure prepared is used again, and what a kindred stage
+    knows of the same outline and cage.
     """
-    wanted = _poses(document)
     stage, known = earlier.stage, earlier.pieces
     if document.anchor != earlier.document.anchor:
-        stage, known = None, {}
-    if wanted and stage is None:
-        stage = Stage(earlier.figure.domain, anchor=document.anchor)
+        stage, kin, known = None, earlier.stage or kin, {}
     pieces = {}
-    for first, second in wanted:
-        pair = _pair(first, second, document.variant)
+    for interval, (first, last) in enumerate(intervals(document)):
+        pair = _pair(document, interval)
         if pair in known:
             pieces[pair] = known[pair]
-        elif stage is not None:
-            inbetweens = stage.inbetweens(first, second, document.variant)
-            pieces[pair] = Piece(first, second, inbetweens)
+            continue
+        stage = stage or Stage(earlier.figure.domain, anchor=document.anchor, kin=kin)
+        key, following = document.keys[first], document.keys[last]
+        inbetweens = stage.inbetweens(key.pose, following.pose, document.variant, turns=key.turns)
+        pieces[pair] = Piece(key.pose, following.pose, inbetweens)
     if stage is not None:
         stage.keep_only([pose for piece in pieces.values() for pose in piece[:2]])
     return Motion(
@@ -239,13 +233,11 @@ def resting_pose(document: Document, moment: Moment) -> Pose | None:
     return None
 
 
-def _pair(first: Pose, second: Pose, variant: Variant) -> Pair:
-    return id(first.phi), id(first.psi), id(second.phi), id(second.psi), variant
-
-
-def _poses(document: Document) -> list[tuple[Pose, Pose]]:
-    keys = document.keys
-    return [(keys[first].pose, keys[second].pose) for first, second in intervals(document)]
+def _pair(document: Document, interval: int) -> Pair:
+    first, last = intervals(document)[interval]
+    key, pose = document.keys[first], document.keys[last].pose
+    maps = id(key.pose.phi), id(key.pose.psi), id(pose.phi), id(pose.psi)
+    return *maps, key.turns, document.variant
 
 
 def _weights(moment: Moment) -> npt.NDArray[np.float64]:

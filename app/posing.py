@@ -6,7 +6,7 @@ from typing import Self
 
 import numpy as np
 
-from app.animation import Animation
+from app.animation import Animation, Stage
 from app.document.keyframe import Pose, Target
 from app.document.model import Document
 from app.document.timeline import time_of
@@ -143,11 +143,18 @@ class Drag:
         )
 
 
-def pose_at(rig: Rig, frame: float) -> Pose:
+def pose_at(rig: Rig, frame: float, kin: Stage | None = None) -> Pose:
     """Return the pose that an animation shows at a frame, as near as one map can be to it.
 
     Of a key it is the key's own. In-betweens are no maps over the cage: their derivatives are
     fitted on the outline, and should the fit not be certified, it is mixed with the nearer key.
+
+    Parameters
+    ----------
+    rig : Rig
+    frame : float
+    kin : Stage, optional
+        Of the document's domain, for what it knows of the outline.
     """
     document, boundary = rig.document, rig.deformer.boundary
     moment = time_of(document, frame)
@@ -157,7 +164,8 @@ def pose_at(rig: Rig, frame: float) -> Pose:
     keys = document.keys
     after = moment.weight > 0.5
     near = keys[(moment.interval + after) % len(keys)].pose
-    blended = Animation(document, points=boundary.points).frame(frame)
+    stage = Stage(document.domain, anchor=document.anchor, points=boundary.points, kin=kin)
+    blended = Animation(document, points=boundary.points, stage=stage).frame(frame)
     fitted = fit_map(boundary, blended.fz, blended.fzbar, blended.positions)
     for share in (1.0, 0.5, 0.25, 0.0):
         phi = share * fitted.phi + (1.0 - share) * near.phi

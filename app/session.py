@@ -284,6 +284,7 @@ class Session:
     screen: tuple[int, int] = (640, 480)  # pixels of the viewport
     full_detail: bool = True  # whether this machine draws the full mesh fast enough to move
     solver_seconds: float = 0.0
+    meshing: Meshing = field(default_factory=Meshing)  # of new pictures
     toasts: list[Toast] = field(default_factory=list)
     dialog: Dialog | None = None
     export: ExportRun | None = None

@@ -68,7 +68,8 @@ def start(session: Session, out: Path) -> None:
     document, picture = project.document, project.picture.rgba
     request = ExportRequest(out=out, settings=document.export)
     check_request(document, request)
-    stage = project.full.stage if project.full is not None else None
+    motion = project.full or project.sketch
+    stage = motion.stage if motion.figure.domain is document.domain else None
 
     def work() -> ExportRun:
         animation = Animation(document, stage=stage)

@@ -80,10 +80,11 @@ def open_file(session: Session, path: Path) -> None:
 
 def load(session: Session, path: Path) -> None:
     """Read a file on the worker, and show it when it is there."""
+    meshing = session.meshing
     session.jobs.put(
         Job(
             kind=f"{OPENING} {path.name}",
-            work=lambda: _read(path),
+            work=lambda: _read(path, meshing),
             done=lambda opened: show(session, path, opened),
             failed=lambda error: report(session, f"{path.name} cannot be opened", error),
         )
@@ -106,8 +107,9 @@ def show(session: Session, path: Path, opened: Opened) -> None:
         session.tell(notice[:1].upper() + notice[1:] + ".")
 
 
-def _read(path: Path) -> Opened:
-    return _read_project(path) if path.suffix.lower() == PROJECT else _read_picture(path)
+def _read(path: Path, meshing: Meshing) -> Opened:
+    is_project = path.suffix.lower() == PROJECT
+    return _read_project(path) if is_project else _read_picture(path, meshing)
 
 
 def _read_project(path: Path) -> Opened:
@@ -117,8 +119,8 @@ def _read_project(path: Path) -> Opened:
     return Opened(document, picture, prepare_motion(document, rest), ())
 
 
-def _read_picture(path: Path) -> Opened:
-    document, picture, notices = open_picture(path, Meshing())
+def _read_picture(path: Path, meshing: Meshing) -> Opened:
+    document, picture, notices = open_picture(path, meshing)
     sketch = Motion.at_rest(document, Figure.sketch(document.domain))
     return Opened(document, picture, sketch, notices)
 
@@ -142,7 +144,7 @@ def recover(session: Session, path: Path) -> None:
     session.jobs.put(
         Job(
             kind=f"{OPENING} unsaved work",
-            work=lambda: _read(path),
+            work=lambda: _read_project(path),
             done=lambda opened: _show_recovered(session, path, opened),
             failed=lambda error: report(session, "The unsaved work cannot be opened", error),
         )

@@ -29,7 +29,7 @@ def toggle_play(session: Session) -> None:
         now = session.clock()
         turn = project.playhead.play if project.playhead.since is None else project.playhead.pause
         project.playhead = turn(project.document, now)
-        project.loose = None
+        project.loose = project.grab = None
 
 
 def tap_space(session: Session) -> None:

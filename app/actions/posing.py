@@ -129,11 +129,11 @@ def insert_key(session: Session) -> None:
         _hold(project, frame, project.loose, gesture=None)
         project.loose = None
     elif all(key.frame != frame for key in document.keys):
-        rig = Rig.of(document, project.rig)
+        rig, kin = Rig.of(document, project.rig), project.sketch.stage
         session.jobs.put(
             Job(
                 kind=INSERTING,
-                work=lambda: pose_at(rig, frame),
+                work=lambda: pose_at(rig, frame, kin),
                 done=lambda pose: _insert(session, project, document, frame, pose),
                 failed=lambda error: report(session, "The key could not be inserted", error),
                 urgent=True,
@@ -174,7 +174,7 @@ def _follow(session: Session, project: Project, grab: Grab) -> None:
     if POSING in session.jobs.kinds:
         return
     targets, drag, document = grab.targets, grab.drag, project.document
-    rig = project.rig
+    rig, kin = project.rig, project.sketch.stage
     clock = session.clock
 
     def work() -> tuple[Drag, float]:
@@ -182,7 +182,7 @@ def _follow(session: Session, project: Project, grab: Grab) -> None:
         start = drag
         if start is None:
             mine = Rig.of(document, rig)
-            pose = grab.pose or pose_at(mine, grab.frame)
+            pose = grab.pose or pose_at(mine, grab.frame, kin)
             start = Drag.begin(mine, pose)
         return start.towards(targets, STEPS), clock() - begun
 

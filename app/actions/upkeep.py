@@ -4,6 +4,7 @@ from functools import partial
 
 from app.actions import playback
 from app.actions.failures import report
+from app.animation import Stage
 from app.document.model import Document
 from app.jobs import Job
 from app.motion import Figure, Motion, prepare_motion
@@ -31,12 +32,16 @@ def keep_up(session: Session) -> None:
 
 
 def _ask(session: Session, project: Project, document: Document) -> None:
-    is_pulled = project.grab is not None and project.grab.held
+    is_posing = project.grab is not None
     if not project.sketch.knows(document):
-        # While the hand pulls, in-betweens cost the solver its time; ghosts are worth it.
-        if session.overlays.onion or not is_pulled:
+        # While the solver works, in-betweens cost it its time; ghosts are worth it.
+        if session.overlays.onion or not is_posing:
             _prepare(session, project, SKETCHING)
-    elif project.grab is None and (project.full is None or not project.full.knows(document)):
+    elif (
+        project.grab is None
+        and project.sketch.figure.domain is not document.domain
+        and (project.full is None or not project.full.knows(document))
+    ):
         _prepare(session, project, REFINING)
 
 
@@ -55,18 +60,20 @@ def _prepare(session: Session, project: Project, kind: str) -> None:
     session.jobs.put(
         Job(
             kind=kind,
-            work=partial(_motion, document, earlier, kind),
+            work=partial(_motion, document, earlier, kind, project.sketch.stage),
             done=done,
             failed=lambda error: _give_up(session, project, document, error),
         )
     )
 
 
-def _motion(document: Document, earlier: Motion | None, kind: str) -> Motion:
+def _motion(document: Document, earlier: Motion | None, kind: str, kin: Stage | None) -> Motion:
     if earlier is None or earlier.figure.source is not document.domain:
         make = Figure.sketch if kind == SKETCHING else Figure.full
+        is_kin = kin is not None and kin.domain.cage is document.domain.cage
+        kin = kin if is_kin else None
         earlier = Motion.at_rest(document, make(document.domain))
-    return prepare_motion(document, earlier)
+    return prepare_motion(document, earlier, kin)
 
 
 def _give_up(session: Session, project: Project, document: Document, error: Exception) -> None:

@@ -146,6 +146,8 @@ class Shell:
         # The tab that shows it asks for it in every frame.
         session.export_frame = None
         self._attempt(session.jobs.deliver)
+        # What was delivered may be another document: panels are to see the pose that belongs to it.
+        self._attempt(partial(upkeep.keep_up, session))
         playback.halt_at_end(session)
         moving = session.project is not None and session.project.playhead.since is not None
         busy = moving or bool(session.jobs.kinds or session.toasts)

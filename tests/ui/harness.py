@@ -2,17 +2,21 @@
 
 import tempfile
 from collections.abc import Callable
+from dataclasses import fields
 from pathlib import Path
 
+import numpy as np
 from imgui_bundle import ImVec2, hello_imgui, imgui
 from PIL import Image
 
+from app.actions import files
+from app.document.settings import Meshing
 from app.jobs import Jobs
 from app.preferences import Preferences
 from app.render.context import create_context
 from app.render.draw_lists import DrawLists
 from app.render.renderer import Renderer
-from app.session import Session
+from app.session import Project, Session
 from app.ui.window import Window
 
 Robot = imgui.test_engine.TestContext
@@ -43,6 +47,7 @@ class Harness:
         self._set_size(size)
         self._lists: DrawLists | None = None
         self._tests = 0
+        self._is_seen = False
         self.window = Window(self.session, lambda: Renderer(self.gl))
         self._params = self._headless_params()
         hello_imgui.manual_render.setup_from_runner_params(self._params)
@@ -66,9 +71,41 @@ class Harness:
         fresh = Session(clock=self.clock, jobs=self.session.jobs, folder=self.folder)
         self.session.jobs.settle()
         self.session.jobs.deliver()
-        for name in ("project", "overlays", "preferences", "toasts", "dialog", "quitting"):
-            setattr(self.session, name, getattr(fresh, name))
+        for field in fields(Session):
+            if field.name not in {"screen", "full_detail"}:
+                setattr(self.session, field.name, getattr(fresh, field.name))
+        # Small meshes, so that the tests are quick.
+        self.session.meshing = Meshing(triangles=2_000, detail="coarse")
+        for leftover in self.folder.iterdir():
+            leftover.unlink()
         self.frames(3)
+
+    def open(self, path: Path) -> Project:
+        """Open a picture or a project, and wait until it is there with all its in-betweens."""
+        files.load(self.session, path)
+        self.settle()
+        assert self.session.project is not None, [toast.text for toast in self.session.toasts]
+        return self.session.project
+
+    def point(self, place: complex) -> ImVec2:
+        """Return where a place of the drawing's plane is on the screen."""
+        project = self.session.project
+        assert project is not None
+        pixel = project.view(self.session.screen).to_pixels(np.array([place]))[0]
+        window = imgui.internal.find_window_by_name(self._viewport)
+        return ImVec2(window.pos.x + pixel.real, window.pos.y + pixel.imag)
+
+    def show_tab(self, title: str) -> None:
+        """Bring a panel to the front."""
+        panels = self._params.docking_params.dockable_windows
+        panel = next(p for p in panels if p.label.endswith(title))
+        panel.focus_window_at_next_frame = True
+        self.frames(3)
+
+    @property
+    def _viewport(self) -> str:
+        panels = self._params.docking_params.dockable_windows
+        return next(p.label for p in panels if p.label.endswith("Viewport"))
 
     def text_height(self) -> float:
         """Return the height of a line of text in pixels."""
@@ -118,6 +155,9 @@ class Harness:
 
     def picture(self) -> Image.Image:
         """Return what is on the screen."""
+        self._is_seen = True
+        self.frames()
+        self._is_seen = False
         with self.gl:
             pixels = self._target.read(components=3, alignment=1)
         return Image.frombytes("RGB", self._target.size, pixels).transpose(
@@ -153,6 +193,9 @@ class Harness:
         self._lists = DrawLists(self.gl)
 
     def _draw(self) -> None:
+        # Nobody looks at most frames, and to draw them would take most of the time.
+        if not self._is_seen:
+            return
         data = imgui.get_draw_data()
         self._target.clear(0.0, 0.0, 0.0, 1.0)
         if self._lists is not None and data is not None and data.valid:

@@ -45,8 +45,9 @@ def draw(session: Session, look: Look, texture: int | None) -> list[Action]:
     imgui.set_next_item_allow_overlap()
     imgui.invisible_button("canvas", room, _ANY_BUTTON)
     on_canvas = imgui.is_item_hovered()
+    over = imgui.is_window_hovered() or imgui.is_item_active()
     actions += _press_canvas(session, stage)
-    actions += _navigate(stage, on_canvas=on_canvas or imgui.is_item_active())
+    actions += _navigate(stage, over=over)
     hovered, over_handles = _handles(session, look, stage)
     actions += over_handles
     actions += _go_on(session, stage)
@@ -107,16 +108,16 @@ def _press_canvas(session: Session, stage: _Stage) -> list[Action]:
     return [do(pointing.begin, Boxing(start=place, keeps=imgui.get_io().key_shift))]
 
 
-def _navigate(stage: _Stage, *, on_canvas: bool) -> list[Action]:
+def _navigate(stage: _Stage, *, over: bool) -> list[Action]:
     """Pan by the middle button or Space and the left one; zoom by the wheel at the pointer."""
     io = imgui.get_io()
     view = stage.view
     with_space = imgui.is_key_down(imgui.Key.space) and imgui.is_mouse_down(0)
-    if on_canvas and (imgui.is_mouse_down(imgui.MouseButton_.middle) or with_space):
+    if over and (imgui.is_mouse_down(imgui.MouseButton_.middle) or with_space):
         delta = complex(io.mouse_delta.x, io.mouse_delta.y) * stage.density
         actions = [do(pointing.use_space)] if with_space else []
         return [*actions, do(viewing.look_from, view.panned(delta))] if delta else actions
-    if on_canvas and io.mouse_wheel:
+    if over and io.mouse_wheel:
         scale = min(max(view.scale * ZOOM_STEP**io.mouse_wheel, SMALLEST_ZOOM), LARGEST_ZOOM)
         pixel = view.to_pixels(np.array([stage.pointer]))[0]
         return [do(viewing.look_from, view.zoomed(scale / view.scale, complex(pixel)))]

@@ -1,0 +1,268 @@
+"""The main job, through the window's own widgets: from a sample to exported frames."""
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from app.actions import editing, exporting, playback, posing, saving
+from app.actions.action import do
+from app.assets import sample_images
+from app.document.keyframe import Target
+
+BAR = sample_images() / "bar.png"
+
+
+def drag(robot, window, start, end, *, key=None, steps=4):
+    """Press at a place of the plane, move to another in steps, and let go there."""
+    robot.mouse_move_to_pos(window.point(start))
+    if key is not None:
+        robot.key_down(int(key))
+    robot.mouse_down(0)
+    for step in range(1, steps + 1):
+        robot.mouse_move_to_pos(window.point(start + (end - start) * step / steps))
+    robot.mouse_up(0)
+    if key is not None:
+        robot.key_up(int(key))
+
+
+@pytest.fixture
+def bar(window):
+    """The sample of a bar, with a handle near each end, the second one selected."""
+    project = window.open(BAR)
+    width, height = project.picture.size
+    for share in (0.1, 0.9):
+        posing.add_handle(window.session, complex(share * width, height / 2))
+        window.frames(2)
+    return project
+
+
+def handle_places(project):
+    return {
+        handle.id: complex(place)
+        for handle, place in zip(
+            project.shown.document.handles, project.shown.handle_places, strict=True
+        )
+    }
+
+
+def test_a_person_makes_an_animation_and_takes_it_back(window, tmp_path):
+    session = window.session
+    window.frames(10)
+
+    def open_sample(robot):
+        robot.set_ref("Welcome")
+        robot.item_click("**/sample Bar")
+
+    window.run(open_sample)
+    window.settle()
+    project = session.project
+    first = project.document
+    width, height = project.picture.size
+    left, right = complex(0.1 * width, height / 2), complex(0.9 * width, height / 2)
+
+    def add_handles(robot):
+        for place in (left, right):
+            robot.mouse_move_to_pos(window.point(place))
+            robot.mouse_click(0)
+
+    window.run(add_handles)
+    assert len(project.document.handles) == 2
+    places = list(handle_places(project).values())
+    np.testing.assert_allclose(places, [left, right], rtol=0, atol=2)
+
+    playback.seek(session, 24)
+    window.settle()
+    window.run(lambda robot: drag(robot, window, right, right + 0.5j * width))
+    window.settle()
+    assert [key.frame for key in project.document.keys] == [0, 24]
+    assert handle_places(project)[1].imag > height
+    assert all(key.pose.certificate.certified for key in project.document.keys)
+    assert project.history.undo_label == "Pose"
+
+    playback.seek(session, 0)
+    window.run(lambda robot: robot.key_press(int(window.Key.space)))
+    assert project.playhead.since is not None
+    window.frames(10)
+    shown = {project.shown.frame}
+    window.frames(10)
+    assert project.shown.frame not in shown
+    assert project.shown.is_current
+    window.run(lambda robot: robot.key_press(int(window.Key.space)))
+    assert project.playhead.since is None
+
+    path = tmp_path / "bar.lissom"
+    saving.write(session, path, None)
+    window.settle()
+    assert project.history.is_saved
+    out = tmp_path / "frames"
+    exporting.start(session, out)
+    while session.export is not None or session.jobs.kinds:
+        window.settle()
+    names = sorted(file.name for file in out.iterdir())
+    assert names == [f"frame_{frame:04d}.png" for frame in range(49)]
+    last = np.asarray(Image.open(out / "frame_0000.png"))
+    source = np.asarray(Image.open(BAR).convert("RGBA"))
+    opaque = source[..., 3] >= 8
+    np.testing.assert_array_equal(last[opaque], source[opaque])
+    assert "Open folder" in [toast.label for toast in session.toasts]
+
+    for _ in range(3):
+        window.run(lambda robot: robot.key_press(int(window.Key.mod_ctrl | window.Key.z)))
+    assert project.document is first
+    reopened = window.open(path)
+    assert [key.frame for key in reopened.document.keys] == [0, 24]
+    assert len(reopened.document.handles) == 2
+
+
+def test_dragging_follows_and_is_one_step(window, bar):
+    session = window.session
+    start = handle_places(bar)[1]
+    before = bar.document
+    window.run(lambda robot: drag(robot, window, start, start + 150j, steps=12))
+    window.settle()
+    assert bar.grab is None
+    lag = bar.document.lags(bar.document.keys[0].pose)[1]
+    assert lag < 0.05 * abs(150j)
+    assert session.solver_seconds >= 0
+    editing.undo(session)
+    assert bar.document is before
+
+
+def test_a_new_handle_moves_nothing(window, bar):
+    start = handle_places(bar)[1]
+    window.run(lambda robot: drag(robot, window, start, start + 120j))
+    window.settle()
+    before = bar.shown.positions
+    posing.add_handle(window.session, handle_places(bar)[0] + 200)
+    window.settle()
+    np.testing.assert_allclose(bar.shown.positions, before, rtol=0, atol=1e-9)
+    posing.remove_handles(window.session, frozenset({0}))
+    window.settle()
+    np.testing.assert_allclose(bar.shown.positions, before, rtol=0, atol=1e-9)
+
+
+def test_a_key_between_keys_starts_from_what_is_shown(window, bar):
+    session = window.session
+    playback.seek(session, 20)
+    window.settle()
+    target = bar.shown.pose.targets[1]
+    posing.wish(session, {1: Target(position=target.position + 150j)})
+    window.settle()
+    playback.seek(session, 10)
+    window.settle()
+    between = bar.shown.positions
+    posing.insert_key(session)
+    window.settle()
+    assert [key.frame for key in bar.document.keys] == [0, 10, 20]
+    np.testing.assert_allclose(bar.shown.positions, between, rtol=0, atol=1.0)
+
+
+def test_without_auto_key_a_pose_is_loose_until_it_is_inserted(window, bar):
+    session = window.session
+    window.run(lambda robot: robot.key_press(int(window.Key.k)))
+    assert not session.preferences.auto_key
+    playback.seek(session, 12)
+    start = handle_places(bar)[1]
+    window.run(lambda robot: drag(robot, window, start, start + 100j))
+    window.settle()
+    assert [key.frame for key in bar.document.keys] == [0]
+    assert bar.loose is not None
+    window.run(lambda robot: robot.key_press(int(window.Key.i)))
+    window.settle()
+    assert bar.loose is None
+    assert [key.frame for key in bar.document.keys] == [0, 12]
+
+
+def test_keys_of_the_pointer(window, bar):
+    session = window.session
+    places = handle_places(bar)
+
+    def play(robot):
+        robot.mouse_move_to_pos(window.point(places[0]))
+        robot.key_down(int(window.Key.mod_ctrl))
+        robot.mouse_click(0)
+        robot.key_up(int(window.Key.mod_ctrl))
+
+    window.run(play)
+    assert bar.document.anchor == bar.document.handle(0).position
+
+    def select_both(robot):
+        robot.mouse_move_to_pos(window.point(places[0]))
+        robot.mouse_click(0)
+        robot.key_down(int(window.Key.mod_shift))
+        robot.mouse_move_to_pos(window.point(places[1]))
+        robot.mouse_click(0)
+        robot.key_up(int(window.Key.mod_shift))
+
+    window.run(select_both)
+    assert bar.selected == {0, 1}
+    window.run(lambda robot: robot.key_press(int(window.Key.up_arrow)))
+    window.settle()
+    assert bar.document.keys[0].pose.targets[0].position.imag > places[0].imag
+
+    def alt_click(robot):
+        robot.mouse_move_to_pos(window.point(handle_places(bar)[1]))
+        robot.key_down(int(window.Key.mod_alt))
+        robot.mouse_click(0)
+        robot.key_up(int(window.Key.mod_alt))
+
+    window.run(alt_click)
+    assert [handle.id for handle in bar.document.handles] == [0]
+
+    low, high = complex(-20, -20), complex(*bar.picture.size) * 0.5 + 300j
+    window.run(lambda robot: drag(robot, window, low + 600j, high - 900j))
+    assert session.pointer is None
+
+
+def test_alt_drag_turns_the_shape(window, bar):
+    start = handle_places(bar)[1]
+    reach = 0.03 * bar.picture.size[0]
+
+    def turn(robot):
+        robot.mouse_move_to_pos(window.point(start))
+        robot.key_down(int(window.Key.mod_alt))
+        robot.mouse_down(0)
+        for angle in (0.0, 0.3, 0.6):
+            robot.mouse_move_to_pos(window.point(start + reach * 4 * np.exp(1j * angle)))
+        robot.mouse_up(0)
+        robot.key_up(int(window.Key.mod_alt))
+
+    window.run(turn)
+    window.settle()
+    assert bar.document.keys[0].pose.targets[1].rotation is not None
+
+
+def test_wheel_zooms_at_the_pointer_and_home_fits(window, bar):
+    place = handle_places(bar)[0]
+    before = window.point(place)
+
+    def zoom(robot):
+        robot.mouse_move_to_pos(before)
+        robot.mouse_wheel_y(3)
+
+    window.run(zoom)
+    after = window.point(place)
+    assert bar.camera is not None
+    np.testing.assert_allclose([after.x, after.y], [before.x, before.y], rtol=0, atol=1.0)
+    window.run(lambda robot: robot.key_press(int(window.Key.home)))
+    assert bar.camera is None
+
+
+def test_unsaved_changes_are_asked_about(window, bar, tmp_path):
+    session = window.session
+    saving.quit_lissom(session)
+    window.frames(3)
+    assert not session.quitting
+
+    def decline(robot):
+        robot.set_ref("//$FOCUSED")
+        robot.item_click("Cancel")
+
+    window.run(decline)
+    assert session.dialog is None
+    assert session.project is bar
+    bar.path = tmp_path / "kept.lissom"
+    saving.save_then(session, do(saving.give_up))
+    window.settle()
+    assert bar.path.is_file()
+    assert session.project is None
