@@ -24,6 +24,9 @@ POINTER = {
     "Wheel": "Zoom at the pointer",
     "Tap Space": "Play or halt",
     "Drag a key, with Ctrl": "Move it in time, copy it",
+    "Click between keys": "Change the easing",
+    "Double-click on the track": "Insert a key",
+    "Wheel on the timeline, with Ctrl": "Scroll, zoom",
 }
 
 

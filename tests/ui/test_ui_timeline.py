@@ -151,6 +151,7 @@ def test_keys_are_seen_moving_while_they_are_dragged(project, play):
             hand.go_to(frame)
             hand.robot.yield_(2)
             seen.append(frames_of(project.document))
+            assert hand.place("key 24").x == pytest.approx(hand.x(frame), abs=1.0)
         hand.robot.mouse_up(0)
 
     play(look)

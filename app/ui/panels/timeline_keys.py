@@ -1,11 +1,14 @@
 """Keys as diamonds on the track, and the box that chooses them."""
 
+from itertools import pairwise
+
 from imgui_bundle import ImVec2, ImVec4, imgui
 from imgui_bundle import icons_fontawesome_6 as icons
 
 from app.actions import editing, keys, timing
 from app.actions.action import Action, do
 from app.document.keyframe import Keyframe
+from app.document.settings import LAST_FRAME
 from app.session import Project
 from app.timing import KeyBox, KeyDrag, TimeGesture
 from app.ui.panels.timeline_menus import key_menu, track_menu
@@ -20,8 +23,8 @@ from app.ui.panels.timeline_track import (
 )
 from app.ui.theme import ink
 
-REACH = 0.55  # em: half a key's diagonal
-GRIP = 0.8  # em: half the side of the box in which the pointer takes it
+REACH, SMALLEST = 0.55, 0.26  # em: half a key's diagonal, with room and among many
+GRIP = 1.45  # half the side of the box in which the pointer takes a key, as a part of that
 
 
 def draw_ground(track: Track) -> list[Action]:
@@ -86,7 +89,8 @@ def draw_box(track: Track) -> None:
 def draw_keys(track: Track) -> list[Action]:
     """Draw the keys, and take what the pointer does to them."""
     actions: list[Action] = []
-    grip = GRIP * track.look.em
+    reach = _reach(track)
+    grip = GRIP * reach
     gesture = track.project.timing.gesture
     draw_list = imgui.get_window_draw_list()
     low, high = ImVec2(track.left, track.track_top), ImVec2(track.right, track.track_bottom)
@@ -99,7 +103,7 @@ def draw_keys(track: Track) -> list[Action]:
         origin = _origin(gesture, key.frame)
         track.button(f"key {origin}", *box, right=True)
         is_held = isinstance(gesture, KeyDrag) and key.frame == gesture.pressed + gesture.by
-        _draw_key(track, key, hovered=in_hand() or is_held)
+        _draw_key(track, key, 1.15 * reach if in_hand() or is_held else reach)
         if is_pressed():
             actions += _press(track, key.frame)
         if imgui.is_item_clicked(imgui.MouseButton_.right):
@@ -111,6 +115,13 @@ def draw_keys(track: Track) -> list[Action]:
         actions += key_menu(track, key)
     draw_list.pop_clip_rect()
     return actions
+
+
+def _reach(track: Track) -> float:
+    """Return how large keys are, in pixels: smaller where they would cover each other."""
+    pairs = pairwise(track.project.document.keys)
+    gap = min((later.frame - key.frame for key, later in pairs), default=LAST_FRAME)
+    return min(max(0.48 * gap * track.strip.scale, SMALLEST), REACH) * track.look.em
 
 
 def _origin(gesture: TimeGesture | None, frame: int) -> int:
@@ -136,9 +147,9 @@ def _press(track: Track, frame: int) -> list[Action]:
     return [do(editing.choose_keys, chosen), do(timing.begin, drag, track.strip)]
 
 
-def _draw_key(track: Track, key: Keyframe, *, hovered: bool) -> None:
+def _draw_key(track: Track, key: Keyframe, reach: float) -> None:
     palette, draw_list, em = track.look.palette, imgui.get_window_draw_list(), track.look.em
-    x, y, reach = track.x(key.frame), track.middle, (1.15 if hovered else 1.0) * REACH * em
+    x, y = track.x(key.frame), track.middle
     fill, warns = _colour(track, key)
     chosen = key.frame in track.project.chosen
     if chosen:
