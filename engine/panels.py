@@ -13,7 +13,7 @@ POWER = 3  # grading at corners: arc length is the third power of the parameter
 # A panel is no longer than its distance to the nearest cage vertex (where the keyframes vary fast)
 # times the first, and to the nearest edge that is no neighbour times the second.
 CAGE_RATIO = 2.0
-GAP_RATIO = 4.0
+GAP_RATIO = 8.0
 FINEST = 2.0**-20  # of an edge: panels are not cut below this
 
 

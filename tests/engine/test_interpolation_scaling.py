@@ -15,6 +15,7 @@ from numpy.testing import assert_allclose
 
 from engine.harmonic_map import HarmonicMap
 from engine.interpolation import prepare
+from engine.interpolation.scaling import PointSamples
 from engine.polygon import edges
 
 SHAPE = letter_l()
@@ -33,8 +34,8 @@ def grown(shape, k):
     return [HarmonicMap.identity(cage), HarmonicMap(cage=cage, phi=phi, psi=k * phi)]
 
 
-def by_the_book(maps, weights, points):
-    """Return the minimum of the ratios of Section 7.3 at points, written as it is printed."""
+def ratios_by_the_book(maps, weights, points):
+    """Return ρ_k, ρ_a and ρ_b of Section 7.3 at points (3, p), written as they are printed."""
     fz, fzbar = np.array([f.derivatives(points) for f in maps]).transpose(1, 0, 2)
     a, b = np.abs(fz), np.abs(fzbar)
     modulus = np.prod(a ** weights[:, None], axis=0)
@@ -43,7 +44,7 @@ def by_the_book(maps, weights, points):
     rho_k = (b / a).max(axis=0) / (other / modulus)
     rho_a = ((a + b).max(axis=0) - modulus) / other
     rho_b = (modulus - (a - b).min(axis=0)) / other
-    return min(1.0, float(np.min([rho_k, rho_a, rho_b])))
+    return np.array([rho_k, rho_a, rho_b])
 
 
 @given(seed=st.integers(0, 10_000), time=st.floats(0.02, 0.98))
@@ -54,10 +55,39 @@ def test_rho_is_the_minimum_of_the_pointwise_ratios_over_the_outline(seed, time)
     outline, _ = SHAPE
     dense = (outline[:, None] + edges(outline)[:, None] * np.arange(4000) / 4000).ravel()
     rho = rho_of(maps)(time)
-    sampled = by_the_book(maps, weights, dense)
+    sampled = min(1.0, ratios_by_the_book(maps, weights, dense).min())
     assert rho <= sampled + 1e-9
     # The samples, 4000 an edge, miss a little of what happens close to the cage's vertices.
     assert_allclose(rho, sampled, rtol=0, atol=1e-4)
+
+
+def test_rho_of_affine_keyframes_follows_from_any_point():
+    outline, cage = bar()
+    rng = np.random.default_rng(1)
+    for _ in range(8):
+        fz = rng.uniform(0.5, 2, 2) * np.exp(1j * rng.uniform(-1, 1, 2))
+        g = rng.uniform(0, 0.9, 2) * fz * np.exp(1j * rng.uniform(-3, 3, 2))
+        maps = [
+            HarmonicMap(cage=cage, phi=a * cage, psi=b * cage) for a, b in zip(fz, g, strict=True)
+        ]
+        rho = rho_of(maps, bar())
+        for time in (0.25, 0.5, 0.75):
+            ratios = ratios_by_the_book(maps, np.array([1 - time, time]), outline[:1])
+            assert_allclose(rho(time), min(1.0, ratios.min()), rtol=1e-9, atol=0)
+
+
+@pytest.mark.parametrize("bound", ["k", "sigma_a", "sigma_b"])
+def test_each_bound_is_just_reached_where_it_alone_counts(bound):
+    # |f_z| = 2 and |η| = 8 make the unscaled |f_z̄| = 4: far outside every bound.
+    limits = {"k": 0.5, "sigma_a": 2.5, "sigma_b": 1.2}
+    loose = {"k": 100.0, "sigma_a": 100.0, "sigma_b": -100.0}
+    values = {name: np.array([v]) for name, v in (loose | {bound: limits[bound]}).items()}
+    samples = PointSamples(
+        log_modulus=np.log([[1.0], [4.0]]), conj_eta=np.array([[8.0 + 0j], [8.0]]), **values
+    )
+    (rho,) = samples.ratios(np.array([0.5, 0.5]))
+    reached = {"k": rho * 4 / 2, "sigma_a": 2 + rho * 4, "sigma_b": 2 - rho * 4}
+    assert_allclose(reached[bound], limits[bound], rtol=1e-12, atol=0)
 
 
 def test_rho_of_a_pair_that_can_be_worked_out():
