@@ -144,9 +144,14 @@ def _solved(renewal: Renewal, rig: Rig, key: Keyframe) -> Pose:
 
 
 def _carried_over(document: Document, pose: Pose, rig: Rig) -> HarmonicMap:
-    """Return the map over the rig's cage that is nearest to a pose over the document's."""
+    """Return the map over the rig's cage that is nearest to a pose over the document's.
+
+    The pose's map goes on from the old outline up to the old cage, where the new outline may lie.
+    """
     boundary = rig.deformer.boundary
-    inside = contains(document.domain.outline, boundary.points)
+    inside = contains(document.domain.cage, boundary.points)
+    if not inside.any():
+        return HarmonicMap.identity(boundary.cage)
     points = boundary.points[inside]
     shape = document.map_of(pose)
     fz, fzbar = shape.derivatives(points)

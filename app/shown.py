@@ -1,5 +1,6 @@
 """What is on the screen: which pose of the document, on which mesh."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -42,6 +43,16 @@ class Shown:
     def handle_places(self) -> Complexes:
         """Where the handles are, (h,)."""
         return self.handles.on(self.positions)
+
+    @property
+    def lags(self) -> Mapping[int, float]:
+        """By how many pixels handles, by their ids, fall short of what the pose wants of them."""
+        targets = {} if self.pose is None else self.pose.targets
+        return {
+            handle.id: abs(targets[handle.id].position - complex(place))
+            for handle, place in zip(self.document.handles, self.handle_places, strict=True)
+            if handle.id in targets
+        }
 
     @property
     def handle_turns(self) -> list[float]:

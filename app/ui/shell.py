@@ -18,7 +18,7 @@ from app.ui.panel import Panel
 from app.ui.shortcuts import pressed
 from app.ui.theme import FONT_SIZE, PALETTES, Look, apply_theme, load_fonts
 
-SIDE, BOTTOM = 0.28, 0.27  # parts of the window that tabs and timeline take at first
+SIDE, BOTTOM = 0.29, 0.27  # parts of the window that tabs and timeline take at first
 # Saved layouts of another number are forgotten: they name other panels.
 LAYOUT = 1
 IDLE_FPS = 10.0

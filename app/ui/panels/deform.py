@@ -68,7 +68,7 @@ def draw(session: Session, look: Look) -> list[Action]:
     bounds = _wanted_bounds(project)
     reached, what = _reached(project)
     actions = _heading_with_reset(look, bounds)
-    small(look, f"No pose goes beyond them, anywhere. Bars: what {what} uses.")
+    small(look, f"Nothing goes beyond them. Bars: what {what} uses.")
     for limit in LIMITS:
         actions += _limit(look, limit, bounds, reached)
     imgui.dummy(ImVec2(0, 0.2 * look.em))
@@ -130,6 +130,7 @@ def _limit(
     imgui.set_next_item_width(-1)
     entered = number(f"bound {limit.field}", bound)
     tip(f"{limit.hint}: the bound")
+    imgui.set_cursor_pos_y(imgui.get_cursor_pos_y() - 0.5 * imgui.get_style().item_spacing.y)
     moved = track(
         look,
         f"bound {limit.field} track",
@@ -158,16 +159,16 @@ def _colour(look: Look, limit: Limit, used: float, bound: float) -> imgui.ImVec4
 
 def _solver(session: Session, look: Look, project: Project) -> None:
     palette, shown = look.palette, project.shown
-    pose = shown.pose if shown is not None else None
+    pose = None if shown is None else shown.pose
     if project.grab is not None and project.grab.drag is not None:
         _status(look, icons.ICON_FA_ARROWS_SPIN, palette.accent, "Following the handles")
         small(look, f"{1000 * session.solver_seconds:.0f} ms for the last steps")
         return
-    if pose is None:
+    if shown is None or pose is None:
         _status(look, icons.ICON_FA_FILM, palette.dim, "An in-between of two keys")
         small(look, "It stays within what the two keys have.")
         return
-    lags = [lag for lag in project.document.lags(pose).values() if lag > ARRIVED]
+    lags = [lag for lag in shown.lags.values() if lag > ARRIVED]
     if not pose.certificate.certified:
         _status(look, icons.ICON_FA_TRIANGLE_EXCLAMATION, palette.danger, "Outside the bounds")
     elif lags:
@@ -182,7 +183,7 @@ def _solver(session: Session, look: Look, project: Project) -> None:
 
 def _status(look: Look, icon: str, colour: imgui.ImVec4, text: str) -> None:
     imgui.text_colored(colour, icon)
-    imgui.same_line(1.9 * look.em)
+    imgui.same_line(0, 0.5 * look.em)
     imgui.text_unformatted(text)
 
 

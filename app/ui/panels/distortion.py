@@ -21,9 +21,10 @@ from engine.deform.bounds import Bounds
 
 HEAT_MAPS = (("none", "Off"), ("k", "k"), ("sigma_a", "σa"), ("sigma_b", "σb"))
 NAMES = {"k": "Shear k", "sigma_a": "Stretch σa", "sigma_b": "Squeeze σb"}
-KINDS = (("relative", "Relative to the keys"), ("absolute", "Absolute"))
+KINDS = (("relative", "Relative"), ("absolute", "Absolute"))
 BINS = 48
 HISTOGRAM, PLOT, STRIP = 7.0, 8.5, 0.45  # em
+HEADROOM = 1.3  # above the largest value, for the title
 QUIET = (
     implot.Flags_.no_legend
     | implot.Flags_.no_mouse_text
@@ -178,7 +179,7 @@ class _Plot(NamedTuple):
     @property
     def top(self) -> float:
         largest = max(self.bound, float(np.nanmax(self.values)))
-        return self.least + 1.15 * (largest - self.least)
+        return self.least + HEADROOM * (largest - self.least)
 
 
 @lru_cache(maxsize=2)
@@ -221,8 +222,8 @@ def _plot(session: Session, look: Look, curves: Curves, plot: _Plot) -> list[Act
     frame = playback.current_frame(session, project)
     implot.plot_inf_lines("##now", np.array([float(frame)]), now)
     corner = implot.get_plot_pos()
-    place = ImVec2(corner.x + 0.5 * look.em, corner.y + 0.3 * look.em)
-    implot.get_plot_draw_list().add_text(place, ink(palette.dim), plot.title)
+    place = ImVec2(corner.x + 0.5 * look.em, corner.y + 0.2 * look.em)
+    implot.get_plot_draw_list().add_text(place, ink(palette.text), plot.title)
     if implot.is_plot_hovered() and imgui.is_mouse_clicked(imgui.MouseButton_.left):
         actions.append(do(playback.seek, round(implot.get_plot_mouse_pos().x)))
     implot.end_plot()
@@ -233,7 +234,7 @@ def _plot(session: Session, look: Look, curves: Curves, plot: _Plot) -> list[Act
 def _limit(look: Look, value: float, *, vertical: bool) -> None:
     limit = implot.Spec()
     limit.line_color = look.palette.danger
-    limit.line_weight = 1.6
+    limit.line_weight = 0.11 * look.em
     if not vertical:
         limit.flags = implot.InfLinesFlags_.horizontal
     implot.plot_inf_lines("##bound", np.array([value]), limit)

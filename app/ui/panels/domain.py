@@ -73,6 +73,8 @@ def _toggles(overlays: Overlays) -> list[Action]:
 
 def _facts(look: Look, project: Project) -> None:
     domain = project.document.domain
+    close = ImVec2(imgui.get_style().item_spacing.x, 0.0)
+    imgui.push_style_var(imgui.StyleVar_.item_spacing, close)
     width, height = project.picture.size
     _fact(look, "Picture", f"{width} × {height} pixels")
     _fact(look, "Outline", f"{len(domain.outline):,} points")
@@ -80,6 +82,7 @@ def _facts(look: Look, project: Project) -> None:
     _fact(look, "Triangles", f"{len(domain.mesh.triangles):,}")
     _fact(look, "Vertices", f"{len(domain.mesh.vertices):,}")
     _fact(look, "Flattest", f"{_smallest_angle(domain.mesh):.1f}° is the smallest angle")
+    imgui.pop_style_var()
 
 
 def _fact(look: Look, name: str, text: str) -> None:

@@ -32,7 +32,7 @@ FRAMINGS = (("canvas", "Canvas"), ("fit", "All motion"))
 RANGES = (("played", "What plays"), ("own", "From – to"))
 WHITE = "#ffffff"
 LARGEST = 65_535
-PREVIEW = 7.5  # em
+PREVIEW = 6.0  # em
 
 
 def draw(session: Session, look: Look) -> list[Action]:
@@ -251,7 +251,7 @@ def _preview(
         count = len(project.shown.figure.domain.outline)
         for point in project.shown.positions[:count]:
             draw_list.path_line_to(place(complex(point)))
-        draw_list.path_fill_concave(ink(palette.dim))
+        draw_list.path_stroke(ink(palette.dim), 1.3, imgui.ImDrawFlags_.closed)
     draw_list.add_rect(*ends(canvas), ink(palette.dim, 0.6))
     draw_list.add_rect(*ends(reach), ink(palette.warning, 0.8))
     draw_list.add_rect(*ends(frame), ink(palette.accent), 0.0, 1.6)

@@ -15,7 +15,7 @@ from app.ui.sliders import Scale, number, slider
 from app.ui.theme import Look
 from app.ui.widgets import at_end, heading, icon_button, label, small, tip
 
-ROW, MOST_ROWS = 1.75, 7.5  # em; rows
+ROW, MOST_ROWS = 1.75, 5.5  # em; rows
 WEIGHTS = Scale(left=0.01, right=100.0, logarithmic=True)
 ARRIVED = 1.0  # pixels of the picture within which a handle is where it should be
 
@@ -62,8 +62,7 @@ def _heading_with_delete(look: Look, project: Project) -> list[Action]:
 def _list(look: Look, project: Project) -> list[Action]:
     actions: list[Action] = []
     document, palette = project.document, look.palette
-    pose = project.shown.pose if project.shown else None
-    lags = document.lags(pose) if pose is not None else {}
+    lags = project.shown.lags if project.shown else {}
     height = (0.9 + ROW * min(len(document.handles), MOST_ROWS)) * look.em
     imgui.begin_child("handles", ImVec2(0, height), imgui.ChildFlags_.borders)
     for handle in document.handles:
@@ -77,10 +76,10 @@ def _list(look: Look, project: Project) -> list[Action]:
             chosen = frozenset({handle.id})
             keeps = imgui.get_io().key_shift or imgui.get_io().key_ctrl
             actions.append(do(editing.select, project.selected ^ chosen if keeps else chosen))
-        imgui.same_line(0.5 * look.em)
+        imgui.same_line(0.8 * look.em)
         icon = icons.ICON_FA_ANCHOR if is_anchor else icons.ICON_FA_CIRCLE_DOT
         imgui.text_colored(palette.anchor if is_anchor else palette.dim, icon)
-        imgui.same_line(2.3 * look.em)
+        imgui.same_line(2.6 * look.em)
         imgui.text_unformatted(handle.name)
         if lags.get(handle.id, 0.0) > ARRIVED:
             text = f"{lags[handle.id]:.0f} px"
@@ -117,18 +116,18 @@ def _details(look: Look, project: Project, handle: Handle) -> list[Action]:
 
 def _wish(look: Look, project: Project, handle: Handle) -> list[Action]:
     actions: list[Action] = []
-    pose = project.shown.pose if project.shown else None
-    if pose is None or handle.id not in pose.targets:
+    shown = project.shown
+    if shown is None or shown.pose is None or handle.id not in shown.pose.targets:
         small(look, "Between keys it goes with the shape. Drag it to make a key here.")
         return actions
-    target = pose.targets[handle.id]
+    target = shown.pose.targets[handle.id]
     wished = _point(
         look, "Target", "target", target.position, "Where this pose wants it, in the same pixels"
     )
     if wished is not None:
         actions.append(do(posing.wish, {handle.id: replace(target, position=wished)}))
     actions += _turn(look, project, handle, target)
-    lag = project.document.lags(pose).get(handle.id, 0.0)
+    lag = shown.lags.get(handle.id, 0.0)
     if lag > ARRIVED:
         is_coming = project.grab is not None
         why = "on its way" if is_coming else "held back by the bounds"
