@@ -61,7 +61,7 @@ class SeriesVertices:
         piece, weights = series.blend(time)
         if piece is not self._piece:
             self._upload(piece)
-        self._weights.ravel()[:] = 0.0
+        # The rows beyond are 0, whatever weights are left there.
         self._weights.ravel()[: len(weights)] = weights
 
     def attributes(self) -> tuple[Attribute, ...]:

@@ -105,8 +105,15 @@ def test_a_scaled_map_far_from_its_bounds_has_its_rho_in_the_series():
     assert series.rho(0.0) == series.rho(1.0) == 1.0
 
 
-def test_a_rho_that_changes_nothing_is_left_out():
-    maps = [bent(SHAPES["bar"], bend=0.5), bent(SHAPES["bar"], bend=-0.4)]
+@pytest.mark.parametrize(
+    "options",
+    [
+        ({"bend": 0.5}, {"bend": -0.4}),  # conformal: there is nothing to scale
+        ({"stretch": 1.4}, {"stretch": 1.4, "turn": 1.0}),  # rigid: no need to
+    ],
+)
+def test_a_rho_that_changes_nothing_is_left_out(options):
+    maps = [bent(SHAPES["bar"], **option) for option in options]
     motion = prepared("bar", "scaled-eta", maps)
     assert finish(build_series(Positions.of(motion.pieces[0], motion.sites))).rho is None
 
@@ -129,6 +136,7 @@ def test_points_that_move_alike_share_their_functions_of_time():
     (piece,) = series.pieces
     assert len(piece.rows) == 3  # of both ends, and one more
     assert series.nbytes < 3 * 4 * 5000 + 10_000
+    assert_array_equal(series.values(0.0), 0)
 
 
 def test_pieces_are_short_where_the_motion_is_hard():
