@@ -33,6 +33,6 @@ def open_picture(path: Path, meshing: Meshing) -> OpenedPicture:
         detail=meshing.detail,
         tolerance=meshing.tolerance,
     )
-    file = PictureFile(data=data, suffix=path.suffix.lower(), size=picture.size)
+    file = PictureFile(data=data, suffix=picture.suffix, size=picture.size)
     document = new_document(file, domain, meshing)
     return OpenedPicture(document, picture, picture.notices + remedies)

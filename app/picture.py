@@ -14,7 +14,18 @@ from app.errors import LissomError
 from engine.arrays import Bytes, Floats, readonly
 
 # PostScript and PDF are left out on purpose: Pillow would run an interpreter for them.
-FORMATS = ("PNG", "JPEG", "GIF", "WEBP", "BMP", "TIFF", "PPM", "TGA", "ICO", "AVIF")
+FORMATS = {
+    "PNG": ".png",
+    "JPEG": ".jpg",
+    "GIF": ".gif",
+    "WEBP": ".webp",
+    "BMP": ".bmp",
+    "TIFF": ".tiff",
+    "PPM": ".ppm",
+    "TGA": ".tga",
+    "ICO": ".ico",
+    "AVIF": ".avif",
+}
 FORMATS_IN_WORDS = "PNG, JPEG, GIF, WebP, AVIF, TIFF, BMP, TGA, PPM or ICO"
 # Pillow's decoders let all of these through on damaged files.
 DECODER_ERRORS = (
@@ -41,28 +52,20 @@ class Picture:
     ----------
     rgba : uint8, shape (h, w, 4)
         Straight alpha, first row on top, rotated as its EXIF data asks.
+    suffix : str
+        That files of its format end in, such as ".png", whatever the file's own name.
     notices : tuple of str
         What was done to the file's contents, in words.
     """
 
     rgba: Bytes
-    notices: tuple[str, ...]
+    suffix: str = ".png"
+    notices: tuple[str, ...] = ()
 
     @property
     def size(self) -> tuple[int, int]:
         """Width and height in pixels."""
         return self.rgba.shape[1], self.rgba.shape[0]
-
-
-def load_picture(path: Path) -> Picture:
-    """Read a picture file.
-
-    Raises
-    ------
-    LissomError
-        If the file is missing or unreadable, is no picture, is damaged, or is unreasonably large.
-    """
-    return decode_picture(read_picture_file(path), str(path))
 
 
 def read_picture_file(path: Path) -> bytes:
@@ -85,7 +88,7 @@ def decode_picture(data: bytes, name: str) -> Picture:
     Raises
     ------
     LissomError
-        As `load_picture`.
+        If they are no picture, are damaged, or the picture is unreasonably large.
     """
     if not data:
         raise LissomError(f"{name} is empty")
@@ -109,7 +112,8 @@ def decode_picture(data: bytes, name: str) -> Picture:
 
 def _decode(data: bytes) -> Picture:
     notices = []
-    image: Image.Image = Image.open(io.BytesIO(data), formats=FORMATS)
+    image: Image.Image = Image.open(io.BytesIO(data), formats=tuple(FORMATS))
+    suffix = FORMATS[image.format or ""]
     frames = getattr(image, "n_frames", 1)
     if frames > 1:
         notices.append(f"used the first of {frames} frames")
@@ -122,7 +126,8 @@ def _decode(data: bytes) -> Picture:
         greys = np.nan_to_num(np.asarray(image, dtype=np.float64))
         image = Image.fromarray(_scale_deep_grey(greys, is_float=image.mode == "F"))
         notices.append("reduced its deep greys to 8 bits")
-    return Picture(rgba=readonly(np.asarray(image.convert("RGBA"))), notices=tuple(notices))
+    rgba = readonly(np.asarray(image.convert("RGBA")))
+    return Picture(rgba=rgba, suffix=suffix, notices=tuple(notices))
 
 
 def _scale_deep_grey(greys: Floats, *, is_float: bool) -> Bytes:

@@ -6,10 +6,11 @@ from pathlib import Path
 import numpy as np
 
 from app.cli.console import notice
+from app.cli.options import add_meshing_options, meshing_of
 from app.files import check_writable, write_arrays, write_atomically
-from app.picture import load_picture
+from app.opening import open_picture
 from app.preview import draw_preview
-from engine.domain import build_domain, texture_coordinates
+from engine.domain import texture_coordinates
 
 EPILOG = """\
 The picture may be a PNG, JPEG, GIF, WebP, AVIF, TIFF, BMP, TGA, PPM or ICO. Transparent pixels are
@@ -38,19 +39,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--out", metavar="DOMAIN.npz", type=Path, required=True, help="where to write"
     )
-    parser.add_argument(
-        "--triangles",
-        metavar="N",
-        type=int,
-        default=100_000,
-        help="how many triangles to aim at, 1000 to 2000000 (default: %(default)s)",
-    )
-    parser.add_argument(
-        "--detail",
-        choices=("coarse", "normal", "fine"),
-        default="normal",
-        help="how closely the outline follows the subject (default: %(default)s)",
-    )
+    add_meshing_options(parser)
     parser.add_argument(
         "--preview",
         metavar="PREVIEW.png",
@@ -64,12 +53,10 @@ def run(arguments: argparse.Namespace) -> int:
     for path in (arguments.out, arguments.preview):
         if path is not None:
             check_writable(path)
-    picture = load_picture(arguments.picture)
-    domain, remedies = build_domain(
-        picture.rgba, triangles=arguments.triangles, detail=arguments.detail
-    )
-    for message in picture.notices + remedies:
+    opened = open_picture(arguments.picture, meshing_of(arguments))
+    for message in opened.notices:
         notice(message)
+    picture, domain = opened.picture, opened.document.domain
     mesh = domain.mesh
     if arguments.preview is not None:
         drawn = draw_preview(picture, domain)

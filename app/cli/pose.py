@@ -4,8 +4,8 @@ import argparse
 from pathlib import Path
 
 from app.cli.console import StatusLine, notice
+from app.cli.options import add_meshing_options, meshing_of
 from app.document.project_file import save_project
-from app.document.settings import Meshing
 from app.files import check_writable
 from app.opening import open_picture
 from app.pose_script import load_pose_script
@@ -40,27 +40,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--out", metavar="PROJECT.lissom", type=Path, required=True, help="where to write"
     )
-    parser.add_argument(
-        "--triangles",
-        metavar="N",
-        type=int,
-        default=Meshing().triangles,
-        help="how many triangles to aim at, 1000 to 2000000 (default: %(default)s)",
-    )
-    parser.add_argument(
-        "--detail",
-        choices=("coarse", "normal", "fine"),
-        default=Meshing().detail,
-        help="how closely the outline follows the subject (default: %(default)s)",
-    )
+    add_meshing_options(parser)
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Solve the keys of a script and write the project."""
     check_writable(arguments.out)
     script = load_pose_script(arguments.script)
-    meshing = Meshing(detail=arguments.detail, triangles=arguments.triangles)
-    opened = open_picture(arguments.picture, meshing)
+    opened = open_picture(arguments.picture, meshing_of(arguments))
     for message in opened.notices:
         notice(message)
     status = StatusLine()

@@ -9,14 +9,14 @@ from engine import polygon
 
 @pytest.fixture
 def drawing(tmp_path):
-    """Return a 300 × 200 picture: a disc in its upper left part, with a hole, and a detached dot."""
+    """Return a 300 × 200 picture: a disc in its upper left, with a hole, and a detached dot."""
     image = Image.new("RGBA", (300, 200))
     pen = ImageDraw.Draw(image)
     pen.ellipse((20, 10, 140, 130), fill=(200, 60, 30, 255))
     pen.ellipse((70, 60, 90, 80), fill=(0, 0, 0, 0))
     pen.ellipse((160, 20, 190, 50), fill=(30, 60, 200, 255))
-    path = tmp_path / "drawing.png"
-    image.save(path)
+    path = tmp_path / "drawing whose name tells no format"
+    image.save(path, "PNG")
     return path
 
 

@@ -6,7 +6,7 @@ from numpy.testing import assert_array_equal
 from PIL import Image
 
 from app.errors import LissomError
-from app.picture import decode_picture, load_picture
+from app.picture import decode_picture, read_picture_file
 
 GREY = np.arange(12, dtype=np.uint8).reshape(3, 4) * 20
 RGB = np.stack([GREY, GREY[::-1], 255 - GREY], axis=-1)
@@ -28,6 +28,7 @@ def test_straight_alpha_is_read_as_it_is():
     picture = decode_picture(encode(Image.fromarray(pixels), "PNG"), "drawing")
     assert_array_equal(picture.rgba, pixels)
     assert picture.size == (4, 3)
+    assert picture.suffix == ".png"
     assert picture.notices == ()
     assert not picture.rgba.flags.writeable
 
@@ -139,6 +140,6 @@ def test_a_decompression_bomb_is_refused_before_it_is_decoded(monkeypatch):
 
 def test_missing_files_and_folders(tmp_path):
     with pytest.raises(LissomError, match=r"cannot read .*No such file"):
-        load_picture(tmp_path / "nothing.png")
+        read_picture_file(tmp_path / "nothing.png")
     with pytest.raises(LissomError, match=r"cannot read .*directory"):
-        load_picture(tmp_path)
+        read_picture_file(tmp_path)
