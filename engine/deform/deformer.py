@@ -7,51 +7,39 @@ The objective is the symmetric Dirichlet energy with stiff handles and a barrier
   shortened when the bounds cut steps short and lengthened again when they do not: the trust region;
 - the barrier's weight rises and falls with the same signs, and its Hessian is primal–dual;
 - a step is cut until its map is certified with a part of the slack left, and where the certificate
-  found a bound broken between two samples, a sample is added: the barrier then sees it.
+  found a bound broken between two samples, a sample is added: the barrier then sees it;
+- a drag that does not get on begins its barrier afresh.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from enum import Enum
+from typing import NamedTuple
 
 import numpy as np
 
-from engine.arrays import Complexes, Floats, Indices, readonly
+from engine.arrays import Complexes, Floats
 from engine.deform.barrier import Barrier
 from engine.deform.boundary import Boundary
 from engine.deform.bounds import Bounds
-from engine.deform.certificate import Certificate, certify, certify_samples
+from engine.deform.certificate import Certificate, certify
+from engine.deform.certified_step import CertifiedStep, add_samples, take_certified_step
 from engine.deform.energy import symmetric_dirichlet
 from engine.deform.handles import Handles, Wish
-from engine.deform.newton import Direction, line_search, newton_direction
+from engine.deform.leash import LEASH, cut_to_leash
+from engine.deform.limits import closing_limits, limits_for, place_walls
 from engine.deform.objective import Jet, Objective
+from engine.deform.schedule import FULL, LEAST_RESTING, Schedule
 from engine.errors import EngineError
 from engine.harmonic_map import HarmonicMap
 
-# A handle is pulled towards a point at most this far (of L) ahead of it, and turned by at most this
-# angle; both times the reach, between SHORTEST_REACH and 1.
-LEASH, TURN_LEASH, SHORTEST_REACH = 0.02, 0.2, 0.1
-# Handles whose correlation with their targets is weaker have no common rotation.
-CORRELATED = 0.5
-# No point of the shape moves farther (of L) in one step: removed handles make no jump.
-FARTHEST = 0.05
-# Barrier weight: at the start, at most, and at least while handles move and when they have arrived.
-FIRST, MOST, LEAST_MOVING, LEAST_RESTING = 1e-2, 3.0, 1e-3, 1e-6
-RAISE, LOWER = 4.0, 0.5
-# Lengths of steps that the bounds have cut short, and that they have not.
-SHORT, FULL = 0.3, 0.7
-# The walls stand inside the bounds by this part of the way to the identity; a step leaves at least
-# KEPT of the slack between them and the map.
-MARGIN, KEPT = 1e-4, 0.1
-# While a map is outside its bounds the limits follow it at this relative distance, the barrier
-# weighs at least this much, and the handles are this much softer.
-FOLLOW, LEAST_TIGHTENING, SOFTNESS = 0.005, 0.3, 0.01
-# A step whose map is not certified is halved this many times.
-HALVINGS = 5
-# Added samples are dropped when they outnumber those of the shape itself.
-MOST_ADDED = 1.0
-# At rest: expected gain relative to the objective; handles that stand still (of L) for so many
-# steps; handles that are where they should be (of L); bounds that are reached (relative).
-REST, STILL, STILL_STEPS, ARRIVED, REACHED = 1e-8, 1e-5, 12, 1e-3, 0.02
+# On the way into tightened bounds the barrier weighs at least this much, and the handles are this
+# much softer.
+LEAST_TIGHTENING, SOFTNESS = 0.3, 0.01
+# Expected gain relative to the objective: near rest, where a sketched Hessian would go in circles,
+# and at rest.
+NEAR_REST, REST = 1e-4, 1e-8
+# Handles that are where they should be (of L), bounds that are reached (relative).
+ARRIVED, REACHED = 1e-3, 0.02
 # One row of a recorded path: so many steps, or until the expected gain is below this.
 PATH_STEPS, PATH_REST = 10, 1e-3
 
@@ -119,10 +107,11 @@ class State:
         None before the first step.
     boundary : Boundary
         With the samples that were added.
-    barrier_weight, reach : float
+    schedule : Schedule
     duals : float64, shape (3, m), or None
-    still : int
-        Steps for which nothing has moved.
+        Of the barrier.
+    wish : Wish or None
+        Of the last step.
     """
 
     map: HarmonicMap
@@ -131,10 +120,9 @@ class State:
     status: Status = Status.LAGGING
     statistics: Statistics | None = None
     boundary: Boundary
-    barrier_weight: float = FIRST
-    reach: float = 1.0
+    schedule: Schedule = field(default_factory=Schedule)
     duals: Floats | None = None
-    still: int = 0
+    wish: Wish | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -188,17 +176,12 @@ class Deformer:
         certificate = certify(harmonic_map, self.boundary, self.bounds)
         if certificate.certified:
             return self.start(harmonic_map)
-        k, sigma_a, sigma_b = certificate.k, certificate.sigma_a, certificate.sigma_b
-        if not (k < 1 and sigma_b > 0):
+        if not (certificate.k < 1 and certificate.sigma_b > 0):
             raise EngineError(
                 "The start map folds, or nearly: it is not proven to be locally injective. Start "
                 "from another map."
             )
-        limits = Bounds(
-            k=max(self.bounds.k, k + FOLLOW * (1 - k)),
-            sigma_a=max(self.bounds.sigma_a, sigma_a * (1 + FOLLOW)),
-            sigma_b=min(self.bounds.sigma_b, sigma_b * (1 - FOLLOW)),
-        )
+        limits = limits_for(certificate, self.bounds)
         return State(
             map=harmonic_map,
             certificate=certify(harmonic_map, self.boundary, limits),
@@ -233,64 +216,89 @@ class Deformer:
         """
         if len(wish.positions) == 0:
             return replace(state, status=Status.CONVERGED)
-        free = Objective(boundary=state.boundary, handles=self.handles, wish=wish)
-        jet = free.jet(state.map.phi, state.map.psi)
-        a, b = np.abs(jet.f), np.abs(jet.g)
-        limits = _limits(self.bounds, state.limits, a, b)
-        walls, required = _walls(limits, a, b)
-        tightening = limits != self.bounds
-        weight = state.barrier_weight
-        if tightening:
-            # The shape relaxes until it is within; only then the handles pull again.
-            weight = max(weight, LEAST_TIGHTENING)
-            wish_now = Wish(jet.positions, np.full(len(jet.positions), np.nan))
-            leashed = False
-        else:
-            wish_now, leashed = _leash(self.handles, self.boundary.size, state.reach, jet, wish)
-        barrier = Barrier(walls=walls, weight=weight, duals=state.duals)
-        handles = self.handles.softened(SOFTNESS) if tightening else self.handles
-        # A step that was cut in the open may have overshot between the samples of a sketch.
-        last = state.statistics
-        sketched = leashed or last is None or last.length > FULL
-        objective = replace(
-            free, handles=handles, wish=wish_now, barrier=barrier, sketched=sketched
+        step = self._prepare(state, wish)
+        taken = take_certified_step(
+            step.objective, step.jet, state.map, state.certificate, step.required
         )
-        direction = _moderate(newton_direction(objective, jet), state.boundary)
-        value = objective.value(jet)
-        taken = _certified_step(state, objective, jet, direction, required)
-        ahead = jet.advanced(1.0, direction.jet)
-        ahead_duals = barrier.next_duals(a, b, np.abs(ahead.f), np.abs(ahead.g))
-        boundary, duals = _with_samples(self.boundary, state.boundary, ahead_duals, taken.broken)
-        moved = taken.length * float(np.abs(direction.jet.positions).max()) / self.boundary.size
-        settled = not leashed and -direction.slope < REST * value and weight <= LEAST_RESTING
-        still = state.still + 1 if moved < STILL else 0
-        error = np.sqrt(np.mean(np.abs(jet.positions - wish.positions) ** 2)) / boundary.size
+        decrement = -taken.direction.slope / 2
+        error = _handle_error(step.jet, wish, self.boundary.size)
+        schedule = step.schedule.after(
+            length=taken.length,
+            shortfall=_excess(taken.certificate, self.bounds) if step.tightening else error,
+            moving=step.leashed or step.tightening,
+            # A sketch may overshoot between its samples in the open: nothing to do with the walls.
+            overshot=step.objective.sketched and not step.leashed,
+        )
+        settled = (
+            not step.leashed
+            and 2 * decrement < REST * step.energy
+            and step.schedule.weight <= LEAST_RESTING
+        )
+        boundary, duals = add_samples(
+            self.boundary, state.boundary, step.next_duals(taken), taken.broken
+        )
+        if schedule.asks_for_renewal and step.leashed:
+            boundary, duals, schedule = self.boundary, None, schedule.renewed()
         return State(
             map=taken.map,
             certificate=taken.certificate,
-            limits=limits,
+            limits=step.limits,
             status=self._status(
                 taken.certificate,
-                tightening=tightening,
+                tightening=step.tightening,
                 settled=settled,
-                still=still,
-                arrived=bool(error < ARRIVED),
+                at_rest=schedule.at_rest,
+                arrived=error < ARRIVED,
             ),
             statistics=Statistics(
-                energy=float(state.boundary.weights @ symmetric_dirichlet(a, b)),
-                handle_error=float(error),
-                decrement=-direction.slope / 2,
+                energy=step.energy,
+                handle_error=error,
+                decrement=decrement,
                 length=taken.length,
-                barrier_weight=weight,
-                reach=state.reach,
+                barrier_weight=step.schedule.weight,
+                reach=step.schedule.reach,
                 refusals=taken.refusals,
-                samples=len(boundary.points),
+                samples=len(state.boundary.points),
             ),
             boundary=boundary,
-            barrier_weight=_next_weight(weight, taken.length, moving=leashed or tightening),
-            reach=_next_reach(state.reach, taken.length),
+            schedule=schedule,
             duals=duals,
-            still=still,
+            wish=wish,
+        )
+
+    def _prepare(self, state: State, wish: Wish) -> "_Step":
+        """Choose what the next step minimises, and what it must keep."""
+        free = Objective(boundary=state.boundary, handles=self.handles, wish=wish)
+        jet = free.jet(state.map.phi, state.map.psi)
+        a, b = np.abs(jet.f), np.abs(jet.g)
+        limits = closing_limits(self.bounds, state.limits, a, b)
+        walls, required = place_walls(limits, a, b, state.certificate)
+        schedule = state.schedule if _same(wish, state.wish) else state.schedule.for_new_wish()
+        tightening = limits != self.bounds
+        if tightening:
+            # The shape relaxes until it is within; only then the handles pull again.
+            handles, leashed = self.handles.softened(SOFTNESS), False
+            wish = Wish(jet.positions, np.full(len(jet.positions), np.nan))
+            schedule = replace(schedule, weight=max(schedule.weight, LEAST_TIGHTENING))
+        else:
+            handles = self.handles
+            wish, leashed = cut_to_leash(handles, self.boundary.size, schedule.reach, jet, wish)
+        barrier = Barrier(walls=walls, weight=schedule.weight, duals=state.duals)
+        return _Step(
+            jet=jet,
+            barrier=barrier,
+            objective=replace(
+                free,
+                handles=handles,
+                wish=wish,
+                barrier=barrier,
+                sketched=leashed or not _near_rest(state.statistics),
+            ),
+            limits=limits,
+            required=required,
+            schedule=schedule,
+            leashed=leashed,
+            tightening=tightening,
         )
 
     def settle(self, state: State, wish: Wish, *, at_most: int = 500) -> tuple[State, int]:
@@ -320,13 +328,12 @@ class Deformer:
         *,
         tightening: bool,
         settled: bool,
-        still: int,
+        at_rest: bool,
         arrived: bool,
     ) -> Status:
-        at_rest = still >= STILL_STEPS
         if tightening:
             return Status.OUTSIDE if at_rest else Status.TIGHTENING
-        # Handles that stand still but have arrived only wait for the barrier to fade.
+        # Handles that have arrived make no progress, but the shape between them may.
         if not settled and (arrived or not at_rest):
             return Status.LAGGING
         near = self.bounds.towards_identity(REACHED)
@@ -336,152 +343,49 @@ class Deformer:
         return Status.BOUNDS_REACHED if reached and not arrived else Status.CONVERGED
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class _Taken:
-    """What was taken of a step; `broken` are the segments where a longer one broke a bound."""
+class _Step(NamedTuple):
+    """A step as it is prepared; `required` is what the certificate of its map is tested for."""
 
-    map: HarmonicMap
-    certificate: Certificate
-    length: float
-    broken: Indices
-    refusals: int
+    jet: Jet
+    objective: Objective
+    barrier: Barrier
+    limits: Bounds
+    required: Bounds
+    schedule: Schedule
+    leashed: bool
+    tightening: bool
+
+    @property
+    def energy(self) -> float:
+        density = symmetric_dirichlet(np.abs(self.jet.f), np.abs(self.jet.g))
+        return float(self.objective.boundary.weights @ density)
+
+    def next_duals(self, taken: CertifiedStep) -> Floats:
+        """Return the dual variables after the whole step, be it taken or not."""
+        ahead = self.jet.advanced(1.0, taken.direction.jet)
+        here, there = (np.abs(self.jet.f), np.abs(self.jet.g)), (np.abs(ahead.f), np.abs(ahead.g))
+        return self.barrier.next_duals(*here, *there)
 
 
-def _certified_step(
-    state: State, objective: Objective, jet: Jet, direction: Direction, required: Bounds
-) -> _Taken:
-    value = objective.value(jet)
-    length, broken = 1.0, np.empty(0, np.intp)
-    for refusals in range(HALVINGS):
-        length = line_search(objective, jet, direction, value, length)
-        if length == 0:
-            break
-        phi = state.map.phi + length * direction.phi
-        psi = state.map.psi + length * direction.psi
-        reached = jet.advanced(length, direction.jet)
-        certificate, segments = certify_samples(
-            state.boundary,
-            np.column_stack([phi, psi]),
-            np.column_stack([reached.f, reached.g]),
-            required,
-        )
-        if certificate.certified:
-            harmonic_map = HarmonicMap(cage=state.map.cage, phi=phi, psi=psi)
-            return _Taken(
-                map=harmonic_map,
-                certificate=certificate,
-                length=length,
-                broken=broken,
-                refusals=refusals,
-            )
-        # The longest step says where the drag wants to break a bound.
-        broken = segments if refusals == 0 else broken
-        length /= 2
-    return _Taken(
-        map=state.map,
-        certificate=state.certificate,
-        length=0.0,
-        broken=broken,
-        refusals=refusals + (length > 0),
+def _handle_error(jet: Jet, wish: Wish, size: float) -> float:
+    return float(np.sqrt(np.mean(np.abs(jet.positions - wish.positions) ** 2))) / size
+
+
+def _excess(certificate: Certificate, bounds: Bounds) -> float:
+    """Return by how much a map is outside its bounds; more than any distance of handles."""
+    return 1e3 + max(
+        certificate.k - bounds.k,
+        (certificate.sigma_a - bounds.sigma_a) / bounds.sigma_a,
+        (bounds.sigma_b - certificate.sigma_b) / bounds.sigma_b,
     )
 
 
-def _limits(bounds: Bounds, before: Bounds, a: Floats, b: Floats) -> Bounds:
-    """Return the bounds, or limits that close in on a map that is outside of them."""
-    k, sigma_a, sigma_b = _extremes(a, b)
-    return Bounds(
-        k=bounds.k if k < bounds.k else min(before.k, k + FOLLOW * (1 - k)),
-        sigma_a=bounds.sigma_a
-        if sigma_a < bounds.sigma_a
-        else min(before.sigma_a, sigma_a * (1 + FOLLOW)),
-        sigma_b=bounds.sigma_b
-        if sigma_b > bounds.sigma_b
-        else max(before.sigma_b, sigma_b * (1 - FOLLOW)),
+def _near_rest(last: Statistics | None) -> bool:
+    """Tell whether the next step needs the whole Hessian."""
+    return last is not None and (last.length < FULL or last.decrement < NEAR_REST * last.energy)
+
+
+def _same(wish: Wish, other: Wish | None) -> bool:
+    return other is not None and all(
+        np.array_equal(one, two, equal_nan=True) for one, two in zip(wish, other, strict=True)
     )
-
-
-def _walls(limits: Bounds, a: Floats, b: Floats) -> tuple[Bounds, Bounds]:
-    """Return the walls of the barrier, and the bounds that the next map must keep everywhere."""
-    inner = limits.towards_identity(MARGIN)
-    k, sigma_a, sigma_b = _extremes(a, b)
-    # A map may start between the walls and the limits.
-    walls = Bounds(
-        k=max(inner.k, k + (limits.k - k) / 4),
-        sigma_a=max(inner.sigma_a, sigma_a + (limits.sigma_a - sigma_a) / 4),
-        sigma_b=min(inner.sigma_b, sigma_b + (limits.sigma_b - sigma_b) / 4),
-    )
-    required = Bounds(
-        k=walls.k - KEPT * (walls.k - k),
-        sigma_a=walls.sigma_a - KEPT * (walls.sigma_a - sigma_a),
-        sigma_b=walls.sigma_b - KEPT * (walls.sigma_b - sigma_b),
-    )
-    return walls, required
-
-
-def _extremes(a: Floats, b: Floats) -> tuple[float, float, float]:
-    return float((b / a).max()), float((a + b).max()), float((a - b).min())
-
-
-def _moderate(direction: Direction, boundary: Boundary) -> Direction:
-    """Return the direction, shortened if it moves the outline too far."""
-    coordinates = boundary.vertex_coordinates
-    moves = coordinates @ direction.phi + (coordinates @ direction.psi).conj()
-    farthest = float(np.abs(moves).max()) / (FARTHEST * boundary.size)
-    return direction if farthest <= 1 else direction.scaled(1 / farthest)
-
-
-def _leash(handles: Handles, size: float, reach: float, jet: Jet, wish: Wish) -> tuple[Wish, bool]:
-    """Return the wish cut to the leash, and whether that cut anything.
-
-    What all handles want to turn together, they turn: straight ways to a wish that is mainly a
-    rotation would squeeze the shape.
-    """
-    distance, most = LEASH * size * reach, TURN_LEASH * reach
-    positions = _turned(handles, jet.positions, wish.positions, most)
-    pull = wish.positions - positions
-    cut = distance / np.maximum(np.abs(pull), distance)
-    # Free handles have NaN, which passes through.
-    turn = np.angle(np.exp(1j * wish.rotations) * jet.fz.conj())
-    near = np.angle(jet.fz) + np.clip(turn, -most, most)
-    leashed = bool(np.any(cut < 1.0) or np.any(np.abs(turn) > most))
-    return Wish(positions + cut * pull, near), leashed
-
-
-def _turned(handles: Handles, positions: Complexes, targets: Complexes, most: float) -> Complexes:
-    """Return the positions turned as a whole towards the targets (Procrustes), up to an angle."""
-    weights = handles.stiffness / handles.stiffness.sum()
-    centre = weights @ positions
-    from_centre, wanted = positions - centre, targets - weights @ targets
-    correlation = weights @ (from_centre.conj() * wanted)
-    scale = weights @ (np.abs(from_centre) * np.abs(wanted))
-    if abs(correlation) <= CORRELATED * scale:
-        return positions
-    angle = np.clip(np.angle(correlation), -most, most)
-    turned: Complexes = centre + np.exp(1j * angle) * from_centre
-    return turned
-
-
-def _with_samples(
-    base: Boundary, boundary: Boundary, duals: Floats, segments: Indices
-) -> tuple[Boundary, Floats | None]:
-    """Return the boundary with samples added in the segments, and the dual variables for it."""
-    if len(segments) == 0:
-        return boundary, readonly(duals)
-    if len(boundary.points) + len(segments) > (1 + MOST_ADDED) * len(base.points):
-        return base, None
-    ends = (segments + 1) % len(boundary.points)
-    between = np.maximum(duals[:, segments], duals[:, ends])
-    return boundary.refined(segments), readonly(np.insert(duals, segments + 1, between, axis=1))
-
-
-def _next_weight(weight: float, length: float, *, moving: bool) -> float:
-    if length < SHORT:
-        return min(RAISE * weight, MOST)
-    least = LEAST_MOVING if moving else LEAST_RESTING
-    return max(LOWER * weight, least) if length > FULL else weight
-
-
-def _next_reach(reach: float, length: float) -> float:
-    if length < SHORT:
-        return max(reach / 2, SHORTEST_REACH)
-    return min(2 * reach, 1.0) if length > FULL else reach

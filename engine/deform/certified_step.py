@@ -1,0 +1,120 @@
+"""One step of Newton's method that ends in a certified map."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from engine.arrays import Floats, Indices, readonly
+from engine.deform.boundary import Boundary
+from engine.deform.bounds import Bounds
+from engine.deform.certificate import Certificate, certify_samples
+from engine.deform.newton import Direction, line_search, newton_direction
+from engine.deform.objective import Jet, Objective
+from engine.harmonic_map import HarmonicMap
+
+# No point of the shape moves farther (of L) in one step: removed handles make no jump.
+FARTHEST = 0.05
+# A step whose map is not certified is halved this many times.
+HALVINGS = 5
+# Added samples are dropped when they outnumber this part of those of the shape itself.
+MOST_ADDED = 0.1
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class CertifiedStep:
+    """What was taken of a step.
+
+    Parameters
+    ----------
+    map : HarmonicMap
+    certificate : Certificate
+    direction : Direction
+    length : float
+        Part of the direction that was taken; 0 where no map along it could be certified.
+    refusals : int
+        Maps that were tried and not certified.
+    broken : Indices
+        The segments where the first of them broke a bound.
+    """
+
+    map: HarmonicMap
+    certificate: Certificate
+    direction: Direction
+    length: float
+    refusals: int
+    broken: Indices
+
+
+def take_certified_step(
+    objective: Objective,
+    jet: Jet,
+    harmonic_map: HarmonicMap,
+    certificate: Certificate,
+    required: Bounds,
+) -> CertifiedStep:
+    """Step as far along Newton's direction as the map stays certified within `required`.
+
+    Parameters
+    ----------
+    objective : Objective
+    jet, harmonic_map, certificate
+        Of the map at the start.
+    required : Bounds
+    """
+    direction = _moderate(newton_direction(objective, jet), objective.boundary)
+    value = objective.value(jet)
+    length, refusals, broken = 1.0, 0, np.empty(0, np.intp)
+    while refusals < HALVINGS:
+        length = line_search(objective, jet, direction, value, length)
+        if length == 0:
+            break
+        phi = harmonic_map.phi + length * direction.phi
+        psi = harmonic_map.psi + length * direction.psi
+        reached = jet.advanced(length, direction.jet)
+        tried, segments = certify_samples(
+            objective.boundary,
+            np.column_stack([phi, psi]),
+            np.column_stack([reached.f, reached.g]),
+            required,
+        )
+        if tried.certified:
+            harmonic_map = HarmonicMap(cage=harmonic_map.cage, phi=phi, psi=psi)
+            certificate = tried
+            break
+        if refusals == 0:
+            broken = segments
+        refusals += 1
+        length /= 2
+    return CertifiedStep(
+        map=harmonic_map,
+        certificate=certificate,
+        direction=direction,
+        length=length if refusals < HALVINGS else 0.0,
+        refusals=refusals,
+        broken=broken,
+    )
+
+
+def add_samples(
+    base: Boundary, boundary: Boundary, duals: Floats, segments: Indices
+) -> tuple[Boundary, Floats | None]:
+    """Return a boundary with samples added in the segments, and the dual variables for it.
+
+    The barrier then sees what the certificate found between the samples. When there are too many,
+    the base boundary without any takes over.
+    """
+    if len(segments) == 0:
+        return boundary, readonly(duals)
+    if len(boundary.points) + len(segments) > (1 + MOST_ADDED) * len(base.points):
+        return base, None
+    ends = (segments + 1) % len(boundary.points)
+    between = np.maximum(duals[:, segments], duals[:, ends])
+    return boundary.refined(segments), readonly(np.insert(duals, segments + 1, between, axis=1))
+
+
+def _moderate(direction: Direction, boundary: Boundary) -> Direction:
+    """Return the direction, shortened if it moves the outline too far."""
+    coordinates = boundary.vertex_coordinates
+    moves = coordinates @ direction.phi + (coordinates @ direction.psi).conj()
+    farthest = float(np.abs(moves).max()) / (FARTHEST * boundary.size)
+    return direction if farthest <= 1 else direction.scaled(1 / farthest)
