@@ -105,8 +105,11 @@ def _room_outside(outline: Complexes, directions: Complexes) -> Floats:
     facing = outside & (cosine > FACING)
     here = np.arange(len(outline))
     facing[here, here] = facing[here, here - 1] = False  # a vertex's own edges
-    radius = np.where(facing, distance / (2 * np.maximum(cosine, SQUARE_ON)), np.inf)
-    at_vertex = radius.min(axis=1) / np.abs(directions)
+    half = np.where(facing, distance / 2, np.inf)
+    radius = half / np.maximum(cosine, SQUARE_ON)
+    # A convex vertex itself approaches the other side; in a notch the walls do.
+    convex = (np.roll(along, 1).conj() * along).imag > 0
+    at_vertex = np.where(convex, radius.min(axis=1) / np.abs(directions), half.min(axis=1))
     # Further from the place across the gap, an end of the edge may keep more.
     start_room = (radius + SLOPE * parameter * np.abs(along)).min(axis=0)
     end_room = (radius + SLOPE * (1 - parameter) * np.abs(along)).min(axis=0)

@@ -14,13 +14,14 @@ from engine.curve import arc_lengths, limit_growth, outward_normals, resample
 from engine.gaps import half_gaps
 from engine.polygon import as_xy, signed_area
 
-GAP_MARGIN = 0.42  # of half a gap, for the margin
 GAP_ROOM = 0.75  # of half a gap, for margin and cage offset together
 SEPARATION = 0.08  # of the diagonal: arc length from which on two points can face each other
 SAMPLING = 0.0015  # of the diagonal: spacing at which gaps are looked for
 GROWTH = 0.35  # by which the margin may grow along the curve, per arc length
 NORMAL_REACH = 3  # samples before and after, over which normals are taken
 SLIT = 0.5  # of the width of closed gaps: what is left of a gap between the margins
+MOST_SAMPLES = 10_000
+SKETCH = 0.125  # of the margin: spacing that is always fine enough for it
 SKIN = 0.25  # cells: margin of the curve on which gaps are looked for
 
 
@@ -96,37 +97,49 @@ def curve_at_margin(
     diagonal : float
         Of the subject's box, in cells.
     """
-    skin = resample(_outer_ring(field.distance - SKIN)[0], max(1.0, SAMPLING * diagonal))
-    room = SKIN + half_gaps(
-        skin,
-        outward_normals(skin, NORMAL_REACH),
-        reach=(margin + offset) / GAP_ROOM,
-        separation=SEPARATION * diagonal,
+    skin, _ = _outer_ring(field.distance - SKIN)
+    spacing = max(1.0, SAMPLING * diagonal, SKETCH * margin, arc_lengths(skin)[-1] / MOST_SAMPLES)
+    skin = resample(skin, spacing)
+    margins = _local_margins(
+        skin, margin=margin, offset=offset, closing=closing, separation=SEPARATION * diagonal
     )
-    closed = room < closing / 2
-    share = min(GAP_MARGIN, GAP_ROOM * margin / (margin + offset))
-    margins = np.where(closed, margin, np.minimum(margin, share * room))
-    margins = limit_growth(margins, arc_lengths(skin), GROWTH)
-    # Both sides of a closed gap must meet, whatever the margins beside it.
-    margins[closed] = np.maximum(margin, room[closed] + 1)
     tree = cKDTree(as_xy(skin))
     everywhere = np.allclose(margins, margin)
     level = margin if everywhere else _spread(field, tree, margins, margin)
     ring, enclosed = _outer_ring(field.distance - level)
-    ring = _without_slits(ring, SLIT * closing)
+    ring, pockets = _without_slits(ring, SLIT * closing)
     _, nearest = tree.query(as_xy(ring))
-    return MarginCurve(points=ring, margins=margins[nearest], enclosed=enclosed)
+    return MarginCurve(points=ring, margins=margins[nearest], enclosed=enclosed + pockets)
 
 
-def _without_slits(ring: Complexes, width: float) -> Complexes:
-    """Close the slits outside a ring that are narrower than `width`: no edges fit into them."""
-    area = (
-        shapely.Polygon(as_xy(ring)).buffer(width / 2, quad_segs=2).buffer(-width / 2, quad_segs=2)
-    )
+def _local_margins(
+    skin: Complexes, *, margin: float, offset: float, closing: float, separation: float
+) -> Floats:
+    """Return the margin at each point of the mask's own outline."""
+    enough = (margin + offset) / GAP_ROOM
+    normals = outward_normals(skin, NORMAL_REACH)
+    reach = max(enough, closing / 2)
+    room = SKIN + half_gaps(skin, normals, reach=reach, separation=separation)
+    closed = room < closing / 2
+    margins = np.where(closed, margin, np.minimum(margin, room * margin / enough))
+    margins = limit_growth(margins, arc_lengths(skin), GROWTH)
+    # Both sides of a closed gap must meet, whatever the margins beside it.
+    margins[closed] = np.maximum(margin, room[closed] + 1)
+    return margins
+
+
+def _without_slits(ring: Complexes, width: float) -> tuple[Complexes, float]:
+    """Close the slits outside a ring that are narrower than `width`: no edges fit into them.
+
+    Return the ring and the area of the pockets that this encloses.
+    """
+    area = shapely.Polygon(as_xy(ring))
+    area = area.buffer(width / 2, quad_segs=2).buffer(-width / 2, quad_segs=2)
     parts = shapely.get_parts(area)
-    exterior = parts[shapely.area(parts).argmax()].exterior
-    xy = shapely.get_coordinates(shapely.orient_polygons(shapely.Polygon(exterior)))
-    return np.asarray(xy[:-1, 0] + 1j * xy[:-1, 1])
+    largest = parts[shapely.area(parts).argmax()]
+    filled = shapely.orient_polygons(shapely.Polygon(largest.exterior))
+    xy = shapely.get_coordinates(filled)
+    return xy[:-1, 0] + 1j * xy[:-1, 1], float(filled.area - largest.area)
 
 
 def _spread(field: DistanceField, tree: cKDTree, margins: Floats, margin: float) -> Floats:

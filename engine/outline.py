@@ -4,39 +4,25 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
-from scipy.spatial import cKDTree
 
-from engine.arrays import Booleans, Complexes, Floats, readonly
+from engine.arrays import Booleans, Complexes, readonly
 from engine.cage import offset_cage
-from engine.crossings import self_crossings
-from engine.curve import arc_lengths, at_arc_lengths, smooth
 from engine.errors import EngineError
-from engine.margin import DistanceField, MarginCurve, curve_at_margin, distance_field
+from engine.fitting import fit_polygon
+from engine.margin import DistanceField, curve_at_margin, distance_field
 from engine.parts import join_parts
-from engine.polygon import as_xy, contains, edges
-from engine.simplify import choose_vertices
-from engine.working_grid import working_grid
+from engine.working_grid import WorkingGrid, working_grid
 
 Detail = Literal["coarse", "normal", "fine"]
 MARGINS: dict[Detail, float] = {"coarse": 0.012, "normal": 0.006, "fine": 0.003}  # of the diagonal
 LEAST_MARGIN = 0.8  # pixels of an enlarged subject: enough to straighten staircases
-LEAST_OFFSET, MOST_OFFSET = (
-    0.005,
-    0.02,
-)  # of the diagonal: between boundary spikes and bad conditioning
+# Of the diagonal: a cage that is closer makes boundary spikes, a farther one bad conditioning.
+LEAST_OFFSET, MOST_OFFSET = 0.005, 0.02
 NARROWEST_GAP = 0.002  # of the diagonal: below, two cages have no room in a gap
-MOST_VERTICES = 180  # aimed at, by widening the margin
-WIDENING, MOST_WIDENED = 1.4, 2.0
+MOST_VERTICES = 200  # aimed at: first the margin is widened for it, then gaps are closed
+WIDENING, MOST_WIDENED = 1.42, 2.0
 MOST_DRAFTS = 6
 LEAST_TOLD = 0.001  # of the subject's area
-FEWEST_EDGES = 40
-SHORTEST_EDGE, LONGEST_EDGE = 0.0012, 0.07  # of the diagonal
-SPACING = 0.5  # of the local margin, between the points that may become vertices
-LEASH, INNER, OUTER = 0.3, 0.5, 0.6  # of the local margin: smoothing; edges within, without
-SMOOTHING = 4  # rounds
-TIGHTENING = 0.6
-MOST_TURN = np.radians(160)  # at a vertex: sharper spikes have no room for triangles or a cage
-MOST_ATTEMPTS = 10
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -61,11 +47,13 @@ class Outline:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class _Draft:
-    """An outline and its cage in cells, and the area enclosed where the outline met itself."""
+    """An outline and its cage in cells, and what was done to get them."""
 
     points: Complexes
     cage: Complexes
-    enclosed: float
+    widening: float  # of the margin
+    closing: float  # cells: width below which gaps were closed
+    enclosed: float  # square cells: gaps that the outline closes over
 
 
 def trace_outline(mask: Booleans, *, detail: Detail) -> Outline:
@@ -92,102 +80,68 @@ def trace_outline(mask: Booleans, *, detail: Detail) -> Outline:
     """
     grid = working_grid(mask)
     piece = join_parts(grid.mask, grid.diagonal)
-    field = distance_field(piece.mask)
-    wanted = max(MARGINS[detail] * grid.diagonal, LEAST_MARGIN * max(1.0, 1 / grid.cell))
-    closing = narrowest = NARROWEST_GAP * grid.diagonal
-    widening = 1.0
+    margin = max(MARGINS[detail] * grid.diagonal, LEAST_MARGIN * max(1.0, 1 / grid.cell))
+    draft = _best_draft(distance_field(piece.mask), margin, grid.diagonal)
+    return Outline(
+        points=readonly(grid.to_picture(draft.points)),
+        cage=readonly(grid.to_picture(draft.cage)),
+        notices=piece.notices + _told(draft, grid, int(np.count_nonzero(piece.mask))),
+    )
+
+
+def _best_draft(field: DistanceField, margin: float, diagonal: float) -> _Draft:
+    """Return the first draft of few vertices, or else the one of fewest.
+
+    The margin is widened while there are too many vertices; wider gaps are closed where that is
+    not enough, or where no outline or cage fits.
+    """
+    widening, closing = 1.0, NARROWEST_GAP * diagonal
     best: _Draft | None = None
     for _ in range(MOST_DRAFTS):
-        draft = _draft(field, margin=widening * wanted, closing=closing, diagonal=grid.diagonal)
-        best = draft or best
-        if draft is not None:
-            if len(draft.points) <= MOST_VERTICES or widening == MOST_WIDENED:
-                break
+        draft = _draft(field, margin, diagonal, widening=widening, closing=closing)
+        if draft is not None and (best is None or len(draft.points) < len(best.points)):
+            best = draft
+        if best is not None and len(best.points) <= MOST_VERTICES:
+            break
+        if draft is not None and widening < MOST_WIDENED:
             widening = min(MOST_WIDENED, WIDENING * widening)
-        closing *= 2
+        else:
+            closing *= 2
     if best is None:
         raise EngineError(
             "The subject is too intricate for an outline; choose another detail, or close its "
             "finest gaps in the picture."
         )
-    notices = list(piece.notices)
-    if closing > narrowest:
-        notices.append(f"gaps narrower than {closing * grid.cell:.1f} pixels closed")
-    if widening > 1:
-        notices.append(f"margin widened {widening:.1f} times for an outline of few vertices")
-    share = best.enclosed / np.count_nonzero(piece.mask)
+    return best
+
+
+def _told(draft: _Draft, grid: WorkingGrid, area: int) -> tuple[str, ...]:
+    """Return notices of what a draft did to a subject of `area` cells."""
+    notices = []
+    if draft.closing > NARROWEST_GAP * grid.diagonal:
+        notices.append(f"gaps narrower than {draft.closing * grid.cell:.1f} pixels closed")
+    if draft.widening > 1:
+        notices.append(f"margin widened {draft.widening:.1f} times for an outline of few vertices")
+    share = draft.enclosed / area
     if share >= LEAST_TOLD:
         notices.append(f"the outline closes over gaps of {share:.1%} of the subject")
-    return Outline(
-        points=readonly(grid.to_picture(best.points)),
-        cage=readonly(grid.to_picture(best.cage)),
-        notices=tuple(notices),
-    )
+    return tuple(notices)
 
 
 def _draft(
-    field: DistanceField, *, margin: float, closing: float, diagonal: float
+    field: DistanceField, margin: float, diagonal: float, *, widening: float, closing: float
 ) -> _Draft | None:
-    """Draw outline and cage at a margin; return None if the subject is too intricate for it."""
+    """Draft outline and cage; return None where the subject is too intricate for them."""
+    margin *= widening
     offset = float(np.clip(margin, LEAST_OFFSET * diagonal, MOST_OFFSET * diagonal))
     curve = curve_at_margin(field, margin=margin, offset=offset, closing=closing, diagonal=diagonal)
-    points = _polygon_around(field.boundary(), curve, diagonal)
+    points = fit_polygon(curve, field.boundary(), diagonal)
     if points is None:
         return None
     try:
         cage = offset_cage(points, offset)
     except EngineError:
         return None
-    return _Draft(points=points, cage=cage, enclosed=curve.enclosed)
-
-
-def _polygon_around(corners: Complexes, curve: MarginCurve, diagonal: float) -> Complexes | None:
-    """Return a simple polygon of few edges along the curve, around all corners.
-
-    Where it crosses itself, turns back or leaves out a corner, it is drawn again, closer to the
-    curve; None is returned if that does not help.
-    """
-    points, margins = _graded(curve, SHORTEST_EDGE * diagonal)
-    longest = min(LONGEST_EDGE * diagonal, float(np.abs(edges(points)).sum()) / FEWEST_EDGES)
-    slack = np.ones(len(points))
-    for _ in range(MOST_ATTEMPTS):
-        smoothed = smooth(points, LEASH * slack * margins, SMOOTHING)
-        chosen = choose_vertices(
-            smoothed,
-            INNER * slack * margins,
-            OUTER * slack * margins,
-            shortest=SHORTEST_EDGE * diagonal,
-            longest=longest,
-        )
-        polygon = smoothed[chosen]
-        faults = _faults(polygon, corners)
-        if not len(faults):
-            return polygon
-        distance, _ = cKDTree(as_xy(faults)).query(as_xy(points))
-        slack[distance < 3 * margins] *= TIGHTENING
-    return None
-
-
-def _graded(curve: MarginCurve, shortest: float) -> tuple[Complexes, Floats]:
-    """Return points along the curve, closer where the margin is small, and their margins."""
-    arcs = arc_lengths(curve.points)
-    spacing = np.maximum(SPACING * curve.margins, 0.5 * shortest)
-    # Equal steps of the integral of 1 / spacing.
-    density = np.diff(arcs) / spacing
-    places = np.concatenate([[0.0], np.cumsum(density)])
-    count = max(3 * 8, int(places[-1]))
-    wanted = np.interp(places[-1] * np.arange(count) / count, places, arcs)
-    margins = np.interp(wanted, arcs, np.append(curve.margins, curve.margins[0]))
-    return at_arc_lengths(curve.points, wanted), margins
-
-
-def _faults(polygon: Complexes, corners: Complexes) -> Complexes:
-    """Return the places where a polygon crosses itself, turns back or leaves out a corner."""
-    along = edges(polygon)
-    sharp = np.abs(np.angle(along / np.roll(along, 1))) > MOST_TURN
-    if sharp.any():
-        return np.asarray(polygon[sharp])
-    crossing = self_crossings(polygon).any(axis=1)
-    if crossing.any():
-        return np.concatenate([polygon[crossing], np.roll(polygon, -1)[crossing]])
-    return corners[~contains(polygon, corners)]
+    return _Draft(
+        points=points, cage=cage, widening=widening, closing=closing, enclosed=curve.enclosed
+    )

@@ -129,11 +129,8 @@ def _shortest_bridges(mask: Booleans, labels: Integers, areas: Floats, diagonal:
     part0, y0, x0, part1, y1, x1 = np.concatenate(pairs, axis=1).astype(np.intp)
     starts, ends = x0 + 1j * y0, x1 + 1j * y1
     length = np.abs(ends - starts)
-    # The shortest candidate of each pair of parts.
     low, high = np.minimum(part0, part1) - 1, np.maximum(part0, part1) - 1
-    order = np.lexsort((length, high, low))
-    key = low[order] * len(areas) + high[order]
-    chosen = order[np.flatnonzero(np.diff(key, prepend=-1))]
+    chosen = _central_shortest(low * len(areas) + high, starts, ends)
     low, high, length = low[chosen], high[chosen], length[chosen]
     shape = (len(areas), len(areas))
     tree = minimum_spanning_tree(coo_array((length, (low, high)), shape=shape).tocsr()).tocoo()
@@ -142,6 +139,23 @@ def _shortest_bridges(mask: Booleans, labels: Integers, areas: Floats, diagonal:
     narrowest, widest = BRIDGE_WIDTHS
     widths = np.clip(0.5 * side, narrowest * diagonal, widest * diagonal)
     return _Bridges(starts=starts[chosen][used], ends=ends[chosen][used], widths=widths)
+
+
+def _central_shortest(keys: Indices, starts: Complexes, ends: Complexes) -> Indices:
+    """Return, for each key, one of its nearly shortest segments: that in the middle of them.
+
+    Between parallel sides all segments are equally short; a bridge belongs in their middle.
+    """
+    _, group = np.unique(keys, return_inverse=True)
+    length, middle = np.abs(ends - starts), (starts + ends) / 2
+    shortest = np.full(group.max() + 1, np.inf)
+    np.minimum.at(shortest, group, length)
+    near = np.flatnonzero(length <= 1.02 * shortest[group] + 0.5)
+    group, middle = group[near], middle[near]
+    count = np.bincount(group)
+    centre = (np.bincount(group, middle.real) + 1j * np.bincount(group, middle.imag)) / count
+    order = np.lexsort((np.abs(middle - centre[group]), group))
+    return np.asarray(near[order[np.flatnonzero(np.diff(group[order], prepend=-1))]])
 
 
 def _draw_capsule(mask: Booleans, start: complex, end: complex, width: float) -> None:
