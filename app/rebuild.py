@@ -2,6 +2,8 @@
 
 from dataclasses import dataclass, replace
 
+import numpy as np
+
 from app.document.commands import Command
 from app.document.keyframe import Keyframe, Pose
 from app.document.model import Document
@@ -17,6 +19,7 @@ from engine.harmonic_map import HarmonicMap
 from engine.polygon import contains
 
 MOST_STEPS = 600  # for one key
+AT_REST = 1e-3  # pixels that coefficients of the drawing at rest may lack
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -148,9 +151,12 @@ def _carried_over(document: Document, pose: Pose, rig: Rig) -> HarmonicMap:
 
     The pose's map goes on from the old outline up to the old cage, where the new outline may lie.
     """
-    boundary = rig.deformer.boundary
-    inside = contains(document.domain.cage, boundary.points)
-    if not inside.any():
+    boundary, cage = rig.deformer.boundary, document.domain.cage
+    is_at_rest = np.allclose(pose.phi, cage, rtol=0.0, atol=AT_REST) and np.allclose(
+        pose.psi, 0.0, rtol=0.0, atol=AT_REST
+    )
+    inside = contains(cage, boundary.points)
+    if is_at_rest or not inside.any():
         return HarmonicMap.identity(boundary.cage)
     points = boundary.points[inside]
     shape = document.map_of(pose)

@@ -267,6 +267,7 @@ def test_rebuilt_domain_keeps_handles_and_poses_as_one_step(window, project, tab
         np.testing.assert_allclose(
             after.map_of(new)(places), before.map_of(old)(places), rtol=0, atol=3
         )
+    assert after.key(0).pose.certificate.k < 1e-6
     assert project.history.undo_label == "Rebuild domain"
     editing.undo(window.session)
     assert project.document is before

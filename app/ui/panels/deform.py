@@ -71,7 +71,6 @@ def draw(session: Session, look: Look) -> list[Action]:
     small(look, f"Nothing goes beyond them. Bars: what {what} uses.")
     for limit in LIMITS:
         actions += _limit(look, limit, bounds, reached)
-    imgui.dummy(ImVec2(0, 0.2 * look.em))
     heading(look, "Solver")
     _solver(session, look, project)
     heading(look, "Keys")
@@ -141,6 +140,7 @@ def _limit(
         used=used,
     )
     tip(f"{limit.hint}: drag the bound")
+    imgui.set_cursor_pos_y(imgui.get_cursor_pos_y() - 0.5 * imgui.get_style().item_spacing.y)
     if entered is not None:
         return [do(rebuilding.choose_bounds, replace(bounds, **{limit.field: entered}))]
     if moved is None:
