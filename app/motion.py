@@ -18,11 +18,13 @@ from app.document.keyframe import Pose
 from app.document.model import Document
 from app.document.settings import Variant
 from app.document.timeline import Moment, intervals, time_of
+from app.vertices import Placed, Streamed, Vertices
 from engine.arrays import Booleans, Complexes, Floats, Integers
 from engine.cauchy import cauchy_coordinates
 from engine.domain import Domain
 from engine.interpolation import Inbetweens
 from engine.mesh import Mesh
+from engine.streaming import Series
 from engine.triangulation import triangulate
 
 # Triangles of the mesh that is shown while the full one would be too slow.
@@ -141,11 +143,16 @@ class Figure:
 
 
 class Piece(NamedTuple):
-    """The in-betweens of two poses, which it keeps alive so that their identities stay theirs."""
+    """The in-betweens of two poses, which it keeps alive so that their identities stay theirs.
+
+    The series of the positions and of f_z and f_z̄ are None until they are built.
+    """
 
     first: Pose
     second: Pose
     inbetweens: Inbetweens
+    series: Series | None = None
+    distortions: Series | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -173,14 +180,23 @@ class Motion:
         """Return the motion that knows the keys only."""
         return cls(figure=figure, document=document, stage=None, pieces={})
 
-    def positions(self, document: Document, frame: float) -> Complexes | None:
+    def vertices(self, document: Document, frame: float) -> Vertices | None:
         """Return where the vertices are at a frame; None where that is not prepared."""
         moment = time_of(document, frame)
         resting = resting_pose(document, moment)
         if resting is not None:
-            return self.figure.posed(resting)
-        piece = self.inbetweens(document, moment.interval)
-        return None if piece is None else piece.frame(_weights(moment)).positions
+            return Placed(positions=self.figure.posed(resting))
+        piece = self._piece(document, moment.interval)
+        if piece is None:
+            return None
+        if piece.series is not None:
+            return Streamed(piece.series, piece.distortions, moment.weight)
+        return Placed(positions=piece.inbetweens.frame(_weights(moment)).positions)
+
+    def positions(self, document: Document, frame: float) -> Complexes | None:
+        """Return where the vertices are at a frame, worked out; None where that is not prepared."""
+        vertices = self.vertices(document, frame)
+        return None if vertices is None else vertices.positions
 
     def knows(self, document: Document) -> bool:
         """Tell whether all in-betweens of a document are prepared."""
@@ -191,10 +207,13 @@ class Motion:
 
     def inbetweens(self, document: Document, interval: int) -> Inbetweens | None:
         """Return the in-betweens of one of a document's intervals; None if not prepared."""
+        piece = self._piece(document, interval)
+        return None if piece is None else piece.inbetweens
+
+    def _piece(self, document: Document, interval: int) -> Piece | None:
         if document.anchor != self.document.anchor:
             return None
-        piece = self.pieces.get(_pair(document, interval))
-        return None if piece is None else piece.inbetweens
+        return self.pieces.get(pair_of(document, interval))
 
 
 def prepare_motion(document: Document, earlier: Motion, kin: Stage | None = None) -> Motion:
@@ -208,7 +227,7 @@ def prepare_motion(document: Document, earlier: Motion, kin: Stage | None = None
         stage, kin, known = None, earlier.stage or kin, {}
     pieces = {}
     for interval, (first, last) in enumerate(intervals(document)):
-        pair = _pair(document, interval)
+        pair = pair_of(document, interval)
         if pair in known:
             pieces[pair] = known[pair]
             continue
@@ -233,7 +252,8 @@ def resting_pose(document: Document, moment: Moment) -> Pose | None:
     return None
 
 
-def _pair(document: Document, interval: int) -> Pair:
+def pair_of(document: Document, interval: int) -> Pair:
+    """Return by what the in-betweens of one of a document's intervals are known."""
     first, last = intervals(document)[interval]
     key, pose = document.keys[first], document.keys[last].pose
     maps = id(key.pose.phi), id(key.pose.psi), id(pose.phi), id(pose.psi)

@@ -23,6 +23,7 @@ from app.reach import Reach
 from app.rebuild import Renewal
 from app.render.view import View, fit_view
 from app.shown import Shown
+from app.streaming import Build
 from app.timing import Timing
 from engine.arrays import Bytes
 from engine.deform.bounds import Bounds
@@ -194,6 +195,8 @@ class Project:
         None fits the picture into the viewport.
     unmovable : Document, optional
         Its in-betweens failed; they are not tried again until it changes.
+    build : Build, optional
+        The series that the worker makes when it has nothing else to do.
     unmeasurable : Document, optional
         Likewise for its distortion.
     curves : Curves, optional
@@ -228,6 +231,7 @@ class Project:
     grab: Grab | None = None
     shown: Shown | None = None
     unmovable: Document | None = None
+    build: Build | None = None
     unmeasurable: Document | None = None
     curves: Curves | None = None
     meshing: Meshing | None = None

@@ -9,6 +9,7 @@ from app.document.keyframe import Pose
 from app.document.model import Document
 from app.document.timeline import time_of
 from app.motion import Figure, Motion, Places, resting_pose
+from app.vertices import Placed, Streamed, Vertices
 from engine.arrays import Complexes
 
 
@@ -23,8 +24,8 @@ class Shown:
     pose : Pose, optional
         The pose that is shown; None for an in-between.
     figure : Figure
-    positions : complex128, shape (v,)
-        Of the figure's vertices.
+    vertices : Vertices
+        The figure's.
     handles : Places
         Of the document's handles in the figure.
     is_current : bool
@@ -35,9 +36,20 @@ class Shown:
     frame: int
     pose: Pose | None
     figure: Figure
-    positions: Complexes
+    vertices: Vertices
     handles: Places
     is_current: bool
+
+    @property
+    def positions(self) -> Complexes:
+        """Where the figure's vertices are, (v,)."""
+        return self.vertices.positions
+
+    @property
+    def derivatives(self) -> tuple[Complexes, Complexes]:
+        """f_z and f_z̄ at the vertices, each (v,)."""
+        streamed = self.vertices.derivatives if isinstance(self.vertices, Streamed) else None
+        return self.figure.derivatives(self.positions) if streamed is None else streamed
 
     @property
     def handle_places(self) -> Complexes:
@@ -90,17 +102,17 @@ def show(
         if _is_same(earlier, document, frame, pose, figure):
             return earlier  # type: ignore[return-value]  # it is the same, so it is there
         if pose is not None:
-            positions: Complexes | None = figure.posed(pose)
+            vertices: Vertices | None = Placed(positions=figure.posed(pose))
         else:
-            positions = motion.positions(document, frame)
-        if positions is not None:
+            vertices = motion.vertices(document, frame)
+        if vertices is not None:
             handles = _locate(document, figure, earlier)
             return Shown(
                 document=document,
                 frame=frame,
                 pose=pose,
                 figure=figure,
-                positions=positions,
+                vertices=vertices,
                 handles=handles,
                 is_current=True,
             )

@@ -10,8 +10,9 @@ from app.jobs import Job
 from app.motion import Figure, Motion, prepare_motion
 from app.session import Project, Session
 from app.shown import show
+from app.streaming import Build, next_build, with_series
 
-SKETCHING, REFINING = "In-betweens", "Finer in-betweens"
+SKETCHING, REFINING, STREAMING = "In-betweens", "Finer in-betweens", "Smooth playback"
 
 
 def keep_up(session: Session) -> None:
@@ -43,6 +44,8 @@ def _ask(session: Session, project: Project, document: Document) -> None:
         and (project.full is None or not project.full.knows(document))
     ):
         _prepare(session, project, REFINING)
+    elif project.grab is None:
+        _stream(session, project, document)
 
 
 def _prepare(session: Session, project: Project, kind: str) -> None:
@@ -74,6 +77,38 @@ def _motion(document: Document, earlier: Motion | None, kind: str, kin: Stage | 
         kin = kin if is_kin else None
         earlier = Motion.at_rest(document, make(document.domain))
     return prepare_motion(document, earlier, kin)
+
+
+def _stream(session: Session, project: Project, document: Document) -> None:
+    """Let the worker go on with a series for a while."""
+    if STREAMING in session.jobs.kinds:
+        return
+    motions = [motion for motion in (project.sketch, project.full) if motion is not None]
+    build = project.build
+    if build is None or not any(build.is_of(motion) for motion in motions):
+        frame = playback.current_frame(session, project)
+        heat = session.overlays.heat_map != "none"
+        builds = (next_build(motion, document, frame, heat=heat) for motion in motions)
+        project.build = build = next(filter(None, builds), None)
+    if build is not None:
+        session.jobs.put(
+            Job(
+                kind=STREAMING,
+                work=build.advance,
+                done=partial(_keep_series, session, project),
+                failed=lambda error: _give_up(session, project, document, error),
+            )
+        )
+
+
+def _keep_series(session: Session, project: Project, build: Build) -> None:
+    if build.series is None or project.build is not build:
+        return
+    project.build = None
+    frame = playback.current_frame(session, project)
+    project.sketch = with_series(project.sketch, build, project.document, frame)
+    if project.full is not None:
+        project.full = with_series(project.full, build, project.document, frame)
 
 
 def _give_up(session: Session, project: Project, document: Document, error: Exception) -> None:

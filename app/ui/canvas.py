@@ -6,17 +6,19 @@ from imgui_bundle import ImVec4
 from app.document.timeline import time_of
 from app.export.framing import Box
 from app.motion import Figure
-from app.render.gpu_mesh import GpuMesh, Pose, StreamedVertices
+from app.render.gpu_mesh import GpuMesh, Pose
 from app.render.gpu_picture import GpuPicture
 from app.render.handles import HandleMark, HandleStyle, mark_handles
+from app.render.layer import Layer, shader_is_faster
 from app.render.renderer import Renderer
 from app.render.scene import Background, Colour, Disc, Ghost, Heat, Line, Scene, Wireframe
 from app.render.target import Target
 from app.session import HeatMap, Project, Session
 from app.shown import Shown
 from app.ui.theme import PALETTES, Palette
+from app.vertices import Vertices
 from engine import distortion
-from engine.arrays import Complexes, Floats
+from engine.arrays import Floats
 
 GHOST_BEFORE, GHOST_AFTER = (0.93, 0.36, 0.36), (0.30, 0.62, 0.98)
 GHOST_OPACITY = 0.38
@@ -93,18 +95,27 @@ class _Drawing:
         self._renderer = renderer
         self._picture = GpuPicture(renderer.programs.context, project.picture.rgba)
         self._meshes: dict[Figure, GpuMesh] = {}
-        self._layers: dict[tuple[Figure, int], _Layer] = {}
+        self._layers: dict[tuple[Figure, int], Layer] = {}
+        self._heated: tuple[Pose, Vertices, HeatMap] | None = None
 
-    def layer(self, figure: Figure, number: int = 0) -> "_Layer":
-        """Return the vertex buffer of a figure with this number, 0 for the drawing itself."""
+    def layer(self, figure: Figure, number: int = 0) -> Layer:
+        """Return the poses of a figure with this number, 0 for the drawing itself."""
         if (figure, number) not in self._layers:
-            self._layers[figure, number] = _Layer(self._renderer, self._mesh(figure))
+            by_shader = shader_is_faster(self._renderer.programs.context)
+            self._layers[figure, number] = Layer(self._mesh(figure), by_shader=by_shader)
         return self._layers[figure, number]
+
+    def heat(self, pose: Pose, shown: Shown, heat_map: HeatMap) -> None:
+        """Upload a distortion of what is shown, if it is another than before."""
+        wanted = (pose, shown.vertices, heat_map)
+        if self._heated != wanted:
+            pose.write_heat(measure(shown, heat_map).astype(np.float32))
+            self._heated = wanted
 
     def keep_only(self, figures: tuple[Figure, ...]) -> None:
         """Let the buffers of other figures go."""
         for figure, number in [key for key in self._layers if key[0] not in figures]:
-            self._layers.pop((figure, number)).pose.release()
+            self._layers.pop((figure, number)).release()
         for figure in [figure for figure in self._meshes if figure not in figures]:
             self._meshes.pop(figure).release()
 
@@ -122,29 +133,6 @@ class _Drawing:
                 triangles=mesh.triangles,
             )
         return self._meshes[figure]
-
-
-class _Layer:
-    """One pose of a figure; positions and heat are uploaded when they are others than before."""
-
-    def __init__(self, renderer: Renderer, mesh: GpuMesh) -> None:
-        self._vertices = StreamedVertices(renderer.programs.context, mesh.count)
-        self.pose = Pose(mesh, self._vertices)
-        self._positions: Complexes | None = None
-        self._heat: tuple[Complexes, HeatMap] | None = None
-
-    def place(self, positions: Complexes) -> Pose:
-        if positions is not self._positions:
-            # Pairs of single-precision numbers are what complex numbers consist of.
-            self._vertices.write(positions.astype(np.complex64).view(np.float32).reshape(-1, 2))
-            self._positions = positions
-        return self.pose
-
-    def heat(self, shown: Shown, heat_map: HeatMap) -> None:
-        if self._heat is None or self._heat[0] is not shown.positions or self._heat[1] != heat_map:
-            values = measure(shown, heat_map)
-            self.pose.write_heat(values.astype(np.float32))
-            self._heat = (shown.positions, heat_map)
 
 
 def _inputs(session: Session, project: Project) -> tuple[object, ...]:
@@ -166,7 +154,7 @@ def _inputs(session: Session, project: Project) -> tuple[object, ...]:
 
 def measure(shown: Shown, heat_map: HeatMap) -> Floats:
     """Return one of the distortions at the vertices of what is shown, (v,)."""
-    fz, fzbar = shown.figure.derivatives(shown.positions)
+    fz, fzbar = shown.derivatives
     match heat_map:
         case "sigma_a":
             return distortion.sigma_a(fz, fzbar)
@@ -193,17 +181,17 @@ def _scene(session: Session, project: Project, shown: Shown, drawing: _Drawing) 
     overlays = session.overlays
     figures = [motion.figure for motion in (project.sketch, project.full) if motion is not None]
     drawing.keep_only((*figures, shown.figure))
-    layer = drawing.layer(shown.figure)
+    pose = drawing.layer(shown.figure).place(shown.vertices)
     heat = None
     if overlays.heat_map != "none":
-        layer.heat(shown, overlays.heat_map)
+        drawing.heat(pose, shown, overlays.heat_map)
         low, high = heat_limits(project, overlays.heat_map)
         heat = Heat(low=low, high=high)
     wireframe = Wireframe(colour=_colour(palette.text, 0.35)) if overlays.wireframe else None
     lines, discs = _marks(session, project, shown, palette)
     return Scene(
         background=_background(session, palette),
-        pose=layer.place(shown.positions),
+        pose=pose,
         heat=heat,
         wireframe=wireframe,
         ghosts=_ghosts(session, project, shown, drawing) if overlays.onion else (),
@@ -239,10 +227,10 @@ def _ghosts(
             frame = shown.frame + direction * step * overlays.ghost_step
             if frame not in document.frames and not document.loop:
                 continue
-            positions = project.sketch.positions(document, frame)
-            if positions is None or time_of(document, frame) == time_of(document, shown.frame):
+            vertices = project.sketch.vertices(document, frame)
+            if vertices is None or time_of(document, frame) == time_of(document, shown.frame):
                 continue
-            pose = drawing.layer(project.sketch.figure, number).place(positions)
+            pose = drawing.layer(project.sketch.figure, number).place(vertices)
             ghosts.append(Ghost(pose=pose, tint=tint, opacity=GHOST_OPACITY / step**0.5))
     return tuple(ghosts)
 
