@@ -153,7 +153,14 @@ def test_knob_that_is_dragged_sets_the_bound_once(window, project, tab):
     before = project.document
 
     def drag(robot):
-        robot.item_drag_with_delta("**/bound sigma_a track", ImVec2(40, 0))
+        name = "**/bound sigma_a track"
+        middle = robot.item_info(name).rect_full.get_center()
+        robot.mouse_move(name)
+        robot.mouse_down(0)
+        robot.mouse_move_to_pos(ImVec2(middle.x + 90, middle.y))
+        assert project.document is before
+        assert project.drafted_bounds.sigma_a > Bounds().sigma_a
+        robot.mouse_up(0)
 
     tab("Deform", drag)
     assert project.document.bounds.sigma_a > Bounds().sigma_a
@@ -271,6 +278,19 @@ def test_rebuilt_domain_keeps_handles_and_poses_as_one_step(window, project, tab
     assert project.history.undo_label == "Rebuild domain"
     editing.undo(window.session)
     assert project.document is before
+
+
+def test_rebuilt_domain_keeps_a_pose_that_no_handle_holds(window, project, tab):
+    posing.remove_handles(window.session, frozenset({0, 1}))
+
+    def act(robot):
+        robot.item_input_value("**/##triangles", 4000.0)
+        robot.item_click("**/###rebuild")
+
+    tab("Domain", act)
+    assert project.document.meshing.triangles == 4_000
+    certificate = project.document.key(24).pose.certificate
+    assert certificate.k == pytest.approx(STRETCH, rel=0.01)
 
 
 def test_domain_that_cannot_be_built_is_told(window, project, tab):
