@@ -1,0 +1,46 @@
+"""The sample projects that ship with Lissom are what their scripts say, and keep their bounds."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from app.certification import certify_document
+from app.document.project_file import load_project
+from app.pose_script import load_pose_script
+
+SAMPLES = Path(__file__).parent.parent / "sample_images"
+NAMES = sorted(path.stem for path in SAMPLES.glob("*.json"))
+
+
+def test_four_creatures_move():
+    assert {"character", "dragon", "giraffe", "octopus"} <= set(NAMES)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_sample_is_what_its_script_says(name):
+    document = load_project(SAMPLES / f"{name}.lissom")
+    script = load_pose_script(SAMPLES / f"{name}.json")
+    assert document.picture.data == (SAMPLES / f"{name}.png").read_bytes()
+    assert {handle.name: handle.position for handle in document.handles} == script.handles
+    assert [key.frame for key in document.keys] == [key.frame for key in script.keys]
+    assert [key.easing for key in document.keys] == [key.ease for key in script.keys]
+    assert document.bounds == script.bounds
+    lags = [lag for key in document.keys for lag in document.lags(key.pose).values()]
+    assert max(lags) < 2.0, "handles arrive, to two pixels"
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_sample_begins_and_ends_as_it_was_drawn(name):
+    document = load_project(SAMPLES / f"{name}.lissom")
+    vertices = document.domain.mesh.vertices
+    for key in (document.keys[0], document.keys[-1]):
+        assert_allclose(document.map_of(key.pose)(vertices), vertices, rtol=0, atol=1e-2)
+
+
+@pytest.mark.parametrize("name", ["character", "giraffe"])
+def test_a_sample_keeps_its_bounds(name):
+    report = certify_document(load_project(SAMPLES / f"{name}.lissom"))
+    assert report.certified
+    assert all(np.isfinite(interval.reached.sigma_a) for interval in report.intervals)
