@@ -14,7 +14,7 @@ from app.document.model import Document
 from app.document.project_file import load_project
 from app.document.settings import Meshing
 from app.jobs import Job
-from app.motion import Figure, Motion, prepare_motion
+from app.motion import Figure, Motion
 from app.opening import open_picture
 from app.picture import Picture, decode_picture
 from app.session import FileDialog, Project, Question, Session
@@ -115,8 +115,9 @@ def _read(path: Path, meshing: Meshing) -> Opened:
 def _read_project(path: Path) -> Opened:
     document = load_project(path)
     picture = decode_picture(document.picture.data, f"the picture of {path.name}")
-    rest = Motion.at_rest(document, Figure.sketch(document.domain))
-    return Opened(document, picture, prepare_motion(document, rest), ())
+    # Its keys are shown at once; the in-betweens follow.
+    sketch = Motion.at_rest(document, Figure.sketch(document.domain))
+    return Opened(document, picture, sketch, ())
 
 
 def _read_picture(path: Path, meshing: Meshing) -> Opened:
