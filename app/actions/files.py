@@ -3,7 +3,7 @@
 from pathlib import Path
 from typing import NamedTuple
 
-from app.actions import saving
+from app.actions import playback, saving
 from app.actions.action import do
 from app.actions.failures import report
 from app.actions.saving import PROJECT
@@ -93,7 +93,9 @@ def load(session: Session, path: Path) -> None:
 
 def show(session: Session, path: Path, opened: Opened) -> None:
     """Make what was read the project of the window."""
-    is_project = path.suffix == PROJECT
+    # A sample is the person's to play with, not to save over.
+    is_sample = path.parent == sample_images()
+    is_project = path.suffix.lower() == PROJECT and not is_sample
     forget_autosave(session.folder)
     session.project = Project(
         name=path.stem,
@@ -102,7 +104,10 @@ def show(session: Session, path: Path, opened: Opened) -> None:
         sketch=opened.sketch,
         path=path if is_project else None,
     )
-    session.preferences = session.preferences.with_recent(path)
+    if not is_sample:
+        session.preferences = session.preferences.with_recent(path)
+    elif len(opened.document.keys) > 1:
+        playback.toggle_play(session)
     for notice in opened.notices:
         session.tell(notice[:1].upper() + notice[1:] + ".")
 

@@ -78,6 +78,10 @@ class Shell:
         params.fps_idling.fps_idle = IDLE_FPS
         return params
 
+    def ask(self, action: Action) -> None:
+        """Do something at the end of the next frame."""
+        self._actions.append(action)
+
     @property
     def look(self) -> Look:
         """What panels draw with at present."""
@@ -137,7 +141,9 @@ class Shell:
     def _apply_theme(self) -> None:
         preferences = self.session.preferences
         self._themed = (preferences.theme, preferences.scale)
-        apply_theme(PALETTES[preferences.theme], preferences.scale)
+        palette = PALETTES[preferences.theme]
+        apply_theme(palette, preferences.scale)
+        hello_imgui.get_runner_params().imgui_window_params.background_color = palette.desk
 
     def _begin_frame(self) -> None:
         session = self.session

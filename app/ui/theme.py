@@ -116,8 +116,11 @@ def apply_theme(palette: Palette, scale: float) -> None:
     style = imgui.get_style()
     dpi = style.font_scale_dpi
     fresh = imgui.Style()
-    for name in _SIZES:
-        setattr(style, name, getattr(fresh, name))
+    # All of them anew: scaling multiplies what is there.
+    for name in dir(fresh):
+        value = getattr(fresh, name)
+        if not name.startswith(("_", "font")) and isinstance(value, (bool, int, float, ImVec2)):
+            setattr(style, name, value)
     for name, size in _SIZES.items():
         setattr(style, name, ImVec2(*size) if isinstance(size, tuple) else size)
     style.scale_all_sizes(scale * dpi)

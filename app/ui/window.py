@@ -9,6 +9,7 @@ from imgui_bundle import icons_fontawesome_6 as icons
 import glfw  # isort: skip
 
 from app.actions import files
+from app.actions.action import Action, do
 from app.render.context import is_software
 from app.render.draw_lists import Textures
 from app.render.renderer import Renderer
@@ -69,6 +70,10 @@ class Window:
             self._release()
             hello_imgui.manual_render.tear_down()
 
+    def ask(self, action: Action) -> None:
+        """Do something in the next frame, as if a panel had asked for it."""
+        self._shell.ask(action)
+
     def textures(self) -> Textures:
         """Return the textures that the panels show, by their OpenGL names."""
         textures = [] if self._thumbnails is None else self._thumbnails.textures()
@@ -115,7 +120,7 @@ class Window:
 
     def _take_dropped(self, _: object, paths: list[str]) -> None:
         if paths:
-            files.open_file(self.session, Path(paths[0]))
+            self.ask(do(files.open_file, Path(paths[0])))
 
     def _release(self) -> None:
         for owner in (self._exporter, self._canvas, self._thumbnails, self._renderer):

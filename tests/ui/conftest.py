@@ -17,3 +17,9 @@ def window(_only_window: Harness) -> Iterator[Harness]:
     yield _only_window
     problems = [toast.details for toast in _only_window.session.toasts if toast.details]
     assert not problems, problems[0]
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    parser.addoption(
+        "--screenshots", metavar="DIR", help="write the screenshots of the main states to a folder"
+    )

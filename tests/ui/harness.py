@@ -10,6 +10,7 @@ from imgui_bundle import ImVec2, hello_imgui, imgui
 from PIL import Image
 
 from app.actions import files
+from app.actions.action import do
 from app.document.settings import Meshing
 from app.jobs import Jobs
 from app.preferences import Preferences
@@ -63,6 +64,8 @@ class Harness:
             self._target.color_attachments[0].release()
             self._target.release()
             self._set_size(size)
+        # As a window of this size would open.
+        self._params.docking_params.layout_reset = True
         self.session.preferences = Preferences(scale=scale, theme=self.session.preferences.theme)
         self.frames(3)
 
@@ -111,6 +114,11 @@ class Harness:
         """Return the height of a line of text in pixels."""
         return imgui.get_style().font_size_base * imgui.get_style().font_scale_main
 
+    def status_height(self) -> float:
+        """Return how much of the window's height the style's paddings take around a line."""
+        style = imgui.get_style()
+        return style.frame_padding.y + style.window_padding.y + style.display_safe_area_padding.y
+
     def frames(self, count: int = 1) -> None:
         """Draw some frames, with the clock going on."""
         for _ in range(count):
@@ -118,6 +126,11 @@ class Harness:
             # Other tests of this process have contexts of their own.
             with self.gl:
                 hello_imgui.manual_render.render()
+
+    def act(self, verb: Callable[..., None], *arguments: object) -> None:
+        """Do something as a panel would ask for it, with its errors told as theirs are."""
+        self.window.ask(do(verb, *arguments))
+        self.frames()
 
     def settle(self) -> None:
         """Draw frames until no job is left."""
@@ -197,6 +210,6 @@ class Harness:
         if not self._is_seen:
             return
         data = imgui.get_draw_data()
-        self._target.clear(0.0, 0.0, 0.0, 1.0)
+        self._target.clear(*self._params.imgui_window_params.background_color)
         if self._lists is not None and data is not None and data.valid:
             self._lists.draw(self._target, self.window.textures())

@@ -22,6 +22,17 @@ def test_theme_and_scale_change_at_once(window):
     assert window.text_height() > text_size
 
 
+def test_changing_the_theme_changes_no_size(window):
+    height = window.status_height()
+    for _ in range(4):
+        viewing.scale_up(window.session)
+        window.frames(2)
+        viewing.scale_down(window.session)
+        viewing.toggle_theme(window.session)
+        window.frames(2)
+    assert window.status_height() == height
+
+
 def test_f1_opens_the_sheet_of_keys(window):
     window.run(lambda robot: robot.key_press(int(window.Key.f1)))
     assert window.session.dialog is not None
