@@ -73,7 +73,7 @@ def cauchy_integrals(
     jumps of a discrete μ between panels would become poles on the outline.
     """
     count, columns = len(panels), densities.shape[1]
-    by_panel: Complexes = densities.reshape(count, -1, columns) / (2j * np.pi)
+    by_panel = np.asarray(densities.reshape(count, -1, columns) / (2j * np.pi), np.complex128)
     masses = np.concatenate(
         [by_panel * panels.differentials()[:, :, None], panels.increments(by_panel)], axis=2
     )
