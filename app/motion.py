@@ -17,15 +17,14 @@ from app.animation import Stage
 from app.document.keyframe import Pose
 from app.document.model import Document
 from app.document.settings import Variant
-from app.document.timeline import Moment, intervals, time_of
+from app.document.timeline import Moment, intervals, resting_pose, time_of
 from app.vertices import Placed, Streamed, Vertices
 from engine.arrays import Booleans, Complexes, Floats, Integers
 from engine.cauchy import cauchy_coordinates
-from engine.domain import Domain
+from engine.domain import Domain, mesh_inside
 from engine.interpolation import Inbetweens
 from engine.mesh import Mesh
 from engine.streaming import Series
-from engine.triangulation import triangulate
 
 # Triangles of the mesh that is shown while the full one would be too slow.
 SKETCH_TRIANGLES = 12_000
@@ -97,7 +96,7 @@ class Figure:
         """Return a coarse mesh of the same domain, or the document's own if that is as coarse."""
         if len(source.mesh.triangles) <= SKETCH_TRIANGLES:
             return cls.full(source)
-        coarse = replace(source, mesh=triangulate(source.outline, SKETCH_TRIANGLES))
+        coarse = replace(source, mesh=mesh_inside(source.outline, SKETCH_TRIANGLES))
         return cls(domain=coarse, source=source, coordinates=_coordinates(coarse))
 
     def locate(self, points: Complexes, positions: Complexes) -> "Places":
@@ -240,16 +239,6 @@ def prepare_motion(document: Document, earlier: Motion, kin: Stage | None = None
     return Motion(
         figure=earlier.figure, document=document, stage=stage, pieces=MappingProxyType(pieces)
     )
-
-
-def resting_pose(document: Document, moment: Moment) -> Pose | None:
-    """Return the pose of the key that a moment shows, if it shows one unblended."""
-    keys = document.keys
-    if moment.weight == 0.0:
-        return keys[moment.interval].pose
-    if moment.weight == 1.0:
-        return keys[(moment.interval + 1) % len(keys)].pose
-    return None
 
 
 def pair_of(document: Document, interval: int) -> Pair:

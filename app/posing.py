@@ -9,8 +9,7 @@ import numpy as np
 from app.animation import Animation, Stage
 from app.document.keyframe import Pose, Target
 from app.document.model import Document
-from app.document.timeline import time_of
-from app.motion import resting_pose
+from app.document.timeline import resting_pose, time_of
 from engine.arrays import Booleans, Complexes
 from engine.deform.boundary import Boundary
 from engine.deform.bounds import Bounds

@@ -7,8 +7,8 @@ import numpy as np
 
 from app.document.keyframe import Pose
 from app.document.model import Document
-from app.document.timeline import time_of
-from app.motion import Figure, Motion, Places, resting_pose
+from app.document.timeline import resting_pose, time_of
+from app.motion import Figure, Motion, Places
 from app.vertices import Placed, Streamed, Vertices
 from engine.arrays import Complexes
 

@@ -70,9 +70,14 @@ def build_domain(
         )
     subject = subject_mask(rgba, tolerance=tolerance)
     outline = trace_outline(subject.mask, detail=detail)
-    mesh = with_limbs_on_top(triangulate(outline.points, triangles), deepest_point(outline.points))
+    mesh = mesh_inside(outline.points, triangles)
     domain = Domain(outline=outline.points, cage=outline.cage, mesh=mesh)
     return domain, subject.notices + outline.notices
+
+
+def mesh_inside(outline: Complexes, triangles: int) -> Mesh:
+    """Triangulate the inside of an outline, in an order that paints limbs over the body."""
+    return with_limbs_on_top(triangulate(outline, triangles), deepest_point(outline))
 
 
 def texture_coordinates(points: Complexes, image_size: tuple[int, int]) -> Floats:
