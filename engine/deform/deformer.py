@@ -34,7 +34,7 @@ from engine.harmonic_map import HarmonicMap
 
 # On the way into tightened bounds the barrier weighs at least this much, and the handles are this
 # much softer.
-LEAST_TIGHTENING, SOFTNESS = 0.3, 0.01
+LEAST_TIGHTENING, SOFTNESS = 0.1, 0.003
 # Expected gain relative to the objective: near rest, where a sketched Hessian would go in circles,
 # and at rest.
 NEAR_REST, REST = 1e-4, 1e-8
@@ -230,7 +230,7 @@ class Deformer:
             overshot=step.objective.sketched and not step.leashed,
         )
         settled = (
-            not step.leashed
+            not (step.leashed or step.tightening)
             and 2 * decrement < REST * step.energy
             and step.schedule.weight <= LEAST_RESTING
         )
@@ -276,7 +276,7 @@ class Deformer:
         schedule = state.schedule if _same(wish, state.wish) else state.schedule.for_new_wish()
         tightening = limits != self.bounds
         if tightening:
-            # The shape relaxes until it is within; only then the handles pull again.
+            # Held softly where it is, the shape gives in to its energy; later handles pull again.
             handles, leashed = self.handles.softened(SOFTNESS), False
             wish = Wish(jet.positions, np.full(len(jet.positions), np.nan))
             schedule = replace(schedule, weight=max(schedule.weight, LEAST_TIGHTENING))

@@ -22,7 +22,7 @@ from engine.deform.handles import Handles, Wish
 # long as that leaves this many for each cage vertex; samples with coefficients this far above the
 # mean (near a bound) enter one by one.
 STRIDE = 4
-SAMPLES_PER_VERTEX = 3
+SAMPLES_PER_VERTEX = 2
 STRONG = 3.0
 # Stiffness of a step against turning the whole shape by an angle; handles have some 1e3.
 DAMPING = 1e-4

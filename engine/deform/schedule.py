@@ -5,7 +5,7 @@ from math import inf
 from typing import Self
 
 # Barrier weight: at the start, at most, and at least while handles move and when they have arrived.
-FIRST, MOST, LEAST_MOVING, LEAST_RESTING = 1e-2, 3.0, 1e-3, 1e-6
+FIRST, MOST, LEAST_MOVING, LEAST_RESTING = 1e-2, 100.0, 1e-3, 1e-6
 RAISE, LOWER = 4.0, 0.5
 SHORTEST_REACH = 0.1
 # Lengths of steps that the bounds have cut short, and that they have not.

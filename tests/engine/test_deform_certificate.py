@@ -8,6 +8,7 @@ from scipy.linalg import eigh
 
 from engine.cauchy import cauchy_derivatives
 from engine.deform import Boundary, Bounds, certify
+from engine.deform import certificate as certificate_module
 from engine.errors import EngineError
 from engine.harmonic_map import HarmonicMap
 
@@ -199,3 +200,19 @@ def test_a_start_map_must_be_certified():
         deformer.resume(over_cage(CAGE, 1.1 * CAGE))
     assert deformer.start().certificate.certified
     assert len(STAR_POINTS) == len(deformer.positions(deformer.start()))
+
+
+def test_a_chord_that_passes_near_zero_bounds_the_segment(monkeypatch):
+    # Without bisection: f_z = t + 0.1 i for t from −1 to 1, exactly linear.
+    monkeypatch.setattr(certificate_module, "DEEPEST", 0)
+    ends = np.array([[-1 + 0.1j, 0], [1 + 0.1j, 0]])
+    segment = certificate_module._Segments(
+        starts=np.array([0j]),
+        ends=np.array([1 + 0j]),
+        first=ends[:1],
+        last=ends[1:],
+        errors=np.zeros((1, 2)),
+        origins=np.array([0]),
+    )
+    found, _ = certificate_module._bisect(CAGE, np.zeros((len(CAGE), 2)), segment, LOOSE)
+    assert_allclose(found.sigma_b, 0.1, rtol=1e-6)
