@@ -2,11 +2,11 @@
 
 import argparse
 import importlib
-import os
 import sys
 from collections.abc import Sequence
 from importlib.metadata import version
 
+from app.blas import use_one_thread
 from app.cli.console import Parser, fail
 from app.errors import EXPECTED_ERRORS
 
@@ -29,10 +29,7 @@ COMMANDS = {
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Run one command of the program and return its exit status."""
-    # Before NumPy is loaded: the matrices are small, and a second BLAS thread on a busy core can
-    # make a solver step fifty times slower.
-    for variable in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
-        os.environ.setdefault(variable, "1")
+    use_one_thread()
     words = list(sys.argv[1:] if argv is None else argv)
     if not words or (words[0] not in COMMANDS and not words[0].startswith("-")):
         words = ["window", *words]

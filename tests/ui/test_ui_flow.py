@@ -107,7 +107,7 @@ def test_a_person_makes_an_animation_and_takes_it_back(window, tmp_path):
     assert "Open folder" in [toast.label for toast in session.toasts]
 
     for _ in range(3):
-        window.run(lambda robot: robot.key_press(int(window.Key.mod_ctrl | window.Key.z)))
+        window.run(lambda robot: robot.key_press(int(window.Key.mod_ctrl) | int(window.Key.z)))
     assert project.document is first
     reopened = window.open(path)
     assert [key.frame for key in reopened.document.keys] == [0, 24]
