@@ -1,5 +1,7 @@
 """Drags: what they reach, and what they must never do."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from deform_shapes import (
@@ -20,6 +22,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 from app.assets import sample_images
 from app.picture import decode_picture
 from engine.deform import Boundary, Bounds, Deformer, Handles, Status
+from engine.deform.certified_step import add_samples
 from engine.domain import build_domain
 from engine.errors import EngineError
 from engine.harmonic_map import HarmonicMap
@@ -389,3 +392,64 @@ def test_a_sample_picture_is_dragged():
     state, _ = deformer.settle(state, deformer.handles.wish(places))
     assert state.status is Status.CONVERGED
     assert_allclose(deformer.positions(state), places, rtol=0, atol=1e-4 * boundary.size)
+
+
+def test_handles_do_not_pull_while_the_shape_walks_into_its_bounds():
+    deformer = bar()
+    far = deformer.handles.wish(BAR_POINTS + np.array([-40, 0, 40]))
+    state = deformer.start()
+    for _ in range(30):
+        state = deformer.step(state, far)
+    certificate = state.certificate
+    tight = bar(Bounds(k=0.6 * certificate.k, sigma_a=0.8 * certificate.sigma_a, sigma_b=0.3))
+    stretched = np.ptp(tight.positions(state).real)
+    for _ in range(80):
+        state = tight.step(state, far)
+        if state.status is not Status.TIGHTENING:
+            break
+        assert np.ptp(tight.positions(state).real) <= stretched
+        stretched = np.ptp(tight.positions(state).real)
+    assert state.status is Status.LAGGING
+
+
+def test_a_drag_that_does_not_get_on_begins_its_barrier_afresh():
+    deformer = star()
+    state = dragged(deformer, 9 * STAR_POINTS, 30)
+    stale = replace(
+        state,
+        duals=np.full((3, len(state.boundary.points)), 1e6),
+        schedule=replace(state.schedule, idle=4, best=0.0),
+    )
+    after = deformer.step(stale, state.wish)
+    assert after.duals is None
+    assert after.boundary is deformer.boundary
+    assert after.schedule.reach == 1.0
+    again = deformer.step(replace(stale, schedule=replace(stale.schedule, idle=5)), state.wish)
+    assert again.duals is not None
+
+
+def test_samples_are_added_where_a_bound_was_broken():
+    base = star_boundary()
+    duals = np.arange(3.0 * len(base.points)).reshape(3, -1)
+    same, kept = add_samples(base, base, duals, np.array([], dtype=int))
+    assert same is base
+    assert_array_equal(kept, duals)
+    more, longer = add_samples(base, base, duals, np.array([3, 7]))
+    assert len(more.points) == len(base.points) + 2
+    assert longer.shape == (3, len(more.points))
+    assert longer[0, 4] == duals[0, 4]
+    assert longer[0, 9] == duals[0, 8]
+    fewer, none = add_samples(base, more, longer, np.arange(200))
+    assert fewer is base
+    assert none is None
+
+
+def test_a_wild_drag_adds_samples():
+    deformer = star(Bounds(k=0.3, sigma_a=2.0, sigma_b=0.5))
+    state = deformer.start()
+    wish = deformer.handles.wish(STAR_POINTS[[3, 5, 1, 0, 2, 4]])
+    most = 0
+    for _ in range(40):
+        state = deformer.step(state, wish)
+        most = max(most, len(state.boundary.points))
+    assert most > len(deformer.boundary.points)
