@@ -309,6 +309,23 @@ class Deformer:
                 return state, count
         return state, at_most
 
+    def settle_anew(self, state: State, wish: Wish) -> tuple[State, int]:
+        """Settle; where the shape is held back, settle from the undeformed shape too.
+
+        Limbs that were pulled through each other can stay entangled when the handles come back.
+        The better of both results by the objective is returned, with all steps that were taken. It
+        may be a jump: for the end of a drag, not for its course.
+        """
+        state, count = self.settle(state, wish)
+        if state.status is Status.CONVERGED:
+            return state, count
+        fresh, more = self.settle(self.start(), wish)
+        objective = Objective(boundary=self.boundary, handles=self.handles, wish=wish)
+        values = [
+            objective.value(objective.jet(end.map.phi, end.map.psi)) for end in (state, fresh)
+        ]
+        return (state if values[0] <= values[1] else fresh), count + more
+
     def follow(self, state: State, wish: Wish) -> tuple[State, int]:
         """Take the few steps that one row of a recorded path gets; return their number too."""
         for count in range(1, PATH_STEPS + 1):

@@ -21,6 +21,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 from app.assets import sample_images
 from app.picture import decode_picture
+from engine.cage import offset_cage
 from engine.deform import Boundary, Bounds, Deformer, Handles, Status
 from engine.deform.certified_step import add_samples
 from engine.domain import build_domain
@@ -453,3 +454,28 @@ def test_a_wild_drag_adds_samples():
         state = deformer.step(state, wish)
         most = max(most, len(state.boundary.points))
     assert most > len(deformer.boundary.points)
+
+
+def test_a_shape_that_stays_entangled_is_settled_anew():
+    # A thin band whose handles were dragged through each other under tight bounds.
+    x = np.linspace(0, 3, 14)
+    spine = x + 0.25j * np.sin(2.2 * x)
+    outline = np.concatenate([spine - 0.12j, (spine + 0.12j)[::-1]])
+    boundary = Boundary.sample(outline, offset_cage(outline, 0.06))
+    points = spine[[1, 4, 7, 10, 12]]
+    handles = Handles.place(boundary, points)
+    bounds = Bounds(k=0.4, sigma_a=3, sigma_b=0.4)
+    deformer = Deformer(boundary=boundary, handles=handles, bounds=bounds)
+    state = deformer.start()
+    for share in np.linspace(0, 1, 12):
+        state, _ = deformer.follow(state, handles.wish(points + share * (points[::-1] - points)))
+    home = handles.wish(points)
+    assert deformer.settle(state, home)[0].status is Status.BOUNDS_REACHED
+    back, _ = deformer.settle_anew(state, home)
+    assert back.status is Status.CONVERGED
+    assert_allclose(deformer.positions(back), points, rtol=0, atol=1e-6)
+    # What the handles cannot reach from anywhere stays as the drag left it.
+    far = handles.wish(5 * points)
+    reached, _ = deformer.settle_anew(back, far)
+    assert reached.status is not Status.CONVERGED
+    assert reached.certificate.certified
