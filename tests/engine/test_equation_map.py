@@ -2,6 +2,7 @@
 
 import importlib
 import re
+from pathlib import Path
 
 import pytest
 
@@ -15,6 +16,12 @@ def test_the_map_covers_the_paper():
     for number in ("(1)", "(2)", "(3)", "(4)", "(5)", "(6)", "(7)", "(8)", "(13)", "(14)", "(15)"):
         assert number in equations
     assert len(ENTRIES) == engine.__doc__.count(" engine.") >= 24
+
+
+def test_the_readme_shows_the_same_map():
+    readme = (Path(__file__).parents[2] / "README.md").read_text(encoding="utf-8")
+    shown = re.findall(r"^\| (.+?) \| .+? \| `(engine\.\S+)` \|$", readme, flags=re.MULTILINE)
+    assert [entry for entry in shown if entry[1].count(".") > 1] == ENTRIES
 
 
 @pytest.mark.parametrize(("equation", "path"), ENTRIES)
