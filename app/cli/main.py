@@ -2,6 +2,7 @@
 
 import argparse
 import importlib
+import os
 import sys
 from collections.abc import Sequence
 from importlib.metadata import version
@@ -11,6 +12,7 @@ from app.cli.console import Parser, fail
 from app.errors import EXPECTED_ERRORS
 
 EXIT_INTERRUPTED = 130
+EXIT_PIPE_CLOSED = 141
 
 # Subcommand → its summary. The module of that name in app.cli defines `add_arguments(parser)` and
 # `run(arguments)`; only the one that is asked for is loaded.
@@ -43,6 +45,10 @@ def main(argv: Sequence[str] | None = None) -> int:
     except KeyboardInterrupt:
         print("lissom: interrupted", file=sys.stderr)
         return EXIT_INTERRUPTED
+    except BrokenPipeError:
+        # Whoever read the output has seen enough; Python must not try to write the rest at its end.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return EXIT_PIPE_CLOSED
 
 
 def build_parser(words: Sequence[str]) -> argparse.ArgumentParser:

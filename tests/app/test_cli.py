@@ -1,9 +1,13 @@
+import os
 import subprocess
 import sys
 
 import pytest
 
+from app.assets import sample_images
 from app.cli.main import COMMANDS, main
+
+SAMPLE = sample_images() / "giraffe.lissom"
 
 
 def run(*words: str) -> subprocess.CompletedProcess[str]:
@@ -52,3 +56,18 @@ def test_help_does_not_load_the_numerics():
     code = "import sys, app.cli.main as m; m.build_parser([]); print('numpy' in sys.modules)"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "False"
+
+
+def test_a_reader_that_stops_early_is_no_error():
+    reading, writing = os.pipe()
+    os.close(reading)
+    with os.fdopen(writing, "wb") as closed:
+        done = subprocess.run(
+            [sys.executable, "-m", "app", "certify", str(SAMPLE), "--json"],
+            stdout=closed,
+            stderr=subprocess.PIPE,
+            text=True,
+            check=False,
+        )
+    assert done.returncode == 141
+    assert done.stderr == ""
