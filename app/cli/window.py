@@ -1,6 +1,8 @@
 """`lissom` and `lissom FILE`: the window."""
 
 import argparse
+import os
+import sys
 import time
 from pathlib import Path
 
@@ -12,6 +14,9 @@ from app.render.context import window_context
 from app.render.renderer import Renderer
 from app.session import Session
 from app.ui.window import Window
+
+# Where the display of X11 or Wayland is named.
+DISPLAYS = ("DISPLAY", "WAYLAND_DISPLAY")
 
 EPILOG = """\
 Without FILE the window opens with samples to try. `lissom FILE` is short for `lissom window FILE`.
@@ -35,6 +40,11 @@ def run(arguments: argparse.Namespace) -> int:
     """Open the window, and close it when the person does."""
     if arguments.file is not None and not arguments.file.is_file():
         fail(f"{arguments.file} is no command and no file (see 'lissom --help')")
+    if sys.platform == "linux" and not any(map(os.environ.get, DISPLAYS)):
+        fail(
+            "there is no display for the window; the command line works without one, for example "
+            "'lissom export PROJECT --out DIR'"
+        )
     folder = settings_folder()
     folder.mkdir(parents=True, exist_ok=True)
     session = Session(

@@ -71,3 +71,13 @@ def test_a_reader_that_stops_early_is_no_error():
         )
     assert done.returncode == 141
     assert done.stderr == ""
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="other systems always have a display")
+def test_without_a_display_the_window_says_what_works(monkeypatch, capsys):
+    monkeypatch.delenv("DISPLAY", raising=False)
+    monkeypatch.delenv("WAYLAND_DISPLAY", raising=False)
+    with pytest.raises(SystemExit) as leaving:
+        main([str(SAMPLE)])
+    assert leaving.value.code == 2
+    assert "no display" in error_line(capsys.readouterr().err)
