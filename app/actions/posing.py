@@ -156,16 +156,21 @@ def _grab(session: Session, project: Project) -> Grab:
 
 
 def _wishes(project: Project) -> Mapping[int, Target]:
-    """Return what is wished of each handle in the pose that is shown."""
-    shown = project.shown
+    """Return what is wished of each handle of the document in the pose that is shown.
+
+    What is shown may be a frame behind the document, and not know its newest handles.
+    """
+    shown, document = project.shown, project.document
     pose = project.loose or (shown.pose if shown else None)
     if pose is not None:
-        return pose.targets
+        return _retargeted(document, pose).targets
     if shown is None:
         return {}
+    rest = np.array([handle.position for handle in document.handles], dtype=np.complex128)
+    places = shown.figure.locate(rest, shown.figure.domain.mesh.vertices).on(shown.positions)
     return {
         handle.id: Target(position=complex(place))
-        for handle, place in zip(shown.document.handles, shown.handle_places, strict=True)
+        for handle, place in zip(document.handles, places, strict=True)
     }
 
 

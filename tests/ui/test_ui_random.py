@@ -15,10 +15,15 @@ STEPS = 150
 
 def pull_one(session, rng):
     project = session.project
-    if project.shown is None or not project.document.handles:
+    if project.shown is None:
         return
-    handle = project.document.handles[rng.integers(len(project.document.handles))]
-    place = project.shown.handle_places[project.shown.document.handles.index(handle)]
+    # What is shown may be a frame behind the document.
+    shown = dict(zip(project.shown.document.handles, project.shown.handle_places, strict=True))
+    handles = [handle for handle in project.document.handles if handle in shown]
+    if not handles:
+        return
+    handle = handles[rng.integers(len(handles))]
+    place = shown[handle]
     offset = complex(*rng.normal(0, 40, 2))
     posing.wish(session, {handle.id: Target(position=complex(place) + offset)})
 
