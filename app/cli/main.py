@@ -37,7 +37,9 @@ def main(argv: Sequence[str] | None = None) -> int:
         words = ["window", *words]
     arguments = build_parser(words).parse_args(words)
     try:
-        return int(importlib.import_module(f"app.cli.{arguments.command}").run(arguments))
+        status = int(importlib.import_module(f"app.cli.{arguments.command}").run(arguments))
+        # Here, and not when Python ends, where nobody could answer for a closed pipe.
+        sys.stdout.flush()
     except EXPECTED_ERRORS as error:
         fail(str(error))
     except MemoryError:
@@ -49,6 +51,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         # Whoever read the output has seen enough; Python must not try to write the rest at its end.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return EXIT_PIPE_CLOSED
+    return status
 
 
 def build_parser(words: Sequence[str]) -> argparse.ArgumentParser:
