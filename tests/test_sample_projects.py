@@ -8,6 +8,7 @@ from numpy.testing import assert_allclose
 
 from app.certification import certify_document
 from app.document.project_file import load_project
+from app.document.timeline import exported_frames
 from app.pose_script import load_pose_script
 
 SAMPLES = Path(__file__).parent.parent / "sample_images"
@@ -37,6 +38,7 @@ def test_a_sample_begins_and_ends_as_it_was_drawn(name):
     vertices = document.domain.mesh.vertices
     for key in (document.keys[0], document.keys[-1]):
         assert_allclose(document.map_of(key.pose)(vertices), vertices, rtol=0, atol=1e-2)
+    assert exported_frames(document).last == document.frames.last - 1
 
 
 @pytest.mark.parametrize("name", ["character", "giraffe"])

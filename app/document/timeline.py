@@ -10,6 +10,10 @@ from app.document.settings import FrameRange
 from app.errors import LissomError
 
 
+# Pixels: a handle at rest is where the identity takes it, up to rounding.
+SAME_PLACE = 1e-6
+
+
 class Moment(NamedTuple):
     """A blend of key `interval` and the key after it (the first one after the last).
 
@@ -101,7 +105,13 @@ def _is_same(document: Document, first: int, second: int) -> bool:
     poses = [resting_pose(document, moment) for moment in moments]
     if poses[0] is None or poses[1] is None:
         return False
-    return poses[0] is poses[1] or poses[0].targets == poses[1].targets
+    if poses[0] is poses[1]:
+        return True
+    pairs = [(target, poses[1].targets[handle]) for handle, target in poses[0].targets.items()]
+    return all(
+        abs(one.position - other.position) <= SAME_PLACE and one.rotation == other.rotation
+        for one, other in pairs
+    )
 
 
 def frame_times(document: Document, frames: FrameRange, fps: float | None = None) -> list[float]:
