@@ -9,7 +9,6 @@ from app.document.model import Document
 from app.document.settings import FrameRange
 from app.errors import LissomError
 
-
 # Pixels: a handle at rest is where the identity takes it, up to rounding.
 SAME_PLACE = 1e-6
 
