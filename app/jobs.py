@@ -1,4 +1,8 @@
-"""One worker thread for long computations; of each kind only the newest job counts."""
+"""Worker threads for long computations; of each kind only the newest job counts.
+
+There are two: one for what the person waits for, such as the pose under the hand, and one for all
+that may take a second, such as in-betweens. The first is never kept waiting by the second.
+"""
 
 import threading
 from collections.abc import Callable
@@ -16,13 +20,13 @@ class Job:
     kind : str
         What it is for, in words that the status bar can show. One job of a kind waits at a time.
     work : callable
-        Runs on the worker thread; touches nothing mutable and no GL.
+        Runs on a worker thread; touches nothing mutable and no GL.
     done : callable
         Takes the result, on the main thread.
     failed : callable
         Takes the exception that ended `work`, on the main thread.
     urgent : bool
-        Goes before all that is not.
+        Runs on the thread for what the person waits for.
     """
 
     kind: str
@@ -32,8 +36,17 @@ class Job:
     urgent: bool = False
 
 
+@dataclass(slots=True, eq=False)
+class _Lane:
+    """A worker thread, and what it works on."""
+
+    thread: threading.Thread | None = None
+    running: Job | None = None
+    is_stale: bool = False
+
+
 class Jobs:
-    """The queue and its worker thread.
+    """The queue and its worker threads.
 
     A job is unfinished until its result is delivered. One whose kind was put in again or dropped
     before that is stale: if it waits it never starts, and its result is thrown away.
@@ -42,20 +55,20 @@ class Jobs:
     def __init__(self) -> None:
         self._condition = threading.Condition()
         self._waiting: list[Job] = []
-        self._running: Job | None = None
-        self._running_is_stale = False
         self._finished: list[tuple[str, Callable[[], None]]] = []
-        self._thread: threading.Thread | None = None
+        self._lanes = {True: _Lane(), False: _Lane()}  # by whether they are for urgent jobs
 
     def put(self, job: Job) -> None:
         """Queue a job in place of an unfinished one of its kind."""
         with self._condition:
             self._forget(job.kind)
             self._waiting.append(job)
-            self._waiting.sort(key=lambda waiting: not waiting.urgent)
-            if self._thread is None:
-                self._thread = threading.Thread(target=self._work, name="jobs", daemon=True)
-                self._thread.start()
+            lane = self._lanes[job.urgent]
+            if lane.thread is None:
+                name = "urgent jobs" if job.urgent else "jobs"
+                work = partial(self._work, lane, urgent=job.urgent)
+                lane.thread = threading.Thread(target=work, name=name, daemon=True)
+                lane.thread.start()
             self._condition.notify_all()
 
     def drop(self, kind: str) -> None:
@@ -65,12 +78,15 @@ class Jobs:
 
     @property
     def kinds(self) -> tuple[str, ...]:
-        """The kinds that are unfinished, in the order in which they come."""
+        """The kinds that are unfinished: first what is finished already, last what still waits."""
         with self._condition:
-            kinds = [kind for kind, _ in self._finished]
-            if self._running is not None and not self._running_is_stale:
-                kinds.append(self._running.kind)
-            return (*kinds, *(job.kind for job in self._waiting))
+            running = [
+                lane.running.kind
+                for lane in self._lanes.values()
+                if lane.running is not None and not lane.is_stale
+            ]
+            finished = [kind for kind, _ in self._finished]
+            return (*finished, *running, *(job.kind for job in self._waiting))
 
     def deliver(self) -> None:
         """Hand over what is finished; on the main thread, once a frame."""
@@ -88,27 +104,35 @@ class Jobs:
         """Wait until all that is left is to deliver; return whether that came in time."""
         with self._condition:
             return self._condition.wait_for(
-                lambda: self._running is None and not self._waiting, timeout
+                lambda: (
+                    not self._waiting and all(lane.running is None for lane in self._lanes.values())
+                ),
+                timeout,
             )
 
     def _forget(self, kind: str) -> None:
         self._waiting = [job for job in self._waiting if job.kind != kind]
         self._finished = [done for done in self._finished if done[0] != kind]
-        if self._running is not None and self._running.kind == kind:
-            self._running_is_stale = True
+        for lane in self._lanes.values():
+            if lane.running is not None and lane.running.kind == kind:
+                lane.is_stale = True
 
-    def _work(self) -> None:
+    def _work(self, lane: _Lane, *, urgent: bool) -> None:
         while True:
             with self._condition:
-                self._condition.wait_for(lambda: self._waiting)
-                job = self._running = self._waiting.pop(0)
-                self._running_is_stale = False
+                while (job := self._next(urgent=urgent)) is None:
+                    self._condition.wait()
+                self._waiting.remove(job)
+                lane.running, lane.is_stale = job, False
             hand_over = _attempt(job)
             with self._condition:
-                if not self._running_is_stale:
+                if not lane.is_stale:
                     self._finished.append((job.kind, hand_over))
-                self._running = None
+                lane.running = None
                 self._condition.notify_all()
+
+    def _next(self, *, urgent: bool) -> Job | None:
+        return next((job for job in self._waiting if job.urgent == urgent), None)
 
 
 def _attempt(job: Job) -> Callable[[], None]:

@@ -108,13 +108,31 @@ def test_result_may_make_the_next_one_stale():
     assert results == []
 
 
-def test_urgent_jobs_go_first(busy):
-    jobs, gate = busy
-    results = []
+def test_urgent_jobs_do_not_wait_for_others(busy):
+    jobs, _ = busy
+    results, ready = [], threading.Event()
     jobs.put(job("in-betweens", lambda: 1, results))
-    jobs.put(job("pose", lambda: 2, results, urgent=True))
-    assert jobs.kinds == ("gate", "pose", "in-betweens")
+    jobs.put(job("pose", ready.set, results, urgent=True))
+    assert ready.wait(10)
+    while "pose" in jobs.kinds:
+        jobs.deliver()
+    assert results == [("pose", None)]
+    assert jobs.kinds == ("gate", "in-betweens")
+
+
+def test_urgent_jobs_come_one_after_the_other():
+    jobs, results = Jobs(), []
+    gate, begun = threading.Event(), threading.Event()
+
+    def wait():
+        begun.set()
+        gate.wait(10)
+
+    jobs.put(job("pose", wait, results, urgent=True))
+    assert begun.wait(10)
+    jobs.put(job("save", lambda: 1, results, urgent=True))
+    assert jobs.kinds == ("pose", "save")
     gate.set()
     assert jobs.settle()
     jobs.deliver()
-    assert [kind for kind, _ in results] == ["pose", "in-betweens"]
+    assert results == [("pose", None), ("save", 1)]
