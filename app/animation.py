@@ -17,6 +17,7 @@ from engine.harmonic_map import HarmonicMap
 from engine.hilbert import HilbertTransform
 from engine.interpolation import Frame, Inbetweens, Sites, prepare_inbetweens, prepare_sites
 from engine.keyframes import KeyframeSamples, sample_keyframes
+from engine.projected_transform import ProjectedTransform
 
 
 class Stage:
@@ -60,9 +61,10 @@ class Stage:
         )
         self._lock = threading.RLock()
         self._samples: dict[Pose, KeyframeSamples] = {}
-        self._inbetweens: dict[tuple[Pose, Pose, int, Variant], Inbetweens] = {}
+        self._inbetweens: dict[tuple[Pose, Pose, int, Variant, bool], Inbetweens] = {}
         self._kin = kin
         self._transform: HilbertTransform | None = None
+        self._quick_transform: ProjectedTransform | None = None
 
     @property
     def transform(self) -> HilbertTransform:
@@ -76,6 +78,14 @@ class Stage:
                 )
                 self._kin = None
             return self._transform
+
+    @property
+    def quick_transform(self) -> ProjectedTransform:
+        """What stands in for the transform in rough in-betweens."""
+        with self._lock:
+            if self._quick_transform is None:
+                self._quick_transform = ProjectedTransform.on(self.domain.outline, self.domain.cage)
+            return self._quick_transform
 
     def keep_only(self, poses: Sequence[Pose]) -> None:
         """Forget what was kept for other poses."""
@@ -97,11 +107,16 @@ class Stage:
             return self._samples[pose]
 
     def inbetweens(
-        self, first: Pose, second: Pose, variant: Variant, *, turns: int = 0
+        self, first: Pose, second: Pose, variant: Variant, *, turns: int = 0, rough: bool = False
     ) -> Inbetweens:
-        """Return the in-betweens of two poses, with whole turns beyond the shorter way."""
+        """Return the in-betweens of two poses, with whole turns beyond the shorter way.
+
+        Rough ones are ready much sooner where the variant is metric, and are right to some
+        thousandths of the drawing's size; other variants have no rough ones.
+        """
+        rough = rough and has_rough(variant)
         with self._lock:
-            key = (first, second, turns, variant)
+            key = (first, second, turns, variant, rough)
             if key not in self._inbetweens:
                 pair = [self.samples(first), self.samples(second)]
                 self._inbetweens[key] = prepare_inbetweens(
@@ -109,9 +124,21 @@ class Stage:
                     self.sites,
                     pair,
                     root_sheets(np.array([sample.anchor_fz for sample in pair]), [turns]),
-                    transform=self.transform if variant == "metric" else None,
+                    transform=self._transform_for(variant, rough=rough),
                 )
             return self._inbetweens[key]
+
+    def _transform_for(
+        self, variant: Variant, *, rough: bool
+    ) -> HilbertTransform | ProjectedTransform | None:
+        if variant != "metric":
+            return None
+        return self.quick_transform if rough else self.transform
+
+
+def has_rough(variant: Variant) -> bool:
+    """Tell whether rough in-betweens of a variant differ from its exact ones."""
+    return variant == "metric"
 
 
 class Animation:

@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from app.animation import Stage
+from app.animation import Stage, has_rough
 from app.document.keyframe import Pose
 from app.document.model import Document
 from app.document.settings import Variant
@@ -150,6 +150,7 @@ class Piece(NamedTuple):
     first: Pose
     second: Pose
     inbetweens: Inbetweens
+    is_rough: bool = False
     series: Series | None = None
     distortions: Series | None = None
 
@@ -197,12 +198,20 @@ class Motion:
         vertices = self.vertices(document, frame)
         return None if vertices is None else vertices.positions
 
-    def knows(self, document: Document) -> bool:
-        """Tell whether all in-betweens of a document are prepared."""
-        return document.domain is self.figure.source and all(
-            self.inbetweens(document, interval) is not None
-            for interval in range(len(intervals(document)))
-        )
+    def knows(self, document: Document, *, roughly: bool = False) -> bool:
+        """Tell whether all in-betweens of a document are prepared, if only roughly."""
+        if document.domain is not self.figure.source:
+            return False
+        pieces = [self._piece(document, interval) for interval in range(len(intervals(document)))]
+        return all(piece is not None and (roughly or not piece.is_rough) for piece in pieces)
+
+    def is_rough(self, document: Document, frame: float) -> bool:
+        """Tell whether what is prepared of a frame is rough."""
+        moment = time_of(document, frame)
+        if resting_pose(document, moment) is not None:
+            return False
+        piece = self._piece(document, moment.interval)
+        return piece is not None and piece.is_rough
 
     def inbetweens(self, document: Document, interval: int) -> Inbetweens | None:
         """Return the in-betweens of one of a document's intervals; None if not prepared."""
@@ -215,25 +224,48 @@ class Motion:
         return self.pieces.get(pair_of(document, interval))
 
 
-def prepare_motion(document: Document, earlier: Motion, kin: Stage | None = None) -> Motion:
-    """Return the motion of a document with all its in-betweens; on the worker thread.
+def prepare_motion(
+    document: Document,
+    earlier: Motion,
+    kin: Stage | None = None,
+    *,
+    roughly: bool = False,
+    at_most: int | None = None,
+) -> Motion:
+    """Return the motion of a document with its in-betweens; on the worker thread.
 
-    What an earlier motion on the same figure prepared is used again, and what a kindred stage
-    knows of the same outline and cage.
+    Parameters
+    ----------
+    document : Document
+    earlier : Motion
+        On the same figure; what it prepared is used again.
+    kin : Stage, optional
+        What it knows of the same outline and cage is used again.
+    roughly : bool
+        Whether rough in-betweens are enough.
+    at_most : int, optional
+        How many intervals to prepare; the others stay as they are. By default all.
     """
     stage, known = earlier.stage, earlier.pieces
     if document.anchor != earlier.document.anchor:
         stage, kin, known = None, earlier.stage or kin, {}
-    pieces = {}
+    pieces: dict[Pair, Piece] = {}
+    made = 0
+    rough = roughly and has_rough(document.variant)
     for interval, (first, last) in enumerate(intervals(document)):
         pair = pair_of(document, interval)
         if pair in known:
             pieces[pair] = known[pair]
+        is_enough = pair in known and (roughly or not known[pair].is_rough)
+        if is_enough or made == at_most:
             continue
+        made += 1
         stage = stage or Stage(earlier.figure.domain, anchor=document.anchor, kin=kin)
         key, following = document.keys[first], document.keys[last]
-        inbetweens = stage.inbetweens(key.pose, following.pose, document.variant, turns=key.turns)
-        pieces[pair] = Piece(key.pose, following.pose, inbetweens)
+        inbetweens = stage.inbetweens(
+            key.pose, following.pose, document.variant, turns=key.turns, rough=rough
+        )
+        pieces[pair] = Piece(key.pose, following.pose, inbetweens, is_rough=rough)
     if stage is not None:
         stage.keep_only([pose for piece in pieces.values() for pose in piece[:2]])
     return Motion(

@@ -29,7 +29,8 @@ class Shown:
     handles : Places
         Of the document's handles in the figure.
     is_current : bool
-        Whether it shows what it should, and not an earlier state while that is being prepared.
+        Whether it shows what it should, and not an earlier state or a rough one while that is being
+        prepared.
     """
 
     document: Document
@@ -114,7 +115,7 @@ def show(
                 figure=figure,
                 vertices=vertices,
                 handles=handles,
-                is_current=True,
+                is_current=pose is not None or not motion.is_rough(document, frame),
             )
     if earlier is None:
         raise ValueError("none of the motions is of the document's domain")

@@ -33,22 +33,22 @@ def keep_up(session: Session) -> None:
 
 
 def _ask(session: Session, project: Project, document: Document) -> None:
-    is_posing = project.grab is not None
-    if not project.sketch.knows(document):
-        # While the solver works, in-betweens cost it its time; ghosts are worth it.
-        if session.overlays.onion or not is_posing:
-            _prepare(session, project, SKETCHING)
-    elif (
-        project.grab is None
-        and project.sketch.figure.domain is not document.domain
-        and (project.full is None or not project.full.knows(document))
+    if not project.sketch.knows(document, roughly=True):
+        _prepare(session, project, SKETCHING, roughly=True)
+    elif project.grab is not None:
+        # What follows takes longer than the hand stays where it is.
+        return
+    elif not project.sketch.knows(document):
+        _prepare(session, project, SKETCHING)
+    elif project.sketch.figure.domain is not document.domain and (
+        project.full is None or not project.full.knows(document)
     ):
         _prepare(session, project, REFINING)
-    elif project.grab is None:
+    else:
         _stream(session, project, document)
 
 
-def _prepare(session: Session, project: Project, kind: str) -> None:
+def _prepare(session: Session, project: Project, kind: str, *, roughly: bool = False) -> None:
     if kind in session.jobs.kinds:
         return
     document = project.document
@@ -63,20 +63,28 @@ def _prepare(session: Session, project: Project, kind: str) -> None:
     session.jobs.put(
         Job(
             kind=kind,
-            work=partial(_motion, document, earlier, kind, project.sketch.stage),
+            work=partial(_motion, document, earlier, kind, project.sketch.stage, roughly=roughly),
             done=done,
             failed=lambda error: _give_up(session, project, document, error),
         )
     )
 
 
-def _motion(document: Document, earlier: Motion | None, kind: str, kin: Stage | None) -> Motion:
+def _motion(
+    document: Document,
+    earlier: Motion | None,
+    kind: str,
+    kin: Stage | None,
+    *,
+    roughly: bool,
+) -> Motion:
     if earlier is None or earlier.figure.source is not document.domain:
         make = Figure.sketch if kind == SKETCHING else Figure.full
         is_kin = kin is not None and kin.domain.cage is document.domain.cage
         kin = kin if is_kin else None
         earlier = Motion.at_rest(document, make(document.domain))
-    return prepare_motion(document, earlier, kin)
+    # Exact ones an interval at a time: the next drag is not to wait for its ghosts.
+    return prepare_motion(document, earlier, kin, roughly=roughly, at_most=None if roughly else 1)
 
 
 def _stream(session: Session, project: Project, document: Document) -> None:

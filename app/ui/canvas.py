@@ -218,6 +218,8 @@ def _ghosts(
     overlays, document = session.overlays, project.document
     if project.playhead.since is not None:
         return ()
+    # While the hand moves, in-betweens come a moment later: until then the last ones stay.
+    known = document if project.sketch.knows(document, roughly=True) else project.sketch.document
     ghosts = []
     sides = ((-1, overlays.ghosts_before, GHOST_BEFORE), (1, overlays.ghosts_after, GHOST_AFTER))
     number = 0
@@ -225,10 +227,10 @@ def _ghosts(
         for step in range(count, 0, -1):
             number += 1
             frame = shown.frame + direction * step * overlays.ghost_step
-            if frame not in document.frames and not document.loop:
+            if frame not in known.frames and not known.loop:
                 continue
-            vertices = project.sketch.vertices(document, frame)
-            if vertices is None or time_of(document, frame) == time_of(document, shown.frame):
+            vertices = project.sketch.vertices(known, frame)
+            if vertices is None or time_of(known, frame) == time_of(known, shown.frame):
                 continue
             pose = drawing.layer(project.sketch.figure, number).place(vertices)
             ghosts.append(Ghost(pose=pose, tint=tint, opacity=GHOST_OPACITY / step**0.5))

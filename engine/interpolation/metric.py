@@ -14,6 +14,7 @@ from engine.interpolation.derivatives import Derivatives, blended_log_fz
 from engine.interpolation.eta import EtaBlend
 from engine.interpolation.metric_residual import OutlineMetric, TimeSeries, separate
 from engine.keyframes import KeyframeSamples
+from engine.projected_transform import ProjectedTransform
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -53,7 +54,7 @@ class MetricBlend:
         keyframes: Sequence[KeyframeSamples],
         sheets: Integers,
         paths: IntegrationPaths,
-        transform: HilbertTransform,
+        transform: HilbertTransform | ProjectedTransform,
     ) -> Self:
         """Solve the Dirichlet problems of the residual between two keyframes."""
         derivatives = [key.map.derivatives(transform.nodes) for key in keyframes]

@@ -28,6 +28,7 @@ from engine.interpolation.sites import Sites, prepare_sites
 from engine.interpolation.smooth_scaling import SmoothScaling
 from engine.interpolation.timing import Easing, Moment, eased_moment, linear, spline_moment
 from engine.keyframes import KeyframeSamples, sample_keyframes
+from engine.projected_transform import ProjectedTransform
 
 AnchorCurve = Callable[[float], complex]
 
@@ -190,7 +191,7 @@ def prepare_inbetweens(
     keyframes: Sequence[KeyframeSamples],
     sheets: Integers,
     *,
-    transform: HilbertTransform | None = None,
+    transform: HilbertTransform | ProjectedTransform | None = None,
     pointwise: bool = False,
     smooth_rho: bool = False,
 ) -> Inbetweens:
@@ -206,8 +207,9 @@ def prepare_inbetweens(
     keyframes : sequence of KeyframeSamples, length q
     sheets : int32, shape (q,)
         From `root_sheets`.
-    transform : HilbertTransform, optional
-        Of the sites' outline; the metric variant needs it, and exactly two keyframes.
+    transform : HilbertTransform or ProjectedTransform, optional
+        Of the sites' outline; the metric variant needs it, and exactly two keyframes. The second
+        kind is for in-betweens in a hurry.
     pointwise, smooth_rho : bool
         As in `prepare`.
     """

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from app.actions import editing, exporting, playback, posing, saving
+from app.actions import editing, exporting, keys, playback, posing, saving
 from app.actions.action import do
 from app.assets import sample_images
 from app.document.keyframe import Target
@@ -126,6 +126,46 @@ def test_dragging_follows_and_is_one_step(window, bar):
     assert session.solver_seconds >= 0
     editing.undo(session)
     assert bar.document is before
+
+
+def test_inbetweens_follow_a_drag_before_the_hand_lets_go(window, bar):
+    session = window.session
+    keys.set_variant(session, "metric")
+    playback.seek(session, 24)
+    window.settle()
+    posing.wish(session, {1: Target(position=handle_places(bar)[1] + 120j)})
+    window.settle()
+    before = bar.sketch.positions(bar.document, 12)
+    start = handle_places(bar)[1]
+    ghosts, halfway = [], {}
+
+    def play(robot):
+        robot.mouse_move_to_pos(window.point(start))
+        robot.mouse_down(0)
+        for step in range(1, 7):
+            robot.mouse_move_to_pos(window.point(start + 25j * step))
+            ghosts.append(bar.sketch.vertices(bar.sketch.document, 12))
+        while session.jobs.kinds:
+            robot.yield_()
+        halfway.update(
+            grab=bar.grab,
+            rough=bar.sketch.is_rough(bar.document, 12),
+            known=bar.sketch.knows(bar.document, roughly=True),
+            positions=bar.sketch.positions(bar.document, 12),
+        )
+        robot.mouse_up(0)
+
+    window.run(play)
+    assert None not in ghosts
+    assert halfway["grab"] is not None
+    assert halfway["known"]
+    assert halfway["rough"]
+    assert np.abs(halfway["positions"] - before).max() > 40
+    window.settle()
+    assert bar.sketch.knows(bar.document)
+    assert not bar.sketch.is_rough(bar.document, 12)
+    exact = bar.sketch.positions(bar.document, 12)
+    np.testing.assert_allclose(halfway["positions"], exact, rtol=0, atol=0.01 * bar.picture.size[0])
 
 
 def test_a_new_handle_moves_nothing(window, bar):
