@@ -3,7 +3,7 @@
 import json
 import os
 import sys
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Literal
 
@@ -28,20 +28,20 @@ class Preferences:
         Whether posing makes and changes keys by itself.
     recent : tuple of Path
         Files opened or saved last, the newest first.
+    folder : Path, optional
+        Where a file was chosen last.
     """
 
     theme: ThemeName = "dark"
     scale: float = 1.0
     auto_key: bool = True
     recent: tuple[Path, ...] = ()
+    folder: Path | None = None
 
     def with_recent(self, path: Path) -> "Preferences":
         """Return the preferences with a file as the most recent one."""
         others = (other for other in self.recent if other != path)
-        recent = (path, *others)[:MOST_RECENT]
-        return Preferences(
-            theme=self.theme, scale=self.scale, auto_key=self.auto_key, recent=recent
-        )
+        return replace(self, recent=(path, *others)[:MOST_RECENT], folder=path.parent)
 
 
 def settings_folder() -> Path:
@@ -70,6 +70,7 @@ def save_preferences(folder: Path, preferences: Preferences) -> None:
         "scale": preferences.scale,
         "auto_key": preferences.auto_key,
         "recent": [str(path) for path in preferences.recent],
+        "folder": None if preferences.folder is None else str(preferences.folder),
     }
     text = json.dumps(content, indent=1).encode()
     try:
@@ -85,9 +86,11 @@ def _understood(content: dict[str, Any]) -> Preferences:
     is_scale = isinstance(scale, (int, float)) and SMALLEST_SCALE <= scale <= LARGEST_SCALE
     recent = content.get("recent")
     paths = recent if isinstance(recent, list) else []
+    folder = content.get("folder")
     return Preferences(
         theme="light" if content.get("theme") == "light" else "dark",
         scale=float(scale) if is_scale and scale is not None else first.scale,
         auto_key=content.get("auto_key") is not False,
         recent=tuple(Path(path) for path in paths if isinstance(path, str))[:MOST_RECENT],
+        folder=Path(folder) if isinstance(folder, str) else None,
     )

@@ -76,21 +76,23 @@ class Toast:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class FileDialog:
-    """Our own file browser, for where the system has none.
+    """A question for a file: the system's own dialog, or our file browser where it has none.
 
     Parameters
     ----------
     title : str
     folder : Path
-        Whose contents it lists.
+        Where it begins; in our browser, whose contents it lists.
     name : str
-        Of the file to write; ignored where one is opened.
+        Of the file to write, or what was typed.
     suffixes : tuple of str
-        Which files it lists, such as ".png".
+        Which files it lists, such as ".png"; none where a folder is to be written.
     writes : bool
         Whether it asks for a file to write (else for one to read).
     chosen : callable
         Returns the action for the chosen path.
+    marked : str
+        The entry of our browser's list that is marked.
     """
 
     title: str
@@ -99,6 +101,19 @@ class FileDialog:
     suffixes: tuple[str, ...]
     writes: bool
     chosen: Callable[[Path], Action]
+    marked: str = ""
+
+    @property
+    def wants_folder(self) -> bool:
+        """Whether it asks for a folder to write to."""
+        return self.writes and not self.suffixes
+
+    def path_of(self, name: str) -> Path:
+        """Return the path that a name stands for; one to write gets its suffix if it has none."""
+        path = self.folder / name
+        if self.writes and self.suffixes and path.suffix.lower() not in self.suffixes:
+            return path.with_name(path.name + self.suffixes[0])
+        return path
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -291,6 +306,7 @@ class Session:
     meshing: Meshing = field(default_factory=Meshing)  # of new pictures
     toasts: list[Toast] = field(default_factory=list)
     dialog: Dialog | None = None
+    system_dialogs: bool = False  # whether the system's own file dialogs are used
     export: ExportRun | None = None
     export_frame: Box | None = None  # shown in the viewport while the export's settings are
     keeps_aspect: bool = True  # of an export whose size is entered
@@ -304,8 +320,8 @@ class Session:
     @property
     def usual_folder(self) -> Path:
         """Where the person's files were last."""
-        folders = [path.parent for path in self.preferences.recent if path.parent.is_dir()]
-        return folders[0] if folders else Path.home()
+        folder = self.preferences.folder
+        return folder if folder is not None and folder.is_dir() else Path.home()
 
     def tell(
         self,

@@ -1,13 +1,14 @@
 """How the window looks: camera, overlays, theme, dialogs."""
 
 from dataclasses import replace
+from pathlib import Path
 from typing import Any, Literal
 
 from app.actions.action import Action
 from app.document.settings import Meshing
 from app.preferences import LARGEST_SCALE, SMALLEST_SCALE, ThemeName
 from app.render.view import View
-from app.session import Dialog, HeatMap, Session, ShortcutSheet, Toast
+from app.session import Dialog, FileDialog, HeatMap, Session, ShortcutSheet, Toast
 
 SCALE_STEP = 0.25
 MOST_GHOSTS = 6
@@ -104,6 +105,23 @@ def toggle_auto_key(session: Session) -> None:
 def show_dialog(session: Session, dialog: Dialog) -> None:
     """Open a dialog in place of the one that may be open."""
     session.dialog = dialog
+
+
+def browse(session: Session, dialog: FileDialog) -> None:
+    """Go on with the file browser that is open, in another state."""
+    session.dialog = dialog
+
+
+def choose(session: Session, dialog: FileDialog, path: Path) -> None:
+    """Do with a path what the file dialog asked for, and begin there the next time."""
+    session.dialog = None
+    session.preferences = replace(session.preferences, folder=path.parent)
+    dialog.chosen(path).apply(session)
+
+
+def use_own_dialogs(session: Session) -> None:
+    """Ask for files with our own browser, and not with the system's dialogs, from now on."""
+    session.system_dialogs = False
 
 
 def show_shortcuts(session: Session) -> None:

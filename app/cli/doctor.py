@@ -4,7 +4,6 @@ import argparse
 import importlib.util
 import os
 import platform
-import shutil
 import sys
 from importlib.metadata import PackageNotFoundError, version
 from typing import Final, NamedTuple
@@ -20,6 +19,7 @@ from app.render.renderer import Renderer
 from app.render.scene import Scene
 from app.render.target import Target
 from app.render.view import canvas_view
+from app.system_dialogs import find_system_dialogs
 
 EPILOG = """\
 The exit status is 0 if Lissom can render here, 1 if not. "--" marks what is missing, with what to
@@ -32,8 +32,6 @@ LIBRARIES: Final = (
     *("numpy", "scipy", "pillow", "shapely", "contourpy"),
     *("moderngl", "glcontext", "glfw", "imgui-bundle"),
 )
-# Any of them lets the system's own file dialogs open on Linux.
-DIALOG_PROGRAMS: Final = ("zenity", "kdialog", "matedialog", "qarma")
 
 
 class Finding(NamedTuple):
@@ -115,11 +113,9 @@ def _display() -> Finding:
 
 def _dialogs() -> Finding:
     name = "file dialogs of the system"
-    if sys.platform in {"win32", "darwin"}:
-        return Finding(name, "the system's own")
-    found = [program for program in DIALOG_PROGRAMS if shutil.which(program)]
+    found = find_system_dialogs()
     if found:
-        return Finding(name, found[0])
+        return Finding(name, found)
     remedy = "none, Lissom's own are used; for the system's: sudo apt install zenity"
     return Finding(name, remedy, works=False)
 

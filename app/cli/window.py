@@ -13,6 +13,7 @@ from app.preferences import load_preferences, save_preferences, settings_folder
 from app.render.context import window_context
 from app.render.renderer import Renderer
 from app.session import Session
+from app.system_dialogs import find_system_dialogs
 from app.ui.window import Window
 
 # Where the display of X11 or Wayland is named.
@@ -52,6 +53,7 @@ def run(arguments: argparse.Namespace) -> int:
         jobs=Jobs(),
         folder=folder,
         preferences=load_preferences(folder),
+        system_dialogs=find_system_dialogs() is not None,
     )
     files.offer_recovery(session)
     if arguments.file is not None:

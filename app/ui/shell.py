@@ -12,7 +12,8 @@ from app.actions.action import Action, do
 from app.errors import EXPECTED_ERRORS
 from app.render.thumbnails import Thumbnail
 from app.session import Session
-from app.ui import bars, dialogs, toasts, welcome
+from app.ui import bars, toasts, welcome
+from app.ui.dialogs import Dialogs
 from app.ui.guard import allow_recovery, guard
 from app.ui.panel import Panel
 from app.ui.shortcuts import pressed
@@ -46,6 +47,7 @@ class Shell:
         self._panels = panels
         self._fonts: tuple[imgui.ImFont, imgui.ImFont] | None = None
         self._themed: tuple[str, float] | None = None
+        self._dialogs = Dialogs()
         self._actions: list[Action] = []
 
     def runner_params(self) -> hello_imgui.RunnerParams:
@@ -81,6 +83,10 @@ class Shell:
     def ask(self, action: Action) -> None:
         """Do something at the end of the next frame."""
         self._actions.append(action)
+
+    def release(self) -> None:
+        """Close what is open beside the window."""
+        self._dialogs.close()
 
     @property
     def look(self) -> Look:
@@ -164,7 +170,7 @@ class Shell:
         self._actions += pressed(session)
         if session.project is None:
             self._part("The welcome view", partial(welcome.draw, thumbnail=self._thumbnail))()
-        self._part("The dialog", dialogs.draw)()
+        self._part("The dialog", self._dialogs.draw)()
         self._part("The messages", toasts.draw)()
         held = imgui.is_any_item_active() or imgui.is_mouse_down(imgui.MouseButton_.left)
         self._actions.append(do(editing.hold, held))

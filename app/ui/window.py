@@ -123,6 +123,7 @@ class Window:
             self.ask(do(files.open_file, Path(paths[0])))
 
     def _release(self) -> None:
+        self._shell.release()
         for owner in (self._exporter, self._canvas, self._thumbnails, self._renderer):
             if owner is not None:
                 owner.release()

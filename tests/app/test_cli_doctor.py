@@ -1,4 +1,5 @@
 import importlib.util
+import shutil
 
 import pytest
 
@@ -10,7 +11,7 @@ from app.render.view import View
 
 def test_it_draws_with_every_backend_and_says_what_is_missing(capsys, monkeypatch):
     monkeypatch.setattr(doctor.sys, "platform", "linux")
-    monkeypatch.setattr(doctor.shutil, "which", lambda _: None)
+    monkeypatch.setattr(shutil, "which", lambda _: None)
     monkeypatch.setattr(importlib.util, "find_spec", lambda _: None)
     for variable in ("DISPLAY", "WAYLAND_DISPLAY"):
         monkeypatch.delenv(variable, raising=False)
@@ -27,7 +28,7 @@ def test_it_draws_with_every_backend_and_says_what_is_missing(capsys, monkeypatc
 
 def test_what_is_there_is_named(capsys, monkeypatch):
     monkeypatch.setattr(doctor.sys, "platform", "linux")
-    monkeypatch.setattr(doctor.shutil, "which", lambda program: program == "kdialog" or None)
+    monkeypatch.setattr(shutil, "which", lambda program: program == "kdialog" or None)
     monkeypatch.setenv("WAYLAND_DISPLAY", "wayland-7")
     main(["doctor"])
     said = capsys.readouterr().out

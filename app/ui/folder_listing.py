@@ -1,0 +1,99 @@
+"""What our file browser lists of a folder."""
+
+import os
+import time
+from dataclasses import dataclass
+from pathlib import Path
+
+UNITS = ("bytes", "kB", "MB", "GB")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Entry:
+    """A folder or a file; its size is in bytes, its time in seconds since 1970."""
+
+    path: Path
+    is_folder: bool
+    size: int
+    changed: float
+
+    @property
+    def size_in_words(self) -> str:
+        """The size as people read it; nothing for a folder."""
+        if self.is_folder:
+            return ""
+        power = 0
+        while self.size >= 1000 ** (power + 1) and power < len(UNITS) - 1:
+            power += 1
+        size = self.size / 1000**power
+        return f"{size:.{1 if power and size < 10 else 0}f} {UNITS[power]}"
+
+    @property
+    def changed_in_words(self) -> str:
+        """Day and minute of the last change, in the local time."""
+        return time.strftime("%Y-%m-%d  %H:%M", time.localtime(self.changed))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Listing:
+    """What a folder holds, or why that cannot be told.
+
+    Parameters
+    ----------
+    folder : Path
+    suffixes : tuple of str
+        Of the files that are listed.
+    version : tuple of int
+        Another one if the folder has changed since.
+    entries : tuple of Entry
+    problem : str
+        Empty where there is none.
+    """
+
+    folder: Path
+    suffixes: tuple[str, ...]
+    version: tuple[int, ...]
+    entries: tuple[Entry, ...] = ()
+    problem: str = ""
+
+    def is_current(self, folder: Path, suffixes: tuple[str, ...]) -> bool:
+        """Tell whether reading this folder would give the same."""
+        return (folder, suffixes, _version(folder)) == (self.folder, self.suffixes, self.version)
+
+
+def read_folder(folder: Path, suffixes: tuple[str, ...]) -> Listing:
+    """List the folders, and the files of some kinds, that are not hidden."""
+    version = _version(folder)
+    try:
+        with os.scandir(folder) as found:
+            visible = [_entry(entry) for entry in found if not entry.name.startswith(".")]
+    except OSError as error:
+        problem = f"This folder cannot be read: {error.strerror or error}"
+        return Listing(folder=folder, suffixes=suffixes, version=version, problem=problem)
+    entries = tuple(
+        entry
+        for entry in visible
+        if entry and (entry.is_folder or entry.path.suffix.lower() in suffixes)
+    )
+    return Listing(folder=folder, suffixes=suffixes, version=version, entries=entries)
+
+
+def _entry(found: os.DirEntry[str]) -> Entry | None:
+    """Return what the list shows of a file or a folder, or None if it cannot even be looked at."""
+    try:
+        status = found.stat()
+        is_folder = found.is_dir()
+    except OSError:
+        return None
+    return Entry(
+        path=Path(found.path), is_folder=is_folder, size=status.st_size, changed=status.st_mtime
+    )
+
+
+def _version(folder: Path) -> tuple[int, ...]:
+    try:
+        status = folder.stat()
+    except OSError:
+        return ()
+    # The second one changes with the permission to read it.
+    return status.st_mtime_ns, status.st_ctime_ns
