@@ -112,6 +112,11 @@ class Drag:
         deformer = rig.within_bounds_of(pose)
         return cls(rig=rig, deformer=deformer, state=deformer.start(rig.document.map_of(pose)))
 
+    @classmethod
+    def from_rest(cls, rig: Rig) -> Self:
+        """Return the drag that begins with the drawing as it is."""
+        return cls(rig=rig, deformer=rig.deformer, state=rig.deformer.start())
+
     @property
     def is_over(self) -> bool:
         """Whether more steps would change nothing."""
@@ -121,6 +126,17 @@ class Drag:
     def at_bounds(self) -> bool:
         """Whether the handles are held back by the bounds."""
         return self.state.status is Status.BOUNDS_REACHED
+
+    @property
+    def has_arrived(self) -> bool:
+        """Whether the drag came to rest with nothing in its way."""
+        return self.state.status is Status.CONVERGED
+
+    @property
+    def lag(self) -> float:
+        """How far the handles are from their targets, root mean square over the drawing's size."""
+        last = self.state.statistics
+        return np.inf if last is None else last.handle_error
 
     def towards(self, targets: Mapping[int, Target], steps: int) -> "Drag":
         """Return the drag after some steps towards the targets, or fewer if it comes to rest."""

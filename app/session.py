@@ -178,16 +178,20 @@ class Grab:
         Where it began; None where that is an in-between, which the worker has to find a map for.
     drag : Drag, optional
         None until the solver's first steps are done.
+    anew : Drag, optional
+        From the drawing at rest to the same wish, tried once the hand has let go of a shape that is
+        held back: pulled through itself, it may be entangled.
     held : bool
         Whether the person still pulls.
     steps : int
-        Newton steps since the wish changed last.
+        Newton steps since the wish changed last, or since `anew` began.
     """
 
     frame: int
     targets: Mapping[int, Target]
     pose: Pose | None
     drag: Drag | None = None
+    anew: Drag | None = None
     held: bool = True
     steps: int = 0
 

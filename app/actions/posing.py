@@ -20,6 +20,9 @@ POSING, INSERTING = "Posing", "Inserting a key"
 STEPS = 2
 # Steps after the hand let go; a drag that is free to come to rest needs far fewer.
 MOST_STEPS = 300
+# Part of a pose's lag that another pose may have at most to take its place: less would be a jump
+# for little.
+MUCH_LESS = 0.5
 
 
 def pull(session: Session, wishes: Mapping[int, Target]) -> None:
@@ -38,8 +41,10 @@ def pull(session: Session, wishes: Mapping[int, Target]) -> None:
 def let_go(session: Session) -> None:
     """End the pull; the solver goes on until it rests."""
     if session.project and session.project.grab:
-        session.project.grab.held = False
-        _end_if_over(session.project, session.project.grab)
+        grab = session.project.grab
+        grab.held = False
+        if POSING not in session.jobs.kinds:
+            _finish(session, session.project, grab)
 
 
 def drop(session: Session) -> None:
@@ -178,7 +183,7 @@ def _follow(session: Session, project: Project, grab: Grab) -> None:
     """Let the worker go on, unless it is at it: then it goes on when that is delivered."""
     if POSING in session.jobs.kinds:
         return
-    targets, drag, document = grab.targets, grab.drag, project.document
+    targets, drag, document = grab.targets, grab.anew or grab.drag, project.document
     rig, kin = project.rig, project.sketch.stage
     clock = session.clock
 
@@ -194,12 +199,19 @@ def _follow(session: Session, project: Project, grab: Grab) -> None:
     def done(result: tuple[Drag, float]) -> None:
         if session.project is not project or project.grab is not grab:
             return
-        grab.drag, session.solver_seconds = result
-        project.rig = grab.drag.rig
+        drag, session.solver_seconds = result
+        project.rig = drag.rig
         grab.steps += STEPS
-        _keep(session, project, grab, targets)
-        if not _end_if_over(project, grab) and not (grab.drag.is_over and grab.targets == targets):
+        if grab.anew is None:
+            grab.drag = drag
+            _keep(session, project, grab, targets)
+        else:
+            grab.anew = drag
+        rests = drag.is_over and grab.targets == targets
+        if not rests and (grab.held or grab.steps < MOST_STEPS):
             _follow(session, project, grab)
+        elif not grab.held:
+            _finish(session, project, grab)
 
     def failed(error: Exception) -> None:
         project.grab = None
@@ -227,12 +239,17 @@ def _hold(project: Project, frame: int, pose: Pose, gesture: object) -> None:
         project.history.do(key_commands.insert_key(frame, pose), gesture=gesture)
 
 
-def _end_if_over(project: Project, grab: Grab) -> bool:
-    over = grab.drag is not None and (grab.drag.is_over or grab.steps >= MOST_STEPS)
-    if not grab.held and over:
-        project.grab = None
-        return True
-    return False
+def _finish(session: Session, project: Project, grab: Grab) -> None:
+    """End a pull that was let go and rests; one that is held back is tried from rest, too."""
+    drag, anew = grab.drag, grab.anew
+    if drag is not None and anew is None and not drag.has_arrived:
+        grab.anew, grab.steps = Drag.from_rest(drag.rig), 0
+        _follow(session, project, grab)
+        return
+    if drag is not None and anew is not None and anew.lag < MUCH_LESS * drag.lag:
+        grab.drag = anew
+        _keep(session, project, grab, grab.targets)
+    project.grab = None
 
 
 def _retargeted(document: Document, pose: Pose) -> Pose:

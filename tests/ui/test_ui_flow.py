@@ -1,5 +1,7 @@
 """The main job, through the window's own widgets: from a sample to exported frames."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from PIL import Image
@@ -8,6 +10,8 @@ from app.actions import editing, exporting, keys, playback, posing, saving
 from app.actions.action import do
 from app.assets import sample_images
 from app.document.keyframe import Target
+from app.posing import Drag
+from engine.deform.deformer import Status
 
 BAR = sample_images() / "bar.png"
 
@@ -126,6 +130,49 @@ def test_dragging_follows_and_is_one_step(window, bar):
     assert session.solver_seconds >= 0
     editing.undo(session)
     assert bar.document is before
+
+
+class CaughtDrag(Drag):
+    """A drag of an entangled shape: one step brings it to the bounds, and none leads on."""
+
+    def towards(self, targets, steps):  # noqa: ARG002
+        state = self.deformer.step(self.state, self.rig.wish(targets))
+        return CaughtDrag(
+            rig=self.rig, deformer=self.deformer, state=replace(state, status=Status.BOUNDS_REACHED)
+        )
+
+    @classmethod
+    def from_rest(cls, rig):
+        return Drag.from_rest(rig)
+
+
+def test_a_shape_that_is_caught_comes_free_when_the_hand_lets_go(window, bar, monkeypatch):
+    monkeypatch.setattr(posing, "Drag", CaughtDrag)
+    session = window.session
+    wanted = handle_places(bar)[1] + 150j
+    first = bar.document
+    posing.pull(session, {1: Target(position=wanted)})
+    window.settle()
+    assert abs(handle_places(bar)[1] - wanted) > 50
+    posing.let_go(session)
+    window.settle()
+    assert bar.grab is None
+    assert abs(handle_places(bar)[1] - wanted) < 5
+    assert bar.document.keys[0].pose.certificate.certified
+    editing.undo(session)
+    assert bar.document is first
+
+
+def test_a_shape_is_left_alone_where_another_start_gains_little(window, bar):
+    session = window.session
+    posing.pull(session, {1: Target(position=handle_places(bar)[1] + 9000)})
+    window.settle()
+    held = bar.shown.positions
+    assert bar.grab.drag.at_bounds
+    posing.let_go(session)
+    window.settle()
+    assert bar.grab is None
+    np.testing.assert_array_equal(bar.shown.positions, held)
 
 
 def test_inbetweens_follow_a_drag_before_the_hand_lets_go(window, bar):
