@@ -17,7 +17,7 @@ class Panel:
     ----------
     title : str
     icon : str
-        In its tab; none where tabs are many.
+        In its tab.
     place : str
         Where it is docked at first.
     draw : callable
@@ -30,6 +30,13 @@ class Panel:
     draw: Callable[[Session, Look], list[Action]]
 
     @property
+    def labels(self) -> tuple[str, str, str]:
+        """The tab's texts, from the fullest one to the icon alone; their id is the title."""
+        texts = (f"{self.icon}  {self.title}", self.title, self.icon)
+        full, title, icon = (f"{text}###{self.title}" for text in texts)
+        return full, title, icon
+
+    @property
     def label(self) -> str:
-        """The tab's text; its id is the title."""
-        return f"{self.icon}  {self.title}###{self.title}" if self.icon else self.title
+        """The name of the panel's window, whatever is shown of it."""
+        return self.labels[0]

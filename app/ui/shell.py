@@ -14,12 +14,12 @@ from app.render.thumbnails import Thumbnail
 from app.session import Session
 from app.ui import bars, toasts, welcome
 from app.ui.dialogs import Dialogs
+from app.ui.docking import Docking
 from app.ui.guard import allow_recovery, guard
 from app.ui.panel import Panel
 from app.ui.shortcuts import pressed
 from app.ui.theme import FONT_SIZE, PALETTES, Look, apply_theme, load_fonts
 
-SIDE, BOTTOM = 0.29, 0.27  # parts of the window that tabs and timeline take at first
 # Saved layouts of another number are forgotten: they name other panels.
 LAYOUT = 1
 IDLE_FPS = 10.0
@@ -45,6 +45,7 @@ class Shell:
         self.session = session
         self._thumbnail = thumbnail
         self._panels = panels
+        self._docking = Docking(panels)
         self._fonts: tuple[imgui.ImFont, imgui.ImFont] | None = None
         self._themed: tuple[str, float] | None = None
         self._dialogs = Dialogs()
@@ -105,10 +106,6 @@ class Shell:
     def _layout(self) -> hello_imgui.DockingParams:
         layout = hello_imgui.DockingParams()
         layout.layout_name = f"Layout {LAYOUT}"
-        layout.docking_splits = [
-            hello_imgui.DockingSplit("MainDockSpace", "bottom", imgui.Dir.down, BOTTOM),
-            hello_imgui.DockingSplit("MainDockSpace", "side", imgui.Dir.right, SIDE),
-        ]
         layout.main_dock_space_node_flags = imgui.DockNodeFlags_.auto_hide_tab_bar
         layout.dockable_windows = [self._window(panel) for panel in self._panels]
         return layout
@@ -149,12 +146,13 @@ class Shell:
         self._themed = (preferences.theme, preferences.scale)
         palette = PALETTES[preferences.theme]
         apply_theme(palette, preferences.scale)
-        hello_imgui.get_runner_params().imgui_window_params.background_color = palette.desk
+        hello_imgui.get_runner_params().imgui_window_params.background_color = palette.panel
 
     def _begin_frame(self) -> None:
         session = self.session
         if self._themed != (session.preferences.theme, session.preferences.scale):
             self._apply_theme()
+        self._docking.begin_frame(session.preferences.scale)
         # The tab that shows it asks for it in every frame.
         session.export_frame = None
         self._attempt(session.jobs.deliver)
@@ -168,6 +166,7 @@ class Shell:
     def _draw_over_panels(self) -> None:
         session = self.session
         self._actions += pressed(session)
+        self._docking.draw_tabs()
         if session.project is None:
             self._part("The welcome view", partial(welcome.draw, thumbnail=self._thumbnail))()
         self._part("The dialog", self._dialogs.draw)()

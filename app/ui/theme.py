@@ -123,6 +123,7 @@ def apply_theme(palette: Palette, scale: float) -> None:
             setattr(style, name, value)
     for name, size in _SIZES.items():
         setattr(style, name, ImVec2(*size) if isinstance(size, tuple) else size)
+    style._main_scale = 1.0  # noqa: SLF001 - what scaling multiplies, too; it has no public name
     style.scale_all_sizes(scale * dpi)
     style.font_size_base = FONT_SIZE
     style.window_menu_button_position = imgui.Dir.none

@@ -90,16 +90,16 @@ class Window:
                 draw=lambda session, look: viewport.draw(session, look, self._texture),
             ),
             Panel(title="Timeline", icon=icons.ICON_FA_FILM, place="bottom", draw=timeline.draw),
-            Panel(title="Handle", icon="", place="side", draw=handle.draw),
-            Panel(title="Deform", icon="", place="side", draw=deform.draw),
+            Panel(title="Handle", icon=icons.ICON_FA_CIRCLE_DOT, place="side", draw=handle.draw),
+            Panel(title="Deform", icon=icons.ICON_FA_SLIDERS, place="side", draw=deform.draw),
             Panel(
                 title="Distortion",
-                icon="",
+                icon=icons.ICON_FA_CHART_LINE,
                 place="side",
                 draw=distortion.draw,
             ),
-            Panel(title="Domain", icon="", place="side", draw=domain.draw),
-            Panel(title="Export", icon="", place="side", draw=export.draw),
+            Panel(title="Domain", icon=icons.ICON_FA_SHAPES, place="side", draw=domain.draw),
+            Panel(title="Export", icon=icons.ICON_FA_FILE_EXPORT, place="side", draw=export.draw),
         ]
 
     @property
