@@ -1,7 +1,9 @@
 """Distortion over time at the worst points of a drawing, as the paper plots it (Section 8)."""
 
 from dataclasses import dataclass
+from math import log
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
@@ -11,9 +13,38 @@ from app.files import write_atomically
 from app.motion import Motion
 from engine import distortion
 from engine.arrays import Floats
+from engine.deform.bounds import Bounds
 
 POINTS = 100
 TIMES = 24  # in each interval
+TINY = 1e-300  # in place of a stretch that is not proven to be above 0
+
+
+class Use(NamedTuple):
+    """How much of a bound is used; 1 where it is reached, 0 where nothing is distorted."""
+
+    name: str
+    value: float
+    bound: float
+    share: float
+
+
+class Extremes(NamedTuple):
+    """The largest k and σ_a of the whole drawing at one moment, and its smallest σ_b."""
+
+    k: float
+    sigma_a: float
+    sigma_b: float
+
+    def uses(self, bounds: Bounds) -> tuple[Use, ...]:
+        """Return how much of each bound is used; stretches count by their logarithms."""
+        share_a = log(self.sigma_a) / log(bounds.sigma_a)
+        share_b = log(max(self.sigma_b, TINY)) / log(bounds.sigma_b)
+        return (
+            Use("k", self.k, bounds.k, self.k / bounds.k),
+            Use("σa", self.sigma_a, bounds.sigma_a, share_a),
+            Use("σb", self.sigma_b, bounds.sigma_b, share_b),
+        )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -29,6 +60,8 @@ class Curves:
     k_share, tau_share : float64, shape (t, p)
         The same, at each point as a share of the larger one of the two keys around: bounded
         in-betweens never exceed 1. τ counts from 1, where nothing is distorted.
+    extremes : float64, shape (t, 3)
+        Of all points: the largest k and σ_a, and the smallest σ_b.
     """
 
     document: Document
@@ -37,36 +70,51 @@ class Curves:
     tau: Floats
     k_share: Floats
     tau_share: Floats
+    extremes: Floats
+
+    def extremes_at(self, frame: float) -> Extremes:
+        """Return the extremes at a frame, between those that were measured around it."""
+        if frame < self.frames[0] and self.document.loop:
+            frame += self.document.frames.last - self.document.frames.first
+        return Extremes(*(float(np.interp(frame, self.frames, row)) for row in self.extremes.T))
 
 
-def measure_curves(document: Document, motion: Motion) -> Curves | None:
-    """Measure a document at the vertices of a motion's figure; None where nothing moves."""
-    spans = intervals(document)
-    if not spans:
-        return None
+def measure_curves(document: Document, motion: Motion) -> Curves:
+    """Measure a document at the vertices of a motion's figure.
+
+    Parameters
+    ----------
+    document : Document
+        With at least two keys.
+    motion : Motion
+        That knows it.
+    """
     keys = document.keys
     period = document.frames.last - document.frames.first
-    frames, ks, taus = [], [], []
-    for interval, (first, last) in enumerate(spans):
+    frames, ks, taus, extremes = [], [], [], []
+    for interval, (first, last) in enumerate(intervals(document)):
         piece = motion.inbetweens(document, interval)
-        if piece is None:
-            return None
         start = keys[first].frame
         end = keys[last].frame if last > first else keys[last].frame + period
         for share in np.linspace(0.0, 1.0, TIMES):
             t = keys[first].easing(float(share))
             blended = piece.frame(np.array([1.0 - t, t]))
             frames.append(start + share * (end - start))
-            ks.append(distortion.k(blended.fz, blended.fzbar))
+            k = distortion.k(blended.fz, blended.fzbar)
+            sigma_a = distortion.sigma_a(blended.fz, blended.fzbar)
+            sigma_b = distortion.sigma_b(blended.fz, blended.fzbar)
+            ks.append(k)
             taus.append(distortion.tau(blended.fz, blended.fzbar))
-    k, tau = _worst(np.array(ks)), _worst(np.array(taus))
+            extremes.append((k.max(), sigma_a.max(), sigma_b.min()))
+    worst_k, worst_tau = _worst(np.array(ks)), _worst(np.array(taus))
     return Curves(
         document=document,
         frames=np.array(frames, dtype=np.float64),
-        k=k,
-        tau=tau,
-        k_share=_shares(k),
-        tau_share=_shares(tau - 1.0),
+        k=worst_k,
+        tau=worst_tau,
+        k_share=_shares(worst_k),
+        tau_share=_shares(worst_tau - 1.0),
+        extremes=np.array(extremes),
     )
 
 

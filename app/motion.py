@@ -213,10 +213,12 @@ class Motion:
         piece = self._piece(document, moment.interval)
         return piece is not None and piece.is_rough
 
-    def inbetweens(self, document: Document, interval: int) -> Inbetweens | None:
-        """Return the in-betweens of one of a document's intervals; None if not prepared."""
+    def inbetweens(self, document: Document, interval: int) -> Inbetweens:
+        """Return the in-betweens of one of a document's intervals, which must be prepared."""
         piece = self._piece(document, interval)
-        return None if piece is None else piece.inbetweens
+        if piece is None:
+            raise ValueError(f"the in-betweens of interval {interval} are not prepared")
+        return piece.inbetweens
 
     def _piece(self, document: Document, interval: int) -> Piece | None:
         if document.anchor != self.document.anchor:

@@ -1,10 +1,13 @@
 """The curves of the distortion: measured beside the work, and saved."""
 
+from functools import partial
 from pathlib import Path
 
 from app.actions.action import do
 from app.actions.failures import report
 from app.curve_picture import draw_curves
+from app.document.timeline import intervals
+from app.document.timeline import intervals
 from app.files import write_atomically
 from app.jobs import Job
 from app.measuring import Curves, measure_curves, write_curves
@@ -20,7 +23,8 @@ def keep_up(session: Session) -> None:
         return
     document, motion = project.document, project.sketch
     is_current = project.curves is not None and project.curves.document is document
-    if is_current or not motion.knows(document) or project.unmeasurable is document:
+    is_possible = bool(intervals(document)) and motion.knows(document)
+    if is_current or not is_possible or project.unmeasurable is document:
         return
 
     def failed(error: Exception) -> None:
@@ -31,7 +35,7 @@ def keep_up(session: Session) -> None:
         Job(
             kind=MEASURING,
             work=lambda: measure_curves(document, motion),
-            done=lambda curves: _show(project, curves),
+            done=partial(_show, project),
             failed=failed,
         )
     )
@@ -65,7 +69,7 @@ def save(session: Session, path: Path) -> None:
     session.tell(f"Saved {path.name}.", tone="good")
 
 
-def _show(project: Project, curves: Curves | None) -> None:
+def _show(project: Project, curves: Curves) -> None:
     project.curves = curves
 
 

@@ -1,8 +1,8 @@
-"""What follows the document by itself: in-betweens, and the pose on the screen."""
+"""What follows the document by itself: in-betweens, their distortion, the pose on the screen."""
 
 from functools import partial
 
-from app.actions import playback
+from app.actions import measuring, playback
 from app.actions.failures import report
 from app.animation import Stage
 from app.document.model import Document
@@ -46,6 +46,7 @@ def _ask(session: Session, project: Project, document: Document) -> None:
         _prepare(session, project, REFINING)
     else:
         _stream(session, project, document)
+        measuring.keep_up(session)
 
 
 def _prepare(session: Session, project: Project, kind: str, *, roughly: bool = False) -> None:

@@ -1,12 +1,15 @@
 """Menu bar, icon bar and status bar."""
 
+from typing import NamedTuple
+
 from imgui_bundle import ImVec2, imgui
 
 from app.actions.action import Action
-from app.session import Session
+from app.measuring import Extremes
+from app.session import Project, Session
 from app.ui.shortcuts import BINDINGS, Binding
 from app.ui.theme import Look, ink
-from app.ui.widgets import icon_button
+from app.ui.widgets import icon_button, tip
 
 MENUS: dict[str, tuple[str, ...]] = {
     "File": ("open", "", "save", "save as", "", "export", "export again", "", "close", "quit"),
@@ -34,6 +37,7 @@ MENUS: dict[str, tuple[str, ...]] = {
     ),
     "Help": ("shortcuts",),
 }
+AT_BOUND = 0.97  # of a bound: so much of it is used where a pose cannot go on
 ICON_BAR = ("fit", "", "handles", "wireframe", "outline", "heat map", "onion skin", "", "auto-key")
 
 
@@ -96,22 +100,70 @@ def bound_button(session: Session, look: Look, name: str, icon: str = "") -> lis
     return [binding.action] if is_pressed else []
 
 
+class _Fact(NamedTuple):
+    """Something at the right of the status bar."""
+
+    text: str
+    what: str  # in its tooltip
+    warns: bool = False
+
+
 def draw_status(session: Session, look: Look) -> list[Action]:
-    """Draw the status bar: what goes on, and what the project is made of."""
+    """Draw the status bar: what goes on, and how the project and the window are."""
     busy = session.jobs.kinds
     if busy:
         _spinner(session, look)
         imgui.text_unformatted(f"{busy[0]}…")
     else:
         imgui.text_disabled(session.hint or "Ready")
-    facts = f"{imgui.get_io().framerate:.0f} fps"
-    if session.project is not None:
-        document = session.project.document
-        facts = f"{len(document.handles)} handles     {facts}"
-    width = imgui.calc_text_size(facts).x
-    imgui.same_line(imgui.get_window_width() - width - look.em)
-    imgui.text_disabled(facts)
+    gap = 1.6 * look.em
+    facts = _facts(session)
+    width = sum(imgui.calc_text_size(fact.text).x + gap for fact in facts)
+    imgui.same_line(imgui.get_window_width() - width + gap - look.em)
+    for fact in facts:
+        imgui.text_colored(look.palette.warning if fact.warns else look.palette.dim, fact.text)
+        tip(fact.what)
+        imgui.same_line(0, gap)
+    imgui.new_line()
     return []
+
+
+def _facts(session: Session) -> list[_Fact]:
+    facts = []
+    project = session.project
+    if project is not None:
+        distortion = _distortion(project)
+        facts += [distortion] if distortion else []
+        count = len(project.document.handles)
+        facts.append(_Fact(f"{count} handle{'' if count == 1 else 's'}", "Handles of this drawing"))
+    if session.solver_seconds:
+        milliseconds = 1e3 * session.solver_seconds
+        facts.append(_Fact(f"solver {milliseconds:.0f} ms", "What the last step of a pose took"))
+    return [*facts, _Fact(f"{imgui.get_io().framerate:.0f} fps", "Frames per second")]
+
+
+def _distortion(project: Project) -> _Fact | None:
+    """Return the largest distortion that is shown, of the kind that is nearest to its bound."""
+    shown, curves, document = project.shown, project.curves, project.document
+    if shown is None:
+        return None
+    if shown.pose is not None:
+        proven = shown.pose.certificate
+        extremes = Extremes(proven.k, proven.sigma_a, proven.sigma_b)
+    elif curves is not None and curves.document is document:
+        extremes = curves.extremes_at(shown.frame)
+    else:
+        return None
+    uses = extremes.uses(document.bounds)
+    most = max(uses, key=lambda use: use.share)
+    return _Fact(
+        f"{most.name} {most.value:.2f} of {most.bound:.2f}",
+        "\n".join(
+            ["Largest distortion against its bound", ""]
+            + [f"{use.name} {use.value:.3f} of {use.bound:.3f}" for use in uses]
+        ),
+        warns=most.share > AT_BOUND,
+    )
 
 
 def _spinner(session: Session, look: Look) -> None:

@@ -51,7 +51,7 @@ def draw(session: Session, look: Look) -> list[Action]:
     if len(project.document.keys) < 2:
         small(look, "Make a second key: then this shows how the in-betweens distort.")
         return actions
-    return [*actions, do(measuring.keep_up), *_over_time(session, look, project)]
+    return [*actions, *_over_time(session, look, project)]
 
 
 def _style_plots(look: Look) -> None:
