@@ -1,5 +1,6 @@
 """Opening pictures and projects."""
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import NamedTuple
 
@@ -23,6 +24,7 @@ PICTURES = (
     *(".png", ".jpg", ".jpeg", ".gif", ".webp", ".bmp", ".tif", ".tiff", ".ppm", ".tga", ".ico"),
     ".avif",
 )
+OPENABLE = (PROJECT, *PICTURES)
 OPENING = "Opening"
 OPAQUE = 255
 
@@ -67,7 +69,7 @@ def ask_open(session: Session) -> None:
     session.dialog = FileDialog(
         title="Open image or project",
         folder=session.usual_folder,
-        suffixes=(PROJECT, *PICTURES),
+        suffixes=OPENABLE,
         writes=False,
         chosen=lambda path: do(open_file, path),
     )
@@ -76,6 +78,19 @@ def ask_open(session: Session) -> None:
 def open_file(session: Session, path: Path) -> None:
     """Open a picture or a project, after a question if there are changes to be lost."""
     saving.unless_unsaved(session, do(load, path))
+
+
+def open_dropped(session: Session, paths: Sequence[Path]) -> None:
+    """Open the first picture or project of what was dropped on the window."""
+    usable = [path for path in paths if path.suffix.lower() in OPENABLE and not path.is_dir()]
+    if usable:
+        if len(paths) > 1:
+            session.tell(f"Of {len(paths)} files, {usable[0].name} is opened: one at a time.")
+        open_file(session, usable[0])
+    elif paths:
+        what = "a folder" if paths[0].is_dir() else "no picture and no project"
+        kinds = "a picture (PNG, JPEG, WebP, …)"
+        session.tell(f"{paths[0].name} is {what}. Drop {kinds} or a {PROJECT} file.", tone="error")
 
 
 def load(session: Session, path: Path) -> None:

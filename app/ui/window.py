@@ -119,8 +119,7 @@ class Window:
         glfw.set_drop_callback(window, self._take_dropped)  # type: ignore[arg-type]  # a list of paths
 
     def _take_dropped(self, _: object, paths: list[str]) -> None:
-        if paths:
-            self.ask(do(files.open_file, Path(paths[0])))
+        self.ask(do(files.open_dropped, [Path(path) for path in paths]))
 
     def _release(self) -> None:
         self._shell.release()
