@@ -2,24 +2,27 @@
 
 import os
 import re
+import secrets
 from pathlib import Path
 
 from app.document.model import Document
 from app.document.project_file import save_project
 
 SECONDS = 20.0  # between a change and its autosave, at least
-_NAME = re.compile(r"unsaved-(\d+)\.lissom")
+_NAME = re.compile(r"unsaved-(\d+)(?:-(\w+))?\.lissom")
+# A number of a process is given again to a later one, in a sandbox always.
+_OWN = (os.getpid(), secrets.token_hex(4))
 
 
 def write_autosave(folder: Path, document: Document) -> None:
     """Keep the document of this process, in place of an earlier one."""
     folder.mkdir(parents=True, exist_ok=True)
-    save_project(_path(folder, os.getpid()), document)
+    save_project(_path(folder), document)
 
 
 def forget_autosave(folder: Path) -> None:
     """Remove what this process kept."""
-    _path(folder, os.getpid()).unlink(missing_ok=True)
+    _path(folder).unlink(missing_ok=True)
 
 
 def find_leftovers(folder: Path) -> list[Path]:
@@ -27,16 +30,19 @@ def find_leftovers(folder: Path) -> list[Path]:
     found = []
     for path in folder.glob("unsaved-*.lissom"):
         match = _NAME.fullmatch(path.name)
-        if match and not _is_running(int(match[1])):
+        if match and not _is_kept(int(match[1]), match[2]):
             found.append(path)
     return sorted(found, key=lambda path: path.stat().st_mtime, reverse=True)
 
 
-def _path(folder: Path, process: int) -> Path:
-    return folder / f"unsaved-{process}.lissom"
+def _path(folder: Path) -> Path:
+    return folder / "unsaved-{}-{}.lissom".format(*_OWN)
 
 
-def _is_running(process: int) -> bool:
+def _is_kept(process: int, token: str | None) -> bool:
+    """Tell whether the process that wrote a file is still running."""
+    if process == _OWN[0]:
+        return token == _OWN[1]
     try:
         os.kill(process, 0)
     except ProcessLookupError:

@@ -44,10 +44,6 @@ class Overlays:
     cage: bool = False
     onion: bool = False
     heat_map: HeatMap = "none"
-    ghosts_before: int = 2
-    ghosts_after: int = 2
-    ghost_step: int = 4
-    backdrop: str = "checker"  # or "#rrggbb"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -302,6 +298,7 @@ class Session:
     jobs: Jobs
     folder: Path  # for settings and unsaved work
     preferences: Preferences = field(default_factory=Preferences)
+    kept_preferences: Preferences = field(default_factory=Preferences)  # as they are on the disk
     project: Project | None = None
     overlays: Overlays = field(default_factory=Overlays)
     screen: tuple[int, int] = (640, 480)  # pixels of the viewport

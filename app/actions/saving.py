@@ -7,10 +7,11 @@ from app.actions.failures import report
 from app.autosave import SECONDS, forget_autosave, write_autosave
 from app.document.project_file import save_project
 from app.jobs import Job
+from app.preferences import save_preferences
 from app.session import FileDialog, Project, Question, Session
 
 PROJECT = ".lissom"
-SAVING, AUTOSAVING = "Saving", "Autosaving"
+SAVING, AUTOSAVING, KEEPING = "Saving", "Autosaving", "Keeping preferences"
 
 
 def save(session: Session) -> None:
@@ -92,32 +93,57 @@ def quit_lissom(session: Session) -> None:
 
 def leave(session: Session) -> None:
     """Close the window."""
+    forget_autosave(session.folder)
     session.quitting = True
+
+
+def keep_preferences(session: Session) -> None:
+    """Write the preferences when they have changed; called once a frame."""
+    preferences, folder = session.preferences, session.folder
+    if preferences == session.kept_preferences:
+        return
+    session.kept_preferences = preferences
+    session.jobs.put(
+        Job(
+            kind=KEEPING,
+            work=lambda: save_preferences(folder, preferences),
+            done=lambda _: None,
+            failed=lambda error: report(session, "The preferences cannot be kept", error),
+            urgent=True,
+        )
+    )
 
 
 def autosave(session: Session) -> None:
     """Keep changes that are not saved, every now and then; called once a frame."""
     project = session.project
     now = session.clock()
-    if project is None or project.grab is not None or project.kept is project.document:
+    if project is None or project.grab is not None:
         return
     if project.history.is_saved:
         if project.kept is not None:
             project.kept = None
             forget_autosave(session.folder)
         return
-    if now - project.kept_at >= SECONDS and AUTOSAVING not in session.jobs.kinds:
+    is_due = now - project.kept_at >= SECONDS and project.kept is not project.document
+    if is_due and AUTOSAVING not in session.jobs.kinds:
         _keep(session, project, now)
 
 
 def _keep(session: Session, project: Project, now: float) -> None:
     document, folder = project.document, session.folder
     project.kept, project.kept_at = document, now
+
+    def done(_: None) -> None:
+        # In the meantime it may have been saved, or closed.
+        if session.project is not project or project.kept is not document:
+            forget_autosave(folder)
+
     session.jobs.put(
         Job(
             kind=AUTOSAVING,
             work=lambda: write_autosave(folder, document),
-            done=lambda _: None,
+            done=done,
             failed=lambda error: report(session, "Unsaved work cannot be kept", error),
         )
     )

@@ -6,12 +6,17 @@ from typing import Any, Literal
 
 from app.actions.action import Action
 from app.document.settings import Meshing
-from app.preferences import LARGEST_SCALE, SMALLEST_SCALE, ThemeName
+from app.preferences import (
+    LARGEST_GHOST_STEP,
+    LARGEST_SCALE,
+    MOST_GHOSTS,
+    SMALLEST_SCALE,
+    ThemeName,
+)
 from app.render.view import View
 from app.session import Dialog, FileDialog, HeatMap, Session, ShortcutSheet, Toast
 
 SCALE_STEP = 0.25
-MOST_GHOSTS = 6
 Overlay = Literal["handles", "wireframe", "outline", "cage", "onion"]
 HEAT_MAPS: tuple[HeatMap, ...] = ("none", "k", "sigma_a", "sigma_b")
 
@@ -56,17 +61,17 @@ def toggle_heat_map(session: Session) -> None:
 
 def set_ghosts(session: Session, before: int, after: int, step: int) -> None:
     """Choose how many ghosts the onion skin has, and how many frames apart."""
-    session.overlays = replace(
-        session.overlays,
+    session.preferences = replace(
+        session.preferences,
         ghosts_before=min(max(before, 0), MOST_GHOSTS),
         ghosts_after=min(max(after, 0), MOST_GHOSTS),
-        ghost_step=max(step, 1),
+        ghost_step=min(max(step, 1), LARGEST_GHOST_STEP),
     )
 
 
 def set_backdrop(session: Session, backdrop: str) -> None:
     """Choose what lies behind the drawing: "checker" or "#rrggbb"."""
-    session.overlays = replace(session.overlays, backdrop=backdrop)
+    session.preferences = replace(session.preferences, backdrop=backdrop)
 
 
 def draft_meshing(session: Session, meshing: Meshing) -> None:

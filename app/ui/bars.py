@@ -7,6 +7,7 @@ from imgui_bundle import ImVec2, imgui
 from app.actions.action import Action
 from app.measuring import Extremes
 from app.session import Project, Session
+from app.ui import backdrop_menu
 from app.ui.shortcuts import BINDINGS, Binding
 from app.ui.theme import Look, ink
 from app.ui.widgets import icon_button, tip
@@ -52,6 +53,8 @@ def draw_menus(session: Session, _: Look) -> list[Action]:
                 actions += _menu_item(session, BINDINGS[name])
             else:
                 imgui.separator()
+        if title == "View":
+            actions += backdrop_menu.draw(session)
         imgui.end_menu()
     return actions
 

@@ -6,6 +6,7 @@ from imgui_bundle import ImVec4
 from app.document.timeline import time_of
 from app.export.framing import Box
 from app.motion import Figure
+from app.preferences import CHECKER
 from app.render.gpu_mesh import GpuMesh, Pose
 from app.render.gpu_picture import GpuPicture
 from app.render.handles import HandleMark, HandleStyle, mark_handles
@@ -147,8 +148,7 @@ def _inputs(session: Session, project: Project) -> tuple[object, ...]:
         session.hovered,
         session.overlays,
         session.export_frame,
-        session.preferences.theme,
-        session.preferences.scale,
+        session.preferences,
     )
 
 
@@ -201,8 +201,8 @@ def _scene(session: Session, project: Project, shown: Shown, drawing: _Drawing) 
 
 
 def _background(session: Session, palette: Palette) -> Background:
-    backdrop = session.overlays.backdrop
-    if backdrop == "checker":
+    backdrop = session.preferences.backdrop
+    if backdrop == CHECKER:
         return Background(
             colour=_colour(palette.paper),
             checks=_colour(palette.check),
@@ -215,18 +215,18 @@ def _background(session: Session, palette: Palette) -> Background:
 def _ghosts(
     session: Session, project: Project, shown: Shown, drawing: _Drawing
 ) -> tuple[Ghost, ...]:
-    overlays, document = session.overlays, project.document
+    choice, document = session.preferences, project.document
     if project.playhead.since is not None:
         return ()
     # While the hand moves, in-betweens come a moment later: until then the last ones stay.
     known = document if project.sketch.knows(document, roughly=True) else project.sketch.document
     ghosts = []
-    sides = ((-1, overlays.ghosts_before, GHOST_BEFORE), (1, overlays.ghosts_after, GHOST_AFTER))
+    sides = ((-1, choice.ghosts_before, GHOST_BEFORE), (1, choice.ghosts_after, GHOST_AFTER))
     number = 0
     for direction, count, tint in sides:
         for step in range(count, 0, -1):
             number += 1
-            frame = shown.frame + direction * step * overlays.ghost_step
+            frame = shown.frame + direction * step * choice.ghost_step
             if frame not in known.frames and not known.loop:
                 continue
             vertices = project.sketch.vertices(known, frame)

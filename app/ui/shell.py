@@ -180,6 +180,7 @@ class Shell:
             self._attempt(partial(action.apply, self.session))
         self._attempt(partial(upkeep.keep_up, self.session))
         self._attempt(partial(saving.autosave, self.session))
+        self._attempt(partial(saving.keep_preferences, self.session))
         if self.session.quitting:
             hello_imgui.get_runner_params().app_shall_exit = True
 

@@ -237,7 +237,7 @@ def test_a_question_that_comes_up_takes_the_dialog_away(window, program, ask):
 def test_the_window_takes_the_dialog_with_it(window, program, ask):
     ask()
     program.asked()
-    window._screen.window._shell.release()
+    window._window._shell.release()
     assert not is_running(program)
 
 

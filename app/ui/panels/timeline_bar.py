@@ -8,6 +8,7 @@ from imgui_bundle import icons_fontawesome_6 as icons
 from app.actions import keys, playback, viewing
 from app.actions.action import Action, do
 from app.document.settings import LAST_FRAME, VARIANTS
+from app.preferences import LARGEST_GHOST_STEP, MOST_GHOSTS
 from app.session import Project, Session
 from app.ui.bars import bound_button
 from app.ui.panels.timeline_menus import time_menu
@@ -180,7 +181,8 @@ def _speed(project: Project) -> list[Action]:
 
 def _onion_skin(session: Session, look: Look) -> list[Action]:
     actions: list[Action] = []
-    overlays, binding = session.overlays, BINDINGS["onion skin"]
+    overlays, preferences = session.overlays, session.preferences
+    binding = BINDINGS["onion skin"]
     hint = "Onion skin: what is shown before and after"
     if icon_button(look, binding.icon, "onion skin", hint, active=overlays.onion):
         imgui.open_popup("menu of onion skin")
@@ -190,12 +192,13 @@ def _onion_skin(session: Session, look: Look) -> list[Action]:
         actions.append(binding.action)
     imgui.same_line()
     imgui.text_disabled(binding.keys_in_words)
-    values = [overlays.ghosts_before, overlays.ghosts_after, overlays.ghost_step]
+    values = [preferences.ghosts_before, preferences.ghosts_after, preferences.ghost_step]
     before = list(values)
-    most = viewing.MOST_GHOSTS
-    for index, (name, low, high) in enumerate(
-        (("before", 0, most), ("after", 0, most), ("frames apart", 1, 24))
-    ):
+    sliders = (
+        *(("before", 0, MOST_GHOSTS), ("after", 0, MOST_GHOSTS)),
+        ("frames apart", 1, LARGEST_GHOST_STEP),
+    )
+    for index, (name, low, high) in enumerate(sliders):
         imgui.set_next_item_width(8 * look.em)
         values[index] = imgui.slider_int(name, values[index], low, high)[1]
     if values != before:
