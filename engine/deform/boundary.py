@@ -4,13 +4,10 @@ from dataclasses import dataclass, replace
 from typing import Self
 
 import numpy as np
-import shapely
 
 from engine.arrays import Complexes, Floats, Indices, as_points, readonly
-from engine.cauchy import cauchy_coordinates, cauchy_derivatives, edge_logarithms
-from engine.errors import EngineError
+from engine.cauchy import cauchy_coordinates, cauchy_derivatives, require_around
 from engine.polygon import (
-    as_xy,
     box_diagonal,
     distance_to_segments,
     require_simple,
@@ -80,7 +77,7 @@ class Boundary:
             as_points(cage, "cage", at_least=3),
         )
         require_simple(outline, "outline")
-        _require_inside(outline, cage)
+        require_around(cage, outline)
         size = box_diagonal(outline)
         points = sample_graded(outline, cage, ratio=RATIO, longest=LONGEST * size)
         ends = np.roll(points, -1)
@@ -131,14 +128,3 @@ class Boundary:
 def _curvature_kernel(cage: Complexes, starts: Complexes, ends: Complexes) -> Floats:
     kernel: Floats = 1.0 / (2 * np.pi * distance_to_segments(cage, starts, ends).T ** 2)
     return kernel
-
-
-def _require_inside(outline: Complexes, cage: Complexes) -> None:
-    ring = shapely.LinearRing(as_xy(cage))
-    if shapely.intersects(ring, shapely.Polygon(as_xy(outline))):
-        raise EngineError("The outline must lie strictly inside the cage, but the cage meets it.")
-    turns = edge_logarithms(cage, outline[:1]).imag.sum() / (2 * np.pi)
-    if round(float(turns)) != 1:
-        raise EngineError(
-            "The cage does not contain the outline; give it counter-clockwise around the outline."
-        )

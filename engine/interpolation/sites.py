@@ -4,15 +4,13 @@ from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
-import shapely
 
 from engine.arrays import Complexes, as_points, readonly
-from engine.cauchy import edge_logarithms
+from engine.cauchy import require_around
 from engine.errors import EngineError
 from engine.integration_paths import IntegrationPaths, lay_paths
 from engine.path_network import ON_OUTLINE, mesh_network, scattered_network
 from engine.polygon import (
-    as_xy,
     box_diagonal,
     contains,
     deepest_point,
@@ -97,7 +95,7 @@ def prepare_sites(
     cage = as_points(cage, "cage", at_least=3)
     points = as_points(points, "points", at_least=1)
     require_simple(outline, "outline")
-    _require_around(cage, outline)
+    require_around(cage, outline)
     tolerance = ON_OUTLINE * diameter(outline)
     root = np.array([deepest_point(outline)]) if anchor is None else _single(anchor)
     _require_inside(outline, root, tolerance, "anchor")
@@ -145,21 +143,4 @@ def _require_inside(outline: Complexes, points: Complexes, tolerance: float, nam
         raise EngineError(
             f"The {name}{number} at ({z.real:.6g}, {z.imag:.6g}) is outside the outline{count}; "
             "in-betweens exist only inside it."
-        )
-
-
-def _require_around(cage: Complexes, outline: Complexes) -> None:
-    """Refuse a cage that does not wind once around the outline, with room between them.
-
-    Only that: published cages are known that cross themselves elsewhere.
-    """
-    touching = shapely.intersects(
-        shapely.LinearRing(as_xy(cage)), shapely.LinearRing(as_xy(outline))
-    )
-    if touching or np.any(np.isin(outline, cage)):
-        raise EngineError("The cage touches or crosses the outline; it must lie around it.")
-    angle = edge_logarithms(cage, outline[:1]).imag.sum()
-    if round(angle / (2 * np.pi)) != 1:
-        raise EngineError(
-            "The cage does not run once counter-clockwise around the outline; check its order."
         )

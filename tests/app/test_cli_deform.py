@@ -92,7 +92,7 @@ DOUBLE = np.array([0.0, 0.0])
         ({"targets": STAR_POINTS[:3]}, "as many targets"),
         ({"handles": DOUBLE, "targets": np.array([0, 1.0])}, "same point"),
         ({"cage": CROSSED}, "cage"),
-        ({"cage": CAGE + 9}, "does not contain"),
+        ({"cage": CAGE + 9}, "once counter-clockwise around"),
         ({"outline": CAGE, "cage": OUTLINE}, "strictly inside|cage"),
         ({"k_max": 1.0}, "bound on k"),
         ({"sigma_a_max": 0.9}, "bound on sigma_a"),

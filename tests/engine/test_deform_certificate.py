@@ -166,7 +166,7 @@ def test_another_cage_is_refused():
     [
         (BOUNDARY.outline, 0.9 * CAGE, "strictly inside"),
         (BOUNDARY.outline, 0.2 * CAGE, "inside|contain"),
-        (BOUNDARY.outline, CAGE + 9, "does not contain"),
+        (BOUNDARY.outline, CAGE + 9, "once counter-clockwise around"),
         (BOUNDARY.outline, CAGE[::-1], "counter-clockwise"),
         (BOUNDARY.outline[::-1], CAGE, "clockwise"),
         (BOUNDARY.outline[[0, 2, 1, *range(3, len(CAGE))]], CAGE, "crosses"),
