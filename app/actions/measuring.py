@@ -7,7 +7,6 @@ from app.actions.action import do
 from app.actions.failures import report
 from app.curve_picture import draw_curves
 from app.document.timeline import intervals
-from app.document.timeline import intervals
 from app.files import write_atomically
 from app.jobs import Job
 from app.measuring import Curves, measure_curves, write_curves

@@ -144,6 +144,8 @@ def insert_key(session: Session) -> None:
                 urgent=True,
             )
         )
+    else:
+        session.tell(f"Frame {frame} has a key already; posing changes it.")
 
 
 def _insert(session: Session, project: Project, document: Document, frame: int, pose: Pose) -> None:

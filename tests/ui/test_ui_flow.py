@@ -260,6 +260,14 @@ def test_without_auto_key_a_pose_is_loose_until_it_is_inserted(window, bar):
     assert [key.frame for key in bar.document.keys] == [0, 12]
 
 
+def test_inserting_a_key_where_there_is_one_says_so(window, bar):
+    before = bar.document
+    window.run(lambda robot: robot.key_press(int(window.Key.i)))
+    assert bar.document is before
+    (toast,) = window.session.toasts
+    assert toast.text == "Frame 0 has a key already; posing changes it."
+
+
 def test_keys_of_the_pointer(window, bar):
     session = window.session
     places = handle_places(bar)
