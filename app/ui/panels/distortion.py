@@ -224,7 +224,11 @@ def _plot(session: Session, look: Look, curves: Curves, plot: _Plot) -> list[Act
     corner = implot.get_plot_pos()
     place = ImVec2(corner.x + 0.5 * look.em, corner.y + 0.2 * look.em)
     implot.get_plot_draw_list().add_text(place, ink(palette.text), plot.title)
-    if implot.is_plot_hovered() and imgui.is_mouse_clicked(imgui.MouseButton_.left):
+    # A plot that takes no inputs of its own never counts as hovered.
+    size = implot.get_plot_size()
+    opposite = ImVec2(corner.x + size.x, corner.y + size.y)
+    is_over = imgui.is_window_hovered() and imgui.is_mouse_hovering_rect(corner, opposite)
+    if is_over and imgui.is_mouse_clicked(imgui.MouseButton_.left):
         actions.append(do(playback.seek, round(implot.get_plot_mouse_pos().x)))
     implot.end_plot()
     tip("Click to go to a frame")
