@@ -1,5 +1,7 @@
 """Other bounds and another domain: the worker solves the keys again, one job for each."""
 
+from dataclasses import replace
+
 from app.actions import editing, posing
 from app.actions.failures import report
 from app.document.settings_commands import set_bounds
@@ -29,6 +31,17 @@ def choose_bounds(session: Session, bounds: Bounds) -> None:
         editing.edit(session, set_bounds(bounds))
     elif bounds != project.document.bounds:
         _begin(session, Renewal(before=project.document, bounds=bounds, pulls=False))
+
+
+def enter_bound(session: Session, bounds: Bounds, name: str, value: float) -> None:
+    """Set one of the bounds to a number that was typed in.
+
+    Raises
+    ------
+    EngineError
+        If it bounds nothing, or everything.
+    """
+    choose_bounds(session, replace(bounds, **{name: value}))
 
 
 def solve_again(session: Session) -> None:

@@ -142,7 +142,7 @@ def _limit(
     tip(f"{limit.hint}: drag the bound")
     imgui.set_cursor_pos_y(imgui.get_cursor_pos_y() - 0.5 * imgui.get_style().item_spacing.y)
     if entered is not None:
-        return [do(rebuilding.choose_bounds, replace(bounds, **{limit.field: entered}))]
+        return [do(rebuilding.enter_bound, bounds, limit.field, entered)]
     if moved is None:
         return []
     strictest, widest = LEAST[limit.field], limit.scale.right
