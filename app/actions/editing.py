@@ -1,15 +1,24 @@
 """Changes of the document: commands, undo, and what is selected."""
 
+from dataclasses import replace
+
 from app.actions import posing
 from app.document import key_commands
 from app.document.commands import Command
-from app.session import Session
+from app.session import Project, Session
 
 
 def edit(session: Session, command: Command) -> None:
     """Run a command; those given while the pointer holds on make one step of undo together."""
-    if session.project:
-        session.project.history.do(command, gesture=session.project.gesture)
+    project = session.project
+    if project is None:
+        return
+    before = _posed(project)
+    project.history.do(command, gesture=project.gesture)
+    if _posed(project) != before:
+        # The solver would put back what the command took away.
+        posing.drop(session)
+    _forget_what_is_gone(project)
 
 
 def hold(session: Session, held: bool) -> None:  # noqa: FBT001 - the only argument
@@ -20,11 +29,18 @@ def hold(session: Session, held: bool) -> None:  # noqa: FBT001 - the only argum
 
 
 def undo(session: Session) -> None:
-    """Take the last step back."""
-    if session.project:
-        posing.drop(session)
-        session.project.history.undo()
-        _forget_what_is_gone(session)
+    """Take the last step back: a pose that no key holds, or what the document had last."""
+    project = session.project
+    if project is None:
+        return
+    is_unkept = project.loose is not None or (
+        project.grab is not None and project.grab.drag is None
+    )
+    posing.drop(session)
+    project.loose = None
+    if not is_unkept:
+        project.history.undo()
+        _forget_what_is_gone(project)
 
 
 def redo(session: Session) -> None:
@@ -32,14 +48,16 @@ def redo(session: Session) -> None:
     if session.project:
         posing.drop(session)
         session.project.history.redo()
-        _forget_what_is_gone(session)
+        session.project.loose = None
+        _forget_what_is_gone(session.project)
 
 
 def select(session: Session, handles: frozenset[int]) -> None:
-    """Select these handles and no keys."""
-    if session.project:
-        session.project.selected = handles
-        session.project.chosen = frozenset()
+    """Select these handles, as far as they are there, and no keys."""
+    project = session.project
+    if project:
+        project.selected, project.chosen = handles, frozenset()
+        _forget_what_is_gone(project)
 
 
 def select_all(session: Session) -> None:
@@ -49,10 +67,11 @@ def select_all(session: Session) -> None:
 
 
 def choose_keys(session: Session, frames: frozenset[int]) -> None:
-    """Select the keys at these frames and no handles."""
-    if session.project:
-        session.project.chosen = frames
-        session.project.selected = frozenset()
+    """Select the keys at these frames, as far as they are there, and no handles."""
+    project = session.project
+    if project:
+        project.selected, project.chosen = frozenset(), frames
+        _forget_what_is_gone(project)
 
 
 def delete(session: Session) -> None:
@@ -62,12 +81,19 @@ def delete(session: Session) -> None:
         edit(session, key_commands.delete_keys(project.chosen))
     elif project and project.selected:
         posing.remove_handles(session, project.selected)
-    _forget_what_is_gone(session)
 
 
-def _forget_what_is_gone(session: Session) -> None:
-    project = session.project
-    if project:
-        project.loose = None
-        project.selected &= {handle.id for handle in project.document.handles}
-        project.chosen &= {key.frame for key in project.document.keys}
+def _posed(project: Project) -> tuple[object, ...]:
+    """Return the pose that handles are being pulled in, and what it is solved from."""
+    document, grab = project.document, project.grab
+    poses = [key.pose for key in document.keys if grab is not None and key.frame == grab.frame]
+    return (poses, document.handles, document.bounds, document.domain)
+
+
+def _forget_what_is_gone(project: Project) -> None:
+    document = project.document
+    project.selected &= {handle.id for handle in document.handles}
+    project.chosen &= {key.frame for key in document.keys}
+    if project.playhead.frame not in document.frames:
+        frame = document.frames.clamp(project.playhead.frame)
+        project.playhead = replace(project.playhead, frame=frame)

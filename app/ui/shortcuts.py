@@ -99,7 +99,10 @@ def _edits(session: Session) -> bool:
 
 
 def _undoable(session: Session) -> bool:
-    return session.project is not None and session.project.history.undo_label is not None
+    project = session.project
+    return project is not None and (
+        project.history.undo_label is not None or project.loose is not None
+    )
 
 
 def _redoable(session: Session) -> bool:
