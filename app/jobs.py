@@ -5,6 +5,7 @@ that may take a second, such as in-betweens. The first is never kept waiting by 
 """
 
 import threading
+import time
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
@@ -42,6 +43,7 @@ class _Lane:
 
     thread: threading.Thread | None = None
     running: Job | None = None
+    since: float = 0.0
     is_stale: bool = False
 
 
@@ -50,9 +52,15 @@ class Jobs:
 
     A job is unfinished until its result is delivered. One whose kind was put in again or dropped
     before that is stale: if it waits it never starts, and its result is thrown away.
+
+    Parameters
+    ----------
+    clock : callable
+        Seconds, for telling how long a job runs.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, clock: Callable[[], float] = time.perf_counter) -> None:
+        self._clock = clock
         self._condition = threading.Condition()
         self._waiting: list[Job] = []
         self._finished: list[tuple[str, Callable[[], None]]] = []
@@ -87,6 +95,16 @@ class Jobs:
             ]
             finished = [kind for kind, _ in self._finished]
             return (*finished, *running, *(job.kind for job in self._waiting))
+
+    def running_for(self, seconds: float) -> tuple[str, ...]:
+        """Return the kinds of jobs that run since so many seconds or more."""
+        start = self._clock() - seconds
+        with self._condition:
+            return tuple(
+                lane.running.kind
+                for lane in self._lanes.values()
+                if lane.running is not None and not lane.is_stale and lane.since <= start
+            )
 
     def deliver(self) -> None:
         """Hand over what is finished; on the main thread, once a frame."""
@@ -123,7 +141,7 @@ class Jobs:
                 while (job := self._next(urgent=urgent)) is None:
                     self._condition.wait()
                 self._waiting.remove(job)
-                lane.running, lane.is_stale = job, False
+                lane.running, lane.since, lane.is_stale = job, self._clock(), False
             hand_over = _attempt(job)
             with self._condition:
                 if not lane.is_stale:

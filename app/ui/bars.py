@@ -38,6 +38,7 @@ MENUS: dict[str, tuple[str, ...]] = {
     ),
     "Help": ("shortcuts",),
 }
+SLOW = 0.3  # seconds after which a job is told of; shorter ones would only flicker
 AT_BOUND = 0.97  # of a bound: so much of it is used where a pose cannot go on
 ICON_BAR = ("fit", "", "handles", "wireframe", "outline", "heat map", "onion skin", "", "auto-key")
 
@@ -113,10 +114,10 @@ class _Fact(NamedTuple):
 
 def draw_status(session: Session, look: Look) -> list[Action]:
     """Draw the status bar: what goes on, and how the project and the window are."""
-    busy = session.jobs.kinds
-    if busy:
+    slow = session.jobs.running_for(SLOW)
+    if slow:
         _spinner(session, look)
-        imgui.text_unformatted(f"{busy[0]}…")
+        imgui.text_unformatted(f"{slow[0]}…")
     else:
         imgui.text_disabled(session.hint or "Ready")
     gap = 1.6 * look.em

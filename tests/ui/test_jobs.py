@@ -136,3 +136,23 @@ def test_urgent_jobs_come_one_after_the_other():
     assert jobs.settle()
     jobs.deliver()
     assert results == [("pose", None), ("save", 1)]
+
+
+def test_jobs_tell_how_long_they_run():
+    now = [10.0]
+    jobs, gate, begun = Jobs(lambda: now[0]), threading.Event(), threading.Event()
+
+    def wait():
+        begun.set()
+        gate.wait(10)
+
+    jobs.put(job("factors", wait, []))
+    assert begun.wait(10)
+    jobs.put(job("in-betweens", int, []))
+    assert jobs.running_for(0.3) == ()
+    now[0] = 10.4
+    assert jobs.running_for(0.3) == ("factors",)
+    jobs.drop("factors")
+    assert jobs.running_for(0.3) == ()
+    gate.set()
+    assert jobs.settle()
