@@ -20,6 +20,7 @@ Equation map of *Bounded Distortion Harmonic Shape Interpolation* (Chien, Chen, 
     (8), (16)-(18)  scaled η, ρ(t)                   engine.interpolation.scaling.Scaling
     (9)-(13)        metric variant                   engine.interpolation.metric.MetricBlend
     Section 7.4     Hilbert transform                engine.hilbert.HilbertTransform
+    Section 7.4     its fit in the cage's own space  engine.projected_transform.ProjectedTransform
     Section 7       spanning tree from the anchor    engine.spanning_tree.SpanningTree
     Section 7       quadrature along its edges       engine.integration_paths.IntegrationPaths
 
