@@ -42,13 +42,15 @@ def draw(session: Session, look: Look, texture: int | None) -> list[Action]:
         imgui.ImTextureRef(texture), corner, opposite, ImVec2(0, 1), ImVec2(1, 0)
     )
     stage = _Stage(project, project.shown, project.view(session.screen), corner, density)
-    imgui.set_next_item_allow_overlap()
+    # Before the canvas: what comes first gets the pointer. Were they laid over it, a press in the
+    # frame in which the pointer arrives would be the canvas's, or nobody's.
+    hovered, over_handles = _handles(session, look, stage)
+    imgui.set_cursor_screen_pos(corner)
     imgui.invisible_button("canvas", room, _ANY_BUTTON)
     on_canvas = imgui.is_item_hovered()
     over = imgui.is_window_hovered() or imgui.is_item_active()
     actions += _press_canvas(session, stage)
     actions += _navigate(stage, over=over)
-    hovered, over_handles = _handles(session, look, stage)
     actions += over_handles
     actions += _go_on(session, stage)
     if hovered != session.hovered:
@@ -131,11 +133,11 @@ def _handles(session: Session, look: Look, stage: _Stage) -> tuple[int | None, l
     if not session.overlays.handles or stage.project.playhead.since is not None:
         return hovered, actions
     radius = GRIP * look.em
-    cursor = imgui.get_cursor_screen_pos()
-    for handle, place in zip(stage.shown.document.handles, stage.shown.handle_places, strict=True):
+    handles = zip(stage.shown.document.handles, stage.shown.handle_places, strict=True)
+    # The one that is drawn last lies on top.
+    for handle, place in reversed(list(handles)):
         centre = stage.point(complex(place))
         imgui.set_cursor_screen_pos(ImVec2(centre.x - radius, centre.y - radius))
-        imgui.set_next_item_allow_overlap()
         imgui.invisible_button(
             f"handle {handle.id}",
             ImVec2(2 * radius, 2 * radius),
@@ -148,8 +150,6 @@ def _handles(session: Session, look: Look, stage: _Stage) -> tuple[int | None, l
         if imgui.is_item_clicked(imgui.MouseButton_.right):
             imgui.open_popup(f"menu of handle {handle.id}")
         actions += _menu(stage, handle.id)
-    imgui.set_cursor_screen_pos(cursor)
-    imgui.dummy(ImVec2(0, 0))
     return hovered, actions
 
 

@@ -1,0 +1,57 @@
+"""A press in the frame in which the pointer arrives, as on a slow machine or a touch screen."""
+
+import pytest
+from imgui_bundle import imgui
+
+from app.actions import posing
+from app.assets import sample_images
+
+
+@pytest.fixture
+def project(window):
+    """A bar with a handle near its left end, under the pointer."""
+    project = window.open(sample_images() / "bar.png")
+    posing.add_handle(window.session, place_of(project, 0.1))
+    point(window, project, 0.1)
+    window.frames(3)
+    assert window.session.hovered == 0
+    return project
+
+
+def place_of(project, share):
+    width, height = project.picture.size
+    return complex(share * width, height / 2)
+
+
+def point(window, project, share):
+    imgui.get_io().add_mouse_pos_event(*window.point(place_of(project, share)))
+
+
+def press(window, project, share):
+    """Move the pointer and press the button before the next frame."""
+    point(window, project, share)
+    for is_down in (True, False):
+        imgui.get_io().add_mouse_button_event(0, is_down)
+    window.frames(4)
+
+
+def test_it_leaves_a_handle_for_the_canvas(window, project):
+    press(window, project, 0.9)
+    assert len(project.document.handles) == 2
+
+
+def test_it_leaves_the_canvas_for_a_handle(window, project):
+    press(window, project, 0.9)
+    point(window, project, 0.5)
+    window.frames(3)
+    press(window, project, 0.1)
+    assert project.selected == {0}
+    assert len(project.document.handles) == 2
+
+
+def test_it_takes_the_upper_one_of_two_handles(window, project):
+    press(window, project, 0.9)
+    posing.add_handle(window.session, place_of(project, 0.901))
+    window.frames(3)
+    press(window, project, 0.9)
+    assert project.selected == {2}
