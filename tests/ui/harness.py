@@ -1,11 +1,10 @@
-"""The whole window without a display: a null platform, an EGL framebuffer, ImGui's test engine."""
+"""The whole window without a display, with ImGui's test engine in it."""
 
 import tempfile
 from collections.abc import Callable
 from dataclasses import fields
 from pathlib import Path
 
-import numpy as np
 from imgui_bundle import ImVec2, hello_imgui, imgui
 from PIL import Image
 
@@ -15,9 +14,9 @@ from app.document.settings import Meshing
 from app.jobs import Jobs
 from app.preferences import Preferences
 from app.render.context import create_context
-from app.render.draw_lists import DrawLists
 from app.render.renderer import Renderer
 from app.session import Project, Session
+from app.ui.offscreen import Offscreen
 from app.ui.window import Window
 
 Robot = imgui.test_engine.TestContext
@@ -36,22 +35,18 @@ class Clock:
 
 
 class Harness:
-    """One window a process: Hello ImGui cannot be set up twice on the null platform."""
+    """The one window of a process, its clock, and a robot that does what a person would."""
 
     Key = imgui.Key
 
-    def __init__(self, size: tuple[int, int] = (1280, 800)) -> None:
+    def __init__(self) -> None:
         self.clock = Clock()
         self.folder = Path(tempfile.mkdtemp(prefix="lissom-test-"))
         self.session = Session(clock=self.clock, jobs=Jobs(), folder=self.folder)
-        self.gl = create_context()
-        self._set_size(size)
-        self._lists: DrawLists | None = None
         self._tests = 0
-        self._is_seen = False
-        self.window = Window(self.session, lambda: Renderer(self.gl))
-        self._params = self._headless_params()
-        hello_imgui.manual_render.setup_from_runner_params(self._params)
+        gl = create_context()
+        self._window = Window(self.session, lambda: Renderer(gl))
+        self._screen = Offscreen(self._window, gl, with_test_engine=True)
         self._engine = hello_imgui.get_imgui_test_engine()
         settings = imgui.test_engine.get_io(self._engine)
         settings.config_run_speed = imgui.test_engine.TestRunSpeed.fast
@@ -60,12 +55,7 @@ class Harness:
 
     def resize(self, size: tuple[int, int], scale: float = 1.0) -> None:
         """Give the window another size in pixels, and its contents another scale."""
-        with self.gl:
-            self._target.color_attachments[0].release()
-            self._target.release()
-            self._set_size(size)
-        # As a window of this size would open.
-        self._params.docking_params.layout_reset = True
+        self._screen.resize(size)
         self.session.preferences = Preferences(scale=scale, theme=self.session.preferences.theme)
         self.frames(3)
 
@@ -92,23 +82,12 @@ class Harness:
 
     def point(self, place: complex) -> ImVec2:
         """Return where a place of the drawing's plane is on the screen."""
-        project = self.session.project
-        assert project is not None
-        pixel = project.view(self.session.screen).to_pixels(np.array([place]))[0]
-        window = imgui.internal.find_window_by_name(self._viewport)
-        return ImVec2(window.pos.x + pixel.real, window.pos.y + pixel.imag)
+        return self._screen.point(place)
 
     def show_tab(self, title: str) -> None:
         """Bring a panel to the front."""
-        panels = self._params.docking_params.dockable_windows
-        panel = next(p for p in panels if p.label.endswith(title))
-        panel.focus_window_at_next_frame = True
+        self._screen.show_tab(title)
         self.frames(3)
-
-    @property
-    def _viewport(self) -> str:
-        panels = self._params.docking_params.dockable_windows
-        return next(p.label for p in panels if p.label.endswith("Viewport"))
 
     def text_height(self) -> float:
         """Return the height of a line of text in pixels."""
@@ -123,13 +102,11 @@ class Harness:
         """Draw some frames, with the clock going on."""
         for _ in range(count):
             self.clock.now += FRAME
-            # Other tests of this process have contexts of their own.
-            with self.gl:
-                hello_imgui.manual_render.render()
+            self._screen.frame()
 
     def act(self, verb: Callable[..., None], *arguments: object) -> None:
         """Do something as a panel would ask for it, with its errors told as theirs are."""
-        self.window.ask(do(verb, *arguments))
+        self._window.ask(do(verb, *arguments))
         self.frames()
 
     def settle(self) -> None:
@@ -168,48 +145,7 @@ class Harness:
 
     def picture(self) -> Image.Image:
         """Return what is on the screen."""
-        self._is_seen = True
+        # Nobody looks at most frames, and to paint them would take most of the time.
         self.frames()
-        self._is_seen = False
-        with self.gl:
-            pixels = self._target.read(components=3, alignment=1)
-        return Image.frombytes("RGB", self._target.size, pixels).transpose(
-            Image.Transpose.FLIP_TOP_BOTTOM
-        )
-
-    def save_picture(self, path: Path) -> None:
-        """Write what is on the screen as a PNG file."""
-        self.picture().save(path)
-
-    def _set_size(self, size: tuple[int, int]) -> None:
-        self._target = self.gl.framebuffer([self.gl.texture(size, 4)])
-
-    def _headless_params(self) -> hello_imgui.RunnerParams:
-        params = self.window.runner_params()
-        params.platform_backend_type = hello_imgui.PlatformBackendType.null
-        params.renderer_backend_type = hello_imgui.RendererBackendType.null
-        params.use_imgui_test_engine = True
-        params.ini_disable = True
-        calls = params.callbacks
-        begin = calls.pre_new_frame
-
-        def begin_frame() -> None:
-            imgui.get_io().display_size = ImVec2(*self._target.size)
-            begin()
-
-        calls.pre_new_frame = begin_frame
-        calls.enqueue_post_init(self._attach)
-        calls.after_swap = self._draw
-        return params
-
-    def _attach(self) -> None:
-        self._lists = DrawLists(self.gl)
-
-    def _draw(self) -> None:
-        # Nobody looks at most frames, and to draw them would take most of the time.
-        if not self._is_seen:
-            return
-        data = imgui.get_draw_data()
-        self._target.clear(*self._params.imgui_window_params.background_color)
-        if self._lists is not None and data is not None and data.valid:
-            self._lists.draw(self._target, self.window.textures())
+        self._screen.paint()
+        return self._screen.picture()
