@@ -155,10 +155,9 @@ class Shell:
         self._docking.begin_frame(session.preferences.scale)
         # The tab that shows it asks for it in every frame.
         session.export_frame = None
-        self._attempt(session.jobs.deliver)
-        # What was delivered may be another document: panels are to see the pose that belongs to it.
-        self._attempt(partial(upkeep.keep_up, session))
         playback.halt_at_end(session)
+        # Panels are to see the frame that it is by now.
+        self._attempt(partial(upkeep.keep_up, session))
         moving = session.project is not None and session.project.playhead.since is not None
         busy = moving or bool(session.jobs.kinds or session.toasts)
         hello_imgui.get_runner_params().fps_idling.enable_idling = not busy
@@ -178,6 +177,9 @@ class Shell:
         actions, self._actions = self._actions, []
         for action in actions:
             self._attempt(partial(action.apply, self.session))
+        # After the actions, so that a pull goes on with the newest wish; before the picture is
+        # drawn, so that it shows at once how far the solver has come.
+        self._attempt(self.session.jobs.deliver)
         self._attempt(partial(upkeep.keep_up, self.session))
         self._attempt(partial(saving.autosave, self.session))
         self._attempt(partial(saving.keep_preferences, self.session))
