@@ -37,6 +37,7 @@ class HandleStyle:
     anchor: Colour = (0.05, 0.80, 0.90, 1.0)
     wish: Colour = (1.00, 0.33, 0.18, 1.0)
     rim: Colour = (1.00, 1.00, 1.00, 1.0)
+    halo: Colour = (1.00, 1.00, 1.00, 0.55)
     shadow: Colour = (0.00, 0.00, 0.00, 0.45)
     radius: float = 7.0
     rim_width: float = 2.0
@@ -89,6 +90,9 @@ def _pin(mark: HandleMark, scale: float, style: HandleStyle) -> list[Disc]:
     rim_width = style.rim_width * scale
     body = style.anchor if mark.anchor else style.selected if mark.selected else style.normal
     discs = []
+    if mark.hovered:
+        halo = radius + (4.0 if mark.selected else 2.5) * rim_width
+        discs.append(Disc(centre=mark.place, radius=halo, fill=style.halo))
     if mark.selected:
         ring = radius + 1.75 * rim_width
         discs.append(_shadow(mark.place, ring, scale, style))

@@ -1,15 +1,23 @@
 """What is docked around the viewport: how large it is, and how its tabs are written."""
 
 from collections.abc import Iterator, Sequence
+from typing import NamedTuple
 
 from imgui_bundle import ImVec2, hello_imgui, imgui
 
 from app.ui.panel import Panel
 from app.ui.theme import FONT_SIZE
 
-SIDE, BOTTOM = 24.8, 14.4  # em: what tabs and timeline take at first
+SIDE, BOTTOM = 24.8, 12.2  # em: what tabs and timeline take at first
 BARS = (2.7, 4.4)  # em: what the bars around them take of the window
-MOST = (0.48, 0.5)  # parts of the window's width and height that they may take
+MOST = (0.48, 0.45)  # parts of the window's width and height that they may take
+
+
+class _Wish(NamedTuple):
+    """A size in pixels at a scale of 1, and the part of the window that it may take at most."""
+
+    size: float
+    most: float
 
 
 class Docking:
@@ -22,9 +30,11 @@ class Docking:
 
     def __init__(self, panels: Sequence[Panel]) -> None:
         self._panels = panels
-        # By node: the size in pixels that it was given, and the wished one at a scale of 1.
+        self._names = [panel.label for panel in panels]
+        self._tabs: tuple[object, ...] = ()
+        # By node: the size in pixels that it was given, and what it is to have.
         self._given: dict[int, float] = {}
-        self._wished: dict[int, float] = {}
+        self._wished: dict[int, _Wish] = {}
         self._scale = 1.0
 
     def begin_frame(self, scale: float) -> None:
@@ -36,33 +46,38 @@ class Docking:
             self._given.clear()
             return
         for node, axis in _sides(self._windows()):
-            self._fit(node, axis, MOST[axis] * room[axis], scale)
+            self._fit(node, axis, room[axis], scale)
         self._scale = scale
 
     def draw_tabs(self) -> None:
         """Choose what tabs say in the next frame; name the pointed one where it is but an icon."""
-        layout = hello_imgui.get_runner_params().docking_params
+        shown = hello_imgui.get_runner_params().docking_params.dockable_windows
         windows = self._windows()
-        for panel, window, shown in zip(
-            self._panels, windows, layout.dockable_windows, strict=True
-        ):
-            if window is None or window.dock_node is None or window.dock_node.tab_bar is None:
+        nodes = [None if window is None else window.dock_node for window in windows]
+        places = ((node.id_, node.size.x) if node is not None else None for node in nodes)
+        tabs = (imgui.get_font_size(), *places)
+        if tabs != self._tabs:
+            self._tabs = tabs
+            for panel, tab, node in zip(self._panels, shown, nodes, strict=True):
+                tab.label = panel.label if node is None else self._label(panel, node, nodes)
+        for panel, tab, window in zip(self._panels, shown, windows, strict=True):
+            if window is None or tab.label != panel.labels[-1]:
                 continue
-            shown.label = self._label(panel, window.dock_node, windows)
             flags = window.dc.dock_tab_item_status_flags
-            is_pointed = flags & imgui.internal.ItemStatusFlags_.hovered_rect
-            if is_pointed and shown.label == panel.labels[-1]:
+            if flags & imgui.internal.ItemStatusFlags_.hovered_rect:
                 imgui.set_tooltip(panel.title)
 
     def _windows(self) -> list[imgui.internal.Window | None]:
-        return [imgui.internal.find_window_by_name(panel.label) for panel in self._panels]
+        return [imgui.internal.find_window_by_name(name) for name in self._names]
 
-    def _fit(self, node: imgui.internal.DockNode, axis: int, most: float, scale: float) -> None:
+    def _fit(self, node: imgui.internal.DockNode, axis: int, room: float, scale: float) -> None:
         size = node.size_ref[axis]
         if abs(size - self._given.get(node.id_, -1.0)) > 1.0:
-            # A person moved its edge, or it is new.
-            self._wished[node.id_] = size / (self._scale if node.id_ in self._given else scale)
-        wanted = min(self._wished[node.id_] * scale, most)
+            # A person moved its edge, as far as they like, or it is new.
+            before = self._scale if node.id_ in self._given else scale
+            self._wished[node.id_] = _Wish(size / before, max(MOST[axis], size / room))
+        wish = self._wished[node.id_]
+        wanted = min(wish.size * scale, wish.most * room)
         if abs(wanted - size) > 1.0:
             sizes = [node.size_ref.x, node.size_ref.y]
             sizes[axis] = wanted
@@ -73,13 +88,13 @@ class Docking:
         self,
         panel: Panel,
         node: imgui.internal.DockNode,
-        windows: Sequence[imgui.internal.Window | None],
+        nodes: Sequence[imgui.internal.DockNode | None],
     ) -> str:
         """Return the fullest of the panel's labels with which all tabs beside it fit."""
         together = [
             other
-            for other, window in zip(self._panels, windows, strict=True)
-            if window is not None and window.dock_node == node
+            for other, its in zip(self._panels, nodes, strict=True)
+            if its is not None and its.id_ == node.id_
         ]
         style = imgui.get_style()
         gap = style.item_inner_spacing.x

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cache
 
 from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
@@ -74,6 +75,7 @@ class Binding:
         return _in_words(self.keys[0]) if self.keys else ""
 
 
+@cache
 def _in_words(chord: int) -> str:
     parts = [name for modifier, name in MODIFIERS.items() if chord & modifier]
     key = imgui.get_key_name(Key(chord & ~sum(MODIFIERS)))

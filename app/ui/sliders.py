@@ -7,7 +7,7 @@ from typing import NamedTuple
 from imgui_bundle import ImVec2, ImVec4, imgui
 
 from app.ui.theme import Look, ink
-from app.ui.widgets import tip
+from app.ui.widgets import FILL, tip
 
 FIELD = 4.3  # em
 BAR, KNOB = 0.28, 0.42  # em: thickness of the track, radius of the knob
@@ -86,7 +86,7 @@ def slider(
     moved = track(look, f"{name} track", value, scale, width, colour=look.palette.accent)
     tip(hint)
     imgui.same_line(0, gap)
-    imgui.set_next_item_width(-1)
+    imgui.set_next_item_width(FILL)
     entered = number(name, value, text)
     tip(hint)
     return moved if entered is None else Edit(scale.clamp(entered), is_final=True)

@@ -7,12 +7,15 @@ from imgui_bundle import ImVec2, imgui
 from app.ui.theme import SMALL, Look
 
 LABEL_WIDTH = 6.2  # em
+FILL = -imgui.FLT_MIN  # as a width: the rest of the line
 
 
-def heading(look: Look, text: str) -> None:
-    """Begin a group of settings."""
-    if imgui.get_cursor_pos_y() > 2 * look.em:
+def heading(look: Look, text: str, *, framed: bool = False) -> None:
+    """Begin a group of settings; `framed` where a button follows on the line."""
+    if imgui.get_cursor_pos_y() > imgui.get_cursor_start_pos().y:
         imgui.dummy(ImVec2(0, 0.3 * look.em))
+    if framed:
+        imgui.align_text_to_frame_padding()
     imgui.push_font(look.bold, 0)
     imgui.text(text)
     imgui.pop_font()
@@ -36,7 +39,7 @@ def label(look: Look, text: str) -> None:
     imgui.text_unformatted(text)
     imgui.pop_style_color()
     imgui.same_line(LABEL_WIDTH * look.em)
-    imgui.set_next_item_width(-1)
+    imgui.set_next_item_width(FILL)
 
 
 def at_end(width: float) -> None:

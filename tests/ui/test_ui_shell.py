@@ -60,13 +60,15 @@ def test_scale_takes_docked_panels_along(window):
 def test_docked_panels_keep_the_size_that_a_person_gave_them(window):
     window.open(sample_images() / "ring.png")
     node = _docked("Timeline")
-    imgui.internal.dock_builder_set_node_size(node.id_, ImVec2(node.size.x, 300))
+    imgui.internal.dock_builder_set_node_size(node.id_, ImVec2(node.size.x, 500))
     window.frames(3)
-    assert _docked("Timeline").size.y == pytest.approx(300, abs=1)
+    assert _docked("Timeline").size.y == pytest.approx(500, abs=1)
     viewing.scale_up(window.session)
     window.frames(3)
-    wanted = 300 * window.session.preferences.scale
-    assert _docked("Timeline").size.y == pytest.approx(wanted, abs=1)
+    assert _docked("Timeline").size.y == pytest.approx(500, abs=1)
+    viewing.scale_down(window.session)
+    window.frames(3)
+    assert _docked("Timeline").size.y == pytest.approx(500, abs=1)
     window.resize((1280, 800))
 
 

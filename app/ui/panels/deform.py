@@ -11,7 +11,7 @@ from app.document.timeline import intervals, time_of
 from app.session import Project, Session
 from app.ui.sliders import FIELD, Scale, number, track
 from app.ui.theme import SMALL, Look
-from app.ui.widgets import at_end, heading, icon_button, main_button, small, tip
+from app.ui.widgets import FILL, at_end, heading, icon_button, small, tip
 from engine.deform.bounds import Bounds
 from engine.deform.certificate import Certificate
 
@@ -75,7 +75,7 @@ def draw(session: Session, look: Look) -> list[Action]:
     _solver(session, look, project)
     heading(look, "Keys")
     actions += _keys(session, look, project)
-    return actions + _solving(look, project)
+    return actions + _solving(project)
 
 
 def _wanted_bounds(project: Project) -> Bounds:
@@ -94,7 +94,7 @@ def _reached(project: Project) -> tuple[tuple[Certificate, ...], str]:
 
 
 def _heading_with_reset(look: Look, bounds: Bounds) -> list[Action]:
-    heading(look, "Bounds")
+    heading(look, "Bounds", framed=True)
     at_end(1.15 * imgui.get_frame_height())
     is_default = bounds == Bounds()
     if icon_button(
@@ -126,7 +126,7 @@ def _limit(
     colour = _colour(look, limit, used, bound)
     imgui.text_colored(colour, text)
     imgui.same_line(0, imgui.get_style().item_inner_spacing.x)
-    imgui.set_next_item_width(-1)
+    imgui.set_next_item_width(FILL)
     entered = number(f"bound {limit.field}", bound)
     tip(f"{limit.hint}: the bound")
     imgui.set_cursor_pos_y(imgui.get_cursor_pos_y() - 0.5 * imgui.get_style().item_spacing.y)
@@ -223,12 +223,15 @@ def _keys(session: Session, look: Look, project: Project) -> list[Action]:
     return actions
 
 
-def _solving(look: Look, project: Project) -> list[Action]:
+def _solving(project: Project) -> list[Action]:
     if project.renewal is not None and project.renewal.meshing is None:
-        imgui.progress_bar(project.renewal.progress, ImVec2(-1, 0), project.renewal.now)
-        return [do(rebuilding.cancel)] if imgui.button("Cancel###stop", ImVec2(-1, 0)) else []
+        imgui.progress_bar(project.renewal.progress, ImVec2(FILL, 0), project.renewal.now)
+        return [do(rebuilding.cancel)] if imgui.button("Cancel###stop", ImVec2(FILL, 0)) else []
     is_possible = project.renewal is None and bool(project.document.handles)
-    if main_button(look, "Solve all keys again", -1, enabled=is_possible):
+    imgui.begin_disabled(not is_possible)
+    is_pressed = imgui.button("Solve all keys again", ImVec2(FILL, 0))
+    imgui.end_disabled()
+    if is_pressed:
         return [do(rebuilding.solve_again)]
     tip("Pull every key's handles to their places again, within the bounds of now")
     return []

@@ -9,22 +9,26 @@ from imgui_bundle import icons_fontawesome_6 as icons
 
 from app.actions import measuring, playback, viewing
 from app.actions.action import Action, do
-from app.measuring import Curves, broken_lines
+from app.measuring import TIMES, Curves, broken_lines
 from app.render.ramp import heat_ramp
 from app.session import CurveKind, HeatMap, Project, Session
 from app.shown import Shown
 from app.ui.canvas import heat_limits, measure
-from app.ui.theme import Look, ink
+from app.ui.theme import SMALL, Look, ink
 from app.ui.widgets import heading, segments, small, tip
 from engine.arrays import Floats
 from engine.deform.bounds import Bounds
+from engine.mesh import Mesh
 
 HEAT_MAPS = (("none", "Off"), ("k", "k"), ("sigma_a", "σa"), ("sigma_b", "σb"))
 NAMES = {"k": "Shear k", "sigma_a": "Stretch σa", "sigma_b": "Squeeze σb"}
 KINDS = (("relative", "Relative"), ("absolute", "Absolute"))
 BINS = 48
-HISTOGRAM, PLOT, STRIP = 7.0, 8.5, 0.45  # em
-HEADROOM = 1.3  # above the largest value, for the title
+HISTOGRAM, STRIP = 5.0, 0.45  # em
+PLOT, LARGEST_PLOT = 4.6, 10.0  # em: heights of a plot at least and at most
+FRAMES = 1.35  # em: what the frames take below the lower one
+SEGMENTS = 72  # of one point's line over all time at most, or a few in each interval
+HEADROOM = 1.4  # above the largest value, for the title
 QUIET = (
     implot.Flags_.no_legend
     | implot.Flags_.no_mouse_text
@@ -72,24 +76,41 @@ def _style_plots(look: Look) -> None:
 
 
 class _Histogram(NamedTuple):
-    """Which parts of the area (b,) have values between edges (b + 1,), and the worst value."""
+    """Which parts of the area have values between the edges, one more; and the worst value."""
 
-    shares: Floats
-    edges: Floats
+    shares: tuple[float, ...]
+    edges: tuple[float, ...]
     worst: float
 
 
 @lru_cache(maxsize=2)
 def _histogram(shown: Shown, heat_map: HeatMap, low: float, high: float) -> _Histogram:
     values = measure(shown, heat_map)
-    mesh = shown.figure.domain.mesh
-    areas = np.bincount(mesh.triangles.ravel(), np.repeat(mesh.areas(), 3), len(mesh.vertices))
     ends = np.array([low, high, values.min(), values.max()])
     shares, edges = np.histogram(
-        values, BINS, range=(float(ends.min()), float(ends.max())), weights=areas / areas.sum()
+        values,
+        BINS,
+        range=(float(ends.min()), float(ends.max())),
+        weights=_areas(shown.figure.domain.mesh),
     )
     worst = values.min() if heat_map == "sigma_b" else values.max()
-    return _Histogram(shares, edges, float(worst))
+    return _Histogram(tuple(shares.tolist()), tuple(edges.tolist()), float(worst))
+
+
+@lru_cache(maxsize=2)
+def _areas(mesh: Mesh) -> Floats:
+    """Return which part of the area is around each vertex, (v,)."""
+    areas = np.bincount(mesh.triangles.ravel(), np.repeat(mesh.areas(), 3), len(mesh.vertices))
+    return np.asarray(areas / areas.sum())
+
+
+@lru_cache(maxsize=2)
+def _colours(first: float, last: float, low: float, high: float) -> tuple[int, ...]:
+    """Return the heat map's colours at the middles of the bins."""
+    middles = first + (np.arange(BINS) + 0.5) / BINS * (last - first)
+    places = np.clip((middles - low) / (high - low), 0.0, 1.0)
+    rows = heat_ramp()[np.rint(255 * places).astype(int)]
+    return tuple(imgui.IM_COL32(red, green, blue, 255) for red, green, blue in rows.tolist())
 
 
 def _spread(look: Look, project: Project, shown: Shown, heat_map: HeatMap) -> None:
@@ -101,41 +122,32 @@ def _spread(look: Look, project: Project, shown: Shown, heat_map: HeatMap) -> No
     inverted = implot.AxisFlags_.invert if heat_map == "sigma_b" else 0
     if implot.begin_plot("##histogram", ImVec2(-1, HISTOGRAM * look.em), QUIET):
         implot.setup_axes("", "", axis | inverted, axis | implot.AxisFlags_.no_decorations)
-        room = 0.02 * float(edges[-1] - edges[0])
-        top = float(histogram.shares.max()) * 1.08
-        implot.setup_axes_limits(
-            float(edges[0]) - room, float(edges[-1]) + room, 0.0, top, implot.Cond_.always
-        )
-        _bars(look, histogram, low, high)
+        room = 0.02 * (edges[-1] - edges[0])
+        top = max(histogram.shares) * 1.08
+        implot.setup_axes_limits(edges[0] - room, edges[-1] + room, 0.0, top, implot.Cond_.always)
+        _bars(look, histogram, _colours(edges[0], edges[-1], low, high))
         _limit(look, high, vertical=True)
         implot.end_plot()
     name = NAMES[heat_map]
     small(look, f"{name} over the area: at worst {histogram.worst:.2f}, the bound is {high:.2f}")
 
 
-def _bars(look: Look, histogram: _Histogram, low: float, high: float) -> None:
+def _bars(look: Look, histogram: _Histogram, colours: tuple[int, ...]) -> None:
     """Draw the bars, and under them the colours that the drawing has."""
-    ramp = heat_ramp()
     draw_list = implot.get_plot_draw_list()
     implot.push_plot_clip_rect()
     floor = implot.get_plot_pos().y + implot.get_plot_size().y
     strip = STRIP * look.em
-    for share, left, right in zip(
-        histogram.shares, histogram.edges, histogram.edges[1:], strict=False
-    ):
-        place = ((left + right) / 2 - low) / (high - low)
-        red, green, blue = ramp[round(255 * min(max(place, 0.0), 1.0))] / 255
-        colour = imgui.color_convert_float4_to_u32(ImVec4(red, green, blue, 1.0))
-        first = implot.plot_to_pixels(float(left), float(share))
-        last = implot.plot_to_pixels(float(right), 0.0)
-        ends = sorted((first.x, last.x))
-        top = min(first.y, floor) - strip
+    first = implot.plot_to_pixels(histogram.edges[0], 1.0)
+    last = implot.plot_to_pixels(histogram.edges[-1], 0.0)
+    step = (last.x - first.x) / BINS
+    for number, (share, colour) in enumerate(zip(histogram.shares, colours, strict=True)):
+        left, right = sorted((first.x + number * step, first.x + (number + 1) * step))
+        top = last.y + share * (first.y - last.y) - strip
         draw_list.add_rect_filled(
-            ImVec2(ends[0] + 0.5, top), ImVec2(ends[1] - 0.5, floor - strip - 1), colour
+            ImVec2(left + 0.5, top), ImVec2(right - 0.5, floor - strip - 1), colour
         )
-        draw_list.add_rect_filled(
-            ImVec2(ends[0], floor - strip), ImVec2(ends[1] + 0.5, floor), colour
-        )
+        draw_list.add_rect_filled(ImVec2(left, floor - strip), ImVec2(right + 0.5, floor), colour)
     implot.pop_plot_clip_rect()
 
 
@@ -149,8 +161,10 @@ def _over_time(session: Session, look: Look, project: Project) -> list[Action]:
         small(look, "Measuring…")
         return actions
     is_stale = curves.document is not project.document
-    for plot in _plots(session.curves, curves, project.document.bounds):
-        actions += _plot(session, look, curves, plot)
+    height = _plot_height(look)
+    upper, lower = _plots(session.curves, curves, project.document.bounds)
+    actions += _plot(session, look, curves, upper, height)
+    actions += _plot(session, look, curves, lower, height + FRAMES * look.em)
     if session.curves == "relative":
         small(look, "Each point relative to its larger key. Red: the bound of the theory.")
     else:
@@ -167,14 +181,26 @@ def _over_time(session: Session, look: Look, project: Project) -> list[Action]:
     return actions
 
 
+def _plot_height(look: Look) -> float:
+    """Return how high the upper of the two plots is, so that all fits the panel if it can."""
+    spacing = imgui.get_style().item_spacing.y
+    below = SMALL * imgui.get_text_line_height() + imgui.get_frame_height() + 3 * spacing
+    room = (imgui.get_content_region_avail().y - below - FRAMES * look.em) / 2 - spacing
+    return min(max(room, PLOT * look.em), LARGEST_PLOT * look.em)
+
+
 class _Plot(NamedTuple):
-    """What is drawn over time: a line of all points, and the range and bound of its values."""
+    """What is drawn over time: a line of all points, and the range and bound of its values.
+
+    Of two plots with the same frames only the lower one names them.
+    """
 
     title: str
     frames: Floats
     values: Floats
     least: float
     bound: float
+    has_frames: bool
 
     @property
     def top(self) -> float:
@@ -186,26 +212,38 @@ class _Plot(NamedTuple):
 def _plots(kind: CurveKind, curves: Curves, bounds: Bounds) -> tuple[_Plot, _Plot]:
     if kind == "relative":
         return (
-            _Plot("k", *broken_lines(curves, curves.k_share), 0.0, 1.0),
-            _Plot("τ − 1", *broken_lines(curves, curves.tau_share), 0.0, 1.0),
+            _Plot("k", *_lines(curves, curves.k_share), 0.0, 1.0, has_frames=False),
+            _Plot("τ − 1", *_lines(curves, curves.tau_share), 0.0, 1.0, has_frames=True),
         )
     farthest = max(bounds.sigma_a, 1.0 / bounds.sigma_b)
     return (
-        _Plot("k", *broken_lines(curves, curves.k), 0.0, bounds.k),
-        _Plot("τ = max(σa, 1/σb)", *broken_lines(curves, curves.tau), 1.0, farthest),
+        _Plot("k", *_lines(curves, curves.k), 0.0, bounds.k, has_frames=False),
+        _Plot("τ = max(σa, 1/σb)", *_lines(curves, curves.tau), 1.0, farthest, has_frames=True),
     )
 
 
-def _plot(session: Session, look: Look, curves: Curves, plot: _Plot) -> list[Action]:
+def _lines(curves: Curves, values: Floats) -> tuple[Floats, Floats]:
+    """Return the points' lines, of fewer pieces where intervals are too many to tell them apart."""
+    wanted = max(4, SEGMENTS * TIMES // len(curves.frames))
+    pieces = np.linspace(0, TIMES - 1, min(wanted, TIMES)).round().astype(int)
+    kept = np.append(pieces, TIMES)  # the break after each interval, too
+    frames, lines = (line.reshape(-1, TIMES + 1) for line in broken_lines(curves, values))
+    return frames[:, kept].ravel(), lines[:, kept].ravel()
+
+
+def _plot(session: Session, look: Look, curves: Curves, plot: _Plot, height: float) -> list[Action]:
     """Draw the curves of the worst points; a click moves the playhead."""
     actions: list[Action] = []
     project, palette = session.project, look.palette
     if project is None or not implot.begin_plot(
-        f"##over time {plot.title}", ImVec2(-1, PLOT * look.em), QUIET
+        f"##over time {plot.title}", ImVec2(-1, height), QUIET
     ):
         return actions
     quiet = implot.AxisFlags_.no_highlight
-    implot.setup_axes("", "", quiet | implot.AxisFlags_.no_grid_lines, quiet)
+    along = quiet | implot.AxisFlags_.no_grid_lines
+    if not plot.has_frames:
+        along |= implot.AxisFlags_.no_tick_labels
+    implot.setup_axes("", "", along, quiet)
     first, last = float(curves.frames[0]), float(curves.frames[-1])
     implot.setup_axes_limits(first, last, plot.least, plot.top, implot.Cond_.always)
     keys = implot.Spec()

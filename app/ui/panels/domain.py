@@ -13,7 +13,7 @@ from app.document.settings import Meshing
 from app.session import Overlays, Project, Session
 from app.ui.sliders import Scale, slider
 from app.ui.theme import Look
-from app.ui.widgets import heading, label, main_button, segments, small, tip
+from app.ui.widgets import FILL, heading, label, main_button, segments, small, tip
 from engine.mesh import Mesh
 
 DETAILS = (("coarse", "Coarse"), ("normal", "Normal"), ("fine", "Fine"))
@@ -44,15 +44,15 @@ def draw(session: Session, look: Look) -> list[Action]:
     imgui.dummy(ImVec2(0, 0.2 * look.em))
     renewal = project.renewal
     if renewal is not None and renewal.meshing is not None:
-        imgui.progress_bar(renewal.progress, ImVec2(-1, 0), renewal.now)
-        if imgui.button("Cancel###stop", ImVec2(-1, 0)):
+        imgui.progress_bar(renewal.progress, ImVec2(FILL, 0), renewal.now)
+        if imgui.button("Cancel###stop", ImVec2(FILL, 0)):
             actions.append(do(rebuilding.cancel))
     else:
         is_new = chosen != document.meshing and renewal is None
         text = f"{icons.ICON_FA_ARROWS_ROTATE}  Rebuild###rebuild"
-        if main_button(look, text, -1, enabled=is_new):
+        if main_button(look, text, FILL, enabled=is_new):
             actions.append(do(rebuilding.rebuild))
-        if is_new and imgui.button("Keep it as it is###forget", ImVec2(-1, 0)):
+        if is_new and imgui.button("Keep it as it is###forget", ImVec2(FILL, 0)):
             actions.append(do(viewing.draft_meshing, document.meshing))
     small(look, "Handles stay, and every key is solved again. Undo brings all of it back.")
     return actions

@@ -17,7 +17,7 @@ from app.render.view import View
 from app.session import Project, Session
 from app.ui.shortcuts import BINDINGS
 from app.ui.theme import Look, ink
-from app.ui.widgets import heading, icon_button, label, main_button, segments, small, tip
+from app.ui.widgets import FILL, heading, icon_button, label, main_button, segments, small, tip
 
 FORMAT_NAMES: dict[ExportFormat, str] = {
     "png": "PNG frames",
@@ -204,14 +204,14 @@ def _output(session: Session, look: Look, project: Project) -> list[Action]:
     run = session.export
     if run is not None or exporting.PREPARING in session.jobs.kinds:
         if run is None:
-            imgui.progress_bar(-0.5 * imgui.get_time(), ImVec2(-1, 0), "Preparing…")
+            imgui.progress_bar(-0.5 * imgui.get_time(), ImVec2(FILL, 0), "Preparing…")
         else:
             total = len(run.plan.times)
-            imgui.progress_bar(run.done / total, ImVec2(-1, 0), f"{run.done} of {total}")
-        if imgui.button("Cancel###stop", ImVec2(-1, 0)):
+            imgui.progress_bar(run.done / total, ImVec2(FILL, 0), f"{run.done} of {total}")
+        if imgui.button("Cancel###stop", ImVec2(FILL, 0)):
             actions.append(do(exporting.cancel))
         return actions
-    if main_button(look, f"{icons.ICON_FA_FILE_EXPORT}  Export###start", -1):
+    if main_button(look, f"{icons.ICON_FA_FILE_EXPORT}  Export###start", FILL):
         actions.append(do(exporting.repeat))
     tip("Export now", BINDINGS["export again"].keys_in_words)
     return actions

@@ -13,9 +13,9 @@ from app.document.keyframe import Handle, Target
 from app.session import Project, Session
 from app.ui.sliders import Scale, number, slider
 from app.ui.theme import Look
-from app.ui.widgets import at_end, heading, icon_button, label, small, tip
+from app.ui.widgets import FILL, at_end, heading, icon_button, label, small, tip
 
-ROW, MOST_ROWS = 1.75, 5.5  # em; rows
+MOST_ROWS = 5.5
 WEIGHTS = Scale(left=0.01, right=100.0, logarithmic=True)
 ARRIVED = 1.0  # pixels of the picture within which a handle is where it should be
 
@@ -45,7 +45,7 @@ def draw(session: Session, look: Look) -> list[Action]:
 
 
 def _heading_with_delete(look: Look, project: Project) -> list[Action]:
-    heading(look, "Handles")
+    heading(look, "Handles", framed=True)
     at_end(1.15 * imgui.get_frame_height())
     if icon_button(
         look,
@@ -63,7 +63,9 @@ def _list(look: Look, project: Project) -> list[Action]:
     actions: list[Action] = []
     document, palette = project.document, look.palette
     lags = project.shown.lags if project.shown else {}
-    height = (0.9 + ROW * min(len(document.handles), MOST_ROWS)) * look.em
+    style = imgui.get_style()
+    rows = min(len(document.handles), MOST_ROWS) * imgui.get_text_line_height_with_spacing()
+    height = rows - style.item_spacing.y + 2 * style.window_padding.y
     imgui.begin_child("handles", ImVec2(0, height), imgui.ChildFlags_.borders)
     for handle in document.handles:
         is_anchor = handle.position == document.anchor
@@ -151,9 +153,9 @@ def _turn(look: Look, project: Project, handle: Handle, target: Target) -> list[
         return [do(posing.wish, {handle.id: replace(target, rotation=now)})]
     imgui.same_line()
     if target.rotation is None:
-        imgui.text_colored(look.palette.dim, "freely, as the shape likes")
+        imgui.text_colored(look.palette.dim, "freely")
         return []
-    imgui.set_next_item_width(-1)
+    imgui.set_next_item_width(FILL)
     entered = number("angle", math.degrees(target.rotation), "%.1f°")
     tip("Counter-clockwise, in degrees; Alt+drag turns it in the viewport")
     if entered is None:

@@ -39,7 +39,7 @@ def draw(session: Session, look: Look) -> list[Action]:
 
 
 def _draw_track(track: Track, frame: int) -> list[Action]:
-    actions = draw_ruler(track)
+    actions = draw_ruler(track, frame)
     actions += draw_ground(track)
     actions += _navigate(track)
     actions += draw_intervals(track)

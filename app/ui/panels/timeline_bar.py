@@ -25,6 +25,7 @@ VARIANT_NAMES = {
     "linear": "Linear",
 }
 GAP, TIGHT, WIDE = 0.35, 0.1, 1.1  # em between what belongs together closely, and less so
+FRAMES = 13.0  # em: room that the numbers of frames need
 SLOWEST, FASTEST = 1.0, 240.0  # frames per second that dragging reaches
 KEY_BUTTONS = (
     ("previous key", icons.ICON_FA_ANGLES_LEFT),
@@ -37,8 +38,10 @@ def draw_bar(session: Session, look: Look, project: Project) -> list[Action]:
     actions = _transport(session, look, project)
     _gap(look)
     actions += _key_buttons(session, look, project)
-    _gap(look)
-    actions += _frame(session, look, project)
+    end = imgui.get_window_pos().x + imgui.get_window_width()
+    if end - imgui.get_item_rect_max().x > FRAMES * look.em:
+        _gap(look)
+        actions += _frame(session, look, project)
     actions += _right(session, look, project)
     return actions
 

@@ -9,11 +9,11 @@ from app.ui.panels.timeline_track import Track, in_hand, in_seconds, is_pressed
 from app.ui.theme import SMALL, ink
 
 TICK_ROOM = 0.55  # em between small ticks at least
-LABEL_GAP = 1.2  # em between labels at least
+LABEL_GAP = 2.4  # em between labels at least
 MULTIPLES = (2, 5, 10, 30, 60, 120, 300, 600, 1800, 3600, 7200, 18000)
 
 
-def draw_ruler(track: Track) -> list[Action]:
+def draw_ruler(track: Track, frame: int) -> list[Action]:
     """Draw frame numbers and seconds; a press there takes the playhead along."""
     track.button("ruler", ImVec2(track.left, track.ruler_top), ImVec2(track.right, track.track_top))
     actions: list[Action] = []
@@ -25,13 +25,14 @@ def draw_ruler(track: Track) -> list[Action]:
     draw_list = imgui.get_window_draw_list()
     low, high = ImVec2(track.left, track.ruler_top), ImVec2(track.right, track.track_bottom)
     draw_list.push_clip_rect(low, high, intersect_with_current_clip_rect=True)
-    _draw_ticks(track)
+    _draw_ticks(track, frame)
     draw_list.pop_clip_rect()
     imgui.pop_font()
     return actions
 
 
-def _draw_ticks(track: Track) -> None:
+def _draw_ticks(track: Track, present: int) -> None:
+    """Draw ticks, and their labels where the playhead does not cover them."""
     palette, draw_list, em = track.look.palette, imgui.get_window_draw_list(), track.look.em
     document = track.project.document
     per_frame = track.strip.scale * em
@@ -46,6 +47,8 @@ def _draw_ticks(track: Track) -> None:
     text, dim, faint = ink(palette.text, 0.85), ink(palette.dim), ink(palette.dim, 0.5)
     grid = ink(palette.line, 0.55)
     bottom = track.track_top - 0.2 * em
+    tag = _tag_width(track, present) / 2 + 0.2 * em
+    covered = track.x(present) - tag, track.x(present) + tag
     for frame in range(begin, last + 1, small):
         x = track.x(frame)
         if frame % large:
@@ -54,9 +57,13 @@ def _draw_ticks(track: Track) -> None:
         draw_list.add_line(ImVec2(x, track.ruler_top + 0.15 * em), ImVec2(x, bottom), dim)
         draw_list.add_line(ImVec2(x, track.track_top), ImVec2(x, track.track_bottom), grid)
         number, top = f"{frame}", track.ruler_top + 0.1 * em
+        seconds = in_seconds(frame, document.fps)
+        wide = 0.7 * em + imgui.calc_text_size(number).x + imgui.calc_text_size(seconds).x
+        if x < covered[1] and x + wide > covered[0]:
+            continue
         draw_list.add_text(ImVec2(x + 0.3 * em, top), text, number)
         beside = x + 0.7 * em + imgui.calc_text_size(number).x
-        draw_list.add_text(ImVec2(beside, top), dim, in_seconds(frame, document.fps))
+        draw_list.add_text(ImVec2(beside, top), dim, seconds)
 
 
 def _steps(fps: float) -> list[int]:
@@ -71,7 +78,7 @@ def draw_playhead(track: Track, frame: int) -> list[Action]:
     palette, draw_list, em = track.look.palette, imgui.get_window_draw_list(), track.look.em
     x = track.x(frame)
     imgui.push_font(track.look.bold, SMALL * imgui.get_style().font_size_base)
-    width = max(imgui.calc_text_size(f"{frame}").x + 0.9 * em, 1.9 * em)
+    width = _tag_width(track, frame)
     height = RULER_TAG * em
     low = ImVec2(x - width / 2, track.ruler_top + 0.05 * em)
     high = ImVec2(x + width / 2, low.y + height)
@@ -103,6 +110,11 @@ def draw_playhead(track: Track, frame: int) -> list[Action]:
         draw_list.pop_clip_rect()
     imgui.pop_font()
     return actions
+
+
+def _tag_width(track: Track, frame: int) -> float:
+    """Return the width of the playhead's number with its margins."""
+    return max(imgui.calc_text_size(f"{frame}").x + 0.9 * track.look.em, 1.9 * track.look.em)
 
 
 RULER_TAG = 1.2  # em: height of the playhead's number

@@ -31,7 +31,8 @@ class Track:
         self.ruler_top = self.top + WORK * look.em
         self.track_top = self.ruler_top + RULER * look.em
         self.is_cramped = self.size.y < CRAMPED * look.em
-        self.track_bottom = self.bottom - (0 if self.is_cramped else OVERVIEW * look.em)
+        is_whole = self.is_cramped or project.timing.strip is None
+        self.track_bottom = self.bottom - (0 if is_whole else OVERVIEW * look.em)
         self.middle = (self.track_top + self.track_bottom) / 2
         share = CRAMPED_SHARE if self.is_cramped else BAR_SHARE
         height = min(BAR * look.em, share * (self.track_bottom - self.track_top))

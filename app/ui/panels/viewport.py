@@ -265,7 +265,7 @@ def _pill(
     padding = 0.7 * look.em
     size = imgui.calc_text_size(text)
     label = "Insert key" if button is not None else ""
-    extra = imgui.calc_text_size(label).x + 2.6 * look.em if label else 0.0
+    extra = imgui.calc_text_size(label).x + 1.6 * look.em if label else 0.0
     width, height = size.x + 2 * padding + extra, 2.1 * look.em
     low = ImVec2(place.x - width / 2, place.y)
     high = ImVec2(place.x + width / 2, place.y + height)
@@ -277,10 +277,13 @@ def _pill(
     text_place = ImVec2(low.x + padding, low.y + (height - size.y) / 2)
     draw_list.add_text(text_place, ink(palette.warning if warn else palette.text), text)
     if label:
-        imgui.set_cursor_screen_pos(
-            ImVec2(high.x - extra - 0.3 * look.em + 0.6 * look.em, low.y + 0.3 * look.em)
-        )
-        if imgui.small_button(label):
+        slim = imgui.get_frame_height() - 0.1 * look.em
+        left = high.x - extra - 0.2 * look.em
+        imgui.set_cursor_screen_pos(ImVec2(left, low.y + (height - slim) / 2))
+        imgui.push_style_var(imgui.StyleVar_.frame_rounding, slim / 2)
+        imgui.push_style_var(imgui.StyleVar_.frame_padding, ImVec2(0, 0))
+        if imgui.button(label, ImVec2(extra, slim)):
             actions.append(do(posing.insert_key))
+        imgui.pop_style_var(2)
         tip("Hold this pose in a key", BINDINGS["insert key"].keys_in_words)
     return actions
