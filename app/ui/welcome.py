@@ -83,6 +83,8 @@ def _samples(look: Look, thumbnail: Look_up) -> list[Action]:
     for index, sample in enumerate(files.samples()):
         if index % 4:
             imgui.same_line(0, GAP * look.em)
+        elif index:
+            imgui.dummy(ImVec2(0, GAP * look.em - 2 * imgui.get_style().item_spacing.y))
         if _card(look, sample, thumbnail(sample.picture)):
             actions.append(do(files.open_file, sample.file))
     return actions

@@ -157,3 +157,17 @@ def segments(
     imgui.pop_style_var()
     imgui.pop_id()
     return chosen
+
+
+def shortened(text: str, width: float) -> str:
+    """Return a text as far as it fits into `width` pixels, with an ellipsis where it does not."""
+    if imgui.calc_text_size(text).x <= width:
+        return text
+    fits, too_long = 0, len(text)
+    while too_long - fits > 1:
+        middle = (fits + too_long) // 2
+        if imgui.calc_text_size(f"{text[:middle]}…").x <= width:
+            fits = middle
+        else:
+            too_long = middle
+    return f"{text[:fits].rstrip()}…"

@@ -13,7 +13,7 @@ from app.document.settings import Meshing
 SIZES = {"1280": ((1280, 800), 1.0), "2560": ((2560, 1440), 2.0)}
 # Where the handles go, as shares of the picture, and by how much two of them move in two keys.
 HANDLES = (0.13 + 0.62j, 0.52 + 0.42j, 0.9 + 0.55j, 0.42 + 0.12j)
-MOVES = {16: (0.02 - 0.2j, 0.1j), 32: (0.05 + 0.06j, -0.05j)}
+MOVES = {16: (0.13 + 0.12j, -0.05 + 0.1j), 32: (0.02 - 0.08j, 0.02 - 0.05j)}
 
 
 @pytest.fixture

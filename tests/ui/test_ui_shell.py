@@ -3,6 +3,7 @@ from imgui_bundle import ImVec2, imgui
 
 from app.actions import viewing
 from app.assets import sample_images
+from app.ui.widgets import shortened
 
 
 def test_welcome_offers_the_samples(window):
@@ -115,3 +116,11 @@ def test_themes_change_nothing_else_at_a_larger_scale(window):
 
 def _docked(title):
     return imgui.internal.find_window_by_name(f"###{title}").dock_node
+
+
+def test_long_texts_are_shortened_to_their_room(window):
+    window.frames(1)
+    assert shortened("a name", 500.0) == "a name"
+    text = shortened("a name that is much too long for its place " * 5, 100.0)
+    assert text.endswith("…")
+    assert 80.0 < imgui.calc_text_size(text).x <= 100.0

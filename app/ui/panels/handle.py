@@ -13,7 +13,7 @@ from app.document.keyframe import Handle, Target
 from app.session import Project, Session
 from app.ui.sliders import Scale, number, slider
 from app.ui.theme import Look
-from app.ui.widgets import FILL, at_end, heading, icon_button, label, small, tip
+from app.ui.widgets import FILL, at_end, heading, icon_button, label, shortened, small, tip
 
 MOST_ROWS = 5.5
 WEIGHTS = Scale(left=0.01, right=100.0, logarithmic=True)
@@ -82,10 +82,12 @@ def _list(look: Look, project: Project) -> list[Action]:
         icon = icons.ICON_FA_ANCHOR if is_anchor else icons.ICON_FA_CIRCLE_DOT
         imgui.text_colored(palette.anchor if is_anchor else palette.dim, icon)
         imgui.same_line(2.6 * look.em)
-        imgui.text_unformatted(handle.name)
-        if lags.get(handle.id, 0.0) > ARRIVED:
-            text = f"{lags[handle.id]:.0f} px"
-            at_end(imgui.calc_text_size(text).x + 0.3 * look.em)
+        text = f"{lags[handle.id]:.0f} px" if lags.get(handle.id, 0.0) > ARRIVED else ""
+        beside = imgui.calc_text_size(text).x + 0.6 * look.em
+        room = imgui.get_content_region_avail().x - beside
+        imgui.text_unformatted(shortened(handle.name, room))
+        if text:
+            at_end(beside - 0.3 * look.em)
             imgui.text_colored(palette.warning, text)
     imgui.end_child()
     return actions
@@ -93,7 +95,7 @@ def _list(look: Look, project: Project) -> list[Action]:
 
 def _details(look: Look, project: Project, handle: Handle) -> list[Action]:
     actions: list[Action] = []
-    heading(look, handle.name)
+    heading(look, shortened(handle.name, 0.9 * imgui.get_content_region_avail().x))
     label(look, "Name")
     _, name = imgui.input_text("##name", handle.name)
     if imgui.is_item_deactivated_after_edit() and name.strip() and name != handle.name:
@@ -187,7 +189,10 @@ def _anchor(look: Look, project: Project, chosen: list[Handle]) -> list[Action]:
     if document.anchor is None:
         small(look, "In-betweens follow the middle of the shape.")
     elif holder is not None:
-        small(look, f"In-betweens follow “{holder}”: its way is the straightest.")
+        small(
+            look,
+            f"In-betweens follow “{shortened(holder, 12 * look.em)}”: its way is the straightest.",
+        )
     else:
         anchor = document.anchor
         small(look, f"In-betweens follow the point {anchor.real:.0f}, {anchor.imag:.0f}.")

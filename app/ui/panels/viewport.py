@@ -180,14 +180,15 @@ def _menu(stage: _Stage, identity: int) -> list[Action]:
         return actions
     handle = stage.project.document.handle(identity)
     target = stage.shown.pose.targets.get(identity) if stage.shown.pose else None
-    if imgui.menu_item_simple(f"{icons.ICON_FA_TRASH}  Delete", "Alt+click"):
+    item = imgui.internal.menu_item_ex  # as menu_item_simple, with icons in a column
+    if item("Delete", icons.ICON_FA_TRASH, "Alt+click"):
         actions.append(do(posing.remove_handles, frozenset({identity})))
     is_anchor = handle.position == stage.project.document.anchor
     label = "Let the anchor be chosen" if is_anchor else "Make it the anchor"
-    if imgui.menu_item_simple(f"{icons.ICON_FA_ANCHOR}  {label}", "Ctrl+click"):
+    if item(label, icons.ICON_FA_ANCHOR, "Ctrl+click"):
         actions.append(do(posing.anchor_at, identity))
     is_turned = target is not None and target.rotation is not None
-    if imgui.menu_item_simple(f"{icons.ICON_FA_ROTATE}  Let it turn freely", enabled=is_turned):
+    if item("Let it turn freely", icons.ICON_FA_ROTATE, enabled=is_turned):
         actions.append(do(posing.free_turn, identity))
     imgui.end_popup()
     return actions
