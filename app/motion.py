@@ -256,6 +256,9 @@ def prepare_motion(
     rough = roughly and has_rough(document.variant)
     for interval, (first, last) in enumerate(intervals(document)):
         pair = pair_of(document, interval)
+        if pair in pieces:
+            # The same two poses again: copied keys, or a loop that goes to and fro.
+            continue
         if pair in known:
             pieces[pair] = known[pair]
         is_enough = pair in known and (roughly or not known[pair].is_rough)

@@ -341,6 +341,15 @@ def test_scrubbing_while_the_worker_builds(window, bar, monkeypatch):
     assert bar.shown.frame == 12
 
 
+def test_poses_that_follow_each_other_twice_are_prepared_once(window, bar):
+    keys.set_variant(window.session, "metric")
+    window.act(editing.edit, key_commands.copy_keys({0, 24}, 48))
+    assert frames_of(bar) == [0, 24, 48, 72]
+    window.settle()
+    assert bar.sketch.knows(bar.document)
+    assert len(bar.sketch.pieces) == 2
+
+
 FAILURES = {
     "In-betweens": (
         "app.actions.upkeep.prepare_motion",
