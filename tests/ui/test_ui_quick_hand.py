@@ -1,4 +1,4 @@
-"""A press in the frame in which the pointer arrives, as on a slow machine or a touch screen."""
+"""Presses and moves within one frame, as on a slow machine or a touch screen."""
 
 import pytest
 from imgui_bundle import imgui
@@ -27,11 +27,15 @@ def point(window, project, share):
     imgui.get_io().add_mouse_pos_event(*window.point(place_of(project, share)))
 
 
+def hold(*, is_down):
+    imgui.get_io().add_mouse_button_event(0, is_down)
+
+
 def press(window, project, share):
     """Move the pointer and press the button before the next frame."""
     point(window, project, share)
-    for is_down in (True, False):
-        imgui.get_io().add_mouse_button_event(0, is_down)
+    hold(is_down=True)
+    hold(is_down=False)
     window.frames(4)
 
 
@@ -55,3 +59,16 @@ def test_it_takes_the_upper_one_of_two_handles(window, project):
     window.frames(3)
     press(window, project, 0.9)
     assert project.selected == {2}
+
+
+def test_a_drag_goes_to_where_the_button_is_let_go(window, project):
+    press(window, project, 0.9)
+    hold(is_down=True)
+    window.frames(2)
+    # All of the way, and the end of it, before the next frame.
+    for share in (0.88, 0.86, 0.85):
+        point(window, project, share)
+    hold(is_down=False)
+    window.settle()
+    target = project.document.keys[0].pose.targets[1]
+    assert abs(target.position - place_of(project, 0.85)) < 2

@@ -199,9 +199,10 @@ def _go_on(session: Session, stage: _Stage) -> list[Action]:
     gesture = session.pointer
     if gesture is None:
         return []
+    pointer, delta = stage.pointer, imgui.get_io().mouse_delta
+    moves = [do(pointing.move, pointer)] if delta.x or delta.y else []
     if not imgui.is_mouse_down(imgui.MouseButton_.left):
-        return [do(pointing.end, stage.pointer)]
-    pointer = stage.pointer
+        return [*moves, do(pointing.end, pointer)]
     if isinstance(gesture, Boxing):
         low, high = stage.point(gesture.start), imgui.get_mouse_pos()
         draw_list = imgui.get_window_draw_list()
@@ -209,8 +210,7 @@ def _go_on(session: Session, stage: _Stage) -> list[Action]:
         draw_list.add_rect_filled(low, high, ink(accent, 0.12))
         draw_list.add_rect(low, high, ink(accent, 0.8))
         return []
-    delta = imgui.get_io().mouse_delta
-    return [do(pointing.move, pointer)] if delta.x or delta.y else []
+    return moves
 
 
 def _hint(session: Session, stage: _Stage, hovered: int | None) -> str:
