@@ -230,6 +230,8 @@ class Project:
         Of the motion, as it was when the export's frame was looked at last.
     unreachable : tuple
         What of a document its reach could not be measured from.
+    to_save : tuple, optional
+        Where to save it, and what to do then, as soon as its pose has settled.
     kept : Document, optional
         The one that the autosave holds, from the time `kept_at` on.
     gesture : object, optional
@@ -256,6 +258,7 @@ class Project:
     export_to: Path | None = None
     reach: Reach | None = None
     unreachable: tuple[object, ...] = ()
+    to_save: tuple[Path, Action | None] | None = None
     kept: Document | None = None
     kept_at: float = 0.0
     playhead: Playhead = field(default_factory=Playhead)

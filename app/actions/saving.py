@@ -40,6 +40,10 @@ def write(session: Session, path: Path, then: Action | None) -> None:
     project = session.project
     if project is None:
         return
+    if project.grab is not None and not project.grab.held:
+        # To settle afterwards would be a change again, which nobody made.
+        project.to_save = (path, then)
+        return
     document = project.document
 
     def done(_: None) -> None:
@@ -97,8 +101,19 @@ def leave(session: Session) -> None:
     session.quitting = True
 
 
+def keep_up(session: Session) -> None:
+    """Write what is due: a project that has settled, unsaved work, preferences; once a frame."""
+    project = session.project
+    if project is not None and project.grab is None and project.to_save is not None:
+        path, then = project.to_save
+        project.to_save = None
+        write(session, path, then)
+    autosave(session)
+    keep_preferences(session)
+
+
 def keep_preferences(session: Session) -> None:
-    """Write the preferences when they have changed; called once a frame."""
+    """Write the preferences when they have changed."""
     preferences, folder = session.preferences, session.folder
     if preferences == session.kept_preferences:
         return
@@ -115,7 +130,7 @@ def keep_preferences(session: Session) -> None:
 
 
 def autosave(session: Session) -> None:
-    """Keep changes that are not saved, every now and then; called once a frame."""
+    """Keep changes that are not saved, every now and then."""
     project = session.project
     now = session.clock()
     if project is None or project.grab is not None:

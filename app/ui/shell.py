@@ -181,8 +181,7 @@ class Shell:
         # drawn, so that it shows at once how far the solver has come.
         self._attempt(self.session.jobs.deliver)
         self._attempt(partial(upkeep.keep_up, self.session))
-        self._attempt(partial(saving.autosave, self.session))
-        self._attempt(partial(saving.keep_preferences, self.session))
+        self._attempt(partial(saving.keep_up, self.session))
         if self.session.quitting:
             hello_imgui.get_runner_params().app_shall_exit = True
 

@@ -156,6 +156,26 @@ def test_the_autosave_does_not_come_while_the_hand_drags(window, project, kept):
     assert kept() == 1
 
 
+def test_what_is_saved_stays_so_though_a_pose_had_not_settled(window, project, tmp_path):
+    change(window, project)
+    change(window, project)
+    place = complex(*project.picture.size)
+    posing.wish(window.session, {0: Target(position=place), 1: Target(position=1.2 * place)})
+    window.frames(2)
+    assert project.grab is not None
+    path = tmp_path / "bar.lissom"
+    saving.write(window.session, path, None)
+    window.settle()
+    assert project.grab is None
+    assert project.history.is_saved
+    (saved,), (now,) = load_project(path).keys, project.document.keys
+    assert saved.pose.targets == now.pose.targets
+    assert (saved.pose.psi == now.pose.psi).all()
+    window.act(saving.quit_lissom)
+    assert window.session.dialog is None
+    window.session.quitting = False
+
+
 def test_the_autosave_goes_when_the_work_is_saved(window, project, kept, tmp_path):
     change(window, project)
     pass_time(window, SECONDS)
