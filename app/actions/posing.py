@@ -16,8 +16,9 @@ from app.posing import Drag, Rig, pose_at
 from app.session import Grab, Project, Session
 
 POSING, INSERTING = "Posing", "Inserting a key"
-# Newton steps of one job: the picture follows the hand after each.
-STEPS = 2
+# Newton steps of one job at most, and the seconds after which it begins no other: what it has found
+# by then is in the next picture.
+STEPS, HASTE = 2, 0.004
 # Steps after the hand let go; a drag that is free to come to rest needs far fewer.
 MOST_STEPS = 300
 # Part of a pose's lag that another pose may have at most to take its place: less would be a jump
@@ -189,21 +190,25 @@ def _follow(session: Session, project: Project, grab: Grab) -> None:
     rig, kin = project.rig, project.sketch.stage
     clock = session.clock
 
-    def work() -> tuple[Drag, float]:
+    def work() -> tuple[Drag, int, float]:
         begun = clock()
         start = drag
         if start is None:
             mine = Rig.of(document, rig)
             pose = grab.pose or pose_at(mine, grab.frame, kin)
             start = Drag.begin(mine, pose)
-        return start.towards(targets, STEPS), clock() - begun
+        steps = 0
+        while steps == 0 or (steps < STEPS and not start.is_over and clock() - begun < HASTE):
+            start = start.towards(targets, 1)
+            steps += 1
+        return start, steps, clock() - begun
 
-    def done(result: tuple[Drag, float]) -> None:
+    def done(result: tuple[Drag, int, float]) -> None:
         if session.project is not project or project.grab is not grab:
             return
-        drag, session.solver_seconds = result
+        drag, steps, session.solver_seconds = result
         project.rig = drag.rig
-        grab.steps += STEPS
+        grab.steps += steps
         if grab.anew is None:
             grab.drag = drag
             _keep(session, project, grab, targets)

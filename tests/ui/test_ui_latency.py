@@ -1,23 +1,42 @@
 """How soon the picture answers, in frames."""
 
+from itertools import count
+
+import pytest
+
 from app.actions import posing
 from app.assets import sample_images
 from app.document.keyframe import Target
 
 
-def test_the_picture_follows_a_pull_in_the_next_frame(window):
-    session = window.session
+@pytest.fixture
+def bar(window):
+    """The sample of a bar, with a handle near each end."""
     project = window.open(sample_images() / "bar.png")
     width, height = project.picture.size
-    start = complex(0.9 * width, height / 2)
-    posing.add_handle(session, complex(0.1 * width, height / 2))
-    posing.add_handle(session, start)
+    for share in (0.1, 0.9):
+        posing.add_handle(window.session, complex(share * width, height / 2))
     window.settle()
+    return project
+
+
+def pull(window, bar, by):
+    """Pull a handle, and let the solver be as quick as can be."""
+    wish = Target(position=bar.document.handle(1).position + by)
+    assert window.session.jobs.settle()
+    window.act(posing.pull, {1: wish})
+    assert window.session.jobs.settle()
+    window.frames()
+    return wish
+
+
+def test_the_picture_follows_a_pull_in_the_next_frame(window, bar):
     for step in range(1, 6):
-        wish = Target(position=start + 40j * step)
-        # The solver has always something to do, and is as quick as can be.
-        assert session.jobs.settle()
-        window.act(posing.pull, {1: wish})
-        assert session.jobs.settle()
-        window.frames()
-        assert project.shown.pose.targets[1] == wish
+        wish = pull(window, bar, 40j * step)
+        assert bar.shown.pose.targets[1] == wish
+
+
+def test_a_slow_solver_shows_every_step(window, bar):
+    window.session.clock = count().__next__  # each look at the clock takes a second
+    pull(window, bar, 40j)
+    assert bar.grab.steps == 1
