@@ -2,6 +2,7 @@
 
 import ctypes
 import sys
+from contextlib import suppress
 from dataclasses import dataclass
 from typing import Any, Final, Literal, get_args
 
@@ -19,6 +20,7 @@ BACKENDS: Final[tuple[Backend, ...]] = get_args(Backend)
 AUTOMATIC: Final[tuple[Backend, ...]] = (
     ("native",) if sys.platform in {"win32", "darwin"} else ("egl", "osmesa")
 )
+LIBGL: Final = "libGL.so.1"
 OPENGL: Final = 330  # the version that every shader is written for
 REMEDIES: Final[dict[Backend, str]] = {
     "egl": "install EGL: sudo apt install libegl1 libgl1 libgl1-mesa-dri",
@@ -87,6 +89,16 @@ def is_software(context: moderngl.Context) -> bool:
     return any(name in renderer for name in ("llvmpipe", "softpipe", "swiftshader", "swr"))
 
 
+def finish(context: moderngl.Context) -> None:
+    """Wait until everything is drawn in the current context, while other threads go on.
+
+    ModernGL itself waits with Python's lock held.
+    """
+    with suppress(OSError):  # not every system has it
+        ctypes.CDLL(LIBGL).glFinish()
+    context.finish()
+
+
 def probe(backend: Backend) -> BackendReport:
     """Find out what a backend offers by making a context and letting it go again."""
     try:
@@ -121,7 +133,7 @@ def _create(backend: Backend) -> moderngl.Context:
     settings: dict[str, Any] = {"standalone": True}
     if backend == "egl":
         # By soname: looking the libraries up by name needs ldconfig or a compiler.
-        settings |= {"backend": "egl", "libegl": "libEGL.so.1", "libgl": "libGL.so.1"}
+        settings |= {"backend": "egl", "libegl": "libEGL.so.1", "libgl": LIBGL}
     try:
         if backend == "osmesa":
             settings = {"context": _OSMesa()}

@@ -4,7 +4,7 @@ import numpy as np
 from imgui_bundle import ImVec2, hello_imgui, imgui
 from PIL import Image
 
-from app.render.context import Context
+from app.render.context import Context, finish
 from app.render.draw_lists import DrawLists
 from app.ui.window import SIZE, Window
 
@@ -43,19 +43,21 @@ class Offscreen:
         self._params.use_imgui_test_engine = with_test_engine
         hello_imgui.manual_render.setup_from_runner_params(self._params)
 
-    def frame(self) -> None:
-        """Go through one frame, without painting what ImGui made of it."""
+    def frame(self, *, painted: bool = False) -> None:
+        """Go through one frame; most need not be painted, which would take most of the time."""
         # Others in this process may have contexts of their own.
         with self._gl:
             hello_imgui.manual_render.render()
+            if painted:
+                self.paint()
 
     def paint(self) -> None:
-        """Draw on the framebuffer what ImGui made of the last frame."""
+        """Draw what ImGui made of the frame, and wait until it is there; part of the frame."""
         data = imgui.get_draw_data()
-        with self._gl:
-            self._target.clear(*self._params.imgui_window_params.background_color)
-            if self._lists is not None and data is not None and data.valid:
-                self._lists.draw(self._target, self._window.textures())
+        self._target.clear(*self._params.imgui_window_params.background_color)
+        if self._lists is not None and data is not None and data.valid:
+            self._lists.draw(self._target, self._window.textures())
+        finish(self._gl)
 
     def picture(self) -> Image.Image:
         """Return what was painted last."""

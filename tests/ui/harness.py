@@ -101,8 +101,7 @@ class Harness:
     def frames(self, count: int = 1) -> None:
         """Draw some frames, with the clock going on."""
         for _ in range(count):
-            self.clock.now += FRAME
-            self._screen.frame()
+            self._frame()
 
     def act(self, verb: Callable[..., None], *arguments: object) -> None:
         """Do something as a panel would ask for it, with its errors told as theirs are."""
@@ -145,7 +144,9 @@ class Harness:
 
     def picture(self) -> Image.Image:
         """Return what is on the screen."""
-        # Nobody looks at most frames, and to paint them would take most of the time.
-        self.frames()
-        self._screen.paint()
+        self._frame(painted=True)
         return self._screen.picture()
+
+    def _frame(self, *, painted: bool = False) -> None:
+        self.clock.now += FRAME
+        self._screen.frame(painted=painted)
