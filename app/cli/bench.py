@@ -8,7 +8,7 @@ import platform
 import numpy as np
 import scipy
 
-PARTS = ("domain", "deform", "interpolate", "streaming", "export")
+PARTS = ("domain", "deform", "interpolate", "streaming", "export", "ui")
 
 EPILOG = """\
 Everything is measured side by side in one run; the last column is the ratio to the first row of

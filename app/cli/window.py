@@ -1,8 +1,6 @@
 """`lissom` and `lissom FILE`: the window."""
 
 import argparse
-import os
-import sys
 import time
 from pathlib import Path
 
@@ -14,10 +12,7 @@ from app.render.context import window_context
 from app.render.renderer import Renderer
 from app.session import Session
 from app.system_dialogs import find_system_dialogs
-from app.ui.window import Window
-
-# Where the display of X11 or Wayland is named.
-DISPLAYS = ("DISPLAY", "WAYLAND_DISPLAY")
+from app.ui.window import Window, has_display
 
 EPILOG = """\
 Without FILE the window opens with samples to try. `lissom FILE` is short for `lissom window FILE`.
@@ -41,7 +36,7 @@ def run(arguments: argparse.Namespace) -> int:
     """Open the window, and close it when the person does."""
     if arguments.file is not None and not arguments.file.is_file():
         fail(f"{arguments.file} is no command and no file (see 'lissom --help')")
-    if sys.platform == "linux" and not any(map(os.environ.get, DISPLAYS)):
+    if not has_display():
         fail(
             "there is no display for the window; the command line works without one, for example "
             "'lissom export PROJECT --out DIR'"

@@ -1,5 +1,7 @@
 """The window: the session, what is drawn with OpenGL, and the loop around them."""
 
+import os
+import sys
 from collections.abc import Callable
 from pathlib import Path
 
@@ -22,6 +24,13 @@ from app.ui.panels import deform, distortion, domain, export, handle, timeline, 
 from app.ui.shell import Shell
 
 SIZE = (1280, 800)
+# Where the display of X11 or Wayland is named.
+DISPLAYS = ("DISPLAY", "WAYLAND_DISPLAY")
+
+
+def has_display() -> bool:
+    """Tell whether there is a screen for the window, as far as the environment says."""
+    return sys.platform != "linux" or any(map(os.environ.get, DISPLAYS))
 
 
 class Window:
@@ -49,7 +58,7 @@ class Window:
         calls = params.callbacks
         calls.enqueue_post_init(self._start)
         calls.before_imgui_render = hello_imgui.sequence_functions(
-            calls.before_imgui_render, self._draw_canvas
+            calls.before_imgui_render, self.draw_canvas
         )
         calls.pre_new_frame = hello_imgui.sequence_functions(self._begin_frame, calls.pre_new_frame)
         return params
@@ -80,6 +89,18 @@ class Window:
         if self._canvas is not None and self._canvas.target is not None:
             textures.append(self._canvas.target.texture)
         return {texture.glo: texture for texture in textures}
+
+    def draw_canvas(self) -> None:
+        """Draw the viewport's picture, and go on with an export; once a frame."""
+        if self._canvas is None or self._renderer is None:
+            return
+        self._canvas.draw(self.session)
+        if self._exporter is not None:
+            self._exporter.go_on(self.session)
+        # ImGui draws to whatever is bound, and that is to be the screen.
+        screen = self._renderer.programs.context.screen
+        if screen is not None:
+            screen.use()
 
     def _panels(self) -> list[Panel]:
         return [
@@ -126,17 +147,6 @@ class Window:
         for owner in (self._exporter, self._canvas, self._thumbnails, self._renderer):
             if owner is not None:
                 owner.release()
-
-    def _draw_canvas(self) -> None:
-        if self._canvas is None or self._renderer is None:
-            return
-        self._canvas.draw(self.session)
-        if self._exporter is not None:
-            self._exporter.go_on(self.session)
-        # ImGui draws to whatever is bound, and that is to be the screen.
-        screen = self._renderer.programs.context.screen
-        if screen is not None:
-            screen.use()
 
     def _begin_frame(self) -> None:
         if self._thumbnails is not None:
