@@ -75,8 +75,10 @@ def test_of_several_dropped_files_the_first_opens(window, drop, tmp_path):
 def test_a_dropped_thing_that_cannot_be_opened_is_named(window, project, drop, tmp_path):
     notes = tmp_path / "notes.txt"
     notes.write_bytes(b"")
+    folder = tmp_path / "frames.png"
+    folder.mkdir()
     change(window, project)
-    for path, reason in ((notes, "no picture and no project"), (tmp_path, "a folder")):
+    for path, reason in ((notes, "no picture and no project"), (folder, "a folder")):
         drop(path)
         assert texts(window)[-1].startswith(f"{path.name} is {reason}")
         assert window.session.dialog is None
