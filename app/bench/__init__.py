@@ -1,1 +1,1 @@
-"""Measurements behind the figures of the README, one module for each part of the engine."""
+"""Measurements behind the figures of the README, one module for each part of Lissom."""
