@@ -26,7 +26,8 @@ def draw(session: Session, look: Look) -> list[Action]:
     viewport = imgui.get_main_viewport()
     gap = 1.0 * look.em
     right = viewport.work_pos.x + viewport.work_size.x - gap
-    bottom = viewport.work_pos.y + viewport.work_size.y - gap
+    status_bar = imgui.get_frame_height() + look.em
+    bottom = viewport.work_pos.y + viewport.work_size.y - status_bar - 0.5 * gap
     now = session.clock()
     for toast in reversed(session.toasts[-MOST:]):
         age = now - toast.born

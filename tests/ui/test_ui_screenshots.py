@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from app.actions import editing, keys, playback, posing, viewing
+from app.actions import editing, playback, posing, viewing
 from app.assets import sample_images
 from app.document.keyframe import Target
 from app.document.settings import Meshing
@@ -22,7 +22,6 @@ def dragon(window):
     session = window.session
     session.meshing = Meshing(triangles=12_000)
     project = window.open(sample_images() / "dragon.png")
-    keys.set_variant(session, "nu")
     size = complex(*project.picture.size)
 
     def scaled(share):
@@ -80,7 +79,7 @@ def test_screenshots_of_the_main_states(window, dragon, save):  # noqa: ARG001
     save("onion-skin")
     viewing.toggle(session, "onion")
     playback.seek(session, 16)
-    viewing.show_heat_map(session, "k")
+    viewing.show_heat_map(session, "sigma_b")
     window.show_tab("Distortion")
     save("heat-map")
     viewing.show_heat_map(session, "none")

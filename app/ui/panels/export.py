@@ -32,7 +32,7 @@ FRAMINGS = (("canvas", "Canvas"), ("fit", "All motion"))
 RANGES = (("played", "What plays"), ("own", "From – to"))
 WHITE = "#ffffff"
 LARGEST = 65_535
-PREVIEW = 6.0  # em
+PREVIEW, LARGEST_PREVIEW = 3.2, 6.0  # em: at least and at most
 
 
 def draw(session: Session, look: Look) -> list[Action]:
@@ -217,13 +217,21 @@ def _output(session: Session, look: Look, project: Project) -> list[Action]:
     return actions
 
 
+def _preview_height(look: Look) -> float:
+    """Return how high the preview is, so that the button below fits the panel if it can."""
+    spacing, line = imgui.get_style().item_spacing.y, imgui.get_text_line_height()
+    below = 4 * imgui.get_frame_height() + 3 * line + 0.6 * look.em + 10 * spacing
+    room = imgui.get_content_region_avail().y - below
+    return min(max(room, PREVIEW * look.em), LARGEST_PREVIEW * look.em)
+
+
 def _preview(
     look: Look, project: Project, settings: ExportSettings, frame: Box, reach: Box
 ) -> None:
     """Draw the export's frame around the drawing and all that moves."""
     canvas = Box(0j, complex(*project.picture.size))
     around = frame.joined(canvas).joined(reach)
-    width, height = imgui.get_content_region_avail().x, PREVIEW * look.em
+    width, height = imgui.get_content_region_avail().x, _preview_height(look)
     corner = imgui.get_cursor_screen_pos()
     extent = around.upper - around.lower
     inner = 0.5 * look.em
