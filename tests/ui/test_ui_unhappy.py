@@ -24,7 +24,7 @@ from app.assets import sample_images
 from app.autosave import SECONDS
 from app.document import handle_commands, key_commands
 from app.document.keyframe import Target
-from app.document.settings import Meshing
+from app.document.settings import FrameRange, Meshing
 from app.timing import KeyBox
 from app.ui import canvas
 from engine.deform.bounds import Bounds
@@ -214,6 +214,16 @@ def test_bounds_and_places_that_change_end_the_pull(window, bar):
         assert bar.grab is None
 
 
+def test_playhead_that_goes_elsewhere_ends_the_pull(window, bar):
+    posing.wish(window.session, {1: Target(position=place_of(bar, 1) - 150j)})
+    playback.scrub(window.session, 24)
+    assert bar.grab is not None
+    playback.scrub(window.session, 7)
+    assert bar.grab is None
+    window.settle()
+    assert frames_of(bar) == [0, 24]
+
+
 def test_playhead_stays_in_the_animation_that_undo_makes_shorter(window, bar):
     window.act(keys.set_last_frame, 100)
     window.act(playback.seek, 90)
@@ -221,6 +231,15 @@ def test_playhead_stays_in_the_animation_that_undo_makes_shorter(window, bar):
     assert playback.current_frame(window.session, bar) == bar.document.frames.last == 48
     window.act(editing.redo)
     assert playback.current_frame(window.session, bar) in bar.document.frames
+
+
+@pytest.mark.usefixtures("bar")
+def test_end_of_the_work_range_before_its_beginning_takes_that_along(window):
+    session = window.session
+    for frame, key, work in ((20, "b", (20, 48)), (10, "n", (10, 10)), (30, "b", (30, 30))):
+        playback.seek(session, frame)
+        window.run(lambda robot, key=key: press(robot, getattr(window.Key, key)))
+        assert session.project.document.work == FrameRange(*work)
 
 
 def test_only_what_is_there_is_selected(window, bar):
@@ -244,6 +263,21 @@ def test_loose_pose_stays_when_a_handle_is_deleted_by_its_key(window, bar):
     assert [handle.id for handle in bar.document.handles] == [1]
     assert bar.loose is not None
     np.testing.assert_allclose(bar.shown.positions, before, rtol=0, atol=1e-9)
+
+
+def test_loose_pose_over_a_cage_that_is_rebuilt_is_given_up(window, bar):
+    session = window.session
+    window.act(viewing.toggle_auto_key)
+    posing.wish(session, {1: Target(position=place_of(bar, 1) - 80j)})
+    window.settle()
+    cage = bar.document.domain.cage
+    viewing.draft_meshing(session, Meshing(triangles=1_500, detail="fine"))
+    rebuilding.rebuild(session)
+    window.settle()
+    assert len(bar.document.domain.cage) != len(cage)
+    assert bar.loose is None
+    assert bar.meshing is None
+    assert bar.shown.is_current
 
 
 # The solver at its bounds.
@@ -341,10 +375,15 @@ def test_scrubbing_while_the_worker_builds(window, bar, monkeypatch):
 
 
 def test_poses_that_follow_each_other_twice_are_prepared_once(window, bar):
-    keys.set_variant(window.session, "metric")
-    window.act(editing.edit, key_commands.copy_keys({0, 24}, 48))
-    assert frames_of(bar) == [0, 24, 48, 72]
+    keys.set_variant(window.session, "nu")
+    editing.edit(window.session, key_commands.copy_keys({0, 24}, 48))
     window.settle()
+    assert frames_of(bar) == [0, 24, 48, 72]
+    # None of it is known of this one, and at first only roughly.
+    keys.set_variant(window.session, "metric")
+    for _ in range(20):
+        window.frames()
+        window.session.jobs.settle()
     assert bar.sketch.knows(bar.document)
     assert len(bar.sketch.pieces) == 2
 
