@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
+from math import inf
 from pathlib import Path
 from typing import Literal
 
@@ -204,6 +205,8 @@ class Project:
         Of the project file; None for a new one.
     sketch, full : Motion
         What can be shown of it, on a coarse mesh and on its own; `full` may not be there yet.
+    settling : Grab, optional
+        Let go at a frame that the playhead has left since; the solver brings that pose to rest.
     loose : Pose, optional
         Posed with auto-key off, held by no key.
     camera : View, optional
@@ -232,6 +235,8 @@ class Project:
         What of a document its reach could not be measured from.
     to_save : tuple, optional
         Where to save it, and what to do then, as soon as its pose has settled.
+    moved_at : float
+        The clock's seconds when the playhead was last seen to move.
     kept : Document, optional
         The one that the autosave holds, from the time `kept_at` on.
     gesture : object, optional
@@ -246,6 +251,7 @@ class Project:
     full: Motion | None = None
     rig: Rig | None = None
     grab: Grab | None = None
+    settling: Grab | None = None
     shown: Shown | None = None
     unmovable: Document | None = None
     build: Build | None = None
@@ -259,6 +265,7 @@ class Project:
     reach: Reach | None = None
     unreachable: tuple[object, ...] = ()
     to_save: tuple[Path, Action | None] | None = None
+    moved_at: float = -inf
     kept: Document | None = None
     kept_at: float = 0.0
     playhead: Playhead = field(default_factory=Playhead)
@@ -273,6 +280,11 @@ class Project:
     def document(self) -> Document:
         """The document as it is now."""
         return self.history.document
+
+    @property
+    def is_posing(self) -> bool:
+        """Whether a pose is on its way, be it the one that is shown or not."""
+        return self.grab is not None or self.settling is not None
 
     def view(self, screen: tuple[int, int]) -> View:
         """Return what the viewport shows on a screen of this size in pixels."""

@@ -33,9 +33,8 @@ def undo(session: Session) -> None:
     project = session.project
     if project is None:
         return
-    is_unkept = project.loose is not None or (
-        project.grab is not None and project.grab.drag is None
-    )
+    grab = project.grab or project.settling
+    is_unkept = project.loose is not None or (grab is not None and grab.drag is None)
     posing.drop(session)
     project.loose = None
     if not is_unkept:
@@ -85,7 +84,7 @@ def delete(session: Session) -> None:
 
 def _posed(project: Project) -> tuple[object, ...]:
     """Return the pose that handles are being pulled in, and what it is solved from."""
-    document, grab = project.document, project.grab
+    document, grab = project.document, project.grab or project.settling
     poses = [key.pose for key in document.keys if grab is not None and key.frame == grab.frame]
     return (poses, document.handles, document.bounds, document.domain)
 

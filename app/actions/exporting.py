@@ -144,7 +144,7 @@ def show_frame(session: Session, box: Box) -> None:
 def keep_reach(session: Session) -> None:
     """Measure how far the motion reaches, unless that is known."""
     project = session.project
-    if project is None or project.grab is not None or MEASURING in session.jobs.kinds:
+    if project is None or project.is_posing or MEASURING in session.jobs.kinds:
         return
     document, motion = project.document, project.sketch
     source = source_of(document)

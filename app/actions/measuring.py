@@ -18,7 +18,7 @@ MEASURING = "Measuring"
 def keep_up(session: Session) -> None:
     """Measure the document again if it changed and its in-betweens are there."""
     project = session.project
-    if project is None or project.grab is not None or MEASURING in session.jobs.kinds:
+    if project is None or project.is_posing or MEASURING in session.jobs.kinds:
         return
     document, motion = project.document, project.sketch
     is_current = project.curves is not None and project.curves.document is document

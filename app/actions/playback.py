@@ -13,7 +13,7 @@ def seek(session: Session, frame: int) -> None:
         project.playhead = project.playhead.seek(frame, session.clock())
         project.loose = None
         if project.grab is not None and project.grab.frame != frame:
-            project.grab = None
+            _leave_pose(session, project)
 
 
 def scrub(session: Session, frame: int) -> None:
@@ -29,7 +29,8 @@ def toggle_play(session: Session) -> None:
         now = session.clock()
         turn = project.playhead.play if project.playhead.since is None else project.playhead.pause
         project.playhead = turn(project.document, now)
-        project.loose = project.grab = None
+        project.loose = None
+        _leave_pose(session, project)
 
 
 def tap_space(session: Session) -> None:
@@ -91,6 +92,15 @@ def set_speed(session: Session, speed: float) -> None:
     if session.project:
         project = session.project
         project.playhead = project.playhead.at_speed(speed, project.document, session.clock())
+
+
+def _leave_pose(session: Session, project: Project) -> None:
+    """End a pull because the playhead leaves it; where it makes a key, it goes on to rest."""
+    grab = project.grab
+    if grab is not None and session.preferences.auto_key:
+        grab.held = False
+        project.settling = grab
+    project.grab = None
 
 
 def current_frame(session: Session, project: Project) -> int:

@@ -32,7 +32,7 @@ def pull(session: Session, wishes: Mapping[int, Target]) -> None:
     if project is None or project.shown is None:
         return
     if project.grab is None or not project.grab.held:
-        project.grab = _grab(session, project)
+        project.grab, project.settling = _grab(session, project), None
     grab = project.grab
     grab.targets = {**grab.targets, **wishes}
     grab.steps = 0
@@ -48,11 +48,18 @@ def let_go(session: Session) -> None:
             _finish(session, session.project, grab)
 
 
+def settle(session: Session) -> None:
+    """Bring a pose to rest that the playhead has left; called once a frame."""
+    project = session.project
+    if project and project.settling and POSING not in session.jobs.kinds:
+        _finish(session, project, project.settling)
+
+
 def drop(session: Session) -> None:
     """End the pull where the solver is."""
-    if session.project and session.project.grab:
+    if session.project and session.project.is_posing:
         session.jobs.drop(POSING)
-        session.project.grab = None
+        session.project.grab = session.project.settling = None
 
 
 def nudge(session: Session, step: complex) -> None:
@@ -204,7 +211,7 @@ def _follow(session: Session, project: Project, grab: Grab) -> None:
         return start, steps, clock() - begun
 
     def done(result: tuple[Drag, int, float]) -> None:
-        if session.project is not project or project.grab is not grab:
+        if session.project is not project or grab not in (project.grab, project.settling):
             return
         drag, steps, session.solver_seconds = result
         project.rig = drag.rig
@@ -221,7 +228,7 @@ def _follow(session: Session, project: Project, grab: Grab) -> None:
             _finish(session, project, grab)
 
     def failed(error: Exception) -> None:
-        project.grab = None
+        _end(project, grab)
         report(session, "This pose could not be solved", error)
 
     session.jobs.put(Job(kind=POSING, work=work, done=done, failed=failed, urgent=True))
@@ -232,7 +239,7 @@ def _keep(session: Session, project: Project, grab: Grab, targets: Mapping[int, 
     if grab.drag is None:
         return
     pose = grab.drag.pose(targets)
-    if session.preferences.auto_key:
+    if session.preferences.auto_key or grab is project.settling:
         _hold(project, grab.frame, pose, gesture=grab)
         project.loose = None
     else:
@@ -256,7 +263,14 @@ def _finish(session: Session, project: Project, grab: Grab) -> None:
     if drag is not None and anew is not None and anew.lag < MUCH_LESS * drag.lag:
         grab.drag = anew
         _keep(session, project, grab, grab.targets)
-    project.grab = None
+    _end(project, grab)
+
+
+def _end(project: Project, grab: Grab) -> None:
+    if project.grab is grab:
+        project.grab = None
+    if project.settling is grab:
+        project.settling = None
 
 
 def _retargeted(document: Document, pose: Pose) -> Pose:

@@ -40,7 +40,7 @@ def write(session: Session, path: Path, then: Action | None) -> None:
     project = session.project
     if project is None:
         return
-    if project.grab is not None and not project.grab.held:
+    if project.is_posing and not (project.grab is not None and project.grab.held):
         # To settle afterwards would be a change again, which nobody made.
         project.to_save = (path, then)
         return
@@ -104,7 +104,7 @@ def leave(session: Session) -> None:
 def keep_up(session: Session) -> None:
     """Write what is due: a project that has settled, unsaved work, preferences; once a frame."""
     project = session.project
-    if project is not None and project.grab is None and project.to_save is not None:
+    if project is not None and not project.is_posing and project.to_save is not None:
         path, then = project.to_save
         project.to_save = None
         write(session, path, then)
@@ -133,7 +133,7 @@ def autosave(session: Session) -> None:
     """Keep changes that are not saved, every now and then."""
     project = session.project
     now = session.clock()
-    if project is None or project.grab is not None:
+    if project is None or project.is_posing:
         return
     if project.history.is_saved:
         if project.kept is not None:

@@ -2,7 +2,7 @@
 
 from functools import partial
 
-from app.actions import measuring, playback
+from app.actions import measuring, playback, posing
 from app.actions.failures import report
 from app.animation import Stage
 from app.document.model import Document
@@ -12,6 +12,7 @@ from app.session import Project, Session
 from app.shown import show
 from app.streaming import Build, next_build, with_series
 
+STILL = 0.15  # seconds after which the playhead is taken to stay where it is
 SKETCHING, REFINING, STREAMING = "In-betweens", "Finer in-betweens", "Smooth playback"
 
 
@@ -20,22 +21,20 @@ def keep_up(session: Session) -> None:
     project = session.project
     if project is None:
         return
+    posing.settle(session)
     document = project.document
     if project.unmovable is not document:
         _ask(session, project, document)
-    project.shown = show(
-        document,
-        playback.current_frame(session, project),
-        project.loose,
-        _motions(session, project),
-        project.shown,
-    )
+    frame = playback.current_frame(session, project)
+    if project.shown is not None and project.shown.frame != frame:
+        project.moved_at = session.clock()
+    project.shown = show(document, frame, project.loose, _motions(session, project), project.shown)
 
 
 def _ask(session: Session, project: Project, document: Document) -> None:
     if not project.sketch.knows(document, roughly=True):
         _prepare(session, project, SKETCHING, roughly=True)
-    elif project.grab is not None:
+    elif project.is_posing:
         # What follows takes longer than the hand stays where it is.
         return
     elif not project.sketch.knows(document):
@@ -126,7 +125,8 @@ def _give_up(session: Session, project: Project, document: Document, error: Exce
 
 
 def _motions(session: Session, project: Project) -> tuple[Motion, ...]:
-    is_moving = project.grab is not None or project.playhead.since is not None
+    is_scrubbed = session.clock() - project.moved_at < STILL
+    is_moving = project.grab is not None or project.playhead.since is not None or is_scrubbed
     if project.full is None or (is_moving and not session.full_detail):
         return (project.sketch,)
     return (project.full, project.sketch)

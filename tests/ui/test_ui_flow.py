@@ -10,6 +10,7 @@ from app.actions import editing, exporting, keys, playback, posing, saving
 from app.actions.action import do
 from app.assets import sample_images
 from app.document.keyframe import Target
+from app.document.settings import Meshing
 from app.posing import Drag
 from engine.deform.deformer import Status
 
@@ -161,6 +162,62 @@ def test_a_shape_that_is_caught_comes_free_when_the_hand_lets_go(window, bar, mo
     assert bar.document.keys[0].pose.certificate.certified
     editing.undo(session)
     assert bar.document is first
+
+
+@pytest.mark.parametrize("leave", [playback.toggle_play, lambda s: playback.seek(s, 24)])
+def test_a_pose_that_the_playhead_leaves_comes_to_rest(window, bar, leave):
+    session = window.session
+    wanted = handle_places(bar)[1] + 150j
+    posing.pull(session, {1: Target(position=wanted)})
+    posing.let_go(session)
+    leave(session)
+    assert bar.grab is None
+    assert bar.is_posing
+    window.settle()
+    assert not bar.is_posing
+    (key,) = bar.document.keys
+    assert key.frame == 0
+    assert bar.document.lags(key.pose)[1] < 5
+    assert bar.history.undo_label == "Pose"
+
+
+def test_a_pose_that_rests_in_the_hand_ends_where_the_playhead_leaves_it(window, bar):
+    session = window.session
+    posing.pull(session, {1: Target(position=handle_places(bar)[1] + 150j)})
+    window.settle()
+    posed = bar.document
+    assert bar.grab.held
+    playback.seek(session, 24)
+    window.settle()
+    assert not bar.is_posing
+    assert bar.document is posed
+
+
+def test_undo_takes_back_a_pose_that_the_playhead_has_left(window, bar):
+    session = window.session
+    before = bar.document
+    posing.pull(session, {1: Target(position=handle_places(bar)[1] + 150j)})
+    session.jobs.settle()
+    window.frames()
+    assert bar.document is not before
+    playback.seek(session, 24)
+    editing.undo(session)
+    window.settle()
+    assert bar.document is before
+
+
+def test_the_coarse_mesh_is_shown_while_the_playhead_moves(window):
+    session = window.session
+    session.meshing = Meshing(triangles=20_000)
+    project = window.open(BAR)
+    session.full_detail = False
+    window.frames(30)
+    assert project.shown.figure is project.full.figure
+    playback.seek(session, 3)
+    window.frames()
+    assert project.shown.figure is project.sketch.figure
+    window.frames(20)
+    assert project.shown.figure is project.full.figure
 
 
 def test_a_shape_is_left_alone_where_another_start_gains_little(window, bar):
