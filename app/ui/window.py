@@ -12,6 +12,7 @@ import glfw  # isort: skip
 
 from app.actions import files
 from app.actions.action import Action, do
+from app.errors import LissomError
 from app.render.context import is_software
 from app.render.draw_lists import Textures
 from app.render.renderer import Renderer
@@ -64,14 +65,26 @@ class Window:
         return params
 
     def run(self) -> None:
-        """Show the window on the screen until the person closes it."""
+        """Show the window on the screen until the person closes it.
+
+        Raises
+        ------
+        LissomError
+            If there is no screen that it can be opened on.
+        """
         params = self.runner_params()
         params.callbacks.enqueue_post_init(self._accept_files)
         params.ini_folder_type = hello_imgui.IniFolderType.absolute_path
         params.ini_filename = str(self.session.folder / "window.ini")
         params.app_window_params.window_geometry.size = SIZE
         params.app_window_params.restore_previous_geometry = True
-        hello_imgui.manual_render.setup_from_runner_params(params)
+        try:
+            hello_imgui.manual_render.setup_from_runner_params(params)
+        except RuntimeError as error:
+            raise LissomError(
+                f"the window cannot be opened ({error}): check the display and its OpenGL driver "
+                "with 'lissom doctor'; the command line works without them"
+            ) from error
         try:
             while not params.app_shall_exit:
                 hello_imgui.manual_render.render()

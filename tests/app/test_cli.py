@@ -81,3 +81,17 @@ def test_without_a_display_the_window_says_what_works(monkeypatch, capsys):
         main([str(SAMPLE)])
     assert leaving.value.code == 2
     assert "no display" in error_line(capsys.readouterr().err)
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="other systems always have a display")
+def test_a_display_that_is_not_there_is_an_error_in_words():
+    done = subprocess.run(
+        [sys.executable, "-m", "app", str(SAMPLE)],
+        env={**os.environ, "DISPLAY": ":9999", "WAYLAND_DISPLAY": ""},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 2
+    assert "lissom: error: the window cannot be opened" in done.stderr
+    assert "Traceback" not in done.stderr
