@@ -4,6 +4,7 @@ There are two: one for what the person waits for, such as the pose under the han
 that may take a second, such as in-betweens. The first is never kept waiting by the second.
 """
 
+import atexit
 import threading
 import time
 from collections.abc import Callable
@@ -64,6 +65,7 @@ class Jobs:
         self._condition = threading.Condition()
         self._waiting: list[Job] = []
         self._finished: list[tuple[str, Callable[[], None]]] = []
+        self._is_closed = False
         self._lanes = {True: _Lane(), False: _Lane()}  # by whether they are for urgent jobs
 
     def put(self, job: Job) -> None:
@@ -77,6 +79,8 @@ class Jobs:
                 work = partial(self._work, lane, urgent=job.urgent)
                 lane.thread = threading.Thread(target=work, name=name, daemon=True)
                 lane.thread.start()
+                # The end of the program takes BLAS away, and a thread that is in it crashes.
+                atexit.register(self.close)
             self._condition.notify_all()
 
     def drop(self, kind: str) -> None:
@@ -128,6 +132,16 @@ class Jobs:
                 timeout,
             )
 
+    def close(self) -> None:
+        """Drop what waits, and end the threads when what runs is done."""
+        with self._condition:
+            self._is_closed = True
+            self._waiting.clear()
+            self._condition.notify_all()
+        for lane in self._lanes.values():
+            if lane.thread is not None:
+                lane.thread.join()
+
     def _forget(self, kind: str) -> None:
         self._waiting = [job for job in self._waiting if job.kind != kind]
         self._finished = [done for done in self._finished if done[0] != kind]
@@ -139,6 +153,8 @@ class Jobs:
         while True:
             with self._condition:
                 while (job := self._next(urgent=urgent)) is None:
+                    if self._is_closed:
+                        return
                     self._condition.wait()
                 self._waiting.remove(job)
                 lane.running, lane.since, lane.is_stale = job, self._clock(), False

@@ -1,3 +1,5 @@
+import subprocess
+import sys
 import threading
 
 import pytest
@@ -156,3 +158,52 @@ def test_jobs_tell_how_long_they_run():
     assert jobs.running_for(0.3) == ()
     gate.set()
     assert jobs.settle()
+
+
+def test_closing_waits_for_what_runs_and_drops_what_waits():
+    jobs, begun, results = Jobs(), threading.Event(), []
+    gate = threading.Event()
+
+    def finish():
+        begun.set()
+        gate.wait(10)
+        results.append("ran")
+
+    jobs.put(job("factors", finish, []))
+    jobs.put(job("in-betweens", lambda: results.append("waited"), []))
+    jobs.put(job("pose", int, [], urgent=True))
+    assert begun.wait(10)
+    closing = threading.Thread(target=jobs.close)
+    closing.start()
+    assert closing.is_alive()
+    gate.set()
+    closing.join(10)
+    assert results == ["ran"]
+    assert jobs.kinds in {("factors",), ("pose", "factors"), ("factors", "pose")}
+
+
+PROGRAM = """
+from app.blas import use_one_thread
+use_one_thread()
+import threading
+import numpy as np
+import scipy.linalg
+from app.jobs import Job, Jobs
+
+begun = threading.Event()
+
+def factorise():
+    matrix = np.random.default_rng(0).random((2000, 2000))
+    for _ in range(5):
+        scipy.linalg.lu_factor(matrix)
+        begun.set()
+
+jobs = Jobs()
+jobs.put(Job(kind="factors", work=factorise, done=print, failed=print))
+begun.wait(10)
+"""
+
+
+def test_a_program_may_end_while_a_job_runs():
+    done = subprocess.run([sys.executable, "-c", PROGRAM], capture_output=True, check=False)
+    assert done.returncode == 0
