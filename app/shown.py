@@ -100,8 +100,8 @@ def show(
         if motion.figure.source is not document.domain:
             continue
         figure = motion.figure
-        if _is_same(earlier, document, frame, pose, figure):
-            return earlier  # type: ignore[return-value]  # it is the same, so it is there
+        if earlier is not None and _is_same(earlier, document, frame, pose, figure):
+            return earlier if earlier.frame == frame else replace(earlier, frame=frame)
         if pose is not None:
             vertices: Vertices | None = Placed(positions=figure.posed(pose))
         else:
@@ -130,11 +130,10 @@ def show(
 
 
 def _is_same(
-    earlier: Shown | None, document: Document, frame: int, pose: Pose | None, figure: Figure
+    earlier: Shown, document: Document, frame: int, pose: Pose | None, figure: Figure
 ) -> bool:
     return (
-        earlier is not None
-        and earlier.is_current
+        earlier.is_current
         and earlier.document is document
         and earlier.figure is figure
         and earlier.pose is pose

@@ -33,7 +33,9 @@ def keep_up(session: Session) -> None:
 
 def _ask(session: Session, project: Project, document: Document) -> None:
     if not project.sketch.knows(document, roughly=True):
-        _prepare(session, project, SKETCHING, roughly=True)
+        # Where nobody sees them before the hand rests, they are not to hold up what follows it.
+        if session.overlays.onion or posing.POSING not in session.jobs.kinds:
+            _prepare(session, project, SKETCHING, roughly=True)
     elif project.is_posing:
         # What follows takes longer than the hand stays where it is.
         return

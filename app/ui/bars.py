@@ -161,10 +161,10 @@ def _distortion(project: Project) -> _Fact | None:
     uses = extremes.uses(document.bounds)
     most = max(uses, key=lambda use: use.share)
     return _Fact(
-        f"{most.name} {most.value:.2f} of {most.bound:.2f}",
+        f"{most.name} {most.value:.2f} {most.sign} {most.bound:.2f}",
         "\n".join(
-            ["Largest distortion against its bound", ""]
-            + [f"{use.name} {use.value:.3f} of {use.bound:.3f}" for use in uses]
+            ["Largest distortion of the whole shape, and its bound", ""]
+            + [f"{use.name} {use.value:.3f} {use.sign} {use.bound:.3f}" for use in uses]
         ),
         warns=most.share > AT_BOUND,
     )

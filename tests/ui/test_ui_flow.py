@@ -206,6 +206,17 @@ def test_undo_takes_back_a_pose_that_the_playhead_has_left(window, bar):
     assert bar.document is before
 
 
+def test_a_pose_that_is_held_is_of_the_frame_that_the_playhead_is_on(window, bar):
+    posing.insert_key(window.session)
+    playback.seek(window.session, 20)
+    window.frames(2)
+    shown = bar.shown
+    playback.seek(window.session, 21)
+    window.frames(2)
+    assert bar.shown.frame == 21
+    assert bar.shown.vertices is shown.vertices
+
+
 def test_the_coarse_mesh_is_shown_while_the_playhead_moves(window):
     session = window.session
     session.meshing = Meshing(triangles=20_000)

@@ -48,7 +48,7 @@ def test_a_pose_shows_its_distortion_the_handles_and_the_solver(window, bent):
     proven = bent.document.keys[1].pose.certificate
     uses = Extremes(proven.k, proven.sigma_a, proven.sigma_b).uses(bent.document.bounds)
     most = max(uses, key=lambda use: use.share)
-    assert shown == f"{most.name} {most.value:.2f} of {most.bound:.2f}"
+    assert shown == f"{most.name} {most.value:.2f} {most.sign} {most.bound:.2f}"
     assert most.share > 0.01
     assert handles == "2 handles"
     assert solver == "solver 6 ms"
