@@ -191,16 +191,19 @@ import scipy.linalg
 from app.jobs import Job, Jobs
 
 begun = threading.Event()
+matrix = np.random.default_rng(0).random((3000, 3000))
 
 def factorise():
-    matrix = np.random.default_rng(0).random((2000, 2000))
-    for _ in range(5):
-        scipy.linalg.lu_factor(matrix)
-        begun.set()
+    begun.set()
+    scipy.linalg.lu_factor(matrix)
+    scipy.linalg.lu_factor(matrix)
 
 jobs = Jobs()
 jobs.put(Job(kind="factors", work=factorise, done=print, failed=print))
 begun.wait(10)
+# So that the end comes when the other thread is deep in its work.
+for _ in range(8):
+    np.linalg.inv(matrix[:700, :700])
 """
 
 
