@@ -11,6 +11,7 @@ from app.document import key_commands
 from app.document.history import History
 from app.document.keyframe import Handle, Keyframe, Pose, Target
 from app.document.settings import Meshing
+from app.document.settings_commands import set_export
 from app.motion import Figure, Motion
 from app.picture import Picture
 from app.session import Project
@@ -369,3 +370,13 @@ def test_export_that_cannot_begin_is_told(window, project, tab, tmp_path):
     tab("Export", lambda robot: robot.item_click("**/###start"))
     assert window.session.export is None
     assert any("does not exist" in toast.text for toast in window.session.toasts)
+
+
+def test_the_export_tab_changes_nothing_by_itself(window, project):
+    settings = replace(project.document.export, format="mp4", background="transparent")
+    editing.edit(window.session, set_export(settings))
+    before = project.document
+    window.show_tab("Export")
+    window.frames(5)
+    assert project.document is before
+    window.show_tab("Handle")

@@ -63,13 +63,10 @@ def _picture(look: Look, settings: ExportSettings) -> ExportSettings:
     if imgui.begin_combo("##format", FORMAT_NAMES[settings.format]):
         for format_ in EXPORT_FORMATS:
             if imgui.selectable(FORMAT_NAMES[format_], format_ == settings.format)[0]:
-                settings = replace(settings, format=format_)
+                settings = _with_format(settings, format_)
         imgui.end_combo()
-    if settings.format == "mp4":
-        if settings.background == "transparent":
-            settings = replace(settings, background=WHITE)
-        if not _has_video():
-            small(look, f"Videos need PyAV: {VIDEO_REMEDY}")
+    if settings.format == "mp4" and not _has_video():
+        small(look, f"Videos need PyAV: {VIDEO_REMEDY}")
     label(look, "Background")
     settings = _background(look, settings)
     label(look, "Framing")
@@ -77,6 +74,12 @@ def _picture(look: Look, settings: ExportSettings) -> ExportSettings:
         case "canvas" | "fit" as framing:
             settings = replace(settings, framing=framing)
     return settings
+
+
+def _with_format(settings: ExportSettings, format_: ExportFormat) -> ExportSettings:
+    lacks_background = format_ == "mp4" and settings.background == "transparent"
+    background = WHITE if lacks_background else settings.background
+    return replace(settings, format=format_, background=background)
 
 
 @cache
@@ -87,7 +90,7 @@ def _has_video() -> bool:
 def _background(look: Look, settings: ExportSettings) -> ExportSettings:
     is_clear = settings.background == "transparent"
     size = 0.0 if is_clear else imgui.get_frame_height() + imgui.get_style().item_inner_spacing.x
-    imgui.begin_disabled(settings.format == "mp4")
+    imgui.begin_disabled(settings.format == "mp4" and not is_clear)
     chosen = segments(
         look, "background", BACKGROUNDS, "transparent" if is_clear else "colour", room=size
     )
