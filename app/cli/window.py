@@ -1,6 +1,7 @@
 """`lissom` and `lissom FILE`: the window."""
 
 import argparse
+import sys
 import time
 from pathlib import Path
 
@@ -13,6 +14,10 @@ from app.render.renderer import Renderer
 from app.session import Session
 from app.system_dialogs import find_system_dialogs
 from app.ui.window import Window, has_display
+
+# Seconds after which a worker hands Python's lock over. A frame takes it some twenty times, and with
+# the usual 5 ms a job that seldom lets go would leave two frames a second.
+SWITCH = 0.0005
 
 EPILOG = """\
 Without FILE the window opens with samples to try. `lissom FILE` is short for `lissom window FILE`.
@@ -41,6 +46,7 @@ def run(arguments: argparse.Namespace) -> int:
             "there is no display for the window; the command line works without one, for example "
             "'lissom export PROJECT --out DIR'"
         )
+    sys.setswitchinterval(SWITCH)
     folder = settings_folder()
     folder.mkdir(parents=True, exist_ok=True)
     session = Session(

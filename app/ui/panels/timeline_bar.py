@@ -7,7 +7,7 @@ from imgui_bundle import icons_fontawesome_6 as icons
 
 from app.actions import keys, playback, viewing
 from app.actions.action import Action, do
-from app.document.settings import LAST_FRAME, VARIANTS
+from app.document.settings import LAST_FRAME, Variant
 from app.preferences import LARGEST_GHOST_STEP, MOST_GHOSTS
 from app.session import Project, Session
 from app.ui.bars import bound_button
@@ -17,12 +17,13 @@ from app.ui.shortcuts import BINDINGS
 from app.ui.theme import Look, ink
 from app.ui.widgets import icon_button, tip
 
-VARIANT_NAMES = {
-    "metric": "Metric",
-    "nu": "ν",
-    "scaled-eta": "η, scaled",
-    "eta": "η, unscaled",
-    "linear": "Linear",
+# Names and what they mean.
+VARIANTS: dict[Variant, tuple[str, str]] = {
+    "metric": ("Metric", "The usual one: stretch and shear stay within those of the keys"),
+    "nu": ("Nu (ν)", "Shear stays within the keys' at every point, stretch nearly so"),
+    "scaled-eta": ("Scaled eta (η)", "As eta, held within the bounds of the keys"),
+    "eta": ("Eta (η)", "May leave the bounds of the keys; to compare with"),
+    "linear": ("Linear", "Every point goes straight, and the shape may fold; to compare with"),
 }
 GAP, TIGHT, WIDE = 0.35, 0.1, 1.1  # em between what belongs together closely, and less so
 FRAMES = 13.0  # em: room that the numbers of frames need
@@ -213,12 +214,11 @@ def _onion_skin(session: Session, look: Look) -> list[Action]:
 def _variant(project: Project) -> list[Action]:
     actions: list[Action] = []
     current = project.document.variant
-    if imgui.begin_combo("##variant", VARIANT_NAMES[current]):
-        actions += [
-            do(keys.set_variant, variant)
-            for variant in VARIANTS
-            if imgui.selectable(VARIANT_NAMES[variant], variant == current)[0]
-        ]
+    if imgui.begin_combo("##variant", VARIANTS[current][0]):
+        for variant, (name, what) in VARIANTS.items():
+            if imgui.selectable(name, variant == current)[0]:
+                actions.append(do(keys.set_variant, variant))
+            tip(what)
         imgui.end_combo()
-    tip("How in-betweens are made. Linear is for comparison: it may fold.")
+    tip("How in-betweens are made")
     return actions
