@@ -15,7 +15,7 @@ from app.session import Session
 from app.system_dialogs import find_system_dialogs
 from app.ui.window import Window, has_display
 
-# Seconds after which a worker hands Python's lock over. A frame takes it some twenty times, and with
+# Seconds after which a worker hands Python's lock over. A frame takes it some twenty times; with
 # the usual 5 ms a job that seldom lets go would leave two frames a second.
 SWITCH = 0.0005
 
