@@ -5,6 +5,11 @@ from collections.abc import Iterator
 import pytest
 from ui.harness import Harness
 
+from app.actions import playback, posing
+from app.assets import sample_images
+from app.document.keyframe import Target
+from app.session import Project
+
 
 @pytest.fixture(scope="session")
 def _only_window() -> Harness:
@@ -17,6 +22,28 @@ def window(_only_window: Harness) -> Iterator[Harness]:
     yield _only_window
     problems = [toast.details for toast in _only_window.session.toasts if toast.details]
     assert not problems, problems[0]
+
+
+@pytest.fixture
+def bar(window: Harness) -> Project:
+    """The sample of a bar, with a handle near each end, the second one selected."""
+    project = window.open(sample_images() / "bar.png")
+    width, height = project.picture.size
+    for share in (0.1, 0.9):
+        posing.add_handle(window.session, complex(share * width, height / 2))
+        window.frames(2)
+    return project
+
+
+@pytest.fixture
+def bent(window: Harness, bar: Project) -> Project:
+    """The bar, bent at its right end: keys at frames 0 and 24, the second one is shown."""
+    playback.seek(window.session, 24)
+    window.settle()
+    width, height = bar.picture.size
+    posing.wish(window.session, {1: Target(position=complex(0.85 * width, 0.9 * height))})
+    window.settle()
+    return bar
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:

@@ -30,17 +30,6 @@ def drag(robot, window, start, end, *, key=None, steps=4):
         robot.key_up(int(key))
 
 
-@pytest.fixture
-def bar(window):
-    """The sample of a bar, with a handle near each end, the second one selected."""
-    project = window.open(BAR)
-    width, height = project.picture.size
-    for share in (0.1, 0.9):
-        posing.add_handle(window.session, complex(share * width, height / 2))
-        window.frames(2)
-    return project
-
-
 def handle_places(project):
     return {
         handle.id: complex(place)

@@ -2,22 +2,8 @@
 
 from itertools import count
 
-import pytest
-
 from app.actions import posing
-from app.assets import sample_images
 from app.document.keyframe import Target
-
-
-@pytest.fixture
-def bar(window):
-    """The sample of a bar, with a handle near each end."""
-    project = window.open(sample_images() / "bar.png")
-    width, height = project.picture.size
-    for share in (0.1, 0.9):
-        posing.add_handle(window.session, complex(share * width, height / 2))
-    window.settle()
-    return project
 
 
 def pull(window, bar, by):

@@ -6,8 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from app.actions import keys, playback, posing
-from app.assets import sample_images
+from app.actions import playback, posing
 from app.document.keyframe import Target
 from app.measuring import TIMES, Extremes, measure_curves
 from app.motion import Motion, prepare_motion
@@ -18,23 +17,6 @@ from engine.deform.bounds import Bounds
 
 def facts(window):
     return [fact.text for fact in bars._facts(window.session)]
-
-
-@pytest.fixture
-def bent(window):
-    """The bar, bent at frame 24."""
-    project = window.open(sample_images() / "bar.png")
-    keys.set_variant(window.session, "nu")
-    width, height = project.picture.size
-    for share in (0.1, 0.9):
-        posing.add_handle(window.session, complex(share * width, height / 2))
-        window.frames(2)
-    playback.seek(window.session, 24)
-    window.settle()
-    target = project.shown.pose.targets[1]
-    posing.wish(window.session, {1: Target(position=target.position + 0.3j * width)})
-    window.settle()
-    return project
 
 
 def test_without_a_project_it_shows_the_frames_per_second_only(window):

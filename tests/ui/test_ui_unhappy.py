@@ -33,21 +33,6 @@ BAR = sample_images() / "bar.png"
 TABS = ("Handle", "Deform", "Distortion", "Domain", "Export")
 
 
-@pytest.fixture
-def bar(window):
-    """A bar that is held at its left end and bent at its right one: keys at frames 0 and 24."""
-    project = window.open(BAR)
-    width, height = project.picture.size
-    for share in (0.1, 0.9):
-        posing.add_handle(window.session, complex(share * width, height / 2))
-        window.frames(2)
-    playback.seek(window.session, 24)
-    window.settle()
-    posing.wish(window.session, {1: Target(position=complex(0.85 * width, 0.9 * height))})
-    window.settle()
-    return project
-
-
 @contextmanager
 def held_up(monkeypatch, where):
     """Let the worker wait where it calls a function, until the block ends."""
@@ -92,9 +77,9 @@ def press(robot, *chord):
 # Two things at once.
 
 
-def test_undo_during_a_drag(window, bar):
-    first = bar.document
-    start = place_of(bar, 1)
+def test_undo_during_a_drag(window, bent):
+    first = bent.document
+    start = place_of(bent, 1)
 
     def play(robot):
         robot.mouse_move_to_pos(window.point(start))
@@ -102,46 +87,46 @@ def test_undo_during_a_drag(window, bar):
         robot.mouse_move_to_pos(window.point(start - 20j))
         window.session.jobs.settle()
         robot.yield_()
-        assert bar.document is not first
+        assert bent.document is not first
         press(robot, window.Key.mod_ctrl, window.Key.z)
-        assert bar.document is first
+        assert bent.document is first
         robot.mouse_move_to_pos(window.point(start - 40j))
         robot.mouse_up(0)
 
     window.run(play)
     window.settle()
-    assert frames_of(bar) == [0, 24]
-    assert bar.document is not first
+    assert frames_of(bent) == [0, 24]
+    assert bent.document is not first
     editing.undo(window.session)
-    assert bar.document is first
+    assert bent.document is first
 
 
 def test_undo_of_a_drag_that_is_not_to_be_seen_yet_takes_nothing_else_back(
-    window, bar, monkeypatch
+    window, bent, monkeypatch
 ):
-    before = bar.document
+    before = bent.document
     with held_up(monkeypatch, "app.posing.certify"):
         posing.wish(window.session, {1: Target(position=900 + 50j)})
         window.act(editing.undo)
     window.settle()
-    assert bar.document is before
+    assert bent.document is before
     editing.undo(window.session)
-    assert frames_of(bar) == [0]
+    assert frames_of(bent) == [0]
 
 
-def test_undo_takes_a_loose_pose_back_first(window, bar):
+def test_undo_takes_a_loose_pose_back_first(window, bent):
     window.act(viewing.toggle_auto_key)
-    before = bar.document
-    posing.wish(window.session, {1: Target(position=place_of(bar, 1) - 80j)})
+    before = bent.document
+    posing.wish(window.session, {1: Target(position=place_of(bent, 1) - 80j)})
     window.settle()
-    assert bar.loose is not None
+    assert bent.loose is not None
     window.run(lambda robot: press(robot, window.Key.mod_ctrl, window.Key.z))
-    assert bar.loose is None
-    assert bar.document is before
+    assert bent.loose is None
+    assert bent.document is before
 
 
-def test_deleting_a_handle_while_it_is_dragged(window, bar):
-    start = place_of(bar, 1)
+def test_deleting_a_handle_while_it_is_dragged(window, bent):
+    start = place_of(bent, 1)
 
     def play(robot):
         robot.mouse_move_to_pos(window.point(start))
@@ -153,28 +138,28 @@ def test_deleting_a_handle_while_it_is_dragged(window, bar):
 
     window.run(play)
     window.settle()
-    assert [handle.id for handle in bar.document.handles] == [0]
-    assert bar.selected == frozenset()
-    assert bar.grab is None
+    assert [handle.id for handle in bent.document.handles] == [0]
+    assert bent.selected == frozenset()
+    assert bent.grab is None
 
 
-def test_deleting_a_key_while_it_is_dragged(window, bar):
+def test_deleting_a_key_while_it_is_dragged(window, bent):
     def play(robot):
         robot.set_ref("###Timeline")
         robot.mouse_move("**/key 24")
         at = robot.item_info("**/key 24").rect_full.get_center()
         robot.mouse_down(0)
         robot.mouse_move_to_pos(ImVec2(at.x + 60, at.y))
-        assert frames_of(bar) != [0, 24]
+        assert frames_of(bent) != [0, 24]
         press(robot, window.Key.delete)
         robot.mouse_move_to_pos(ImVec2(at.x + 90, at.y))
         robot.mouse_up(0)
 
     window.run(play)
     window.settle()
-    assert frames_of(bar) == [0]
-    assert bar.chosen == frozenset()
-    assert bar.timing.gesture is None
+    assert frames_of(bent) == [0]
+    assert bent.chosen == frozenset()
+    assert bent.timing.gesture is None
 
 
 @pytest.mark.parametrize(
@@ -186,54 +171,54 @@ def test_deleting_a_key_while_it_is_dragged(window, bar):
     ],
 )
 def test_key_that_goes_while_the_solver_still_follows_does_not_come_back(
-    window, bar, change, frames
+    window, bent, change, frames
 ):
     editing.choose_keys(window.session, frozenset({24}))
-    posing.wish(window.session, {1: Target(position=place_of(bar, 1) - 150j)})
-    assert bar.grab is not None
+    posing.wish(window.session, {1: Target(position=place_of(bent, 1) - 150j)})
+    assert bent.grab is not None
     change(window.session)
     window.settle()
-    assert frames_of(bar) == frames
+    assert frames_of(bent) == frames
 
 
-def test_other_changes_leave_the_solver_at_work(window, bar):
-    posing.wish(window.session, {1: Target(position=place_of(bar, 1) - 150j)})
+def test_other_changes_leave_the_solver_at_work(window, bent):
+    posing.wish(window.session, {1: Target(position=place_of(bent, 1) - 150j)})
     keys.set_fps(window.session, 12.0)
-    assert bar.grab is not None
+    assert bent.grab is not None
     window.settle()
-    assert bar.document.lags(bar.document.key(24).pose)[1] < 10
+    assert bent.document.lags(bent.document.key(24).pose)[1] < 10
 
 
-def test_bounds_and_places_that_change_end_the_pull(window, bar):
+def test_bounds_and_places_that_change_end_the_pull(window, bent):
     for command in (
         handle_commands.weigh_handle(1, 3.0),
-        handle_commands.move_handle(1, bar.document.handle(1).position - 30),
+        handle_commands.move_handle(1, bent.document.handle(1).position - 30),
     ):
-        posing.wish(window.session, {1: Target(position=place_of(bar, 1) - 20j)})
+        posing.wish(window.session, {1: Target(position=place_of(bent, 1) - 20j)})
         editing.edit(window.session, command)
-        assert bar.grab is None
+        assert bent.grab is None
 
 
-def test_playhead_that_goes_elsewhere_ends_the_pull(window, bar):
-    posing.wish(window.session, {1: Target(position=place_of(bar, 1) - 150j)})
+def test_playhead_that_goes_elsewhere_ends_the_pull(window, bent):
+    posing.wish(window.session, {1: Target(position=place_of(bent, 1) - 150j)})
     playback.scrub(window.session, 24)
-    assert bar.grab is not None
+    assert bent.grab is not None
     playback.scrub(window.session, 7)
-    assert bar.grab is None
+    assert bent.grab is None
     window.settle()
-    assert frames_of(bar) == [0, 24]
+    assert frames_of(bent) == [0, 24]
 
 
-def test_playhead_stays_in_the_animation_that_undo_makes_shorter(window, bar):
+def test_playhead_stays_in_the_animation_that_undo_makes_shorter(window, bent):
     window.act(keys.set_last_frame, 100)
     window.act(playback.seek, 90)
     window.act(editing.undo)
-    assert playback.current_frame(window.session, bar) == bar.document.frames.last == 48
+    assert playback.current_frame(window.session, bent) == bent.document.frames.last == 48
     window.act(editing.redo)
-    assert playback.current_frame(window.session, bar) in bar.document.frames
+    assert playback.current_frame(window.session, bent) in bent.document.frames
 
 
-@pytest.mark.usefixtures("bar")
+@pytest.mark.usefixtures("bent")
 def test_end_of_the_work_range_before_its_beginning_takes_that_along(window):
     session = window.session
     for frame, key, work in ((20, "b", (20, 48)), (10, "n", (10, 10)), (30, "b", (30, 30))):
@@ -242,48 +227,48 @@ def test_end_of_the_work_range_before_its_beginning_takes_that_along(window):
         assert session.project.document.work == FrameRange(*work)
 
 
-def test_only_what_is_there_is_selected(window, bar):
+def test_only_what_is_there_is_selected(window, bent):
     editing.select(window.session, frozenset({1, 7}))
-    assert bar.selected == {1}
-    timing.begin(window.session, KeyBox(start=0.0, keeps=frozenset({24, 31})), bar.timing.strip)
+    assert bent.selected == {1}
+    timing.begin(window.session, KeyBox(start=0.0, keeps=frozenset({24, 31})), bent.timing.strip)
     timing.move(window.session, 10.0)
-    assert bar.chosen == {0, 24}
+    assert bent.chosen == {0, 24}
     timing.cancel(window.session)
-    assert bar.chosen == {24}
+    assert bent.chosen == {24}
 
 
-def test_loose_pose_stays_when_a_handle_is_deleted_by_its_key(window, bar):
+def test_loose_pose_stays_when_a_handle_is_deleted_by_its_key(window, bent):
     window.act(viewing.toggle_auto_key)
-    posing.wish(window.session, {1: Target(position=place_of(bar, 1) - 80j)})
+    posing.wish(window.session, {1: Target(position=place_of(bent, 1) - 80j)})
     window.settle()
-    before = bar.shown.positions
+    before = bent.shown.positions
     editing.select(window.session, frozenset({0}))
     window.run(lambda robot: press(robot, window.Key.delete))
     window.settle()
-    assert [handle.id for handle in bar.document.handles] == [1]
-    assert bar.loose is not None
-    np.testing.assert_allclose(bar.shown.positions, before, rtol=0, atol=1e-9)
+    assert [handle.id for handle in bent.document.handles] == [1]
+    assert bent.loose is not None
+    np.testing.assert_allclose(bent.shown.positions, before, rtol=0, atol=1e-9)
 
 
-def test_loose_pose_over_a_cage_that_is_rebuilt_is_given_up(window, bar):
+def test_loose_pose_over_a_cage_that_is_rebuilt_is_given_up(window, bent):
     session = window.session
     window.act(viewing.toggle_auto_key)
-    posing.wish(session, {1: Target(position=place_of(bar, 1) - 80j)})
+    posing.wish(session, {1: Target(position=place_of(bent, 1) - 80j)})
     window.settle()
-    cage = bar.document.domain.cage
+    cage = bent.document.domain.cage
     viewing.draft_meshing(session, Meshing(triangles=1_500, detail="fine"))
     rebuilding.rebuild(session)
     window.settle()
-    assert len(bar.document.domain.cage) != len(cage)
-    assert bar.loose is None
-    assert bar.meshing is None
-    assert bar.shown.is_current
+    assert len(bent.document.domain.cage) != len(cage)
+    assert bent.loose is None
+    assert bent.meshing is None
+    assert bent.shown.is_current
 
 
 # The solver at its bounds.
 
 
-def test_handle_out_of_reach_is_told_and_freed_again(window, bar, monkeypatch):
+def test_handle_out_of_reach_is_told_and_freed_again(window, bent, monkeypatch):
     session = window.session
     undo_all(window)
     editing.redo(session)
@@ -291,27 +276,27 @@ def test_handle_out_of_reach_is_told_and_freed_again(window, bar, monkeypatch):
     playback.seek(session, 0)
     rebuilding.choose_bounds(session, Bounds(k=0.3, sigma_a=1.3, sigma_b=0.8))
     window.settle()
-    start = place_of(bar, 1)
-    far = start + 0.5 * bar.picture.size[0]
+    start = place_of(bent, 1)
+    far = start + 0.5 * bent.picture.size[0]
 
     def pull(robot, end, steps=4):
-        robot.mouse_move_to_pos(window.point(place_of(bar, 1)))
+        robot.mouse_move_to_pos(window.point(place_of(bent, 1)))
         robot.mouse_down(0)
         for step in range(1, steps + 1):
             robot.mouse_move_to_pos(window.point(start + (end - start) * step / steps))
         robot.mouse_up(0)
 
-    viewing.look_from(session, replace(bar.view(session.screen), scale=0.3))
+    viewing.look_from(session, replace(bent.view(session.screen), scale=0.3))
     window.frames(2)
     window.run(lambda robot: pull(robot, far))
     window.settle()
-    pose = bar.document.key(0).pose
+    pose = bent.document.key(0).pose
     assert pose.certificate.certified
-    assert bar.document.bounds.allow(
+    assert bent.document.bounds.allow(
         k=pose.certificate.k, sigma_a=pose.certificate.sigma_a, sigma_b=pose.certificate.sigma_b
     )
     np.testing.assert_allclose(pose.targets[1].position, far, rtol=0, atol=10)
-    assert bar.shown.lags[1] > 100
+    assert bent.shown.lags[1] > 100
 
     wishes, written = [], []
     mark, text = canvas.mark_handles, imgui.text_colored
@@ -337,13 +322,13 @@ def test_handle_out_of_reach_is_told_and_freed_again(window, bar, monkeypatch):
 
     window.run(lambda robot: pull(robot, start))
     window.settle()
-    assert bar.shown.lags[1] < 5
-    assert bar.document.key(0).pose.certificate.certified
+    assert bent.shown.lags[1] < 5
+    assert bent.document.key(0).pose.certificate.certified
 
 
-def test_bound_that_bounds_nothing_is_refused_in_words(window, bar):
+def test_bound_that_bounds_nothing_is_refused_in_words(window, bent):
     window.show_tab("Deform")
-    before = bar.document
+    before = bent.document
 
     def enter(robot):
         robot.set_ref("//Deform")
@@ -351,7 +336,7 @@ def test_bound_that_bounds_nothing_is_refused_in_words(window, bar):
 
     window.run(enter)
     window.settle()
-    assert bar.document is before
+    assert bent.document is before
     (toast,) = window.session.toasts
     assert "between 0 and 1" in toast.text
     assert toast.details == ""
@@ -360,32 +345,32 @@ def test_bound_that_bounds_nothing_is_refused_in_words(window, bar):
 # Work that takes long, or fails.
 
 
-def test_scrubbing_while_the_worker_builds(window, bar, monkeypatch):
+def test_scrubbing_while_the_worker_builds(window, bent, monkeypatch):
     with held_up(monkeypatch, "app.actions.upkeep.prepare_motion"):
         keys.set_variant(window.session, "nu")
         for frame in (3, 17, 9, 24, 0, 12):
             window.act(playback.scrub, frame)
             window.frames(2)
-            assert playback.current_frame(window.session, bar) == frame
-            assert bar.shown is not None
-        assert not bar.shown.is_current
+            assert playback.current_frame(window.session, bent) == frame
+            assert bent.shown is not None
+        assert not bent.shown.is_current
     window.settle()
-    assert bar.shown.is_current
-    assert bar.shown.frame == 12
+    assert bent.shown.is_current
+    assert bent.shown.frame == 12
 
 
-def test_poses_that_follow_each_other_twice_are_prepared_once(window, bar):
+def test_poses_that_follow_each_other_twice_are_prepared_once(window, bent):
     keys.set_variant(window.session, "nu")
     editing.edit(window.session, key_commands.copy_keys({0, 24}, 48))
     window.settle()
-    assert frames_of(bar) == [0, 24, 48, 72]
+    assert frames_of(bent) == [0, 24, 48, 72]
     # None of it is known of this one, and at first only roughly.
     keys.set_variant(window.session, "metric")
     for _ in range(20):
         window.frames()
         window.session.jobs.settle()
-    assert bar.sketch.knows(bar.document)
-    assert len(bar.sketch.pieces) == 2
+    assert bent.sketch.knows(bent.document)
+    assert len(bent.sketch.pieces) == 2
 
 
 FAILURES = {
@@ -424,7 +409,7 @@ FAILURES = {
 
 @pytest.mark.parametrize("kind", FAILURES)
 def test_job_that_raises_is_told_once_and_the_window_lives_on(
-    window, bar, monkeypatch, request, kind
+    window, bent, monkeypatch, request, kind
 ):
     where, begin = FAILURES[kind]
     asked = []
@@ -448,13 +433,13 @@ def test_job_that_raises_is_told_once_and_the_window_lives_on(
     assert asked == [kind]
     window.session.toasts = []
     undo_all(window)
-    assert frames_of(bar) == [0]
-    assert bar.document.handles == ()
+    assert frames_of(bent) == [0]
+    assert bent.document.handles == ()
     playback.seek(window.session, 5)
-    posing.add_handle(window.session, complex(*bar.picture.size) / 2)
+    posing.add_handle(window.session, complex(*bent.picture.size) / 2)
     window.settle()
-    assert bar.shown.is_current
-    assert bar.renewal is None
+    assert bent.shown.is_current
+    assert bent.renewal is None
 
 
 WAITING = {
@@ -476,14 +461,14 @@ WAITING = {
 
 
 @pytest.mark.parametrize("kind", WAITING)
-def test_results_for_a_closed_project_go_nowhere(window, bar, monkeypatch, kind):
+def test_results_for_a_closed_project_go_nowhere(window, bent, monkeypatch, kind):
     where, begin = WAITING[kind]
-    before = bar.document
+    before = bent.document
     with held_up(monkeypatch, where):
         begin(window.session)
         window.frames(2)
         assert kind in window.session.jobs.kinds
-        closed = bar.document
+        closed = bent.document
         saving.give_up(window.session)
         files.load(window.session, sample_images() / "s.png")
         window.frames(3)
@@ -495,12 +480,12 @@ def test_results_for_a_closed_project_go_nowhere(window, bar, monkeypatch, kind)
     assert other.reach is None or other.reach.source[0] is other.document.domain
     assert (other.grab, other.renewal, other.loose) == (None, None, None)
     assert other.shown.is_current
-    assert bar.document is closed
+    assert bent.document is closed
     assert closed.handles == before.handles
     assert [toast for toast in window.session.toasts if toast.tone == "error"] == []
 
 
-@pytest.mark.usefixtures("bar")
+@pytest.mark.usefixtures("bent")
 def test_work_that_is_given_up_while_it_is_kept_does_not_come_back(window, monkeypatch):
     with held_up(monkeypatch, "app.actions.saving.write_autosave"):
         window.clock.now += 2 * SECONDS
@@ -512,20 +497,20 @@ def test_work_that_is_given_up_while_it_is_kept_does_not_come_back(window, monke
     assert list(window.folder.glob("unsaved-*")) == []
 
 
-def test_saved_work_is_not_kept_as_unsaved(window, bar, tmp_path):
+def test_saved_work_is_not_kept_as_unsaved(window, bent, tmp_path):
     window.clock.now += 2 * SECONDS
     window.settle()
     assert len(list(window.folder.glob("unsaved-*"))) == 1
     saving.write(window.session, tmp_path / "bar.lissom", None)
     window.settle()
-    assert bar.history.is_saved
+    assert bent.history.is_saved
     assert list(window.folder.glob("unsaved-*")) == []
 
 
 # Where the pointer is right, and windows in which little is.
 
 
-def test_click_in_the_plot_goes_to_its_frame(window, bar):
+def test_click_in_the_plot_goes_to_its_frame(window, bent):
     window.act(playback.seek, 0)
     window.show_tab("Distortion")
     window.settle()
@@ -537,7 +522,7 @@ def test_click_in_the_plot_goes_to_its_frame(window, bar):
         robot.mouse_click(0)
 
     window.run(click)
-    assert 8 <= playback.current_frame(window.session, bar) <= 16
+    assert 8 <= playback.current_frame(window.session, bent) <= 16
 
 
 @pytest.fixture
@@ -553,7 +538,7 @@ SIZES = [((400, 300), 1.0), ((1280, 800), 3.0), ((400, 300), 3.0), ((60, 40), 1.
 @pytest.mark.parametrize("kind", ["welcome", "empty", "one key", "two keys"])
 def test_every_panel_draws_in_every_window(window, sized, request, size, kind):
     if kind == "two keys":
-        request.getfixturevalue("bar")
+        request.getfixturevalue("bent")
     elif kind != "welcome":
         window.open(BAR)
         if kind == "one key":
