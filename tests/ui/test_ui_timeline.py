@@ -5,7 +5,7 @@ import pytest
 from documents import CENTRE, RADIUS, disc_document
 from hypothesis import given
 from hypothesis import strategies as st
-from imgui_bundle import ImVec2
+from imgui_bundle import ImVec2, imgui
 
 from app.actions import editing, keys, playback, timing
 from app.document.easing import HOLD, LINEAR, PRESETS
@@ -342,6 +342,39 @@ def test_menu_reverses_and_scales(window, project, play):
     assert project.chosen == {18, 30}
     undo_all(window)
     assert project.document is first
+
+
+def test_a_drag_goes_to_where_the_button_is_let_go(window, project, play):
+    places = {}
+    play(lambda hand: places.update(key=hand.place("key 24"), x=hand.x(30)))
+    io = imgui.get_io()
+    io.add_mouse_pos_event(*places["key"])
+    window.frames(3)
+    io.add_mouse_button_event(0, down=True)
+    window.frames(2)
+    # All of the way, and the end of it, before the next frame.
+    io.add_mouse_pos_event(places["x"], places["key"].y)
+    io.add_mouse_button_event(0, down=False)
+    window.frames(4)
+    assert frames_of(project.document) == (0, 12, 30, 48)
+    assert project.history.undo_label == "Move keys"
+
+
+def test_a_strip_that_is_scrolled_by_a_drag_stays_so(window, project, play):
+    timing.look_at(window.session, Strip(0.0, 1.5))
+    window.frames(2)
+
+    def drag_beyond_the_edge(hand):
+        hand.press("key 0")
+        edge = hand.robot.item_info("**/key 0").rect_full.get_center()
+        hand.robot.mouse_move_to_pos(ImVec2(1275, edge.y))
+        for _ in range(10):
+            hand.robot.yield_()
+        assert project.timing.held.start > 0
+        hand.robot.mouse_up(0)
+
+    play(drag_beyond_the_edge)
+    assert project.timing.strip.start > 0
 
 
 def test_wheel_zooms_at_the_pointer_and_scrolls(window, project, play):

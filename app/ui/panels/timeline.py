@@ -84,17 +84,16 @@ def _go_on(track: Track) -> list[Action]:
         return []
     if imgui.is_key_pressed(imgui.Key.escape):
         return [do(timing.cancel)]
-    if not imgui.is_mouse_down(imgui.MouseButton_.left):
-        end = [do(timing.end)]
-        if isinstance(gesture, KeyDrag) and not was_dragged() and not gesture.copies:
-            # A click: the key alone, and its pose.
-            end += [do(editing.choose_keys, frozenset({gesture.pressed}))]
-            end += [do(playback.scrub, gesture.pressed)]
-        return end
     # A press that does not go on is a click; only the playhead is there at once.
-    if not isinstance(gesture, Scrub) and not imgui.is_mouse_dragging(imgui.MouseButton_.left):
-        return []
-    return [do(timing.move, track.pointed), *_pull(track)]
+    goes_on = isinstance(gesture, Scrub) or was_dragged()
+    moves = [do(timing.move, track.pointed)] if goes_on else []
+    if imgui.is_mouse_down(imgui.MouseButton_.left):
+        return [*moves, *_pull(track)] if goes_on else []
+    if isinstance(gesture, KeyDrag) and not goes_on and not gesture.copies:
+        # A click: the key alone, and its pose.
+        alone = do(editing.choose_keys, frozenset({gesture.pressed}))
+        return [do(timing.end), alone, do(playback.scrub, gesture.pressed)]
+    return [*moves, do(timing.end)]
 
 
 def _pull(track: Track) -> list[Action]:

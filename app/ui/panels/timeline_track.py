@@ -112,9 +112,12 @@ def is_pressed() -> bool:
 
 
 def was_dragged() -> bool:
-    """Tell whether the pointer went somewhere since the button was pressed."""
-    delta = imgui.get_mouse_drag_delta(imgui.MouseButton_.left)
-    return bool(delta.x or delta.y)
+    """Tell whether the pointer went somewhere since the button was pressed, and be it back."""
+    io, left = imgui.get_io(), imgui.MouseButton_.left
+    # What Dear ImGui keeps of the way lacks the last part of it, before the button was let go.
+    last = imgui.get_mouse_drag_delta(left, 0.0)
+    farthest = max(io.mouse_drag_max_distance_sqr[int(left)], last.x**2 + last.y**2)
+    return bool(farthest >= io.mouse_drag_threshold**2)
 
 
 def in_seconds(frame: float, fps: float) -> str:
