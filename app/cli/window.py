@@ -6,6 +6,7 @@ import time
 from pathlib import Path
 
 from app.actions import files
+from app.autosave import forget_autosave
 from app.cli.console import fail
 from app.jobs import Jobs
 from app.preferences import load_preferences, save_preferences, settings_folder
@@ -62,5 +63,9 @@ def run(arguments: argparse.Namespace) -> int:
     try:
         Window(session, lambda: Renderer(window_context())).run()
     finally:
+        session.jobs.close()
+        if session.quitting:
+            # One that was being written when the person left.
+            forget_autosave(folder)
         save_preferences(folder, session.preferences)
     return 0

@@ -1,11 +1,17 @@
 import os
 import subprocess
 import sys
+import threading
 
 import pytest
+from documents import disc_document
 
+from app.actions import saving
 from app.assets import sample_images
+from app.autosave import write_autosave
+from app.cli import window
 from app.cli.main import COMMANDS, main
+from app.jobs import Job
 
 SAMPLE = sample_images() / "giraffe.lissom"
 
@@ -95,3 +101,33 @@ def test_a_display_that_is_not_there_is_an_error_in_words():
     assert done.returncode == 2
     assert "lissom: error: the window cannot be opened" in done.stderr
     assert "Traceback" not in done.stderr
+
+
+def test_an_autosave_that_is_written_while_the_person_leaves_is_not_offered(tmp_path, monkeypatch):
+    begun, left = threading.Event(), threading.Event()
+
+    class LeftWindow:
+        def __init__(self, session, _):
+            self.session = session
+
+        def run(self):
+            session = self.session
+
+            def keep():
+                begun.set()
+                left.wait(10)
+                write_autosave(session.folder, disc_document())
+
+            session.jobs.put(Job(kind=saving.AUTOSAVING, work=keep, done=print, failed=print))
+            assert begun.wait(10)
+            saving.leave(session)
+            left.set()
+
+    monkeypatch.setenv("XDG_CONFIG_HOME", str(tmp_path))
+    monkeypatch.setattr(window, "has_display", lambda: True)
+    monkeypatch.setattr(window, "Window", LeftWindow)
+    monkeypatch.setattr(sys, "setswitchinterval", lambda _: None)
+    assert main(["window"]) == 0
+    assert left.is_set()
+    assert list(tmp_path.rglob("unsaved-*")) == []
+    assert len(list(tmp_path.rglob("preferences.json"))) == 1
