@@ -114,7 +114,6 @@ class Stage:
         Rough ones are ready much sooner where the variant is metric, and are right to some
         thousandths of the drawing's size; other variants have no rough ones.
         """
-        rough = rough and has_rough(variant)
         with self._lock:
             key = (first, second, turns, variant, rough)
             if key not in self._inbetweens:

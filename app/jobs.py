@@ -66,6 +66,8 @@ class Jobs:
         self._waiting: list[Job] = []
         self._finished: list[tuple[str, Callable[[], None]]] = []
         self._is_closed = False
+        # The end of the program takes BLAS away, and a thread that is in it crashes.
+        atexit.register(self.close)
         self._lanes = {True: _Lane(), False: _Lane()}  # by whether they are for urgent jobs
 
     def put(self, job: Job) -> None:
@@ -79,8 +81,6 @@ class Jobs:
                 work = partial(self._work, lane, urgent=job.urgent)
                 lane.thread = threading.Thread(target=work, name=name, daemon=True)
                 lane.thread.start()
-                # The end of the program takes BLAS away, and a thread that is in it crashes.
-                atexit.register(self.close)
             self._condition.notify_all()
 
     def drop(self, kind: str) -> None:

@@ -313,7 +313,7 @@ class Session:
     jobs: Jobs
     folder: Path  # for settings and unsaved work
     preferences: Preferences = field(default_factory=Preferences)
-    kept_preferences: Preferences = field(default_factory=Preferences)  # as they are on the disk
+    kept_preferences: Preferences = field(init=False)  # as they are on the disk
     project: Project | None = None
     overlays: Overlays = field(default_factory=Overlays)
     screen: tuple[int, int] = (640, 480)  # pixels of the viewport
@@ -332,6 +332,10 @@ class Session:
     hovered: int | None = None  # the handle under the pointer
     hint: str = ""  # about what is under the pointer
     quitting: bool = False
+
+    def __post_init__(self) -> None:
+        """Take the preferences to be as they were read."""
+        self.kept_preferences = self.preferences
 
     @property
     def usual_folder(self) -> Path:

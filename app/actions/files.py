@@ -1,6 +1,7 @@
 """Opening pictures and projects."""
 
 from collections.abc import Sequence
+from functools import cache
 from pathlib import Path
 from typing import NamedTuple
 
@@ -38,7 +39,8 @@ class Sample(NamedTuple):
     what: str
 
 
-def samples() -> list[Sample]:
+@cache
+def samples() -> tuple[Sample, ...]:
     """Return the samples, animated ones first."""
     found = []
     for picture in sorted(sample_images().glob("*.png")):
@@ -52,7 +54,7 @@ def samples() -> list[Sample]:
                 "animated" if is_animated else "picture",
             )
         )
-    return sorted(found, key=lambda sample: sample.what)
+    return tuple(sorted(found, key=lambda sample: sample.what))
 
 
 class Opened(NamedTuple):
