@@ -14,6 +14,7 @@ from app.document.settings_commands import set_anchor
 from app.jobs import Job
 from app.posing import Drag, Rig, pose_at
 from app.session import Grab, Project, Session
+from app.shown import Shown
 
 POSING, INSERTING = "Posing", "Inserting a key"
 # Newton steps of one job at most, and the seconds after which it begins no other: what it has found
@@ -82,9 +83,7 @@ def add_handle(session: Session, place: complex) -> None:
     if project is None or project.shown is None:
         return
     drop(session)
-    shown = project.shown
-    found = shown.figure.locate(np.array([place]), shown.positions)
-    rest = complex(found.on(shown.figure.domain.mesh.vertices)[0])
+    rest = _at_rest(project.shown, place)
     identity = project.document.next_handle
     project.history.do(handle_commands.add_handle(rest))
     if project.loose is not None:
@@ -111,6 +110,19 @@ def anchor_at(session: Session, identity: int) -> None:
         return
     place = project.document.handle(identity).position
     project.history.do(set_anchor(None if project.document.anchor == place else place))
+
+
+def put_anchor(session: Session, place: complex) -> None:
+    """Make the shape's point at a place of the screen's plane the anchor."""
+    project = session.project
+    if project and project.shown:
+        project.history.do(set_anchor(_at_rest(project.shown, place)))
+
+
+def _at_rest(shown: Shown, place: complex) -> complex:
+    """Return where the point that is shown at a place is in the drawing at rest."""
+    found = shown.figure.locate(np.array([place]), shown.positions)
+    return complex(found.on(shown.figure.domain.mesh.vertices)[0])
 
 
 def wish(session: Session, wishes: Mapping[int, Target]) -> None:

@@ -66,6 +66,18 @@ def mark_handles(
     return tuple(lines), tuple(discs)
 
 
+def mark_anchor(
+    place: complex, *, scale: float = 1.0, style: HandleStyle | None = None
+) -> tuple[Disc, ...]:
+    """Return the discs that show an anchor where no handle is; smaller, since it is no handle."""
+    style = style or HandleStyle()
+    radius, rim_width = 0.6 * style.radius * scale, 0.75 * style.rim_width * scale
+    return (
+        _shadow(place, radius, scale, style),
+        Disc(centre=place, radius=radius, fill=style.anchor, rim=style.rim, rim_width=rim_width),
+    )
+
+
 def _leash(place: complex, wish: complex, scale: float, style: HandleStyle) -> list[Line]:
     way = np.array([wish, place])
     return [

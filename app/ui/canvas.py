@@ -9,7 +9,7 @@ from app.motion import Figure
 from app.preferences import CHECKER
 from app.render.gpu_mesh import GpuMesh, Pose
 from app.render.gpu_picture import GpuPicture
-from app.render.handles import HandleMark, HandleStyle, mark_handles
+from app.render.handles import HandleMark, HandleStyle, mark_anchor, mark_handles
 from app.render.layer import Layer, shader_is_faster
 from app.render.renderer import Renderer
 from app.render.scene import Background, Colour, Disc, Ghost, Heat, Line, Scene, Wireframe
@@ -140,7 +140,7 @@ def _inputs(session: Session, project: Project) -> tuple[object, ...]:
     """Return all that the picture depends on: while it stays the same, so does the picture."""
     return (
         project.shown,
-        project.sketch if session.overlays.onion else None,
+        project.sketch if session.overlays.onion else project.sketch.stage,
         project.grab.targets if project.grab else None,
         project.selected,
         project.view(session.screen),
@@ -270,7 +270,22 @@ def _marks(
             )
         )
     handle_lines, discs = mark_handles(marks, scale=scale, style=style)
-    return (*lines, *handle_lines), discs
+    anchor = _anchor(project, shown)
+    below = () if anchor is None else mark_anchor(anchor, scale=scale, style=style)
+    return (*lines, *handle_lines), (*below, *discs)
+
+
+def _anchor(project: Project, shown: Shown) -> complex | None:
+    """Return where the anchor is in what is shown; None where a handle marks it, or none is yet."""
+    document, stage = shown.document, project.sketch.stage
+    rest = document.anchor
+    if rest is None and stage is not None and stage.anchor is None:
+        rest = stage.sites.anchor
+    if rest is None or any(handle.position == rest for handle in document.handles):
+        return None
+    figure = shown.figure
+    found = figure.locate(np.array([rest]), figure.domain.mesh.vertices)
+    return complex(found.on(shown.positions)[0])
 
 
 def _outline(shown: Shown, palette: Palette, scale: float) -> Line:

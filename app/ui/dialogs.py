@@ -19,7 +19,7 @@ POINTER = {
     "Shift+click, drag on empty canvas": "Select several",
     "Alt+drag a handle": "Turn the shape there",
     "Alt+click a handle": "Delete it",
-    "Ctrl+click a handle": "Make it the anchor",
+    "Ctrl+click the shape or a handle": "Put the anchor there",
     "Right click a handle": "Menu",
     "Arrows, with Shift ×10": "Nudge the selection",
     "Middle drag, or Space and drag": "Move the view",

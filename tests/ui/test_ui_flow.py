@@ -11,7 +11,9 @@ from app.actions.action import do
 from app.assets import sample_images
 from app.document.keyframe import Target
 from app.document.settings import Meshing
+from app.document.settings_commands import set_anchor
 from app.posing import Drag
+from app.ui import canvas
 from engine.deform.deformer import Status
 
 BAR = sample_images() / "bar.png"
@@ -418,3 +420,36 @@ def test_unsaved_changes_are_asked_about(window, bar, tmp_path):
     window.settle()
     assert bar.path.is_file()
     assert session.project is None
+
+
+def test_ctrl_click_on_the_shape_puts_the_anchor_there(window, bent):
+    before, wanted = len(bent.document.handles), complex(bent.shown.positions.mean())
+
+    def play(robot):
+        robot.mouse_move_to_pos(window.point(wanted))
+        robot.key_down(int(window.Key.mod_ctrl))
+        robot.mouse_click(0)
+        robot.key_up(int(window.Key.mod_ctrl))
+
+    window.run(play)
+    window.settle()
+    assert len(bent.document.handles) == before
+    assert bent.document.anchor is not None
+    moved = bent.document.map_of(bent.document.keys[1].pose)(np.array([bent.document.anchor]))
+    assert abs(moved[0] - wanted) < 3
+    assert abs(canvas._anchor(bent, bent.shown) - wanted) < 3
+    posing.anchor_at(window.session, 0)
+    window.settle()
+    assert canvas._anchor(bent, bent.shown) is None  # the handle itself shows it
+
+
+def test_an_anchor_that_was_chosen_for_the_person_is_shown(window, bent):
+    assert bent.document.anchor is None
+    place = canvas._anchor(bent, bent.shown)
+    rest = bent.sketch.stage.sites.anchor
+    moved = bent.document.map_of(bent.document.keys[1].pose)(np.array([rest]))
+    assert abs(place - moved[0]) < 3
+    shown = window.picture()
+    editing.edit(window.session, set_anchor(complex(bent.document.handle(0).position)))
+    window.settle()
+    assert window.picture() != shown

@@ -105,7 +105,10 @@ def _press_canvas(session: Session, stage: _Stage) -> list[Action]:
     if imgui.is_key_down(imgui.Key.space):
         return []
     place = stage.pointer
-    if stage.is_on_shape(place) and not imgui.get_io().key_shift and session.overlays.handles:
+    is_on_shape = stage.is_on_shape(place)
+    if is_on_shape and imgui.get_io().key_ctrl:
+        return [do(posing.put_anchor, place)]
+    if is_on_shape and not imgui.get_io().key_shift and session.overlays.handles:
         return [do(pointing.add_handle, place)]
     return [do(pointing.begin, Boxing(start=place, keeps=imgui.get_io().key_shift))]
 
@@ -222,7 +225,7 @@ def _hint(session: Session, stage: _Stage, hovered: int | None) -> str:
     if not session.overlays.handles:
         return "The handles are hidden; H shows them"
     if stage.is_on_shape(stage.pointer):
-        return "Click to add a handle"
+        return "Click to add a handle, Ctrl+click to put the anchor here"
     return "Drag to select; wheel to zoom, middle button to move the view"
 
 
