@@ -1,34 +1,38 @@
 """Harmonic shape interpolation: pure numerics, free of files, windows and global state.
 
+In: pictures, handles, harmonic maps, as arrays.
+Out: domains, certified maps, in-betweens, series in time, as arrays.
+Imports: NumPy, SciPy, contourpy, Shapely; never `app`.
+
 Equation map of *Bounded Distortion Harmonic Shape Interpolation* (Chien, Chen, Weber 2016):
 
-    (1), (14)       f = Φ + conj(Ψ)                  engine.harmonic_map.HarmonicMap
-    (14)            Cauchy coordinates               engine.cauchy.cauchy_coordinates
-    Section 3.4     μ, first dilatation              engine.distortion.mu
-    Section 3.4     k, little dilatation             engine.distortion.k
-    Section 3.4     K, large dilatation              engine.distortion.K
-    Section 3.4     σ_a, larger singular value       engine.distortion.sigma_a
-    Section 3.4     σ_b, smaller singular value      engine.distortion.sigma_b
-    Section 5.2     ν, second dilatation             engine.distortion.nu
-    Section 5.4     η                                engine.distortion.eta
-    Section 8       τ, isometric distortion          engine.distortion.tau
-    (2), (15)       continuous logarithm             engine.complex_log.continue_logarithm
-    Section 7.2     branch at the anchor             engine.complex_log.root_sheets
+    (1), (14)       f = Φ + conj(Ψ)                  engine.maps.harmonic_map.HarmonicMap
+    (14)            Cauchy coordinates               engine.maps.cauchy.cauchy_coordinates
+    Section 3.4     μ, first dilatation              engine.maps.distortion.mu
+    Section 3.4     k, little dilatation             engine.maps.distortion.k
+    Section 3.4     K, large dilatation              engine.maps.distortion.K
+    Section 3.4     σ_a, larger singular value       engine.maps.distortion.sigma_a
+    Section 3.4     σ_b, smaller singular value      engine.maps.distortion.sigma_b
+    Section 5.2     ν, second dilatation             engine.maps.distortion.nu
+    Section 5.4     η                                engine.maps.distortion.eta
+    Section 8       τ, isometric distortion          engine.maps.distortion.tau
+    (2), (15)       continuous logarithm             engine.paths.complex_log.continue_logarithm
+    Section 7.2     branch at the anchor             engine.paths.complex_log.root_sheets
     (3)             logarithmic blend of f_z         engine.interpolation.derivatives.blended_log_fz
     (4), (5)        ν variant                        engine.interpolation.nu.NuBlend
     (6), (7)        η variant                        engine.interpolation.eta.EtaBlend
     (8), (16)-(18)  scaled η, ρ(t)                   engine.interpolation.scaling.Scaling
     (9)-(13)        metric variant                   engine.interpolation.metric.MetricBlend
-    Section 7.4     Hilbert transform                engine.hilbert.HilbertTransform
-    Section 7.4     its fit in the cage's own space  engine.projected_transform.ProjectedTransform
-    Section 7       spanning tree from the anchor    engine.spanning_tree.SpanningTree
-    Section 7       quadrature along its edges       engine.integration_paths.IntegrationPaths
+    Section 7.4     Hilbert transform                engine.dirichlet.hilbert.HilbertTransform
+    Section 7.4     its fit in the cage's own space  engine.dirichlet.projected.ProjectedTransform
+    Section 7       spanning tree from the anchor    engine.paths.spanning_tree.SpanningTree
+    Section 7       quadrature along its edges       engine.paths.integration_paths.IntegrationPaths
 
 The deformer follows Chen and Weber, *Bounded Distortion Harmonic Mappings in the Plane* (2015) and
 *GPU-Accelerated Locally Injective Shape Deformation* (2017):
 
-    2015            bounds k, σ_a, σ_b               engine.deform.bounds.Bounds
-    2015, Th. 4     certificate in the whole domain  engine.deform.certificate.certify
+    2015            bounds k, σ_a, σ_b               engine.maps.bounds.Bounds
+    2015, Th. 4     certificate in the whole domain  engine.maps.certificate.certify
     2017            symmetric Dirichlet energy       engine.deform.energy.symmetric_dirichlet
     2017            Newton step, projected Hessian   engine.deform.newton.newton_direction
 """

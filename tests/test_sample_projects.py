@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from app.certification import certify_document
-from app.document.project_file import load_project
 from app.document.timeline import exported_frames
-from app.pose_script import load_pose_script
+from app.reports.certification import certify_document
+from app.solving.script import load_pose_script
+from app.storage.project_file import load_project
 
 SAMPLES = Path(__file__).parent.parent / "sample_images"
 NAMES = sorted(path.stem for path in SAMPLES.glob("*.json"))

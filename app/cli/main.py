@@ -7,15 +7,15 @@ import sys
 from collections.abc import Sequence
 from importlib.metadata import version
 
-from app.blas import use_one_thread
+from app.cli.blas import use_one_thread
 from app.cli.console import Parser, fail
 from app.errors import EXPECTED_ERRORS
 
 EXIT_INTERRUPTED = 130
 EXIT_PIPE_CLOSED = 141
 
-# Subcommand → its summary. The module of that name in app.cli defines `add_arguments(parser)` and
-# `run(arguments)`; only the one that is asked for is loaded.
+# Subcommand → its summary. The module of that name in app.cli.commands defines
+# `add_arguments(parser)` and `run(arguments)`; only the one that is asked for is loaded.
 COMMANDS = {
     "window": "Open the window, with a picture or a project if one is named.",
     "domain": "Find a picture's outline; build the cage and the triangulation.",
@@ -37,7 +37,9 @@ def main(argv: Sequence[str] | None = None) -> int:
         words = ["window", *words]
     arguments = build_parser(words).parse_args(words)
     try:
-        status = int(importlib.import_module(f"app.cli.{arguments.command}").run(arguments))
+        status = int(
+            importlib.import_module(f"app.cli.commands.{arguments.command}").run(arguments)
+        )
         # Here, and not when Python ends, where nobody could answer for a closed pipe.
         sys.stdout.flush()
     except EXPECTED_ERRORS as error:
@@ -70,7 +72,7 @@ def build_parser(words: Sequence[str]) -> argparse.ArgumentParser:
             formatter_class=argparse.RawDescriptionHelpFormatter,
         )
         if name in words:
-            importlib.import_module(f"app.cli.{name}").add_arguments(subparser)
+            importlib.import_module(f"app.cli.commands.{name}").add_arguments(subparser)
     return parser
 
 

@@ -3,8 +3,8 @@
 import argparse
 from typing import get_args
 
-from app.document.settings import Meshing
-from engine.outline import Detail
+from app.document import Meshing
+from engine.domain.outline import Detail
 
 
 def add_meshing_options(parser: argparse.ArgumentParser) -> None:

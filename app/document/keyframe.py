@@ -8,7 +8,7 @@ from types import MappingProxyType
 from app.document.checks import NOTHING, Unknown, require, require_finite
 from app.document.easing import LINEAR, Easing
 from engine.arrays import Complexes, as_points
-from engine.deform.certificate import Certificate
+from engine.maps import Certificate
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -13,20 +13,11 @@ import numpy as np
 
 from app.document.checks import NOTHING, Unknown, require, require_finite, require_size
 from app.document.keyframe import Handle, Keyframe, Pose
-from app.document.settings import (
-    FASTEST,
-    VARIANTS,
-    ExportSettings,
-    FrameRange,
-    Meshing,
-    Variant,
-)
+from app.document.settings import FASTEST, VARIANTS, ExportSettings, FrameRange, Meshing, Variant
 from app.errors import LissomError
-from engine.deform.bounds import Bounds
-from engine.deform.certificate import Certificate
 from engine.domain import Domain
-from engine.harmonic_map import HarmonicMap
-from engine.polygon import box_diagonal, contains
+from engine.geometry import box_diagonal, contains
+from engine.maps import Bounds, Certificate, HarmonicMap
 
 # Handles may sit on the outline itself, where rounding decides on which side they are.
 ON_OUTLINE = 1e-9

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import Literal, get_args
 
 from app.document.checks import require, require_size
-from engine.outline import Detail
+from engine.domain.outline import Detail
 
 Variant = Literal["metric", "nu", "scaled-eta", "eta", "linear"]
 ExportFormat = Literal["png", "apng", "gif", "webp", "spritesheet", "mp4"]
@@ -83,7 +83,7 @@ class ExportSettings:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Meshing:
-    """What the domain was built with: the parameters of `engine.domain.build_domain`."""
+    """What the domain was built with: the parameters of `engine.domain.build.build_domain`."""
 
     detail: Detail = "normal"
     triangles: int = 100_000

@@ -8,8 +8,8 @@ from app.document.keyframe import Keyframe, Pose
 from app.document.model import Document
 from app.document.settings import ExportSettings, FrameRange, Meshing, Variant
 from app.errors import LissomError
-from engine.deform.bounds import Bounds
 from engine.domain import Domain
+from engine.maps import Bounds
 
 
 @command("Set frames per second")

@@ -1,38 +1,14 @@
 """Which part of the plane an export shows."""
 
 import math
-from typing import Final, NamedTuple
+from typing import Final
 
-import numpy as np
-
-from app.document.settings import ExportSettings
-from app.render.view import View, canvas_view, fit_view
-from engine.arrays import Complexes
+from app.document import ExportSettings
+from app.motion import Box
+from app.render import View, canvas_view, fit_view
 
 # Room at each side of a motion that is fitted, as a share of its longer side.
 MARGIN: Final = 0.02
-
-
-class Box(NamedTuple):
-    """A rectangle from its lower left to its upper right corner."""
-
-    lower: complex
-    upper: complex
-
-    def contains(self, other: "Box", *, slack: float) -> bool:
-        """Tell whether the other box sticks out nowhere by more than `slack`."""
-        below, above = other.lower - self.lower, self.upper - other.upper
-        return min(below.real, below.imag, above.real, above.imag) >= -slack
-
-    def joined(self, other: "Box") -> "Box":
-        """Return the smallest box around both."""
-        return box_around(np.array([*self, *other]))
-
-
-def box_around(points: Complexes) -> Box:
-    """Return the smallest box around points (n,), of which there is at least one."""
-    x, y = points.real, points.imag
-    return Box(complex(x.min(), y.min()), complex(x.max(), y.max()))
 
 
 def shown_box(view: View) -> Box:

@@ -8,13 +8,19 @@ from typing import Final, Protocol
 
 import numpy as np
 
-from app.document.model import Document
-from app.document.settings import ExportFormat, ExportSettings, FrameRange
-from app.document.timeline import exported_frames, frame_times
+from app.document import (
+    Document,
+    ExportFormat,
+    ExportSettings,
+    FrameRange,
+    exported_frames,
+    frame_times,
+)
 from app.errors import LissomError
-from app.export.framing import Box, box_around, frame_view, shown_box
-from app.files import check_writable
-from app.render.view import View
+from app.export.framing import frame_view, shown_box
+from app.motion import Box, box_around
+from app.render import View
+from app.storage import check_writable
 from engine.arrays import Complexes
 
 # The ends of the file names that each format goes by; PNG frames go to a folder.

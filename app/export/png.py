@@ -6,7 +6,7 @@ from typing import Final
 from PIL import Image
 
 from app.export.plan import ExportPlan
-from app.files import write_atomically
+from app.storage import write_atomically
 from engine.arrays import Bytes
 
 # Higher levels take much longer for little: the drawing is small beside its empty surroundings.

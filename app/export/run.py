@@ -15,7 +15,7 @@ from app.export.plan import ExportPlan
 from app.export.png import PngSequence
 from app.export.spritesheet import SpritesheetWriter
 from app.export.webp import WebpWriter
-from app.files import atomic_file
+from app.storage import atomic_file
 from engine.arrays import Bytes
 
 Draw = Callable[[float], Bytes]

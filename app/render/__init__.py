@@ -1,1 +1,52 @@
-"""Drawing with OpenGL: the only place that sees moderngl, for the window and without one."""
+"""Drawing: the same renderer for the window and without one.
+
+In: a `Scene`, as values, and a `View`.
+Out: pixels in a target.
+Imports: `app.motion`, `app.storage`; with `app.render.gpu` it alone sees OpenGL.
+"""
+
+from app.render.draw_lists import DrawLists, Textures
+from app.render.handles import HandleMark, HandleStyle, mark_anchor, mark_handles
+from app.render.layer import Layer, shader_is_faster
+from app.render.ramp import heat_ramp
+from app.render.renderer import Renderer
+from app.render.scene import (
+    TRANSPARENT,
+    Background,
+    Colour,
+    Disc,
+    Ghost,
+    Heat,
+    Line,
+    Scene,
+    Wireframe,
+)
+from app.render.thumbnails import Thumbnail, Thumbnails
+from app.render.view import View, canvas_view, fit_view
+
+__all__ = [
+    "TRANSPARENT",
+    "Background",
+    "Colour",
+    "Disc",
+    "DrawLists",
+    "Ghost",
+    "HandleMark",
+    "HandleStyle",
+    "Heat",
+    "Layer",
+    "Line",
+    "Renderer",
+    "Scene",
+    "Textures",
+    "Thumbnail",
+    "Thumbnails",
+    "View",
+    "Wireframe",
+    "canvas_view",
+    "fit_view",
+    "heat_ramp",
+    "mark_anchor",
+    "mark_handles",
+    "shader_is_faster",
+]

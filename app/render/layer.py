@@ -2,10 +2,8 @@
 
 import moderngl
 
-from app.render.context import is_software
-from app.render.gpu_mesh import GpuMesh, Pose, StreamedVertices, singles
-from app.render.series_vertices import SeriesVertices
-from app.vertices import Streamed, Vertices
+from app.motion import Streamed, Vertices
+from app.render.gpu import GpuMesh, Pose, SeriesVertices, StreamedVertices, is_software, singles
 from engine.streaming import MOST_ROWS, Series
 
 

@@ -6,8 +6,7 @@ from typing import Final
 import moderngl
 import numpy as np
 
-from app.render.gpu_mesh import Singles
-from app.render.programs import Programs, Stages, set_uniforms
+from app.render.gpu import Programs, Singles, Stages, set_uniforms
 from app.render.scene import Disc, Line
 from app.render.view import View
 

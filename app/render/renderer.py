@@ -6,12 +6,10 @@ from typing import Final
 
 import moderngl
 
-from app.render.gpu_mesh import Pose
+from app.render.gpu import Pose, Programs, Stages, Target
 from app.render.overlay import Overlay
-from app.render.programs import Programs, Stages
 from app.render.ramp import heat_ramp
 from app.render.scene import Background, Colour, Ghost, Heat, Scene, Wireframe
-from app.render.target import Target
 from app.render.view import View
 
 _BACKGROUND: Final = Stages(vertex=("screen.vert",), fragment=("background.frag",))

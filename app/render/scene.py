@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import Final
 
-from app.render.gpu_mesh import Pose
+from app.render.gpu import Pose
 from engine.arrays import Complexes
 
 Colour = tuple[float, float, float, float]

@@ -2,10 +2,9 @@
 
 from imgui_bundle import imgui
 
-from app.actions import viewing
-from app.actions.action import Action, do
-from app.preferences import CHECKER
-from app.session import Session
+from app.editor import Action, Session, do
+from app.editor.actions import viewing
+from app.storage import CHECKER
 
 BACKDROPS = {"Checker": CHECKER, "White": "#ffffff", "Grey": "#808080", "Black": "#000000"}
 

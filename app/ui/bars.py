@@ -4,13 +4,11 @@ from typing import NamedTuple
 
 from imgui_bundle import ImVec2, imgui
 
-from app.actions.action import Action
-from app.measuring import Extremes
-from app.session import Project, Session
+from app.editor import Action, Project, Session
+from app.reports import Extremes
 from app.ui import backdrop_menu
 from app.ui.shortcuts import BINDINGS, Binding
-from app.ui.theme import Look, ink
-from app.ui.widgets import icon_button, tip
+from app.ui.style import Look, icon_button, ink, tip
 
 MENUS: dict[str, tuple[str, ...]] = {
     "File": ("open", "", "save", "save as", "", "export", "export again", "", "close", "quit"),

@@ -4,9 +4,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Literal
 
-from app.actions.action import Action
-from app.session import Session
-from app.ui.theme import Look
+from app.editor import Action, Session
+from app.ui.style import Look
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

@@ -7,7 +7,8 @@ from functools import cache
 from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
-from app.actions import (
+from app.editor import Action, Session, do
+from app.editor.actions import (
     editing,
     exporting,
     files,
@@ -15,11 +16,9 @@ from app.actions import (
     playback,
     posing,
     saving,
-    timing,
+    timeline_pointing,
     viewing,
 )
-from app.actions.action import Action, do
-from app.session import Session
 
 Key = imgui.Key
 Test = Callable[[Session], bool]
@@ -339,7 +338,7 @@ BINDINGS: dict[str, Binding] = {
     ),
     "fit time": Binding(
         label="Fit timeline",
-        action=do(timing.fit),
+        action=do(timeline_pointing.fit),
         group="Time",
         keys=(SHIFT | int(Key.home),),
         icon=icons.ICON_FA_ARROWS_LEFT_RIGHT_TO_LINE,

@@ -3,11 +3,9 @@
 from imgui_bundle import ImVec2, imgui
 from imgui_bundle import icons_fontawesome_6 as icons
 
-from app.actions.action import Action, do
-from app.actions.viewing import dismiss
-from app.session import Session, Toast
-from app.ui.theme import Look, ink
-from app.ui.widgets import small
+from app.editor import Action, Session, Toast, do
+from app.editor.actions import dismiss
+from app.ui.style import Look, ink, small
 
 SECONDS = {"info": 5.0, "good": 8.0, "error": 15.0}
 FADE = 0.25  # seconds

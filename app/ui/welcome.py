@@ -6,13 +6,11 @@ from pathlib import Path
 from imgui_bundle import ImVec2, imgui
 from imgui_bundle import icons_fontawesome_6 as icons
 
-from app.actions import files
-from app.actions.action import Action, do
-from app.render.thumbnails import Thumbnail
-from app.session import Session
+from app.editor import Action, Session, do
+from app.editor.actions import files
+from app.render import Thumbnail
 from app.ui.shortcuts import BINDINGS
-from app.ui.theme import LARGE, TITLE, Look, ink
-from app.ui.widgets import main_button, small
+from app.ui.style import LARGE, TITLE, Look, ink, main_button, small
 
 Look_up = Callable[[Path], Thumbnail | None]
 CARD, GAP = 11.5, 1.0  # em

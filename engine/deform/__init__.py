@@ -1,20 +1,23 @@
-"""The deformer: handles, energy, barrier and certificate (Chen and Weber 2015, 2017)."""
+"""The deformer: handles, energy, barrier and Newton steps (Chen and Weber 2015, 2017).
 
-from engine.deform.boundary import Boundary
-from engine.deform.bounds import Bounds
-from engine.deform.certificate import Certificate, certify
+In: a certified map, handles, and where they are wanted.
+Out: certified maps whose handles are nearer, with status and statistics.
+Imports: `engine.maps`, `engine.geometry`.
+"""
+
 from engine.deform.deformer import Deformer, State, Statistics, Status
 from engine.deform.handles import Handles, Wish
+from engine.deform.newton import line_search, newton_direction
+from engine.deform.objective import Objective
 
 __all__ = [
-    "Boundary",
-    "Bounds",
-    "Certificate",
     "Deformer",
     "Handles",
+    "Objective",
     "State",
     "Statistics",
     "Status",
     "Wish",
-    "certify",
+    "line_search",
+    "newton_direction",
 ]

@@ -13,8 +13,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from engine.arrays import Floats
-from engine.deform.bounds import Bounds
 from engine.deform.energy import Radial
+from engine.maps import Bounds
 
 # A dual variable stays within this factor of weight / slack, so that it forgets old walls.
 DUAL_RANGE = 1e4

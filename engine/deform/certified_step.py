@@ -5,12 +5,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from engine.arrays import Floats, Indices, readonly
-from engine.deform.boundary import Boundary
-from engine.deform.bounds import Bounds
-from engine.deform.certificate import Certificate, certify_samples
 from engine.deform.newton import Direction, line_search, newton_direction
 from engine.deform.objective import Jet, Objective
-from engine.harmonic_map import HarmonicMap
+from engine.maps import Boundary, Bounds, Certificate, HarmonicMap, certify_samples
 
 # No point of the shape moves farther (of L) in one step: removed handles make no jump.
 FARTHEST = 0.05

@@ -19,9 +19,6 @@ import numpy as np
 
 from engine.arrays import Complexes, Floats
 from engine.deform.barrier import Barrier
-from engine.deform.boundary import Boundary
-from engine.deform.bounds import Bounds
-from engine.deform.certificate import Certificate, certify
 from engine.deform.certified_step import CertifiedStep, add_samples, take_certified_step
 from engine.deform.energy import symmetric_dirichlet
 from engine.deform.handles import Handles, Wish
@@ -30,7 +27,7 @@ from engine.deform.limits import closing_limits, limits_for, place_walls
 from engine.deform.objective import Jet, Objective
 from engine.deform.schedule import FULL, LEAST_RESTING, Schedule
 from engine.errors import EngineError
-from engine.harmonic_map import HarmonicMap
+from engine.maps import Boundary, Bounds, Certificate, HarmonicMap, certify
 
 # On the way into tightened bounds the barrier weighs at least this much, and the handles are this
 # much softer.

@@ -7,10 +7,9 @@ import numpy as np
 import numpy.typing as npt
 
 from engine.arrays import Complexes, Floats, as_points, readonly
-from engine.cauchy import cauchy_coordinates, cauchy_derivatives
-from engine.deform.boundary import Boundary
 from engine.errors import EngineError
-from engine.polygon import contains
+from engine.geometry import contains
+from engine.maps import Boundary, cauchy_coordinates, cauchy_derivatives
 
 # λ = STIFFNESS / L² for a handle of weight 1.
 STIFFNESS = 1e4

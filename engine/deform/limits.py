@@ -1,8 +1,7 @@
 """Where the walls of the barrier stand, and what the next map must keep."""
 
 from engine.arrays import Floats
-from engine.deform.bounds import Bounds
-from engine.deform.certificate import Certificate
+from engine.maps import Bounds, Certificate
 
 # The walls stand inside the bounds by this part of the way to the identity; a step leaves at least
 # KEPT of the slack between them and the map.

@@ -14,9 +14,9 @@ import numpy as np
 
 from engine.arrays import Booleans, Complexes, Floats, Indices
 from engine.deform.barrier import Barrier
-from engine.deform.boundary import Boundary
 from engine.deform.energy import Radial, symmetric_dirichlet, symmetric_dirichlet_derivatives
 from engine.deform.handles import Handles, Wish
+from engine.maps import Boundary
 
 # A sketched Hessian takes one sample in four, with the coefficients of its neighbours summed, as
 # long as that leaves this many for each cage vertex; samples with coefficients this far above the

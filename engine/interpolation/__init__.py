@@ -1,16 +1,25 @@
-"""Interpolation of harmonic keyframes: every variant of the paper behind `prepare`."""
+"""Interpolation of harmonic keyframes: every variant of the paper behind `prepare`.
 
-from engine.interpolation.inbetweens import Frame, Inbetweens
-from engine.interpolation.prepare import Prepared, Variant, prepare, prepare_inbetweens
+In: harmonic maps of one domain, points, a variant, times.
+Out: positions, f_z and f_z̄ of the points at any time.
+Imports: `engine.paths`, `engine.dirichlet`, `engine.maps`.
+"""
+
+from engine.interpolation.inbetweens import Frame, Inbetweens, IntegratedInbetweens
+from engine.interpolation.keyframe_samples import KeyframeSamples, sample_keyframes
+from engine.interpolation.preparation import Prepared, Variant, prepare, prepare_inbetweens
 from engine.interpolation.sites import Sites, prepare_sites
 
 __all__ = [
     "Frame",
     "Inbetweens",
+    "IntegratedInbetweens",
+    "KeyframeSamples",
     "Prepared",
     "Sites",
     "Variant",
     "prepare",
     "prepare_inbetweens",
     "prepare_sites",
+    "sample_keyframes",
 ]

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from engine.arrays import Complexes, Floats, Integers
-from engine.keyframes import KeyframeSamples
+from engine.interpolation.keyframe_samples import KeyframeSamples
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

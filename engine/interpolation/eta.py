@@ -8,7 +8,7 @@ import numpy as np
 
 from engine.arrays import Complexes, Floats, Integers, readonly
 from engine.interpolation.derivatives import Derivatives, blended_log_fz, weighted
-from engine.keyframes import KeyframeSamples
+from engine.interpolation.keyframe_samples import KeyframeSamples
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

@@ -8,8 +8,8 @@ import numpy as np
 
 from engine.arrays import Complexes, Floats, readonly
 from engine.interpolation.derivatives import Derivatives, weighted
+from engine.interpolation.keyframe_samples import KeyframeSamples
 from engine.interpolation.sites import Sites
-from engine.keyframes import KeyframeSamples
 
 
 class Blend(Protocol):

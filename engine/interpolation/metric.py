@@ -8,13 +8,12 @@ import numpy as np
 import numpy.typing as npt
 
 from engine.arrays import Complexes, Floats, Integers, readonly
-from engine.hilbert import HilbertTransform
-from engine.integration_paths import IntegrationPaths
+from engine.dirichlet import HilbertTransform, ProjectedTransform
 from engine.interpolation.derivatives import Derivatives, blended_log_fz
 from engine.interpolation.eta import EtaBlend
+from engine.interpolation.keyframe_samples import KeyframeSamples
 from engine.interpolation.metric_residual import OutlineMetric, TimeSeries, separate
-from engine.keyframes import KeyframeSamples
-from engine.projected_transform import ProjectedTransform
+from engine.paths import IntegrationPaths
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

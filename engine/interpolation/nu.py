@@ -6,7 +6,7 @@ import numpy as np
 
 from engine.arrays import Floats, Integers
 from engine.interpolation.derivatives import Derivatives, blended_log_fz, weighted
-from engine.keyframes import KeyframeSamples
+from engine.interpolation.keyframe_samples import KeyframeSamples
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

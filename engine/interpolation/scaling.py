@@ -7,9 +7,8 @@ from typing import Self
 import numpy as np
 
 from engine.arrays import Complexes, Floats, readonly
-from engine.cauchy import evaluate
-from engine.harmonic_map import HarmonicMap
-from engine.keyframes import KeyframeSamples
+from engine.interpolation.keyframe_samples import KeyframeSamples
+from engine.maps import HarmonicMap, evaluate
 
 NEGLIGIBLE = 1e-9  # f_z̄ / f_z below which no scaling is needed, whatever the bounds
 NO_SCALING = 1.1  # lowest sampled ratio from which on none between the samples is below 1

@@ -6,11 +6,8 @@ import numpy as np
 import numpy.typing as npt
 
 from engine.arrays import Complexes, as_points, readonly
-from engine.cauchy import require_around
 from engine.errors import EngineError
-from engine.integration_paths import IntegrationPaths, lay_paths
-from engine.path_network import ON_OUTLINE, mesh_network, scattered_network
-from engine.polygon import (
+from engine.geometry import (
     box_diagonal,
     contains,
     deepest_point,
@@ -18,6 +15,8 @@ from engine.polygon import (
     require_simple,
     sample_graded,
 )
+from engine.maps import require_around
+from engine.paths import ON_OUTLINE, IntegrationPaths, lay_paths, mesh_network, scattered_network
 
 # Segments between the samples of the outline, over the distance to the nearest cage vertex and over
 # the box diagonal: some 200 samples an edge, graded.

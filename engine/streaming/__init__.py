@@ -1,4 +1,9 @@
-"""In-betweens at the cost of a linear blend: series in time, built once for an interval."""
+"""In-betweens at the cost of a linear blend: series in time, built once for an interval.
+
+In: in-betweens of two keyframes.
+Out: `Series`: a few arrays whose weighted sum is a frame.
+Imports: `engine.interpolation`, `engine.chebyshev`.
+"""
 
 from engine.streaming.build import MOST_ROWS, build_series, finish
 from engine.streaming.channels import Channels, Distortions, Positions

@@ -6,8 +6,7 @@ from typing import NamedTuple, Protocol, TypeGuard
 import numpy as np
 
 from engine.arrays import Complexes, Floats
-from engine.interpolation.inbetweens import Inbetweens, IntegratedInbetweens
-from engine.interpolation.sites import Sites
+from engine.interpolation import Inbetweens, IntegratedInbetweens, Sites
 
 ROUNDING = 2.0**-21  # what sums of some float32 numbers lose, relative to the largest
 

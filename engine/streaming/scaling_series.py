@@ -6,7 +6,7 @@ import numpy as np
 
 from engine.arrays import readonly
 from engine.chebyshev import basis, nodes, to_coefficients
-from engine.interpolation.inbetweens import IntegratedInbetweens
+from engine.interpolation import IntegratedInbetweens
 from engine.streaming.channels import weights_at
 from engine.streaming.series import ScalarSeries
 

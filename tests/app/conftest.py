@@ -9,7 +9,7 @@ import pytest
 from drawings import Easel
 from PIL import Image
 
-from app.render.context import create_context
+from app.render.gpu.context import create_context
 from engine.arrays import Bytes
 
 GOLDEN = Path(__file__).parent / "golden"

@@ -1,1 +1,10 @@
-"""One panel a module: `draw(session, look)` reads the session and returns the person's actions."""
+"""One panel a module: `draw(session, look)` reads the session and returns the person's actions.
+
+In: a session.
+Out: actions.
+Imports: `app.ui.style`, `app.ui.shortcuts`, `app.ui.viewport`.
+"""
+
+from app.ui.panels import deform, distortion, domain, export, handle
+
+__all__ = ["deform", "distortion", "domain", "export", "handle"]

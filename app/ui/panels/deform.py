@@ -5,15 +5,24 @@ from dataclasses import dataclass, replace
 from imgui_bundle import ImVec2, imgui
 from imgui_bundle import icons_fontawesome_6 as icons
 
-from app.actions import playback, rebuilding
-from app.actions.action import Action, do
-from app.document.timeline import intervals, time_of
-from app.session import Project, Session
-from app.ui.sliders import FIELD, Scale, number, track
-from app.ui.theme import SMALL, Look
-from app.ui.widgets import FILL, at_end, heading, icon_button, small, tip
-from engine.deform.bounds import Bounds
-from engine.deform.certificate import Certificate
+from app.document import intervals, time_of
+from app.editor import Action, Project, Session, do
+from app.editor.actions import playback, rebuilding
+from app.ui.style import (
+    FIELD,
+    FILL,
+    SMALL,
+    Look,
+    Scale,
+    at_end,
+    heading,
+    icon_button,
+    number,
+    small,
+    tip,
+    track,
+)
+from engine.maps import Bounds, Certificate
 
 NEAR = 0.85  # of a bound: from here on a bar warns
 ARRIVED = 1.0  # pixels of the picture within which a handle is where it should be

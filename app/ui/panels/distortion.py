@@ -7,18 +7,16 @@ import numpy as np
 from imgui_bundle import ImVec2, ImVec4, imgui, implot
 from imgui_bundle import icons_fontawesome_6 as icons
 
-from app.actions import measuring, playback, viewing
-from app.actions.action import Action, do
-from app.measuring import TIMES, Curves, broken_lines
-from app.render.ramp import heat_ramp
-from app.session import CurveKind, HeatMap, Project, Session
-from app.shown import Shown
-from app.ui.canvas import heat_limits, measure
-from app.ui.theme import SMALL, Look, ink
-from app.ui.widgets import heading, segments, small, tip
+from app.editor import Action, CurveKind, HeatMap, Project, Session, do
+from app.editor.actions import measuring, playback, viewing
+from app.motion import Shown
+from app.render import heat_ramp
+from app.reports import TIMES, Curves, broken_lines
+from app.ui.style import SMALL, Look, heading, ink, segments, small, tip
+from app.ui.viewport import heat_limits, measure
 from engine.arrays import Floats
-from engine.deform.bounds import Bounds
-from engine.mesh import Mesh
+from engine.domain.meshing import Mesh
+from engine.maps import Bounds
 
 HEAT_MAPS = (("none", "Off"), ("k", "k"), ("sigma_a", "σa"), ("sigma_b", "σb"))
 NAMES = {"k": "Shear k", "sigma_a": "Stretch σa", "sigma_b": "Squeeze σb"}

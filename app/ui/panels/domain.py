@@ -6,15 +6,22 @@ from functools import lru_cache
 from imgui_bundle import ImVec2, imgui
 from imgui_bundle import icons_fontawesome_6 as icons
 
-from app.actions import rebuilding, viewing
-from app.actions.action import Action, do
-from app.actions.viewing import Overlay
-from app.document.settings import Meshing
-from app.session import Overlays, Project, Session
-from app.ui.sliders import Scale, slider
-from app.ui.theme import Look
-from app.ui.widgets import FILL, heading, label, main_button, segments, small, tip
-from engine.mesh import Mesh
+from app.document import Meshing
+from app.editor import Action, Overlays, Project, Session, do
+from app.editor.actions import Overlay, rebuilding, viewing
+from app.ui.style import (
+    FILL,
+    Look,
+    Scale,
+    heading,
+    label,
+    main_button,
+    segments,
+    slider,
+    small,
+    tip,
+)
+from engine.domain.meshing import Mesh
 
 DETAILS = (("coarse", "Coarse"), ("normal", "Normal"), ("fine", "Fine"))
 TRIANGLES = Scale(left=2_000, right=1_000_000, logarithmic=True)

@@ -7,17 +7,25 @@ from functools import cache
 from imgui_bundle import ImVec2, imgui
 from imgui_bundle import icons_fontawesome_6 as icons
 
-from app.actions import exporting
-from app.actions.action import Action, do
-from app.document.settings import EXPORT_FORMATS, ExportFormat, ExportSettings, FrameRange
-from app.document.timeline import exported_frames
-from app.export.framing import Box, box_around, frame_view, shown_box
-from app.export.plan import VIDEO_REMEDY
-from app.render.view import View
-from app.session import Project, Session
+from app.document import EXPORT_FORMATS, ExportFormat, ExportSettings, FrameRange, exported_frames
+from app.editor import Action, Project, Session, do
+from app.editor.actions import exporting
+from app.export import VIDEO_REMEDY, frame_view, shown_box
+from app.motion import Box, box_around
+from app.render import View
 from app.ui.shortcuts import BINDINGS
-from app.ui.theme import Look, ink
-from app.ui.widgets import FILL, heading, icon_button, label, main_button, segments, small, tip
+from app.ui.style import (
+    FILL,
+    Look,
+    heading,
+    icon_button,
+    ink,
+    label,
+    main_button,
+    segments,
+    small,
+    tip,
+)
 
 FORMAT_NAMES: dict[ExportFormat, str] = {
     "png": "PNG frames",

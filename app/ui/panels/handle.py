@@ -6,14 +6,23 @@ from dataclasses import replace
 from imgui_bundle import ImVec2, imgui
 from imgui_bundle import icons_fontawesome_6 as icons
 
-from app.actions import editing, posing
-from app.actions.action import Action, do
-from app.document import handle_commands, settings_commands
-from app.document.keyframe import Handle, Target
-from app.session import Project, Session
-from app.ui.sliders import Scale, number, slider
-from app.ui.theme import Look
-from app.ui.widgets import FILL, at_end, heading, icon_button, label, shortened, small, tip
+from app.document import Handle, Target, handle_commands, settings_commands
+from app.editor import Action, Project, Session, do
+from app.editor.actions import editing, posing
+from app.ui.style import (
+    FILL,
+    Look,
+    Scale,
+    at_end,
+    heading,
+    icon_button,
+    label,
+    number,
+    shortened,
+    slider,
+    small,
+    tip,
+)
 
 MOST_ROWS = 5.5
 WEIGHTS = Scale(left=0.01, right=100.0, logarithmic=True)

@@ -1,0 +1,85 @@
+"""Picture → domain, stage by stage, and the Cauchy coordinates."""
+
+import resource
+from collections.abc import Iterator
+from functools import partial
+
+import numpy as np
+
+from app.cli.bench.table import Row, Table, measure
+from app.storage import decode_picture, sample_images
+from engine.domain import build_domain
+from engine.domain.meshing import triangulate
+from engine.domain.outline import trace_outline
+from engine.domain.picture import subject_mask
+from engine.maps import cauchy_coordinates, cauchy_derivatives, evaluate
+
+
+def tables() -> Iterator[Table]:
+    """Measure the way from a picture's bytes to its domain."""
+    pictures = {path.stem: path.read_bytes() for path in sorted(sample_images().glob("*.png"))}
+    yield _samples(pictures)
+    yield _stages(pictures["giraffe"])
+    yield _coordinates()
+
+
+def _samples(pictures: dict[str, bytes]) -> Table:
+    rows = []
+    for name, data in pictures.items():
+
+        def build(data: bytes = data) -> None:
+            build_domain(decode_picture(data, "").rgba, triangles=100_000, detail="normal")
+
+        domain, _ = build_domain(decode_picture(data, "").rgba, triangles=1000, detail="normal")
+        rows.append(
+            Row(
+                name=name,
+                seconds=measure(build, repeats=3),
+                note=f"{len(domain.cage)} cage vertices",
+            )
+        )
+    return Table(title="Picture → domain, 100,000 triangles", rows=tuple(rows))
+
+
+def _stages(data: bytes) -> Table:
+    rgba = decode_picture(data, "").rgba
+    subject = subject_mask(rgba)
+    outline = trace_outline(subject.mask, detail="normal")
+    rows = [
+        Row(name="decode", seconds=measure(lambda: decode_picture(data, ""))),
+        Row(name="mask", seconds=measure(lambda: subject_mask(rgba))),
+        Row(
+            name="outline and cage",
+            seconds=measure(lambda: trace_outline(subject.mask, detail="normal")),
+        ),
+    ]
+    for count in (10_000, 100_000, 1_000_000):
+        seconds = measure(partial(triangulate, outline.points, count), repeats=3)
+        rows.append(
+            Row(
+                name=f"triangulation, {count:,}",
+                seconds=seconds,
+                note=f"{1e9 * seconds / count:.0f} ns a triangle",
+            )
+        )
+    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 2**20
+    rows.append(Row(name="peak memory", seconds=None, note=f"{peak:.2f} GiB of the whole process"))
+    return Table(title="Stages for the giraffe", rows=tuple(rows))
+
+
+def _coordinates() -> Table:
+    cage = 1.2 * np.exp(2j * np.pi * np.arange(100) / 100)
+    rng = np.random.default_rng(0)
+    points = np.sqrt(rng.random(50_000)) * np.exp(2j * np.pi * rng.random(50_000))
+    both = np.column_stack([cage**2, cage**3])
+    return Table(
+        title="50,000 points × 100 cage vertices",
+        rows=(
+            Row(name="coordinates C", seconds=measure(lambda: cauchy_coordinates(cage, points))),
+            Row(name="derivatives D", seconds=measure(lambda: cauchy_derivatives(cage, points))),
+            Row(
+                name="a map and its derivatives, without C and D",
+                seconds=measure(lambda: evaluate(cage, both, points, orders=(0, 1))),
+            ),
+        ),
+    )

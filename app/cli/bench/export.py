@@ -1,0 +1,122 @@
+"""Exports: frames per second and where their time goes, start-up, and memory."""
+
+import io
+import os
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+from PIL import Image
+
+from app.cli.bench.table import Row, Table, measure
+from app.document import Document, FrameRange, Keyframe, Meshing, PictureFile, new_document
+from app.export import ExportRequest, encode_png, export, painter, plan_export
+from app.motion import Animation
+from app.render import Renderer
+from app.render.gpu import Target, create_context
+from app.storage import decode_picture, sample_images, save_project
+from engine.domain import build_domain
+
+FULL_HD, FOUR_K = (1920, 1080), (3840, 2160)
+TRIANGLES = 100_000
+
+
+def tables() -> Iterator[Table]:
+    """Measure exports of the giraffe as it turns and bends."""
+    yield _speed()
+    with tempfile.TemporaryDirectory() as folder:
+        yield _processes(Path(folder))
+
+
+def _speed() -> Table:
+    document = _bending_giraffe(FULL_HD, last=23)
+    picture = decode_picture(document.picture.data, "").rgba
+    context = create_context()
+    poses = Animation(document)
+    with tempfile.TemporaryDirectory() as folder:
+        request = ExportRequest(out=Path(folder), settings=document.export)
+        plan = plan_export(document, request, poses)
+        with painter(context, document, picture, poses, plan) as draw:
+            frame = draw(11.0)
+            whole = _by_the_clock(lambda: list(export(plan, draw))) / len(plan.times)
+            interpolated = _by_the_clock(lambda: poses.positions(11.0))
+            drawn = _by_the_clock(lambda: draw(11.0))
+            encoded = _by_the_clock(lambda: encode_png(frame))
+    read = _by_the_clock(Target(Renderer(context).programs, FULL_HD).read_straight_rgba)
+    context.release()
+    return Table(
+        title=f"PNG frames of 1920 × 1080 pixels, {TRIANGLES:,} triangles, all cores, by the clock",
+        rows=(
+            Row(name="a frame", seconds=whole, note=f"{1 / whole:.1f} a second"),
+            Row(name="interpolate", seconds=interpolated),
+            Row(name="draw", seconds=drawn - interpolated - read),
+            Row(name="read", seconds=read),
+            Row(name="encode", seconds=encoded, note="on two threads beside"),
+        ),
+    )
+
+
+def _processes(folder: Path) -> Table:
+    small, large = folder / "small.lissom", folder / "large.lissom"
+    save_project(small, _bending_giraffe((480, 270), last=0))
+    save_project(large, _bending_giraffe(FOUR_K, last=299))
+    helped, _ = _run("export", "--help")
+    started, _ = _run("export", str(small), "--out", str(folder / "one"))
+    exported, peak = _run("export", str(large), "--out", str(folder / "many"))
+    return Table(
+        title="lissom export as a process, by the clock",
+        rows=(
+            Row(name="--help", seconds=helped),
+            Row(name="one frame of 480 × 270 pixels", seconds=started),
+            Row(
+                name="300 frames of 3840 × 2160 pixels",
+                seconds=exported,
+                note=f"{peak / 2**30:.2f} GiB of memory at most",
+            ),
+        ),
+    )
+
+
+def _bending_giraffe(size: tuple[int, int], *, last: int) -> Document:
+    """Return the giraffe on a canvas, as it was drawn in frame 0, turned and bent in the last."""
+    with Image.open(sample_images() / "giraffe.png") as drawing:
+        giraffe = drawing.convert("RGBA")
+    scale = 0.95 * size[1] / giraffe.height
+    giraffe = giraffe.resize((round(scale * giraffe.width), round(scale * giraffe.height)))
+    canvas = Image.new("RGBA", size)
+    canvas.paste(giraffe, ((size[0] - giraffe.width) // 2, (size[1] - giraffe.height) // 2))
+    stream = io.BytesIO()
+    canvas.save(stream, "PNG", compress_level=1)
+    file = PictureFile(data=stream.getvalue(), suffix=".png", size=size)
+    domain, _ = build_domain(np.asarray(canvas), triangles=TRIANGLES, detail="normal")
+    document = new_document(file, domain, Meshing())
+    first = document.keys[0]
+    z = domain.cage - complex(*size) / 2
+    # |f_z| stays within half of 1 around it.
+    bent = replace(
+        first.pose, phi=first.pose.phi + z * (np.exp(0.3j) - 1) + z**2 / np.abs(z).max() / 8
+    )
+    keys = (first, Keyframe(frame=last, pose=bent)) if last else (first,)
+    return replace(document, keys=keys, frames=FrameRange(0, last))
+
+
+def _by_the_clock(function: Callable[[], object]) -> float:
+    return measure(function, repeats=3, clock=time.perf_counter)
+
+
+def _run(*words: str) -> tuple[float, int]:
+    """Run the program; return its seconds and the largest memory that it held, in bytes."""
+    start = time.perf_counter()
+    process = subprocess.Popen(  # noqa: S603 - this program itself
+        [sys.executable, "-m", "app", *words], stdout=subprocess.DEVNULL
+    )
+    _, status, usage = os.wait4(process.pid, 0)
+    process.returncode = os.waitstatus_to_exitcode(status)
+    if process.returncode:
+        raise subprocess.CalledProcessError(process.returncode, process.args)
+    return time.perf_counter() - start, 1024 * usage.ru_maxrss

@@ -1,0 +1,167 @@
+"""In-betweens on the direct path: what they cost to prepare and to evaluate, and their memory."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import partial
+from typing import Self
+
+import numpy as np
+
+from app.cli.bench.table import Row, Table, measure
+from app.storage import decode_picture, sample_images
+from engine.arrays import Complexes, Integers
+from engine.dirichlet import HilbertTransform
+from engine.domain import Domain, build_domain
+from engine.domain.meshing import Mesh, triangulate
+from engine.interpolation import (
+    Inbetweens,
+    KeyframeSamples,
+    Sites,
+    Variant,
+    prepare_inbetweens,
+    prepare_sites,
+    sample_keyframes,
+)
+from engine.maps import HarmonicMap
+from engine.paths import root_sheets
+
+SIZES = (10_000, 50_000, 500_000)
+MIDDLE = np.array([0.6, 0.4])  # weights of the keyframes
+INTEGRATED = (Variant.NU, Variant.ETA, Variant.SCALED_ETA, Variant.METRIC)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Pair:
+    """Two keyframes of the giraffe, sampled at the vertices of a mesh."""
+
+    maps: tuple[HarmonicMap, HarmonicMap]
+    mesh: Mesh
+    sites: Sites
+    keyframes: tuple[KeyframeSamples, ...]
+    sheets: Integers
+    transform: HilbertTransform
+
+    @classmethod
+    def of(cls, domain: Domain, vertices: int, transform: HilbertTransform) -> Self:
+        """Sample the giraffe and the giraffe bent by a radian and stretched along itself."""
+        maps = (HarmonicMap.identity(domain.cage), bent(domain.cage))
+        mesh = triangulate(domain.outline, 2 * vertices)
+        sites = sites_of(domain, mesh)
+        keyframes = sample_keyframes(maps, sites.paths, sites.outline_samples)
+        sheets = root_sheets(np.array([key.anchor_fz for key in keyframes]))
+        return cls(
+            maps=maps,
+            mesh=mesh,
+            sites=sites,
+            keyframes=keyframes,
+            sheets=sheets,
+            transform=transform,
+        )
+
+    def first_keyframe(self) -> tuple[KeyframeSamples, ...]:
+        """Sample the first keyframe."""
+        return sample_keyframes(self.maps[:1], self.sites.paths, self.sites.outline_samples)
+
+    def inbetweens(self, variant: Variant) -> Inbetweens:
+        """Prepare the interval."""
+        return prepare_inbetweens(
+            variant, self.sites, self.keyframes, self.sheets, transform=self.transform
+        )
+
+
+def bent(cage: Complexes) -> HarmonicMap:
+    """Return a map that bends a shape by a radian over its height, with k = 0.2 everywhere."""
+    place = (cage - cage.mean()) / np.ptp(cage.imag)
+    phi = np.ptp(cage.imag) * (np.exp(place) - 1)
+    return HarmonicMap(cage=cage, phi=phi, psi=0.2 * phi)
+
+
+def sites_of(domain: Domain, mesh: Mesh) -> Sites:
+    """Lay the paths along the edges of a mesh."""
+    return prepare_sites(domain.outline, domain.cage, mesh.vertices, triangles=mesh.triangles)
+
+
+def tables() -> Iterator[Table]:
+    """Measure frames and preparation, and how both grow with the number of vertices."""
+    picture = decode_picture((sample_images() / "giraffe.png").read_bytes(), "")
+    domain, _ = build_domain(picture.rgba, triangles=1000, detail="normal")
+    transform = HilbertTransform.on(domain.outline, domain.cage)
+    pairs = [Pair.of(domain, vertices, transform) for vertices in SIZES]
+    yield _frames(pairs[1])
+    yield _preparation(domain, pairs[1])
+    yield _growth(domain, pairs)
+
+
+def _frames(pair: Pair) -> Table:
+    first, second = (key.positions for key in pair.keyframes)
+    rows = [
+        Row(name="linear blend", seconds=measure(lambda: 0.6 * first + 0.4 * second, repeats=50))
+    ]
+    for variant in INTEGRATED:
+        inbetweens = pair.inbetweens(variant)
+        seconds = measure(partial(inbetweens.offsets, MIDDLE), repeats=20)
+        rows.append(Row(name=f"{variant}, positions", seconds=seconds))
+        seconds = measure(partial(inbetweens.frame, MIDDLE), repeats=20)
+        rows.append(Row(name=f"{variant}, with f_z and f_z̄", seconds=seconds))
+    return Table(title=f"A frame at {len(first):,} vertices, directly", rows=tuple(rows))
+
+
+def _preparation(domain: Domain, pair: Pair) -> Table:
+    sites, transform = pair.sites, pair.transform
+    first, second = (key.positions for key in pair.keyframes)
+    nodes = len(transform.nodes)
+    rows = [
+        Row(name="linear blend of a frame", seconds=measure(lambda: 0.6 * first + 0.4 * second)),
+        Row(
+            name="paths, once for each mesh",
+            seconds=measure(partial(sites_of, domain, pair.mesh), repeats=3),
+            note=_megabytes(sites.nbytes),
+        ),
+        Row(
+            name="integral equation, once for each outline",
+            seconds=measure(lambda: HilbertTransform.on(domain.outline, domain.cage), repeats=1),
+            note=f"{_megabytes(transform.nbytes)}, {nodes:,} nodes, {len(domain.outline)} corners",
+        ),
+        Row(
+            name="a keyframe",
+            seconds=measure(
+                pair.first_keyframe,
+                repeats=3,
+            ),
+            note=_megabytes(pair.keyframes[0].nbytes),
+        ),
+    ]
+    for variant in INTEGRATED:
+        seconds = measure(partial(pair.inbetweens, variant), repeats=3)
+        note = _megabytes(pair.inbetweens(variant).nbytes)
+        rows.append(Row(name=f"an interval, {variant}", seconds=seconds, note=note))
+    return Table(title=f"Preparation at {len(first):,} vertices", rows=tuple(rows))
+
+
+def _growth(domain: Domain, pairs: Sequence[Pair]) -> Table:
+    rows = []
+    for pair in pairs:
+        count = len(pair.mesh.vertices)
+        inbetweens = pair.inbetweens(Variant.METRIC)
+        steps = {
+            "frame": measure(partial(inbetweens.offsets, MIDDLE)),
+            "keyframe": measure(
+                pair.first_keyframe,
+                repeats=1,
+            ),
+            "interval": measure(partial(pair.inbetweens, Variant.METRIC), repeats=1),
+            "paths": measure(partial(sites_of, domain, pair.mesh), repeats=1),
+        }
+        rows += [
+            Row(
+                name=f"{name}, {count:,} vertices",
+                seconds=seconds,
+                note=f"{1e9 * seconds / count:.0f} ns a vertex",
+            )
+            for name, seconds in steps.items()
+        ]
+    return Table(title="Against the number of vertices, metric", rows=tuple(rows))
+
+
+def _megabytes(count: int) -> str:
+    return f"{count / 1e6:.0f} MB"

@@ -1,0 +1,62 @@
+"""Opens the window as `lissom` does, tells how far it is, and closes it, for `app.cli.bench.ui`."""
+
+import tempfile
+import time
+from pathlib import Path
+
+from app.editor import Jobs, Session, do
+from app.editor.actions import files, saving
+from app.render import Renderer
+from app.render.gpu import create_context, window_context
+from app.storage import load_preferences
+from app.ui.window import Offscreen, Window, has_display
+
+MARKS = ("first frame", "welcome view with all its pictures")
+
+
+class Start:
+    """What a window has shown since it opened."""
+
+    def __init__(self, window: Window) -> None:
+        self._window = window
+        self._frames = 0
+        window.ask(do(self.look))
+
+    def look(self, session: Session) -> None:
+        """Tell what the frame before this one has shown; leave when that was everything."""
+        self._frames += 1
+        if self._frames == 2:
+            print(MARKS[0], flush=True)
+        if self._frames > 2 and len(self._window.textures()) == len(files.samples()):
+            print(MARKS[1], flush=True)
+            saving.quit_lissom(session)
+        else:
+            self._window.ask(do(self.look))
+
+
+def main() -> None:
+    """Open the window, on the screen if there is one."""
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        session = Session(
+            clock=time.perf_counter,
+            jobs=Jobs(),
+            folder=folder,
+            preferences=load_preferences(folder),
+        )
+        files.offer_recovery(session)
+        if has_display():
+            window = Window(session, lambda: Renderer(window_context()))
+            Start(window)
+            window.run()
+            return
+        gl = create_context()
+        window = Window(session, lambda: Renderer(gl))
+        Start(window)
+        screen = Offscreen(window, gl)
+        while not session.quitting:
+            screen.frame(painted=True)
+
+
+if __name__ == "__main__":
+    main()

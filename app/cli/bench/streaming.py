@@ -1,0 +1,234 @@
+"""In-betweens as series in time: a frame against a linear blend, and what a series costs."""
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+from functools import partial
+
+import numpy as np
+
+from app.cli.bench.table import Row, Table, measure
+from app.document import Document, Meshing, Pose, Variant
+from app.motion import Stage
+from app.render import Renderer, Scene, fit_view
+from app.render.gpu import GpuPicture, SeriesVertices, Target, create_context, gpu_mesh
+from app.solving import load_pose_script, pose_document
+from app.storage import open_picture, sample_images
+from engine.arrays import Floats
+from engine.domain.meshing import Mesh, triangulate
+from engine.interpolation import Inbetweens
+from engine.maps import distortion
+from engine.streaming import Distortions, Positions, Series, Singles, build_series, finish
+
+SIZES = (10_000, 100_000, 1_000_000)
+VARIANTS: tuple[Variant, ...] = ("linear", "nu", "eta", "scaled-eta", "metric")
+# A second of playing: what a frame costs on the way, through all the pieces of a series.
+TIMES = tuple((i + 0.5) / 24 for i in range(24))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Interval:
+    """The giraffe's first two keys at the vertices of a mesh."""
+
+    stage: Stage
+    first: Pose
+    second: Pose
+
+    @classmethod
+    def of(cls, document: Document, triangles: int) -> "Interval":
+        """Lay the paths of a mesh of so many triangles."""
+        mesh = triangulate(document.domain.outline, triangles)
+        stage = Stage(replace(document.domain, mesh=mesh), anchor=document.anchor)
+        return cls(stage=stage, first=document.keys[0].pose, second=document.keys[1].pose)
+
+    @property
+    def mesh(self) -> Mesh:
+        """The mesh."""
+        return self.stage.domain.mesh
+
+    def inbetweens(self, variant: Variant) -> Inbetweens:
+        """Prepare the direct path, once."""
+        return self.stage.inbetweens(self.first, self.second, variant)
+
+    def build(self, variant: Variant) -> Series:
+        """Build the series of the positions."""
+        return finish(build_series(Positions.of(self.inbetweens(variant), self.stage.sites)))
+
+
+def tables() -> Iterator[Table]:
+    """Measure frames, building, growth and drawing."""
+    document = _giraffe()
+    for triangles in SIZES[1:]:
+        interval = Interval.of(document, triangles)
+        series = {variant: interval.build(variant) for variant in VARIANTS}
+        yield _frames(interval, series)
+        if triangles == SIZES[1]:
+            yield _heat(interval)
+            yield _building(interval, series)
+            yield _drawing(interval, series)
+    yield from _growth([Interval.of(document, triangles) for triangles in SIZES])
+
+
+def _giraffe() -> Document:
+    folder = sample_images()
+    document = open_picture(folder / "giraffe.png", Meshing(triangles=1000)).document
+    script = load_pose_script(folder / "giraffe.json")
+    posed, _ = pose_document(document, replace(script, keys=script.keys[:2]), lambda _: None)
+    return posed
+
+
+def _frames(interval: Interval, series: dict[Variant, Series]) -> Table:
+    count = len(interval.mesh.vertices)
+    linear, ends = _linear_blend(series["linear"])
+    rows = [
+        Row(name="linear blend, float32", seconds=linear, note="both keyframes in one product"),
+        Row(
+            name="linear blend, float32, as a·(1 − t) + b·t",
+            seconds=_played(lambda t: np.float32(1 - t) * ends[0] + np.float32(t) * ends[1]),
+        ),
+    ]
+    out = np.empty(2 * count, dtype=np.float32)
+    for variant in VARIANTS[1:]:
+        played = _played(partial(_write, series[variant], out))
+        direct = measure(partial(interval.inbetweens(variant).offsets, np.array([0.4, 0.6])))
+        note = f"the direct path takes {direct / played:.0f} times as long"
+        rows.append(Row(name=f"series, {variant}", seconds=played, note=note))
+    triangles = len(interval.mesh.triangles)
+    return Table(title=f"A frame of {triangles:,} triangles ({count:,} vertices)", rows=tuple(rows))
+
+
+def _linear_blend(series: Series) -> tuple[float, Singles]:
+    """Return the seconds of a frame, and the keyframes (2, c)."""
+    ends = series.pieces[0].rows
+    out = np.empty(series.size, dtype=np.float32)
+
+    def blend(time: float) -> None:
+        np.dot(np.array([1.0 - time, time], dtype=np.float32), ends, out=out)
+
+    return _played(blend), ends
+
+
+def _write(series: Series, out: Singles, time: float) -> None:
+    series.values(time, out=out)
+
+
+def _heat(interval: Interval) -> Table:
+    rows = []
+    for variant in VARIANTS[1:]:
+        inbetweens = interval.inbetweens(variant)
+        series = finish(build_series(Distortions.of(inbetweens)))
+        rows += [
+            Row(
+                name=f"{variant}, series",
+                seconds=_played(partial(_streamed_k, series)),
+                note=_extent(series, len(interval.mesh.vertices)),
+            ),
+            Row(
+                name=f"{variant}, direct path",
+                seconds=measure(partial(_direct_k, inbetweens, np.array([0.4, 0.6]))),
+            ),
+        ]
+    return Table(title="k of a frame, for the heat map", rows=tuple(rows))
+
+
+def _streamed_k(series: Series, time: float) -> None:
+    fz, fzbar = series.values(time).view(np.complex64).reshape(2, -1)
+    np.abs(fzbar) / np.abs(fz)
+
+
+def _direct_k(inbetweens: Inbetweens, weights: Floats) -> None:
+    frame = inbetweens.frame(weights)
+    distortion.k(frame.fz, frame.fzbar)
+
+
+def _building(interval: Interval, series: dict[Variant, Series]) -> Table:
+    diameter, count = interval.stage.sites.diameter, len(interval.mesh.vertices)
+    rows = [
+        Row(
+            name=variant,
+            seconds=measure(partial(interval.build, variant), repeats=3),
+            note=f"{_extent(found, count)}, error {found.error / diameter:.1e} of the diameter",
+        )
+        for variant, found in series.items()
+    ]
+    return Table(title="Building the series of an interval", rows=tuple(rows))
+
+
+def _extent(series: Series, count: int) -> str:
+    rows = "+".join(str(len(piece.rows)) for piece in series.pieces)
+    return f"{series.nbytes / count:.0f} bytes a vertex, rows {rows}"
+
+
+def _growth(intervals: list[Interval]) -> Iterator[Table]:
+    frames, builds = [], []
+    for interval in intervals:
+        series = interval.build("metric")
+        out = np.empty(series.size, dtype=np.float32)
+        frames.append(_played(partial(_write, series, out)))
+        builds.append(measure(partial(interval.build, "metric"), repeats=1))
+    for title, times in (("A frame", frames), ("Building the series", builds)):
+        rows = [
+            Row(
+                name=f"{len(interval.mesh.triangles):,} triangles",
+                seconds=seconds,
+                note=f"{1e9 * seconds / len(interval.mesh.vertices):.3g} ns a vertex",
+            )
+            for interval, seconds in zip(intervals, times, strict=True)
+        ]
+        yield Table(title=f"{title} against the number of vertices, metric", rows=tuple(rows))
+
+
+def _drawing(interval: Interval, series: dict[Variant, Series]) -> Table:
+    """Measure the vertex stage: frames so small that hardly a pixel is painted."""
+    mesh = interval.mesh
+    context = create_context()
+    renderer = Renderer(context)
+    picture = GpuPicture(context, np.full((1000, 1000, 4), 255, dtype=np.uint8))
+    gpu = gpu_mesh.GpuMesh(renderer.programs, picture, rest=mesh.vertices, triangles=mesh.triangles)
+    target = Target(renderer.programs, (8, 8))
+    view = fit_view(0j, 1000 + 1000j, target.size)
+    rows = []
+    for variant, found in series.items():
+        by_shader = SeriesVertices(
+            context, len(mesh.vertices), max(len(piece.rows) for piece in found.pieces)
+        )
+        streamed = gpu_mesh.StreamedVertices(context, len(mesh.vertices))
+        poses = gpu_mesh.Pose(gpu, by_shader), gpu_mesh.Pose(gpu, streamed)
+        scenes = [Scene(pose=pose) for pose in poses]
+
+        def shade(time: float, source: SeriesVertices = by_shader, series: Series = found) -> None:
+            source.place(series, time)
+
+        def write(
+            time: float, source: gpu_mesh.StreamedVertices = streamed, series: Series = found
+        ) -> None:
+            source.write(series.values(time).reshape(-1, 2))
+
+        for name, place, scene in (
+            ("by the shader", shade, scenes[0]),
+            ("by the processor", write, scenes[1]),
+        ):
+
+            def draw(
+                time: float, place: Callable[[float], None] = place, scene: Scene = scene
+            ) -> None:
+                place(time)
+                renderer.draw(target, view, scene)
+                context.finish()
+
+            rows.append(Row(name=f"{variant}, {name}", seconds=_played(draw)))
+        for pose in poses:
+            pose.release()
+    title = f"Vertices of {len(mesh.triangles):,} triangles placed, {context.info['GL_RENDERER']}"
+    for owner in (target, gpu, picture, renderer, context):
+        owner.release()
+    return Table(title=title, rows=tuple(rows))
+
+
+def _played(frame: Callable[[float], object]) -> float:
+    """Return the seconds of a frame while an interval plays."""
+
+    def play() -> None:
+        for time in TIMES:
+            frame(time)
+
+    return measure(play, repeats=9) / len(TIMES)

@@ -1,0 +1,396 @@
+"""The window: its start, the way from a picture to a drag, its frames, and its latency."""
+
+import statistics
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+from imgui_bundle import ImVec2
+
+import app
+from app.cli.bench.start import MARKS
+from app.cli.bench.table import Row, Table
+from app.document import Meshing, Target
+from app.editor import Jobs, Project, Session, do
+from app.editor.actions import files, playback
+from app.errors import LissomError
+from app.motion import Figure, Motion
+from app.render import Renderer
+from app.render.gpu import create_context
+from app.storage import decode_picture, load_project, sample_images
+from app.ui.window import SIZE, Offscreen, Window, has_display
+from engine.domain import mesh_inside
+
+SAMPLE, PICTURE = "giraffe.lissom", "dragon.png"
+TABS = ("Handle", "Deform", "Distortion", "Domain", "Export")
+REFRESH = 1 / 60  # seconds from frame to frame of a screen
+REACH = 40.0  # pixels around a handle in which it is dragged
+PATIENCE = 120.0  # seconds that anything may take
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Extent:
+    """How much is measured: repeats of the start and of opening, frames, moves of the pointer."""
+
+    triangles: int = 100_000
+    repeats: int = 3
+    frames: int = 60
+    moves: int = 100
+
+
+def tables(extent: Extent | None = None) -> Iterator[Table]:
+    """Measure the window without a display, on whatever draws here; its start also on one."""
+    extent = extent or Extent()
+    yield _start(extent)
+    with tempfile.TemporaryDirectory() as folder:
+        stage = _Stage(Path(folder))
+        yield _opening(stage, extent)
+        stage.settle()
+        files.show(stage.session, Path(folder) / SAMPLE, _giraffe(extent.triangles))
+        stage.settle()
+        yield from _frames(stage, extent)
+        yield _latency(stage, extent)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Frame:
+    """Seconds of a frame: by the clock until all of it was drawn, and of the interface alone."""
+
+    whole: float
+    own: float
+
+
+class _Watched(Window):
+    """A window that knows how long its thread has drawn the viewport's picture."""
+
+    canvas_seconds = 0.0
+
+    def draw_canvas(self) -> None:
+        begun = time.thread_time()
+        super().draw_canvas()
+        self.canvas_seconds += time.thread_time() - begun
+
+
+class _Screen(Offscreen):
+    """A screen that knows how long its thread has drawn what ImGui made."""
+
+    paint_seconds = 0.0
+
+    def paint(self) -> None:
+        begun = time.thread_time()
+        super().paint()
+        self.paint_seconds += time.thread_time() - begun
+
+
+class _Stage:
+    """The window that is measured, with a clock that can be put forward."""
+
+    def __init__(self, folder: Path) -> None:
+        self._ahead = 0.0
+        self.session = Session(
+            clock=lambda: time.perf_counter() + self._ahead, jobs=Jobs(), folder=folder
+        )
+        self._gl = create_context()
+        self._window = _Watched(self.session, lambda: Renderer(self._gl))
+        self._screen = _Screen(self._window, self._gl)
+        self.frame()
+
+    @property
+    def device(self) -> str:
+        """What draws."""
+        return str(self._gl.info["GL_RENDERER"])
+
+    @property
+    def project(self) -> Project:
+        """What is open."""
+        if self.session.project is None:
+            raise RuntimeError([toast.text for toast in self.session.toasts])
+        return self.session.project
+
+    def frame(self, ahead: float = 0.0) -> _Frame:
+        """Draw a frame, with the session's clock put forward before it."""
+        self._ahead += ahead
+        drawn = self._window.canvas_seconds + self._screen.paint_seconds
+        begun, worked = time.perf_counter(), time.thread_time()
+        self._screen.frame(painted=True)
+        whole, own = time.perf_counter() - begun, time.thread_time() - worked
+        drawn = self._window.canvas_seconds + self._screen.paint_seconds - drawn
+        return _Frame(whole=whole, own=own - drawn)
+
+    def until(self, is_true: Callable[[], bool]) -> None:
+        """Draw frames, as a screen would show them, until something is true."""
+        patience = time.perf_counter() + PATIENCE
+        while not is_true():
+            if time.perf_counter() > patience:
+                raise TimeoutError(f"the window did not get on: {self.session.jobs.kinds}")
+            self.refresh()
+
+    def refresh(self) -> _Frame:
+        """Draw a frame, and wait until a screen would show the next one."""
+        due = time.perf_counter() + REFRESH
+        frame = self.frame()
+        time.sleep(max(0.0, due - time.perf_counter()))
+        return frame
+
+    def settle(self) -> None:
+        """Wait for the worker to finish everything."""
+        self.refresh()
+        self.until(lambda: not self.session.jobs.kinds)
+
+    def show_tab(self, title: str) -> None:
+        """Bring a panel to the front."""
+        self._screen.show_tab(title)
+        for _ in range(3):
+            self.frame()
+        self.settle()
+
+    def ask(self, verb: Callable[..., None], *arguments: object) -> None:
+        """Do something at the end of the next frame, as if a panel had asked for it."""
+        self._window.ask(do(verb, *arguments))
+
+    def point(self, place: complex) -> complex:
+        """Return where a place of the drawing's plane is on the screen, x + iy."""
+        return complex(*self._screen.point(place))
+
+    def mouse(self, point: complex, *, down: bool | None = None) -> None:
+        """Put the mouse on a point of the screen; press its button or let it go, if told to."""
+        self._screen.move_mouse(ImVec2(point.real, point.imag))
+        if down is not None:
+            self._screen.press(down=down)
+
+
+def _start(extent: Extent) -> Table:
+    """Measure from the command to the window, each time in a process of its own."""
+    times = [_open_window() for _ in range(extent.repeats)]
+    rows = [
+        Row(name=mark, seconds=statistics.median(column), note=f"at most {_ms(max(column))}")
+        for mark, column in zip(MARKS, zip(*times, strict=True), strict=True)
+    ]
+    where = "on the screen" if has_display() else "without a display"
+    return Table(title=f"From the command to the window, {where}", rows=tuple(rows))
+
+
+def _open_window() -> list[float]:
+    """Return the seconds to each mark."""
+    begun = time.perf_counter()
+    with subprocess.Popen(
+        [sys.executable, "-m", "app.cli.bench.start"],
+        cwd=Path(app.__file__).parents[1],
+        stdout=subprocess.PIPE,
+    ) as process:
+        times = [time.perf_counter() - begun for _ in process.stdout or ()]
+    if process.returncode or len(times) != len(MARKS):
+        raise LissomError(f"the window did not open: exit status {process.returncode}")
+    return times
+
+
+def _opening(stage: _Stage, extent: Extent) -> Table:
+    """Measure from a dropped picture to a drag."""
+    stage.session.meshing = Meshing(triangles=extent.triangles)
+    times = [_open_and_drag(stage, sample_images() / PICTURE) for _ in range(extent.repeats)]
+    shown, followed = (
+        Row(name=name, seconds=statistics.median(column), note=f"at most {_ms(max(column))}")
+        for name, column in zip(
+            ("until a click adds a handle", "until that handle has followed the pointer"),
+            zip(*times, strict=True),
+            strict=True,
+        )
+    )
+    triangles = len(stage.project.document.domain.mesh.triangles)
+    return Table(
+        title=f"From a dropped picture ({PICTURE}, {triangles:,} triangles) to a drag",
+        rows=(shown, followed),
+    )
+
+
+def _open_and_drag(stage: _Stage, path: Path) -> tuple[float, float]:
+    session = stage.session
+    stage.mouse(0j)
+    session.project = None
+    stage.settle()
+    begun = time.perf_counter()
+    stage.ask(files.open_file, path)
+    stage.until(lambda: session.project is not None and session.project.shown is not None)
+    # What is drawn from now on takes the pointer.
+    stage.refresh()
+    shown = time.perf_counter() - begun
+    project = stage.project
+    vertices = project.document.domain.mesh.vertices
+    inside = complex(vertices[np.argmin(abs(vertices - vertices.mean()))])
+    point = stage.point(inside)
+    stage.mouse(point)
+    stage.refresh()
+    stage.mouse(point, down=True)
+    stage.until(lambda: bool(project.document.handles))
+    stage.mouse(point + REACH)
+    stage.until(lambda: abs(_handle_place(project) - inside) > 1.0)
+    followed = time.perf_counter() - begun
+    stage.mouse(point + REACH, down=False)
+    stage.settle()
+    return shown, followed
+
+
+def _handle_place(project: Project) -> complex:
+    """Return where the first handle is on the screen's plane."""
+    return complex(project.shown.handle_places[0]) if project.shown else 0j
+
+
+def _giraffe(triangles: int) -> files.Opened:
+    """Return the animated sample on a finer mesh."""
+    document = load_project(sample_images() / SAMPLE)
+    mesh = mesh_inside(document.domain.outline, triangles)
+    document = replace(document, domain=replace(document.domain, mesh=mesh))
+    picture = decode_picture(document.picture.data, SAMPLE)
+    sketch = Motion.at_rest(document, Figure.sketch(document.domain))
+    return files.Opened(document, picture, sketch, ())
+
+
+def _frames(stage: _Stage, extent: Extent) -> Iterator[Table]:
+    """Measure frames of everything that a person does."""
+    count = extent.frames
+    runs = {
+        "nothing moves": _still(stage, count),
+        "playing, metric": _playing(stage, count),
+        "scrubbing": _scrubbing(stage, count),
+        "dragging a handle": _dragging(stage, count),
+    }
+    triangles = len(stage.project.document.domain.mesh.triangles)
+    what = f"{triangles:,} triangles, {SIZE[0]} × {SIZE[1]} pixels"
+    yield Table(
+        title=f"A frame by the clock until all of it is drawn: {what}, {stage.device}",
+        rows=tuple(_row(name, [frame.whole for frame in run]) for name, run in runs.items()),
+    )
+    for title in TABS:
+        stage.show_tab(title)
+        runs |= {
+            f"{title} in front, nothing moves": _still(stage, count // 2),
+            f"{title} in front, playing": _playing(stage, count // 2),
+        }
+    yield Table(
+        title=f"The interface's own part of a frame, processor time of its thread: {what}",
+        rows=tuple(_row(name, [frame.own for frame in run]) for name, run in runs.items()),
+    )
+
+
+def _row(name: str, times: Sequence[float]) -> Row:
+    return Row(
+        name=name,
+        seconds=statistics.median(times),
+        note=f"95 % within {_ms(float(np.quantile(times, 0.95)))}",
+    )
+
+
+def _ms(seconds: float) -> str:
+    return f"{1e3 * seconds:.1f} ms"
+
+
+def _still(stage: _Stage, count: int) -> list[_Frame]:
+    stage.settle()
+    return [stage.frame() for _ in range(count)]
+
+
+def _playing(stage: _Stage, count: int) -> list[_Frame]:
+    """Play so that each frame of the window shows another one of the animation."""
+    stage.ask(playback.toggle_play)
+    stage.settle()
+    frames = [stage.frame(1 / stage.project.document.fps) for _ in range(count)]
+    stage.ask(playback.halt)
+    stage.settle()
+    return frames
+
+
+def _scrubbing(stage: _Stage, count: int) -> list[_Frame]:
+    frames = []
+    for number in range(count):
+        stage.ask(playback.scrub, number % stage.project.document.frames.last)
+        frames.append(stage.frame())
+    return frames
+
+
+def _dragging(stage: _Stage, count: int) -> list[_Frame]:
+    """Drag, with the solver at work beside."""
+    drag = _Drag(stage)
+    frames = []
+    for number in range(count):
+        drag.move(number)
+        frames.append(stage.refresh())
+    drag.end()
+    return frames
+
+
+class _Drag:
+    """The first handle, pulled around by the mouse in the first frame of the animation."""
+
+    def __init__(self, stage: _Stage) -> None:
+        self._stage = stage
+        self._project = stage.project
+        stage.ask(playback.scrub, self._project.document.keys[0].frame)
+        stage.settle()
+        self.handle = self._project.document.handles[0].id
+        self._start = self._point = stage.point(_handle_place(self._project))
+        stage.mouse(self._start)
+        stage.refresh()
+        stage.mouse(self._start, down=True)
+        stage.refresh()
+        # Where it begins to move, what it needs is made once.
+        self.move(0)
+        stage.until(lambda: self._project.grab is not None and self._project.grab.drag is not None)
+
+    def move(self, number: int) -> None:
+        """Put the mouse where it is in this frame: farther on around a circle."""
+        self._point = self._start + REACH * complex(np.exp(0.1j * number))
+        self._stage.mouse(self._point)
+
+    @property
+    def wish(self) -> Target | None:
+        """Where the handle is wanted now."""
+        grab = self._project.grab
+        return None if grab is None else grab.targets[self.handle]
+
+    @property
+    def followed(self) -> Target | None:
+        """The wish that the pose in the picture was solved for."""
+        shown = self._project.shown
+        return shown.pose.targets[self.handle] if shown and shown.pose else None
+
+    def end(self) -> None:
+        """Let go, and wait until everything rests."""
+        self._stage.mouse(self._point, down=False)
+        self._stage.settle()
+
+
+def _latency(stage: _Stage, extent: Extent) -> Table:
+    """Measure from a move of the pointer to the first picture of a pose that was solved for it."""
+    drag = _Drag(stage)
+    sent: list[tuple[Target | None, float]] = []
+    frames: list[int] = []
+    seconds: list[float] = []
+    while len(frames) < extent.moves:
+        moved = time.perf_counter()
+        drag.move(1 + len(sent))
+        frame = stage.refresh()
+        sent.append((drag.wish, moved))
+        drawn = moved + frame.whole
+        wishes = [wish for wish, _ in sent]
+        if drag.followed in wishes:
+            for number in range(len(frames), wishes.index(drag.followed) + 1):
+                frames.append(len(sent) - number)
+                seconds.append(drawn - sent[number][1])
+    drag.end()
+    return Table(
+        title="From a move of the pointer to a picture that follows it, at 60 frames a second",
+        rows=(
+            _row("time until that picture is drawn", seconds),
+            Row(
+                name="frames, the one that takes the move included",
+                seconds=None,
+                note=f"median {statistics.median(frames):.0f}, worst {max(frames)}, "
+                f"of {len(frames)} moves",
+            ),
+        ),
+    )

@@ -1,0 +1,92 @@
+"""`lissom certify`: how far an animation distorts its drawing."""
+
+import argparse
+import json
+import math
+from pathlib import Path
+
+from app.document import VARIANTS
+from app.reports import Report, certify_document
+from app.storage import load_project
+
+EPILOG = """\
+Keyframes are certified: their k, sigma_a and sigma_b hold at every point of the shape, not only at
+samples. For each interval between two keys the extremes of the in-betweens over time and space
+stand beside the two keys' own. The exit status is 0 if every keyframe is certified and every
+interval is within its keyframes' bounds, 1 if not.
+
+examples:
+  lissom certify wave.lissom
+  lissom certify wave.lissom --variant nu --json
+"""
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare the options of `lissom certify`."""
+    parser.epilog = EPILOG
+    parser.add_argument("project", metavar="PROJECT", type=Path, help="the .lissom file")
+    parser.add_argument(
+        "--variant", choices=VARIANTS, help="how to blend the keyframes (default: the project's)"
+    )
+    parser.add_argument("--json", action="store_true", help="print JSON instead of a table")
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Print the report of a project."""
+    report = certify_document(load_project(arguments.project), arguments.variant)
+    print(_as_json(report) if arguments.json else _as_table(report))
+    return 0 if report.certified else 1
+
+
+def _as_json(report: Report) -> str:
+    content = {
+        "certified": report.certified,
+        "keys": [
+            {
+                "frame": frame,
+                "k": _finite(certificate.k),
+                "sigma_a": certificate.sigma_a,
+                "sigma_b": certificate.sigma_b,
+                "certified": certificate.certified,
+            }
+            for frame, certificate in report.keys
+        ],
+        "intervals": [
+            {
+                "from": interval.first,
+                "to": interval.last,
+                "k": interval.reached.k,
+                "sigma_a": interval.reached.sigma_a,
+                "sigma_b": interval.reached.sigma_b,
+                "k_keys": interval.keys.k,
+                "sigma_a_keys": interval.keys.sigma_a,
+                "sigma_b_keys": interval.keys.sigma_b,
+            }
+            for interval in report.intervals
+        ],
+    }
+    return json.dumps(content, indent=2)
+
+
+def _finite(value: float) -> float | None:
+    """Return the number, or None (JSON null) where nothing is proven: JSON has no infinity."""
+    return value if math.isfinite(value) else None
+
+
+def _as_table(report: Report) -> str:
+    lines = [f"{'':<16} {'k':>18} {'sigma_a':>18} {'sigma_b':>18}"]
+    for frame, own in report.keys:
+        verdict = "certified" if own.certified else "NOT CERTIFIED"
+        figures = " ".join(f"{value:>18.4f}" for value in (own.k, own.sigma_a, own.sigma_b))
+        lines.append(f"{f'key {frame}':<16} {figures}  {verdict}")
+    for interval in report.intervals:
+        pairs = (
+            (interval.reached.k, interval.keys.k),
+            (interval.reached.sigma_a, interval.keys.sigma_a),
+            (interval.reached.sigma_b, interval.keys.sigma_b),
+        )
+        figures = " ".join(f"{f'{reached:.4f} ({own:.4f})':>18}" for reached, own in pairs)
+        verdict = "within" if interval.is_within else "OVER"
+        lines.append(f"{f'{interval.first} to {interval.last}':<16} {figures}  {verdict}")
+    lines.append("In brackets: the worse of the two keyframes.")
+    return "\n".join(lines)

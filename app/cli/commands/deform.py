@@ -1,0 +1,116 @@
+"""`lissom deform`: drag handles of a shape, from file to file."""
+
+import argparse
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from app.errors import LissomError
+from app.storage import check_writable, read_arrays, write_arrays
+from engine.deform import Deformer, Handles
+from engine.geometry import require_simple
+from engine.maps import Boundary, Bounds, HarmonicMap
+
+EPILOG = """\
+CASE.npz holds the shape and what is asked of it:
+  outline      (p,)   complex128  the domain's boundary, counter-clockwise
+  cage         (n,)   complex128  the cage around it, counter-clockwise
+  handles      (h,)   complex128  points of the shape that are held
+  targets      (h,)   complex128  where they should be
+  k_max, sigma_a_max, sigma_b_min  scalars, bounds on the distortion
+  phi, psi     (n,)   complex128  optional, the map to start from
+  path         (s, h) complex128  optional, positions of the handles on the way to the targets
+
+MAP.npz holds outline, cage and
+  phi, psi     (n,)   complex128  the map
+  handles_mapped (h,) complex128  where the handles are
+  k, sigma_a, sigma_b             proven for the whole shape: nowhere beyond
+  certified                       whether that is within the bounds, and the map injective
+  status                          "converged", or "bounds reached" or "lagging" where handles
+                                  could not follow
+  steps                           Newton steps in all
+
+examples:
+  lissom deform case.npz --out map.npz
+"""
+LIMITS = ("k_max", "sigma_a_max", "sigma_b_min")
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare the options of `lissom deform`."""
+    parser.epilog = EPILOG
+    parser.add_argument("case", metavar="CASE.npz", type=Path, help="shape, handles and targets")
+    parser.add_argument("--out", metavar="MAP.npz", type=Path, required=True, help="where to write")
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Deform the shape of a case and write the map."""
+    check_writable(arguments.out)
+    case = read_arrays(
+        arguments.case,
+        required=("outline", "cage", "handles", "targets", *LIMITS),
+        optional=("phi", "psi", "path"),
+    )
+    k, sigma_a, sigma_b = (_scalar(case, name) for name in LIMITS)
+    bounds = Bounds(k=k, sigma_a=sigma_a, sigma_b=sigma_b)
+    boundary = Boundary.sample(case["outline"], case["cage"])
+    require_simple(boundary.cage, "cage")
+    handles = Handles.place(boundary, case["handles"])
+    wishes = [handles.wish(row) for row in _rows(case, len(handles.points))]
+    deformer = Deformer(boundary=boundary, handles=handles, bounds=bounds)
+    state, steps = deformer.start(_start(case, boundary.cage)), 0
+    for wish in wishes[:-1]:
+        state, count = deformer.follow(state, wish)
+        steps += count
+    state, count = deformer.settle_anew(state, wishes[-1])
+    certificate = state.certificate
+    write_arrays(
+        arguments.out,
+        {
+            "outline": boundary.outline,
+            "cage": boundary.cage,
+            "phi": state.map.phi,
+            "psi": state.map.psi,
+            "handles_mapped": deformer.positions(state),
+            "k": certificate.k,
+            "sigma_a": certificate.sigma_a,
+            "sigma_b": certificate.sigma_b,
+            "certified": certificate.certified,
+            "status": state.status.value,
+            "steps": steps + count,
+        },
+    )
+    print(
+        f"{state.status.value}: k ≤ {certificate.k:.4f}, sigma_a ≤ {certificate.sigma_a:.4f}, "
+        f"sigma_b ≥ {certificate.sigma_b:.4f}, {steps + count} steps"
+    )
+    return 0
+
+
+def _scalar(case: Mapping[str, npt.NDArray[Any]], name: str) -> float:
+    value = case[name]
+    if value.size != 1 or value.dtype.kind not in "biuf":
+        raise LissomError(f"{name} must be one number, not of shape {value.shape}, {value.dtype}")
+    return float(value.reshape(()))
+
+
+def _rows(case: Mapping[str, npt.NDArray[Any]], count: int) -> list[npt.NDArray[Any]]:
+    """Return the rows of the path, then the targets."""
+    path = case.get("path", np.empty((0, count)))
+    if path.ndim != 2 or path.shape[1] != count:
+        raise LissomError(f"path must have one column for each of {count} handles: {path.shape}")
+    return [*path, case["targets"]]
+
+
+def _start(
+    case: Mapping[str, npt.NDArray[Any]], cage: npt.NDArray[np.complex128]
+) -> HarmonicMap | None:
+    """Return the map to start from, or None for the identity."""
+    if ("phi" in case) != ("psi" in case):
+        raise LissomError("a start map needs both phi and psi")
+    if "phi" not in case:
+        return None
+    return HarmonicMap(cage=cage, phi=case["phi"], psi=case["psi"])

@@ -1,0 +1,141 @@
+"""`lissom doctor`: what works on this machine."""
+
+import argparse
+import importlib.util
+import os
+import platform
+import sys
+from importlib.metadata import PackageNotFoundError, version
+from typing import Final, NamedTuple
+
+import numpy as np
+
+from app.errors import LissomError
+from app.export import VIDEO_REMEDY
+from app.render import Renderer, Scene, canvas_view
+from app.render.gpu import (
+    AUTOMATIC,
+    Backend,
+    GlError,
+    GpuMesh,
+    GpuPicture,
+    Pose,
+    StreamedVertices,
+    Target,
+    create_context,
+    probe,
+    singles,
+)
+from app.ui.dialogs import find_system_dialogs
+
+EPILOG = """\
+The exit status is 0 if Lissom can render here, 1 if not. "--" marks what is missing, with what to
+install; everything but rendering can be done without.
+
+examples:
+  lissom doctor
+"""
+LIBRARIES: Final = (
+    *("numpy", "scipy", "pillow", "shapely", "contourpy"),
+    *("moderngl", "glcontext", "glfw", "imgui-bundle"),
+)
+
+
+class Finding(NamedTuple):
+    """Whether something works, and which one it is or what to do about it."""
+
+    name: str
+    text: str
+    works: bool = True
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare the options of `lissom doctor`."""
+    parser.epilog = EPILOG
+
+
+def run(_: argparse.Namespace) -> int:
+    """Print what works here."""
+    print(
+        f"Lissom {version('lissom')}, Python {platform.python_version()}, "
+        f"{platform.system()} {platform.release()} {platform.machine()}"
+    )
+    print(", ".join(f"{name} {_version(name)}" for name in LIBRARIES))
+    rendering = [_rendering(backend) for backend in AUTOMATIC]
+    for finding in (*rendering, _display(), _dialogs(), _video()):
+        print(f"{'ok' if finding.works else '--'}  {finding.name}: {finding.text}")
+    if any(finding.works for finding in rendering):
+        print("Lissom can render here.")
+        return 0
+    print("Lissom cannot render here: install what is named above.")
+    return 1
+
+
+def _rendering(backend: Backend) -> Finding:
+    name = f"rendering with {backend}"
+    report = probe(backend)
+    if report.problem:
+        return Finding(name, report.problem, works=False)
+    text = (
+        f"{report.renderer}, OpenGL {report.version}, up to {report.largest_size} pixels each way"
+    )
+    try:
+        if _draws_exactly(backend):
+            return Finding(name, text)
+        problem = "the pictures come out wrong"
+    except (LissomError, GlError) as error:
+        problem = f"drawing fails: {error}"
+    return Finding(name, f"{text}, but {problem}; install another graphics driver", works=False)
+
+
+def _draws_exactly(backend: Backend) -> bool:
+    """Draw a small picture at its own size and compare."""
+    picture = np.random.default_rng(0).integers(1, 256, (12, 16, 4), dtype=np.uint8)
+    rest = np.array([0, 16, 16 + 12j, 12j])
+    triangles = np.array([[0, 1, 2], [0, 2, 3]], dtype=np.int32)
+    context = create_context(backend)
+    try:
+        renderer = Renderer(context)
+        texture = GpuPicture(context, picture)
+        mesh = GpuMesh(renderer.programs, texture, rest=rest, triangles=triangles)
+        vertices = StreamedVertices(context, len(rest))
+        vertices.write(singles(rest))
+        target = Target(renderer.programs, (16, 12))
+        renderer.draw(target, canvas_view((16, 12)), Scene(pose=Pose(mesh, vertices)))
+        return np.array_equal(target.read_straight_rgba(), picture)
+    finally:
+        # Everything that was made in it goes with it.
+        context.release()
+
+
+def _display() -> Finding:
+    name = "display for the window"
+    if sys.platform in {"win32", "darwin"}:
+        return Finding(name, "the system's own")
+    for variable in ("WAYLAND_DISPLAY", "DISPLAY"):
+        if os.environ.get(variable):
+            return Finding(name, f"{variable}={os.environ[variable]}")
+    return Finding(name, "none; the command line does not need one", works=False)
+
+
+def _dialogs() -> Finding:
+    name = "file dialogs of the system"
+    found = find_system_dialogs()
+    if found:
+        return Finding(name, found)
+    remedy = "none, Lissom's own are used; for the system's: sudo apt install zenity"
+    return Finding(name, remedy, works=False)
+
+
+def _video() -> Finding:
+    name = "mp4"
+    if importlib.util.find_spec("av") is None:
+        return Finding(name, f"PyAV is not installed: {VIDEO_REMEDY}", works=False)
+    return Finding(name, f"PyAV {_version('av')}")
+
+
+def _version(library: str) -> str:
+    try:
+        return version(library)
+    except PackageNotFoundError:
+        return "missing"

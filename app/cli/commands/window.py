@@ -1,0 +1,69 @@
+"""`lissom` and `lissom FILE`: the window."""
+
+import argparse
+import sys
+import time
+from pathlib import Path
+
+from app.cli.console import fail
+from app.editor import Jobs, Session
+from app.editor.actions import files
+from app.render import Renderer
+from app.render.gpu import window_context
+from app.storage import forget_autosave, load_preferences, save_preferences, settings_folder
+from app.ui.dialogs import find_system_dialogs
+from app.ui.window import Window, has_display
+
+# Seconds after which a worker hands Python's lock over. A frame takes it some twenty times; with
+# the usual 5 ms a job that seldom lets go would leave two frames a second.
+SWITCH = 0.0005
+
+EPILOG = """\
+Without FILE the window opens with samples to try. `lissom FILE` is short for `lissom window FILE`.
+
+examples:
+  lissom
+  lissom giraffe.png
+  lissom wave.lissom
+"""
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare the options of `lissom window`."""
+    parser.epilog = EPILOG
+    parser.add_argument(
+        "file", metavar="FILE", nargs="?", type=Path, help="a picture or a .lissom project"
+    )
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Open the window, and close it when the person does."""
+    if arguments.file is not None and not arguments.file.is_file():
+        fail(f"{arguments.file} is no command and no file (see 'lissom --help')")
+    if not has_display():
+        fail(
+            "there is no display for the window; the command line works without one, for example "
+            "'lissom export PROJECT --out DIR'"
+        )
+    sys.setswitchinterval(SWITCH)
+    folder = settings_folder()
+    folder.mkdir(parents=True, exist_ok=True)
+    session = Session(
+        clock=time.perf_counter,
+        jobs=Jobs(),
+        folder=folder,
+        preferences=load_preferences(folder),
+        system_dialogs=find_system_dialogs() is not None,
+    )
+    files.offer_recovery(session)
+    if arguments.file is not None:
+        files.load(session, arguments.file.resolve())
+    try:
+        Window(session, lambda: Renderer(window_context())).run()
+    finally:
+        session.jobs.close()
+        if session.quitting:
+            # One that was being written when the person left.
+            forget_autosave(folder)
+        save_preferences(folder, session.preferences)
+    return 0

@@ -1,0 +1,33 @@
+"""An action as a value: a verb and what it is done with."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, Concatenate, ParamSpec, TypeVar
+
+P = ParamSpec("P")
+State = TypeVar("State")
+
+
+@dataclass(frozen=True, slots=True)
+class Action:
+    """Something that the person asked for.
+
+    Parameters
+    ----------
+    verb : callable
+        A function of `app.editor.actions` whose first parameter is the session.
+    arguments : tuple
+        The others.
+    """
+
+    verb: Callable[..., None]
+    arguments: tuple[Any, ...] = ()
+
+    def apply(self, session: object) -> None:
+        """Do it."""
+        self.verb(session, *self.arguments)
+
+
+def do(verb: Callable[Concatenate[State, P], None], *arguments: P.args, **_: P.kwargs) -> Action:
+    """Return the action of a verb; its arguments are checked like those of a call."""
+    return Action(verb, arguments)

@@ -1,0 +1,97 @@
+"""Changes of the document: commands, undo, and what is selected."""
+
+from dataclasses import replace
+
+from app.document import Command, key_commands
+from app.editor.actions import posing
+from app.editor.session import Project, Session
+
+
+def edit(session: Session, command: Command) -> None:
+    """Run a command; those given while the pointer holds on make one step of undo together."""
+    project = session.project
+    if project is None:
+        return
+    before = _posed(project)
+    project.history.do(command, gesture=project.gesture)
+    if _posed(project) != before:
+        # The solver would put back what the command took away.
+        posing.drop(session)
+    _forget_what_is_gone(project)
+
+
+def hold(session: Session, held: bool) -> None:  # noqa: FBT001 - the only argument
+    """Note whether the pointer holds on to something; called once a frame."""
+    project = session.project
+    if project and held != (project.gesture is not None):
+        project.gesture = object() if held else None
+
+
+def undo(session: Session) -> None:
+    """Take the last step back: a pose that no key holds, or what the document had last."""
+    project = session.project
+    if project is None:
+        return
+    grab = project.grab or project.settling
+    is_unkept = project.loose is not None or (grab is not None and grab.drag is None)
+    posing.drop(session)
+    project.loose = None
+    if not is_unkept:
+        project.history.undo()
+        _forget_what_is_gone(project)
+
+
+def redo(session: Session) -> None:
+    """Do the step that was taken back again."""
+    if session.project:
+        posing.drop(session)
+        session.project.history.redo()
+        session.project.loose = None
+        _forget_what_is_gone(session.project)
+
+
+def select(session: Session, handles: frozenset[int]) -> None:
+    """Select these handles, as far as they are there, and no keys."""
+    project = session.project
+    if project:
+        project.selected, project.chosen = handles, frozenset()
+        _forget_what_is_gone(project)
+
+
+def select_all(session: Session) -> None:
+    """Select every handle."""
+    if session.project:
+        select(session, frozenset(handle.id for handle in session.project.document.handles))
+
+
+def choose_keys(session: Session, frames: frozenset[int]) -> None:
+    """Select the keys at these frames, as far as they are there, and no handles."""
+    project = session.project
+    if project:
+        project.selected, project.chosen = frozenset(), frames
+        _forget_what_is_gone(project)
+
+
+def delete(session: Session) -> None:
+    """Delete the selected keys, or the selected handles."""
+    project = session.project
+    if project and project.chosen:
+        edit(session, key_commands.delete_keys(project.chosen))
+    elif project and project.selected:
+        posing.remove_handles(session, project.selected)
+
+
+def _posed(project: Project) -> tuple[object, ...]:
+    """Return the pose that handles are being pulled in, and what it is solved from."""
+    document, grab = project.document, project.grab or project.settling
+    poses = [key.pose for key in document.keys if grab is not None and key.frame == grab.frame]
+    return (poses, document.handles, document.bounds, document.domain)
+
+
+def _forget_what_is_gone(project: Project) -> None:
+    document = project.document
+    project.selected &= {handle.id for handle in document.handles}
+    project.chosen &= {key.frame for key in document.keys}
+    if project.playhead.frame not in document.frames:
+        frame = document.frames.clamp(project.playhead.frame)
+        project.playhead = replace(project.playhead, frame=frame)

@@ -1,0 +1,198 @@
+"""Exports: asked for here, drawn by the window, a few frames at a time."""
+
+import os
+import subprocess
+import sys
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+from app.document import ExportSettings, settings_commands
+from app.editor.action import Action, do
+from app.editor.actions import editing, posing
+from app.editor.failures import report
+from app.editor.jobs import Job
+from app.editor.session import ExportRun, FileDialog, Project, Session
+from app.errors import LissomError
+from app.export import SUFFIXES, ExportRequest, check_request, plan_export
+from app.motion import Animation, Box, Reach, measure_reach, source_of
+
+PREPARING, MEASURING = "Preparing the export", "Measuring the motion"
+
+
+def ask(session: Session) -> None:
+    """Ask where to export to, and begin."""
+    _ask(session, lambda path: do(start, path))
+
+
+def choose(session: Session) -> None:
+    """Ask where the next export goes; it does not begin yet."""
+    _ask(session, lambda path: do(export_to, path))
+
+
+def export_to(session: Session, out: Path) -> None:
+    """Note where the next export goes."""
+    if session.project:
+        session.project.export_to = out
+
+
+def repeat(session: Session) -> None:
+    """Export where it was told to go, or where the last one went; ask if there is neither."""
+    out = destination(session.project) if session.project else None
+    if out is not None:
+        start(session, out)
+    else:
+        ask(session)
+
+
+def destination(project: Project) -> Path | None:
+    """Return where the next export goes, with the ending of its format; None if that is open."""
+    out = project.export_to
+    if out is None:
+        return None
+    suffixes = SUFFIXES[project.document.export.format]
+    if out.suffix.lower() in (suffixes or ("",)):
+        return out
+    return out.with_suffix(suffixes[0]) if suffixes else out.with_name(f"{out.stem} frames")
+
+
+def start(session: Session, out: Path) -> None:
+    """Export into a folder or a file."""
+    project = session.project
+    if project is None or session.export is not None:
+        return
+    posing.drop(session)
+    document, picture = project.document, project.picture.rgba
+    request = ExportRequest(out=out, settings=document.export)
+    check_request(document, request)
+    motion = project.full or project.sketch
+    stage = motion.stage if motion.figure.domain is document.domain else None
+
+    def work() -> ExportRun:
+        animation = Animation(document, stage=stage)
+        plan = plan_export(document, request, animation)
+        return ExportRun(document=document, picture=picture, poses=animation, plan=plan)
+
+    def done(run: ExportRun) -> None:
+        session.export = run
+        project.export_to = out
+
+    session.jobs.put(
+        Job(
+            kind=PREPARING,
+            work=work,
+            done=done,
+            failed=lambda error: report(session, "The export could not begin", error),
+        )
+    )
+
+
+def cancel(session: Session) -> None:
+    """Give the export up; frames that are written stay."""
+    session.jobs.drop(PREPARING)
+    if session.export is not None:
+        session.export = None
+        session.tell("The export was cancelled. Frames that were written stay.")
+
+
+def advance(session: Session, run: ExportRun, done: int) -> None:
+    """Note how many frames are drawn."""
+    if session.export is run:
+        session.export = replace(run, done=done)
+
+
+def finish(session: Session, run: ExportRun) -> None:
+    """Tell that an export is complete."""
+    session.export = None
+    folder = run.plan.out if run.plan.out.is_dir() else run.plan.out.parent
+    count = len(run.plan.times)
+    frames = "1 frame" if count == 1 else f"{count} frames"
+    session.tell(
+        f"Exported {frames} to {run.plan.out.name}.",
+        tone="good",
+        label="Open folder",
+        action=do(open_folder, folder),
+    )
+    for notice in run.plan.notices:
+        session.tell(notice[:1].upper() + notice[1:] + ".")
+
+
+def fail(session: Session, error: Exception) -> None:
+    """Tell that an export failed."""
+    session.export = None
+    report(session, "The export failed", error)
+
+
+def set_export(session: Session, export: ExportSettings) -> None:
+    """Set what the next export makes."""
+    editing.edit(session, settings_commands.set_export(export))
+
+
+def keep_aspect(session: Session, keeps: bool) -> None:  # noqa: FBT001 - the only argument
+    """Let width and height of an export change together, or each alone."""
+    session.keeps_aspect = keeps
+
+
+def show_frame(session: Session, box: Box) -> None:
+    """Show what an export shows in the viewport, until the next frame of the window."""
+    session.export_frame = box
+
+
+def keep_reach(session: Session) -> None:
+    """Measure how far the motion reaches, unless that is known."""
+    project = session.project
+    if project is None or project.is_posing or MEASURING in session.jobs.kinds:
+        return
+    document, motion = project.document, project.sketch
+    source = source_of(document)
+    is_known = project.reach is not None and project.reach.source == source
+    if is_known or not motion.knows(document) or project.unreachable == source:
+        return
+
+    def done(reach: Reach | None) -> None:
+        project.reach = reach
+
+    def failed(error: Exception) -> None:
+        project.unreachable = source
+        report(session, "The motion's reach could not be measured", error)
+
+    session.jobs.put(
+        Job(
+            kind=MEASURING,
+            work=lambda: measure_reach(document, motion),
+            done=done,
+            failed=failed,
+        )
+    )
+
+
+def open_folder(session: Session, folder: Path) -> None:
+    """Show a folder in the system's file manager."""
+    try:
+        if sys.platform == "win32":
+            os.startfile(folder)  # noqa: S606 - a folder that was just written to
+            return
+        opener = "open" if sys.platform == "darwin" else "xdg-open"
+        subprocess.Popen([opener, folder], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)  # noqa: S603
+    except OSError:
+        raise LissomError(f"no file manager was found; the folder is {folder}") from None
+    session.hint = str(folder)
+
+
+def _ask(session: Session, chosen: Callable[[Path], Action]) -> None:
+    project = session.project
+    if project is None or session.export is not None:
+        return
+    suffixes = SUFFIXES[project.document.export.format]
+    out = destination(project)
+    if out is None:
+        name = f"{project.name}{suffixes[0]}" if suffixes else f"{project.name} frames"
+        out = session.usual_folder / name
+    session.dialog = FileDialog(
+        title="Export into a file" if suffixes else "Export into a folder",
+        folder=out.parent,
+        name=out.name,
+        suffixes=suffixes,
+        writes=True,
+        chosen=chosen,
+    )

@@ -1,0 +1,197 @@
+"""Opening pictures and projects."""
+
+from collections.abc import Sequence
+from functools import cache
+from pathlib import Path
+from typing import NamedTuple
+
+from app.document import Document, History, Meshing
+from app.editor.action import do
+from app.editor.actions import playback, saving
+from app.editor.actions.saving import PROJECT
+from app.editor.failures import report
+from app.editor.jobs import Job
+from app.editor.session import FileDialog, Project, Question, Session
+from app.motion import Figure, Motion
+from app.storage import (
+    Picture,
+    decode_picture,
+    find_leftovers,
+    forget_autosave,
+    load_project,
+    open_picture,
+    sample_images,
+    write_autosave,
+)
+
+PICTURES = (
+    *(".png", ".jpg", ".jpeg", ".gif", ".webp", ".bmp", ".tif", ".tiff", ".ppm", ".tga", ".ico"),
+    ".avif",
+)
+OPENABLE = (PROJECT, *PICTURES)
+OPENING = "Opening"
+OPAQUE = 255
+
+
+class Sample(NamedTuple):
+    """A picture, or a project with its picture, that ships with Lissom."""
+
+    name: str
+    file: Path
+    picture: Path
+    what: str
+
+
+@cache
+def samples() -> tuple[Sample, ...]:
+    """Return the samples, animated ones first."""
+    found = []
+    for picture in sorted(sample_images().glob("*.png")):
+        project = picture.with_suffix(PROJECT)
+        is_animated = project.is_file()
+        found.append(
+            Sample(
+                picture.stem.capitalize(),
+                project if is_animated else picture,
+                picture,
+                "animated" if is_animated else "picture",
+            )
+        )
+    return tuple(sorted(found, key=lambda sample: sample.what))
+
+
+class Opened(NamedTuple):
+    """What reading a file gives."""
+
+    document: Document
+    picture: Picture
+    sketch: Motion
+    notices: tuple[str, ...]
+
+
+def ask_open(session: Session) -> None:
+    """Ask for a picture or a project."""
+    session.dialog = FileDialog(
+        title="Open image or project",
+        folder=session.usual_folder,
+        suffixes=OPENABLE,
+        writes=False,
+        chosen=lambda path: do(open_file, path),
+    )
+
+
+def open_file(session: Session, path: Path) -> None:
+    """Open a picture or a project, after a question if there are changes to be lost."""
+    saving.unless_unsaved(session, do(load, path))
+
+
+def open_dropped(session: Session, paths: Sequence[Path]) -> None:
+    """Open the first picture or project of what was dropped on the window."""
+    usable = [path for path in paths if path.suffix.lower() in OPENABLE and not path.is_dir()]
+    if usable:
+        if len(paths) > 1:
+            session.tell(f"Of {len(paths)} files, {usable[0].name} is opened: one at a time.")
+        open_file(session, usable[0])
+    elif paths:
+        what = "a folder" if paths[0].is_dir() else "no picture and no project"
+        kinds = "a picture (PNG, JPEG, WebP, …)"
+        session.tell(f"{paths[0].name} is {what}. Drop {kinds} or a {PROJECT} file.", tone="error")
+
+
+def load(session: Session, path: Path) -> None:
+    """Read a file on the worker, and show it when it is there."""
+    meshing = session.meshing
+    session.jobs.put(
+        Job(
+            kind=f"{OPENING} {path.name}",
+            work=lambda: _read(path, meshing),
+            done=lambda opened: show(session, path, opened),
+            failed=lambda error: report(session, f"{path.name} cannot be opened", error),
+        )
+    )
+
+
+def show(session: Session, path: Path, opened: Opened) -> None:
+    """Make what was read the project of the window."""
+    # A sample is the person's to play with, not to save over.
+    is_sample = path.parent == sample_images()
+    is_project = path.suffix.lower() == PROJECT and not is_sample
+    forget_autosave(session.folder)
+    session.project = Project(
+        name=path.stem,
+        history=History(opened.document, saved=True),
+        picture=opened.picture,
+        sketch=opened.sketch,
+        path=path if is_project else None,
+    )
+    if not is_sample:
+        session.preferences = session.preferences.with_recent(path)
+    elif len(opened.document.keys) > 1:
+        playback.toggle_play(session)
+    for notice in opened.notices:
+        session.tell(notice[:1].upper() + notice[1:] + ".")
+
+
+def _read(path: Path, meshing: Meshing) -> Opened:
+    is_project = path.suffix.lower() == PROJECT
+    return _read_project(path) if is_project else _read_picture(path, meshing)
+
+
+def _read_project(path: Path) -> Opened:
+    document = load_project(path)
+    picture = decode_picture(document.picture.data, f"the picture of {path.name}")
+    # Its keys are shown at once; the in-betweens follow.
+    sketch = Motion.at_rest(document, Figure.sketch(document.domain))
+    return Opened(document, picture, sketch, ())
+
+
+def _read_picture(path: Path, meshing: Meshing) -> Opened:
+    document, picture, notices = open_picture(path, meshing)
+    sketch = Motion.at_rest(document, Figure.sketch(document.domain))
+    return Opened(document, picture, sketch, notices)
+
+
+def offer_recovery(session: Session) -> None:
+    """Ask whether to open what was not saved when Lissom ended last."""
+    leftovers = find_leftovers(session.folder)
+    if leftovers:
+        session.dialog = Question(
+            title="Unsaved work",
+            text="Lissom was not closed properly last time. Its unsaved work was kept.",
+            answers=(
+                ("Open it", do(recover, leftovers[0])),
+                ("Throw it away", do(throw_away, leftovers[0])),
+            ),
+        )
+
+
+def recover(session: Session, path: Path) -> None:
+    """Open unsaved work; it stays unsaved, and is kept until it is saved."""
+    session.jobs.put(
+        Job(
+            kind=f"{OPENING} unsaved work",
+            work=lambda: _read_project(path),
+            done=lambda opened: _show_recovered(session, path, opened),
+            failed=lambda error: report(session, "The unsaved work cannot be opened", error),
+        )
+    )
+
+
+def throw_away(session: Session, path: Path) -> None:
+    """Delete unsaved work."""
+    path.unlink(missing_ok=True)
+    session.tell("The unsaved work was thrown away.")
+
+
+def _show_recovered(session: Session, path: Path, opened: Opened) -> None:
+    session.project = Project(
+        name="recovered",
+        history=History(opened.document, saved=False),
+        picture=opened.picture,
+        path=None,
+        sketch=opened.sketch,
+        is_opaque=bool((opened.picture.rgba[..., 3] == OPAQUE).all()),
+    )
+    write_autosave(session.folder, opened.document)
+    path.unlink(missing_ok=True)
+    session.tell("This is the work that was not saved. Save it now.", tone="good")

@@ -1,0 +1,120 @@
+"""What is done with keys as a whole, and the settings of time beside them."""
+
+from app.document import Command, Easing, FrameRange, Variant, key_commands, settings_commands
+from app.editor.actions import editing, playback, posing
+from app.editor.session import Session
+
+
+def retime(session: Session, command: Command) -> None:
+    """Run a command that changes time itself; the playhead stays where it is, or near."""
+    project = session.project
+    if project is None:
+        return
+    before = playback.current_frame(session, project)
+    editing.edit(session, command)
+    frame = project.document.frames.clamp(before)
+    if playback.current_frame(session, project) != frame:
+        project.playhead = project.playhead.seek(frame, session.clock())
+
+
+def insert_at(session: Session, frame: int) -> None:
+    """Put the playhead on a frame, and hold what is shown there in a key."""
+    playback.scrub(session, frame)
+    posing.insert_key(session)
+
+
+def set_easing(session: Session, frames: frozenset[int], easing: Easing) -> None:
+    """Set how time runs from the keys at these frames on."""
+    editing.edit(session, key_commands.set_easing(frames, easing))
+
+
+def set_turns(session: Session, frames: frozenset[int], turns: int) -> None:
+    """Set how often the shape turns round after the keys at these frames."""
+    editing.edit(session, key_commands.set_turns(frames, turns))
+
+
+def reverse(session: Session) -> None:
+    """Let the chosen keys run backwards, or all if fewer than two are chosen."""
+    if session.project:
+        frames = frozenset(key.frame for key in session.project.document.keys)
+        chosen = session.project.chosen
+        _rearrange(session, key_commands.reverse_keys(chosen if len(chosen) > 1 else frames))
+
+
+def scale(session: Session, factor: float) -> None:
+    """Stretch the time of the chosen keys, or of everything if fewer than two are chosen."""
+    if session.project:
+        chosen = session.project.chosen
+        several = len(chosen) > 1
+        _rearrange(
+            session,
+            key_commands.scale_keys(chosen, factor) if several else key_commands.scale_time(factor),
+        )
+
+
+def match_ends(session: Session) -> None:
+    """Give the last key the pose of the first one."""
+    editing.edit(session, key_commands.match_ends())
+
+
+def toggle_loop(session: Session) -> None:
+    """Let the end lead back to the beginning, or not."""
+    if session.project:
+        retime(session, settings_commands.set_loop(loop=not session.project.document.loop))
+
+
+def set_fps(session: Session, fps: float) -> None:
+    """Set how fast the animation plays; it goes on from where it is."""
+    retime(session, settings_commands.set_fps(fps))
+
+
+def set_last_frame(session: Session, last: int) -> None:
+    """Set where the animation ends."""
+    if session.project:
+        first = session.project.document.frames.first
+        retime(session, settings_commands.set_frames(FrameRange(first, last)))
+
+
+def play_all(session: Session) -> None:
+    """Play all frames, and not a work range."""
+    retime(session, settings_commands.set_work_range(None))
+
+
+def start_work_here(session: Session) -> None:
+    """Let the work range begin at the playhead."""
+    project = session.project
+    if project:
+        frame = playback.current_frame(session, project)
+        _set_work(session, frame, max(frame, project.document.played.last))
+
+
+def end_work_here(session: Session) -> None:
+    """Let the work range end at the playhead."""
+    project = session.project
+    if project:
+        frame = playback.current_frame(session, project)
+        _set_work(session, min(frame, project.document.played.first), frame)
+
+
+def set_variant(session: Session, variant: Variant) -> None:
+    """Set how in-betweens are made."""
+    editing.edit(session, settings_commands.set_variant(variant))
+
+
+def _set_work(session: Session, first: int, last: int) -> None:
+    work = FrameRange(first, last)
+    if session.project:
+        whole = work == session.project.document.frames
+        retime(session, settings_commands.set_work_range(None if whole else work))
+
+
+def _rearrange(session: Session, command: Command) -> None:
+    """Run a command that moves the chosen keys, and choose them where they are then."""
+    project = session.project
+    if project is None:
+        return
+    others = {key.frame for key in project.document.keys} - project.chosen
+    everything = len(project.chosen) < 2
+    retime(session, command)
+    frames = {key.frame for key in project.document.keys}
+    project.chosen = frozenset() if everything else frozenset(frames - others)

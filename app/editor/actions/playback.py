@@ -1,0 +1,108 @@
+"""Moving along the timeline."""
+
+from app.editor.session import Project, Session
+
+SPEEDS = (0.25, 0.5, 1.0, 2.0)
+
+
+def seek(session: Session, frame: int) -> None:
+    """Put the playhead on a frame of the animation."""
+    if session.project:
+        project = session.project
+        frame = project.document.frames.clamp(frame)
+        project.playhead = project.playhead.seek(frame, session.clock())
+        project.loose = None
+        if project.grab is not None and project.grab.frame != frame:
+            _leave_pose(session, project)
+
+
+def scrub(session: Session, frame: int) -> None:
+    """Halt, and put the playhead on a frame."""
+    halt(session)
+    seek(session, frame)
+
+
+def toggle_play(session: Session) -> None:
+    """Play, or halt."""
+    if session.project:
+        project = session.project
+        now = session.clock()
+        turn = project.playhead.play if project.playhead.since is None else project.playhead.pause
+        project.playhead = turn(project.document, now)
+        project.loose = None
+        _leave_pose(session, project)
+
+
+def tap_space(session: Session) -> None:
+    """Play or halt where Space is let go, unless it was held to move the view."""
+    if not session.space_used:
+        toggle_play(session)
+    session.space_used = False
+
+
+def halt(session: Session) -> None:
+    """Stop where the playhead is."""
+    if session.project:
+        project = session.project
+        project.playhead = project.playhead.pause(project.document, session.clock())
+
+
+def halt_at_end(session: Session) -> None:
+    """Stop an animation that does not loop when it is over; called once a frame."""
+    project = session.project
+    if project and project.playhead.is_over(project.document, session.clock()):
+        halt(session)
+
+
+def step(session: Session, frames: int) -> None:
+    """Go on or back by a number of frames."""
+    halt(session)
+    if session.project:
+        seek(session, current_frame(session, session.project) + frames)
+
+
+def to_key(session: Session, direction: int) -> None:
+    """Go to the next key (1) or the previous one (-1); at the ends stay."""
+    halt(session)
+    if session.project:
+        frame = current_frame(session, session.project)
+        frames = [key.frame for key in session.project.document.keys]
+        if direction > 0:
+            there = next((key for key in frames if key > frame), None)
+        else:
+            there = next((key for key in reversed(frames) if key < frame), None)
+        if there is not None:
+            seek(session, there)
+
+
+def to_start(session: Session) -> None:
+    """Go to the first frame that plays."""
+    if session.project:
+        seek(session, session.project.document.played.first)
+
+
+def to_end(session: Session) -> None:
+    """Go to the last frame that plays."""
+    if session.project:
+        seek(session, session.project.document.played.last)
+
+
+def set_speed(session: Session, speed: float) -> None:
+    """Play at a multiple of the document's own speed."""
+    if session.project:
+        project = session.project
+        project.playhead = project.playhead.at_speed(speed, project.document, session.clock())
+
+
+def _leave_pose(session: Session, project: Project) -> None:
+    """End a pull because the playhead leaves it; where it makes a key, it goes on to rest."""
+    grab = project.grab
+    if grab is not None and session.preferences.auto_key:
+        grab.held = False
+        project.settling = grab
+    project.grab = None
+
+
+def current_frame(session: Session, project: Project) -> int:
+    """Return the frame that is shown now."""
+    return project.playhead.frame_at(project.document, session.clock())

@@ -1,0 +1,118 @@
+"""Other bounds and another domain: the worker solves the keys again, one job for each."""
+
+from dataclasses import replace
+
+from app.document import set_bounds
+from app.editor.actions import editing, posing
+from app.editor.failures import report
+from app.editor.jobs import Job
+from app.editor.session import Project, Session
+from app.solving import Renewal, go_on
+from engine.maps import Bounds
+
+RENEWING = "Solving the keys"
+
+
+def draft_bounds(session: Session, bounds: Bounds) -> None:
+    """Try bounds while their knob is dragged; nothing is solved yet."""
+    if session.project:
+        session.project.drafted_bounds = bounds
+
+
+def choose_bounds(session: Session, bounds: Bounds) -> None:
+    """Set the bounds; keys that are outside of them are solved again."""
+    project = session.project
+    if project is None:
+        return
+    project.drafted_bounds = None
+    certificates = [key.pose.certificate for key in project.document.keys]
+    if all(bounds.allow(k=c.k, sigma_a=c.sigma_a, sigma_b=c.sigma_b) for c in certificates):
+        cancel(session)
+        editing.edit(session, set_bounds(bounds))
+    elif bounds != project.document.bounds:
+        _begin(session, Renewal(before=project.document, bounds=bounds, pulls=False))
+
+
+def enter_bound(session: Session, bounds: Bounds, name: str, value: float) -> None:
+    """Set one of the bounds to a number that was typed in.
+
+    Raises
+    ------
+    EngineError
+        If it bounds nothing, or everything.
+    """
+    choose_bounds(session, replace(bounds, **{name: value}))
+
+
+def solve_again(session: Session) -> None:
+    """Pull every key's handles to their places again, within the bounds of now."""
+    if session.project:
+        document = session.project.document
+        _begin(session, Renewal(before=document, bounds=document.bounds))
+
+
+def rebuild(session: Session) -> None:
+    """Find the outline and build the mesh again; handles stay, keys are solved again."""
+    project = session.project
+    if project:
+        document = project.document
+        meshing = project.meshing or document.meshing
+        _begin(session, Renewal(before=document, bounds=document.bounds, meshing=meshing))
+
+
+def cancel(session: Session) -> None:
+    """Give up what is being solved or rebuilt."""
+    session.jobs.drop(RENEWING)
+    if session.project:
+        session.project.renewal = None
+
+
+def _begin(session: Session, renewal: Renewal) -> None:
+    posing.drop(session)
+    if session.project:
+        _go_on(session, session.project, renewal)
+
+
+def _go_on(session: Session, project: Project, renewal: Renewal) -> None:
+    if session.project is not project:
+        return
+    if project.document is not renewal.before:
+        project.renewal = None
+        session.tell("The project changed meanwhile, so its keys were not solved again.")
+        return
+    if renewal.is_over:
+        _keep(session, project, renewal)
+        return
+    project.renewal = renewal
+    picture = project.picture.rgba
+
+    def failed(error: Exception) -> None:
+        project.renewal = None
+        builds = renewal.meshing is not None
+        report(session, f"The {'domain' if builds else 'bounds'} stayed as before", error)
+
+    session.jobs.put(
+        Job(
+            kind=RENEWING,
+            work=lambda: go_on(renewal, picture),
+            done=lambda further: _go_on(session, project, further),
+            failed=failed,
+        )
+    )
+
+
+def _keep(session: Session, project: Project, renewal: Renewal) -> None:
+    project.renewal = None
+    project.history.do(renewal.command)
+    if renewal.domain is not None:
+        project.loose = project.meshing = None
+    for notice in renewal.notices:
+        session.tell(notice[:1].upper() + notice[1:] + ".")
+    if renewal.outside:
+        frames = ", ".join(map(str, renewal.outside))
+        poses = "pose" if len(renewal.outside) == 1 else "poses"
+        session.tell(
+            f"No way into the bounds was found for the {poses} at frame {frames}. "
+            "Move the handles there nearer to the drawing, or undo.",
+            tone="error",
+        )

@@ -1,0 +1,176 @@
+"""Saving, and what must not be lost: questions before, autosave, recovery."""
+
+from pathlib import Path
+
+from app.editor.action import Action, do
+from app.editor.failures import report
+from app.editor.jobs import Job
+from app.editor.session import FileDialog, Project, Question, Session
+from app.storage import SECONDS, forget_autosave, save_preferences, save_project, write_autosave
+
+PROJECT = ".lissom"
+SAVING, AUTOSAVING, KEEPING = "Saving", "Autosaving", "Keeping preferences"
+
+
+def save(session: Session) -> None:
+    """Save the project where it was saved or opened, or ask where."""
+    save_then(session, None)
+
+
+def save_as(session: Session) -> None:
+    """Ask where to save the project."""
+    _ask_where(session, None)
+
+
+def save_then(session: Session, then: Action | None) -> None:
+    """Save the project, and do something else once that has worked."""
+    project = session.project
+    if project is None:
+        return
+    if project.path is None:
+        _ask_where(session, then)
+    else:
+        write(session, project.path, then)
+
+
+def write(session: Session, path: Path, then: Action | None) -> None:
+    """Save the project in a file."""
+    project = session.project
+    if project is None:
+        return
+    if project.is_posing and not (project.grab is not None and project.grab.held):
+        # To settle afterwards would be a change again, which nobody made.
+        project.to_save = (path, then)
+        return
+    document = project.document
+
+    def done(_: None) -> None:
+        project.history.mark_saved(document)
+        project.path = path
+        session.preferences = session.preferences.with_recent(path)
+        session.tell(f"Saved {path.name}.", tone="good")
+        if then is not None:
+            then.apply(session)
+
+    session.jobs.put(
+        Job(
+            kind=SAVING,
+            work=lambda: save_project(path, document),
+            done=done,
+            failed=lambda error: report(session, "The project was not saved", error),
+            urgent=True,
+        )
+    )
+
+
+def unless_unsaved(session: Session, then: Action) -> None:
+    """Do something that gives up the project, but ask first if it has changes."""
+    project = session.project
+    if project is None or project.history.is_saved:
+        then.apply(session)
+        return
+    name = project.path.name if project.path else "This project"
+    session.dialog = Question(
+        title="Unsaved changes",
+        text=f"{name} has changes that are not saved.",
+        answers=(("Save", do(save_then, then)), ("Don't save", then)),
+    )
+
+
+def close(session: Session) -> None:
+    """Go back to the welcome view, after a question if there are changes."""
+    unless_unsaved(session, do(give_up))
+
+
+def give_up(session: Session) -> None:
+    """Close the project, whatever it holds."""
+    session.project = None
+    forget_autosave(session.folder)
+
+
+def quit_lissom(session: Session) -> None:
+    """Close the window, after a question if there are changes."""
+    unless_unsaved(session, do(leave))
+
+
+def leave(session: Session) -> None:
+    """Close the window."""
+    forget_autosave(session.folder)
+    session.quitting = True
+
+
+def keep_up(session: Session) -> None:
+    """Write what is due: a project that has settled, unsaved work, preferences; once a frame."""
+    project = session.project
+    if project is not None and not project.is_posing and project.to_save is not None:
+        path, then = project.to_save
+        project.to_save = None
+        write(session, path, then)
+    autosave(session)
+    keep_preferences(session)
+
+
+def keep_preferences(session: Session) -> None:
+    """Write the preferences when they have changed."""
+    preferences, folder = session.preferences, session.folder
+    if preferences == session.kept_preferences:
+        return
+    session.kept_preferences = preferences
+    session.jobs.put(
+        Job(
+            kind=KEEPING,
+            work=lambda: save_preferences(folder, preferences),
+            done=lambda _: None,
+            failed=lambda error: report(session, "The preferences cannot be kept", error),
+            urgent=True,
+        )
+    )
+
+
+def autosave(session: Session) -> None:
+    """Keep changes that are not saved, every now and then."""
+    project = session.project
+    now = session.clock()
+    if project is None or project.is_posing:
+        return
+    if project.history.is_saved:
+        if project.kept is not None:
+            project.kept = None
+            forget_autosave(session.folder)
+        return
+    is_due = now - project.kept_at >= SECONDS and project.kept is not project.document
+    if is_due and AUTOSAVING not in session.jobs.kinds:
+        _keep(session, project, now)
+
+
+def _keep(session: Session, project: Project, now: float) -> None:
+    document, folder = project.document, session.folder
+    project.kept, project.kept_at = document, now
+
+    def done(_: None) -> None:
+        # In the meantime it may have been saved, or closed.
+        if session.project is not project or project.kept is not document:
+            forget_autosave(folder)
+
+    session.jobs.put(
+        Job(
+            kind=AUTOSAVING,
+            work=lambda: write_autosave(folder, document),
+            done=done,
+            failed=lambda error: report(session, "Unsaved work cannot be kept", error),
+        )
+    )
+
+
+def _ask_where(session: Session, then: Action | None) -> None:
+    project = session.project
+    if project is None:
+        return
+    session.dialog = FileDialog(
+        title="Save the project",
+        folder=project.path.parent if project.path else session.usual_folder,
+        name=project.path.name if project.path else f"{project.name}{PROJECT}",
+        suffixes=(PROJECT,),
+        writes=True,
+        chosen=lambda path: do(write, path, then),
+    )

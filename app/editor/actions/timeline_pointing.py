@@ -1,0 +1,162 @@
+"""Gestures of the pointer in the timeline, from press to release, and what it shows."""
+
+from dataclasses import replace
+from itertools import count
+
+from app.document import LAST_FRAME, Command, Document, FrameRange, key_commands, settings_commands
+from app.editor.actions import editing, playback
+from app.editor.actions.keys import retime
+from app.editor.session import Project, Session
+from app.editor.timeline_view import EdgeDrag, KeyBox, KeyDrag, Reach, Scrub, Strip, TimeGesture
+
+
+def look_at(session: Session, strip: Strip | None) -> None:
+    """Show a stretch of time; None fits all frames."""
+    if session.project:
+        timing = session.project.timing
+        if timing.gesture is None:
+            timing.strip = strip
+        else:
+            timing.held = strip
+
+
+def fit(session: Session) -> None:
+    """Show all frames."""
+    look_at(session, None)
+
+
+def follow(session: Session, frame: int, strip: Strip | None) -> None:
+    """Note that the playhead is at a frame, and show a stretch of time that it is in, if given."""
+    if session.project:
+        session.project.timing.seen = frame
+        if strip is not None:
+            look_at(session, strip)
+
+
+def measure(session: Session) -> None:
+    """Find out in which keys handles fall short of their targets."""
+    if session.project:
+        timing = session.project.timing
+        timing.reach = Reach.of(session.project.document, timing.reach)
+
+
+def begin(session: Session, gesture: TimeGesture, strip: Strip) -> None:
+    """Begin a gesture; what is shown stays until it ends."""
+    if session.project:
+        session.project.timing.gesture = gesture
+        session.project.timing.held = strip
+
+
+def move(session: Session, frame: float) -> None:
+    """Follow the pointer to another time."""
+    project = session.project
+    if project is None:
+        return
+    match project.timing.gesture:
+        case KeyDrag() as drag:
+            _drag_keys(session, project, drag, frame)
+        case EdgeDrag() as drag:
+            _drag_edge(session, project, drag, frame)
+        case KeyBox() as box:
+            low, high = sorted((box.start, frame))
+            inside = {key.frame for key in project.document.keys if low <= key.frame <= high}
+            editing.choose_keys(session, box.keeps | inside)
+        case Scrub(offset=offset):
+            playback.scrub(session, round(frame + offset))
+
+
+def end(session: Session) -> None:
+    """End the gesture where it is."""
+    if session.project:
+        timing = session.project.timing
+        if timing.strip is not None:
+            timing.strip = timing.held
+        timing.gesture = timing.held = None
+
+
+def cancel(session: Session) -> None:
+    """End the gesture, and take back what it did."""
+    if session.project is None:
+        return
+    match session.project.timing.gesture:
+        case KeyDrag(before=before, after=after, keys=keys) if session.project.document is after:
+            _become(session, before, "Move keys")
+            editing.choose_keys(session, keys)
+        case EdgeDrag(before=before, after=after) if session.project.document is after:
+            _become(session, before, "Set work range")
+        case KeyBox(keeps=keeps):
+            editing.choose_keys(session, keeps)
+    end(session)
+
+
+def shift_of(document: Document, keys: frozenset[int], wanted: int, *, copies: bool) -> int:
+    """Return the number of frames next to `wanted` by which keys can be moved.
+
+    Parameters
+    ----------
+    document : Document
+    keys : frozenset of int
+        Their frames.
+    wanted : int
+    copies : bool
+        Whether they stay as well; then 0 stands for no copies.
+    """
+    all_keys = {key.frame for key in document.keys}
+    taken = all_keys if copies else all_keys - keys
+    low, high = -min(keys), LAST_FRAME - max(keys)
+    wanted = min(max(wanted, low), high)
+    for distance in count():
+        # On the side from which the pointer comes first: keys wait before one that is in the way.
+        for by in (wanted - distance, wanted + distance)[:: 1 if wanted > 0 else -1]:
+            if by == 0 or (low <= by <= high and not {key + by for key in keys} & taken):
+                return by
+    raise AssertionError("unreachable: 0 is always possible")
+
+
+def _drag_keys(session: Session, project: Project, drag: KeyDrag, frame: float) -> None:
+    wanted = round(frame - drag.start)
+    by = shift_of(drag.before, drag.keys, wanted, copies=drag.copies)
+    if by == drag.by:
+        return
+    if project.document is not drag.after:
+        end(session)
+        return
+    command = (key_commands.copy_keys if drag.copies else key_commands.move_keys)(drag.keys, by)
+    _become(session, command(drag.before) if by else drag.before, command.label)
+    editing.choose_keys(session, frozenset(key + by for key in drag.keys))
+    project.timing.gesture = replace(drag, by=by, after=project.document)
+
+
+def _drag_edge(session: Session, project: Project, drag: EdgeDrag, frame: float) -> None:
+    if project.document is not drag.after:
+        end(session)
+        return
+    command = _trim(drag, frame)
+    _become(session, command(drag.before), command.label)
+    project.timing.gesture = replace(drag, after=project.document)
+
+
+def _trim(drag: EdgeDrag, pointed: float) -> Command:
+    """Return the command that puts the dragged end where the pointer is."""
+    document = drag.before
+    frames, played = document.frames, document.played
+    frame = frames.clamp(round(pointed))
+    match drag.edge:
+        case "animation end":
+            least = max(document.keys[-1].frame, frames.first + 1)
+            last = min(max(round(pointed), least), LAST_FRAME)
+            return settings_commands.set_frames(FrameRange(frames.first, last))
+        case "work start":
+            work = FrameRange(max(min(frame, played.last - 1), frames.first), played.last)
+        case "work end":
+            work = FrameRange(played.first, min(max(frame, played.first + 1), frames.last))
+        case "work range":
+            by = round(pointed - drag.start)
+            by = min(max(by, frames.first - played.first), frames.last - played.last)
+            work = FrameRange(played.first + by, played.last + by)
+    return settings_commands.set_work_range(None if work == frames else work)
+
+
+def _become(session: Session, document: Document, label: str) -> None:
+    """Go on to another document, as part of the gesture's one step of undo."""
+    retime(session, Command(label, lambda _: document))

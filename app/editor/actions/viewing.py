@@ -1,0 +1,144 @@
+"""How the window looks: camera, overlays, theme, dialogs."""
+
+from dataclasses import replace
+from pathlib import Path
+from typing import Any, Literal
+
+from app.document import Meshing
+from app.editor.action import Action
+from app.editor.session import Dialog, FileDialog, HeatMap, Session, ShortcutSheet, Toast
+from app.render import View
+from app.storage import LARGEST_GHOST_STEP, LARGEST_SCALE, MOST_GHOSTS, SMALLEST_SCALE, ThemeName
+
+SCALE_STEP = 0.25
+Overlay = Literal["handles", "wireframe", "outline", "cage", "onion"]
+HEAT_MAPS: tuple[HeatMap, ...] = ("none", "k", "sigma_a", "sigma_b")
+
+
+def look_from(session: Session, camera: View | None) -> None:
+    """Move the camera; None fits the picture into the viewport."""
+    if session.project:
+        session.project.camera = camera
+
+
+def fit(session: Session) -> None:
+    """Show the whole picture."""
+    look_from(session, None)
+
+
+def actual_size(session: Session) -> None:
+    """Show one pixel of the picture as one of the screen, around the same centre."""
+    if session.project:
+        session.project.camera = replace(session.project.view(session.screen), scale=1.0)
+
+
+def resize(session: Session, width: int, height: int) -> None:
+    """Take note of the viewport's size in pixels."""
+    session.screen = (max(width, 1), max(height, 1))
+
+
+def toggle(session: Session, overlay: Overlay) -> None:
+    """Show or hide an overlay."""
+    shown: dict[str, Any] = {overlay: not getattr(session.overlays, overlay)}
+    session.overlays = replace(session.overlays, **shown)
+
+
+def show_heat_map(session: Session, heat_map: HeatMap) -> None:
+    """Colour the shape by one of the distortions, or show its picture."""
+    session.overlays = replace(session.overlays, heat_map=heat_map)
+
+
+def toggle_heat_map(session: Session) -> None:
+    """Show the conformal distortion, or no distortion."""
+    show_heat_map(session, "k" if session.overlays.heat_map == "none" else "none")
+
+
+def set_ghosts(session: Session, before: int, after: int, step: int) -> None:
+    """Choose how many ghosts the onion skin has, and how many frames apart."""
+    session.preferences = replace(
+        session.preferences,
+        ghosts_before=min(max(before, 0), MOST_GHOSTS),
+        ghosts_after=min(max(after, 0), MOST_GHOSTS),
+        ghost_step=min(max(step, 1), LARGEST_GHOST_STEP),
+    )
+
+
+def set_backdrop(session: Session, backdrop: str) -> None:
+    """Choose what lies behind the drawing: "checker" or "#rrggbb"."""
+    session.preferences = replace(session.preferences, backdrop=backdrop)
+
+
+def draft_meshing(session: Session, meshing: Meshing) -> None:
+    """Choose what the domain will be rebuilt with."""
+    if session.project:
+        session.project.meshing = meshing
+
+
+def toggle_theme(session: Session) -> None:
+    """Change between the dark and the light theme."""
+    theme: ThemeName = "light" if session.preferences.theme == "dark" else "dark"
+    session.preferences = replace(session.preferences, theme=theme)
+
+
+def scale_up(session: Session) -> None:
+    """Enlarge the whole interface."""
+    _scale(session, SCALE_STEP)
+
+
+def scale_down(session: Session) -> None:
+    """Make the whole interface smaller."""
+    _scale(session, -SCALE_STEP)
+
+
+def _scale(session: Session, step: float) -> None:
+    scale = min(max(session.preferences.scale + step, SMALLEST_SCALE), LARGEST_SCALE)
+    session.preferences = replace(session.preferences, scale=scale)
+
+
+def toggle_auto_key(session: Session) -> None:
+    """Let posing make and change keys by itself, or leave that to the person."""
+    auto_key = not session.preferences.auto_key
+    session.preferences = replace(session.preferences, auto_key=auto_key)
+
+
+def show_dialog(session: Session, dialog: Dialog) -> None:
+    """Open a dialog in place of the one that may be open."""
+    session.dialog = dialog
+
+
+def browse(session: Session, dialog: FileDialog) -> None:
+    """Go on with the file browser that is open, in another state."""
+    session.dialog = dialog
+
+
+def choose(session: Session, dialog: FileDialog, path: Path) -> None:
+    """Do with a path what the file dialog asked for, and begin there the next time."""
+    session.dialog = None
+    session.preferences = replace(session.preferences, folder=path.parent)
+    dialog.chosen(path).apply(session)
+
+
+def use_own_dialogs(session: Session) -> None:
+    """Ask for files with our own browser, and not with the system's dialogs, from now on."""
+    session.system_dialogs = False
+
+
+def show_shortcuts(session: Session) -> None:
+    """Open the sheet of all keys."""
+    session.dialog = ShortcutSheet()
+
+
+def close_dialog(session: Session) -> None:
+    """Close the dialog without doing anything."""
+    session.dialog = None
+
+
+def answer(session: Session, action: Action) -> None:
+    """Close the dialog and do what was chosen in it."""
+    session.dialog = None
+    action.apply(session)
+
+
+def dismiss(session: Session, toast: Toast) -> None:
+    """Take a message away."""
+    session.toasts = [other for other in session.toasts if other is not toast]

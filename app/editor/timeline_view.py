@@ -1,0 +1,193 @@
+"""How the person looks at the timeline, and what the pointer does there."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import Literal, Self
+
+from app.document import Document, FrameRange, Pose
+from app.solving import LAG
+from engine.geometry import box_diagonal
+
+SMALLEST, LARGEST = 0.002, 4.0  # em that a frame takes
+MARGIN = 1.4  # em left and right of frames that are fitted
+ROOM = 0.04  # of the width, right of the last frame: there keys can be dragged on
+Edge = Literal["work start", "work range", "work end", "animation end"]
+
+
+@dataclass(frozen=True, slots=True)
+class Strip:
+    """The stretch of time that is on the screen.
+
+    Parameters
+    ----------
+    start : float
+        The frame at its left edge.
+    scale : float
+        How many em a frame takes.
+    """
+
+    start: float
+    scale: float
+
+    @classmethod
+    def fitting(cls, frames: FrameRange, width: float) -> Self:
+        """Return the strip that shows all frames within a width in em."""
+        free = max(width * (1 - ROOM) - 2 * MARGIN, 1.0)
+        scale = min(free / max(frames.last - frames.first, 1), LARGEST)
+        return cls(frames.first - MARGIN / scale, scale)
+
+    def place(self, frame: float) -> float:
+        """Return how many em a frame is from the left edge."""
+        return (frame - self.start) * self.scale
+
+    def frame(self, place: float) -> float:
+        """Return the frame at a place in em."""
+        return self.start + place / self.scale
+
+    def zoomed(self, factor: float, place: float) -> Self:
+        """Return the strip in which frames are wider by a factor, and the one at `place` stays."""
+        scale = min(max(self.scale * factor, SMALLEST), LARGEST)
+        return replace(self, start=self.frame(place) - place / scale, scale=scale)
+
+    def panned(self, by: float) -> Self:
+        """Return the strip some em later."""
+        return replace(self, start=self.start + by / self.scale)
+
+    def kept_near(self, frames: FrameRange, width: float) -> Self:
+        """Return the strip moved so that it shows frames from its middle on, or up to there."""
+        half = width / 2 / self.scale
+        return replace(self, start=min(max(self.start, frames.first - half), frames.last - half))
+
+    def showing(self, frame: float, width: float, *, turns: bool) -> Self:
+        """Return the strip moved so that it shows a frame; this one if it does already.
+
+        Parameters
+        ----------
+        frame : float
+        width : float
+            In em.
+        turns : bool
+            Whether to go on by a whole page, and not by as little as possible.
+        """
+        place = self.place(frame)
+        if 0 <= place <= width:
+            return self
+        if turns:
+            return self.panned(place - MARGIN)
+        return self.panned(place if place < 0 else place - width)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class KeyDrag:
+    """The pointer moves keys in time, or copies of them.
+
+    Parameters
+    ----------
+    keys : frozenset of int
+        Their frames in `before`.
+    pressed : int
+        The one under the pointer.
+    start : float
+        The pointer's frame at the press.
+    copies : bool
+    before, after : Document
+        At the press, and with the keys where they are now.
+    by : int
+        How far they are, in frames.
+    """
+
+    keys: frozenset[int]
+    pressed: int
+    start: float
+    copies: bool
+    before: Document
+    after: Document
+    by: int = 0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class EdgeDrag:
+    """The pointer moves an end of the work range, all of it, or the animation's end."""
+
+    edge: Edge
+    start: float
+    before: Document
+    after: Document
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class KeyBox:
+    """The pointer spans a stretch of time to choose the keys in it, besides those it `keeps`."""
+
+    start: float
+    keeps: frozenset[int] = frozenset()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Scrub:
+    """The pointer moves the playhead, which is `offset` frames later than the pointer."""
+
+    offset: float = 0.0
+
+
+TimeGesture = KeyDrag | EdgeDrag | KeyBox | Scrub
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Reach:
+    """By how many pixels handles fall short of their targets in each key's pose.
+
+    Parameters
+    ----------
+    document : Document
+    lags : mapping of Pose to mapping of int to float
+        Those that matter, by the handle's id.
+    """
+
+    document: Document
+    lags: Mapping[Pose, Mapping[int, float]]
+
+    @classmethod
+    def of(cls, document: Document, earlier: "Reach | None") -> "Reach":
+        """Measure the poses of a document; those that were measured before are not again."""
+        known: Mapping[Pose, Mapping[int, float]] = {}
+        if earlier is not None and _has_same_shape(document, earlier.document):
+            known = earlier.lags
+        least = LAG * box_diagonal(document.domain.outline)
+        lags = {}
+        for pose in (key.pose for key in document.keys):
+            if pose in known:
+                lags[pose] = known[pose]
+            elif document.handles:
+                measured = document.lags(pose).items()
+                lags[pose] = {handle: lag for handle, lag in measured if lag > least}
+            else:
+                lags[pose] = {}
+        return cls(document=document, lags=lags)
+
+
+def _has_same_shape(document: Document, other: Document) -> bool:
+    return document.handles == other.handles and document.domain is other.domain
+
+
+@dataclass(slots=True, kw_only=True, eq=False)
+class Timing:
+    """What may change of a project's timeline besides the document.
+
+    Parameters
+    ----------
+    strip : Strip, optional
+        What it shows; None fits all frames.
+    gesture : TimeGesture, optional
+    held : Strip, optional
+        What it shows while the gesture lasts: nothing may move under the pointer.
+    seen : int
+        The frame that was shown last, so that the strip follows the playhead only when it moves.
+    reach : Reach, optional
+    """
+
+    strip: Strip | None = None
+    gesture: TimeGesture | None = None
+    held: Strip | None = None
+    seen: int = 0
+    reach: Reach | None = None

@@ -1,0 +1,208 @@
+"""The in-betweens of a document at any frame: the one way to them for window, export and checks."""
+
+import threading
+from collections.abc import Sequence
+
+import numpy as np
+
+from app.document import Document, Moment, Pose, Variant, intervals, resting_pose, time_of
+from engine import interpolation
+from engine.arrays import Complexes, Floats
+from engine.dirichlet import HilbertTransform, ProjectedTransform
+from engine.domain import Domain
+from engine.interpolation import (
+    Frame,
+    Inbetweens,
+    KeyframeSamples,
+    Sites,
+    prepare_inbetweens,
+    prepare_sites,
+    sample_keyframes,
+)
+from engine.maps import HarmonicMap
+from engine.paths import root_sheets
+
+
+class Stage:
+    """Points of a domain at which in-betweens are wanted, with all that poses share there.
+
+    It keeps the samples of each pose that it met; poses are frozen, so that they stay true.
+
+    Parameters
+    ----------
+    domain : Domain
+    anchor : complex, optional
+        None lets the engine choose it.
+    points : complex128, shape (m,), optional
+        By default the vertices of the domain's mesh.
+    kin : Stage, optional
+        With the same outline and cage; what depends on them alone is shared with it.
+
+    Raises
+    ------
+    EngineError
+        If a point or the anchor is outside the domain.
+    """
+
+    def __init__(
+        self,
+        domain: Domain,
+        *,
+        anchor: complex | None,
+        points: Complexes | None = None,
+        kin: "Stage | None" = None,
+    ) -> None:
+        self.domain = domain
+        self.anchor = anchor
+        mesh = domain.mesh
+        self.sites: Sites = prepare_sites(
+            domain.outline,
+            domain.cage,
+            mesh.vertices if points is None else points,
+            triangles=mesh.triangles if points is None else None,
+            anchor=anchor,
+        )
+        self._lock = threading.RLock()
+        self._samples: dict[Pose, KeyframeSamples] = {}
+        self._inbetweens: dict[tuple[Pose, Pose, int, Variant, bool], Inbetweens] = {}
+        self._kin = kin
+        self._transform: HilbertTransform | None = None
+        self._quick_transform: ProjectedTransform | None = None
+
+    @property
+    def transform(self) -> HilbertTransform:
+        """The Hilbert transform of the outline, worked out when it is asked for first."""
+        with self._lock:
+            if self._transform is None:
+                self._transform = (
+                    HilbertTransform.on(self.domain.outline, self.domain.cage)
+                    if self._kin is None
+                    else self._kin.transform
+                )
+                self._kin = None
+            return self._transform
+
+    @property
+    def quick_transform(self) -> ProjectedTransform:
+        """What stands in for the transform in rough in-betweens."""
+        with self._lock:
+            if self._quick_transform is None:
+                self._quick_transform = ProjectedTransform.on(self.domain.outline, self.domain.cage)
+            return self._quick_transform
+
+    def keep_only(self, poses: Sequence[Pose]) -> None:
+        """Forget what was kept for other poses."""
+        wanted = set(poses)
+        with self._lock:
+            self._samples = {p: s for p, s in self._samples.items() if p in wanted}
+            self._inbetweens = {
+                key: kept for key, kept in self._inbetweens.items() if wanted.issuperset(key[:2])
+            }
+
+    def samples(self, pose: Pose) -> KeyframeSamples:
+        """Return the samples of a pose's map."""
+        with self._lock:
+            if pose not in self._samples:
+                f = HarmonicMap(cage=self.domain.cage, phi=pose.phi, psi=pose.psi)
+                (self._samples[pose],) = sample_keyframes(
+                    [f], self.sites.paths, self.sites.outline_samples
+                )
+            return self._samples[pose]
+
+    def inbetweens(
+        self, first: Pose, second: Pose, variant: Variant, *, turns: int = 0, rough: bool = False
+    ) -> Inbetweens:
+        """Return the in-betweens of two poses, with whole turns beyond the shorter way.
+
+        Rough ones are ready much sooner where the variant is metric, and are right to some
+        thousandths of the drawing's size; other variants have no rough ones.
+        """
+        with self._lock:
+            key = (first, second, turns, variant, rough)
+            if key not in self._inbetweens:
+                pair = [self.samples(first), self.samples(second)]
+                self._inbetweens[key] = prepare_inbetweens(
+                    interpolation.Variant(variant),
+                    self.sites,
+                    pair,
+                    root_sheets(np.array([sample.anchor_fz for sample in pair]), [turns]),
+                    transform=self._transform_for(variant, rough=rough),
+                )
+            return self._inbetweens[key]
+
+    def _transform_for(
+        self, variant: Variant, *, rough: bool
+    ) -> HilbertTransform | ProjectedTransform | None:
+        if variant != "metric":
+            return None
+        return self.quick_transform if rough else self.transform
+
+
+def has_rough(variant: Variant) -> bool:
+    """Tell whether rough in-betweens of a variant differ from its exact ones."""
+    return variant == "metric"
+
+
+class Animation:
+    """A document's motion at the points of a stage.
+
+    Parameters
+    ----------
+    document : Document
+    variant : str, optional
+        The document's own by default.
+    points : complex128, shape (m,), optional
+        By default the vertices of the domain's mesh.
+    stage : Stage, optional
+        An earlier animation's; it is used again if its domain and anchor are the document's, and
+        then only poses that changed cost anything.
+    """
+
+    def __init__(
+        self,
+        document: Document,
+        variant: Variant | None = None,
+        *,
+        points: Complexes | None = None,
+        stage: Stage | None = None,
+    ) -> None:
+        self.document = document
+        self.variant: Variant = document.variant if variant is None else variant
+        if (
+            stage is None
+            or stage.domain is not document.domain
+            or stage.anchor != document.anchor
+            or (points is not None and points is not stage.sites.points)
+        ):
+            stage = Stage(document.domain, anchor=document.anchor, points=points)
+        self.stage = stage
+        stage.keep_only([key.pose for key in document.keys])
+
+    def positions(self, frame: float) -> Complexes:
+        """Return where the points (m,) are at a frame, which may lie between two numbers."""
+        moment = time_of(self.document, frame)
+        resting = resting_pose(self.document, moment)
+        if resting is not None:
+            return self.stage.samples(resting).positions
+        return self._inbetweens(moment.interval).frame(_weights(moment)).positions
+
+    def frame(self, frame: float) -> Frame:
+        """Return positions and derivatives of the points at a frame."""
+        moment = time_of(self.document, frame)
+        resting = resting_pose(self.document, moment)
+        if resting is None:
+            return self._inbetweens(moment.interval).frame(_weights(moment))
+        positions = self.stage.samples(resting).positions
+        fz, fzbar = self.document.map_of(resting).derivatives(self.stage.sites.points)
+        return Frame(positions=positions, fz=fz, fzbar=fzbar, rho=None)
+
+    def _inbetweens(self, interval: int) -> Inbetweens:
+        first, second = intervals(self.document)[interval]
+        keys = self.document.keys
+        return self.stage.inbetweens(
+            keys[first].pose, keys[second].pose, self.variant, turns=keys[first].turns
+        )
+
+
+def _weights(moment: Moment) -> Floats:
+    return np.array([1.0 - moment.weight, moment.weight])

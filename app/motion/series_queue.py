@@ -1,0 +1,144 @@
+"""Series of the in-betweens: which of them are built next, a batch at a time, within a budget."""
+
+from collections.abc import Callable, Generator, Iterable
+from dataclasses import replace
+from functools import partial
+from types import MappingProxyType
+
+from app.document import Document, intervals, time_of
+from app.motion.prepared import Figure, Motion, Pair, Piece, pair_of
+from engine.streaming import Channels, Distortions, Positions, Series, build_series
+
+BUDGET = 2**30  # bytes of the series of one figure
+EXPECTED = 100  # bytes a vertex that a series is thought to take before one is built
+# Vertices times steps that the worker takes before it looks for more urgent work: some
+# hundredths of a second.
+BATCH = 400_000
+
+
+class Build:
+    """A series in the making; only the worker takes its steps.
+
+    Parameters
+    ----------
+    motion : Motion
+    pair : Pair
+        One of the motion's.
+    distortions : bool
+        Whether f_z and f_z̄ are streamed, and not the positions.
+    """
+
+    def __init__(self, motion: Motion, pair: Pair, *, distortions: bool) -> None:
+        if motion.stage is None:
+            raise ValueError("a motion without a stage has nothing to stream")
+        self.figure: Figure = motion.figure
+        self.pair = pair
+        self.distortions = distortions
+        self.series: Series | None = None
+        inbetweens, sites = motion.pieces[pair].inbetweens, motion.stage.sites
+        self._steps = _steps(
+            partial(Distortions.of, inbetweens)
+            if distortions
+            else partial(Positions.of, inbetweens, sites)
+        )
+        self._batch = max(1, BATCH // len(motion.figure.domain.mesh.vertices))
+
+    def is_of(self, motion: Motion | None) -> bool:
+        """Tell whether a motion still has use for it."""
+        return motion is not None and motion.figure is self.figure and self.pair in motion.pieces
+
+    def advance(self) -> "Build":
+        """Take some steps."""
+        for _ in range(self._batch):
+            try:
+                next(self._steps)
+            except StopIteration as stop:
+                self.series = stop.value
+                break
+        return self
+
+
+def next_build(
+    motion: Motion, document: Document, frame: int, *, heat: bool, budget: int = BUDGET
+) -> Build | None:
+    """Return what is to be built next of a motion; None where all that is wanted is there.
+
+    Parameters
+    ----------
+    motion : Motion
+        Of the document.
+    document : Document
+    frame : int
+        Where the playhead is; the intervals nearest to it come first.
+    heat : bool
+        Whether distortions are shown.
+    budget : int
+        In bytes. Intervals beyond it stay on the direct path.
+    """
+    if motion.stage is None or not motion.knows(document):
+        return None
+    used = 0
+    for pair in _by_nearness(document, frame):
+        piece = motion.pieces[pair]
+        for distortions, series in ((False, piece.series), (True, piece.distortions)):
+            if distortions and not heat:
+                continue
+            if series is None:
+                if used + _expected(motion, distortions=distortions) > budget:
+                    return None
+                return Build(motion, pair, distortions=distortions)
+            used += series.nbytes
+    return None
+
+
+def with_series(
+    motion: Motion, build: Build, document: Document, frame: int, *, budget: int = BUDGET
+) -> Motion:
+    """Return a motion that has what was built; the series farthest from `frame` make room for it.
+
+    A motion that has moved on to other keys, or to another figure, is returned as it is.
+    """
+    series = build.series
+    if series is None or not build.is_of(motion):
+        return motion
+    pieces = dict(motion.pieces)
+    piece = pieces[build.pair]
+    changed = (
+        piece._replace(distortions=series) if build.distortions else piece._replace(series=series)
+    )
+    pieces[build.pair] = changed
+    if motion.knows(document):
+        for pair in reversed(_by_nearness(document, frame)):
+            if memory(pieces.values()) > budget and pair != build.pair:
+                pieces[pair] = pieces[pair]._replace(series=None, distortions=None)
+    return replace(motion, pieces=MappingProxyType(pieces))
+
+
+def memory(pieces: Iterable[Piece]) -> int:
+    """Return the bytes that the series of some pieces take."""
+    return sum(
+        series.nbytes
+        for piece in pieces
+        for series in (piece.series, piece.distortions)
+        if series is not None
+    )
+
+
+def _expected(motion: Motion, *, distortions: bool) -> int:
+    """Return the bytes that another series may take: as many as the largest one so far."""
+    kind = [p.distortions if distortions else p.series for p in motion.pieces.values()]
+    sizes = [series.nbytes for series in kind if series is not None]
+    return max(sizes, default=EXPECTED * len(motion.figure.domain.mesh.vertices))
+
+
+def _by_nearness(document: Document, frame: int) -> list[Pair]:
+    """Return the document's intervals, the one at the frame first; each once."""
+    current = time_of(document, frame).interval
+    order = sorted(range(len(intervals(document))), key=lambda i: (abs(i - current), i < current))
+    return list(dict.fromkeys(pair_of(document, interval) for interval in order))
+
+
+def _steps(channels: Callable[[], Channels]) -> Generator[None, None, Series]:
+    source = channels()
+    yield
+    return (yield from build_series(source))

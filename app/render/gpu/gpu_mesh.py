@@ -1,0 +1,210 @@
+"""The drawing's mesh in vertex buffers, and its poses."""
+
+from collections.abc import Mapping
+from dataclasses import replace
+from types import MappingProxyType
+from typing import Final, Protocol
+
+import moderngl
+import numpy as np
+import numpy.typing as npt
+
+from app.errors import LissomError
+from app.render.gpu.gpu_picture import GpuPicture
+from app.render.gpu.programs import Programs, Stages, set_uniforms
+from engine.arrays import Complexes, Integers, readonly
+
+Singles = npt.NDArray[np.float32]
+Attribute = tuple[moderngl.Buffer, str, str]
+"""A buffer, its format, and the attribute of the shader that it feeds."""
+
+
+def singles(points: Complexes) -> Singles:
+    """Return points (v,) as the float32 (v, 2) that are uploaded."""
+    return points.astype(np.complex64).view(np.float32).reshape(-1, 2)
+
+
+def border_edges(triangles: Integers) -> Integers:
+    """Return the edges (e, 2) that only one triangle has, the triangle on their left."""
+    edges = np.concatenate([triangles[:, [k, (k + 1) % 3]] for k in range(3)]).astype(np.int64)
+    keys = edges.min(axis=1) << 32 | edges.max(axis=1)
+    _, first, count = np.unique(keys, return_index=True, return_counts=True)
+    border: Integers = edges[first[count == 1]].astype(np.int32)
+    return border
+
+
+class VertexSource(Protocol):
+    """Where the vertices of a frame come from: a shader that places them and its buffers."""
+
+    @property
+    def shader(self) -> str:
+        """The file in shaders/ that defines `vec2 vertex_position()`."""
+
+    @property
+    def constants(self) -> tuple[tuple[str, int], ...]:
+        """What the shader is compiled with."""
+
+    @property
+    def uniforms(self) -> Mapping[str, object]:
+        """What the shader is drawn with in this frame."""
+
+    def attributes(self) -> tuple[Attribute, ...]:
+        """Return what feeds the shader, one entry of each buffer a vertex."""
+
+    def release(self) -> None:
+        """Let the buffers go."""
+
+
+class StreamedVertices:
+    """Owner of a buffer of positions that are written anew for every frame.
+
+    Parameters
+    ----------
+    context : moderngl.Context
+    count : int
+        Number of vertices, v.
+    """
+
+    shader: Final = "streamed.glsl"
+    constants: Final = ()
+    uniforms: Final[Mapping[str, object]] = MappingProxyType({})
+
+    def __init__(self, context: moderngl.Context, count: int) -> None:
+        self._shape = (count, 2)
+        self._buffer = context.buffer(reserve=8 * count, dynamic=True)
+
+    def write(self, positions: Singles) -> None:
+        """Upload the positions, float32 (v, 2), of a frame.
+
+        Raises
+        ------
+        LissomError
+            If the shape is another mesh's or a position is not finite: such a frame would come
+            out empty without a word.
+        """
+        if positions.shape != self._shape:
+            raise LissomError(f"a frame needs {self._shape} positions, not {positions.shape}")
+        # One infinite or undefined entry makes the sum so; this is far cheaper than a look at each.
+        if not np.isfinite(positions.sum()):
+            raise LissomError("the frame has vertices that are not finite; it cannot be drawn")
+        self._buffer.write(np.ascontiguousarray(positions, dtype=np.float32).data)
+
+    def attributes(self) -> tuple[Attribute, ...]:
+        """Return what feeds the shader."""
+        return ((self._buffer, "2f", "position"),)
+
+    def release(self) -> None:
+        """Let the buffer go."""
+        self._buffer.release()
+
+
+class GpuMesh:
+    """Owner of what all poses of a drawing share: triangles and places in the picture.
+
+    Parameters
+    ----------
+    programs : Programs
+    picture : GpuPicture
+        What is painted on the triangles; released by its owner, after the mesh.
+    rest : complex128, shape (v,)
+        The undeformed vertices in pixels of the picture, y up from its lower left corner.
+    triangles : int32, shape (m, 3)
+        They are painted in this order where the pose overlaps itself.
+    """
+
+    def __init__(
+        self, programs: Programs, picture: GpuPicture, *, rest: Complexes, triangles: Integers
+    ) -> None:
+        self.programs = programs
+        self.picture = picture
+        self.count = len(rest)
+        context = programs.context
+        width, height = picture.size
+        uv = np.column_stack([rest.real / width, rest.imag / height])
+        self.uv = context.buffer(uv.astype(np.float32).tobytes())
+        self.triangles = context.buffer(np.asarray(triangles, dtype=np.uint32).tobytes())
+        self._corners = readonly(triangles)
+        self._border: moderngl.Buffer | None = None
+
+    @property
+    def border(self) -> moderngl.Buffer:
+        """The edges of the border, two vertices each, the mesh on their left."""
+        if self._border is None:
+            edges = border_edges(self._corners)
+            self._border = self.programs.context.buffer(edges.astype(np.uint32).tobytes())
+        return self._border
+
+    def release(self) -> None:
+        """Let the buffers go."""
+        self.uv.release()
+        self.triangles.release()
+        if self._border is not None:
+            self._border.release()
+
+
+class Pose:
+    """A mesh with a vertex source, ready to be drawn; owner of the source and of the bindings.
+
+    Parameters
+    ----------
+    mesh : GpuMesh
+        Released after its poses.
+    source : VertexSource
+        For as many vertices as the mesh has.
+    """
+
+    def __init__(self, mesh: GpuMesh, source: VertexSource) -> None:
+        self.picture = mesh.picture
+        self._mesh = mesh
+        self._source = source
+        self._heat: moderngl.Buffer | None = None
+        self._bindings: dict[Stages, moderngl.VertexArray] = {}
+
+    def write_heat(self, values: Singles) -> None:
+        """Upload the quantity (v,) that a heat map shows."""
+        if values.shape != (self._mesh.count,):
+            raise LissomError(f"a heat map needs {self._mesh.count} values, not {values.shape}")
+        if self._heat is None:
+            self._heat = self._mesh.programs.context.buffer(reserve=values.nbytes, dynamic=True)
+        self._heat.write(np.ascontiguousarray(values, dtype=np.float32).data)
+
+    def draw(self, stages: Stages, uniforms: Mapping[str, object]) -> None:
+        """Draw the triangles with a mesh program, that is `stages` and the source's shader."""
+        binding = self._bound(stages, self._mesh.triangles)
+        set_uniforms(binding.program, {**uniforms, **self._source.uniforms})
+        binding.render(moderngl.TRIANGLES)
+
+    def draw_border(self, stages: Stages, uniforms: Mapping[str, object]) -> None:
+        """Draw the edges of the border with a program of their own."""
+        binding = self._bound(stages, self._mesh.border)
+        set_uniforms(binding.program, {**uniforms, **self._source.uniforms})
+        binding.render(moderngl.LINES)
+
+    def _bound(self, stages: Stages, indices: moderngl.Buffer) -> moderngl.VertexArray:
+        if stages not in self._bindings:
+            source = self._source
+            vertex = (*stages.vertex, source.shader)
+            linked = replace(stages, vertex=vertex, constants=source.constants)
+            self._bindings[stages] = self._bind(self._mesh.programs.get(linked), indices)
+        return self._bindings[stages]
+
+    def _bind(self, program: moderngl.Program, indices: moderngl.Buffer) -> moderngl.VertexArray:
+        if "heat" in program and self._heat is None:
+            raise ValueError("a heat map is to be drawn of a pose that was given no values")
+        available = [*self._source.attributes(), (self._mesh.uv, "2f", "uv")]
+        if self._heat is not None:
+            available.append((self._heat, "1f", "heat"))
+        # A compiler drops the attributes that come to nothing in a program.
+        content = [attribute for attribute in available if attribute[2] in program]
+        return self._mesh.programs.context.vertex_array(
+            program, content, index_buffer=indices, index_element_size=4
+        )
+
+    def release(self) -> None:
+        """Let the bindings and the buffers go, the source's too."""
+        for binding in self._bindings.values():
+            binding.release()
+        self._bindings.clear()
+        if self._heat is not None:
+            self._heat.release()
+        self._source.release()

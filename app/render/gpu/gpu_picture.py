@@ -1,0 +1,78 @@
+"""The source picture as a texture."""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Final
+
+import moderngl
+import numpy as np
+
+from app.errors import LissomError
+from app.render.gpu.context import largest_size
+from engine.arrays import Bytes
+
+# Colour times alpha for each pair [alpha, colour] of bytes. Half floats keep 11 bits of a value
+# whatever its size, so that even the faintest pixel's colour survives the product and its undoing.
+_LEVELS = np.arange(256) / 255
+_PRODUCTS: Final = np.outer(_LEVELS, _LEVELS).astype(np.float16).ravel()
+_BLOCK = 1 << 20  # pixels premultiplied at a time
+
+
+class GpuPicture:
+    """Owner of a premultiplied, mip-mapped RGBA16F texture that is transparent outside.
+
+    Parameters
+    ----------
+    context : moderngl.Context
+    straight : uint8, shape (h, w, 4)
+        Straight alpha, first row on top.
+
+    Raises
+    ------
+    LissomError
+        If the picture is larger than the context's textures can be.
+    """
+
+    def __init__(self, context: moderngl.Context, straight: Bytes) -> None:
+        height, width, _ = straight.shape
+        limit = largest_size(context)
+        if max(width, height) > limit:
+            raise LissomError(
+                f"the picture has {width} × {height} pixels, but the graphics of this machine hold "
+                f"{limit} × {limit} at most; scale it down first"
+            )
+        self.size = (width, height)
+        self._texture = context.texture(self.size, 4, dtype="f2")
+        rows = max(1, _BLOCK // width)
+        for top in range(0, height, rows):
+            block = _premultiply(straight[top : top + rows])[::-1]
+            bottom = height - top - len(block)
+            self._texture.write(block.tobytes(), viewport=(0, bottom, width, len(block)))
+        self._texture.build_mipmaps()
+        self._sampler = context.sampler(
+            filter=(moderngl.LINEAR_MIPMAP_LINEAR, moderngl.LINEAR),
+            border_color=(0.0, 0.0, 0.0, 0.0),
+        )
+
+    @contextmanager
+    def bound(self, unit: int) -> Iterator[None]:
+        """Bind the texture to a texture unit for the draws in a `with` block."""
+        self._texture.use(unit)
+        self._sampler.use(unit)
+        try:
+            yield
+        finally:
+            # Left bound, it would overrule the settings of the unit's next texture.
+            self._sampler.clear(unit)
+
+    def release(self) -> None:
+        """Let the texture go."""
+        self._sampler.release()
+        self._texture.release()
+
+
+def _premultiply(straight: Bytes) -> np.ndarray[tuple[int, ...], np.dtype[np.float16]]:
+    index = straight.astype(np.uint16)
+    index[..., :3] += straight[..., 3:].astype(np.uint16) << 8
+    index[..., 3] += 255 << 8
+    return _PRODUCTS[index]

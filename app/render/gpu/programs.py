@@ -1,0 +1,79 @@
+"""The GLSL programs, put together from the files in shaders/ and compiled when first used."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Final
+
+import moderngl
+
+from app.storage import shader_source
+
+HEADER: Final = "#version 330 core\n"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Stages:
+    """The files of a program; those of one stage are joined in order.
+
+    Parameters
+    ----------
+    vertex, fragment : tuple of str
+    geometry : str
+        Empty where the program has no geometry stage.
+    constants : tuple of (name, value)
+        Known to the vertex stage.
+    """
+
+    vertex: tuple[str, ...]
+    fragment: tuple[str, ...]
+    geometry: str = ""
+    constants: tuple[tuple[str, int], ...] = ()
+
+
+class Programs:
+    """Owner of the compiled programs of a context."""
+
+    def __init__(self, context: moderngl.Context) -> None:
+        self.context = context
+        self._compiled: dict[Stages, moderngl.Program] = {}
+        self._screens: dict[Stages, moderngl.VertexArray] = {}
+
+    def get(self, stages: Stages) -> moderngl.Program:
+        """Return a program, compiled when it is asked for first."""
+        if stages not in self._compiled:
+            self._compiled[stages] = self.context.program(
+                vertex_shader=_join(*stages.vertex, constants=stages.constants),
+                fragment_shader=_join(*stages.fragment),
+                geometry_shader=_join(stages.geometry) if stages.geometry else None,
+            )
+        return self._compiled[stages]
+
+    def draw_screen(self, stages: Stages, uniforms: Mapping[str, object]) -> None:
+        """Draw the triangle of screen.vert, which covers the whole frame."""
+        program = self.get(stages)
+        if stages not in self._screens:
+            self._screens[stages] = self.context.vertex_array(program, [])
+        set_uniforms(program, uniforms)
+        self._screens[stages].render(moderngl.TRIANGLES, vertices=3)
+
+    def release(self) -> None:
+        """Let the programs go."""
+        for screen in self._screens.values():
+            screen.release()
+        for program in self._compiled.values():
+            program.release()
+        self._screens.clear()
+        self._compiled.clear()
+
+
+def set_uniforms(program: moderngl.Program, values: Mapping[str, object]) -> None:
+    """Set the uniforms of a program by name."""
+    for name, value in values.items():
+        program[name] = value
+
+
+def _join(*names: str, constants: tuple[tuple[str, int], ...] = ()) -> str:
+    definitions = "".join(f"#define {name} {value}\n" for name, value in constants)
+    # The numbers make a compiler's message name the file, counted from 0, and its line.
+    texts = (f"#line 1 {number}\n{shader_source(name)}" for number, name in enumerate(names))
+    return HEADER + definitions + "\n".join(texts)

@@ -1,0 +1,91 @@
+"""Vertices that the graphics card places by itself, from a series in time."""
+
+from collections.abc import Mapping
+from typing import Final
+
+import moderngl
+import numpy as np
+
+from app.errors import LissomError
+from app.render.gpu.gpu_mesh import Attribute
+from engine.streaming import Piece, Series
+
+_RESERVED: Final = 2  # attributes of a mesh that are not the series'
+
+
+class SeriesVertices:
+    """Owner of a series' rows on the graphics card.
+
+    Between two frames of one piece of a series, only the weights change: a few numbers.
+
+    Parameters
+    ----------
+    context : moderngl.Context
+    count : int
+        Number of vertices, v.
+    rows : int
+        The most rows that a piece may have.
+
+    Raises
+    ------
+    LissomError
+        If the context has not that many attributes.
+    """
+
+    shader: Final = "series.glsl"
+
+    def __init__(self, context: moderngl.Context, count: int, rows: int) -> None:
+        if rows > most_rows(context):
+            raise LissomError(
+                f"this machine's graphics take {most_rows(context)} rows of a series, not {rows}"
+            )
+        self._count = count
+        self._pairs = (rows + 1) // 2
+        self._weights = np.zeros((self._pairs, 2), dtype=np.float32)
+        self._buffer = context.buffer(reserve=16 * self._pairs * count, dynamic=True)
+        self._piece: Piece | None = None
+
+    @property
+    def constants(self) -> tuple[tuple[str, int], ...]:
+        """What the shader is compiled with."""
+        return (("ROW_PAIRS", self._pairs),)
+
+    @property
+    def uniforms(self) -> Mapping[str, object]:
+        """What the shader is drawn with in this frame."""
+        weights = [tuple(pair) for pair in self._weights.tolist()]
+        return {"weights": weights if len(weights) > 1 else weights[0]}
+
+    def place(self, series: Series, time: float) -> None:
+        """Show a series of positions (v,) at a time in [0, 1]."""
+        piece, weights = series.blend(time)
+        if piece is not self._piece:
+            self._upload(piece)
+        # The rows beyond are 0, whatever weights are left there.
+        self._weights.ravel()[: len(weights)] = weights
+
+    def attributes(self) -> tuple[Attribute, ...]:
+        """Return what feeds the shader."""
+        return ((self._buffer, f"{4 * self._pairs}f", "rows"),)
+
+    def release(self) -> None:
+        """Let the buffer go."""
+        self._buffer.release()
+
+    def _upload(self, piece: Piece) -> None:
+        count, rows = self._count, len(piece.rows)
+        if piece.rows.shape[1] != 2 * count or rows > 2 * self._pairs:
+            raise LissomError(
+                f"a piece of {rows} rows and {piece.rows.shape[1]} values does not fit "
+                f"{2 * self._pairs} rows of {2 * count} values"
+            )
+        # The rows of a vertex side by side: one place in memory for each.
+        interleaved = np.zeros((count, 2 * self._pairs, 2), dtype=np.float32)
+        interleaved[:, :rows] = piece.rows.reshape(rows, count, 2).transpose(1, 0, 2)
+        self._buffer.write(interleaved.data)
+        self._piece = piece
+
+
+def most_rows(context: moderngl.Context) -> int:
+    """Return how many rows of a series a shader of this context takes."""
+    return 2 * (int(context.info["GL_MAX_VERTEX_ATTRIBS"]) - _RESERVED)

@@ -1,0 +1,73 @@
+"""What a frame is drawn to, and how its pixels come back."""
+
+from typing import Final
+
+import moderngl
+import numpy as np
+
+from app.errors import LissomError
+from app.render.gpu.context import largest_size
+from app.render.gpu.programs import Programs, Stages
+from engine.arrays import Bytes
+
+_STRAIGHT: Final = Stages(vertex=("screen.vert",), fragment=("straight.frag",))
+
+
+class Target:
+    """Owner of a premultiplied RGBA16F frame.
+
+    Parameters
+    ----------
+    programs : Programs
+    size : tuple of int
+        Width and height in pixels.
+    oversampling : int
+        Samples of each pixel along both axes. With 1, the drawing at its own size comes out exact;
+        2 is finer where it is shown smaller.
+
+    Raises
+    ------
+    LissomError
+        If the context cannot hold a frame of this size.
+    """
+
+    def __init__(self, programs: Programs, size: tuple[int, int], oversampling: int = 1) -> None:
+        context = programs.context
+        limit = largest_size(context) // oversampling
+        if max(size) > limit:
+            raise LissomError(
+                f"a frame of {size[0]} × {size[1]} pixels is too large for the graphics of this "
+                f"machine, which hold {limit} × {limit} at most; choose a smaller size"
+            )
+        self.size = size
+        self.oversampling = oversampling
+        samples = (size[0] * oversampling, size[1] * oversampling)
+        self.texture = context.texture(samples, 4, dtype="f2")
+        self.texture.filter = (moderngl.NEAREST, moderngl.NEAREST)
+        self.framebuffer = context.framebuffer([self.texture])
+        self._programs = programs
+        self._straight: moderngl.Framebuffer | None = None
+
+    def read_straight_rgba(self) -> Bytes:
+        """Return the frame, uint8 (h, w, 4), with straight alpha and its first row on top."""
+        context = self._programs.context
+        if self._straight is None:
+            self._straight = context.framebuffer([context.renderbuffer(self.size, 4)])
+        self._straight.use()
+        context.enable_only(moderngl.NOTHING)
+        self.texture.use(0)
+        self._programs.draw_screen(_STRAIGHT, {"frame": 0, "samples": self.oversampling})
+        pixels = np.empty((self.size[1], self.size[0], 4), dtype=np.uint8)
+        self._straight.read_into(pixels, components=4)
+        return pixels
+
+    def release(self) -> None:
+        """Let the frame go."""
+        # moderngl binds again what was bound when it makes the next framebuffer, which is an error
+        # of OpenGL if that is gone by then.
+        self._programs.context.detect_framebuffer(0).use()
+        for framebuffer in filter(None, (self.framebuffer, self._straight)):
+            attachments = framebuffer.color_attachments
+            framebuffer.release()
+            for attachment in attachments:
+                attachment.release()

@@ -1,0 +1,24 @@
+"""How far an animation distorts its drawing, as numbers and pictures.
+
+In: a document, and its motion.
+Out: certificates, curves over time, and pictures of them.
+Imports: `app.motion`, `app.storage`.
+"""
+
+from app.reports.certification import Report, certify_document
+from app.reports.curve_picture import draw_curves
+from app.reports.curves import TIMES, Curves, Extremes, broken_lines, measure_curves, write_curves
+from app.reports.domain_preview import draw_preview
+
+__all__ = [
+    "TIMES",
+    "Curves",
+    "Extremes",
+    "Report",
+    "broken_lines",
+    "certify_document",
+    "draw_curves",
+    "draw_preview",
+    "measure_curves",
+    "write_curves",
+]

@@ -1,0 +1,129 @@
+"""How far an animation distorts its drawing: the keyframes' certificates, and the in-betweens'."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from app.document import Document, Variant, intervals
+from app.motion import Animation
+from engine.arrays import Complexes
+from engine.maps import Boundary, Certificate, certify, distortion
+
+# Times in each interval. In-betweens are analytic in time: their extremes cannot hide between.
+TIMES = 65
+# Of the larger k, σ_a or σ_b: what the quadrature and the integral equation may add.
+ACCURACY = 1e-6
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Extremes:
+    """The largest k and σ_a and the smallest σ_b somewhere."""
+
+    k: float
+    sigma_a: float
+    sigma_b: float
+
+    def within(self, other: "Extremes") -> bool:
+        """Tell whether these are no worse than others, but for rounding."""
+        return (
+            self.k <= other.k + ACCURACY
+            and self.sigma_a <= other.sigma_a * (1 + ACCURACY)
+            and self.sigma_b >= other.sigma_b * (1 - ACCURACY)
+        )
+
+    def joined(self, other: "Extremes") -> "Extremes":
+        """Return the worse of both."""
+        return Extremes(
+            k=max(self.k, other.k),
+            sigma_a=max(self.sigma_a, other.sigma_a),
+            sigma_b=min(self.sigma_b, other.sigma_b),
+        )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class IntervalReport:
+    """One interval: what its in-betweens reach, beside what its two keys do."""
+
+    first: int
+    last: int
+    reached: Extremes
+    keys: Extremes
+
+    @property
+    def is_within(self) -> bool:
+        """Whether the in-betweens keep to the keyframes' own distortion."""
+        return self.reached.within(self.keys)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Report:
+    """Keys and intervals of a document.
+
+    Parameters
+    ----------
+    keys : tuple of (frame, Certificate)
+        Proven anew for each keyframe, against the document's bounds.
+    intervals : tuple of IntervalReport
+    """
+
+    keys: tuple[tuple[int, Certificate], ...]
+    intervals: tuple[IntervalReport, ...]
+
+    @property
+    def certified(self) -> bool:
+        """Whether all keyframes are certified and all in-betweens within their bounds."""
+        return all(certificate.certified for _, certificate in self.keys) and all(
+            interval.is_within for interval in self.intervals
+        )
+
+
+def certify_document(document: Document, variant: Variant | None = None) -> Report:
+    """Measure the distortion of a document over time and space.
+
+    Parameters
+    ----------
+    document : Document
+    variant : str, optional
+        The document's own by default.
+
+    Notes
+    -----
+    |ν| and log σ_a are subharmonic, so that the worst distortion of every in-between is on the
+    outline; there it is taken at graded samples, some hundred an edge, the same for keys and
+    in-betweens.
+    """
+    boundary = Boundary.sample(document.domain.outline, document.domain.cage)
+    keys = tuple(
+        (key.frame, certify(document.map_of(key.pose), boundary, document.bounds))
+        for key in document.keys
+    )
+    animation = Animation(document, variant, points=boundary.points)
+    reports = []
+    for first, last in intervals(document):
+        poses = document.keys[first].pose, document.keys[last].pose
+        ends = [_extremes(*document.map_of(pose).derivatives(boundary.points)) for pose in poses]
+        bound = ends[0].joined(ends[1])
+        inbetweens = animation.stage.inbetweens(
+            *poses, animation.variant, turns=document.keys[first].turns
+        )
+        reached = bound
+        for t in np.linspace(0.0, 1.0, TIMES)[1:-1]:
+            frame = inbetweens.frame(np.array([1.0 - t, t]))
+            reached = reached.joined(_extremes(frame.fz, frame.fzbar))
+        reports.append(
+            IntervalReport(
+                first=document.keys[first].frame,
+                last=document.keys[last].frame,
+                reached=reached,
+                keys=bound,
+            )
+        )
+    return Report(keys=keys, intervals=tuple(reports))
+
+
+def _extremes(fz: Complexes, fzbar: Complexes) -> Extremes:
+    return Extremes(
+        k=float(distortion.k(fz, fzbar).max()),
+        sigma_a=float(distortion.sigma_a(fz, fzbar).max()),
+        sigma_b=float(distortion.sigma_b(fz, fzbar).min()),
+    )

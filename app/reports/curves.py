@@ -1,0 +1,157 @@
+"""Distortion over time at the worst points of a drawing, as the paper plots it (Section 8)."""
+
+from dataclasses import dataclass
+from math import log
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from app.document import Document, intervals
+from app.motion import Motion
+from app.storage import write_atomically
+from engine.arrays import Floats
+from engine.maps import Bounds, distortion
+
+POINTS = 100
+TIMES = 24  # in each interval
+TINY = 1e-300  # in place of a stretch that is not proven to be above 0
+
+
+class Use(NamedTuple):
+    """How much of a bound is used; 1 where it is reached, 0 where nothing is distorted."""
+
+    name: str
+    value: float
+    sign: str  # of the inequality that keeps the bound
+    bound: float
+    share: float
+
+
+class Extremes(NamedTuple):
+    """The largest k and σ_a of the whole drawing at one moment, and its smallest σ_b."""
+
+    k: float
+    sigma_a: float
+    sigma_b: float
+
+    def uses(self, bounds: Bounds) -> tuple[Use, ...]:
+        """Return how much of each bound is used; stretches count by their logarithms."""
+        share_a = log(self.sigma_a) / log(bounds.sigma_a)
+        share_b = log(max(self.sigma_b, TINY)) / log(bounds.sigma_b)
+        return (
+            Use("k", self.k, "≤", bounds.k, self.k / bounds.k),
+            Use("σa", self.sigma_a, "≤", bounds.sigma_a, share_a),
+            Use("σb", self.sigma_b, "≥", bounds.sigma_b, share_b),
+        )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Curves:
+    """Distortion of an animation at its worst points.
+
+    Parameters
+    ----------
+    document : Document
+    frames : float64, shape (t,)
+    k, tau : float64, shape (t, p)
+        At the points where each is the largest over all time.
+    k_share, tau_share : float64, shape (t, p)
+        The same, at each point as a share of the larger one of the two keys around: bounded
+        in-betweens never exceed 1. τ counts from 1, where nothing is distorted.
+    extremes : float64, shape (t, 3)
+        Of all points: the largest k and σ_a, and the smallest σ_b.
+    """
+
+    document: Document
+    frames: Floats
+    k: Floats
+    tau: Floats
+    k_share: Floats
+    tau_share: Floats
+    extremes: Floats
+
+    def extremes_at(self, frame: float) -> Extremes:
+        """Return the extremes at a frame, between those that were measured around it."""
+        if frame < self.frames[0] and self.document.loop:
+            frame += self.document.frames.last - self.document.frames.first
+        return Extremes(*(float(np.interp(frame, self.frames, row)) for row in self.extremes.T))
+
+
+def measure_curves(document: Document, motion: Motion) -> Curves:
+    """Measure a document at the vertices of a motion's figure.
+
+    Parameters
+    ----------
+    document : Document
+        With at least two keys.
+    motion : Motion
+        That knows it.
+    """
+    keys = document.keys
+    period = document.frames.last - document.frames.first
+    frames, ks, taus, extremes = [], [], [], []
+    for interval, (first, last) in enumerate(intervals(document)):
+        piece = motion.inbetweens(document, interval)
+        start = keys[first].frame
+        end = keys[last].frame if last > first else keys[last].frame + period
+        for share in np.linspace(0.0, 1.0, TIMES):
+            t = keys[first].easing(float(share))
+            blended = piece.frame(np.array([1.0 - t, t]))
+            frames.append(start + share * (end - start))
+            k = distortion.k(blended.fz, blended.fzbar)
+            sigma_a = distortion.sigma_a(blended.fz, blended.fzbar)
+            sigma_b = distortion.sigma_b(blended.fz, blended.fzbar)
+            ks.append(k)
+            taus.append(distortion.tau(blended.fz, blended.fzbar))
+            extremes.append((k.max(), sigma_a.max(), sigma_b.min()))
+    worst_k, worst_tau = _worst(np.array(ks)), _worst(np.array(taus))
+    return Curves(
+        document=document,
+        frames=np.array(frames, dtype=np.float64),
+        k=worst_k,
+        tau=worst_tau,
+        k_share=_shares(worst_k),
+        tau_share=_shares(worst_tau - 1.0),
+        extremes=np.array(extremes),
+    )
+
+
+def broken_lines(curves: Curves, values: Floats) -> tuple[Floats, Floats]:
+    """Return frames and values (t, p) of all points as one line, broken by NaN at each key."""
+    intervals = len(curves.frames) // TIMES
+    blocks = values.T.reshape(-1, intervals, TIMES)
+    broken = np.concatenate([blocks, np.full((*blocks.shape[:2], 1), np.nan)], axis=2)
+    frames = curves.frames.reshape(intervals, TIMES)
+    frames = np.concatenate([frames, np.full((intervals, 1), np.nan)], axis=1)
+    return np.tile(frames.ravel(), len(blocks)), broken.ravel()
+
+
+def write_curves(path: Path, curves: Curves) -> None:
+    """Write the curves as comma-separated values, one row for each time."""
+    count = curves.k.shape[1]
+    names = ["frame"]
+    for name in ("k", "k_share"):
+        names += [f"{name}_{point}" for point in range(count)]
+    for name in ("tau", "tau_share"):
+        names += [f"{name}_{point}" for point in range(count)]
+    table = np.column_stack([curves.frames, curves.k, curves.k_share, curves.tau, curves.tau_share])
+    rows = [",".join(names), *(",".join(f"{value:.9g}" for value in row) for row in table)]
+    text = ("\n".join(rows) + "\n").encode()
+    write_atomically(path, lambda file: file.write(text))
+
+
+def _worst(values: Floats) -> Floats:
+    """Return the columns (t, p) of the points with the largest values at any time."""
+    order = np.argsort(values.max(axis=0))[::-1][:POINTS]
+    return values[:, order]
+
+
+def _shares(values: Floats) -> Floats:
+    """Return values (t, p) relative to the larger end of each interval, 0 where that is nothing."""
+    shares = np.zeros_like(values)
+    for start in range(0, len(values), TIMES):
+        block = values[start : start + TIMES]
+        largest = np.maximum(block[0], block[-1])
+        np.divide(block, largest, out=shares[start : start + TIMES], where=largest > 1e-9)
+    return shares

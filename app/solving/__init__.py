@@ -1,0 +1,13 @@
+"""Poses from handles: drags, keys that are solved again, and pose scripts.
+
+In: a document, and where handles are wanted.
+Out: certified poses.
+Imports: `app.motion`, `app.storage`.
+"""
+
+from app.solving.drag import Drag, Rig, pose_at
+from app.solving.renewal import Renewal, go_on
+from app.solving.script import load_pose_script
+from app.solving.script_solver import LAG, pose_document
+
+__all__ = ["LAG", "Drag", "Renewal", "Rig", "go_on", "load_pose_script", "pose_at", "pose_document"]

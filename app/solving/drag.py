@@ -1,0 +1,224 @@
+"""Poses from handles: drags that go on step by step, and poses to begin them with."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Self
+
+import numpy as np
+
+from app.document import Document, Pose, Target, resting_pose, time_of
+from app.motion import Animation, Stage
+from engine.arrays import Booleans, Complexes
+from engine.deform import Deformer, Handles, State, Status, Wish
+from engine.maps import Boundary, Bounds, HarmonicMap, certify
+
+# A pose that the present bounds do not allow is the start of a drag back into them: its own
+# distortion is allowed, and this much more of what is left.
+LEEWAY = 0.02
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Rig:
+    """What solving poses needs of a document.
+
+    Parameters
+    ----------
+    document : Document
+    deformer : Deformer
+        For all of the document's handles, in their order.
+    """
+
+    document: Document
+    deformer: Deformer
+
+    @classmethod
+    def of(cls, document: Document, earlier: "Rig | None" = None) -> Self:
+        """Return the rig of a document; what did not change is taken from an earlier one."""
+        boundary = (
+            earlier.deformer.boundary
+            if earlier is not None and earlier.document.domain is document.domain
+            else Boundary.sample(document.domain.outline, document.domain.cage)
+        )
+        handles = (
+            earlier.deformer.handles
+            if earlier is not None
+            and earlier.deformer.boundary is boundary
+            and earlier.document.handles == document.handles
+            else Handles.place(
+                boundary,
+                np.array([handle.position for handle in document.handles], dtype=np.complex128),
+                [handle.weight for handle in document.handles],
+            )
+        )
+        return cls(
+            document=document,
+            deformer=Deformer(boundary=boundary, handles=handles, bounds=document.bounds),
+        )
+
+    def wish(self, targets: Mapping[int, Target]) -> Wish:
+        """Return where handles are wanted, as the deformer takes it."""
+        wanted = [targets[handle.id] for handle in self.document.handles]
+        return self.deformer.handles.wish(
+            np.array([target.position for target in wanted], dtype=np.complex128),
+            [np.nan if target.rotation is None else target.rotation for target in wanted],
+        )
+
+    def within_bounds_of(self, pose: Pose) -> Deformer:
+        """Return a deformer that allows a pose, be it outside the document's present bounds."""
+        deformer = self.deformer
+        certificate = certify(self.document.map_of(pose), deformer.boundary, deformer.bounds)
+        if certificate.certified:
+            return deformer
+        bounds = deformer.bounds
+        wider = Bounds(
+            k=max(bounds.k, 1.0 - (1.0 - LEEWAY) * (1.0 - certificate.k)),
+            sigma_a=max(bounds.sigma_a, (1.0 + LEEWAY) * certificate.sigma_a),
+            sigma_b=min(bounds.sigma_b, (1.0 - LEEWAY) * certificate.sigma_b),
+        )
+        return Deformer(boundary=deformer.boundary, handles=deformer.handles, bounds=wider)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Drag:
+    """A drag on its way, from certified map to certified map.
+
+    Parameters
+    ----------
+    rig : Rig
+    deformer : Deformer
+        Its bounds are the document's, or as much wider as the pose at the start asked for.
+    state : State
+    """
+
+    rig: Rig
+    deformer: Deformer
+    state: State
+
+    @classmethod
+    def begin(cls, rig: Rig, pose: Pose) -> Self:
+        """Return the drag that begins with a pose.
+
+        Raises
+        ------
+        EngineError
+            If the pose folds.
+        """
+        deformer = rig.within_bounds_of(pose)
+        return cls(rig=rig, deformer=deformer, state=deformer.start(rig.document.map_of(pose)))
+
+    @classmethod
+    def from_rest(cls, rig: Rig) -> Self:
+        """Return the drag that begins with the drawing as it is."""
+        return cls(rig=rig, deformer=rig.deformer, state=rig.deformer.start())
+
+    @property
+    def is_over(self) -> bool:
+        """Whether more steps would change nothing."""
+        return self.state.status is not Status.LAGGING
+
+    @property
+    def at_bounds(self) -> bool:
+        """Whether the handles are held back by the bounds."""
+        return self.state.status is Status.BOUNDS_REACHED
+
+    @property
+    def has_arrived(self) -> bool:
+        """Whether the drag came to rest with nothing in its way."""
+        return self.state.status is Status.CONVERGED
+
+    @property
+    def lag(self) -> float:
+        """How far the handles are from their targets, root mean square over the drawing's size."""
+        last = self.state.statistics
+        return np.inf if last is None else last.handle_error
+
+    def towards(self, targets: Mapping[int, Target], steps: int) -> "Drag":
+        """Return the drag after some steps towards the targets, or fewer if it comes to rest."""
+        wish = self.rig.wish(targets)
+        state = self.state
+        for _ in range(steps):
+            state = self.deformer.step(state, wish)
+            if state.status is not Status.LAGGING:
+                break
+        return Drag(rig=self.rig, deformer=self.deformer, state=state)
+
+    def pose(self, targets: Mapping[int, Target]) -> Pose:
+        """Return where the drag is, as a pose with these wishes."""
+        return Pose(
+            targets=targets,
+            phi=self.state.map.phi,
+            psi=self.state.map.psi,
+            certificate=self.state.certificate,
+        )
+
+
+def pose_at(rig: Rig, frame: float, kin: Stage | None = None) -> Pose:
+    """Return the pose that an animation shows at a frame, as near as one map can be to it.
+
+    Of a key it is the key's own. In-betweens are no maps over the cage: their derivatives are
+    fitted on the outline, and should the fit not be certified, it is mixed with the nearer key.
+
+    Parameters
+    ----------
+    rig : Rig
+    frame : float
+    kin : Stage, optional
+        Of the document's domain, for what it knows of the outline.
+    """
+    document, boundary = rig.document, rig.deformer.boundary
+    moment = time_of(document, frame)
+    resting = resting_pose(document, moment)
+    if resting is not None:
+        return resting
+    keys = document.keys
+    after = moment.weight > 0.5
+    near = keys[(moment.interval + after) % len(keys)].pose
+    stage = Stage(document.domain, anchor=document.anchor, points=boundary.points, kin=kin)
+    blended = Animation(document, points=boundary.points, stage=stage).frame(frame)
+    fitted = fit_map(boundary, blended.fz, blended.fzbar, blended.positions)
+    for share in (1.0, 0.5, 0.25, 0.0):
+        phi = share * fitted.phi + (1.0 - share) * near.phi
+        psi = share * fitted.psi + (1.0 - share) * near.psi
+        mixed = HarmonicMap(cage=boundary.cage, phi=phi, psi=psi)
+        certificate = certify(mixed, boundary, rig.deformer.bounds)
+        if certificate.certified:
+            break
+    else:
+        mixed, certificate = document.map_of(near), near.certificate
+    places = mixed(np.array([handle.position for handle in document.handles], dtype=np.complex128))
+    targets = {
+        handle.id: Target(position=complex(place))
+        for handle, place in zip(document.handles, places, strict=True)
+    }
+    return Pose(targets=targets, phi=mixed.phi, psi=mixed.psi, certificate=certificate)
+
+
+def fit_map(
+    boundary: Boundary,
+    fz: Complexes,
+    fzbar: Complexes,
+    positions: Complexes,
+    *,
+    inside: Booleans | None = None,
+) -> HarmonicMap:
+    """Return the map over a cage that is nearest to another one, by its derivatives on the outline.
+
+    Parameters
+    ----------
+    boundary : Boundary
+    fz, fzbar, positions : complex128, shape (s,)
+        f_z, f_z̄ and f of the other map at the boundary's samples.
+    inside : bool, shape (m,), optional
+        Which samples they are for, by default all.
+    """
+    chosen = slice(None) if inside is None else inside
+    weights = boundary.weights[chosen]
+    root = np.sqrt(weights)[:, None]
+    # Constants have no derivative: they are left to the places of the outline.
+    matrix = root * boundary.derivatives[chosen, 1:]
+    wanted = root * np.column_stack([fz, fzbar.conj()])
+    solved, *_ = np.linalg.lstsq(matrix, wanted, rcond=None)
+    phi, psi = (np.concatenate([[0], column]) for column in solved.T)
+    shape = HarmonicMap(cage=boundary.cage, phi=phi, psi=psi)
+    offset = weights @ (positions - shape(boundary.points[chosen])) / weights.sum()
+    return HarmonicMap(cage=boundary.cage, phi=phi + offset, psi=psi)

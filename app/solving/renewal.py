@@ -1,0 +1,158 @@
+"""Other bounds or another domain under the same animation: its keys are solved again."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from app.document import Command, Document, Keyframe, Meshing, Pose, replace_domain, set_bounds
+from app.solving.drag import Rig, fit_map
+from engine.arrays import Bytes
+from engine.domain import Domain, build_domain
+from engine.errors import EngineError
+from engine.geometry import contains
+from engine.maps import Bounds, HarmonicMap, certify
+
+MOST_STEPS = 600  # for one key
+AT_REST = 1e-3  # pixels that coefficients of the drawing at rest may lack
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Renewal:
+    """A document on its way to other bounds or another domain.
+
+    Parameters
+    ----------
+    before : Document
+    bounds : Bounds
+        Of the poses to come.
+    meshing : Meshing, optional
+        What the domain is built anew with; None keeps it.
+    pulls : bool
+        Whether keys that are within the bounds already are pulled to their targets again, too.
+    domain : Domain, optional
+        The new one, once it is built.
+    rig : Rig, optional
+        None before the first key.
+    poses : tuple of Pose
+        Of the keys that are solved.
+    outside : tuple of int
+        Frames of those that found no way into the bounds, and stay as they were.
+    notices : tuple of str
+        What was remedied, in words.
+    """
+
+    before: Document
+    bounds: Bounds
+    meshing: Meshing | None = None
+    pulls: bool = True
+    domain: Domain | None = None
+    rig: Rig | None = None
+    poses: tuple[Pose, ...] = ()
+    outside: tuple[int, ...] = ()
+    notices: tuple[str, ...] = ()
+
+    @property
+    def is_over(self) -> bool:
+        """Whether every key is solved."""
+        return len(self.poses) == len(self.before.keys)
+
+    @property
+    def progress(self) -> float:
+        """The part of its steps that is done, 0 to 1."""
+        builds = self.meshing is not None
+        done = len(self.poses) + (self.domain is not None)
+        return done / (len(self.before.keys) + builds)
+
+    @property
+    def now(self) -> str:
+        """What the next step does, in words."""
+        if self.meshing is not None and self.domain is None:
+            return "Building the domain"
+        return f"Solving key {len(self.poses) + 1} of {len(self.before.keys)}"
+
+    @property
+    def command(self) -> Command:
+        """What makes one step of undo of all of it."""
+        if self.meshing is None or self.domain is None:
+            return set_bounds(self.bounds, self.poses)
+        return replace_domain(self.domain, self.meshing, self.poses)
+
+
+def go_on(renewal: Renewal, picture: Bytes) -> Renewal:
+    """Take the next step: the domain, then one key after the other; on the worker thread.
+
+    Parameters
+    ----------
+    renewal : Renewal
+        One that is not over.
+    picture : uint8, shape (h, w, 4)
+        The document's, decoded.
+
+    Raises
+    ------
+    EngineError, LissomError
+        If there is no domain, or a handle lies outside of it.
+    """
+    if renewal.meshing is not None and renewal.domain is None:
+        return _with_domain(renewal, picture, renewal.meshing)
+    rig = renewal.rig or Rig.of(replace(renewal.before, bounds=renewal.bounds))
+    key = renewal.before.keys[len(renewal.poses)]
+    pose = _solved(renewal, rig, key)
+    outside = renewal.outside if pose.certificate.certified else (*renewal.outside, key.frame)
+    return replace(renewal, rig=rig, poses=(*renewal.poses, pose), outside=outside)
+
+
+def _with_domain(renewal: Renewal, picture: Bytes, meshing: Meshing) -> Renewal:
+    domain, notices = build_domain(
+        picture,
+        triangles=meshing.triangles,
+        detail=meshing.detail,
+        tolerance=meshing.tolerance,
+    )
+    rest = HarmonicMap.identity(domain.cage)
+    before = renewal.before
+    keys = tuple(
+        replace(key, pose=replace(key.pose, phi=rest.phi, psi=rest.psi)) for key in before.keys
+    )
+    rig = Rig.of(replace(before, domain=domain, keys=keys, bounds=renewal.bounds))
+    return replace(renewal, domain=domain, rig=rig, notices=notices)
+
+
+def _solved(renewal: Renewal, rig: Rig, key: Keyframe) -> Pose:
+    """Return a key's pose over the rig's cage, within its bounds, pulled to its targets."""
+    boundary, bounds = rig.deformer.boundary, rig.deformer.bounds
+    first = (
+        renewal.before.map_of(key.pose)
+        if renewal.domain is None
+        else _carried_over(renewal.before, key.pose, rig)
+    )
+    if not renewal.pulls and certify(first, boundary, bounds).certified:
+        return key.pose
+    try:
+        state = rig.deformer.resume(first)
+    except EngineError:
+        # It folds over the new cage: from the drawing at rest every pose can be reached.
+        state = rig.deformer.start()
+    state, _ = rig.deformer.settle(state, rig.wish(key.pose.targets), at_most=MOST_STEPS)
+    certificate = certify(state.map, boundary, bounds)
+    if renewal.domain is None and not certificate.certified:
+        return replace(key.pose, certificate=certify(first, boundary, bounds))
+    return replace(key.pose, phi=state.map.phi, psi=state.map.psi, certificate=certificate)
+
+
+def _carried_over(document: Document, pose: Pose, rig: Rig) -> HarmonicMap:
+    """Return the map over the rig's cage that is nearest to a pose over the document's.
+
+    The pose's map goes on from the old outline up to the old cage, where the new outline may lie.
+    """
+    boundary, cage = rig.deformer.boundary, document.domain.cage
+    is_at_rest = np.allclose(pose.phi, cage, rtol=0.0, atol=AT_REST) and np.allclose(
+        pose.psi, 0.0, rtol=0.0, atol=AT_REST
+    )
+    inside = contains(cage, boundary.points)
+    if is_at_rest or not inside.any():
+        return HarmonicMap.identity(boundary.cage)
+    points = boundary.points[inside]
+    shape = document.map_of(pose)
+    fz, fzbar = shape.derivatives(points)
+    return fit_map(boundary, fz, fzbar, shape(points), inside=inside)

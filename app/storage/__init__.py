@@ -1,0 +1,74 @@
+"""Files: pictures, projects, preferences, unsaved work, and what ships with Lissom.
+
+In: paths, and the bytes behind them.
+Out: documents, decoded pictures and settings; files that are whole or absent.
+Imports: `app.document`.
+"""
+
+from app.storage.assets import sample_images, shader_source
+from app.storage.autosave import SECONDS, find_leftovers, forget_autosave, write_autosave
+from app.storage.files import (
+    atomic_file,
+    check_writable,
+    read_arrays,
+    write_arrays,
+    write_atomically,
+)
+from app.storage.json_values import (
+    JsonObject,
+    as_flag,
+    as_number,
+    as_object,
+    as_point,
+    without_repeats,
+)
+from app.storage.opening import open_picture
+from app.storage.picture import Picture, decode_picture
+from app.storage.preferences import (
+    CHECKER,
+    LARGEST_GHOST_STEP,
+    LARGEST_SCALE,
+    MOST_GHOSTS,
+    SMALLEST_SCALE,
+    Preferences,
+    ThemeName,
+    load_preferences,
+    save_preferences,
+    settings_folder,
+)
+from app.storage.project_file import load_project, save_project
+
+__all__ = [
+    "CHECKER",
+    "LARGEST_GHOST_STEP",
+    "LARGEST_SCALE",
+    "MOST_GHOSTS",
+    "SECONDS",
+    "SMALLEST_SCALE",
+    "JsonObject",
+    "Picture",
+    "Preferences",
+    "ThemeName",
+    "as_flag",
+    "as_number",
+    "as_object",
+    "as_point",
+    "atomic_file",
+    "check_writable",
+    "decode_picture",
+    "find_leftovers",
+    "forget_autosave",
+    "load_preferences",
+    "load_project",
+    "open_picture",
+    "read_arrays",
+    "sample_images",
+    "save_preferences",
+    "save_project",
+    "settings_folder",
+    "shader_source",
+    "without_repeats",
+    "write_arrays",
+    "write_atomically",
+    "write_autosave",
+]

@@ -1,0 +1,35 @@
+"""The files that ship with Lissom, found from a checkout and from an installed wheel alike."""
+
+from pathlib import Path
+
+from app.errors import LissomError
+
+_APP = Path(__file__).resolve().parents[1]
+
+
+def sample_images() -> Path:
+    """Return the folder of the sample pictures and projects."""
+    return _folder("sample_images")
+
+
+def shader_source(name: str) -> str:
+    """Return the text of a GLSL file.
+
+    Raises
+    ------
+    LissomError
+        If the installation lacks it.
+    """
+    path = _folder("shaders") / name
+    try:
+        return path.read_text(encoding="utf-8")
+    except OSError as error:
+        raise LissomError(f"cannot read {path}; install Lissom again") from error
+
+
+def _folder(name: str) -> Path:
+    # The wheel carries the folders inside the package; in a checkout they lie beside it.
+    for path in (_APP / "shipped" / name, _APP.parent / name):
+        if path.is_dir():
+            return path
+    raise LissomError(f"the folder {name!r} of Lissom is missing; install Lissom again")

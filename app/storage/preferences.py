@@ -1,0 +1,110 @@
+"""What a person chose for all projects, and where that and unsaved work are kept."""
+
+import json
+import os
+import re
+import sys
+from dataclasses import asdict, dataclass, replace
+from pathlib import Path
+from typing import Any, Literal
+
+from app.errors import LissomError
+from app.storage.files import write_atomically
+
+ThemeName = Literal["dark", "light"]
+SMALLEST_SCALE, LARGEST_SCALE = 0.75, 3.0
+MOST_RECENT = 10
+MOST_GHOSTS, LARGEST_GHOST_STEP = 6, 24
+CHECKER = "checker"
+_COLOUR = re.compile("#[0-9a-f]{6}")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Preferences:
+    """What the person chose for all projects.
+
+    Parameters
+    ----------
+    theme : str
+    scale : float
+        Of the whole interface.
+    auto_key : bool
+        Whether posing makes and changes keys by itself.
+    backdrop : str
+        What lies behind the drawing: "checker" or "#rrggbb".
+    ghosts_before, ghosts_after, ghost_step : int
+        How many ghosts the onion skin shows, and how many frames apart.
+    recent : tuple of Path
+        Files opened or saved last, the newest first.
+    folder : Path, optional
+        Where a file was chosen last.
+    """
+
+    theme: ThemeName = "dark"
+    scale: float = 1.0
+    auto_key: bool = True
+    backdrop: str = CHECKER
+    ghosts_before: int = 2
+    ghosts_after: int = 2
+    ghost_step: int = 4
+    recent: tuple[Path, ...] = ()
+    folder: Path | None = None
+
+    def with_recent(self, path: Path) -> "Preferences":
+        """Return the preferences with a file as the most recent one."""
+        others = (other for other in self.recent if other != path)
+        return replace(self, recent=(path, *others)[:MOST_RECENT], folder=path.parent)
+
+
+def settings_folder() -> Path:
+    """Return the folder for settings and unsaved work of this person; it may not exist yet."""
+    home = Path.home()
+    if sys.platform == "win32":
+        return Path(os.environ.get("APPDATA", home / "AppData" / "Roaming")) / "Lissom"
+    if sys.platform == "darwin":
+        return home / "Library" / "Application Support" / "Lissom"
+    return Path(os.environ.get("XDG_CONFIG_HOME") or home / ".config") / "lissom"
+
+
+def load_preferences(folder: Path) -> Preferences:
+    """Read the preferences; what is missing or makes no sense is as it is at first."""
+    try:
+        content = json.loads((folder / "preferences.json").read_text(encoding="utf-8"))
+    except (OSError, ValueError, RecursionError):
+        return Preferences()
+    return _understood(content) if isinstance(content, dict) else Preferences()
+
+
+def save_preferences(folder: Path, preferences: Preferences) -> None:
+    """Write the preferences; where that fails, they are as before next time."""
+    # Paths, alone or in a list, are what JSON does not know.
+    text = json.dumps(asdict(preferences), indent=1, default=str).encode()
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        write_atomically(folder / "preferences.json", lambda file: file.write(text))
+    except (OSError, LissomError):
+        return
+
+
+def _understood(content: dict[str, Any]) -> Preferences:
+    """Take from each entry what makes sense."""
+
+    def number(name: str, low: float, high: float) -> Any:
+        value = content.get(name)
+        is_number = isinstance(value, (int, float)) and low <= value <= high
+        return value if is_number else getattr(Preferences(), name)
+
+    recent = content.get("recent")
+    paths = recent if isinstance(recent, list) else []
+    folder, backdrop = content.get("folder"), str(content.get("backdrop"))
+    return Preferences(
+        theme="light" if content.get("theme") == "light" else "dark",
+        scale=float(number("scale", SMALLEST_SCALE, LARGEST_SCALE)),
+        auto_key=content.get("auto_key") is not False,
+        backdrop=backdrop if _COLOUR.fullmatch(backdrop) else CHECKER,
+        ghosts_before=int(number("ghosts_before", 0, MOST_GHOSTS)),
+        ghosts_after=int(number("ghosts_after", 0, MOST_GHOSTS)),
+        ghost_step=int(number("ghost_step", 1, LARGEST_GHOST_STEP)),
+        recent=tuple(Path(path) for path in paths if isinstance(path, str))[:MOST_RECENT],
+        folder=Path(folder) if isinstance(folder, str) else None,
+    )

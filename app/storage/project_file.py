@@ -1,0 +1,189 @@
+"""Saving and opening projects.
+
+A project is a zip file: `mimetype` (first, not packed), `project.json`, the picture byte for byte
+as `image/source.*`, the arrays of the domain under `domain/`, phi and psi of each key under
+`keys/`, and `thumbnail.png`. The maps are stored, not solved again, so that another solver never
+changes an animation.
+"""
+
+import json
+import struct
+import zipfile
+import zlib
+from math import isfinite
+from pathlib import Path
+
+from app.document import Document, PictureFile
+from app.errors import EXPECTED_ERRORS, LissomError
+from app.storage.archive import MEBIBYTE, Archive, array_member, write_archive
+from app.storage.files import write_atomically
+from app.storage.json_values import JsonObject, as_object, as_text, as_whole, without_repeats
+from app.storage.project_json import SCHEMA, read_document, read_size, write_document
+from engine.arrays import Complexes, as_points
+from engine.domain import Domain
+from engine.domain.meshing import Mesh
+from engine.geometry import require_simple
+
+LARGEST_JSON = 64 * MEBIBYTE
+LARGEST_PICTURE = 1024 * MEBIBYTE
+LARGEST_THUMBNAIL = 16 * MEBIBYTE
+# Of lists and objects in each other; fields that are not known are kept, and must be writable.
+DEEPEST = 40
+# What zipfile and json raise on damaged files; the first two of them are encryption and a zip
+# method that is not known.
+DAMAGE = (
+    RuntimeError,
+    NotImplementedError,
+    zipfile.BadZipFile,
+    zlib.error,
+    struct.error,
+    EOFError,
+    ValueError,
+    OverflowError,
+)
+
+
+def save_project(path: Path, document: Document, *, thumbnail: bytes | None = None) -> None:
+    """Write a project file; at any moment the old or the new one is whole.
+
+    Parameters
+    ----------
+    path : Path
+        Used exactly as given.
+    document : Document
+    thumbnail : bytes, optional
+        A small PNG picture of the animation.
+
+    Raises
+    ------
+    LissomError
+        If the file cannot be written.
+    """
+    content = write_document(document)
+    members = {
+        "project.json": json.dumps(content, indent=1, sort_keys=True, allow_nan=False).encode(),
+        f"image/source{document.picture.suffix}": document.picture.data,
+        "domain/outline.npy": array_member(document.domain.outline),
+        "domain/cage.npy": array_member(document.domain.cage),
+        "domain/vertices.npy": array_member(document.domain.mesh.vertices),
+        "domain/triangles.npy": array_member(document.domain.mesh.triangles),
+    }
+    for index, key in enumerate(document.keys):
+        phi, psi = _coefficient_members(index)
+        members |= {phi: array_member(key.pose.phi), psi: array_member(key.pose.psi)}
+    if thumbnail is not None:
+        members["thumbnail.png"] = thumbnail
+    write_atomically(path, lambda file: write_archive(file, members))
+
+
+def load_project(path: Path) -> Document:
+    """Read a project file.
+
+    Raises
+    ------
+    LissomError
+        If the file is missing, is no project, was written by a newer version, or is damaged; the
+        message says which.
+    """
+    try:
+        with zipfile.ZipFile(path) as file:
+            return _read(Archive(file))
+    except OSError as error:
+        raise LissomError(f"cannot read {path}: {error.strerror or error}") from error
+    except EXPECTED_ERRORS as error:
+        raise LissomError(f"cannot open {path}: {error}") from error
+    except DAMAGE as error:
+        raise LissomError(f"{path} is not a Lissom project, or it is damaged") from error
+
+
+def load_thumbnail(path: Path) -> bytes | None:
+    """Read only the small PNG picture of a project; None where it has none, or is no project."""
+    try:
+        with zipfile.ZipFile(path) as file:
+            return Archive(file).read("thumbnail.png", largest=LARGEST_THUMBNAIL)
+    except (OSError, *EXPECTED_ERRORS, *DAMAGE):
+        return None
+
+
+def _read(archive: Archive) -> Document:
+    content = _read_json(archive)
+    schema = as_whole(content["schema"], "schema")
+    if schema > SCHEMA:
+        app_version = as_text(content.get("app_version", "?"), "app_version")
+        raise LissomError(
+            f"it was saved by a newer Lissom ({app_version}, schema {schema}); this version reads "
+            f"schema {SCHEMA}. Update Lissom to open it"
+        )
+    if schema < 1:
+        raise LissomError(f"its schema {schema} is none")
+
+    def coefficients(index: int) -> tuple[Complexes, Complexes]:
+        phi, psi = _coefficient_members(index)
+        return archive.points(phi), archive.points(psi)
+
+    return read_document(
+        content,
+        picture=_read_picture(archive, as_object(content["picture"], "picture")),
+        domain=_read_domain(archive),
+        coefficients=coefficients,
+    )
+
+
+def _read_json(archive: Archive) -> JsonObject:
+    try:
+        content = json.loads(
+            archive.read("project.json", largest=LARGEST_JSON),
+            object_pairs_hook=without_repeats,
+            parse_float=_finite,
+            parse_constant=_finite,
+        )
+    except RecursionError:
+        content = None
+    except ValueError as error:
+        raise LissomError(f"its project.json is not JSON: {error}") from error
+    if content is None or _is_deeper(content, DEEPEST):
+        raise LissomError("its project.json is nested too deeply")
+    return as_object(content, "project.json")
+
+
+def _finite(text: str) -> float:
+    number = float(text)
+    if not isfinite(number):
+        raise LissomError(f"its project.json holds {text}, which is no number to reckon with")
+    return number
+
+
+def _read_picture(archive: Archive, content: JsonObject) -> PictureFile:
+    suffix = as_text(content["suffix"], "picture.suffix")
+    picture = PictureFile(
+        data=archive.read(f"image/source{suffix}", largest=LARGEST_PICTURE),
+        suffix=suffix,
+        size=read_size(content["size"], "picture.size"),
+    )
+    if picture.sha256 != as_text(content["sha256"], "picture.sha256"):
+        raise LissomError("its picture is not the one that was saved: the checksums differ")
+    return picture
+
+
+def _read_domain(archive: Archive) -> Domain:
+    outline, cage, vertices = (
+        as_points(archive.points(f"domain/{name}.npy"), name, at_least=3)
+        for name in ("outline", "cage", "vertices")
+    )
+    require_simple(outline, "outline")
+    triangles = archive.triangles("domain/triangles.npy")
+    if len(triangles) == 0 or triangles.min() < 0 or triangles.max() >= len(vertices):
+        raise LissomError("its triangles do not belong to its vertices")
+    return Domain(outline=outline, cage=cage, mesh=Mesh(vertices=vertices, triangles=triangles))
+
+
+def _coefficient_members(index: int) -> tuple[str, str]:
+    return f"keys/{index:05}.phi.npy", f"keys/{index:05}.psi.npy"
+
+
+def _is_deeper(content: object, levels: int) -> bool:
+    if isinstance(content, dict):
+        content = list(content.values())
+    if not isinstance(content, list):
+        return False
+    return levels == 0 or any(_is_deeper(value, levels - 1) for value in content)

@@ -1,0 +1,11 @@
+"""Questions, and the choice of a file.
+
+In: the dialog that the session has open.
+Out: the actions of its answers.
+Imports: `app.ui.style`, `app.ui.shortcuts`.
+"""
+
+from app.ui.dialogs.dialogs import Dialogs
+from app.ui.dialogs.system_dialogs import find_system_dialogs
+
+__all__ = ["Dialogs", "find_system_dialogs"]

@@ -1,0 +1,146 @@
+"""The dialog that is open: a question, the sheet of keys, or a choice of a file."""
+
+from imgui_bundle import ImVec2, imgui
+
+from app.editor import Action, Dialog, FileDialog, Question, Session, ShortcutSheet, do
+from app.editor.actions import answer, browse, close_dialog, use_own_dialogs
+from app.ui.dialogs.file_browser import FileBrowser
+from app.ui.dialogs.native_dialog import NativeDialog
+from app.ui.shortcuts import BINDINGS
+from app.ui.style import Look, heading, main_button
+
+GOING_ON = (browse, use_own_dialogs)  # with the dialog that is open
+# What the pointer does, for the sheet of keys; it is handled by the viewport and the timeline.
+POINTER = {
+    "Click on the shape": "Add a handle",
+    "Drag a handle": "Pose",
+    "Shift+click, drag on empty canvas": "Select several",
+    "Alt+drag a handle": "Turn the shape there",
+    "Alt+click a handle": "Delete it",
+    "Ctrl+click the shape or a handle": "Put the anchor there",
+    "Right click a handle": "Menu",
+    "Arrows, with Shift ×10": "Nudge the selection",
+    "Middle drag, or Space and drag": "Move the view",
+    "Wheel": "Zoom at the pointer",
+    "Tap Space": "Play or halt",
+    "Drag a key, with Ctrl": "Move it in time, copy it",
+    "Click between keys": "Change the easing",
+    "Double-click on the track": "Insert a key",
+    "Wheel on the timeline, with Ctrl": "Scroll, zoom",
+}
+
+
+class Dialogs:
+    """Shows what the session asks; of the system's own dialogs at most one."""
+
+    def __init__(self) -> None:
+        self._browser = FileBrowser()
+        self._native: NativeDialog | None = None
+
+    def draw(self, session: Session, look: Look) -> list[Action]:
+        """Draw the open dialog, if there is one."""
+        self._follow_session(session)
+        dialog = session.dialog
+        if dialog is None:
+            return []
+        title = "Keys and mouse" if isinstance(dialog, ShortcutSheet) else dialog.title
+        imgui.open_popup(f"{title}###dialog")
+        viewport = imgui.get_main_viewport()
+        middle = viewport.get_center()
+        imgui.set_next_window_pos(middle, imgui.Cond_.always, ImVec2(0.5, 0.5))
+        imgui.set_next_window_size_constraints(
+            ImVec2(24 * look.em, 0), ImVec2(viewport.size.x * 0.9, viewport.size.y * 0.9)
+        )
+        flags = imgui.WindowFlags_.always_auto_resize | imgui.WindowFlags_.no_move
+        imgui.push_style_var(imgui.StyleVar_.window_rounding, 0.6 * look.em)
+        visible, open_ = imgui.begin_popup_modal(f"{title}###dialog", True, flags)  # noqa: FBT003
+        imgui.pop_style_var()
+        if not visible:
+            return [do(close_dialog)]
+        actions = self._contents(dialog, session, look)
+        if not open_ or imgui.is_key_pressed(imgui.Key.escape):
+            actions.append(do(close_dialog))
+        if any(action.verb not in GOING_ON for action in actions):
+            imgui.close_current_popup()
+        imgui.end_popup()
+        return actions
+
+    def close(self) -> None:
+        """Take a dialog of the system away; the program would wait for it at its end."""
+        if self._native is not None:
+            self._native.close()
+            self._native = None
+
+    def _follow_session(self, session: Session) -> None:
+        """Open and close dialogs of the system as the session says."""
+        dialog = session.dialog if session.system_dialogs else None
+        if self._native is not None and self._native.dialog is not dialog:
+            self.close()
+        if self._native is None and isinstance(dialog, FileDialog):
+            self._native = NativeDialog(dialog, session.clock())
+
+    def _contents(self, dialog: Dialog, session: Session, look: Look) -> list[Action]:
+        match dialog:
+            case Question():
+                return _question(dialog, look)
+            case FileDialog() if self._native is not None:
+                return [*_waiting(look), *self._native.poll(session.clock())]
+            case FileDialog():
+                return self._browser.draw(dialog, look)
+            case ShortcutSheet():
+                _shortcuts(look)
+                return []
+
+
+def _waiting(look: Look) -> list[Action]:
+    imgui.text_unformatted("Choose in the dialog of the system, which has a window of its own.")
+    imgui.dummy(ImVec2(0, 0.4 * look.em))
+    if imgui.button("Use Lissom's own dialog"):
+        return [do(use_own_dialogs)]
+    imgui.same_line()
+    if imgui.button("Cancel"):
+        return [do(close_dialog)]
+    return []
+
+
+def _question(question: Question, look: Look) -> list[Action]:
+    actions: list[Action] = []
+    imgui.push_text_wrap_pos(30 * look.em)
+    imgui.text_unformatted(question.text)
+    imgui.pop_text_wrap_pos()
+    imgui.dummy(ImVec2(0, 0.4 * look.em))
+    for index, (text, action) in enumerate(question.answers):
+        if index:
+            imgui.same_line()
+        is_main = index == 0
+        if main_button(look, text) if is_main else imgui.button(text):
+            actions.append(do(answer, action))
+    imgui.same_line()
+    if imgui.button("Cancel"):
+        actions.append(do(close_dialog))
+    return actions
+
+
+def _shortcuts(look: Look) -> None:
+    groups = list(dict.fromkeys(binding.group for binding in BINDINGS.values()))
+    rows: dict[str, list[tuple[str, str]]] = {
+        group: [
+            (binding.label, binding.keys_in_words)
+            for binding in BINDINGS.values()
+            if binding.group == group and binding.keys
+        ]
+        for group in groups
+    }
+    rows["Pointer"] = [(text, keys) for keys, text in POINTER.items()]
+    columns = (groups[: (len(groups) + 1) // 2], [*groups[(len(groups) + 1) // 2 :]], ["Pointer"])
+    if imgui.begin_table("sheet", len(columns), imgui.TableFlags_.sizing_fixed_fit):
+        for column in columns:
+            imgui.table_next_column()
+            for group in column:
+                heading(look, group)
+                for text, keys in rows[group]:
+                    imgui.text_unformatted(text)
+                    imgui.same_line(11.5 * look.em)
+                    imgui.text_disabled(keys)
+            imgui.dummy(ImVec2(21 * look.em, 0))
+        imgui.end_table()

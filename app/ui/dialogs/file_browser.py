@@ -1,0 +1,250 @@
+"""Our own file browser, for machines without file dialogs of the system."""
+
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from imgui_bundle import ImVec2, imgui
+from imgui_bundle import icons_fontawesome_6 as icons
+
+from app.editor import Action, FileDialog, do
+from app.editor.actions import browse, choose, close_dialog
+from app.ui.dialogs.folder_listing import Entry, Listing, read_folder
+from app.ui.style import Look, icon_button, main_button, small
+
+WIDTH, HEIGHT = 42.0, 22.0  # em, where the window has room for them
+SIZE, CHANGED, BUTTON = 5.5, 9.5, 7.0  # em
+SEPARATOR = "/"
+NAME_FIELD = "##file name"
+ROW_FLAGS = (
+    imgui.SelectableFlags_.span_all_columns
+    | imgui.SelectableFlags_.allow_double_click
+    | imgui.SelectableFlags_.no_auto_close_popups
+)
+TABLE_FLAGS = (
+    imgui.TableFlags_.scroll_y
+    | imgui.TableFlags_.sortable
+    | imgui.TableFlags_.borders_outer
+    | imgui.TableFlags_.pad_outer_x
+)
+ENTER = (imgui.Key.enter, imgui.Key.keypad_enter)
+# By what the columns sort.
+ORDERS: tuple[Callable[[Entry], Any], ...] = (
+    lambda entry: entry.path.name.casefold(),
+    lambda entry: entry.size,
+    lambda entry: entry.changed,
+)
+
+
+class FileBrowser:
+    """The browser; it reads a folder again only when that has changed."""
+
+    def __init__(self) -> None:
+        self._listing: Listing | None = None
+        self._order = (0, False)  # column, and whether downwards
+        self._entries: list[Entry] = []  # of the listing, in this order
+
+    def draw(self, dialog: FileDialog, look: Look) -> list[Action]:
+        """Draw the browser in the dialog's window."""
+        room = imgui.get_main_viewport().size
+        size = ImVec2(min(WIDTH * look.em, 0.85 * room.x), min(HEIGHT * look.em, 0.52 * room.y))
+        appears = imgui.is_window_appearing()
+        now = _places(dialog, look, size.x)
+        now, by_key = self._step(now)
+        now, is_accepted = self._list(now, look, size, shows_marked=by_key or appears)
+        now = _name_field(now, size.x, is_new=appears, is_set=now.name != dialog.name)
+        is_accepted |= any(imgui.is_key_pressed(key, repeat=False) for key in ENTER)
+        folder, path = _folder_meant(now), _path_meant(now)
+        possible = path is not None or (folder is not None and not now.writes)
+        text = "Save" if now.writes else "Open"
+        if main_button(look, text, BUTTON * look.em, enabled=possible):
+            is_accepted = True
+            # What is saved goes by the name that is there, even where a folder is marked.
+            folder = None if now.writes else folder
+        imgui.same_line()
+        if imgui.button("Cancel", ImVec2(BUTTON * look.em, 0)):
+            return [do(close_dialog)]
+        if path is not None and now.writes and _is(Path.is_file, path):
+            imgui.same_line()
+            imgui.align_text_to_frame_padding()
+            imgui.text_colored(look.palette.warning, f"{path.name} will be replaced.")
+        if is_accepted and folder is not None:
+            now = _enter(now, folder)
+        elif is_accepted and path is not None:
+            return [do(choose, now, path)]
+        return [] if now is dialog else [do(browse, now)]
+
+    def _step(self, dialog: FileDialog) -> tuple[FileDialog, bool]:
+        """Mark the entry that the arrow keys lead to; return whether they were used."""
+        down, up = (imgui.is_key_pressed(key) for key in (imgui.Key.down_arrow, imgui.Key.up_arrow))
+        if up and imgui.get_io().key_alt:
+            return _enter(dialog, dialog.folder.parent), False
+        if not self._entries or down == up:
+            return dialog, False
+        names = [entry.path.name for entry in self._entries]
+        if dialog.marked in names:
+            index = names.index(dialog.marked) + (1 if down else -1)
+        else:
+            index = 0 if down else len(names) - 1
+        return _mark(dialog, self._entries[min(max(index, 0), len(names) - 1)]), True
+
+    def _list(
+        self, dialog: FileDialog, look: Look, size: ImVec2, *, shows_marked: bool
+    ) -> tuple[FileDialog, bool]:
+        """Draw the entries; return what is marked then, and whether it was double-clicked."""
+        is_opened = False
+        if not imgui.begin_table("entries", 3, TABLE_FLAGS, size):
+            return dialog, is_opened
+        imgui.table_setup_column("Name", imgui.TableColumnFlags_.width_stretch)
+        imgui.table_setup_column("Size", imgui.TableColumnFlags_.width_fixed, SIZE * look.em)
+        imgui.table_setup_column("Changed", imgui.TableColumnFlags_.width_fixed, CHANGED * look.em)
+        imgui.table_setup_scroll_freeze(0, 1)
+        imgui.table_headers_row()
+        self._read(dialog)
+        marked = next(
+            (i for i, entry in enumerate(self._entries) if entry.path.name == dialog.marked), None
+        )
+        clipper = imgui.ListClipper()
+        clipper.begin(len(self._entries))
+        if marked is not None and shows_marked:
+            clipper.include_item_by_index(marked)
+        while clipper.step():
+            for index in range(clipper.display_start, clipper.display_end):
+                entry = self._entries[index]
+                if _row(entry, look, is_marked=index == marked):
+                    dialog = _mark(dialog, entry)
+                    is_opened = imgui.is_mouse_double_clicked(imgui.MouseButton_.left)
+                if index == marked and shows_marked:
+                    imgui.set_scroll_here_y()
+        if not self._entries:
+            imgui.table_next_row()
+            imgui.table_next_column()
+            small(look, self._listing.problem if self._listing else "")
+        imgui.end_table()
+        return dialog, is_opened
+
+    def _read(self, dialog: FileDialog) -> None:
+        """Bring the entries up to date with the folder and with the order of the table."""
+        listing = self._listing
+        if listing is None or not listing.is_current(dialog.folder, dialog.suffixes):
+            self._listing = read_folder(dialog.folder, dialog.suffixes)
+        column = imgui.table_get_sort_specs().get_specs(0)
+        is_reversed = column.get_sort_direction() == imgui.SortDirection.descending
+        order = (column.column_index, is_reversed)
+        if self._listing is listing and self._order == order:
+            return
+        self._order = order
+        entries = sorted(self._listing.entries, key=ORDERS[0]) if self._listing else []
+        entries.sort(key=ORDERS[column.column_index], reverse=is_reversed)
+        self._entries = sorted(entries, key=lambda entry: not entry.is_folder)
+
+
+def _places(dialog: FileDialog, look: Look, width: float) -> FileDialog:
+    """Draw the ways out of the folder: up, home, and the folders that it is in."""
+    start = imgui.get_cursor_pos_x()
+    if icon_button(look, icons.ICON_FA_ARROW_UP, "up", "The folder above", keys="Alt+Up"):
+        return _enter(dialog, dialog.folder.parent)
+    imgui.same_line(0, 0)
+    if icon_button(look, icons.ICON_FA_HOUSE, "home", "Your own folder"):
+        return _enter(dialog, Path.home())
+    imgui.same_line()
+    room = width - (imgui.get_cursor_pos_x() - start)
+    style = imgui.get_style()
+    gap = imgui.calc_text_size(SEPARATOR).x
+    shown: list[Path] = []
+    for folder in (dialog.folder, *dialog.folder.parents):
+        name = imgui.calc_text_size(folder.name or folder.anchor)
+        room -= name.x + 2 * style.frame_padding.x + gap
+        if shown and room < 0:
+            break
+        shown.insert(0, folder)
+    for folder in shown:
+        imgui.push_style_color(imgui.Col_.button, (0, 0, 0, 0))
+        if imgui.button(f"{folder.name or folder.anchor}###in {len(folder.parts)}"):
+            dialog = _enter(dialog, folder)
+        imgui.pop_style_color()
+        if folder is not shown[-1]:
+            imgui.same_line(0, 0)
+            # The root ends with one itself.
+            imgui.text_disabled(SEPARATOR if folder.name else "")
+            imgui.same_line(0, 0)
+    return dialog
+
+
+def _row(entry: Entry, look: Look, *, is_marked: bool) -> bool:
+    """Draw an entry; return whether it was clicked."""
+    imgui.table_next_row()
+    imgui.table_next_column()
+    palette = look.palette
+    icon = icons.ICON_FA_FOLDER if entry.is_folder else icons.ICON_FA_FILE
+    imgui.text_colored(palette.accent if entry.is_folder else palette.dim, icon)
+    imgui.same_line(1.8 * look.em)
+    name = entry.path.name
+    clicked, _ = imgui.selectable(f"{name}###entry {name}", is_marked, ROW_FLAGS)
+    imgui.table_next_column()
+    size = entry.size_in_words
+    at_end = imgui.get_content_region_avail().x - imgui.calc_text_size(size).x
+    imgui.set_cursor_pos_x(imgui.get_cursor_pos_x() + max(at_end, 0))
+    imgui.text_disabled(size)
+    imgui.table_next_column()
+    imgui.text_disabled(entry.changed_in_words)
+    return clicked
+
+
+def _name_field(dialog: FileDialog, width: float, *, is_new: bool, is_set: bool) -> FileDialog:
+    """Draw the field of the name, which takes what is typed as soon as the browser opens."""
+    if is_new:
+        imgui.set_keyboard_focus_here()
+    if is_set:
+        # A field that is being typed into does not look at what it is given, unless it is told to.
+        state = imgui.internal.get_input_text_state(imgui.get_id(NAME_FIELD))
+        if state is not None:
+            state.reload_user_buf_and_move_to_end()
+    imgui.set_next_item_width(width)
+    hint = "Name of the folder" if dialog.wants_folder else "Name of the file"
+    _, name = imgui.input_text_with_hint(NAME_FIELD, hint, dialog.name)
+    return dialog if name == dialog.name else replace(dialog, name=name, marked="")
+
+
+def _mark(dialog: FileDialog, entry: Entry) -> FileDialog:
+    name = entry.path.name
+    if entry.is_folder:
+        return replace(dialog, marked=name, name=dialog.name if dialog.writes else "")
+    return replace(dialog, marked=name, name=name)
+
+
+def _enter(dialog: FileDialog, folder: Path) -> FileDialog:
+    """Go to another folder; the name of a file to write stays, unless it led there."""
+    left = dialog.folder.name if folder == dialog.folder.parent else ""
+    is_path = Path(dialog.name).name != dialog.name
+    name = dialog.name if dialog.writes and not is_path else ""
+    return replace(dialog, folder=folder, name=name, marked=left)
+
+
+def _folder_meant(dialog: FileDialog) -> Path | None:
+    """Return the folder that is marked or typed, if there is one to go to."""
+    name = dialog.marked or dialog.name.strip()
+    is_path = Path(name).name != name
+    if not name or (dialog.writes and not dialog.marked and not is_path):
+        return None
+    folder = (dialog.folder / name).resolve()
+    return folder if _is(Path.is_dir, folder) else None
+
+
+def _path_meant(dialog: FileDialog) -> Path | None:
+    """Return the path that is named, if it can be what the dialog asks for."""
+    name = dialog.name.strip()
+    if not name:
+        return None
+    path = dialog.path_of(name)
+    return path if dialog.writes or _is(Path.is_file, path) else None
+
+
+def _is(kind: Callable[[Path], bool], path: Path) -> bool:
+    """Tell whether a path that somebody typed is a file or a folder."""
+    try:
+        return kind(path)
+    except OSError:
+        # Too long for a name, or behind a folder that may not be entered.
+        return False

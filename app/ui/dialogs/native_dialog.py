@@ -1,0 +1,85 @@
+"""A file dialog of the system: it runs beside the window, which waits for it."""
+
+import sys
+from pathlib import Path
+
+from imgui_bundle import portable_file_dialogs
+
+from app.editor import Action, FileDialog, Question, do
+from app.editor.actions import choose, close_dialog, show_dialog, use_own_dialogs
+
+# Nobody finds and cancels a dialog so soon: one that is gone by then never came up. The system
+# tells no more of the two than that nothing was chosen.
+TOO_SOON = 0.5  # seconds
+MOST_NAMED = 4  # kinds of files in the name of a filter
+
+
+class NativeDialog:
+    """One dialog of the system, from its opening to its answer.
+
+    Parameters
+    ----------
+    dialog : FileDialog
+        What it asks.
+    now : float
+        The clock's seconds.
+    """
+
+    def __init__(self, dialog: FileDialog, now: float) -> None:
+        self.dialog = dialog
+        self._opened = now
+        self._running = _open(dialog)
+
+    def poll(self, now: float) -> list[Action]:
+        """Return what follows from the person's answer, once it is there; never waits."""
+        if not self._running.ready(0):
+            return []
+        result = self._running.result()
+        chosen = result if isinstance(result, str) else next(iter(result), "")
+        if chosen:
+            return [_follow(self.dialog, Path(chosen))]
+        return [do(use_own_dialogs if now - self._opened < TOO_SOON else close_dialog)]
+
+    def close(self) -> None:
+        """Take the dialog away if it is still there."""
+        if not self._running.ready(0):
+            self._running.kill()
+
+
+Running = (
+    portable_file_dialogs.open_file
+    | portable_file_dialogs.save_file
+    | portable_file_dialogs.select_folder
+)
+
+
+def _open(dialog: FileDialog) -> Running:
+    # With a slash at its end a folder is where to begin, and not what to choose.
+    folder = f"{dialog.folder}/"
+    if dialog.wants_folder:
+        return portable_file_dialogs.select_folder(dialog.title, folder)
+    filters = _filters(dialog.suffixes)
+    if dialog.writes:
+        # macOS begins only at what exists.
+        start = folder if sys.platform == "darwin" else str(dialog.folder / dialog.name)
+        return portable_file_dialogs.save_file(dialog.title, start, filters)
+    return portable_file_dialogs.open_file(dialog.title, folder, filters)
+
+
+def _filters(suffixes: tuple[str, ...]) -> list[str]:
+    """Return name and patterns; cameras and old programs write suffixes in capitals."""
+    names = ", ".join(suffixes[:MOST_NAMED]) + (", …" if len(suffixes) > MOST_NAMED else "")
+    return [names, " ".join(f"*{form}" for s in suffixes for form in (s, s.upper()))]
+
+
+def _follow(dialog: FileDialog, chosen: Path) -> Action:
+    path = dialog.path_of(str(chosen))
+    if path == chosen or not path.exists():
+        return do(choose, dialog, path)
+    # The system has asked about the name without its suffix only.
+    question = Question(
+        title="Replace the file?",
+        text=f"{path.name} is there already.",
+        answers=(("Replace", do(choose, dialog, path)),),
+    )
+    return do(show_dialog, question)

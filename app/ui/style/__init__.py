@@ -1,0 +1,60 @@
+"""How the window looks: themes, and the few widgets that every panel is made of.
+
+In: a theme and a scale.
+Out: a `Look`, and widgets.
+Imports: Dear ImGui.
+"""
+
+from app.ui.style.sliders import FIELD, Scale, number, slider, track
+from app.ui.style.theme import (
+    FONT_SIZE,
+    LARGE,
+    PALETTES,
+    SMALL,
+    TITLE,
+    Look,
+    Palette,
+    apply_theme,
+    ink,
+    load_fonts,
+)
+from app.ui.style.widgets import (
+    FILL,
+    at_end,
+    heading,
+    icon_button,
+    label,
+    main_button,
+    segments,
+    shortened,
+    small,
+    tip,
+)
+
+__all__ = [
+    "FIELD",
+    "FILL",
+    "FONT_SIZE",
+    "LARGE",
+    "PALETTES",
+    "SMALL",
+    "TITLE",
+    "Look",
+    "Palette",
+    "Scale",
+    "apply_theme",
+    "at_end",
+    "heading",
+    "icon_button",
+    "ink",
+    "label",
+    "load_fonts",
+    "main_button",
+    "number",
+    "segments",
+    "shortened",
+    "slider",
+    "small",
+    "tip",
+    "track",
+]

@@ -1,0 +1,154 @@
+"""Sliders that leave their number readable: a thin track, and the value in a field beside it."""
+
+import math
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from imgui_bundle import ImVec2, ImVec4, imgui
+
+from app.ui.style.theme import Look, ink
+from app.ui.style.widgets import FILL, tip
+
+FIELD = 4.3  # em
+BAR, KNOB = 0.28, 0.42  # em: thickness of the track, radius of the knob
+
+
+class Edit(NamedTuple):
+    """A value that was entered; while the knob is dragged it is not final yet."""
+
+    value: float
+    is_final: bool
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Scale:
+    """What a slider's track spans, from its left end to its right one, which may be the smaller.
+
+    Parameters
+    ----------
+    left, right : float
+    logarithmic : bool
+        Whether equal ways are equal ratios.
+    """
+
+    left: float
+    right: float
+    logarithmic: bool = False
+
+    def share(self, value: float) -> float:
+        """Return how far along the track a value is, 0 to 1."""
+        low, high, value = (self._straight(x) for x in (self.left, self.right, self.clamp(value)))
+        return (value - low) / (high - low)
+
+    def value(self, share: float) -> float:
+        """Return the value at a part of the track."""
+        low, high = self._straight(self.left), self._straight(self.right)
+        value = low + min(max(share, 0.0), 1.0) * (high - low)
+        return math.exp(value) if self.logarithmic else value
+
+    def clamp(self, value: float) -> float:
+        """Return the value of the track that is nearest."""
+        low, high = sorted((self.left, self.right))
+        return min(max(value, low), high)
+
+    def _straight(self, value: float) -> float:
+        return math.log(value) if self.logarithmic else value
+
+
+def slider(
+    look: Look,
+    name: str,
+    value: float,
+    scale: Scale,
+    *,
+    text: str = "%.2f",
+    hint: str = "",
+    field: float = FIELD,
+) -> Edit | None:
+    """Draw a track with a knob, and the value in a field, over the rest of the line's width.
+
+    Parameters
+    ----------
+    look : Look
+    name : str
+        Id of the field; the track's is `name track`.
+    value : float
+    scale : Scale
+    text : str
+        How the number is written, as C formats it.
+    hint : str
+        Tooltip of both.
+    field : float
+        Width of the field, in em.
+    """
+    gap = imgui.get_style().item_inner_spacing.x
+    width = imgui.get_content_region_avail().x - field * look.em - gap
+    moved = track(look, f"{name} track", value, scale, width, colour=look.palette.accent)
+    tip(hint)
+    imgui.same_line(0, gap)
+    imgui.set_next_item_width(FILL)
+    entered = number(name, value, text)
+    tip(hint)
+    return moved if entered is None else Edit(scale.clamp(entered), is_final=True)
+
+
+def number(name: str, value: float, text: str = "%.2f") -> float | None:
+    """Draw a field for a number; return it when it was entered and is another."""
+    _, entered = imgui.input_float(f"##{name}", value, 0.0, 0.0, text)
+    done = imgui.is_item_deactivated_after_edit()
+    return entered if done and math.isfinite(entered) and entered != value else None
+
+
+def track(
+    look: Look,
+    name: str,
+    value: float,
+    scale: Scale,
+    width: float,
+    *,
+    colour: ImVec4,
+    used: float | None = None,
+) -> Edit | None:
+    """Draw a thin track whose knob is dragged along it.
+
+    Parameters
+    ----------
+    look : Look
+    name : str
+        Its id.
+    value : float
+        Where the knob is.
+    scale : Scale
+    width : float
+        Pixels.
+    colour : ImVec4
+        Of the part of the track that is filled.
+    used : float, optional
+        Up to where it is filled; up to the knob by default.
+    """
+    palette, draw_list = look.palette, imgui.get_window_draw_list()
+    corner, height = imgui.get_cursor_screen_pos(), imgui.get_frame_height()
+    knob, bar = KNOB * look.em, BAR * look.em
+    imgui.invisible_button(name, ImVec2(max(width, 4 * knob), height))
+    is_held = imgui.is_item_active()
+    low, high = corner.x + knob, corner.x + max(width, 4 * knob) - knob
+    middle = corner.y + height / 2
+    edit = None
+    if is_held or imgui.is_item_deactivated():
+        share = (imgui.get_mouse_pos().x - low) / (high - low)
+        if not imgui.is_item_activated() or abs(share - scale.share(value)) * (high - low) > knob:
+            edit = Edit(scale.value(share), is_final=not is_held)
+            value = edit.value
+    place = low + scale.share(value) * (high - low)
+    end = place if used is None else low + scale.share(used) * (high - low)
+    top, bottom = middle - bar / 2, middle + bar / 2
+    draw_list.add_rect_filled(
+        ImVec2(low - bar, top), ImVec2(high + bar, bottom), ink(palette.pressed), bar / 2
+    )
+    draw_list.add_rect_filled(ImVec2(low - bar, top), ImVec2(end, bottom), ink(colour), bar / 2)
+    is_hot = is_held or imgui.is_item_hovered()
+    draw_list.add_circle_filled(ImVec2(place, middle), knob + bar / 2, ink(palette.panel))
+    draw_list.add_circle_filled(
+        ImVec2(place, middle), knob, ink(palette.accent if is_hot else palette.text)
+    )
+    return edit

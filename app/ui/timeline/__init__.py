@@ -1,0 +1,10 @@
+"""Keys in time: transport, ruler, track, easing.
+
+In: the document's keys and the playhead.
+Out: actions on keys and time.
+Imports: `app.ui.style`, `app.ui.shortcuts`, `app.ui.bars`.
+"""
+
+from app.ui.timeline import timeline
+
+__all__ = ["timeline"]

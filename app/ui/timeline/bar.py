@@ -1,0 +1,222 @@
+"""The bar above the track: playing, keys, the numbers of time, and how in-betweens are made."""
+
+from collections.abc import Callable
+
+from imgui_bundle import ImVec2, imgui
+from imgui_bundle import icons_fontawesome_6 as icons
+
+from app.document import LAST_FRAME, Variant
+from app.editor import Action, Project, Session, do
+from app.editor.actions import keys, playback, viewing
+from app.storage import LARGEST_GHOST_STEP, MOST_GHOSTS
+from app.ui.bars import bound_button
+from app.ui.shortcuts import BINDINGS
+from app.ui.style import Look, icon_button, ink, tip
+from app.ui.timeline.menus import time_menu
+from app.ui.timeline.track import in_seconds
+
+# Names and what they mean.
+VARIANTS: dict[Variant, tuple[str, str]] = {
+    "metric": ("Metric", "The usual one: stretch and shear stay within those of the keys"),
+    "nu": ("Nu (ν)", "Shear stays within the keys' at every point, stretch nearly so"),
+    "scaled-eta": ("Scaled eta (η)", "As eta, held within the bounds of the keys"),
+    "eta": ("Eta (η)", "May leave the bounds of the keys; to compare with"),
+    "linear": ("Linear", "Every point goes straight, and the shape may fold; to compare with"),
+}
+GAP, TIGHT, WIDE = 0.35, 0.1, 1.1  # em between what belongs together closely, and less so
+FRAMES = 13.0  # em: room that the numbers of frames need
+SLOWEST, FASTEST = 1.0, 240.0  # frames per second that dragging reaches
+KEY_BUTTONS = (
+    ("previous key", icons.ICON_FA_ANGLES_LEFT),
+    ("next key", icons.ICON_FA_ANGLES_RIGHT),
+)
+
+
+def draw_bar(session: Session, look: Look, project: Project) -> list[Action]:
+    """Draw the bar."""
+    actions = _transport(session, look, project)
+    _gap(look)
+    actions += _key_buttons(session, look, project)
+    end = imgui.get_window_pos().x + imgui.get_window_width()
+    if end - imgui.get_item_rect_max().x > FRAMES * look.em:
+        _gap(look)
+        actions += _frame(session, look, project)
+    actions += _right(session, look, project)
+    return actions
+
+
+def _gap(look: Look) -> None:
+    """Part two groups by a faint line."""
+    imgui.same_line(0, WIDE / 2 * look.em)
+    corner = imgui.get_cursor_screen_pos()
+    height = imgui.get_frame_height()
+    imgui.get_window_draw_list().add_line(
+        ImVec2(corner.x, corner.y + 0.25 * height),
+        ImVec2(corner.x, corner.y + 0.75 * height),
+        ink(look.palette.line),
+    )
+    imgui.dummy(ImVec2(1, height))
+    imgui.same_line(0, WIDE / 2 * look.em)
+
+
+def _transport(session: Session, look: Look, project: Project) -> list[Action]:
+    actions: list[Action] = []
+    is_playing = project.playhead.since is not None
+    for name in ("start", "back", "play", "on", "end"):
+        icon = icons.ICON_FA_PAUSE if name == "play" and is_playing else ""
+        actions += bound_button(session, look, name, icon)
+        imgui.same_line(0, TIGHT * look.em)
+    return actions + bound_button(session, look, "loop")
+
+
+def _key_buttons(session: Session, look: Look, project: Project) -> list[Action]:
+    actions: list[Action] = []
+    previous, following = KEY_BUTTONS
+    actions += _to_key(look, *previous)
+    imgui.same_line(0, TIGHT * look.em)
+    frame = playback.current_frame(session, project)
+    is_free = project.loose is not None or all(k.frame != frame for k in project.document.keys)
+    imgui.begin_disabled(not is_free)
+    actions += bound_button(session, look, "insert key")
+    imgui.end_disabled()
+    if project.loose is not None:
+        high = imgui.get_item_rect_max()
+        imgui.get_window_draw_list().add_circle_filled(
+            ImVec2(high.x - 0.4 * look.em, high.y - 1.3 * look.em),
+            0.22 * look.em,
+            ink(look.palette.warning),
+        )
+    imgui.same_line(0, TIGHT * look.em)
+    actions += _to_key(look, *following)
+    imgui.same_line(0, TIGHT * look.em)
+    actions += bound_button(session, look, "auto-key")
+    imgui.same_line(0, TIGHT * look.em)
+    if icon_button(look, icons.ICON_FA_ELLIPSIS, "more", "Reverse, scale time, work range"):
+        imgui.open_popup("menu of time")
+    return actions + time_menu(look, project)
+
+
+def _to_key(look: Look, name: str, icon: str) -> list[Action]:
+    binding = BINDINGS[name]
+    keys_in_words = binding.keys_in_words
+    pressed = icon_button(look, icon, binding.label, binding.label, keys=keys_in_words)
+    return [binding.action] if pressed else []
+
+
+def _frame(session: Session, look: Look, project: Project) -> list[Action]:
+    """Draw the present frame, the last one and the present time."""
+    actions: list[Action] = []
+    document = project.document
+    frame = playback.current_frame(session, project)
+    imgui.set_next_item_width(3.8 * look.em)
+    changed, wanted = imgui.drag_int(
+        "##frame", frame, 0.2, document.frames.first, document.frames.last
+    )
+    tip("The present frame: drag, or double-click to type")
+    if changed:
+        actions.append(do(playback.scrub, wanted))
+    imgui.same_line(0, GAP * look.em)
+    imgui.text_disabled("of")
+    imgui.same_line(0, GAP * look.em)
+    imgui.set_next_item_width(3.8 * look.em)
+    flags = imgui.InputTextFlags_.enter_returns_true
+    changed, last = imgui.input_int("##last", document.frames.last, 0, 0, flags)
+    tip("The last frame: type, or drag the end on the track")
+    if changed and document.frames.first < last <= LAST_FRAME:
+        actions.append(do(keys.set_last_frame, last))
+    imgui.same_line(0, 0.8 * look.em)
+    imgui.text_disabled(in_seconds(frame, document.fps))
+    return actions
+
+
+def _right(session: Session, look: Look, project: Project) -> list[Action]:
+    """Draw at the right what there is room for: the last of these first."""
+    em, square = look.em, 1.15 * imgui.get_frame_height()
+    parts: list[tuple[float, Callable[[], list[Action]]]] = [
+        (8.0 * em, lambda: _variant(project)),
+        (square, lambda: _onion_skin(session, look)),
+        (4.4 * em, lambda: _speed(project)),
+        (5.2 * em, lambda: _fps(project)),
+        (square, lambda: bound_button(session, look, "fit time")),
+    ]
+    imgui.same_line(0, WIDE * em)
+    begin = imgui.get_cursor_pos_x()
+    end = imgui.get_window_width() - imgui.get_style().window_padding.x
+    while parts and begin + _width(look, parts) > end:
+        del parts[0]
+    imgui.set_cursor_pos_x(max(begin, end - _width(look, parts)))
+    actions: list[Action] = []
+    for index, (width, draw) in enumerate(parts):
+        if index:
+            imgui.same_line(0, GAP * em)
+        imgui.set_next_item_width(width)
+        actions += draw()
+    if not parts:
+        imgui.new_line()
+    return actions
+
+
+def _width(look: Look, parts: list[tuple[float, Callable[[], list[Action]]]]) -> float:
+    return sum(width for width, _ in parts) + max(len(parts) - 1, 0) * GAP * look.em
+
+
+def _fps(project: Project) -> list[Action]:
+    fps = project.document.fps
+    changed, wanted = imgui.drag_float("##fps", fps, 0.1, SLOWEST, FASTEST, "%.4g fps")
+    tip("Frames per second: drag, or double-click to type")
+    return [do(keys.set_fps, round(wanted, 3))] if changed and wanted > 0 else []
+
+
+def _speed(project: Project) -> list[Action]:
+    actions: list[Action] = []
+    current = project.playhead.speed
+    if imgui.begin_combo("##speed", f"{current:g}×"):
+        actions += [
+            do(playback.set_speed, speed)
+            for speed in playback.SPEEDS
+            if imgui.selectable(f"{speed:g}×", speed == current)[0]
+        ]
+        imgui.end_combo()
+    tip("How fast it plays here; the animation itself stays as it is")
+    return actions
+
+
+def _onion_skin(session: Session, look: Look) -> list[Action]:
+    actions: list[Action] = []
+    overlays, preferences = session.overlays, session.preferences
+    binding = BINDINGS["onion skin"]
+    hint = "Onion skin: what is shown before and after"
+    if icon_button(look, binding.icon, "onion skin", hint, active=overlays.onion):
+        imgui.open_popup("menu of onion skin")
+    if not imgui.begin_popup("menu of onion skin"):
+        return actions
+    if imgui.checkbox(binding.label, overlays.onion)[0]:
+        actions.append(binding.action)
+    imgui.same_line()
+    imgui.text_disabled(binding.keys_in_words)
+    values = [preferences.ghosts_before, preferences.ghosts_after, preferences.ghost_step]
+    before = list(values)
+    sliders = (
+        *(("before", 0, MOST_GHOSTS), ("after", 0, MOST_GHOSTS)),
+        ("frames apart", 1, LARGEST_GHOST_STEP),
+    )
+    for index, (name, low, high) in enumerate(sliders):
+        imgui.set_next_item_width(8 * look.em)
+        values[index] = imgui.slider_int(name, values[index], low, high)[1]
+    if values != before:
+        actions.append(do(viewing.set_ghosts, *values))
+    imgui.end_popup()
+    return actions
+
+
+def _variant(project: Project) -> list[Action]:
+    actions: list[Action] = []
+    current = project.document.variant
+    if imgui.begin_combo("##variant", VARIANTS[current][0]):
+        for variant, (name, what) in VARIANTS.items():
+            if imgui.selectable(name, variant == current)[0]:
+                actions.append(do(keys.set_variant, variant))
+            tip(what)
+        imgui.end_combo()
+    tip("How in-betweens are made")
+    return actions

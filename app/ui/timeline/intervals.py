@@ -1,0 +1,151 @@
+"""The way from key to key: a bar with its easing curve, which opens the easing's editor."""
+
+from dataclasses import dataclass
+from itertools import pairwise
+
+from imgui_bundle import ImVec2, imgui
+
+from app.document import HOLD, Keyframe, closes
+from app.editor import Action
+from app.ui.style import SMALL, ink, tip
+from app.ui.timeline.easing_curve import draw_curve, easing_popup, fill_curve
+from app.ui.timeline.keys import begin_box, is_plain_click
+from app.ui.timeline.track import ROUNDING, Track, in_hand, is_pressed
+
+LEAST = 0.6  # em: narrower bars are not drawn
+INSET = 0.35  # em: between the curve and the bar's edge
+NAMES = {"linear": "linear", "in": "ease in", "out": "ease out", "in-out": "ease in-out"}
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class _Bar:
+    """A stretch of an interval; that of a loop's last one begins and ends elsewhere."""
+
+    name: str
+    key: Keyframe
+    begin: float
+    end: float
+    low: float
+    high: float
+
+
+def draw_intervals(track: Track) -> list[Action]:
+    """Draw all bars; a click on one opens its easing."""
+    actions: list[Action] = []
+    draw_list = imgui.get_window_draw_list()
+    low, high = ImVec2(track.left, track.track_top), ImVec2(track.right, track.track_bottom)
+    draw_list.push_clip_rect(low, high, intersect_with_current_clip_rect=True)
+    _draw_still(track)
+    for bar in _bars(track):
+        left, right = track.x(bar.low), track.x(bar.high)
+        if right - left >= LEAST * track.look.em and track.shows(left, right):
+            actions += _interval(track, bar, left, right)
+    draw_list.pop_clip_rect()
+    return actions
+
+
+def _bars(track: Track) -> list[_Bar]:
+    document = track.project.document
+    keys = document.keys
+    bars = [
+        _Bar(
+            name=f"interval {key.frame}",
+            key=key,
+            begin=key.frame,
+            end=following.frame,
+            low=key.frame,
+            high=following.frame,
+        )
+        for key, following in pairwise(keys)
+    ]
+    if closes(document):
+        frames, last = document.frames, keys[-1]
+        period = frames.last - frames.first
+        end = keys[0].frame + period
+        for name, shift, low, high in (
+            ("", 0, last.frame, frames.last),
+            (" again", -period, frames.first, keys[0].frame),
+        ):
+            bars.append(
+                _Bar(
+                    name=f"interval {last.frame}{name}",
+                    key=last,
+                    begin=last.frame + shift,
+                    end=end + shift,
+                    low=low,
+                    high=high,
+                )
+            )
+    return bars
+
+
+def _draw_still(track: Track) -> None:
+    """Draw a line where a pose stands still: before the first key and after the last one."""
+    document = track.project.document
+    ends = [(document.frames.first, document.frames.last)]
+    if not closes(document):
+        first, last = document.keys[0].frame, document.keys[-1].frame
+        ends = [(document.frames.first, first), (last, document.frames.last)]
+        colour = ink(track.look.palette.dim, 0.35)
+        for low, high in ends:
+            imgui.get_window_draw_list().add_line(
+                ImVec2(track.x(low), track.middle), ImVec2(track.x(high), track.middle), colour, 1.5
+            )
+
+
+def _interval(track: Track, bar: _Bar, left: float, right: float) -> list[Action]:
+    actions: list[Action] = []
+    low, high = ImVec2(left + 1, track.bar_top), ImVec2(right - 1, track.bar_bottom)
+    clicked = track.button(bar.name, low, high)
+    popup = f"easing {bar.key.frame}"
+    if is_pressed():
+        actions += begin_box(track)
+    if clicked and is_plain_click():
+        imgui.open_popup(popup)
+    easing = bar.key.easing
+    name = NAMES.get(easing.name, easing.name)
+    is_open = imgui.is_popup_open(popup)
+    hot = is_open or (in_hand() and track.project.timing.gesture is None)
+    if track.project.timing.gesture is None and not is_open:
+        tip(f"{name.capitalize()}: click to change how time runs here")
+    _draw_bar(track, bar, low, high, hot=hot)
+    _label(track, name, bar.key.turns, low, high)
+    if not bar.name.endswith("again"):
+        actions += easing_popup(popup, track.look, track.project, bar.key)
+    return actions
+
+
+def _draw_bar(track: Track, bar: _Bar, low: ImVec2, high: ImVec2, *, hot: bool) -> None:
+    palette, draw_list, em = track.look.palette, imgui.get_window_draw_list(), track.look.em
+    rounding = ROUNDING / 2 * em
+    chosen = bar.key.frame in track.project.chosen
+    colour = palette.accent if hot or chosen else palette.dim
+    if bar.key.easing == HOLD:
+        draw_list.add_rect_filled(low, high, ink(palette.raised, 0.35), rounding)
+        draw_list.add_rect(low, high, ink(colour, 0.45), rounding, 1.0)
+    else:
+        draw_list.add_rect_filled(
+            low, high, ink(palette.hovered if hot else palette.raised), rounding
+        )
+    inset = INSET * em
+    corner = ImVec2(track.x(bar.begin), low.y + inset)
+    size = ImVec2(track.x(bar.end) - corner.x, high.y - low.y - 2 * inset)
+    draw_list.push_clip_rect(low, high, intersect_with_current_clip_rect=True)
+    if bar.key.easing != HOLD:
+        fill_curve(bar.key.easing, corner, size, inset, ink(colour, 0.30 if hot else 0.16))
+    draw_curve(bar.key.easing, corner, size, ink(colour, 0.95 if hot or chosen else 0.7), 0.1 * em)
+    draw_list.pop_clip_rect()
+
+
+def _label(track: Track, name: str, turns: int, low: ImVec2, high: ImVec2) -> None:
+    """Name the easing in the upper left corner, where its curve is not yet."""
+    em = track.look.em
+    text = f"{name}, {turns:+d} turns" if abs(turns) > 1 else f"{name}, {turns:+d} turn"
+    text = text if turns else name
+    imgui.push_font(None, SMALL * imgui.get_style().font_size_base)
+    left = max(low.x, track.left) + 0.6 * em
+    if left + 2.2 * imgui.calc_text_size(text).x + em < min(high.x, track.right):
+        imgui.get_window_draw_list().add_text(
+            ImVec2(left, low.y + 0.25 * em), ink(track.look.palette.dim), text
+        )
+    imgui.pop_font()

@@ -1,0 +1,97 @@
+"""What can be done with keys, in menus."""
+
+from imgui_bundle import imgui
+
+from app.document import PRESETS, Keyframe
+from app.editor import Action, Project, do
+from app.editor.actions import keys, playback
+from app.ui.shortcuts import BINDINGS
+from app.ui.style import Look
+from app.ui.timeline.easing_curve import LABELS
+from app.ui.timeline.track import Track
+
+FACTORS = ((0.5, "Half as long"), (2.0, "Twice as long"))
+
+
+def key_menu(track: Track, key: Keyframe) -> list[Action]:
+    """Draw the menu of a key, if it is open."""
+    actions: list[Action] = []
+    if not imgui.begin_popup(f"menu of key {key.frame}"):
+        return actions
+    project = track.project
+    frames = project.chosen | {key.frame}
+    many = f" {len(frames)} keys" if len(frames) > 1 else ""
+    delete = BINDINGS["delete"]
+    if imgui.menu_item_simple(f"Delete{many}###Delete", delete.keys_in_words):
+        actions.append(delete.action)
+    if imgui.menu_item_simple("Go to this key", "Click"):
+        actions.append(do(playback.scrub, key.frame))
+    if imgui.begin_menu("Easing"):
+        for name, preset in PRESETS.items():
+            if imgui.menu_item(LABELS[name], "", key.easing == preset)[0]:
+                actions.append(do(keys.set_easing, frames, preset))
+        imgui.end_menu()
+    imgui.separator()
+    actions += _time_items(track.look, project)
+    imgui.end_popup()
+    return actions
+
+
+def track_menu(track: Track) -> list[Action]:
+    """Draw the menu of a place between the keys, if it is open."""
+    actions: list[Action] = []
+    if not imgui.begin_popup("menu of track"):
+        return actions
+    opened = imgui.get_mouse_pos_on_opening_current_popup()
+    frame = track.project.document.frames.clamp(round(track.frame(opened.x)))
+    if imgui.menu_item_simple(f"Insert key at frame {frame}###Insert key"):
+        actions.append(do(keys.insert_at, frame))
+    imgui.separator()
+    actions += _time_items(track.look, track.project)
+    imgui.end_popup()
+    return actions
+
+
+def time_menu(look: Look, project: Project) -> list[Action]:
+    """Draw the menu of the whole timeline, if it is open."""
+    actions: list[Action] = []
+    if imgui.begin_popup("menu of time"):
+        actions += _time_items(look, project)
+        imgui.end_popup()
+    return actions
+
+
+def _time_items(look: Look, project: Project) -> list[Action]:
+    actions: list[Action] = []
+    count = len(project.document.keys)
+    chosen = len(project.chosen)
+    several = f"{chosen} keys" if chosen > 1 else "all keys"
+    if imgui.menu_item_simple(f"Reverse {several}###Reverse", enabled=count > 1):
+        actions.append(do(keys.reverse))
+    if imgui.begin_menu(f"Scale time of {several}###Scale time"):
+        actions += [
+            do(keys.scale, factor) for factor, name in FACTORS if imgui.menu_item_simple(name)
+        ]
+        imgui.set_next_item_width(5 * look.em)
+        entered, percent = imgui.input_float(
+            "of its time###percent",
+            100.0,
+            0,
+            0,
+            "%.4g %%",
+            imgui.InputTextFlags_.enter_returns_true,
+        )
+        if entered:
+            actions.append(do(keys.scale, percent / 100))
+            imgui.close_current_popup()
+        imgui.end_menu()
+    if imgui.menu_item_simple("Make last key equal first", enabled=count > 1):
+        actions.append(do(keys.match_ends))
+    imgui.separator()
+    for name in ("work start", "work end"):
+        binding = BINDINGS[name]
+        if imgui.menu_item_simple(binding.label, binding.keys_in_words):
+            actions.append(binding.action)
+    if imgui.menu_item_simple("Play all frames", enabled=project.document.work is not None):
+        actions.append(do(keys.play_all))
+    return actions

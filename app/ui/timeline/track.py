@@ -1,0 +1,124 @@
+"""Where times are on the screen, for all that is drawn in the timeline."""
+
+from imgui_bundle import ImVec2, imgui
+
+from app.editor import Project, Strip
+from app.ui.style import Look, ink
+
+WORK, RULER, OVERVIEW = 0.7, 1.55, 0.75  # em: heights of the bands above and below the track
+BAR, BAR_SHARE = 3.6, 0.62  # em: height of intervals at most, and as a part of the track's
+CRAMPED, CRAMPED_SHARE = 5.5, 0.85  # em: below this height bars take more, and the overview goes
+ROUNDING = 0.4  # em
+
+
+class Track:
+    """The bands of the timeline, and the way between frames and pixels.
+
+    Parameters
+    ----------
+    look : Look
+    project : Project
+    """
+
+    def __init__(self, look: Look, project: Project) -> None:
+        self.look = look
+        self.project = project
+        self.corner = imgui.get_cursor_screen_pos()
+        self.size = imgui.get_content_region_avail()
+        self.left, self.top = self.corner.x, self.corner.y
+        self.right, self.bottom = self.left + self.size.x, self.top + self.size.y
+        self.ruler_top = self.top + WORK * look.em
+        self.track_top = self.ruler_top + RULER * look.em
+        self.is_cramped = self.size.y < CRAMPED * look.em
+        is_whole = self.is_cramped or project.timing.strip is None
+        self.track_bottom = self.bottom - (0 if is_whole else OVERVIEW * look.em)
+        self.middle = (self.track_top + self.track_bottom) / 2
+        share = CRAMPED_SHARE if self.is_cramped else BAR_SHARE
+        height = min(BAR * look.em, share * (self.track_bottom - self.track_top))
+        self.bar_top, self.bar_bottom = self.middle - height / 2, self.middle + height / 2
+        timing = project.timing
+        fitting = Strip.fitting(project.document.frames, self.width)
+        self.strip = timing.held or timing.strip or fitting
+
+    @property
+    def width(self) -> float:
+        """Its width in em."""
+        return self.size.x / self.look.em
+
+    @property
+    def is_usable(self) -> bool:
+        """Whether there is room to draw anything."""
+        return self.width > 4 and self.bar_bottom - self.bar_top > 0.5 * self.look.em
+
+    def x(self, frame: float) -> float:
+        """Return where a frame is, in pixels of the window."""
+        return self.left + self.strip.place(frame) * self.look.em
+
+    def frame(self, x: float) -> float:
+        """Return the frame at a place of the window."""
+        return self.strip.frame((x - self.left) / self.look.em)
+
+    @property
+    def pointed(self) -> float:
+        """The frame under the pointer."""
+        return self.frame(imgui.get_mouse_pos().x)
+
+    def shows(self, low: float, high: float) -> bool:
+        """Tell whether a stretch of pixels is on the screen."""
+        return high > self.left and low < self.right
+
+    def button(self, name: str, low: ImVec2, high: ImVec2, *, right: bool = False) -> bool:
+        """Lay an invisible button over a box; return whether it was clicked.
+
+        Parameters
+        ----------
+        name : str
+        low, high : ImVec2
+        right : bool
+            Whether the right button of the mouse counts as well.
+        """
+        imgui.set_cursor_screen_pos(low)
+        imgui.set_next_item_allow_overlap()
+        flags = imgui.ButtonFlags_.mouse_button_left
+        if right:
+            flags |= imgui.ButtonFlags_.mouse_button_right
+        size = ImVec2(max(high.x - low.x, 1.0), max(high.y - low.y, 1.0))
+        return imgui.invisible_button(name, size, flags)
+
+
+def write_tag(track: Track, x: float, text: str) -> None:
+    """Write something short below the ruler, over what is dragged."""
+    palette, em = track.look.palette, track.look.em
+    draw_list = imgui.get_window_draw_list()
+    size = imgui.calc_text_size(text)
+    width, height = size.x + em, 1.4 * em
+    left = min(max(x - width / 2, track.left), track.right - width)
+    low = ImVec2(left, track.track_top + 0.15 * em)
+    high = ImVec2(low.x + width, low.y + height)
+    draw_list.add_rect_filled(low, high, ink(palette.accent), 0.3 * em)
+    place = ImVec2(low.x + em / 2, low.y + (height - size.y) / 2)
+    draw_list.add_text(place, ink(palette.on_accent), text)
+
+
+def in_hand() -> bool:
+    """Tell whether the pointer is over the last item, or holds it."""
+    return imgui.is_item_hovered() or imgui.is_item_active()
+
+
+def is_pressed() -> bool:
+    """Tell whether the left button of the mouse was pressed on the last item just now."""
+    return imgui.is_item_activated() and imgui.is_mouse_clicked(imgui.MouseButton_.left)
+
+
+def was_dragged() -> bool:
+    """Tell whether the pointer went somewhere since the button was pressed, and be it back."""
+    io, left = imgui.get_io(), imgui.MouseButton_.left
+    # What Dear ImGui keeps of the way lacks the last part of it, before the button was let go.
+    last = imgui.get_mouse_drag_delta(left, 0.0)
+    farthest = max(io.mouse_drag_max_distance_sqr[int(left)], last.x**2 + last.y**2)
+    return bool(farthest >= io.mouse_drag_threshold**2)
+
+
+def in_seconds(frame: float, fps: float) -> str:
+    """Return the time of a frame in words."""
+    return f"{frame / fps:.2f}".rstrip("0").rstrip(".") + " s"

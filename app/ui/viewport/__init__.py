@@ -1,0 +1,11 @@
+"""The drawing, and everything that the pointer does to it.
+
+In: what is shown, and the pointer.
+Out: a picture of the drawing, and gestures.
+Imports: `app.ui.style`, `app.ui.shortcuts`, `app.render`.
+"""
+
+from app.ui.viewport import viewport
+from app.ui.viewport.canvas import Canvas, heat_limits, measure
+
+__all__ = ["Canvas", "heat_limits", "measure", "viewport"]

@@ -1,0 +1,326 @@
+"""What the viewport shows: the drawing, its ghosts, and all that marks it."""
+
+import numpy as np
+from imgui_bundle import ImVec4
+
+from app.document import time_of
+from app.editor import HeatMap, Project, Session
+from app.motion import Box, Figure, Shown, Vertices
+from app.render import (
+    Background,
+    Colour,
+    Disc,
+    Ghost,
+    HandleMark,
+    HandleStyle,
+    Heat,
+    Layer,
+    Line,
+    Renderer,
+    Scene,
+    Wireframe,
+    mark_anchor,
+    mark_handles,
+    shader_is_faster,
+)
+from app.render.gpu import GpuMesh, GpuPicture, Pose, Target
+from app.storage import CHECKER
+from app.ui.style import PALETTES, Palette
+from engine.arrays import Floats
+from engine.maps import distortion
+
+GHOST_BEFORE, GHOST_AFTER = (0.93, 0.36, 0.36), (0.30, 0.62, 0.98)
+GHOST_OPACITY = 0.38
+LAG = 4.0  # pixels of the screen that a handle may lack before its wish is shown
+
+
+class Canvas:
+    """Owner of everything that the viewport's picture is drawn from.
+
+    Parameters
+    ----------
+    renderer : Renderer
+    """
+
+    def __init__(self, renderer: Renderer) -> None:
+        self._renderer = renderer
+        self._target: Target | None = None
+        self._retired: Target | None = None
+        self._drawing: _Drawing | None = None
+        self._drawn: tuple[object, ...] = ()
+
+    @property
+    def texture(self) -> int | None:
+        """OpenGL's name of the picture; None before the first one."""
+        return None if self._target is None else self._target.texture.glo
+
+    @property
+    def target(self) -> Target | None:
+        """Where the picture is."""
+        return self._target
+
+    def draw(self, session: Session) -> None:
+        """Draw the project of a session as it is shown now."""
+        project = session.project
+        if project is None or project.shown is None:
+            return
+        self._fit_target(session.screen)
+        if self._drawing is None or self._drawing.project is not project:
+            self._forget_drawing()
+            self._drawing = _Drawing(self._renderer, project)
+        inputs = _inputs(session, project)
+        if self._target is not None and inputs != self._drawn:
+            scene = _scene(session, project, project.shown, self._drawing)
+            self._renderer.draw(self._target, project.view(session.screen), scene)
+            self._drawn = inputs
+
+    def release(self) -> None:
+        """Let everything go."""
+        self._forget_drawing()
+        for target in filter(None, (self._target, self._retired)):
+            target.release()
+        self._target = self._retired = None
+
+    def _fit_target(self, size: tuple[int, int]) -> None:
+        if self._target is not None and self._target.size == size:
+            return
+        # ImGui may still show the last one in this frame.
+        if self._retired is not None:
+            self._retired.release()
+        self._retired, self._target = self._target, Target(self._renderer.programs, size)
+        self._drawn = ()
+
+    def _forget_drawing(self) -> None:
+        if self._drawing is not None:
+            self._drawing.release()
+            self._drawing = None
+
+
+class _Drawing:
+    """The picture of a project and its figures on the graphics card."""
+
+    def __init__(self, renderer: Renderer, project: Project) -> None:
+        self.project = project
+        self._renderer = renderer
+        self._picture = GpuPicture(renderer.programs.context, project.picture.rgba)
+        self._meshes: dict[Figure, GpuMesh] = {}
+        self._layers: dict[tuple[Figure, int], Layer] = {}
+        self._heated: tuple[Pose, Vertices, HeatMap] | None = None
+
+    def layer(self, figure: Figure, number: int = 0) -> Layer:
+        """Return the poses of a figure with this number, 0 for the drawing itself."""
+        if (figure, number) not in self._layers:
+            by_shader = shader_is_faster(self._renderer.programs.context)
+            self._layers[figure, number] = Layer(self._mesh(figure), by_shader=by_shader)
+        return self._layers[figure, number]
+
+    def heat(self, pose: Pose, shown: Shown, heat_map: HeatMap) -> None:
+        """Upload a distortion of what is shown, if it is another than before."""
+        wanted = (pose, shown.vertices, heat_map)
+        if self._heated != wanted:
+            pose.write_heat(measure(shown, heat_map).astype(np.float32))
+            self._heated = wanted
+
+    def keep_only(self, figures: tuple[Figure, ...]) -> None:
+        """Let the buffers of other figures go."""
+        for figure, number in [key for key in self._layers if key[0] not in figures]:
+            self._layers.pop((figure, number)).release()
+        for figure in [figure for figure in self._meshes if figure not in figures]:
+            self._meshes.pop(figure).release()
+
+    def release(self) -> None:
+        self.keep_only(())
+        self._picture.release()
+
+    def _mesh(self, figure: Figure) -> GpuMesh:
+        if figure not in self._meshes:
+            mesh = figure.domain.mesh
+            self._meshes[figure] = GpuMesh(
+                self._renderer.programs,
+                self._picture,
+                rest=mesh.vertices,
+                triangles=mesh.triangles,
+            )
+        return self._meshes[figure]
+
+
+def _inputs(session: Session, project: Project) -> tuple[object, ...]:
+    """Return all that the picture depends on: while it stays the same, so does the picture."""
+    return (
+        project.shown,
+        project.sketch if session.overlays.onion else project.sketch.stage,
+        project.grab.targets if project.grab else None,
+        project.selected,
+        project.view(session.screen),
+        project.playhead.since is None,
+        session.hovered,
+        session.overlays,
+        session.export_frame,
+        session.preferences,
+    )
+
+
+def measure(shown: Shown, heat_map: HeatMap) -> Floats:
+    """Return one of the distortions at the vertices of what is shown, (v,)."""
+    fz, fzbar = shown.derivatives
+    match heat_map:
+        case "sigma_a":
+            return distortion.sigma_a(fz, fzbar)
+        case "sigma_b":
+            return distortion.sigma_b(fz, fzbar)
+        case _:
+            return distortion.k(fz, fzbar)
+
+
+def heat_limits(project: Project, heat_map: HeatMap) -> tuple[float, float]:
+    """Return the values at the two ends of the colours: from none to all that the bounds allow."""
+    bounds = project.document.bounds
+    match heat_map:
+        case "sigma_a":
+            return 1.0, bounds.sigma_a
+        case "sigma_b":
+            return 1.0, bounds.sigma_b
+        case _:
+            return 0.0, bounds.k
+
+
+def _scene(session: Session, project: Project, shown: Shown, drawing: _Drawing) -> Scene:
+    palette = PALETTES[session.preferences.theme]
+    overlays = session.overlays
+    figures = [motion.figure for motion in (project.sketch, project.full) if motion is not None]
+    drawing.keep_only((*figures, shown.figure))
+    pose = drawing.layer(shown.figure).place(shown.vertices)
+    heat = None
+    if overlays.heat_map != "none":
+        drawing.heat(pose, shown, overlays.heat_map)
+        low, high = heat_limits(project, overlays.heat_map)
+        heat = Heat(low=low, high=high)
+    wireframe = Wireframe(colour=_colour(palette.text, 0.35)) if overlays.wireframe else None
+    lines, discs = _marks(session, project, shown, palette)
+    return Scene(
+        background=_background(session, palette),
+        pose=pose,
+        heat=heat,
+        wireframe=wireframe,
+        ghosts=_ghosts(session, project, shown, drawing) if overlays.onion else (),
+        lines=lines,
+        discs=discs,
+    )
+
+
+def _background(session: Session, palette: Palette) -> Background:
+    backdrop = session.preferences.backdrop
+    if backdrop == CHECKER:
+        return Background(
+            colour=_colour(palette.paper),
+            checks=_colour(palette.check),
+            square=12.0 * session.preferences.scale,
+        )
+    red, green, blue = (channel / 255 for channel in bytes.fromhex(backdrop[1:]))
+    return Background(colour=(red, green, blue, 1.0))
+
+
+def _ghosts(
+    session: Session, project: Project, shown: Shown, drawing: _Drawing
+) -> tuple[Ghost, ...]:
+    choice, document = session.preferences, project.document
+    if project.playhead.since is not None:
+        return ()
+    # While the hand moves, in-betweens come a moment later: until then the last ones stay.
+    known = document if project.sketch.knows(document, roughly=True) else project.sketch.document
+    ghosts = []
+    sides = ((-1, choice.ghosts_before, GHOST_BEFORE), (1, choice.ghosts_after, GHOST_AFTER))
+    number = 0
+    for direction, count, tint in sides:
+        for step in range(count, 0, -1):
+            number += 1
+            frame = shown.frame + direction * step * choice.ghost_step
+            if frame not in known.frames and not known.loop:
+                continue
+            vertices = project.sketch.vertices(known, frame)
+            if vertices is None or time_of(known, frame) == time_of(known, shown.frame):
+                continue
+            pose = drawing.layer(project.sketch.figure, number).place(vertices)
+            ghosts.append(Ghost(pose=pose, tint=tint, opacity=GHOST_OPACITY / step**0.5))
+    return tuple(ghosts)
+
+
+def _marks(
+    session: Session, project: Project, shown: Shown, palette: Palette
+) -> tuple[tuple[Line, ...], tuple[Disc, ...]]:
+    scale = session.preferences.scale
+    document = shown.document
+    lines: list[Line] = []
+    if session.overlays.outline:
+        lines.append(_outline(shown, palette, scale))
+    if session.overlays.cage:
+        lines.append(_cage(shown, palette, scale))
+    if session.export_frame is not None:
+        lines.append(_frame(session.export_frame, palette, scale))
+    if not session.overlays.handles or project.playhead.since is not None:
+        return tuple(lines), ()
+    style = HandleStyle()
+    wishes = project.grab.targets if project.grab else None
+    if wishes is None and shown.pose is not None:
+        wishes = shown.pose.targets
+    zoom = project.view(session.screen).scale
+    marks = []
+    for handle, place in zip(document.handles, shown.handle_places, strict=True):
+        wish = wishes.get(handle.id) if wishes else None
+        lags = wish is not None and abs(wish.position - place) * zoom > LAG * scale
+        marks.append(
+            HandleMark(
+                place=complex(place),
+                wish=wish.position if lags and wish is not None else None,
+                anchor=handle.position == document.anchor,
+                selected=handle.id in project.selected,
+                hovered=handle.id == session.hovered,
+            )
+        )
+    handle_lines, discs = mark_handles(marks, scale=scale, style=style)
+    anchor = _anchor(project, shown)
+    below = () if anchor is None else mark_anchor(anchor, scale=scale, style=style)
+    return (*lines, *handle_lines), (*below, *discs)
+
+
+def _anchor(project: Project, shown: Shown) -> complex | None:
+    """Return where the anchor is in what is shown; None where a handle marks it, or none is yet."""
+    document, stage = shown.document, project.sketch.stage
+    rest = document.anchor
+    if rest is None and stage is not None and stage.anchor is None:
+        rest = stage.sites.anchor
+    if rest is None or any(handle.position == rest for handle in document.handles):
+        return None
+    figure = shown.figure
+    found = figure.locate(np.array([rest]), figure.domain.mesh.vertices)
+    return complex(found.on(shown.positions)[0])
+
+
+def _outline(shown: Shown, palette: Palette, scale: float) -> Line:
+    """Return the outline, moved with the shape."""
+    points = shown.positions[: len(shown.figure.domain.outline)]
+    return Line(points=points, colour=_colour(palette.accent), width=1.5 * scale, closed=True)
+
+
+def _cage(shown: Shown, palette: Palette, scale: float) -> Line:
+    """Return the cage, which stays around the shape at rest."""
+    return Line(
+        points=shown.figure.domain.cage,
+        colour=_colour(palette.warning, 0.8),
+        width=1.5 * scale,
+        dash=5.0 * scale,
+        closed=True,
+    )
+
+
+def _frame(box: Box, palette: Palette, scale: float) -> Line:
+    """Return the edge of what an export shows."""
+    low, high = box
+    corners = [low, complex(high.real, low.imag), high, complex(low.real, high.imag)]
+    return Line(
+        points=np.array(corners), colour=_colour(palette.accent), width=1.5 * scale, closed=True
+    )
+
+
+def _colour(colour: ImVec4, alpha: float = 1.0) -> Colour:
+    return colour.x, colour.y, colour.z, alpha * colour.w

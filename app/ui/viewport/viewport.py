@@ -1,0 +1,291 @@
+"""The drawing, and everything that the pointer does to it."""
+
+import numpy as np
+from imgui_bundle import ImVec2, imgui
+from imgui_bundle import icons_fontawesome_6 as icons
+
+from app.editor import Action, Boxing, Project, Pulling, Session, Turning, do
+from app.editor.actions import pointing, posing, viewing
+from app.motion import Shown
+from app.render import View
+from app.ui.shortcuts import BINDINGS
+from app.ui.style import Look, ink, tip
+from engine.geometry import contains
+
+ZOOM_STEP = 1.15  # a notch of the wheel
+GRIP = 0.75  # em: radius within which a handle is grabbed
+SMALLEST_ZOOM, LARGEST_ZOOM = 0.02, 64.0
+HINTS = (
+    "Click on the drawing to add a handle.",
+    "Drag a handle to pose; a second one holds another part in place.",
+    "Move the playhead, then drag again: that makes the second key.",
+)
+
+
+def draw(session: Session, look: Look, texture: int | None) -> list[Action]:
+    """Show the picture that was drawn of the project, and take what the pointer does there."""
+    corner = imgui.get_window_pos()
+    room = imgui.get_window_size()
+    imgui.set_cursor_screen_pos(corner)
+    density = imgui.get_io().display_framebuffer_scale.x or 1.0
+    screen = (max(1, round(room.x * density)), max(1, round(room.y * density)))
+    actions: list[Action] = []
+    if screen != session.screen:
+        actions.append(do(viewing.resize, *screen))
+    project = session.project
+    if project is None or project.shown is None or texture is None or min(room.x, room.y) < 1:
+        return actions
+    opposite = ImVec2(corner.x + room.x, corner.y + room.y)
+    imgui.get_window_draw_list().add_image(
+        imgui.ImTextureRef(texture), corner, opposite, ImVec2(0, 1), ImVec2(1, 0)
+    )
+    stage = _Stage(project, project.shown, project.view(session.screen), corner, density)
+    # Before the canvas: what comes first gets the pointer. Were they laid over it, a press in the
+    # frame in which the pointer arrives would be the canvas's, or nobody's.
+    hovered, over_handles = _handles(session, look, stage)
+    imgui.set_cursor_screen_pos(corner)
+    imgui.invisible_button("canvas", room, _ANY_BUTTON)
+    on_canvas = imgui.is_item_hovered()
+    over = imgui.is_window_hovered() or imgui.is_item_active()
+    actions += _press_canvas(session, stage)
+    actions += _navigate(stage, over=over)
+    actions += over_handles
+    actions += _go_on(session, stage)
+    if hovered != session.hovered:
+        actions.append(do(pointing.hover, hovered))
+    hint = _hint(session, stage, hovered) if on_canvas or hovered is not None else ""
+    if hint != session.hint:
+        actions.append(do(pointing.explain, hint))
+    actions += _badges(look, project, corner, room)
+    return actions
+
+
+_ANY_BUTTON = (
+    imgui.ButtonFlags_.mouse_button_left
+    | imgui.ButtonFlags_.mouse_button_right
+    | imgui.ButtonFlags_.mouse_button_middle
+)
+
+
+class _Stage:
+    """Where the picture is on the screen."""
+
+    def __init__(
+        self, project: Project, shown: Shown, view: View, corner: ImVec2, density: float
+    ) -> None:
+        self.project = project
+        self.shown = shown
+        self.view = view
+        self._corner = complex(corner.x, corner.y)
+        self.density = density
+
+    @property
+    def pointer(self) -> complex:
+        """The place of the plane under the pointer."""
+        mouse = imgui.get_mouse_pos()
+        return self.place(complex(mouse.x, mouse.y))
+
+    def place(self, point: complex) -> complex:
+        return self.view.to_plane((point - self._corner) * self.density)
+
+    def point(self, place: complex) -> ImVec2:
+        pixel = self.view.to_pixels(np.array([place]))[0] / self.density + self._corner
+        return ImVec2(pixel.real, pixel.imag)
+
+    def is_on_shape(self, place: complex) -> bool:
+        outline = self.shown.positions[: len(self.shown.figure.domain.outline)]
+        return bool(contains(outline, np.array([place]))[0])
+
+
+def _press_canvas(session: Session, stage: _Stage) -> list[Action]:
+    if not imgui.is_item_activated() or not imgui.is_mouse_clicked(imgui.MouseButton_.left):
+        return []
+    if imgui.is_key_down(imgui.Key.space):
+        return []
+    place = stage.pointer
+    is_on_shape = stage.is_on_shape(place)
+    if is_on_shape and imgui.get_io().key_ctrl:
+        return [do(posing.put_anchor, place)]
+    if is_on_shape and not imgui.get_io().key_shift and session.overlays.handles:
+        return [do(pointing.add_handle, place)]
+    return [do(pointing.begin, Boxing(start=place, keeps=imgui.get_io().key_shift))]
+
+
+def _navigate(stage: _Stage, *, over: bool) -> list[Action]:
+    """Pan by the middle button or Space and the left one; zoom by the wheel at the pointer."""
+    io = imgui.get_io()
+    view = stage.view
+    with_space = imgui.is_key_down(imgui.Key.space) and imgui.is_mouse_down(0)
+    if over and (imgui.is_mouse_down(imgui.MouseButton_.middle) or with_space):
+        delta = complex(io.mouse_delta.x, io.mouse_delta.y) * stage.density
+        actions = [do(pointing.use_space)] if with_space else []
+        return [*actions, do(viewing.look_from, view.panned(delta))] if delta else actions
+    if over and io.mouse_wheel:
+        scale = min(max(view.scale * ZOOM_STEP**io.mouse_wheel, SMALLEST_ZOOM), LARGEST_ZOOM)
+        pixel = view.to_pixels(np.array([stage.pointer]))[0]
+        return [do(viewing.look_from, view.zoomed(scale / view.scale, complex(pixel)))]
+    return []
+
+
+def _handles(session: Session, look: Look, stage: _Stage) -> tuple[int | None, list[Action]]:
+    """Lay a button over each handle; return the one under the pointer, and what it asks for."""
+    hovered: int | None = None
+    actions: list[Action] = []
+    if not session.overlays.handles or stage.project.playhead.since is not None:
+        return hovered, actions
+    radius = GRIP * look.em
+    handles = zip(stage.shown.document.handles, stage.shown.handle_places, strict=True)
+    # The one that is drawn last lies on top.
+    for handle, place in reversed(list(handles)):
+        centre = stage.point(complex(place))
+        imgui.set_cursor_screen_pos(ImVec2(centre.x - radius, centre.y - radius))
+        imgui.invisible_button(
+            f"handle {handle.id}",
+            ImVec2(2 * radius, 2 * radius),
+            imgui.ButtonFlags_.mouse_button_left | imgui.ButtonFlags_.mouse_button_right,
+        )
+        if imgui.is_item_hovered() or imgui.is_item_active():
+            hovered = handle.id
+        if imgui.is_item_activated() and imgui.is_mouse_clicked(imgui.MouseButton_.left):
+            actions += _press_handle(stage, handle.id, complex(place))
+        if imgui.is_item_clicked(imgui.MouseButton_.right):
+            imgui.open_popup(f"menu of handle {handle.id}")
+        actions += _menu(stage, handle.id)
+    return hovered, actions
+
+
+def _press_handle(stage: _Stage, identity: int, place: complex) -> list[Action]:
+    io = imgui.get_io()
+    selected = stage.project.selected
+    if io.key_ctrl:
+        return [do(posing.anchor_at, identity)]
+    if io.key_shift:
+        return [do(pointing.select, selected ^ {identity})]
+    pointer = stage.pointer
+    if io.key_alt:
+        index = [handle.id for handle in stage.shown.document.handles].index(identity)
+        turning = Turning(
+            identity=identity,
+            centre=place,
+            start=pointer,
+            turn=stage.shown.handle_turns[index],
+        )
+        return [do(pointing.select, frozenset({identity})), do(pointing.begin, turning)]
+    chosen = selected if identity in selected else frozenset({identity})
+    return [do(pointing.select, chosen), do(pointing.begin, Pulling(start=pointer))]
+
+
+def _menu(stage: _Stage, identity: int) -> list[Action]:
+    actions: list[Action] = []
+    if not imgui.begin_popup(f"menu of handle {identity}"):
+        return actions
+    handle = stage.project.document.handle(identity)
+    target = stage.shown.pose.targets.get(identity) if stage.shown.pose else None
+    item = imgui.internal.menu_item_ex  # as menu_item_simple, with icons in a column
+    if item("Delete", icons.ICON_FA_TRASH, "Alt+click"):
+        actions.append(do(posing.remove_handles, frozenset({identity})))
+    is_anchor = handle.position == stage.project.document.anchor
+    label = "Let the anchor be chosen" if is_anchor else "Make it the anchor"
+    if item(label, icons.ICON_FA_ANCHOR, "Ctrl+click"):
+        actions.append(do(posing.anchor_at, identity))
+    is_turned = target is not None and target.rotation is not None
+    if item("Let it turn freely", icons.ICON_FA_ROTATE, enabled=is_turned):
+        actions.append(do(posing.free_turn, identity))
+    imgui.end_popup()
+    return actions
+
+
+def _go_on(session: Session, stage: _Stage) -> list[Action]:
+    """Follow the pointer in what it began; end it where the button is let go."""
+    gesture = session.pointer
+    if gesture is None:
+        return []
+    pointer, delta = stage.pointer, imgui.get_io().mouse_delta
+    moves = [do(pointing.move, pointer)] if delta.x or delta.y else []
+    if not imgui.is_mouse_down(imgui.MouseButton_.left):
+        return [*moves, do(pointing.end, pointer)]
+    if isinstance(gesture, Boxing):
+        low, high = stage.point(gesture.start), imgui.get_mouse_pos()
+        draw_list = imgui.get_window_draw_list()
+        accent = imgui.get_style_color_vec4(imgui.Col_.nav_cursor)
+        draw_list.add_rect_filled(low, high, ink(accent, 0.12))
+        draw_list.add_rect(low, high, ink(accent, 0.8))
+        return []
+    return moves
+
+
+def _hint(session: Session, stage: _Stage, hovered: int | None) -> str:
+    if stage.project.playhead.since is not None:
+        return "Space halts"
+    if hovered is not None:
+        name = next(h.name for h in stage.shown.document.handles if h.id == hovered)
+        return f"{name}: drag to pose, Alt+drag to turn, Ctrl+click for the anchor"
+    if not session.overlays.handles:
+        return "The handles are hidden; H shows them"
+    if stage.is_on_shape(stage.pointer):
+        return "Click to add a handle, Ctrl+click to put the anchor here"
+    return "Drag to select; wheel to zoom, middle button to move the view"
+
+
+def _badges(look: Look, project: Project, corner: ImVec2, room: ImVec2) -> list[Action]:
+    """Tell what is special now: a pose that no key holds, or what to do next."""
+    if project.loose is not None:
+        return _pill(
+            look,
+            "Unkeyed pose",
+            ImVec2(corner.x + room.x / 2, corner.y + look.em),
+            warn=True,
+            button=BINDINGS["insert key"],
+        )
+    step = _first_steps(project)
+    if step is not None:
+        place = ImVec2(corner.x + room.x / 2, corner.y + room.y - 3.2 * look.em)
+        return _pill(look, HINTS[step], place)
+    return []
+
+
+def _first_steps(project: Project) -> int | None:
+    """Return which hint a new project is at; None where the person has found the way."""
+    document = project.document
+    if not document.handles:
+        return 0
+    if len(document.keys) > 1 or project.playhead.since is not None:
+        return None
+    was_posed = any(document.lags(document.keys[0].pose)) and _is_posed(project)
+    return 2 if was_posed else 1
+
+
+def _is_posed(project: Project) -> bool:
+    pose = project.document.keys[0].pose
+    return bool(np.abs(pose.psi).max() > 0 or pose.certificate.k > 0)
+
+
+def _pill(
+    look: Look, text: str, place: ImVec2, *, warn: bool = False, button: object = None
+) -> list[Action]:
+    actions: list[Action] = []
+    padding = 0.7 * look.em
+    size = imgui.calc_text_size(text)
+    label = "Insert key" if button is not None else ""
+    extra = imgui.calc_text_size(label).x + 1.6 * look.em if label else 0.0
+    width, height = size.x + 2 * padding + extra, 2.1 * look.em
+    low = ImVec2(place.x - width / 2, place.y)
+    high = ImVec2(place.x + width / 2, place.y + height)
+    palette = look.palette
+    draw_list = imgui.get_window_draw_list()
+    draw_list.add_rect_filled(low, high, ink(palette.panel, 0.92), height / 2)
+    edge = palette.warning if warn else palette.line
+    draw_list.add_rect(low, high, ink(edge), height / 2, 1.2)
+    text_place = ImVec2(low.x + padding, low.y + (height - size.y) / 2)
+    draw_list.add_text(text_place, ink(palette.warning if warn else palette.text), text)
+    if label:
+        slim = imgui.get_frame_height() - 0.1 * look.em
+        left = high.x - extra - 0.2 * look.em
+        imgui.set_cursor_screen_pos(ImVec2(left, low.y + (height - slim) / 2))
+        imgui.push_style_var(imgui.StyleVar_.frame_rounding, slim / 2)
+        imgui.push_style_var(imgui.StyleVar_.frame_padding, ImVec2(0, 0))
+        if imgui.button(label, ImVec2(extra, slim)):
+            actions.append(do(posing.insert_key))
+        imgui.pop_style_var(2)
+        tip("Hold this pose in a key", BINDINGS["insert key"].keys_in_words)
+    return actions

@@ -1,0 +1,143 @@
+"""What is docked around the viewport: how large it is, and how its tabs are written."""
+
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple
+
+from imgui_bundle import ImVec2, hello_imgui, imgui
+
+from app.ui.panel import Panel
+from app.ui.style import FONT_SIZE
+
+SIDE, BOTTOM = 24.8, 12.2  # em: what tabs and timeline take at first
+BARS = (2.7, 4.4)  # em: what the bars around them take of the window
+MOST = (0.48, 0.45)  # parts of the window's width and height that they may take
+
+
+class _Wish(NamedTuple):
+    """A size in pixels at a scale of 1, and the part of the window that it may take at most."""
+
+    size: float
+    most: float
+
+
+class Docking:
+    """Keeps what is docked as large in em as the person made it, and tabs as wordy as fits.
+
+    Parameters
+    ----------
+    panels : sequence of Panel
+    """
+
+    def __init__(self, panels: Sequence[Panel]) -> None:
+        self._panels = panels
+        self._names = [panel.label for panel in panels]
+        self._tabs: tuple[object, ...] = ()
+        # By node: the size in pixels that it was given, and what it is to have.
+        self._given: dict[int, float] = {}
+        self._wished: dict[int, _Wish] = {}
+        self._scale = 1.0
+
+    def begin_frame(self, scale: float) -> None:
+        """Fit sizes and tabs to the window and the interface's scale."""
+        layout = hello_imgui.get_runner_params().docking_params
+        room = imgui.get_io().display_size
+        layout.docking_splits = _splits(room, scale * FONT_SIZE)
+        if layout.layout_reset:
+            self._given.clear()
+            return
+        for node, axis in _sides(self._windows()):
+            self._fit(node, axis, room[axis], scale)
+        self._scale = scale
+
+    def draw_tabs(self) -> None:
+        """Choose what tabs say in the next frame; name the pointed one where it is but an icon."""
+        shown = hello_imgui.get_runner_params().docking_params.dockable_windows
+        windows = self._windows()
+        nodes = [None if window is None else window.dock_node for window in windows]
+        places = ((node.id_, node.size.x) if node is not None else None for node in nodes)
+        tabs = (imgui.get_font_size(), *places)
+        if tabs != self._tabs:
+            self._tabs = tabs
+            for panel, tab, node in zip(self._panels, shown, nodes, strict=True):
+                tab.label = panel.label if node is None else self._label(panel, node, nodes)
+        for panel, tab, window in zip(self._panels, shown, windows, strict=True):
+            if window is None or tab.label != panel.labels[-1]:
+                continue
+            flags = window.dc.dock_tab_item_status_flags
+            if flags & imgui.internal.ItemStatusFlags_.hovered_rect:
+                imgui.set_tooltip(panel.title)
+
+    def _windows(self) -> list[imgui.internal.Window | None]:
+        return [imgui.internal.find_window_by_name(name) for name in self._names]
+
+    def _fit(self, node: imgui.internal.DockNode, axis: int, room: float, scale: float) -> None:
+        size = node.size_ref[axis]
+        if abs(size - self._given.get(node.id_, -1.0)) > 1.0:
+            # A person moved its edge, as far as they like, or it is new.
+            before = self._scale if node.id_ in self._given else scale
+            self._wished[node.id_] = _Wish(size / before, max(MOST[axis], size / room))
+        wish = self._wished[node.id_]
+        wanted = min(wish.size * scale, wish.most * room)
+        if abs(wanted - size) > 1.0:
+            sizes = [node.size_ref.x, node.size_ref.y]
+            sizes[axis] = wanted
+            imgui.internal.dock_builder_set_node_size(node.id_, ImVec2(*sizes))
+        self._given[node.id_] = wanted
+
+    def _label(
+        self,
+        panel: Panel,
+        node: imgui.internal.DockNode,
+        nodes: Sequence[imgui.internal.DockNode | None],
+    ) -> str:
+        """Return the fullest of the panel's labels with which all tabs beside it fit."""
+        together = [
+            other
+            for other, its in zip(self._panels, nodes, strict=True)
+            if its is not None and its.id_ == node.id_
+        ]
+        style = imgui.get_style()
+        gap = style.item_inner_spacing.x
+        around = 2 * style.frame_padding.x + 1 + gap
+        room = node.size.x - 2 * style.frame_padding.x + gap
+        for number in range(len(panel.labels) - 1):
+            texts = [other.labels[number].split("###")[0] for other in together]
+            if sum(imgui.calc_text_size(text).x + around for text in texts) <= room:
+                return panel.labels[number]
+        return panel.labels[-1]
+
+
+def _splits(room: ImVec2, em: float) -> list[hello_imgui.DockingSplit]:
+    """Return how a new layout is divided."""
+    side = min(SIDE * em, MOST[0] * room.x) / max(room.x - BARS[0] * em, 1.0)
+    bottom = min(BOTTOM * em, MOST[1] * room.y) / max(room.y - BARS[1] * em, 1.0)
+    return [
+        hello_imgui.DockingSplit("MainDockSpace", "bottom", imgui.Dir.down, bottom),
+        hello_imgui.DockingSplit("MainDockSpace", "side", imgui.Dir.right, side),
+    ]
+
+
+def _sides(
+    windows: Sequence[imgui.internal.Window | None],
+) -> Iterator[tuple[imgui.internal.DockNode, int]]:
+    """Return what was split off the centre, outermost, and the axis (0 or 1) of its size."""
+    seen: set[int] = set()
+    for window in windows:
+        node = None if window is None else window.dock_node
+        if node is None:
+            continue
+        inner = {
+            part.id_ for part in _upwards(imgui.internal.dock_node_get_root_node(node).central_node)
+        }
+        line = list(_upwards(node))
+        outer = [part for part in line if part.id_ not in inner]
+        if outer and len(outer) < len(line) and outer[-1].id_ not in seen:
+            seen.add(outer[-1].id_)
+            yield outer[-1], int(outer[-1].parent_node.split_axis)
+
+
+def _upwards(node: imgui.internal.DockNode | None) -> Iterator[imgui.internal.DockNode]:
+    """Return a node and what it is a part of."""
+    while node is not None:
+        yield node
+        node = node.parent_node

@@ -1,0 +1,198 @@
+"""The window's frame: layout, bars, dialogs, and the one place where actions are applied."""
+
+import traceback
+from collections.abc import Callable, Sequence
+from functools import partial
+from pathlib import Path
+
+from imgui_bundle import ImVec2, hello_imgui, imgui, implot
+
+from app.editor import Action, Session, do
+from app.editor.actions import editing, playback, saving, upkeep
+from app.errors import EXPECTED_ERRORS
+from app.render import Thumbnail
+from app.ui import bars, toasts, welcome
+from app.ui.dialogs import Dialogs
+from app.ui.panel import Panel
+from app.ui.shortcuts import pressed
+from app.ui.style import FONT_SIZE, PALETTES, Look, apply_theme, load_fonts
+from app.ui.window.docking import Docking
+from app.ui.window.guard import allow_recovery, guard
+
+# Saved layouts of another number are forgotten: they name other panels.
+LAYOUT = 1
+IDLE_FPS = 10.0
+
+
+class Shell:
+    """Draws the window's contents from a session, once a frame, and applies what was asked for.
+
+    Parameters
+    ----------
+    session : Session
+    panels : sequence of Panel
+    thumbnail : callable
+        Returns the thumbnail of a picture file.
+    """
+
+    def __init__(
+        self,
+        session: Session,
+        panels: Sequence[Panel],
+        thumbnail: Callable[[Path], Thumbnail | None],
+    ) -> None:
+        self.session = session
+        self._thumbnail = thumbnail
+        self._panels = panels
+        self._docking = Docking(panels)
+        self._fonts: tuple[imgui.ImFont, imgui.ImFont] | None = None
+        self._themed: tuple[str, float] | None = None
+        self._dialogs = Dialogs()
+        self._actions: list[Action] = []
+
+    def runner_params(self) -> hello_imgui.RunnerParams:
+        """Return what Hello ImGui needs to know; platform and renderer are left to the caller."""
+        params = hello_imgui.RunnerParams()
+        params.app_window_params.window_title = "Lissom"
+        window = params.imgui_window_params
+        window.default_imgui_window_type = (
+            hello_imgui.DefaultImGuiWindowType.provide_full_screen_dock_space
+        )
+        window.show_menu_bar = window.show_status_bar = True
+        window.show_menu_app = window.show_menu_view = window.show_status_fps = False
+        params.docking_params = self._layout()
+        calls = params.callbacks
+        calls.load_additional_fonts = self._load_fonts
+        calls.setup_imgui_config = self._configure
+        calls.setup_imgui_style = self._apply_theme
+        calls.pre_new_frame = self._begin_frame
+        calls.show_menus = self._part("The menu", bars.draw_menus)
+        calls.show_status = self._part("The status bar", bars.draw_status)
+        calls.show_gui = self._draw_over_panels
+        calls.before_imgui_render = self._apply_actions
+        calls.confirm_exit = self._may_exit
+        options = hello_imgui.EdgeToolbarOptions()
+        options.size_em = 2.7
+        options.window_padding_em = ImVec2(0.35, 0.5)
+        calls.add_edge_toolbar(
+            hello_imgui.EdgeToolbarType.left, self._part("The icon bar", bars.draw_icons), options
+        )
+        params.fps_idling.fps_idle = IDLE_FPS
+        return params
+
+    def ask(self, action: Action) -> None:
+        """Do something at the end of the next frame."""
+        self._actions.append(action)
+
+    def release(self) -> None:
+        """Close what is open beside the window."""
+        self._dialogs.close()
+
+    @property
+    def look(self) -> Look:
+        """What panels draw with at present."""
+        if self._fonts is None:
+            raise RuntimeError("the window has no fonts before its first frame")
+        bold, mono = self._fonts
+        preferences = self.session.preferences
+        return Look(
+            palette=PALETTES[preferences.theme],
+            bold=bold,
+            mono=mono,
+            em=imgui.get_font_size() or FONT_SIZE * preferences.scale,
+        )
+
+    def _layout(self) -> hello_imgui.DockingParams:
+        layout = hello_imgui.DockingParams()
+        layout.layout_name = f"Layout {LAYOUT}"
+        layout.main_dock_space_node_flags = imgui.DockNodeFlags_.auto_hide_tab_bar
+        layout.dockable_windows = [self._window(panel) for panel in self._panels]
+        return layout
+
+    def _window(self, panel: Panel) -> hello_imgui.DockableWindow:
+        draw = self._part(f"The panel {panel.title}", panel.draw)
+        window = hello_imgui.DockableWindow(panel.label, panel.place, draw)
+        window.can_be_closed = False
+        if panel.place == "MainDockSpace":
+            window.imgui_window_flags = (
+                imgui.WindowFlags_.no_scrollbar | imgui.WindowFlags_.no_scroll_with_mouse
+            )
+        return window
+
+    def _part(self, what: str, draw: Callable[[Session, Look], list[Action]]) -> Callable[[], None]:
+        """Return a callback that draws a part under the guard and collects its actions."""
+
+        def collect() -> None:
+            self._actions += draw(self.session, self.look)
+
+        return partial(guard, what, collect, self._report)
+
+    def _report(self, text: str, details: str) -> None:
+        self.session.tell(text, tone="error", details=details)
+
+    def _load_fonts(self) -> None:
+        self._fonts = load_fonts()
+
+    def _configure(self) -> None:
+        io = imgui.get_io()
+        io.config_flags |= imgui.ConfigFlags_.docking_enable
+        io.config_windows_move_from_title_bar_only = True
+        allow_recovery()
+        implot.create_context()
+
+    def _apply_theme(self) -> None:
+        preferences = self.session.preferences
+        self._themed = (preferences.theme, preferences.scale)
+        palette = PALETTES[preferences.theme]
+        apply_theme(palette, preferences.scale)
+        hello_imgui.get_runner_params().imgui_window_params.background_color = palette.panel
+
+    def _begin_frame(self) -> None:
+        session = self.session
+        if self._themed != (session.preferences.theme, session.preferences.scale):
+            self._apply_theme()
+        self._docking.begin_frame(session.preferences.scale)
+        # The tab that shows it asks for it in every frame.
+        session.export_frame = None
+        playback.halt_at_end(session)
+        # Panels are to see the frame that it is by now.
+        self._attempt(partial(upkeep.keep_up, session))
+        moving = session.project is not None and session.project.playhead.since is not None
+        busy = moving or bool(session.jobs.kinds or session.toasts)
+        hello_imgui.get_runner_params().fps_idling.enable_idling = not busy
+
+    def _draw_over_panels(self) -> None:
+        session = self.session
+        self._actions += pressed(session)
+        self._docking.draw_tabs()
+        if session.project is None:
+            self._part("The welcome view", partial(welcome.draw, thumbnail=self._thumbnail))()
+        self._part("The dialog", self._dialogs.draw)()
+        self._part("The messages", toasts.draw)()
+        held = imgui.is_any_item_active() or imgui.is_mouse_down(imgui.MouseButton_.left)
+        self._actions.append(do(editing.hold, held))
+
+    def _apply_actions(self) -> None:
+        actions, self._actions = self._actions, []
+        for action in actions:
+            self._attempt(partial(action.apply, self.session))
+        # After the actions, so that a pull goes on with the newest wish; before the picture is
+        # drawn, so that it shows at once how far the solver has come.
+        self._attempt(self.session.jobs.deliver)
+        self._attempt(partial(upkeep.keep_up, self.session))
+        self._attempt(partial(saving.keep_up, self.session))
+        if self.session.quitting:
+            hello_imgui.get_runner_params().app_shall_exit = True
+
+    def _may_exit(self) -> bool:
+        # The window's own close button; the answer comes as an action.
+        self._actions.append(do(saving.quit_lissom))
+        return False
+
+    def _attempt(self, change: Callable[[], None]) -> None:
+        try:
+            change()
+        except EXPECTED_ERRORS as error:
+            self.session.tell(str(error), tone="error")
+        except Exception as error:  # noqa: BLE001 - part of the frame guard
+            self._report(f"That did not work: {error}", traceback.format_exc())

@@ -1,0 +1,11 @@
+"""The Dirichlet problem on a polygon and its harmonic conjugate (Section 7.4).
+
+In: an outline, and real functions on it.
+Out: holomorphic functions with these real parts, at any points inside.
+Imports: `engine.maps`, `engine.geometry`.
+"""
+
+from engine.dirichlet.hilbert import HilbertTransform
+from engine.dirichlet.projected import ProjectedTransform
+
+__all__ = ["HilbertTransform", "ProjectedTransform"]

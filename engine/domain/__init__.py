@@ -1,0 +1,10 @@
+"""From pixels to a domain (Section 7; Chen and Weber 2015).
+
+In: a picture, uint8 (h, w, 4).
+Out: a `Domain`: outline, cage and triangulation in the picture's pixels, y up.
+Imports: `engine.geometry`.
+"""
+
+from engine.domain.build import Domain, build_domain, mesh_inside, texture_coordinates
+
+__all__ = ["Domain", "build_domain", "mesh_inside", "texture_coordinates"]

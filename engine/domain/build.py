@@ -1,0 +1,87 @@
+"""From pixels to a domain: outline, cage and triangulation (Section 7; Chen and Weber 2015)."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from engine.arrays import Bytes, Complexes, Floats
+from engine.domain.meshing import Mesh, triangulate, with_limbs_on_top
+from engine.domain.outline import Detail, trace_outline
+from engine.domain.picture import subject_mask
+from engine.errors import EngineError
+from engine.geometry import deepest_point
+
+FEWEST_TRIANGLES = 1_000
+MOST_TRIANGLES = 2_000_000
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Domain:
+    """Where the maps of one picture live.
+
+    Parameters
+    ----------
+    outline : complex128, shape (p,)
+        The domain's boundary: simple, counter-clockwise, in pixels of the picture, y up.
+    cage : complex128, shape (n,)
+        The polygon of the Cauchy coordinates: simple, counter-clockwise, around the outline.
+    mesh : Mesh
+        A triangulation of the inside of the outline.
+    """
+
+    outline: Complexes
+    cage: Complexes
+    mesh: Mesh
+
+
+def build_domain(
+    rgba: Bytes, *, triangles: int, detail: Detail, tolerance: int = 18
+) -> tuple[Domain, tuple[str, ...]]:
+    """Find the subject of a picture and build its domain.
+
+    Parameters
+    ----------
+    rgba : uint8, shape (h, w, 4)
+        Straight alpha, first row on top.
+    triangles : int
+        How many triangles to aim at, 1,000 to 2,000,000.
+    detail : Detail
+        How closely the outline follows the subject.
+    tolerance : int
+        Levels by which the background of an opaque picture may vary.
+
+    Returns
+    -------
+    domain : Domain
+    notices : tuple of str
+        Every remedy that was applied, in words.
+
+    Raises
+    ------
+    EngineError
+        If `triangles` is out of range, or the picture has no subject that can be outlined.
+    """
+    if not FEWEST_TRIANGLES <= triangles <= MOST_TRIANGLES:
+        raise EngineError(
+            f"The number of triangles must be between {FEWEST_TRIANGLES:,} and "
+            f"{MOST_TRIANGLES:,}, not {triangles:,}."
+        )
+    subject = subject_mask(rgba, tolerance=tolerance)
+    outline = trace_outline(subject.mask, detail=detail)
+    mesh = mesh_inside(outline.points, triangles)
+    domain = Domain(outline=outline.points, cage=outline.cage, mesh=mesh)
+    return domain, subject.notices + outline.notices
+
+
+def mesh_inside(outline: Complexes, triangles: int) -> Mesh:
+    """Triangulate the inside of an outline, in an order that paints limbs over the body."""
+    return with_limbs_on_top(triangulate(outline, triangles), deepest_point(outline))
+
+
+def texture_coordinates(points: Complexes, image_size: tuple[int, int]) -> Floats:
+    """Return u (right) and v (up) of each point, (v, 2); [0, 1] spans the picture.
+
+    Points outside the picture go on linearly past 0 and 1, where the renderer shows transparency.
+    """
+    width, height = image_size
+    return np.column_stack([points.real / width, points.imag / height])

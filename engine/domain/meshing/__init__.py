@@ -1,0 +1,12 @@
+"""From an outline to a near-equilateral triangulation inside it, in the order of painting.
+
+In: a simple polygon and a number of triangles.
+Out: a `Mesh`.
+Imports: `engine.geometry`.
+"""
+
+from engine.domain.meshing.draw_order import with_limbs_on_top
+from engine.domain.meshing.mesh import Mesh
+from engine.domain.meshing.triangulation import triangulate
+
+__all__ = ["Mesh", "triangulate", "with_limbs_on_top"]

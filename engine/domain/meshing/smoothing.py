@@ -1,0 +1,84 @@
+"""Smoothing of a triangulation: every vertex goes where its triangles would be equilateral."""
+
+import numpy as np
+
+from engine.arrays import Complexes, Indices
+from engine.domain.meshing.half_edges import OUTLINE, HalfEdgeMesh, following, preceding
+from engine.domain.meshing.mesh import smallest_angles
+
+GOOD_ANGLE = 30.0
+"""Degrees: a triangle may lose quality as long as its smallest angle stays above this."""
+
+
+def smooth(mesh: HalfEdgeMesh, corners: int, sweeps: int) -> None:
+    """Move vertices, those on the outline along it, and flip edges to match.
+
+    Parameters
+    ----------
+    mesh : HalfEdgeMesh
+        Constrained Delaunay; changed in place and left so.
+    corners : int
+        So many vertices, the first ones, are the outline's own and stay, as does the seam.
+    sweeps : int
+        How often every vertex moves.
+    """
+    border = np.flatnonzero(mesh.twins < 0)
+    fixed = np.ones(len(mesh.points), dtype=np.bool_)
+    fixed[mesh.origins] = False
+    fixed[mesh.origins[border]] = True
+    before, sliding, after = _cuts(mesh, corners)
+    for _ in range(sweeps):
+        best = _best_places(mesh)
+        target = np.where(fixed, mesh.points, best)
+        start, end = mesh.points[before], mesh.points[after]
+        target[sliding] = _project(best[sliding], start, end)
+        mesh.points = _safe_move(mesh, target)
+        mesh.restore_delaunay(np.arange(len(mesh.origins)))
+
+
+def _cuts(mesh: HalfEdgeMesh, corners: int) -> tuple[Indices, Indices, Indices]:
+    """Return the vertices that cut an edge of the outline, with those before and after them."""
+    start, end = mesh.ends(np.flatnonzero(mesh.twins == OUTLINE))
+    before = np.empty(len(mesh.points), dtype=np.intp)
+    before[end] = start
+    cut = start >= corners
+    return before[start[cut]], start[cut], end[cut]
+
+
+def _best_places(mesh: HalfEdgeMesh) -> Complexes:
+    """Return for each vertex (v,) the mean of where its triangles would be equilateral.
+
+    Each counts by the inverse of its edge opposite to the vertex, which keeps small triangles
+    small. (With equal weights a vertex inside would go to the mean of its neighbours.)
+    """
+    corner = np.arange(len(mesh.origins))
+    p, q = (
+        mesh.points[mesh.origins[following(corner)]],
+        mesh.points[mesh.origins[preceding(corner)]],
+    )
+    weight = 1 / np.abs(q - p)
+    apex = weight * ((p + q) / 2 + 1j * np.sqrt(0.75) * (q - p))
+    size = len(mesh.points)
+    total = np.bincount(mesh.origins, weight, size)
+    x = np.bincount(mesh.origins, apex.real, size)
+    y = np.bincount(mesh.origins, apex.imag, size)
+    return np.asarray((x + 1j * y) / np.where(total > 0, total, 1.0))
+
+
+def _project(points: Complexes, starts: Complexes, ends: Complexes) -> Complexes:
+    """Return the points of the lines from `starts` to `ends` next to some others."""
+    direction = (ends - starts) / np.abs(ends - starts)
+    return np.asarray(starts + ((points - starts) * direction.conj()).real * direction)
+
+
+def _safe_move(mesh: HalfEdgeMesh, target: Complexes) -> Complexes:
+    """Return the target positions, but the present ones where moving would spoil a triangle."""
+    enough = np.minimum(smallest_angles(mesh.points, mesh.triangles), GOOD_ANGLE)
+    points = target
+    while True:
+        spoilt = smallest_angles(points, mesh.triangles) < enough
+        if not spoilt.any():
+            return points
+        # A triangle is only spoilt if one of its corners moved: each round leaves fewer that do.
+        back = mesh.triangles[spoilt].ravel()
+        points[back] = mesh.points[back]

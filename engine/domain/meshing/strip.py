@@ -1,0 +1,137 @@
+"""The strip between the outline and a lattice inside it: constrained Delaunay triangulation."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import shapely
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
+
+from engine.arrays import Booleans, Complexes, Indices
+from engine.domain.meshing.half_edges import OUTLINE, HalfEdgeMesh, disjoint
+from engine.domain.meshing.mesh import signed_areas
+from engine.geometry import as_xy, edges
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Ring:
+    """The outline with the points that cut its edges into pieces.
+
+    Parameters
+    ----------
+    points : complex128, shape (r,)
+        First the p vertices of the outline, then the cuts.
+    order : intp, shape (r,)
+        The points' indices in the order along the outline.
+    """
+
+    points: Complexes
+    order: Indices
+
+
+def cut_edges(outline: Complexes, spacing: float) -> Ring:
+    """Cut each edge of a polygon into equal pieces about as long as the spacing."""
+    along = edges(outline)
+    pieces = np.maximum(np.round(np.abs(along) / spacing), 1).astype(np.intp)
+    edge = np.repeat(np.arange(len(outline)), pieces)
+    place = np.arange(len(edge)) - (np.cumsum(pieces) - pieces)[edge]
+    points = outline[edge] + place / pieces[edge] * along[edge]
+    # Vertices of the outline go first.
+    rank = np.argsort(place > 0, kind="stable")
+    return Ring(points=points[rank], order=np.argsort(rank))
+
+
+def triangulate_strip(
+    outline: Complexes, ring: Ring, lattice: HalfEdgeMesh, loose: Indices
+) -> Indices:
+    """Triangulate the region between the ring and a part of a lattice inside.
+
+    Parameters
+    ----------
+    outline : complex128, shape (p,)
+        Simple, counter-clockwise.
+    ring : Ring
+        Of that outline.
+    lattice : HalfEdgeMesh
+        Unit triangles, among them all that have an edge to the strip; the edges that have not, but
+        no neighbour either, are marked as `SEAM`. Its points begin with the ring's, and no point
+        of the outline is within the circumcircle of a triangle.
+    loose : intp, shape (s,)
+        Points of the lattice that no unit triangle uses.
+
+    Returns
+    -------
+    intp, shape (m, 3)
+        Counter-clockwise triangles on the points of the lattice.
+    """
+    mesh = HalfEdgeMesh(lattice.points, _constrained_delaunay(outline))
+    _cut_border(mesh, ring)
+    rim = np.flatnonzero(lattice.twins == OUTLINE)
+    _insert_all(mesh, np.concatenate([np.unique(lattice.origins[rim]), loose]))
+    return mesh.triangles[~_enclosed(mesh, *lattice.ends(rim))]
+
+
+def _constrained_delaunay(outline: Complexes) -> Indices:
+    """Triangulate the inside of a polygon without further points."""
+    polygon = shapely.Polygon(as_xy(outline))
+    parts = shapely.get_parts(shapely.constrained_delaunay_triangles(polygon))
+    corners = shapely.get_coordinates(parts).reshape(-1, 4, 2)[:, :3] @ [1, 1j]
+    by_place = np.argsort(outline)
+    triangles: Indices = by_place[np.searchsorted(outline[by_place], corners)]
+    clockwise = signed_areas(outline, triangles) < 0
+    triangles[clockwise] = triangles[clockwise][:, ::-1]
+    return triangles
+
+
+def _cut_border(mesh: HalfEdgeMesh, ring: Ring) -> None:
+    """Split the border of a Delaunay mesh of the outline at all cuts of the ring."""
+    size = len(ring.order)
+    position = np.argsort(ring.order)
+    while True:
+        border = np.flatnonzero(mesh.twins < 0)
+        start, end = mesh.ends(border)
+        first = position[start]
+        steps = (position[end] - first) % size
+        border, middle = border[steps > 1], (first + steps // 2)[steps > 1]
+        if not len(border):
+            return
+        chosen = disjoint(border // 3, among=mesh.count)
+        around = mesh.split_border(ring.order[middle[chosen]], border[chosen])
+        mesh.restore_delaunay(around)
+
+
+def _insert_all(mesh: HalfEdgeMesh, vertices: Indices) -> None:
+    """Insert vertices into a constrained Delaunay mesh."""
+    # In random order, vertices that follow each other are seldom in each other's way.
+    mesh.waiting = np.random.default_rng(0).permutation(vertices)
+    mesh.places = _locate(mesh, mesh.points[mesh.waiting])
+    while len(mesh.waiting):
+        inserted, suspects = mesh.insert_where_possible(mesh.waiting, mesh.places)
+        mesh.waiting, mesh.places = mesh.waiting[~inserted], mesh.places[~inserted]
+        mesh.restore_delaunay(suspects)
+
+
+def _locate(mesh: HalfEdgeMesh, points: Complexes) -> Indices:
+    """Return for each point a triangle that contains it."""
+    corners = mesh.points[mesh.triangles]
+    tree = shapely.STRtree(shapely.polygons(np.stack([corners.real, corners.imag], axis=-1)))
+    found, triangle = tree.query(shapely.points(as_xy(points)), predicate="intersects")
+    places = np.full(len(points), -1)
+    places[found] = triangle
+    return places
+
+
+def _enclosed(mesh: HalfEdgeMesh, starts: Indices, ends: Indices) -> Booleans:
+    """Tell which triangles are enclosed by directed edges (r,), which have them on their left.
+
+    A flood that begins on the left of the edges and does not cross them.
+    """
+    fence = starts * len(mesh.points) + ends
+    start, end = mesh.ends(np.arange(len(mesh.origins)))
+    left = np.isin(start * len(mesh.points) + end, fence)
+    right = np.isin(end * len(mesh.points) + start, fence)
+    open_to = np.flatnonzero((mesh.twins >= 0) & ~left & ~right)
+    pairs = open_to // 3, mesh.twins[open_to] // 3
+    graph = coo_array((np.ones(len(open_to)), pairs), shape=(mesh.count, mesh.count))
+    _, part = connected_components(graph, directed=False)
+    return np.isin(part, part[np.flatnonzero(left) // 3])

@@ -1,0 +1,177 @@
+"""Near-equilateral triangulation of a simple polygon (Section 7: the domain of the maps).
+
+Almost all of the inside is covered by the lattice of equilateral triangles, which needs no search.
+Only the band between lattice and outline is triangulated (constrained Delaunay), refined where the
+outline asks for smaller triangles, and smoothed.
+"""
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from engine.arrays import Booleans, Complexes, Floats, Indices
+from engine.domain.meshing.half_edges import OUTLINE, SEAM, HalfEdgeMesh
+from engine.domain.meshing.lattice import lattice_inside, lattice_triangles
+from engine.domain.meshing.mesh import Mesh
+from engine.domain.meshing.refinement import SHORTEST_EDGE, refine
+from engine.domain.meshing.smoothing import smooth
+from engine.domain.meshing.strip import cut_edges, triangulate_strip
+from engine.errors import EngineError
+from engine.geometry import as_xy, box_diagonal, edges, require_simple, signed_area
+
+CLEARANCE = 0.6
+"""Least distance of a lattice site from the outline, in spacings.
+
+It must exceed the lattice's circumradius, 0.577, so that no part of the outline comes between the
+corners of a unit triangle, and every edge of the lattice is Delaunay.
+"""
+BAND = 3.5
+"""Depth in spacings down to which the lattice may give way to smoothing and refinement."""
+
+SMALLEST_ANGLE = 28.0
+"""Degrees that refinement asks for."""
+
+RELAXED_ANGLE = 20.0
+"""Degrees that it asks for where otherwise there would be too many triangles."""
+
+SWEEPS = 4
+"""Sweeps of smoothing."""
+
+CLOSE_ENOUGH = 0.03
+"""Relative error of the number of triangles that is accepted."""
+
+MOST_TRIALS = 10
+"""Spacings that are tried for the right number of triangles."""
+
+
+def triangulate(outline: Complexes, count: int) -> Mesh:
+    """Triangulate the inside of a polygon with triangles as equilateral as its shape allows.
+
+    Parameters
+    ----------
+    outline : complex128, shape (p,)
+        Simple, counter-clockwise. Its vertices are the first p vertices of the mesh.
+    count : int
+        How many triangles to aim at. They are met within a few percent unless the outline's own
+        detail enforces more.
+
+    Returns
+    -------
+    Mesh
+        A conforming triangulation with angles of 28° and more (20° where that takes too many
+        triangles), except in corners of the outline that are sharper themselves.
+
+    Raises
+    ------
+    EngineError
+        If the outline is not simple, runs clockwise, or has an edge below 1e-6 of its size.
+
+    Notes
+    -----
+    Deterministic. Time and memory are proportional to `count`: a million triangles take about a
+    second, 100,000 about 0.1 s. The mean of the smallest angles is above 59° for 100,000 triangles
+    in an ordinary drawing's outline, 52° to 57° for 1,000.
+    """
+    require_simple(outline, "outline")
+    shortest = float(np.abs(edges(outline)).min())
+    if shortest < SHORTEST_EDGE * box_diagonal(outline):
+        raise EngineError(
+            f"The outline has an edge of length {shortest:.3g}, which is too short for its size of "
+            f"{box_diagonal(outline):.3g}; leave out one of its ends."
+        )
+    centre = outline[0]
+    # A power of two, so that scaling rounds nothing.
+    scale = float(np.exp2(np.ceil(np.log2(box_diagonal(outline)))))
+    mesh = _fill_to_count((outline - centre) / scale, count)
+    vertices = mesh.vertices * scale + centre
+    vertices[: len(outline)] = outline
+    return Mesh(vertices=vertices, triangles=mesh.triangles)
+
+
+def _fill_to_count(outline: Complexes, count: int) -> Mesh:
+    """Triangulate with about so many triangles, if need be with somewhat smaller angles."""
+    best = _search_spacing(outline, count, SMALLEST_ANGLE)
+    if not _is_close(best, count):
+        relaxed = _search_spacing(outline, count, RELAXED_ANGLE)
+        if _is_close(relaxed, count):
+            return relaxed
+    return best
+
+
+def _is_close(mesh: Mesh, count: int) -> bool:
+    """Tell whether a mesh has nearly the right number of triangles."""
+    return abs(len(mesh.triangles) - count) <= CLOSE_ENOUGH * count
+
+
+def _search_spacing(outline: Complexes, count: int, smallest: float) -> Mesh:
+    """Triangulate with the spacing that brings the number of triangles nearest to what is wanted.
+
+    The number is about linear in x = 1/spacing²: the area over that of a unit triangle, plus what
+    the outline's detail costs. It jumps where a limb gets room for another row, so that steps are
+    kept between the x that gave too few and those that gave too many.
+    """
+    slope = signed_area(outline) * 4 / np.sqrt(3)
+    x = count / slope
+    too_small, too_large = 0.0, np.inf
+    best = mesh = _fill(outline, x**-0.5, smallest)
+    for _ in range(MOST_TRIALS - 1):
+        if _is_close(best, count):
+            break
+        excess = len(mesh.triangles) - count
+        too_small, too_large = (too_small, x) if excess > 0 else (x, too_large)
+        x -= excess / slope
+        if not too_small < x < too_large:
+            x = too_large / 3 if too_small == 0 else float(np.sqrt(too_small * too_large))
+        mesh = _fill(outline, x**-0.5, smallest)
+        if abs(len(mesh.triangles) - count) < abs(len(best.triangles) - count):
+            best = mesh
+    return best
+
+
+def _fill(outline: Complexes, spacing: float, smallest: float) -> Mesh:
+    """Triangulate the inside of a polygon of size 1 with edges about as long as the spacing."""
+    ring = cut_edges(outline, spacing)
+    lattice = lattice_inside(outline, spacing)
+    depth = _depth(outline, lattice.points, spacing)
+    lattice, depth = lattice.select(depth > CLEARANCE), depth[depth > CLEARANCE]
+
+    # Vertices are numbered: ring, lattice, points inserted later.
+    points = np.concatenate([ring.points, lattice.points])
+    deep = np.concatenate([np.zeros(len(ring.points), dtype=np.bool_), depth > BAND])
+    units = lattice_triangles(lattice) + len(ring.points)
+    core = deep[units].all(axis=1)
+    loose = np.ones(len(points), dtype=np.bool_)
+    loose[: len(ring.points)] = False
+    loose[units] = False
+
+    shallow = HalfEdgeMesh(points, units[~core])
+    _mark_seam(shallow, deep)
+    strip = triangulate_strip(outline, ring, shallow, np.flatnonzero(loose))
+    band = HalfEdgeMesh(points, np.concatenate([strip, units[~core]]))
+    _mark_seam(band, deep)
+    refine(band, smallest)
+    smooth(band, len(outline), SWEEPS)
+    return _compact(band.points, np.concatenate([band.triangles, units[core]]))
+
+
+def _depth(outline: Complexes, points: Complexes, spacing: float) -> Floats:
+    """Return the distance of points from the outline in spacings, infinite below the band."""
+    # So dense that the distance from the samples is at most 2 % too large at the clearance.
+    samples = cut_edges(outline, spacing / 6).points
+    tree = cKDTree(as_xy(samples))
+    distance, _ = tree.query(as_xy(points), distance_upper_bound=(BAND + 0.1) * spacing)
+    return np.asarray(distance / spacing)
+
+
+def _mark_seam(mesh: HalfEdgeMesh, deep: Booleans) -> None:
+    """Mark the border of a mesh between deep vertices, where the core adjoins."""
+    border = np.flatnonzero(mesh.twins == OUTLINE)
+    start, end = mesh.ends(border)
+    mesh.twins[border[deep[start] & deep[end]]] = SEAM
+
+
+def _compact(points: Complexes, triangles: Indices) -> Mesh:
+    """Return the mesh of the points that some triangle uses."""
+    used: Booleans = np.zeros(len(points), dtype=np.bool_)
+    used[triangles] = True
+    number = np.cumsum(used) - 1
+    return Mesh(vertices=points[used], triangles=number[triangles].astype(np.int32))

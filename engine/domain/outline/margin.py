@@ -1,0 +1,171 @@
+"""The curve around a mask at a margin that shrinks where two limbs leave little room."""
+
+from dataclasses import dataclass
+from typing import cast
+
+import contourpy
+import numpy as np
+import shapely
+from scipy import ndimage
+from scipy.spatial import cKDTree
+
+from engine.arrays import Booleans, Complexes, Floats, Integers
+from engine.domain.outline.curve import arc_lengths, limit_growth, outward_normals, resample
+from engine.domain.outline.gaps import half_gaps
+from engine.geometry import as_xy, signed_area
+
+GAP_ROOM = 0.75  # of half a gap, for margin and cage offset together
+SEPARATION = 0.08  # of the diagonal: arc length from which on two points can face each other
+SAMPLING = 0.0015  # of the diagonal: spacing at which gaps are looked for
+GROWTH = 0.35  # by which the margin may grow along the curve, per arc length
+NORMAL_REACH = 3  # samples before and after, over which normals are taken
+SLIT = 0.5  # of the width of closed gaps: what is left of a gap between the margins
+MOST_SAMPLES = 10_000
+SKETCH = 0.125  # of the margin: spacing that is always fine enough for it
+SKIN = 0.25  # cells: margin of the curve on which gaps are looked for
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class DistanceField:
+    """How far the nodes of a grid, the corners of its cells, are from the cells of a mask.
+
+    Parameters
+    ----------
+    distance : float64, shape (h + 1, w + 1)
+        From node c + ir to the nearest point of the mask's squares: exact, because that point is
+        a node itself.
+    rows, columns : int32, shape (h + 1, w + 1)
+        The nearest node of the mask.
+    """
+
+    distance: Floats
+    rows: Integers
+    columns: Integers
+
+    def boundary(self) -> Complexes:
+        """Return the nodes of the mask, as points, that have a neighbour outside it."""
+        inside = self.distance == 0
+        inner = inside[:-2, 1:-1] & inside[2:, 1:-1] & inside[1:-1, :-2] & inside[1:-1, 2:]
+        inside[1:-1, 1:-1] &= ~inner
+        rows, columns = np.nonzero(inside)
+        return np.asarray(columns + 1j * rows)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class MarginCurve:
+    """A simple closed curve around a mask.
+
+    Parameters
+    ----------
+    points : complex128, shape (n,)
+        Counter-clockwise, in cells, about one cell apart.
+    margins : float64, shape (n,)
+        Distance from the mask, nearly.
+    enclosed : float
+        Area that the curve encloses because it closes on itself, in cells.
+    """
+
+    points: Complexes
+    margins: Floats
+    enclosed: float
+
+
+def distance_field(mask: Booleans) -> DistanceField:
+    """Measure the distances of all nodes from a mask (h, w) of cells."""
+    padded = np.pad(mask, 1)
+    lower, upper = padded[:-1], padded[1:]
+    nodes = lower[:, :-1] | lower[:, 1:] | upper[:, :-1] | upper[:, 1:]
+    distance, (rows, columns) = ndimage.distance_transform_edt(~nodes, return_indices=True)
+    return DistanceField(distance=distance, rows=rows, columns=columns)
+
+
+def curve_at_margin(
+    field: DistanceField, *, margin: float, offset: float, closing: float, diagonal: float
+) -> MarginCurve:
+    """Trace the curve at `margin` around a mask in one piece without holes.
+
+    Where two limbs leave too little room for the margins and cage offsets of both, the margin
+    shrinks, so that the limbs stay apart. Gaps narrower than `closing` are closed.
+
+    Parameters
+    ----------
+    field : DistanceField
+    margin, offset : float
+        Wanted distances from mask to curve and from curve to cage, in cells.
+    closing : float
+        Width, in cells, below which a gap is closed.
+    diagonal : float
+        Of the subject's box, in cells.
+    """
+    skin, _ = _outer_ring(field.distance - SKIN)
+    spacing = max(1.0, SAMPLING * diagonal, SKETCH * margin, arc_lengths(skin)[-1] / MOST_SAMPLES)
+    skin = resample(skin, spacing)
+    margins = _local_margins(
+        skin, margin=margin, offset=offset, closing=closing, separation=SEPARATION * diagonal
+    )
+    tree = cKDTree(as_xy(skin))
+    everywhere = np.allclose(margins, margin)
+    level = margin if everywhere else _spread(field, tree, margins, margin)
+    ring, enclosed = _outer_ring(field.distance - level)
+    ring, pockets = _without_slits(ring, SLIT * closing)
+    _, nearest = tree.query(as_xy(ring))
+    return MarginCurve(points=ring, margins=margins[nearest], enclosed=enclosed + pockets)
+
+
+def _local_margins(
+    skin: Complexes, *, margin: float, offset: float, closing: float, separation: float
+) -> Floats:
+    """Return the margin at each point of the mask's own outline."""
+    enough = (margin + offset) / GAP_ROOM
+    normals = outward_normals(skin, NORMAL_REACH)
+    reach = max(enough, closing / 2)
+    room = SKIN + half_gaps(skin, normals, reach=reach, separation=separation)
+    closed = room < closing / 2
+    margins = np.where(closed, margin, np.minimum(margin, room * margin / enough))
+    margins = limit_growth(margins, arc_lengths(skin), GROWTH)
+    # Both sides of a closed gap must meet, whatever the margins beside it.
+    margins[closed] = np.maximum(margin, room[closed] + 1)
+    return margins
+
+
+def _without_slits(ring: Complexes, width: float) -> tuple[Complexes, float]:
+    """Close the slits outside a ring that are narrower than `width`: no edges fit into them.
+
+    Return the ring and the area of the pockets that this encloses.
+    """
+    area = shapely.Polygon(as_xy(ring))
+    area = area.buffer(width / 2, quad_segs=2).buffer(-width / 2, quad_segs=2)
+    parts = shapely.get_parts(area)
+    largest = parts[shapely.area(parts).argmax()]
+    filled = shapely.orient_polygons(shapely.Polygon(largest.exterior))
+    xy = shapely.get_coordinates(filled)
+    return xy[:-1, 0] + 1j * xy[:-1, 1], float(filled.area - largest.area)
+
+
+def _spread(field: DistanceField, tree: cKDTree, margins: Floats, margin: float) -> Floats:
+    """Return for every node the margin (h + 1, w + 1) at the mask's node nearest to it."""
+    spread = np.full(field.distance.shape, margin)
+    near = (field.distance > 0) & (field.distance < margins.max() + 2)
+    rows, columns = field.rows[near], field.columns[near]
+    # Each node of the mask is looked up once.
+    nodes, members = np.unique(rows.astype(np.intp) * near.shape[1] + columns, return_inverse=True)
+    y, x = np.divmod(nodes, near.shape[1])
+    _, nearest = tree.query(np.column_stack([x, y]))
+    spread[y, x] = margins[nearest]
+    spread[near] = margins[nearest][members.ravel()]
+    return spread
+
+
+def _outer_ring(values: Floats) -> tuple[Complexes, float]:
+    """Trace the zero level; return its largest ring, counter-clockwise, and the area of holes."""
+    # Separate polylines (the generator's default), each with its first point again at the end.
+    lines = contourpy.contour_generator(z=values, name="serial").lines(0.0)
+    rings = [
+        line[:-1, 0] + 1j * line[:-1, 1] for line in cast("list[Floats]", lines) if len(line) > 3
+    ]
+    areas = np.array([signed_area(ring) for ring in rings])
+    outer = int(np.abs(areas).argmax())
+    # Rings within the outer one run the other way round.
+    enclosed = float(np.abs(areas[areas * areas[outer] < 0]).sum())
+    ring = rings[outer]
+    return (ring if areas[outer] > 0 else ring[::-1]), enclosed

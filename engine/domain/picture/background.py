@@ -1,0 +1,116 @@
+"""The plain background of an opaque picture: a flood of its colour from the border."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy import ndimage
+
+from engine.arrays import Booleans, Bytes
+from engine.domain.picture.blocks import block_factor, reduce_blocks, repeat_blocks
+
+WORKING_SIDE = 1400  # pixels: larger pictures are flooded in blocks
+COLOUR_BIN = 16  # levels: how finely colours are told apart when the border votes
+CHANNEL_WIDTH = 0.006  # of the diagonal: the flood passes no channel that is narrower
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Background:
+    """Where an opaque picture shows its background.
+
+    Parameters
+    ----------
+    mask : bool, shape (h, w)
+        True on the background.
+    agreement : float
+        Share of the border's pixels that have the background's colour.
+    """
+
+    mask: Booleans
+    agreement: float
+
+
+def flood_background(rgb: Bytes, tolerance: int) -> Background:
+    """Find the background of an opaque picture as what its border's colour floods.
+
+    Parameters
+    ----------
+    rgb : uint8, shape (h, w, 3)
+    tolerance : int
+        Levels by which each channel of a background pixel may differ from the border's colour.
+
+    Notes
+    -----
+    White teeth in an open mouth must not be eaten through a thin channel between the lips, yet a
+    thin gap between two legs is background. So the flood runs through wide places only (a
+    morphological opening); then the thin remains that touch it are added, without what lies
+    behind them. Pictures above 1,400 pixels are flooded in blocks and refined to pixels after.
+    """
+    alike = _alike(rgb, _border_colour(rgb), tolerance)
+    agreement = float(_border(alike).mean())
+    factor = block_factor(alike.shape, WORKING_SIDE)
+    flooded = _flood(reduce_blocks(alike, factor, np.logical_and))
+    if factor > 1:
+        near = ndimage.binary_dilation(flooded, np.ones((3, 3), dtype=np.bool_))
+        flooded = repeat_blocks(near, factor, alike.shape) & alike
+    return Background(mask=flooded, agreement=agreement)
+
+
+def _border(values: np.ndarray) -> np.ndarray:
+    """Return the border pixels, all four sides one after the other."""
+    return np.concatenate([values[0], values[-1], values[:, 0], values[:, -1]])
+
+
+def _border_colour(rgb: Bytes) -> Bytes:
+    """Return the colour that most of the border has: the median of its fullest bin."""
+    border = _border(rgb)
+    bins, members = np.unique(border // COLOUR_BIN, axis=0, return_inverse=True)
+    fullest = np.bincount(members.ravel(), minlength=len(bins)).argmax()
+    return np.asarray(np.median(border[members.ravel() == fullest], axis=0), dtype=np.uint8)
+
+
+def _alike(rgb: Bytes, colour: Bytes, tolerance: int) -> Booleans:
+    """Tell which pixels are within `tolerance` of `colour` in every channel."""
+    alike = np.ones(rgb.shape[:2], dtype=np.bool_)
+    for channel, level in enumerate(colour.astype(int)):
+        values = rgb[..., channel]
+        # Compared as uint8: a difference of 20 million pixels would need a wider type.
+        alike &= values >= max(level - tolerance, 0)
+        alike &= values <= min(level + tolerance, 255)
+    return alike
+
+
+def _flood(alike: Booleans) -> Booleans:
+    """Flood the pixels `alike` from the border, past no narrow channel."""
+    radius = max(1.0, CHANNEL_WIDTH / 2 * float(np.hypot(*alike.shape)))
+    wide = _opened(alike, radius)
+    flooded = _touching(wide, _frame(wide.shape))
+    thin = alike & ~wide
+    return flooded | (_touching(thin | flooded, flooded) & thin)
+
+
+def _opened(area: Booleans, radius: float) -> Booleans:
+    """Return what discs of `radius` reach without leaving the area; it goes on past the border."""
+    padding = int(np.ceil(radius)) + 1
+    padded = np.pad(area, padding, constant_values=True)
+    core = ndimage.distance_transform_edt(padded) > radius
+    if not core.any():
+        return np.zeros_like(area)
+    opened = ndimage.distance_transform_edt(~core) <= radius
+    inner = slice(padding, -padding)
+    return area & opened[inner, inner]
+
+
+def _frame(shape: tuple[int, ...]) -> Booleans:
+    """Return True on the border pixels."""
+    frame = np.ones(shape, dtype=np.bool_)
+    frame[1:-1, 1:-1] = False
+    return frame
+
+
+def _touching(area: Booleans, seeds: Booleans) -> Booleans:
+    """Return the edge-connected components of `area` that contain a seed."""
+    labels, count = ndimage.label(area)
+    chosen = np.zeros(count + 1, dtype=np.bool_)
+    chosen[labels[seeds]] = True
+    chosen[0] = False
+    return chosen[labels]

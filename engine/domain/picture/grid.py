@@ -1,0 +1,65 @@
+"""The subject cut out of its picture, in a grid that is neither too coarse nor too fine."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from engine.arrays import Booleans, Complexes
+from engine.domain.picture.blocks import block_factor, reduce_blocks, repeat_blocks
+
+LONGEST = 1024  # cells along the subject's longer side: larger subjects are worked on in blocks
+ENLARGED = 640  # cells that small subjects are enlarged to, at most
+MOST_ENLARGED = 16  # cells per pixel
+PADDING = 0.06  # of the diagonal: free space around the subject
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class WorkingGrid:
+    """A mask around the subject, y up: cell (r, c) is the square [c, c + 1] × [r, r + 1].
+
+    Parameters
+    ----------
+    mask : bool, shape (h, w)
+        Row 0 at the bottom; True on each cell that holds a part of a subject's pixel.
+    cell : float
+        Side of a cell in pixels of the picture.
+    origin : complex
+        Lower left corner of the grid in the picture, y up from the picture's lower edge.
+    diagonal : float
+        Of the subject's box, in cells.
+    """
+
+    mask: Booleans
+    cell: float
+    origin: complex
+    diagonal: float
+
+    def to_picture(self, points: Complexes) -> Complexes:
+        """Return points of the grid in the picture's pixels."""
+        return self.origin + self.cell * points
+
+
+def working_grid(mask: Booleans) -> WorkingGrid:
+    """Cut the subject out of its mask, first row on top, and bring it to a size to work with.
+
+    Large subjects are taken in blocks that count as soon as one of their pixels does, so that
+    the grid's subject covers the picture's; each pixel of small ones becomes several cells.
+    """
+    rows, columns = np.flatnonzero(mask.any(axis=1)), np.flatnonzero(mask.any(axis=0))
+    cut = mask[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1][::-1]
+    corner = complex(columns[0], mask.shape[0] - 1 - rows[-1])
+    factor = block_factor(cut.shape, LONGEST)
+    enlarging = int(np.clip(ENLARGED // max(cut.shape), 1, MOST_ENLARGED))
+    if factor > 1:
+        cells, cell = reduce_blocks(cut, factor, np.logical_or), float(factor)
+    else:
+        shape = (cut.shape[0] * enlarging, cut.shape[1] * enlarging)
+        cells, cell = repeat_blocks(cut, enlarging, shape), 1 / enlarging
+    diagonal = float(np.hypot(*cells.shape))
+    padding = int(np.ceil(PADDING * diagonal)) + 2 * enlarging + 4
+    return WorkingGrid(
+        mask=np.pad(cells, padding),
+        cell=cell,
+        origin=corner - cell * padding * (1 + 1j),
+        diagonal=diagonal,
+    )

@@ -1,0 +1,27 @@
+"""Harmonic maps over a cage, how far they distort, and the proof of it.
+
+In: a cage, coefficients of Φ and Ψ, points, bounds.
+Out: values and derivatives, k, σ_a, σ_b, τ, and certificates.
+Imports: `engine.geometry`.
+"""
+
+from engine.maps import distortion
+from engine.maps.boundary import Boundary
+from engine.maps.bounds import Bounds
+from engine.maps.cauchy import cauchy_coordinates, cauchy_derivatives, evaluate, require_around
+from engine.maps.certificate import Certificate, certify, certify_samples
+from engine.maps.harmonic_map import HarmonicMap
+
+__all__ = [
+    "Boundary",
+    "Bounds",
+    "Certificate",
+    "HarmonicMap",
+    "cauchy_coordinates",
+    "cauchy_derivatives",
+    "certify",
+    "certify_samples",
+    "distortion",
+    "evaluate",
+    "require_around",
+]

@@ -1,0 +1,189 @@
+"""Cauchy complex barycentric coordinates of a cage and their derivatives.
+
+The coordinates of Weber, Ben-Chen and Gotsman (2009) span the holomorphic functions of Equation
+(14), Φ(z) = Σ C_j(z) φ_j. With the cage vertices z_j in counter-clockwise order, B_j = z_j − z and
+ℓ_j(z) = log(B_{j+1} / B_j), everything here follows from one real logarithm per vertex and one
+arctangent per edge: the integrand of Cauchy's formula is linear along an edge, with slope
+s_j = (φ_{j+1} − φ_j) / (z_{j+1} − z_j), so that
+
+    2πi Φ(z)   = Σ ℓ_j (φ_j + s_j (z − z_j)),
+    2πi Φ'(z)  = Σ ℓ_j s_j,
+    2πi Φ''(z) = Σ (s_j − s_{j−1}) / B_j.
+
+Points lie strictly inside the cage. On the cage Φ' is log-singular at the vertices; outside it the
+formulas give the values of another function (0 for constants), which no caller wants.
+"""
+
+from collections.abc import Iterator
+
+import numpy as np
+import shapely
+
+from engine.arrays import Complexes
+from engine.errors import EngineError
+from engine.geometry import as_xy
+
+TWO_PI_I = 2j * np.pi
+# Entries of one block of points × cage vertices: 16 bytes each, so that a few blocks stay in cache.
+BLOCK_ENTRIES = 1 << 17
+
+
+def require_around(cage: Complexes, outline: Complexes) -> None:
+    """Refuse a cage that does not wind once around the outline, with room between them.
+
+    Only that: published cages are known that cross themselves elsewhere.
+
+    Parameters
+    ----------
+    cage, outline : complex128, shapes (n,) and (p,)
+
+    Raises
+    ------
+    EngineError
+        If the cage meets the outline, or does not run counter-clockwise around it.
+    """
+    if shapely.intersects(shapely.LinearRing(as_xy(cage)), shapely.Polygon(as_xy(outline))):
+        raise EngineError(
+            "The cage touches or crosses the outline; the outline must lie strictly inside it."
+        )
+    turns = edge_logarithms(cage, outline[:1]).imag.sum() / (2 * np.pi)
+    if round(float(turns)) != 1:
+        raise EngineError(
+            "The cage does not run once counter-clockwise around the outline; check its order."
+        )
+
+
+def edge_logarithms(cage: Complexes, points: Complexes) -> Complexes:
+    """Return ℓ_j(z) = log(B_{j+1} / B_j) for each point and each cage edge.
+
+    Parameters
+    ----------
+    cage : complex128, shape (n,)
+        Vertices in counter-clockwise order.
+    points : complex128, shape (m,)
+        Points strictly inside the cage.
+
+    Returns
+    -------
+    complex128, shape (m, n)
+        Column j belongs to the edge from vertex j to vertex j + 1. The imaginary part is the signed
+        angle under which the point sees the edge, in (−π, π).
+
+    Raises
+    ------
+    EngineError
+        If a point is a cage vertex.
+    """
+    x = cage.real - points.real[:, None]
+    y = cage.imag - points.imag[:, None]
+    squared = x * x + y * y
+    if squared.size and squared.min() == 0.0:
+        raise EngineError(
+            "A point lies on a vertex of the cage; points must be strictly inside it."
+        )
+    log_squared = np.log(squared)
+    x_next, y_next = np.roll(x, -1, axis=1), np.roll(y, -1, axis=1)
+    logarithms = np.empty(squared.shape, dtype=np.complex128)
+    logarithms.real = 0.5 * (np.roll(log_squared, -1, axis=1) - log_squared)
+    logarithms.imag = np.arctan2(x * y_next - y * x_next, x * x_next + y * y_next)
+    return logarithms
+
+
+def edge_slopes(cage: Complexes, coefficients: Complexes) -> Complexes:
+    """Return s_j = (φ_{j+1} − φ_j) / (z_{j+1} − z_j), shaped like `coefficients` (n, ...)."""
+    lengths = np.roll(cage, -1) - cage
+    rise = np.roll(coefficients, -1, axis=0) - coefficients
+    return rise / lengths.reshape(-1, *[1] * (coefficients.ndim - 1))
+
+
+def slope_jumps(cage: Complexes, coefficients: Complexes) -> Complexes:
+    """Return s_j − s_{j−1}, the jumps of the slopes at the vertices, shaped like `coefficients`."""
+    slopes = edge_slopes(cage, coefficients)
+    return slopes - np.roll(slopes, 1, axis=0)
+
+
+def cauchy_coordinates(cage: Complexes, points: Complexes) -> Complexes:
+    """Return the coordinates C_j(z) of each point, complex128 (m, n).
+
+    They sum to 1 and reproduce z. Cost: m·n logarithms.
+    """
+    lengths = np.roll(cage, -1) - cage
+    coordinates = np.empty((len(points), len(cage)), dtype=np.complex128)
+    for block in _blocks(len(points), len(cage)):
+        logarithms = edge_logarithms(cage, points[block]) / TWO_PI_I
+        # ℓ_j (z − z_j) / (z_{j+1} − z_j) belongs to vertex j + 1, the rest of ℓ_j to vertex j.
+        to_next = logarithms * ((points[block, None] - cage) / lengths)
+        coordinates[block] = logarithms - to_next + np.roll(to_next, 1, axis=1)
+    return coordinates
+
+
+def cauchy_derivatives(cage: Complexes, points: Complexes) -> Complexes:
+    """Return D_j(z) = C_j'(z), complex128 (m, n); log-singular at cage vertices."""
+    lengths = TWO_PI_I * (np.roll(cage, -1) - cage)
+    derivatives = np.empty((len(points), len(cage)), dtype=np.complex128)
+    for block in _blocks(len(points), len(cage)):
+        per_length = edge_logarithms(cage, points[block]) / lengths
+        derivatives[block] = np.roll(per_length, 1, axis=1) - per_length
+    return derivatives
+
+
+def cauchy_second_derivatives(cage: Complexes, points: Complexes) -> Complexes:
+    """Return E_j(z) = C_j''(z) = (z_{j+1} − z_{j−1}) / (2πi B_{j−1} B_j B_{j+1}), (m, n)."""
+    chord = (np.roll(cage, -1) - np.roll(cage, 1)) / TWO_PI_I
+    second = np.empty((len(points), len(cage)), dtype=np.complex128)
+    for block in _blocks(len(points), len(cage)):
+        reach = cage - points[block, None]
+        second[block] = chord / (np.roll(reach, 1, axis=1) * reach * np.roll(reach, -1, axis=1))
+    return second
+
+
+def evaluate(
+    cage: Complexes, coefficients: Complexes, points: Complexes, *, orders: tuple[int, ...]
+) -> list[Complexes]:
+    """Evaluate Σ C_j(z) φ_j and its derivatives without forming the coordinates.
+
+    Parameters
+    ----------
+    cage : complex128, shape (n,)
+    coefficients : complex128, shape (n, q)
+        One column for each holomorphic function.
+    points : complex128, shape (m,)
+        Points strictly inside the cage.
+    orders : tuple of int
+        Which derivatives are wanted, each 0, 1 or 2.
+
+    Returns
+    -------
+    list of complex128, shape (m, q)
+        One array for each entry of `orders`.
+
+    Notes
+    -----
+    One logarithm per point and edge serves all functions and both orders 0 and 1; the points are
+    taken in blocks that stay in cache, so that memory does not grow with m·n. Accurate to rounding
+    at distances from the cage that are not small against its edges.
+    """
+    slopes = edge_slopes(cage, coefficients)
+    jumps = slope_jumps(cage, coefficients)
+    # Taken about the middle of the cage: far from the origin z Σ ℓ_j s_j would cancel.
+    middle = cage.mean()
+    offsets = coefficients - slopes * (cage - middle)[:, None]
+    results = [np.empty((len(points), coefficients.shape[1]), np.complex128) for _ in orders]
+    for block in _blocks(len(points), len(cage)):
+        z = points[block]
+        logarithms = edge_logarithms(cage, z) if 0 in orders or 1 in orders else None
+        for order, result in zip(orders, results, strict=True):
+            if logarithms is None or order == 2:
+                result[block] = (1.0 / (cage - z[:, None])) @ jumps
+            elif order == 1:
+                result[block] = logarithms @ slopes
+            else:
+                result[block] = logarithms @ offsets + (z - middle)[:, None] * (logarithms @ slopes)
+            result[block] /= TWO_PI_I
+    return results
+
+
+def _blocks(points: int, vertices: int) -> Iterator[slice]:
+    size = max(1, BLOCK_ENTRIES // vertices)
+    for start in range(0, points, size):
+        yield slice(start, start + size)

@@ -1,0 +1,240 @@
+"""Proof that a harmonic map is locally injective and within its bounds, in the whole domain.
+
+On a segment of the outline F = f_z and G = conj(f_z̄) differ from their linear interpolants by at
+most ε = h² max|Φ'''| / 2, with h half the segment's length and |Φ'''| ≤ Σ |dS_j| / (2π d_j²), where
+dS_j is the jump of Δφ / Δz at cage vertex j and d_j its distance to the segment. With Δ the angle
+between F at both ends, a_i and b_i the absolute values there and r_i = a_i cos(Δ/2), the whole
+segment has
+
+    σ_a ≤ max(a_i + b_i) + ε_f + ε_g,
+    σ_b ≥ min(r_i − b_i) − ε_f − ε_g,
+    k   ≤ max((b_i + ε_g) / (r_i − ε_f))    provided that min r_i > ε_f,
+
+because |F| is at least its component along the bisector of the end values. Then F does not vanish
+on the segment and turns by exactly Δ, so that the sum of all Δ is 2π times the winding number of F.
+If that is 0, F has no zero in the domain, and the extremes of k, σ_a and σ_b are on the outline
+(Theorem 4 of Chen and Weber 2015). Segments whose bounds are not good enough are bisected.
+"""
+
+from dataclasses import dataclass
+from math import inf, pi
+
+import numpy as np
+
+from engine.arrays import Booleans, Complexes, Floats, Indices
+from engine.errors import EngineError
+from engine.maps.boundary import Boundary
+from engine.maps.bounds import Bounds
+from engine.maps.cauchy import evaluate, slope_jumps
+from engine.maps.harmonic_map import HarmonicMap
+
+# Segments are bisected until the reported extremes are this close to attained ones.
+TIGHTNESS = 0.002
+# A segment that is not settled when it is this many times shorter never will be: its map folds, or
+# touches a bound to the last digit.
+DEEPEST = 14
+# A map that needs more than this is far from any certificate.
+MOST_BISECTIONS = 20_000
+# Relative error of F and G themselves, from rounding; generous.
+ROUNDING = 1e-11
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Certificate:
+    """What is proven about a map, in the closed domain inside the outline.
+
+    Parameters
+    ----------
+    k, sigma_a, sigma_b : float
+        Enclosures: k and σ_a are nowhere larger, σ_b is nowhere smaller. Where nothing better can
+        be proven k is infinite and sigma_b is −sigma_a.
+    winding : int or None
+        Winding number of f_z along the outline, the number of its zeros inside; None if f_z
+        vanishes, or nearly, on the outline.
+    certified : bool
+        The map is locally injective and keeps to the bounds that it was tested for.
+    """
+
+    k: float
+    sigma_a: float
+    sigma_b: float
+    winding: int | None
+    certified: bool
+
+
+def certify(harmonic_map: HarmonicMap, boundary: Boundary, bounds: Bounds) -> Certificate:
+    """Bound the distortion of a map in the whole domain, and test it against `bounds`.
+
+    Raises
+    ------
+    EngineError
+        If the map is over another cage.
+
+    Notes
+    -----
+    Cost: O(m n) for m samples, and n logarithms for each bisected segment. A map within the bounds
+    by less than the rounding is not certified; nothing else that holds is refused unless a bound is
+    touched within 2⁻¹⁴ of a segment.
+    """
+    if not np.array_equal(harmonic_map.cage, boundary.cage):
+        raise EngineError("The map is over another cage than the outline's samples.")
+    coefficients = np.column_stack([harmonic_map.phi, harmonic_map.psi])
+    # Constants do not matter to derivatives; without them a far shape loses no digits.
+    values = boundary.derivatives @ (coefficients - coefficients[0])
+    certificate, _ = certify_samples(boundary, coefficients, values, bounds)
+    return certificate
+
+
+def certify_samples(
+    boundary: Boundary, coefficients: Complexes, values: Complexes, bounds: Bounds
+) -> tuple[Certificate, Indices]:
+    """Certify a map whose F and G at the samples are known.
+
+    Parameters
+    ----------
+    boundary : Boundary
+    coefficients : complex128, shape (n, 2)
+        φ and ψ.
+    values : complex128, shape (m, 2)
+        F and G at the samples.
+    bounds : Bounds
+
+    Returns
+    -------
+    Certificate
+    Indices
+        The segments on which a bound is broken or could not be proven.
+    """
+    jumps = np.abs(slope_jumps(boundary.cage, coefficients))
+    errors = (boundary.curvature_kernel @ jumps) * (boundary.half_lengths**2 / 2)[:, None]
+    segments = _Segments(
+        starts=boundary.points,
+        ends=np.roll(boundary.points, -1),
+        first=values,
+        last=np.roll(values, -1, axis=0),
+        errors=errors,
+        origins=np.arange(len(values)),
+    )
+    return _bisect(boundary.cage, coefficients, segments, bounds)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class _Segments:
+    """Pieces (s,) of the sampled segments `origins`, F and G at their ends (s, 2), ε (s, 2)."""
+
+    starts: Complexes
+    ends: Complexes
+    first: Complexes
+    last: Complexes
+    errors: Floats
+    origins: Indices
+
+    def halves(self, which: Booleans, cage: Complexes, coefficients: Complexes) -> "_Segments":
+        """Return both halves of the chosen segments; the bound on |Φ'''| holds on in each."""
+        starts, ends = self.starts[which], self.ends[which]
+        first, last = self.first[which], self.last[which]
+        middles = (starts + ends) / 2
+        (values,) = evaluate(cage, coefficients, middles, orders=(1,))
+        quarter = self.errors[which] / 4
+        return _Segments(
+            starts=np.concatenate([starts, middles]),
+            ends=np.concatenate([middles, ends]),
+            first=np.concatenate([first, values]),
+            last=np.concatenate([values, last]),
+            errors=np.concatenate([quarter, quarter]),
+            origins=np.tile(self.origins[which], 2),
+        )
+
+
+@dataclass(slots=True)
+class _Extremes:
+    """The largest k and σ_a and the smallest σ_b met so far."""
+
+    k: float = 0.0
+    sigma_a: float = 0.0
+    sigma_b: float = inf
+
+    def include(self, k: Floats, sigma_a: Floats, sigma_b: Floats) -> None:
+        self.k = max(self.k, float(k.max(initial=0.0)))
+        self.sigma_a = max(self.sigma_a, float(sigma_a.max(initial=0.0)))
+        self.sigma_b = min(self.sigma_b, float(sigma_b.min(initial=inf)))
+
+
+def _bisect(
+    cage: Complexes, coefficients: Complexes, segments: _Segments, bounds: Bounds
+) -> tuple[Certificate, Indices]:
+    attained, proven = _Extremes(), _Extremes()
+    turn, bisections = 0.0, 0
+    broken: list[Indices] = []
+    for depth in range(DEEPEST + 1):
+        a, b = np.abs(segments.first[:, 0]), np.abs(segments.first[:, 1])
+        a_last, b_last = np.abs(segments.last[:, 0]), np.abs(segments.last[:, 1])
+        attained.include(_ratio(b, a), a + b, a - b)
+        delta = np.angle(segments.last[:, 0] * segments.first[:, 0].conj())
+        cosine = np.cos(delta / 2)
+        r, r_last = a * cosine, a_last * cosine
+        error_f = segments.errors[:, 0] + ROUNDING * (a + a_last)
+        error_g = segments.errors[:, 1] + ROUNDING * (a + a_last)
+        clear = np.minimum(r, r_last) > error_f
+        k = np.maximum(_ratio(b + error_g, r - error_f), _ratio(b_last + error_g, r_last - error_f))
+        both = error_f + error_g
+        sigma_a = np.maximum(a + b, a_last + b_last) + both
+        sigma_b = np.minimum(r - b, r_last - b_last) - both
+        loose = ~clear | _exceed(attained, bounds, k, sigma_a, sigma_b)
+        outside = ~clear | (k > bounds.k) | (sigma_a > bounds.sigma_a) | (sigma_b < bounds.sigma_b)
+        count = int(np.count_nonzero(loose))
+        bisections += count
+        if count == 0 or depth == DEEPEST or bisections > MOST_BISECTIONS:
+            proven.include(k, sigma_a, sigma_b)
+            turn = turn + float(delta.sum()) if clear.all() else inf
+            broken.append(segments.origins[outside])
+            break
+        done = ~loose
+        broken.append(segments.origins[done & outside])
+        proven.include(k[done], sigma_a[done], sigma_b[done])
+        turn += float(delta[done].sum())
+        segments = segments.halves(loose, cage, coefficients)
+    return _conclude(proven, turn, bounds), np.unique(np.concatenate(broken))
+
+
+def _exceed(
+    attained: _Extremes, bounds: Bounds, k: Floats, sigma_a: Floats, sigma_b: Floats
+) -> Booleans:
+    """Tell which enclosures are worse than both the attained extremes and the bounds excuse."""
+    slack = TIGHTNESS * attained.sigma_a
+    k_goal = attained.k + TIGHTNESS
+    sigma_a_goal = attained.sigma_a + slack
+    sigma_b_goal = attained.sigma_b - slack
+    # As long as a bound is kept at all points seen, the enclosure must try to keep it too.
+    if attained.k <= bounds.k:
+        k_goal = min(k_goal, bounds.k)
+    if attained.sigma_a <= bounds.sigma_a:
+        sigma_a_goal = min(sigma_a_goal, bounds.sigma_a)
+    if attained.sigma_b >= bounds.sigma_b:
+        sigma_b_goal = max(sigma_b_goal, bounds.sigma_b)
+    loose: Booleans = (k > k_goal) | (sigma_a > sigma_a_goal) | (sigma_b < sigma_b_goal)
+    return loose
+
+
+def _conclude(proven: _Extremes, turn: float, bounds: Bounds) -> Certificate:
+    winding = None if turn == inf else round(turn / (2 * pi))
+    # Zeros of F inside make k infinite there; without k < 1 on the outline σ_b obeys no minimum
+    # principle, and only |f_z| − |f_z̄| ≥ −|f_z̄| remains.
+    k = proven.k if winding == 0 else inf
+    sigma_b = proven.sigma_b if k < 1 else -proven.sigma_a
+    injective = k < 1 and sigma_b > 0
+    return Certificate(
+        k=k,
+        sigma_a=proven.sigma_a,
+        sigma_b=sigma_b,
+        winding=winding,
+        certified=injective and bounds.allow(k=k, sigma_a=proven.sigma_a, sigma_b=sigma_b),
+    )
+
+
+def _ratio(numerator: Floats, denominator: Floats) -> Floats:
+    """Return the quotient, infinite where the denominator is not positive."""
+    positive = denominator > 0
+    quotient: Floats = np.full(np.shape(numerator), inf)
+    np.divide(numerator, denominator, out=quotient, where=positive)
+    return quotient

@@ -1,0 +1,103 @@
+"""Continuous branches of log f_z (Sections 3.5 and 7.2)."""
+
+from collections.abc import Callable
+
+import numpy as np
+import numpy.typing as npt
+
+from engine.arrays import Complexes, Floats, Indices, Integers, readonly
+from engine.errors import EngineError
+from engine.paths.integration_paths import IntegrationPaths
+
+LARGEST_TURN = 1.0  # radians by which f_z may turn along a step without a closer look
+MOST_BISECTIONS = 12
+
+
+def continue_logarithm(
+    fz: Complexes, paths: IntegrationPaths, evaluate: Callable[[Complexes], Complexes]
+) -> Complexes:
+    """Return log f_z at the nodes, continuous along the paths, Equation (15).
+
+    Parameters
+    ----------
+    fz : complex128, shape (s,)
+        A holomorphic function without zeros, at the nodes.
+    paths : IntegrationPaths
+    evaluate : callable
+        Returns the function at points (p,); asked only where a step turns it far.
+
+    Returns
+    -------
+    complex128, shape (s,)
+        The principal value at the anchor; its exponential is `fz` to rounding everywhere.
+    """
+    parent = paths.tree.parent
+    turns = np.angle(fz / fz[parent])
+    far = np.flatnonzero(np.abs(turns) > LARGEST_TURN)
+    if len(far):
+        starts = paths.nodes[parent[far]]
+        turns[far] = _turns_along(starts, paths.nodes[far], evaluate)
+    principal = np.angle(fz)
+    turns[0] = principal[0]
+    arguments = paths.tree.sums(turns)
+    # Only the integer is taken from the sum, so that no rounding adds up along the path.
+    sheets = np.round((arguments - principal) / (2 * np.pi))
+    logarithm: Complexes = np.log(np.abs(fz)) + 1j * (principal + 2 * np.pi * sheets)
+    return logarithm
+
+
+def root_sheets(anchor_fz: Complexes, turns: npt.ArrayLike | None = None) -> Integers:
+    """Choose the branch of each keyframe's logarithm at the anchor (Section 7.2).
+
+    Parameters
+    ----------
+    anchor_fz : complex128, shape (q,)
+        f_z of the keyframes at the anchor.
+    turns : int, shape (q − 1,), optional
+        Full turns that the shape makes between neighbouring keyframes beyond the shorter way; 0 by
+        default. Kept relative, such a number keeps its meaning while the poses are edited.
+
+    Returns
+    -------
+    int32, shape (q,)
+        n such that the logarithm at the anchor is Log f_z + 2πi n; with no turns the arguments of
+        neighbouring keyframes differ by at most π. The first is 0.
+
+    Raises
+    ------
+    EngineError
+        If `turns` has not one entry for each pair of neighbours, or is not of integers.
+    """
+    extra = np.zeros(len(anchor_fz) - 1, np.int32) if turns is None else np.asarray(turns)
+    if extra.shape != (len(anchor_fz) - 1,) or extra.dtype.kind not in "iu":
+        raise EngineError(
+            f"The turns between {len(anchor_fz)} keyframes are {len(anchor_fz) - 1} integers, not "
+            f"{extra.dtype} of shape {extra.shape}."
+        )
+    principal = np.angle(anchor_fz)
+    shorter = np.angle(anchor_fz[1:] / anchor_fz[:-1])
+    sheets = np.round((shorter - np.diff(principal)) / (2 * np.pi)) + extra
+    return readonly(np.concatenate([[0], np.cumsum(sheets)]).astype(np.int32))
+
+
+def _turns_along(
+    starts: Complexes, ends: Complexes, evaluate: Callable[[Complexes], Complexes]
+) -> Floats:
+    """Follow the argument along segments (p,), cut ever finer until it turns little at a time."""
+    todo: Indices = np.arange(len(starts))
+    turns = np.zeros(len(starts))
+    pieces = 8
+    for _ in range(MOST_BISECTIONS):
+        along = np.linspace(0.0, 1.0, pieces + 1)
+        samples = starts[todo, None] + (ends - starts)[todo, None] * along
+        values = evaluate(samples.ravel()).reshape(samples.shape)
+        ratios = values[:, 1:] * values[:, :-1].conj()
+        each = np.where(ratios == 0, np.pi, np.angle(ratios))
+        turns[todo] = each.sum(axis=1)
+        todo = todo[np.abs(each).max(axis=1) > LARGEST_TURN]
+        if not len(todo):
+            return turns
+        pieces *= 2
+    raise EngineError(
+        f"f_z vanishes, or nearly so, close to {starts[todo[0]]:.6g}; the keyframe folds there."
+    )

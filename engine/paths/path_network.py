@@ -1,0 +1,184 @@
+"""Graphs inside a polygon along which every point can be reached from the anchor (Section 7).
+
+The vertices of a mesh are reached along its edges. Scattered points have no edges; for them the
+polygon is cut into triangles, and paths lead through the middles of the triangles' common edges. A
+triangle is convex, so that each leg of such a path stays inside, however narrow the domain is.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+import shapely
+
+from engine.arrays import Booleans, Complexes, Indices, Integers
+from engine.domain.meshing import Mesh
+from engine.errors import EngineError
+from engine.geometry import as_xy, box_diagonal
+from engine.paths.spanning_tree import breadth_first_parents
+
+CELL = 1 / 50  # longest edge of the triangles between scattered points, over the box diagonal
+NEIGHBOURS = 64  # mesh vertices that are tried for a straight way to the anchor
+ON_OUTLINE = 1e-9  # distance, over the size of the shape, at which a point counts as on the outline
+
+# How a triangle with corners 0, 1, 2 is cut where the sides 01, 12, 20 (bits 1, 2, 4 of the index)
+# have the middles 3, 4, 5.
+PIECES: tuple[list[list[int]], ...] = (
+    [[0, 1, 2]],
+    [[0, 3, 2], [3, 1, 2]],
+    [[1, 4, 0], [4, 2, 0]],
+    [[3, 1, 4], [0, 3, 4], [0, 4, 2]],
+    [[2, 5, 1], [5, 0, 1]],
+    [[5, 0, 3], [2, 5, 3], [2, 3, 1]],
+    [[4, 2, 5], [1, 4, 5], [1, 5, 0]],
+    [[0, 3, 5], [3, 1, 4], [4, 2, 5], [3, 4, 5]],
+)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Network:
+    """A tree of straight legs inside the domain; node 0 is the anchor.
+
+    Parameters
+    ----------
+    nodes : complex128, shape (s,)
+    parents : intp, shape (s,)
+        Parent of each node; −1 where no path of interest passes.
+    places : intp, shape (m,)
+        The node of each point.
+    """
+
+    nodes: Complexes
+    parents: Indices
+    places: Indices
+
+
+def mesh_network(
+    outline: Complexes, vertices: Complexes, triangles: Integers, anchor: Complexes
+) -> Network:
+    """Join the anchor (1,) to the vertices (m,) of a mesh along the mesh's edges.
+
+    Raises
+    ------
+    EngineError
+        If a triangle names no vertex, an edge leaves the outline, a vertex is in no triangle that
+        is joined to the rest, or the anchor sees no vertex near it.
+    """
+    if triangles.min(initial=0) < 0 or triangles.max(initial=0) >= len(vertices):
+        raise EngineError(
+            f"The triangles name points from {triangles.min()} to {triangles.max()}, but there are "
+            f"only points 0 to {len(vertices) - 1}."
+        )
+    ends = Mesh(vertices=vertices, triangles=triangles).edges().astype(np.intp)
+    crossing = _crosses(outline, vertices[ends[:, 0]], vertices[ends[:, 1]])
+    if crossing.any():
+        first, second = ends[np.flatnonzero(crossing)[0]]
+        raise EngineError(
+            f"The triangles' edge from point {first} to point {second} leaves the outline; give "
+            "triangles of the inside only, or none."
+        )
+    nearest = np.argsort(np.abs(vertices - anchor), kind="stable")[:NEIGHBOURS]
+    seen = nearest[~_crosses(outline, np.repeat(anchor, len(nearest)), vertices[nearest])]
+    if not len(seen):
+        raise EngineError(
+            f"No point of the mesh near the anchor {anchor[0]:.6g} can be reached straight; choose "
+            "an anchor inside the triangles."
+        )
+    nodes = np.concatenate([anchor, vertices])
+    legs = np.concatenate([[[0, seen[0] + 1]], ends + 1])
+    parents = breadth_first_parents(len(nodes), legs, 0)
+    if np.any(parents < 0):
+        raise EngineError(
+            f"Point {np.flatnonzero(parents < 0)[0] - 1} is not joined to the anchor by triangles; "
+            "leave the triangles out and the engine finds its own paths."
+        )
+    return Network(nodes=nodes, parents=parents, places=np.arange(1, len(nodes)))
+
+
+def scattered_network(outline: Complexes, points: Complexes, anchor: Complexes) -> Network:
+    """Join the anchor (1,) to scattered points (m,) inside a simple polygon, or on it."""
+    corners, triangles = _refine(*_cut_into_triangles(outline), CELL * box_diagonal(outline))
+    portals, sides = _portals(corners, triangles)
+    ends = np.concatenate([anchor, points])
+    cells = shapely.STRtree(shapely.polygons(as_xy(corners)[triangles]))
+    # A point on the outline can fall outside by rounding: the nearest triangle is its own.
+    home = sides[cells.query_nearest(shapely.points(as_xy(ends)), all_matches=False)[1]]
+    legs = [np.column_stack([sides[:, k], np.roll(sides, -1, axis=1)[:, k]]) for k in range(3)]
+    legs = [leg[(leg >= 0).all(axis=1)] + len(ends) for leg in legs]
+    for k in range(3):
+        inner = np.flatnonzero(home[:, k] >= 0)
+        legs.append(np.column_stack([inner, home[inner, k] + len(ends)]))
+    beside = np.flatnonzero((home[1:] == home[0]).all(axis=1)) + 1
+    legs.append(np.column_stack([np.zeros_like(beside), beside]))
+    nodes = np.concatenate([ends, portals])
+    parents = breadth_first_parents(len(nodes), np.concatenate(legs), 0)
+    return Network(nodes=nodes, parents=_prune(parents, len(ends)), places=np.arange(1, len(ends)))
+
+
+def _crosses(outline: Complexes, starts: Complexes, ends: Complexes) -> Booleans:
+    """Tell for each segment whether it leaves the polygon by more than rounding."""
+    tolerance = 2 * ON_OUTLINE * box_diagonal(outline)
+    segments = shapely.linestrings(np.stack([as_xy(starts), as_xy(ends)], axis=1))
+    sides = shapely.linestrings(np.stack([as_xy(outline), as_xy(np.roll(outline, -1))], axis=1))
+    touching, _ = shapely.STRtree(sides).query(segments, predicate="dwithin", distance=tolerance)
+    touching = np.unique(touching)
+    # Nearly all segments stay away from the outline; only the others need the exact test.
+    room = shapely.Polygon(as_xy(outline)).buffer(tolerance, join_style="mitre")
+    shapely.prepare(room)
+    crosses = np.zeros(len(starts), dtype=np.bool_)
+    crosses[touching] = ~shapely.covers(room, segments[touching])
+    return crosses
+
+
+def _cut_into_triangles(outline: Complexes) -> tuple[Complexes, Indices]:
+    """Cut a simple polygon into triangles without adding corners."""
+    cells = shapely.get_parts(
+        shapely.constrained_delaunay_triangles(shapely.Polygon(as_xy(outline)))
+    )
+    rings = shapely.get_coordinates(cells).reshape(-1, 4, 2)[:, :3]
+    corners, triangles = np.unique(rings[..., 0] + 1j * rings[..., 1], return_inverse=True)
+    return corners, triangles.reshape(-1, 3)
+
+
+def _sides(triangles: Indices) -> tuple[Indices, Indices]:
+    """Return the undirected sides (e, 2) and, for each triangle, the numbers (t, 3) of its own."""
+    ends = np.sort(np.stack([triangles, np.roll(triangles, -1, axis=1)], axis=-1), axis=-1)
+    keys, numbers = np.unique(ends[..., 0] << 32 | ends[..., 1], return_inverse=True)
+    return np.column_stack([keys >> 32, keys & 0xFFFFFFFF]), numbers.reshape(-1, 3)
+
+
+def _refine(corners: Complexes, triangles: Indices, longest: float) -> tuple[Complexes, Indices]:
+    """Halve every side longer than `longest`, in both of its triangles, until none is left."""
+    while True:
+        sides, numbers = _sides(triangles)
+        long = np.abs(corners[sides[:, 0]] - corners[sides[:, 1]]) > longest
+        if not long.any():
+            return corners, triangles
+        middle = len(corners) + np.cumsum(long) - 1
+        corners = np.concatenate([corners, corners[sides[long]].mean(axis=1)])
+        local = np.column_stack([triangles, middle[numbers]])
+        pattern = long[numbers] @ np.array([1, 2, 4])
+        triangles = np.concatenate(
+            [local[pattern == k][:, pieces].reshape(-1, 3) for k, pieces in enumerate(PIECES)]
+        )
+
+
+def _portals(corners: Complexes, triangles: Indices) -> tuple[Complexes, Indices]:
+    """Return the middles of the sides with two triangles and, for each triangle, which are its own.
+
+    The second array is (t, 3), −1 for a side on the polygon.
+    """
+    sides, numbers = _sides(triangles)
+    shared = np.bincount(numbers.ravel(), minlength=len(sides)) == 2
+    portal = np.where(shared, np.cumsum(shared) - 1, -1)
+    return corners[sides[shared]].mean(axis=1), portal[numbers]
+
+
+def _prune(parents: Indices, count: int) -> Indices:
+    """Keep the first `count` nodes and their ancestors; the others' parent becomes −1."""
+    wanted = np.zeros(len(parents), dtype=np.bool_)
+    new = np.arange(count)
+    while len(new):
+        wanted[new] = True
+        new = np.unique(parents[new])
+        new = new[~wanted[new]]
+    return np.where(wanted, parents, -1)

@@ -1,0 +1,117 @@
+import re
+
+import numpy as np
+import pytest
+from deform_shapes import STAR_POINTS, star_boundary
+from numpy.testing import assert_allclose
+
+from app.cli.main import main
+from engine.maps.harmonic_map import HarmonicMap
+
+OUTLINE, CAGE = star_boundary().outline, star_boundary().cage
+CASE = {
+    "outline": OUTLINE,
+    "cage": CAGE,
+    "handles": STAR_POINTS,
+    "targets": STAR_POINTS + np.array([0, 0.2j, 0.1, 0, 0, -0.1]),
+    "k_max": 0.8,
+    "sigma_a_max": 5.0,
+    "sigma_b_min": 0.2,
+}
+
+
+@pytest.fixture
+def write(tmp_path):
+    """Return a function that writes the case, changed or with arrays left out (None)."""
+
+    def written(**changes):
+        path = tmp_path / "case.npz"
+        np.savez(path, **{k: v for k, v in (CASE | changes).items() if v is not None})
+        return str(path)
+
+    return written
+
+
+def deform(case, out):
+    assert main(["deform", case, "--out", str(out)]) == 0
+    with np.load(out) as written:
+        return dict(written)
+
+
+def test_a_case_is_solved(write, tmp_path, capsys):
+    got = deform(write(), tmp_path / "map.npz")
+    assert "converged" in capsys.readouterr().out
+    assert set(got) == {
+        *("outline", "cage", "phi", "psi", "handles_mapped"),
+        *("k", "sigma_a", "sigma_b", "certified", "status", "steps"),
+    }
+    assert bool(got["certified"]) is True
+    assert got["certified"].dtype == bool
+    assert str(got["status"]) == "converged"
+    assert int(got["steps"]) > 0
+    f = HarmonicMap(cage=got["cage"], phi=got["phi"], psi=got["psi"])
+    assert_allclose(f(STAR_POINTS), got["handles_mapped"], atol=1e-12)
+    assert_allclose(got["handles_mapped"], CASE["targets"], atol=5e-3)
+    fz, fzbar = f.derivatives(star_boundary().points)
+    a, b = np.abs(fz), np.abs(fzbar)
+    assert (b / a).max() <= got["k"] <= 0.8
+    assert (a + b).max() <= got["sigma_a"] <= 5
+    assert (a - b).min() >= got["sigma_b"] >= 0.2
+
+
+def test_path_and_start_map_are_followed(write, tmp_path):
+    way = STAR_POINTS + np.linspace(0, 1, 5)[:, None] * (CASE["targets"] - STAR_POINTS)
+    first = deform(write(path=way), tmp_path / "first.npz")
+    assert str(first["status"]) == "converged"
+    again = deform(write(phi=first["phi"], psi=first["psi"]), tmp_path / "again.npz")
+    assert_allclose(again["handles_mapped"], first["handles_mapped"], atol=1e-4)
+    repeated = deform(write(path=way), tmp_path / "repeated.npz")
+    assert all(np.array_equal(first[name], repeated[name]) for name in first)
+
+
+def test_a_request_that_the_bounds_forbid_is_no_error(write, tmp_path):
+    case = write(targets=3 * STAR_POINTS, sigma_a_max=1.3, k_max=0.2, sigma_b_min=0.8)
+    got = deform(case, tmp_path / "map.npz")
+    assert str(got["status"]) in ("bounds reached", "lagging")
+    assert got["certified"]
+    assert got["sigma_a"] <= 1.3
+    assert np.abs(got["handles_mapped"] - 3 * STAR_POINTS).max() > 0.5
+
+
+CROSSED = CAGE.copy()
+CROSSED[[0, 1]] = CROSSED[[1, 0]]
+DOUBLE = np.array([0.0, 0.0])
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"handles": None}, "lacks the array 'handles'"),
+        ({"handles": STAR_POINTS + 5}, "outside the outline"),
+        ({"targets": np.full(6, np.nan)}, "finite"),
+        ({"targets": STAR_POINTS[:3]}, "as many targets"),
+        ({"handles": DOUBLE, "targets": np.array([0, 1.0])}, "same point"),
+        ({"cage": CROSSED}, "cage"),
+        ({"cage": CAGE + 9}, "once counter-clockwise around"),
+        ({"outline": CAGE, "cage": OUTLINE}, "strictly inside|cage"),
+        ({"k_max": 1.0}, "bound on k"),
+        ({"sigma_a_max": 0.9}, "bound on sigma_a"),
+        ({"sigma_b_min": 1.0}, "bound on sigma_b"),
+        ({"k_max": np.array([0.5, 0.6])}, "k_max must be one number"),
+        ({"k_max": "high"}, "k_max must be one number"),
+        ({"phi": CAGE}, "both phi and psi"),
+        ({"phi": CAGE, "psi": 0.95 * CAGE}, "start map is not certified"),
+        ({"phi": CAGE[:4], "psi": CAGE[:4]}, "as many coefficients"),
+        ({"path": np.zeros((3, 2))}, "path must have one column"),
+        ({"path": np.full((3, 6), np.inf)}, "finite"),
+    ],
+)
+def test_bad_input_is_one_line(write, tmp_path, capsys, changes, message):
+    out = tmp_path / "map.npz"
+    with pytest.raises(SystemExit) as leaving:
+        main(["deform", write(**changes), "--out", str(out)])
+    assert leaving.value.code == 2
+    said = capsys.readouterr().err.splitlines()
+    assert len(said) == 1
+    assert re.search(message, said[0])
+    assert not out.exists()

@@ -1,0 +1,206 @@
+import os
+import pty
+import signal
+import subprocess
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from animations import BLOB, moving_document
+from numpy.testing import assert_array_equal
+from PIL import Image, ImageSequence
+
+from app.cli.main import main
+from app.document.settings import ExportSettings, FrameRange
+from app.storage.project_file import save_project
+from engine.arrays import Bytes
+
+
+@pytest.fixture(scope="module")
+def document():
+    return moving_document()
+
+
+@pytest.fixture
+def project(document, tmp_path) -> Path:
+    path = tmp_path / "turn.lissom"
+    save_project(path, document)
+    return path
+
+
+def export(project: Path, *words: object) -> None:
+    assert main(["export", str(project), *map(str, words)]) == 0
+
+
+def error_of(capsys, project: Path, *words: object) -> str:
+    with pytest.raises(SystemExit) as leaving:
+        main(["export", str(project), *map(str, words)])
+    assert leaving.value.code == 2
+    (line,) = [
+        line for line in capsys.readouterr().err.splitlines() if line.startswith("lissom: error:")
+    ]
+    return line
+
+
+def pixels(path: Path) -> Bytes:
+    return np.asarray(Image.open(path).convert("RGBA"))
+
+
+def contents(folder: Path) -> dict[str, bytes]:
+    return {path.name: path.read_bytes() for path in folder.iterdir()}
+
+
+def test_the_first_key_comes_out_as_the_picture_and_the_shape_moves(project, tmp_path, capsys):
+    out = tmp_path / "frames"
+    export(project, "--out", out)
+    said = capsys.readouterr()
+    assert said.out == f"{out}: 7 frames of 120 × 90 pixels, frame_0000.png to frame_0006.png\n"
+    assert "\r" not in said.err
+    assert sorted(contents(out)) == [f"frame_{number:04d}.png" for number in range(7)]
+    frames = [pixels(out / f"frame_{number:04d}.png") for number in range(7)]
+    seen = BLOB[..., 3] >= 8
+    assert_array_equal(frames[0][seen], BLOB[seen])
+    assert not frames[0][BLOB[..., 3] == 0].any()
+    away = [np.abs(frame[..., 3].astype(int) - frames[0][..., 3]).sum() for frame in frames]
+    assert (np.diff(away) > 0).all()
+    with Image.open(out / "frame_0000.png") as image:
+        assert image.mode == "RGBA"
+
+
+def test_two_exports_are_the_same_bytes(project, tmp_path):
+    for name in ("first", "second"):
+        export(project, "--out", tmp_path / name)
+    assert contents(tmp_path / "first") == contents(tmp_path / "second")
+
+
+def test_ranges_and_rates(project, tmp_path):
+    export(project, "--out", tmp_path / "all")
+    export(project, "--out", tmp_path / "some", "--frames", "2:4")
+    whole, some = contents(tmp_path / "all"), contents(tmp_path / "some")
+    assert some == {
+        name: whole[name] for name in (f"frame_000{number}.png" for number in (2, 3, 4))
+    }
+    export(project, "--out", tmp_path / "half", "--frames", "2:6", "--fps", 12)
+    half = contents(tmp_path / "half")
+    assert half == {
+        "frame_0002.png": whole["frame_0002.png"],
+        "frame_0003.png": whole["frame_0004.png"],
+        "frame_0004.png": whole["frame_0006.png"],
+    }
+
+
+def test_another_variant_blends_differently(project, tmp_path):
+    for variant in ("nu", "linear"):
+        export(project, "--out", tmp_path / variant, "--frames", "0:3", "--variant", variant)
+    nu, linear = (contents(tmp_path / variant) for variant in ("nu", "linear"))
+    assert nu["frame_0000.png"] == linear["frame_0000.png"]
+    assert nu["frame_0003.png"] != linear["frame_0003.png"]
+
+
+def test_options_stand_in_for_the_projects_own_settings(document, tmp_path, capsys):
+    own = ExportSettings(
+        format="spritesheet", size=(60, 45), background="#112233", frames=FrameRange(1, 4)
+    )
+    project = tmp_path / "own.lissom"
+    save_project(project, replace(document, export=own))
+    export(project, "--out", tmp_path / "sheet")
+    assert "4 frames of 60 × 45 pixels in 2 columns and 2 rows" in capsys.readouterr().out
+    sheet = pixels(tmp_path / "sheet")
+    assert sheet.shape == (90, 120, 4)
+    assert sheet[0, 0].tolist() == [0x11, 0x22, 0x33, 255]
+    export(
+        project,
+        *("--out", tmp_path / "moving.webp", "--size", "40x50", "--framing", "fit"),
+        *("--background", "transparent", "--frames", "0:2", "--fps", "48"),
+    )
+    with Image.open(tmp_path / "moving.webp") as image:
+        frames = [np.asarray(frame.convert("RGBA")) for frame in ImageSequence.Iterator(image)]
+    assert [frame.shape for frame in frames] == [(50, 40, 4)] * 5
+    assert all(frame[0, 0].tolist() == [0, 0, 0, 0] for frame in frames)
+    assert "5 frames of 40 × 50 pixels, 48 a second" in capsys.readouterr().out
+
+
+def test_a_name_chooses_its_format(project, tmp_path):
+    for name, kind in (("a.gif", "GIF"), ("a.webp", "WEBP"), ("a.apng", "PNG")):
+        export(project, "--out", tmp_path / name)
+        with Image.open(tmp_path / name) as image:
+            assert image.format == kind
+            assert image.n_frames == 7
+    export(project, "--out", tmp_path / "a.mp4", "--background", "#ffffff")
+    assert (tmp_path / "a.mp4").read_bytes()[4:8] == b"ftyp"
+
+
+def test_notices_tell_what_the_person_should_know(project, tmp_path, capsys):
+    out = tmp_path / "frames"
+    export(project, "--out", out)
+    before = contents(out)
+    assert "another export" not in capsys.readouterr().err
+    export(project, "--out", out, "--frames", "0:2", "--size", "240x180")
+    said = capsys.readouterr().err
+    assert "4 frames of another export (frame_0003.png … frame_0006.png)" in said
+    after = contents(out)
+    changed = [name for name in sorted(before) if before[name] != after.pop(name)]
+    assert changed == sorted(before)[:3]
+    assert after == {}
+
+
+@pytest.mark.parametrize(
+    ("words", "reason"),
+    [
+        (["--out", "frames", "--frames", "3"], "0:47"),
+        (["--out", "frames", "--frames", "4:2"], "no range"),
+        (["--out", "frames", "--frames", "0:99"], "0 to 6"),
+        (["--out", "frames", "--size", "100"], "1920x1080"),
+        (["--out", "frames", "--size", "0x10"], "1 to 65,535"),
+        (["--out", "frames", "--size", "65535x65535"], "too large"),
+        (["--out", "frames", "--background", "red"], "#rrggbb"),
+        (["--out", "frames", "--fps", "0"], "above 0"),
+        (["--out", "frames", "--fps", "fast"], "fast"),
+        (["--out", "frames", "--format", "avi"], "spritesheet"),
+        (["--out", "frames", "--framing", "wide"], "canvas"),
+        (["--out", "frames", "--variant", "cubic"], "metric"),
+        (["--out", "no/frames"], "does not exist"),
+        (["--out", "a.mp4"], "background"),
+        ([], "--out"),
+    ],
+)
+def test_bad_usage_is_one_line_and_writes_nothing(project, capsys, monkeypatch, words, reason):
+    tmp_path = project.parent
+    monkeypatch.chdir(tmp_path)
+    assert reason in error_of(capsys, project, *words)
+    assert list(tmp_path.iterdir()) == [project]
+
+
+def test_bad_projects_are_refused(tmp_path, capsys):
+    (tmp_path / "text.lissom").write_text("no project")
+    for name, reason in (("text.lissom", "not a Lissom project"), ("none.lissom", "No such file")):
+        assert reason in error_of(capsys, tmp_path / name, "--out", tmp_path / "frames")
+    assert not (tmp_path / "frames").exists()
+
+
+def test_an_interrupted_export_leaves_whole_frames_only(tmp_path):
+    project, out = tmp_path / "long.lissom", tmp_path / "frames"
+    save_project(project, moving_document(last=3000))
+    terminal, its_end = pty.openpty()
+    words = [sys.executable, "-m", "app", "export", str(project), "--out", str(out)]
+    with subprocess.Popen(words, stderr=its_end, stdout=subprocess.PIPE) as process:
+        os.close(its_end)
+        shown = b""
+        while b"\r\x1b[K20 of 3001 frames" not in shown:
+            shown += os.read(terminal, 1000)
+        process.send_signal(signal.SIGINT)
+        assert process.wait() == 130
+        assert process.stdout is not None
+        assert process.stdout.read() == b""
+    while b"interrupted" not in shown:
+        shown += os.read(terminal, 1000)
+    os.close(terminal)
+    names = sorted(path.name for path in out.iterdir())
+    assert 10 <= len(names) < 3001
+    assert names == [f"frame_{number:04d}.png" for number in range(len(names))]
+    for name in names:
+        with Image.open(out / name) as image:
+            image.load()
+            assert image.size == (120, 90)

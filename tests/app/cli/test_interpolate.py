@@ -1,0 +1,142 @@
+import re
+
+import numpy as np
+import pytest
+from interpolation_shapes import inner_points, letter_l, random_map
+from numpy.testing import assert_allclose, assert_array_equal
+
+from app.cli.main import main
+from engine.domain.meshing.triangulation import triangulate
+from engine.geometry import polygon
+
+OUTLINE, CAGE = letter_l()
+KEYFRAMES = [random_map((OUTLINE, CAGE), seed) for seed in (1, 2, 5)]
+POINTS = np.concatenate([inner_points(OUTLINE, 30, 0), OUTLINE[:5], OUTLINE[:5] * (1 + 1e-15)])
+MAPS = {
+    "outline": OUTLINE,
+    "cage": CAGE,
+    "phi": np.array([f.phi for f in KEYFRAMES]),
+    "psi": np.array([f.psi for f in KEYFRAMES]),
+    "points": POINTS,
+}
+
+
+@pytest.fixture
+def write(tmp_path):
+    """Return a function that writes the maps, changed or with arrays left out (None)."""
+
+    def written(**changes):
+        path = tmp_path / "maps.npz"
+        arrays = {name: value for name, value in (MAPS | changes).items() if value is not None}
+        np.savez(path, **arrays)
+        return str(path)
+
+    return written
+
+
+def interpolate(maps, out, *, variant="nu", times="0,0.5,1"):
+    return main(["interpolate", maps, "--variant", variant, f"--times={times}", "--out", str(out)])
+
+
+def error_of(capsys, maps, out, **options):
+    with pytest.raises(SystemExit) as leaving:
+        interpolate(maps, out, **options)
+    assert leaving.value.code == 2
+    said = capsys.readouterr().err.splitlines()
+    assert len(said) == 1
+    assert not out.exists()
+    return said[0]
+
+
+@pytest.mark.parametrize("variant", ["nu", "eta", "scaled-eta", "metric", "linear"])
+def test_the_file_is_as_documented(write, tmp_path, variant):
+    out = tmp_path / "frames"
+    assert interpolate(write(anchor=0.5 + 0.5j), out, variant=variant, times="1.5,0,2,0.25") == 0
+    with np.load(out) as file:
+        frames = dict(file)
+    names = {"times", "anchor", "positions", "fz", "fzbar"}
+    assert set(frames) == names | ({"rho"} if variant == "scaled-eta" else set())
+    assert_array_equal(frames["times"], [1.5, 0, 2, 0.25])
+    assert frames["anchor"].shape == ()
+    assert frames["anchor"] == 0.5 + 0.5j
+    for name in ("positions", "fz", "fzbar"):
+        assert frames[name].dtype == np.complex128
+        assert frames[name].shape == (4, len(POINTS))
+    size = polygon.diameter(OUTLINE)
+    for row, f in ((1, KEYFRAMES[0]), (2, KEYFRAMES[2])):
+        fz, fzbar = f.derivatives(POINTS)
+        assert_allclose(frames["positions"][row], f(POINTS), rtol=0, atol=1e-10 * size)
+        assert_allclose(frames["fz"][row], fz, rtol=0, atol=1e-10)
+        assert_allclose(frames["fzbar"][row], fzbar, rtol=0, atol=1e-10)
+    if variant == "scaled-eta":
+        assert_array_equal(frames["rho"][1:3], 1.0)
+        assert np.all((frames["rho"] > 0) & (frames["rho"] <= 1))
+
+
+@pytest.mark.parametrize("variant", ["nu", "scaled-eta", "metric"])
+def test_triangles_give_the_same_in_betweens(write, tmp_path, variant):
+    mesh = triangulate(OUTLINE, 400)
+    paths = tmp_path / "scattered", tmp_path / "meshed"
+    changes = {"points": mesh.vertices, "anchor": 1.1 + 0.3j}
+    for triangles, path in zip((None, mesh.triangles), paths, strict=True):
+        interpolate(write(triangles=triangles, **changes), path, variant=variant, times="0.3,1.7")
+    first, second = (np.load(path)["positions"] for path in paths)
+    assert_allclose(first, second, rtol=0, atol=1e-6 * polygon.diameter(OUTLINE))
+
+
+def test_the_anchor_moves_straight_and_turns_evenly(write, tmp_path):
+    anchor = 0.4 + 0.6j
+    out = tmp_path / "frames"
+    maps = write(anchor=anchor, points=np.array([anchor]))
+    interpolate(maps, out, variant="metric", times="0,0.25,1")
+    with np.load(out) as file:
+        positions, fz = file["positions"][:, 0], file["fz"][:, 0]
+    assert_allclose(positions[1], 0.75 * positions[0] + 0.25 * positions[2], rtol=1e-12, atol=0)
+    turn = np.angle(fz[1:] / fz[0])
+    assert_allclose(turn[0], 0.25 * turn[1], rtol=1e-9, atol=0)
+
+
+FOLDED = MAPS["psi"].copy()
+FOLDED[1] = MAPS["phi"][1].conj() * 2
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"phi": MAPS["phi"][:1], "psi": MAPS["psi"][:1]}, "at least two keyframes"),
+        ({"phi": MAPS["phi"][:, :-1]}, r"phi and psi must both be of shape"),
+        ({"phi": MAPS["phi"][0]}, r"phi and psi must both be of shape"),
+        ({"psi": FOLDED}, r"Keyframe 1 folds: at \(.*sigma_b is -"),
+        ({"points": np.array([0.5 + 0.5j, 2 + 2j])}, r"point 1 at \(2, 2\) is outside"),
+        ({"points": np.array([])}, "at least 1"),
+        ({"points": np.array([np.nan])}, "finite"),
+        ({"anchor": 9.0}, "anchor at .* is outside"),
+        ({"anchor": np.array([0.5, 0.6])}, "One anchor is needed, not 2"),
+        ({"anchor": np.array([])}, "One anchor is needed, not 0"),
+        ({"outline": OUTLINE[::-1]}, "clockwise"),
+        ({"outline": OUTLINE[[0, 12, 1, *range(2, 12)]]}, "crosses or touches itself"),
+        ({"outline": 1.2 * OUTLINE}, "touches or crosses"),
+        ({"cage": CAGE[::-1]}, "once counter-clockwise"),
+        ({"triangles": np.array([[0, 1, 99]])}, "points 0 to"),
+        ({"triangles": np.array([[0.0, 1, 2]])}, "integers"),
+        ({"triangles": np.array([[0, 1, 2]])}, "not joined|leaves the outline"),
+        ({"psi": None}, "'psi'"),
+    ],
+)
+def test_bad_files_are_refused(write, tmp_path, capsys, changes, message):
+    assert re.search(message, error_of(capsys, write(**changes), tmp_path / "out.npz"))
+
+
+@pytest.mark.parametrize(
+    ("times", "message"),
+    [
+        ("-0.5,0", "time -0.5 is out of range: 3 keyframes span the times from 0 to 2"),
+        ("0,2.001", "out of range"),
+        ("nan", "out of range"),
+        ("inf", "out of range"),
+        ("0;1", "not a list of numbers"),
+        ("", "not a list of numbers"),
+    ],
+)
+def test_bad_times_are_refused(write, tmp_path, capsys, times, message):
+    assert message in error_of(capsys, write(), tmp_path / "out.npz", times=times)

@@ -1,0 +1,212 @@
+import subprocess
+import sys
+import threading
+
+import pytest
+
+from app.editor.jobs import Job, Jobs
+
+
+def job(kind, work, results, *, urgent=False):
+    return Job(
+        kind=kind,
+        work=work,
+        done=lambda result: results.append((kind, result)),
+        failed=lambda error: results.append((kind, error)),
+        urgent=urgent,
+    )
+
+
+@pytest.fixture
+def busy():
+    """Jobs whose worker waits at a gate, so that everything put in afterwards queues up."""
+    jobs, gate, begun = Jobs(), threading.Event(), threading.Event()
+
+    def wait():
+        begun.set()
+        gate.wait(10)
+
+    jobs.put(job("gate", wait, []))
+    assert begun.wait(10)
+    yield jobs, gate
+    gate.set()
+    assert jobs.settle()
+
+
+def test_results_come_on_delivery():
+    jobs, results = Jobs(), []
+    jobs.put(job("sum", lambda: 1 + 1, results))
+    assert jobs.settle()
+    assert results == []
+    jobs.deliver()
+    assert results == [("sum", 2)]
+
+
+def test_failure_is_handed_over():
+    jobs, results = Jobs(), []
+    jobs.put(job("division", lambda: 1 / 0, results))
+    assert jobs.settle()
+    jobs.deliver()
+    assert isinstance(results[0][1], ZeroDivisionError)
+
+
+def test_newest_of_a_kind_wins(busy):
+    jobs, gate = busy
+    results = []
+    for number in range(5):
+        jobs.put(job("frame", lambda number=number: number, results))
+    assert jobs.kinds == ("gate", "frame")
+    gate.set()
+    assert jobs.settle()
+    jobs.deliver()
+    assert results == [("frame", 4)]
+
+
+def test_running_job_that_was_replaced_is_stale():
+    jobs, results = Jobs(), []
+    gate, begun = threading.Event(), threading.Event()
+
+    def slow():
+        begun.set()
+        gate.wait(10)
+        return "old"
+
+    jobs.put(job("pose", slow, results))
+    assert begun.wait(10)
+    jobs.put(job("pose", lambda: "new", results))
+    gate.set()
+    assert jobs.settle()
+    jobs.deliver()
+    assert results == [("pose", "new")]
+
+
+def test_dropped_job_never_delivers(busy):
+    jobs, gate = busy
+    results = []
+    jobs.put(job("pose", lambda: 1, results))
+    jobs.drop("pose")
+    gate.set()
+    assert jobs.settle()
+    jobs.deliver()
+    assert results == []
+
+
+def test_job_is_unfinished_until_it_is_delivered():
+    jobs, results = Jobs(), []
+    jobs.put(job("pose", lambda: 1, results))
+    assert jobs.settle()
+    assert jobs.kinds == ("pose",)
+    jobs.drop("pose")
+    jobs.deliver()
+    assert results == []
+
+
+def test_result_may_make_the_next_one_stale():
+    jobs, results = Jobs(), []
+    jobs.put(Job(kind="undo", work=int, done=lambda _: jobs.drop("pose"), failed=results.append))
+    jobs.put(job("pose", lambda: 1, results))
+    assert jobs.settle()
+    jobs.deliver()
+    assert results == []
+
+
+def test_urgent_jobs_do_not_wait_for_others(busy):
+    jobs, _ = busy
+    results, ready = [], threading.Event()
+    jobs.put(job("in-betweens", lambda: 1, results))
+    jobs.put(job("pose", ready.set, results, urgent=True))
+    assert ready.wait(10)
+    while "pose" in jobs.kinds:
+        jobs.deliver()
+    assert results == [("pose", None)]
+    assert jobs.kinds == ("gate", "in-betweens")
+
+
+def test_urgent_jobs_come_one_after_the_other():
+    jobs, results = Jobs(), []
+    gate, begun = threading.Event(), threading.Event()
+
+    def wait():
+        begun.set()
+        gate.wait(10)
+
+    jobs.put(job("pose", wait, results, urgent=True))
+    assert begun.wait(10)
+    jobs.put(job("save", lambda: 1, results, urgent=True))
+    assert jobs.kinds == ("pose", "save")
+    gate.set()
+    assert jobs.settle()
+    jobs.deliver()
+    assert results == [("pose", None), ("save", 1)]
+
+
+def test_jobs_tell_how_long_they_run():
+    now = [10.0]
+    jobs, gate, begun = Jobs(lambda: now[0]), threading.Event(), threading.Event()
+
+    def wait():
+        begun.set()
+        gate.wait(10)
+
+    jobs.put(job("factors", wait, []))
+    assert begun.wait(10)
+    jobs.put(job("in-betweens", int, []))
+    assert jobs.running_for(0.3) == ()
+    now[0] = 10.4
+    assert jobs.running_for(0.3) == ("factors",)
+    jobs.drop("factors")
+    assert jobs.running_for(0.3) == ()
+    gate.set()
+    assert jobs.settle()
+
+
+def test_closing_waits_for_what_runs_and_drops_what_waits():
+    jobs, begun, results = Jobs(), threading.Event(), []
+    gate = threading.Event()
+
+    def finish():
+        begun.set()
+        gate.wait(10)
+        results.append("ran")
+
+    jobs.put(job("factors", finish, []))
+    jobs.put(job("in-betweens", lambda: results.append("waited"), []))
+    jobs.put(job("pose", int, [], urgent=True))
+    assert begun.wait(10)
+    closing = threading.Thread(target=jobs.close)
+    closing.start()
+    assert closing.is_alive()
+    gate.set()
+    closing.join(10)
+    assert results == ["ran"]
+    assert jobs.kinds in {("factors",), ("pose", "factors"), ("factors", "pose")}
+
+
+PROGRAM = """
+from app.cli.blas import use_one_thread
+use_one_thread()
+import threading
+import numpy as np
+import scipy.linalg
+from app.editor.jobs import Job, Jobs
+
+begun = threading.Event()
+matrix = np.random.default_rng(0).random((3000, 3000))
+
+def factorise():
+    begun.set()
+    scipy.linalg.lu_factor(matrix)
+    scipy.linalg.lu_factor(matrix)
+
+jobs = Jobs()
+jobs.put(Job(kind="factors", work=factorise, done=print, failed=print))
+begun.wait(10)
+# So that the end comes when the other thread is deep in its work.
+for _ in range(8):
+    np.linalg.inv(matrix[:700, :700])
+"""
+
+
+def test_a_program_may_end_while_a_job_runs():
+    done = subprocess.run([sys.executable, "-c", PROGRAM], capture_output=True, check=False)
+    assert done.returncode == 0

@@ -1,0 +1,125 @@
+"""Frames of documents, drawn in both kinds of contexts."""
+
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+
+import moderngl
+import numpy as np
+import pytest
+from animations import BLOB, Sliding, still_document
+from numpy.testing import assert_array_equal
+
+from app.document.model import Document
+from app.errors import LissomError
+from app.export.painting import painter
+from app.export.plan import ExportPlan, ExportRequest, Poses, plan_export
+from app.export.run import Draw
+from engine.arrays import Bytes
+
+SEEN = BLOB[..., 3] >= 8
+
+
+@pytest.fixture(scope="module")
+def document() -> Document:
+    return still_document()
+
+
+def plan_of(document: Document, poses: Poses, **settings: object) -> ExportPlan:
+    settings_ = replace(document.export, **settings)
+    return plan_export(document, ExportRequest(out=Path("out"), settings=settings_), poses)
+
+
+def drawing(
+    gl: moderngl.Context, document: Document, poses: Poses, **settings: object
+) -> Iterator[Draw]:
+    return painter(gl, document, BLOB, poses, plan_of(document, poses, **settings))
+
+
+def still(gl: moderngl.Context, document: Document, **settings: object) -> Bytes:
+    with drawing(gl, document, Sliding(document, 0), **settings) as draw:
+        return draw(0.0)
+
+
+def test_the_drawing_at_rest_is_the_picture_and_nothing_hidden(gl, document):
+    frame = still(gl, document)
+    assert frame.shape == BLOB.shape
+    assert_array_equal(frame[SEEN], BLOB[SEEN])
+    assert not frame[BLOB[..., 3] == 0].any()
+
+
+def test_whole_pixels_of_motion_move_whole_pixels(gl, document):
+    with drawing(gl, document, Sliding(document, 3 - 2j)) as draw:
+        frames = [draw(float(time)) for time in (0, 1, 2, 0)]
+    moved = np.roll(BLOB, (4, 6), axis=(0, 1))
+    seen = np.roll(SEEN, (4, 6), axis=(0, 1))
+    assert_array_equal(frames[2][seen], moved[seen])
+    assert_array_equal(frames[0], frames[3])
+
+
+def test_a_fitted_frame_holds_the_same_pixels(gl, document):
+    poses = Sliding(document, 0)
+    view = plan_of(document, poses, framing="fit").view
+    frame = still(gl, document, framing="fit")
+    assert frame.shape[:2] == view.size[::-1]
+    (corner,) = view.to_pixels(np.array([complex(0, BLOB.shape[0])])).round()
+    whole = np.zeros((400, 400, 4), dtype=np.uint8)
+    top, left = 100 - int(corner.imag), 100 - int(corner.real)
+    whole[top : top + frame.shape[0], left : left + frame.shape[1]] = frame
+    again = whole[100 : 100 + BLOB.shape[0], 100 : 100 + BLOB.shape[1]]
+    assert_array_equal(again[SEEN], BLOB[SEEN])
+
+
+def test_a_background_is_opaque_and_shines_through_soft_edges(gl, document):
+    frame = still(gl, document, background="#20c040")
+    assert frame[..., 3].min() == 255
+    assert (frame[BLOB[..., 3] == 0, :3] == (0x20, 0xC0, 0x40)).all()
+    alpha = BLOB[..., 3:] / 255
+    blend = BLOB[..., :3] * alpha + np.array((0x20, 0xC0, 0x40)) * (1 - alpha)
+    assert np.abs(frame[..., :3] - blend)[SEEN].max() <= 1
+
+
+def test_a_smaller_frame_is_the_picture_made_smaller(gl, document):
+    frame = still(gl, document, size=(40, 30))
+    blocks = BLOB.reshape(30, 3, 40, 3, 4) / 255
+    alpha = blocks[..., 3].mean(axis=(1, 3))
+    assert np.abs(frame[..., 3] / 255 - alpha).max() < 0.06
+    premultiplied = (blocks[..., :3] * blocks[..., 3:]).mean(axis=(1, 3))
+    shown = frame[..., :3] / 255 * frame[..., 3:] / 255
+    assert np.abs(shown - premultiplied).max() < 0.06
+
+
+def test_a_larger_canvas_centres_the_picture(gl, document):
+    frame = still(gl, document, size=(140, 90))
+    assert_array_equal(frame[:, 10:130][SEEN], BLOB[SEEN])
+    assert not frame[:, :10].any()
+
+
+def test_a_frame_that_fails_is_an_error_that_names_it(gl, document):
+    class Failing(Sliding):
+        def positions(self, frame: float):
+            places = super().positions(frame)
+            if frame == 2:
+                places[0] = complex("inf")
+            if frame == 3:
+                gl.enable_direct(0xFFFF)  # no such switch: OpenGL notes an error
+            return places
+
+    plan = plan_of(document, Sliding(document, 0))
+    with painter(gl, document, BLOB, Failing(document, 0), plan) as draw:
+        draw(1.0)
+        with pytest.raises(LissomError, match=r"frame 2 cannot be drawn.*not finite"):
+            draw(2.0)
+        with pytest.raises(LissomError, match="frame 3 cannot be drawn: OpenGL"):
+            draw(3.0)
+        assert_array_equal(draw(4.0), draw(1.0))
+
+
+def test_errors_of_others_are_not_the_exports(gl, document):
+    gl.enable_direct(0xFFFF)
+    assert_array_equal(still(gl, document)[SEEN], BLOB[SEEN])
+
+
+def test_frames_too_large_for_the_machine_are_refused(gl, document):
+    with pytest.raises(LissomError, match="too large"):
+        still(gl, document, size=(65_535, 10))

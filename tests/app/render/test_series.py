@@ -1,0 +1,163 @@
+"""Vertices placed by a shader, against those placed on the processor."""
+
+import numpy as np
+import pytest
+from drawings import Easel, grid_mesh, soft_blob
+from numpy.testing import assert_allclose, assert_array_equal
+
+from app.errors import LissomError
+from app.motion.vertices import Placed, Streamed
+from app.render.gpu.gpu_mesh import GpuMesh, Pose
+from app.render.gpu.programs import set_uniforms
+from app.render.gpu.series_vertices import SeriesVertices, most_rows
+from app.render.gpu.target import Target
+from app.render.layer import Layer, shader_is_faster
+from app.render.scene import Background, Ghost, Heat, Scene, Wireframe
+from app.render.view import View
+from app.storage.assets import shader_source
+from engine.arrays import Complexes
+from engine.streaming import MOST_ROWS, Piece, Series
+
+WIDTH, HEIGHT = 120, 90
+SIZE = abs(complex(WIDTH, HEIGHT))
+VIEW = View(centre=60 + 45j, scale=1.25, size=(180, 140))
+
+
+def bending(rest: Complexes, rows: int = 7) -> Series:
+    """Pieces of a motion from `rest`, with as many rows each."""
+    rng = np.random.default_rng(3)
+    pieces = []
+    for index, start in enumerate((0.0, 0.5)):
+        ends = [rest * np.exp(0.4j * time) for time in (start, start + 0.5)]
+        count = rows - 2 + index
+        waves = [8 * np.exp(1j * (rest.real / 20 + k)) * rest.imag / HEIGHT for k in range(count)]
+        functions = rng.normal(size=(5, rows + index)) / rows
+        functions[:, :2] = 0.5 * np.array([[1, 1], [-1, 1], [0, 0], [0, 0], [0, 0]])
+        values = np.array([*ends, *waves]).astype(np.complex64).view(np.float32)
+        pieces.append(
+            Piece(
+                start=start,
+                end=start + 0.5,
+                functions=functions,
+                scaled_functions=None,
+                rows=values,
+            )
+        )
+    return Series(pieces=tuple(pieces), rho=None, error=0.0)
+
+
+def blob_mesh(easel: Easel) -> tuple[GpuMesh, Complexes]:
+    rest, triangles = grid_mesh(WIDTH, HEIGHT, 10)
+    return easel.mesh(soft_blob(WIDTH, HEIGHT), rest, triangles), rest
+
+
+def series_pose(easel: Easel, mesh: GpuMesh, series: Series, time: float) -> Pose:
+    source = SeriesVertices(easel.gl, mesh.count, max(len(p.rows) for p in series.pieces))
+    source.place(series, time)
+    return easel.pose_of(mesh, source)
+
+
+def streamed_pose(easel: Easel, mesh: GpuMesh, series: Series, time: float) -> Pose:
+    return easel.pose(mesh, series.values(time).astype(float).view(complex))
+
+
+@pytest.mark.parametrize("rows", [2, 7, 12])
+def test_the_shader_places_vertices_as_the_processor_does(easel, rows):
+    _, rest = blob_mesh(easel)
+    series = bending(rest, rows)
+    source = SeriesVertices(easel.gl, len(rest), rows + 1)
+    ((name, value),) = source.constants
+    program = easel.gl.program(
+        vertex_shader=f"#version 330 core\n#define {name} {value}\n{shader_source(source.shader)}"
+        "out vec2 place; void main() { place = vertex_position(); gl_Position = vec4(0); }",
+        varyings=["place"],
+    )
+    binding = easel.gl.vertex_array(program, list(source.attributes()))
+    feedback = easel.gl.buffer(reserve=8 * len(rest))
+    target = Target(easel.renderer.programs, (4, 4))  # feedback fails without one
+    target.framebuffer.use()
+    for time in (0.0, 0.13, 0.5, 0.81, 1.0, 0.2):
+        source.place(series, time)
+        set_uniforms(program, source.uniforms)
+        binding.transform(feedback, vertices=len(rest))
+        placed = np.frombuffer(feedback.read(), np.float32)
+        assert_allclose(placed, series.values(time), rtol=0, atol=1e-6 * SIZE)
+        if time in (0.0, 1.0):
+            assert_array_equal(placed, series.pieces[-int(time)].rows[int(time)])
+    for owned in (binding, feedback, target, program, source):
+        owned.release()
+
+
+@pytest.mark.parametrize("time", [0.0, 0.3, 0.9])
+def test_both_ways_give_the_same_picture(easel, time):
+    mesh, rest = blob_mesh(easel)
+    series, ghostly = bending(rest), bending(rest + 20, rows=4)
+    frames = []
+    for make in (series_pose, streamed_pose):
+        pose, ghost = make(easel, mesh, series, time), make(easel, mesh, ghostly, 0.4)
+        pose.write_heat((rest.real / WIDTH).astype(np.float32))
+        for heat in (None, Heat(low=0.0, high=1.0)):
+            scene = Scene(
+                background=Background(colour=(1.0, 1.0, 1.0, 1.0)),
+                pose=pose,
+                heat=heat,
+                wireframe=Wireframe(colour=(0.0, 0.1, 0.3, 0.8)),
+                ghosts=(Ghost(pose=ghost, tint=(0.9, 0.3, 0.1), opacity=0.5),),
+            )
+            frames.append(easel.frame(VIEW, scene).astype(int))
+    by_shader, by_processor = frames[:2], frames[2:]
+    assert (by_shader[0] < 200).any()
+    for one, other in zip(by_shader, by_processor, strict=True):
+        difference = np.abs(one - other).max(axis=2)
+        # Rounding may hand a pixel on an edge to the other side.
+        assert (difference > 2).mean() < 2e-3
+
+
+def test_a_frame_after_another_series_is_its_own(easel):
+    mesh, rest = blob_mesh(easel)
+    first, second = bending(rest), bending(rest * 0.7, rows=4)
+    source = SeriesVertices(easel.gl, mesh.count, 8)
+    pose = easel.pose_of(mesh, source)
+    for series, time in ((first, 0.9), (second, 0.2), (first, 0.1)):
+        source.place(series, time)
+        frame = easel.frame(VIEW, Scene(pose=pose)).astype(int)
+        expected = easel.frame(VIEW, Scene(pose=streamed_pose(easel, mesh, series, time)))
+        assert (np.abs(frame - expected).max(axis=2) > 2).mean() < 2e-3
+
+
+def test_what_does_not_fit_is_refused(easel):
+    _, rest = blob_mesh(easel)
+    with pytest.raises(LissomError, match="rows of a series, not 99"):
+        SeriesVertices(easel.gl, len(rest), 99)
+    assert most_rows(easel.gl) >= MOST_ROWS
+    source = SeriesVertices(easel.gl, len(rest), 4)
+    with pytest.raises(LissomError, match="a piece of 7 rows"):
+        source.place(bending(rest), 0.1)
+    with pytest.raises(LissomError, match="does not fit"):
+        source.place(bending(rest[1:], rows=4), 0.1)
+    source.release()
+
+
+@pytest.mark.parametrize("by_shader", [False, True])
+def test_a_layer_shows_what_it_was_given_last(easel, by_shader):
+    mesh, rest = blob_mesh(easel)
+    series, long = bending(rest), bending(rest * 0.8, rows=MOST_ROWS + 3)
+    layer = Layer(mesh, by_shader=by_shader)
+    for vertices in (
+        Placed(positions=rest),
+        Streamed(series, None, 0.3),
+        Streamed(series, None, 0.9),
+        Placed(positions=0.5 * rest),
+        Streamed(long, None, 0.2),
+        Streamed(series, None, 0.1),
+    ):
+        pose = layer.place(vertices)
+        assert layer.place(vertices) is pose
+        frame = easel.frame(VIEW, Scene(pose=pose)).astype(int)
+        expected = easel.frame(VIEW, Scene(pose=easel.pose(mesh, vertices.positions)))
+        assert (np.abs(frame - expected).max(axis=2) > 2).mean() < 2e-3
+    layer.release()
+
+
+def test_only_a_graphics_card_places_vertices_by_itself(gl):
+    assert not shader_is_faster(gl)  # both backends draw on the processor here

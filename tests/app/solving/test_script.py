@@ -1,0 +1,118 @@
+import copy
+import json
+
+import pytest
+
+from app.document.easing import PRESETS
+from app.errors import LissomError
+from app.solving.script import load_pose_script, parse_pose_script
+from engine.maps.bounds import Bounds
+
+WHOLE = {
+    "schema": 1,
+    "fps": 12.5,
+    "loop": True,
+    "variant": "scaled-eta",
+    "bounds": {"k": 0.7, "sigma_a": 4, "sigma_b": 0.25},
+    "anchor": [10, 20.5],
+    "handles": {"nose": [1, 2], "hoof": [3, 4]},
+    "keys": [
+        {"frame": 0},
+        {"frame": 24, "targets": {"nose": [5, 6]}, "ease": "in-out"},
+        {"frame": 30, "targets": {}, "ease": [0.1, 0.2, 0.3, 0.4]},
+    ],
+}
+
+
+def changed(path, value):
+    """Return the whole script with the entry at `path` replaced, or removed for None."""
+    script = copy.deepcopy(WHOLE)
+    *way, last = path
+    place = script
+    for step in way:
+        place = place[step]
+    if value is None:
+        del place[last]
+    else:
+        place[last] = value
+    return script
+
+
+def test_a_whole_script_is_read(tmp_path):
+    path = tmp_path / "wave.json"
+    path.write_text(json.dumps(WHOLE), encoding="utf-8-sig")
+    script = load_pose_script(path)
+    assert (script.fps, script.loop, script.variant) == (12.5, True, "scaled-eta")
+    assert script.bounds == Bounds(k=0.7, sigma_a=4.0, sigma_b=0.25)
+    assert script.anchor == 10 + 20.5j
+    assert script.handles == {"nose": 1 + 2j, "hoof": 3 + 4j}
+    assert [key.frame for key in script.keys] == [0, 24, 30]
+    assert script.keys[1].targets == {"nose": 5 + 6j}
+    assert script.keys[1].ease == PRESETS["in-out"]
+    assert script.keys[2].ease.curve == (0.1, 0.2, 0.3, 0.4)
+
+
+def test_what_is_left_out_has_its_documented_default():
+    script = parse_pose_script({"schema": 1, "handles": {}, "keys": [{"frame": 3}]})
+    assert (script.fps, script.loop, script.variant) == (24.0, False, "metric")
+    assert script.bounds == Bounds(k=0.8, sigma_a=5.0, sigma_b=0.2)
+    assert script.anchor is None
+    assert script.keys[0].ease == PRESETS["linear"]
+
+
+@pytest.mark.parametrize(
+    ("path", "value", "message"),
+    [
+        (["schema"], 2, "schema must be 1, not 2"),
+        (["schema"], True, "schema must be 1"),
+        (["schema"], None, "schema must be 1, not null"),
+        (["handles"], None, "handles is missing"),
+        (["keys"], None, "keys is missing"),
+        (["keys"], [], "at least one key"),
+        (["colour"], "red", "unknown field 'colour'"),
+        (["fps"], "fast", "fps must be a number"),
+        (["fps"], float("inf"), "fps must be finite"),
+        (["loop"], 1, "loop must be true or false"),
+        (["variant"], "cubic", "variant must be one of metric, nu"),
+        (["variant"], ["nu"], "variant must be one of"),
+        (["bounds", "k"], 1.5, "bound on k"),
+        (["bounds", "tau"], 1.5, "unknown field 'tau'"),
+        (["anchor"], [1], r"anchor must be a point \[x, y\]"),
+        (["handles", "nose"], [1, "2"], r"handle 'nose'\[1\] must be a number"),
+        (["handles"], [[1, 2]], "handles must be an object"),
+        (["keys", 0, "frame"], None, r"keys\[0\].frame must be a whole number"),
+        (["keys", 0, "frame"], 1.5, "whole number"),
+        (["keys", 0, "frame"], -1, "whole number"),
+        (["keys", 1, "frame"], 0, "out of order: frame 0 after 0"),
+        (["keys", 1, "frame"], 31, "out of order: frame 30 after 31"),
+        (["keys", 1, "targets", "tail"], [1, 2], "names the handle 'tail'"),
+        (["keys", 1, "target"], {}, "unknown field 'target'"),
+        (["keys", 1, "ease"], "bouncy", "no easing 'bouncy'"),
+        (["keys", 1, "ease"], [0, 0, 2, 1], "four numbers from 0 to 1"),
+    ],
+)
+def test_whatever_a_script_cannot_say_is_refused(path, value, message):
+    with pytest.raises(ValueError if "bound on" in message else LissomError, match=message):
+        parse_pose_script(changed(path, value))
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("{", "is not JSON: .* in line 1"),
+        ("[]", "the script must be an object"),
+        ('{"schema": 1, "schema": 1}', "'schema' stands twice"),
+        ("[" * 100_000, "nested too deeply"),
+    ],
+)
+def test_bad_files_are_refused_with_their_name(tmp_path, text, message):
+    path = tmp_path / "script.json"
+    path.write_text(text)
+    with pytest.raises(LissomError, match=message) as refused:
+        load_pose_script(path)
+    assert "script.json" in str(refused.value)
+    path.write_bytes(b"\xff\xfe\x00")
+    with pytest.raises(LissomError, match="UTF-8"):
+        load_pose_script(path)
+    with pytest.raises(LissomError, match="No such file"):
+        load_pose_script(tmp_path / "missing.json")

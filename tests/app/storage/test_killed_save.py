@@ -1,0 +1,113 @@
+"""Real kills at every system call of a save: the old or the new file is whole."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+SAVE = """
+import io, os, signal, sys
+from pathlib import Path
+sys.path[:0] = [{tests!r}, {root!r}]
+from dataclasses import replace
+from documents import differences, disc_document, full_document
+from app.storage.project_file import load_project, save_project
+
+FOLDER = Path({folder!r})
+CALLS = ("open", "fdopen", "fsync", "chmod", "replace", "unlink")
+OLD, NEW = disc_document(), full_document()
+
+
+class File(io.FileIO):
+    # Unbuffered, so that each write is a system call; half of it is done when the kill comes.
+    def write(self, data):
+        if countdown():
+            super().write(bytes(data)[: len(data) // 2])
+            kill()
+        return super().write(data)
+
+
+def countdown():
+    global left
+    left -= 1
+    return left == 0
+
+
+def kill():
+    os.kill(os.getpid(), signal.SIGKILL)
+
+
+def killable(call):
+    def wrapped(*args, **options):
+        if countdown():
+            kill()
+        result = call(*args, **options)
+        if countdown():
+            kill()
+        return result
+    return wrapped
+
+
+def save_and_die(path, calls):
+    global left
+    left = calls
+    for name in CALLS:
+        setattr(os, name, killable(getattr(os, name)))
+    os.fdopen = killable(lambda handle, mode: File(handle, mode))
+    save_project(path, NEW)
+    os._exit(0)
+
+
+for first in ("old", "none"):
+    calls = survivors = replaced = 0
+    while True:
+        calls += 1
+        folder = FOLDER / first / str(calls)
+        folder.mkdir(parents=True)
+        path = folder / "a.lissom"
+        if first == "old":
+            save_project(path, OLD)
+        child = os.fork()
+        if not child:
+            try:
+                save_and_die(path, calls)
+            finally:
+                os._exit(3)
+        status = os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])
+        assert status in (0, -signal.SIGKILL), status
+        if first == "none" and not path.exists():
+            assert status
+            survivors += 1
+            continue
+        document = load_project(path)
+        is_new = not differences(document, NEW)
+        assert is_new or not differences(document, OLD)
+        survivors += not is_new
+        replaced += is_new
+        # Whatever the kill left behind is hidden and does not stop the next save.
+        assert all(p == path or p.name.startswith(".") for p in folder.iterdir())
+        save_project(path, OLD)
+        assert not differences(load_project(path), OLD)
+        if status == 0:
+            break
+    print(first, calls, survivors, replaced)
+"""
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="needs processes that can be forked")
+def test_a_killed_save_leaves_the_old_or_the_new_file(tmp_path):
+    tests = Path(__file__).parents[2]
+    script = SAVE.format(tests=str(tests / "support"), root=str(tests.parent), folder=str(tmp_path))
+    done = subprocess.run(
+        [sys.executable, "-c", script], capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0, done.stderr
+    for line in done.stdout.splitlines():
+        _, calls, survivors, replaced = line.split()
+        # Every write and every other call was hit, before the replacement and after it.
+        assert int(calls) > 50
+        assert int(survivors) > 45
+        assert int(replaced) >= 3
+    assert len(done.stdout.splitlines()) == 2

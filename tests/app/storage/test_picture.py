@@ -1,0 +1,145 @@
+import io
+
+import numpy as np
+import pytest
+from numpy.testing import assert_array_equal
+from PIL import Image
+
+from app.errors import LissomError
+from app.storage.picture import decode_picture, read_picture_file
+
+GREY = np.arange(12, dtype=np.uint8).reshape(3, 4) * 20
+RGB = np.stack([GREY, GREY[::-1], 255 - GREY], axis=-1)
+ALPHA = np.array([[0, 8, 128, 255]] * 3, dtype=np.uint8)
+
+
+def encode(image: Image.Image, kind: str, **options: object) -> bytes:
+    stream = io.BytesIO()
+    image.save(stream, kind, **options)
+    return stream.getvalue()
+
+
+def rgba_of(data: bytes) -> np.ndarray:
+    return decode_picture(data, "drawing").rgba
+
+
+def test_straight_alpha_is_read_as_it_is():
+    pixels = np.dstack([RGB, ALPHA])
+    picture = decode_picture(encode(Image.fromarray(pixels), "PNG"), "drawing")
+    assert_array_equal(picture.rgba, pixels)
+    assert picture.size == (4, 3)
+    assert picture.suffix == ".png"
+    assert picture.notices == ()
+    assert not picture.rgba.flags.writeable
+
+
+def test_grey_with_and_without_alpha():
+    opaque = np.full_like(GREY, 255)
+    assert_array_equal(
+        rgba_of(encode(Image.fromarray(GREY), "PNG")), np.dstack([GREY, GREY, GREY, opaque])
+    )
+    image = Image.merge("LA", (Image.fromarray(GREY), Image.fromarray(ALPHA)))
+    assert_array_equal(rgba_of(encode(image, "PNG")), np.dstack([GREY, GREY, GREY, ALPHA]))
+
+
+def test_a_palette_with_a_transparent_entry():
+    image = Image.fromarray(np.array([[0, 1], [2, 1]], dtype=np.uint8), "P")
+    image.putpalette([255, 0, 0, 0, 255, 0, 0, 0, 255])
+    pixels = rgba_of(encode(image, "PNG", transparency=1))
+    assert_array_equal(pixels[..., 3], [[255, 0], [255, 0]])
+    assert_array_equal(pixels[0, 0], [255, 0, 0, 255])
+
+
+@pytest.mark.parametrize("white", [65535, 4095])
+def test_sixteen_bit_greys_keep_their_scale(white):
+    # A dark picture stays dark: white is 65535, whatever the largest value is.
+    greys = np.linspace(0, white, 12).astype(np.uint16).reshape(3, 4)
+    picture = decode_picture(encode(Image.fromarray(greys), "PNG"), "drawing")
+    assert_array_equal(picture.rgba[..., 0], np.rint(greys / 257).astype(np.uint8))
+    assert any("8 bits" in notice for notice in picture.notices)
+
+
+@pytest.mark.parametrize(("scale", "white"), [(1.0, 1.0), (200.0, 255.0)])
+def test_floating_point_greys(scale, white):
+    greys = np.linspace(0, scale, 12, dtype=np.float32).reshape(3, 4)
+    pixels = rgba_of(encode(Image.fromarray(greys), "TIFF"))
+    assert_array_equal(pixels[..., 0], np.rint(greys / white * 255).astype(np.uint8))
+
+
+def test_cmyk_becomes_rgb():
+    image = Image.fromarray(np.full((8, 8, 3), (200, 40, 90), np.uint8)).convert("CMYK")
+    pixels = rgba_of(encode(image, "JPEG", quality=100))
+    assert pixels.shape == (8, 8, 4)
+    assert np.abs(pixels[4, 4].astype(int) - (200, 40, 90, 255)).max() <= 6
+
+
+@pytest.mark.parametrize("orientation", range(1, 9))
+def test_exif_rotation_is_applied(orientation):
+    upright = Image.fromarray(np.zeros((8, 16, 3), np.uint8))
+    upright.paste((255, 255, 255), (0, 0, 8, 4))
+    exif = Image.Exif()
+    exif[0x0112] = orientation
+    transposed = orientation >= 5
+    undo = {
+        1: None,
+        2: Image.Transpose.FLIP_LEFT_RIGHT,
+        3: Image.Transpose.ROTATE_180,
+        4: Image.Transpose.FLIP_TOP_BOTTOM,
+        5: Image.Transpose.TRANSPOSE,
+        6: Image.Transpose.ROTATE_90,
+        7: Image.Transpose.TRANSVERSE,
+        8: Image.Transpose.ROTATE_270,
+    }[orientation]
+    stored = upright if undo is None else upright.transpose(undo)
+    assert (stored.size == (8, 16)) == transposed
+    picture = decode_picture(encode(stored, "JPEG", exif=exif, quality=95), "drawing")
+    assert picture.size == (16, 8)
+    assert picture.rgba[1, 2, 0] > 240
+    assert picture.rgba[6, 12, 0] < 15
+    assert bool(picture.notices) == (orientation != 1)
+
+
+@pytest.mark.parametrize("kind", ["GIF", "WEBP", "PNG"])
+def test_the_first_frame_of_an_animation_is_used(kind):
+    frames = [Image.new("RGB", (4, 4), colour) for colour in ("red", "green", "blue")]
+    options = {"lossless": True} if kind == "WEBP" else {}
+    data = encode(frames[0], kind, save_all=True, append_images=frames[1:], **options)
+    picture = decode_picture(data, "drawing")
+    assert_array_equal(picture.rgba[2, 2], [255, 0, 0, 255])
+    assert picture.notices == ("used the first of 3 frames",)
+
+
+WHOLE = encode(
+    Image.fromarray(np.random.default_rng(1).integers(0, 255, (64, 64, 3), np.uint8)), "PNG"
+)
+
+
+@pytest.mark.parametrize(
+    ("data", "message"),
+    [
+        (b"", "is empty"),
+        (b"%PDF-1.4 no picture", "not a picture"),
+        (b"%!PS-Adobe-3.0 EPSF-3.0\n%%BoundingBox: 0 0 9 9\n", "not a picture"),
+        (b"plain text", "not a picture"),
+        (WHOLE[: len(WHOLE) // 2], "damaged or cut short"),
+        (WHOLE[:2000] + bytes(64) + WHOLE[2064:], "damaged or cut short"),
+    ],
+)
+def test_what_is_no_picture_is_refused(data, message):
+    with pytest.raises(LissomError, match=message):
+        decode_picture(data, "drawing")
+
+
+def test_a_decompression_bomb_is_refused_before_it_is_decoded(monkeypatch):
+    data = encode(Image.new("L", (400, 300)), "PNG")
+    for most in (100_000, 40_000):  # Pillow's warning, and its error at twice as much
+        monkeypatch.setattr(Image, "MAX_IMAGE_PIXELS", most)
+        with pytest.raises(LissomError, match=f"more than {most:,} pixels"):
+            decode_picture(data, "drawing")
+
+
+def test_missing_files_and_folders(tmp_path):
+    with pytest.raises(LissomError, match=r"cannot read .*No such file"):
+        read_picture_file(tmp_path / "nothing.png")
+    with pytest.raises(LissomError, match=r"cannot read .*directory"):
+        read_picture_file(tmp_path)

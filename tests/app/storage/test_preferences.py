@@ -1,0 +1,106 @@
+"""Preferences survive being written, and whatever stands in their file does no harm."""
+
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from app.storage.preferences import (
+    MOST_RECENT,
+    Preferences,
+    load_preferences,
+    save_preferences,
+    settings_folder,
+)
+
+CHOSEN = Preferences(
+    theme="light",
+    scale=1.75,
+    auto_key=False,
+    backdrop="#12ab9f",
+    ghosts_before=0,
+    ghosts_after=6,
+    ghost_step=24,
+    recent=(Path("/drawings/cow.png"), Path("/drawings/walk – Ä.lissom")),
+    folder=Path("/drawings"),
+)
+
+
+def test_what_was_chosen_comes_back(tmp_path):
+    folder = tmp_path / "not there yet"
+    save_preferences(folder, CHOSEN)
+    assert load_preferences(folder) == CHOSEN
+    save_preferences(folder, Preferences())
+    assert load_preferences(folder) == Preferences()
+    assert [path.name for path in folder.iterdir()] == ["preferences.json"]
+
+
+@pytest.mark.parametrize(
+    "content",
+    [b"", b"{", b"\xff\xfe\x00", b"null", b"[1]", b"[" * 100_000, b'{"theme": "light"'],
+    ids=["empty", "torn", "no text", "null", "list", "deep", "cut"],
+)
+def test_a_damaged_file_is_as_none(tmp_path, content):
+    (tmp_path / "preferences.json").write_bytes(content)
+    assert load_preferences(tmp_path) == Preferences()
+
+
+@pytest.mark.parametrize(
+    ("name", "values"),
+    [
+        ("theme", ["purple", 3, None, ["dark"]]),
+        ("scale", [0, 0.7499, 3.01, 1e300, -1, "1", None, float("nan"), float("inf"), [1]]),
+        ("auto_key", [None, 0, "no", {}]),
+        ("backdrop", ["#12345", "#1234567", "#GGGGGG", "red", 7, None]),
+        ("ghosts_before", [-1, 7, "2", None, float("nan")]),
+        ("ghosts_after", [-1, 7, {}]),
+        ("ghost_step", [0, 25, []]),
+        ("recent", ["/a.png", 3, None, {}]),
+        ("folder", [3, None, ["/a"]]),
+    ],
+)
+def test_an_entry_that_makes_no_sense_is_as_it_is_at_first(tmp_path, name, values):
+    save_preferences(tmp_path, CHOSEN)
+    file = tmp_path / "preferences.json"
+    content = json.loads(file.read_text(encoding="utf-8"))
+    for value in values:
+        file.write_text(json.dumps(content | {name: value}), encoding="utf-8")
+        first = {name: getattr(Preferences(), name)}
+        assert load_preferences(tmp_path) == replace(CHOSEN, **first), value
+
+
+def test_a_later_version_may_know_more(tmp_path):
+    save_preferences(tmp_path, CHOSEN)
+    file = tmp_path / "preferences.json"
+    content = json.loads(file.read_text(encoding="utf-8"))
+    content["recent"] += [None, 5]
+    file.write_text(json.dumps(content | {"language": "tlh"}), encoding="utf-8")
+    assert load_preferences(tmp_path) == CHOSEN
+
+
+def test_a_folder_that_cannot_be_written_does_no_harm(tmp_path):
+    folder = tmp_path / "file"
+    folder.write_bytes(b"")
+    save_preferences(folder, CHOSEN)
+    assert load_preferences(folder) == Preferences()
+
+
+def test_recent_files_are_the_newest_ones_once_each():
+    preferences = Preferences(theme="light")
+    paths = [Path(f"/{number}/drawing.png") for number in range(MOST_RECENT + 3)]
+    for path in (*paths, paths[-2]):
+        preferences = preferences.with_recent(path)
+    newest = [paths[-2], paths[-1], *paths[-3 : -MOST_RECENT - 1 : -1]]
+    assert list(preferences.recent) == newest
+    assert preferences.folder == paths[-2].parent
+    assert preferences.theme == "light"
+
+
+def test_the_folder_follows_the_system(monkeypatch, tmp_path):
+    monkeypatch.setattr("app.storage.preferences.sys.platform", "linux")
+    monkeypatch.setenv("HOME", str(tmp_path))
+    monkeypatch.setenv("XDG_CONFIG_HOME", "/etc/mine")
+    assert settings_folder() == Path("/etc/mine/lissom")
+    monkeypatch.delenv("XDG_CONFIG_HOME")
+    assert settings_folder() == tmp_path / ".config" / "lissom"

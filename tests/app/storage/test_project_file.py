@@ -1,0 +1,408 @@
+import io
+import json
+import struct
+import tracemalloc
+import zipfile
+from pathlib import Path
+
+import numpy as np
+import pytest
+from documents import differences, disc_document, full_document, random_command
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from app.document import handle_commands
+from app.errors import LissomError
+from app.storage.archive import MIMETYPE
+from app.storage.project_file import load_project, load_thumbnail, save_project
+
+THUMBNAIL = b"\x89PNG small"
+# Written once, by `save_project(STORED, full_document(), thumbnail=THUMBNAIL)`. It stays as it is:
+# it stands for the files that people have.
+STORED = Path(__file__).parent / "data" / "schema_1.lissom"
+
+
+@pytest.fixture(scope="module")
+def members(tmp_path_factory):
+    """The members of a project file, in their order."""
+    path = tmp_path_factory.mktemp("project") / "full.lissom"
+    save_project(path, full_document(), thumbnail=THUMBNAIL)
+    return read_members(path)
+
+
+def read_members(path):
+    with zipfile.ZipFile(path) as archive:
+        return {name: archive.read(name) for name in archive.namelist()}
+
+
+def pack(path, members):
+    with zipfile.ZipFile(path, "w") as archive:
+        for name, content in members.items():
+            archive.writestr(name, content)
+    return path
+
+
+def with_json(members, *way, value):
+    """Return the members with one field of project.json replaced."""
+    content = json.loads(members["project.json"])
+    place = content
+    for step in way[:-1]:
+        place = place[step]
+    place[way[-1]] = value
+    return members | {"project.json": json.dumps(content).encode()}
+
+
+def npy(array):
+    file = io.BytesIO()
+    np.save(file, array, allow_pickle=True)
+    return file.getvalue()
+
+
+def test_a_full_document_comes_back_to_the_last_bit(tmp_path):
+    path = tmp_path / "a.lissom"
+    save_project(path, full_document(), thumbnail=THUMBNAIL)
+    assert not differences(load_project(path), full_document())
+    assert load_thumbnail(path) == THUMBNAIL
+
+
+@settings(max_examples=40)
+@given(st.lists(st.integers(0, 2**32 - 1), max_size=12), st.booleans())
+def test_any_document_comes_back_to_the_last_bit(tmp_path_factory, seeds, is_full):
+    document = full_document() if is_full else disc_document()
+    for seed in seeds:
+        try:
+            document = random_command(np.random.default_rng(seed), document)(document)
+        except LissomError:
+            continue
+    path = tmp_path_factory.getbasetemp() / "any.lissom"
+    save_project(path, document)
+    loaded = load_project(path)
+    assert not differences(loaded, document)
+    for array in (loaded.domain.cage, loaded.domain.mesh.triangles, loaded.keys[0].pose.phi):
+        assert not array.flags.writeable
+        assert array.dtype.isnative
+
+
+def test_a_stored_file_of_schema_1_opens():
+    assert not differences(load_project(STORED), full_document())
+    assert load_thumbnail(STORED) == THUMBNAIL
+
+
+def test_the_same_document_gives_the_same_bytes_whenever_it_is_saved(tmp_path):
+    for name in ("a", "b"):
+        save_project(tmp_path / name, full_document(), thumbnail=THUMBNAIL)
+    assert (tmp_path / "a").read_bytes() == (tmp_path / "b").read_bytes()
+    with zipfile.ZipFile(tmp_path / "a") as archive:
+        assert {member.date_time for member in archive.infolist()} == {(1980, 1, 1, 0, 0, 0)}
+
+
+def test_a_save_never_writes_into_the_old_file(tmp_path):
+    save_project(tmp_path / "a", disc_document())
+    (tmp_path / "the same file").hardlink_to(tmp_path / "a")
+    save_project(tmp_path / "a", full_document())
+    assert not differences(load_project(tmp_path / "the same file"), disc_document())
+
+
+def test_the_layout_of_the_file(tmp_path, members):
+    path = tmp_path / "a.lissom"
+    save_project(path, full_document())
+    # The mimetype can be read at a fixed place, as `file` and desktops do.
+    assert path.read_bytes()[30:].startswith(b"mimetype" + MIMETYPE)
+    assert list(read_members(path)) == [name for name in members if name != "thumbnail.png"]
+    assert list(members)[:3] == ["mimetype", "project.json", "image/source.png"]
+    assert members["image/source.png"] == full_document().picture.data
+    phi = np.load(io.BytesIO(members["keys/00001.phi.npy"]), allow_pickle=False)
+    assert phi.tobytes() == full_document().keys[1].pose.phi.tobytes()
+    content = json.loads(members["project.json"])
+    assert content["schema"] == 1
+    assert content["app_version"].count(".") >= 1
+    assert list(content) == sorted(content)
+    assert content["keys"][0]["easing"] == "in-out"
+    assert content["keys"][1]["certificate"]["k"] is None
+
+
+def test_unknown_fields_are_kept_everywhere(tmp_path, members):
+    content = json.loads(members["project.json"])
+    places = [content, content["picture"], content["domain"], content["bounds"], content["export"]]
+    places += [content["handles"][0], content["keys"][1], content["keys"][1]["certificate"]]
+    places += [content["keys"][2]["targets"][1]]
+    for index, place in enumerate(places):
+        place["from the future"] = {"list": [index, None, {"x": 1.5}]}
+    text = json.dumps(content).encode()
+    document = load_project(pack(tmp_path / "a", members | {"project.json": text}))
+    changed = handle_commands.rename_handle(4, "other")(document)
+    save_project(tmp_path / "b", changed)
+    content["handles"][1]["name"] = "other"
+    assert json.loads(read_members(tmp_path / "b")["project.json"]) == content
+
+
+def test_unknown_members_are_never_touched(tmp_path, members):
+    inner = tmp_path / "inner"
+    inner.mkdir()
+    strange = {"../escaped.txt": b"x", "/etc/lissom": b"x", "C:\\x": b"x", "notes.txt": b"x"}
+    document = load_project(pack(inner / "a", members | strange))
+    assert not differences(document, full_document())
+    assert sorted(tmp_path.rglob("*")) == [inner, inner / "a"]
+
+
+def test_there_may_be_no_thumbnail(tmp_path):
+    save_project(tmp_path / "a", disc_document())
+    assert load_thumbnail(tmp_path / "a") is None
+    assert load_thumbnail(tmp_path / "missing") is None
+    (tmp_path / "b").write_bytes(b"text")
+    assert load_thumbnail(tmp_path / "b") is None
+
+
+def test_a_newer_schema_is_refused_by_its_version(tmp_path, members):
+    newer = with_json(with_json(members, "schema", value=2), "app_version", value="9.1")
+    with pytest.raises(LissomError, match=r"newer Lissom \(9\.1, schema 2\).*Update Lissom"):
+        load_project(pack(tmp_path / "a", newer))
+
+
+def test_a_newer_schema_need_have_nothing_else_in_common(tmp_path):
+    text = json.dumps({"schema": 7, "app_version": "9.1"}).encode()
+    members = {"mimetype": MIMETYPE, "project.json": text}
+    with pytest.raises(LissomError, match="newer Lissom"):
+        load_project(pack(tmp_path / "a", members))
+
+
+@pytest.mark.parametrize(
+    ("way", "value", "message"),
+    [
+        (["schema"], 0, "schema 0"),
+        (["schema"], "1", "schema must be a whole number"),
+        (["schema"], True, "schema must be a whole number"),
+        (["fps"], "24", "fps must be a number"),
+        (["fps"], -1, "frames per second"),
+        (["loop"], 1, "loop must be true or false"),
+        (["frames"], [0], "frames must be two whole numbers"),
+        (["frames"], [0, 5], "outside the animation"),
+        (["frames"], [0, 1.5], "frames must be a whole number"),
+        (["work"], [0, 900], "work range"),
+        (["anchor"], [0], "anchor must be a point"),
+        (["anchor"], [0, 0], "anchor at"),
+        (["variant"], "arap", "variant"),
+        (["bounds", "k"], 1.5, "bound on k"),
+        (["bounds"], [], "bounds must be an object"),
+        (["export", "format"], "bmp", "export format"),
+        (["export", "size"], [1, 2, 3], "export.size must be two whole numbers"),
+        (["domain", "detail"], "best", "detail"),
+        (["domain", "triangles"], 1.5, "domain.triangles must be a whole number"),
+        (["picture", "sha256"], "0" * 64, "checksums differ"),
+        (["picture", "suffix"], ".jpg", "lacks image/source.jpg"),
+        (["picture", "suffix"], "/../../x", "lacks image"),
+        (["picture", "size"], [0, 5], "size of the picture"),
+        (["handles"], {}, "handles must be a list"),
+        (["handles", 0, "name"], 5, r"handles\[0\].name must be a text"),
+        (["handles", 0, "id"], 4, "Two handles have the id 4"),
+        (["handles", 0, "position"], [0, 0], "outside the shape"),
+        (["handles", 0, "weight"], 10**400, "finite"),
+        (["next_handle"], 2, "is taken"),
+        (["keys"], [], "at least one key"),
+        (["keys", 1, "frame"], 3, "Two keys are at frame 3"),
+        (["keys", 1, "frame"], 2, "mixed up"),
+        (["keys", 1, "turns"], 0.5, "turns must be a whole number"),
+        (["keys", 1, "easing"], "bounce", "no easing 'bounce'"),
+        (["keys", 1, "easing"], [0, 0, 2, 0], "easing curve"),
+        (["keys", 1, "targets"], [], "one target for each handle"),
+        (["keys", 1, "targets", 0, "handle"], 4, "two targets for one handle"),
+        (["keys", 1, "targets", 0, "rotation"], "x", "rotation must be a number"),
+        (["keys", 1, "certificate", "certified"], None, "certified must be true or false"),
+        (["keys", 1], 7, r"keys\[1\] must be an object"),
+    ],
+)
+def test_fields_that_make_no_sense_are_named(tmp_path, members, way, value, message):
+    broken = with_json(members, *way, value=value)
+    with pytest.raises(LissomError, match=message) as raised:
+        load_project(pack(tmp_path / "a.lissom", broken))
+    assert str(raised.value).startswith(f"cannot open {tmp_path / 'a.lissom'}: ")
+
+
+def test_every_field_is_needed(tmp_path, members):
+    def ways(content, way=()):
+        for name, value in content.items() if isinstance(content, dict) else enumerate(content):
+            if isinstance(content, dict):
+                yield (*way, name)
+            if isinstance(value, (dict, list)):
+                yield from ways(value, (*way, name))
+
+    whole = json.loads(members["project.json"])
+    known = json.loads(members["project.json"].replace(b'"nested"', b'"colour"'))
+    kept = {"colour", "nested", "list", "tau", "extension", "app_version"}
+    missing = [way for way in ways(known) if way[-1] not in kept]
+    assert len(missing) > 70
+    for way in missing:
+        content = json.loads(json.dumps(whole))
+        place = content
+        for step in way[:-1]:
+            place = place[step]
+        del place[way[-1]]
+        broken = members | {"project.json": json.dumps(content).encode()}
+        with pytest.raises(LissomError, match=f"lacks the field '{way[-1]}'"):
+            load_project(pack(tmp_path / "a", broken))
+
+
+@pytest.mark.parametrize("text", [b"", b"{", b"\xff\xfe", b"[]", b"null", b"[" * 100_000])
+def test_text_that_is_no_object_is_refused(tmp_path, members, text):
+    with pytest.raises(LissomError, match=r"project\.json"):
+        load_project(pack(tmp_path / "a", members | {"project.json": text}))
+
+
+@pytest.mark.parametrize(
+    ("field", "message"),
+    [
+        (b'"x": NaN', "holds NaN"),
+        (b'"x": -Infinity', "holds -Infinity"),
+        (b'"x": 1e999', "holds 1e999"),
+        (b'"x": ' + b"[" * 45 + b"]" * 45, "nested too deeply"),
+        (b'"x": ' + b'{"x":' * 45 + b"1" + b"}" * 45, "nested too deeply"),
+        (b'"x": 1' + b"0" * 5000, "not JSON"),
+        (b'"fps": 24', "'fps' stands twice"),
+    ],
+)
+def test_what_could_not_be_written_again_is_refused(tmp_path, members, field, message):
+    text = members["project.json"].replace(b"{", b"{" + field + b",", 1)
+    with pytest.raises(LissomError, match=message):
+        load_project(pack(tmp_path / "a", members | {"project.json": text}))
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "message"),
+    [
+        ("image/source.png", b"other", "checksums differ"),
+        ("domain/cage.npy", b"", "not an array"),
+        ("domain/cage.npy", npy(np.zeros(12)), r"not an array complex128 \(n,\)"),
+        ("domain/cage.npy", npy(np.zeros((12, 1), complex)), "not an array"),
+        ("domain/cage.npy", npy(np.zeros(12, ">c16")), "not an array"),
+        ("domain/cage.npy", npy(np.zeros(12, complex))[:-1], "cut short"),
+        ("domain/cage.npy", npy(np.zeros(12, complex)) + b"x", "cut short"),
+        ("domain/cage.npy", npy(np.ones(2, complex)), "at least 3"),
+        ("domain/cage.npy", npy(np.ones(11, complex)), "cage of 12 vertices, not of 11"),
+        ("domain/cage.npy", npy(np.full(12, complex("nan"))), "cage must be finite"),
+        ("domain/outline.npy", npy(np.ones(12, complex)), "outline repeats a vertex"),
+        ("domain/outline.npy", npy(np.array([0, 2, 2j, 1 + 2j, 0.5])), "crosses"),
+        ("domain/vertices.npy", npy(np.full(12, complex("inf"))), "vertices must be finite"),
+        ("domain/triangles.npy", npy(np.zeros((1, 2), np.int32)), r"not an array int32 \(m, 3\)"),
+        ("domain/triangles.npy", npy(np.zeros((1, 3), np.int64)), "not an array"),
+        ("domain/triangles.npy", npy(np.zeros((0, 3), np.int32)), "triangles do not belong"),
+        ("domain/triangles.npy", npy(np.array([[0, 1, 12]], np.int32)), "triangles do not belong"),
+        ("domain/triangles.npy", npy(np.array([[0, 1, -1]], np.int32)), "triangles do not belong"),
+        ("keys/00002.psi.npy", npy(np.ones(11, complex)), "as many coefficients|cage of"),
+        ("keys/00002.psi.npy", npy(np.full(12, complex("nan"))), "psi must be finite"),
+        ("keys/00002.phi.npy", npy(np.array([{}], dtype=object)), "not an array"),
+        ("mimetype", b"application/zip", "not a Lissom project"),
+        ("mimetype", b"application/epub+zip and more", "too large"),
+    ],
+)
+def test_members_that_make_no_sense_are_named(tmp_path, members, name, content, message):
+    assert name in members
+    with pytest.raises(LissomError, match=message):
+        load_project(pack(tmp_path / "a", members | {name: content}))
+
+
+def test_every_member_but_the_thumbnail_is_needed(tmp_path, members):
+    for name in members:
+        fewer = {other: content for other, content in members.items() if other != name}
+        path = pack(tmp_path / "a", fewer)
+        if name == "thumbnail.png":
+            assert not differences(load_project(path), full_document())
+        else:
+            with pytest.raises(LissomError, match=f"lacks {name}|not a Lissom project"):
+                load_project(path)
+
+
+def test_a_header_that_claims_a_huge_array_allocates_nothing(tmp_path, members):
+    header = npy(np.zeros(12, complex)).replace(b"(12,), }            ", b"(9000000000000,), } ")
+    assert b"(9000000000000,)" in header
+    tracemalloc.start()
+    with pytest.raises(LissomError, match="cut short"):
+        load_project(pack(tmp_path / "a", members | {"domain/cage.npy": header}))
+    assert tracemalloc.get_traced_memory()[1] < 10_000_000
+    tracemalloc.stop()
+
+
+def bomb(path, name, *, declared):
+    """A zip whose member unpacks to 100 MB of zeros and declares another size."""
+    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
+        archive.writestr(zipfile.ZipInfo("mimetype"), MIMETYPE)
+        with archive.open(name, "w") as member:
+            for _ in range(100):
+                member.write(bytes(1_000_000))
+    if declared is not None:
+        size = struct.pack("<L", 100_000_000)
+        content = path.read_bytes()
+        assert content.count(size) == 2
+        path.write_bytes(content.replace(size, struct.pack("<L", declared)))
+
+
+@pytest.mark.parametrize("declared", [None, 1000])
+def test_a_bomb_is_not_unpacked(tmp_path, declared):
+    bomb(tmp_path / "a", "project.json", declared=declared)
+    tracemalloc.start()
+    with pytest.raises(LissomError, match="too large" if declared is None else "damaged|not JSON"):
+        load_project(tmp_path / "a")
+    assert tracemalloc.get_traced_memory()[1] < 5_000_000
+    tracemalloc.stop()
+
+
+def test_too_many_members_and_members_of_one_name_are_refused(tmp_path, members):
+    path = pack(tmp_path / "a", members)
+    with zipfile.ZipFile(path, "a") as archive:
+        for index in range(65_536):
+            archive.writestr(f"{index}", b"")
+    with pytest.raises(LissomError, match="members, more than any project"):
+        load_project(path)
+    path = pack(tmp_path / "b", members)
+    with zipfile.ZipFile(path, "a") as archive, pytest.warns(UserWarning, match="Duplicate"):
+        archive.writestr("project.json", b"{}")
+    with pytest.raises(LissomError, match="two members of one name"):
+        load_project(path)
+
+
+@pytest.mark.parametrize("content", [b"", b"text", b"PK\x05\x06" + bytes(18), b"\x89PNG\r\n\x1a\n"])
+def test_other_files_are_no_projects(tmp_path, content):
+    (tmp_path / "a").write_bytes(content)
+    with pytest.raises(LissomError, match="not a Lissom project"):
+        load_project(tmp_path / "a")
+
+
+def test_another_zip_file_is_no_project(tmp_path, members):
+    with pytest.raises(LissomError, match="not a Lissom project"):
+        load_project(pack(tmp_path / "a", {"project.json": b"{}", **members}))
+
+
+def test_files_that_cannot_be_read(tmp_path):
+    with pytest.raises(LissomError, match=r"cannot read .*missing: No such file"):
+        load_project(tmp_path / "missing")
+    with pytest.raises(LissomError, match="cannot read"):
+        load_project(tmp_path)
+    with pytest.raises(LissomError, match="cannot write"):
+        save_project(tmp_path, disc_document())
+    with pytest.raises(LissomError, match="does not exist"):
+        save_project(tmp_path / "no" / "a", disc_document())
+
+
+def test_no_damage_gets_through(tmp_path):
+    """Cut, flip or overwrite anywhere: what opens is what was saved, all else is a plain error."""
+    path = tmp_path / "a"
+    save_project(path, full_document())
+    whole = path.read_bytes()
+    rng = np.random.default_rng(7)
+    refused = 0
+    for trial in range(600):
+        damaged = bytearray(whole)
+        if trial % 3 == 0:
+            del damaged[rng.integers(len(whole)) :]
+        elif trial % 3 == 1:
+            damaged[rng.integers(len(whole))] ^= 1 << rng.integers(8)
+        else:
+            start = rng.integers(len(whole))
+            damaged[start : start + 20] = rng.bytes(20)
+        path.write_bytes(damaged)
+        try:
+            document = load_project(path)
+        except LissomError:
+            refused += 1
+        else:
+            assert not differences(document, full_document())
+    assert refused > 400

@@ -1,0 +1,19 @@
+"""The measurements of the window, cut short, in a process of their own."""
+
+import subprocess
+import sys
+
+SCRIPT = """
+from app.cli.bench.ui import Extent, tables
+for table in tables(Extent(triangles=2_000, repeats=1, frames=4, moves=3)):
+    assert all(row.seconds is None or row.seconds > 0 for row in table.rows), table
+    print(len(table.rows))
+"""
+
+
+def test_everything_is_measured():
+    result = subprocess.run(
+        [sys.executable, "-c", SCRIPT], capture_output=True, text=True, check=False
+    )
+    assert result.returncode == 0, result.stderr
+    assert result.stdout.split() == ["2", "2", "4", "14", "2"]

@@ -1,0 +1,265 @@
+"""Files that are dropped, work that is kept by itself, and preferences that outlive a crash."""
+
+import os
+import threading
+
+import pytest
+
+from app.document.keyframe import Target
+from app.editor.actions import editing, posing, saving, viewing
+from app.editor.session import Question
+from app.storage import autosave
+from app.storage.assets import sample_images
+from app.storage.autosave import SECONDS, find_leftovers
+from app.storage.preferences import CHECKER, Preferences, load_preferences
+from app.storage.project_file import load_project
+
+BAR, RING = sample_images() / "bar.png", sample_images() / "ring.png"
+
+
+@pytest.fixture
+def project(window):
+    return window.open(BAR)
+
+
+@pytest.fixture
+def drop(window):
+    """Drops files on the window, as GLFW tells of it."""
+
+    def take(*paths):
+        window._window._take_dropped(None, [str(path) for path in paths])
+        window.frames(2)
+        window.settle()
+
+    return take
+
+
+def texts(window):
+    return [toast.text for toast in window.session.toasts]
+
+
+def change(window, project):
+    """Make a change that is not saved."""
+    place = complex(*project.picture.size) / 2
+    shift = 0.1 * len(project.document.handles) * project.picture.size[0]
+    window.act(posing.add_handle, place + shift)
+    window.settle()
+    assert not project.history.is_saved
+
+
+def test_a_dropped_picture_opens(window, drop):
+    drop(BAR)
+    assert window.session.project.name == "bar"
+    assert texts(window) == []
+
+
+def test_a_dropped_project_opens(window, project, drop, tmp_path):
+    path = tmp_path / "mine.LISSOM"
+    saving.write(window.session, path, None)
+    window.settle()
+    window.act(saving.give_up)
+    drop(path)
+    assert window.session.project is not project
+    assert window.session.project.path == path
+    assert window.session.preferences.recent[0] == path
+
+
+def test_of_several_dropped_files_the_first_opens(window, drop, tmp_path):
+    notes = tmp_path / "notes.txt"
+    notes.write_bytes(b"")
+    drop(notes, RING, BAR)
+    assert window.session.project.name == "ring"
+    assert any("3 files" in text and "ring.png" in text for text in texts(window))
+
+
+def test_a_dropped_thing_that_cannot_be_opened_is_named(window, project, drop, tmp_path):
+    notes = tmp_path / "notes.txt"
+    notes.write_bytes(b"")
+    folder = tmp_path / "frames.png"
+    folder.mkdir()
+    change(window, project)
+    for path, reason in ((notes, "no picture and no project"), (folder, "a folder")):
+        drop(path)
+        assert texts(window)[-1].startswith(f"{path.name} is {reason}")
+        assert window.session.dialog is None
+    drop()
+    assert len(texts(window)) == 2
+    assert window.session.project is project
+
+
+def test_changes_are_asked_about_before_a_dropped_file_opens(window, project, drop):
+    change(window, project)
+    drop(RING)
+    assert isinstance(window.session.dialog, Question)
+    window.run(lambda robot: robot.item_click("//###dialog/Cancel"))
+    assert window.session.project is project
+    drop(RING)
+    window.run(lambda robot: robot.item_click("//###dialog/Don't save"))
+    window.settle()
+    assert window.session.project.name == "ring"
+
+
+@pytest.fixture
+def kept(window):
+    """Returns how many handles the autosave has, None if there is none; lets jobs end."""
+
+    def read():
+        window.settle()
+        found = list(window.folder.glob("unsaved-*.lissom"))
+        assert len(found) <= 1
+        return len(load_project(found[0]).handles) if found else None
+
+    return read
+
+
+def pass_time(window, seconds):
+    window.clock.now += seconds
+    window.frames()
+
+
+def test_the_autosave_comes_some_time_after_a_change(window, project, kept):
+    pass_time(window, SECONDS)
+    assert kept() is None
+    project.kept_at = window.clock.now
+    change(window, project)
+    pass_time(window, SECONDS - 1)
+    assert kept() is None
+    pass_time(window, 1)
+    assert kept() == 1
+    written = next(window.folder.glob("unsaved-*.lissom")).stat().st_mtime_ns
+    pass_time(window, 2 * SECONDS)
+    assert kept() == 1
+    assert next(window.folder.glob("unsaved-*.lissom")).stat().st_mtime_ns == written
+
+
+def test_more_changes_are_kept_in_its_place(window, project, kept):
+    project.kept_at = window.clock.now
+    change(window, project)
+    pass_time(window, SECONDS)
+    assert kept() == 1
+    change(window, project)
+    pass_time(window, 0.5 * SECONDS)
+    assert kept() == 1
+    pass_time(window, 0.5 * SECONDS)
+    assert kept() == 2
+
+
+def test_the_autosave_does_not_come_while_the_hand_drags(window, project, kept):
+    project.kept_at = window.clock.now
+    change(window, project)
+    place = complex(*project.picture.size) / 2
+    posing.pull(window.session, {0: Target(position=place)})
+    pass_time(window, 2 * SECONDS)
+    assert kept() is None
+    assert project.grab is not None
+    window.act(posing.let_go)
+    window.settle()
+    assert project.grab is None
+    assert kept() == 1
+
+
+def test_what_is_saved_stays_so_though_a_pose_had_not_settled(window, project, tmp_path):
+    change(window, project)
+    change(window, project)
+    place = complex(*project.picture.size)
+    posing.wish(window.session, {0: Target(position=place), 1: Target(position=1.2 * place)})
+    window.frames(2)
+    assert project.grab is not None
+    path = tmp_path / "bar.lissom"
+    saving.write(window.session, path, None)
+    window.settle()
+    assert project.grab is None
+    assert project.history.is_saved
+    (saved,), (now,) = load_project(path).keys, project.document.keys
+    assert saved.pose.targets == now.pose.targets
+    assert (saved.pose.psi == now.pose.psi).all()
+    window.act(saving.quit_lissom)
+    assert window.session.dialog is None
+    window.session.quitting = False
+
+
+def test_the_autosave_goes_when_the_work_is_saved(window, project, kept, tmp_path):
+    change(window, project)
+    pass_time(window, SECONDS)
+    assert kept() == 1
+    saving.write(window.session, tmp_path / "bar.lissom", None)
+    window.settle()
+    assert kept() is None
+
+
+def test_the_autosave_goes_when_the_change_is_undone(window, project, kept):
+    change(window, project)
+    pass_time(window, SECONDS)
+    assert kept() == 1
+    window.act(editing.undo)
+    assert kept() is None
+
+
+@pytest.mark.parametrize("verb", [saving.give_up, saving.leave])
+def test_the_autosave_goes_with_work_that_is_given_up(window, project, kept, verb):
+    change(window, project)
+    pass_time(window, SECONDS)
+    assert kept() == 1
+    verb(window.session)
+    window.session.quitting = False
+    assert list(window.folder.glob("unsaved-*")) == []
+
+
+@pytest.mark.parametrize("verb", [saving.give_up, editing.undo])
+def test_nothing_stays_of_work_that_is_given_up_meanwhile(window, project, monkeypatch, verb):
+    may_write = threading.Event()
+
+    def write_late(folder, document):
+        may_write.wait(60)
+        autosave.write_autosave(folder, document)
+
+    monkeypatch.setattr(saving, "write_autosave", write_late)
+    project.kept_at = window.clock.now
+    change(window, project)
+    pass_time(window, SECONDS)
+    assert saving.AUTOSAVING in window.session.jobs.kinds
+    window.act(verb)
+    may_write.set()
+    window.settle()
+    assert list(window.folder.glob("unsaved-*")) == []
+
+
+def test_a_file_of_an_earlier_process_of_this_number_is_a_leftover(window, project):
+    autosave.write_autosave(window.folder, project.document)
+    (own,) = window.folder.glob("unsaved-*.lissom")
+    assert find_leftovers(window.folder) == []
+    earlier = own.with_name(f"unsaved-{os.getpid()}-0badcafe.lissom")
+    own.rename(earlier)
+    assert find_leftovers(window.folder) == [earlier]
+
+
+def test_preferences_are_kept_as_soon_as_they_change(window):
+    assert load_preferences(window.folder) == Preferences()
+    window.act(viewing.toggle_theme)
+    window.settle()
+    assert load_preferences(window.folder) == Preferences(theme="light")
+    window.act(viewing.set_ghosts, 1, 99, 99)
+    window.act(viewing.scale_up)
+    window.settle()
+    kept = load_preferences(window.folder)
+    assert kept == window.session.preferences
+    assert (kept.ghosts_before, kept.ghosts_after, kept.ghost_step) == (1, 6, 24)
+    assert kept.scale == 1.25
+
+
+def test_a_backdrop_is_chosen_in_the_menu(window, project):
+    del project
+
+    def choose(robot):
+        robot.set_ref("##MainMenuBar")
+        robot.menu_click("View/Backdrop/White")
+
+    window.run(choose)
+    window.settle()
+    white = window.picture()
+    assert load_preferences(window.folder).backdrop == "#ffffff"
+    corner = window.point(0j)
+    pixel = (int(corner.x) - 20, int(corner.y) + 20)
+    assert white.getpixel(pixel) == (255, 255, 255)
+    window.act(viewing.set_backdrop, CHECKER)
+    assert window.picture().getpixel(pixel) != (255, 255, 255)

@@ -1,0 +1,455 @@
+"""The main job, through the window's own widgets: from a sample to exported frames."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from app.document.keyframe import Target
+from app.document.settings import Meshing
+from app.document.settings_commands import set_anchor
+from app.editor.action import do
+from app.editor.actions import editing, exporting, keys, playback, posing, saving
+from app.solving.drag import Drag
+from app.storage.assets import sample_images
+from app.ui.viewport import canvas
+from engine.deform.deformer import Status
+
+BAR = sample_images() / "bar.png"
+
+
+def drag(robot, window, start, end, *, key=None, steps=4):
+    """Press at a place of the plane, move to another in steps, and let go there."""
+    robot.mouse_move_to_pos(window.point(start))
+    if key is not None:
+        robot.key_down(int(key))
+    robot.mouse_down(0)
+    for step in range(1, steps + 1):
+        robot.mouse_move_to_pos(window.point(start + (end - start) * step / steps))
+    robot.mouse_up(0)
+    if key is not None:
+        robot.key_up(int(key))
+
+
+def handle_places(project):
+    return {
+        handle.id: complex(place)
+        for handle, place in zip(
+            project.shown.document.handles, project.shown.handle_places, strict=True
+        )
+    }
+
+
+def test_a_person_makes_an_animation_and_takes_it_back(window, tmp_path):
+    session = window.session
+    window.frames(10)
+
+    def open_sample(robot):
+        robot.set_ref("Welcome")
+        robot.item_click("**/sample Bar")
+
+    window.run(open_sample)
+    window.settle()
+    project = session.project
+    first = project.document
+    width, height = project.picture.size
+    left, right = complex(0.1 * width, height / 2), complex(0.9 * width, height / 2)
+
+    def add_handles(robot):
+        for place in (left, right):
+            robot.mouse_move_to_pos(window.point(place))
+            robot.mouse_click(0)
+
+    window.run(add_handles)
+    assert len(project.document.handles) == 2
+    places = list(handle_places(project).values())
+    np.testing.assert_allclose(places, [left, right], rtol=0, atol=2)
+
+    playback.seek(session, 24)
+    window.settle()
+    window.run(lambda robot: drag(robot, window, right, right + 0.5j * width))
+    window.settle()
+    assert [key.frame for key in project.document.keys] == [0, 24]
+    assert handle_places(project)[1].imag > height
+    assert all(key.pose.certificate.certified for key in project.document.keys)
+    assert project.history.undo_label == "Pose"
+
+    playback.seek(session, 0)
+    window.run(lambda robot: robot.key_press(int(window.Key.space)))
+    assert project.playhead.since is not None
+    window.frames(10)
+    shown = {project.shown.frame}
+    window.frames(10)
+    assert project.shown.frame not in shown
+    assert project.shown.is_current
+    window.run(lambda robot: robot.key_press(int(window.Key.space)))
+    assert project.playhead.since is None
+
+    path = tmp_path / "bar.lissom"
+    saving.write(session, path, None)
+    window.settle()
+    assert project.history.is_saved
+    out = tmp_path / "frames"
+    exporting.start(session, out)
+    while session.export is not None or session.jobs.kinds:
+        window.settle()
+    names = sorted(file.name for file in out.iterdir())
+    assert names == [f"frame_{frame:04d}.png" for frame in range(49)]
+    last = np.asarray(Image.open(out / "frame_0000.png"))
+    source = np.asarray(Image.open(BAR).convert("RGBA"))
+    opaque = source[..., 3] >= 8
+    np.testing.assert_array_equal(last[opaque], source[opaque])
+    assert "Open folder" in [toast.label for toast in session.toasts]
+
+    for _ in range(3):
+        window.run(lambda robot: robot.key_press(int(window.Key.mod_ctrl) | int(window.Key.z)))
+    assert project.document is first
+    reopened = window.open(path)
+    assert [key.frame for key in reopened.document.keys] == [0, 24]
+    assert len(reopened.document.handles) == 2
+
+
+def test_dragging_follows_and_is_one_step(window, bar):
+    session = window.session
+    start = handle_places(bar)[1]
+    before = bar.document
+    window.run(lambda robot: drag(robot, window, start, start + 150j, steps=12))
+    window.settle()
+    assert bar.grab is None
+    lag = bar.document.lags(bar.document.keys[0].pose)[1]
+    assert lag < 0.05 * abs(150j)
+    assert session.solver_seconds >= 0
+    editing.undo(session)
+    assert bar.document is before
+
+
+class CaughtDrag(Drag):
+    """A drag of an entangled shape: one step brings it to the bounds, and none leads on."""
+
+    def towards(self, targets, steps):  # noqa: ARG002
+        state = self.deformer.step(self.state, self.rig.wish(targets))
+        return CaughtDrag(
+            rig=self.rig, deformer=self.deformer, state=replace(state, status=Status.BOUNDS_REACHED)
+        )
+
+    @classmethod
+    def from_rest(cls, rig):
+        return Drag.from_rest(rig)
+
+
+def test_a_shape_that_is_caught_comes_free_when_the_hand_lets_go(window, bar, monkeypatch):
+    monkeypatch.setattr(posing, "Drag", CaughtDrag)
+    session = window.session
+    wanted = handle_places(bar)[1] + 150j
+    first = bar.document
+    posing.pull(session, {1: Target(position=wanted)})
+    window.settle()
+    assert abs(handle_places(bar)[1] - wanted) > 50
+    posing.let_go(session)
+    window.settle()
+    assert bar.grab is None
+    assert abs(handle_places(bar)[1] - wanted) < 5
+    assert bar.document.keys[0].pose.certificate.certified
+    editing.undo(session)
+    assert bar.document is first
+
+
+@pytest.mark.parametrize("leave", [playback.toggle_play, lambda s: playback.seek(s, 24)])
+def test_a_pose_that_the_playhead_leaves_comes_to_rest(window, bar, leave):
+    session = window.session
+    wanted = handle_places(bar)[1] + 150j
+    posing.pull(session, {1: Target(position=wanted)})
+    posing.let_go(session)
+    leave(session)
+    assert bar.grab is None
+    assert bar.is_posing
+    window.settle()
+    assert not bar.is_posing
+    (key,) = bar.document.keys
+    assert key.frame == 0
+    assert bar.document.lags(key.pose)[1] < 5
+    assert bar.history.undo_label == "Pose"
+
+
+def test_a_pose_that_rests_in_the_hand_ends_where_the_playhead_leaves_it(window, bar):
+    session = window.session
+    posing.pull(session, {1: Target(position=handle_places(bar)[1] + 150j)})
+    window.settle()
+    posed = bar.document
+    assert bar.grab.held
+    playback.seek(session, 24)
+    window.settle()
+    assert not bar.is_posing
+    assert bar.document is posed
+
+
+def test_undo_takes_back_a_pose_that_the_playhead_has_left(window, bar):
+    session = window.session
+    before = bar.document
+    posing.pull(session, {1: Target(position=handle_places(bar)[1] + 150j)})
+    session.jobs.settle()
+    window.frames()
+    assert bar.document is not before
+    playback.seek(session, 24)
+    editing.undo(session)
+    window.settle()
+    assert bar.document is before
+
+
+def test_a_pose_that_is_held_is_of_the_frame_that_the_playhead_is_on(window, bar):
+    posing.insert_key(window.session)
+    playback.seek(window.session, 20)
+    window.frames(2)
+    shown = bar.shown
+    playback.seek(window.session, 21)
+    window.frames(2)
+    assert bar.shown.frame == 21
+    assert bar.shown.vertices is shown.vertices
+
+
+def test_the_coarse_mesh_is_shown_while_the_playhead_moves(window):
+    session = window.session
+    session.meshing = Meshing(triangles=20_000)
+    project = window.open(BAR)
+    session.full_detail = False
+    window.frames(30)
+    assert project.shown.figure is project.full.figure
+    playback.seek(session, 3)
+    window.frames()
+    assert project.shown.figure is project.sketch.figure
+    window.frames(20)
+    assert project.shown.figure is project.full.figure
+
+
+def test_a_shape_is_left_alone_where_another_start_gains_little(window, bar):
+    session = window.session
+    posing.pull(session, {1: Target(position=handle_places(bar)[1] + 9000)})
+    window.settle()
+    held = bar.shown.positions
+    assert bar.grab.drag.at_bounds
+    posing.let_go(session)
+    window.settle()
+    assert bar.grab is None
+    np.testing.assert_array_equal(bar.shown.positions, held)
+
+
+def test_inbetweens_follow_a_drag_before_the_hand_lets_go(window, bar):
+    session = window.session
+    keys.set_variant(session, "metric")
+    playback.seek(session, 24)
+    window.settle()
+    posing.wish(session, {1: Target(position=handle_places(bar)[1] + 120j)})
+    window.settle()
+    before = bar.sketch.positions(bar.document, 12)
+    start = handle_places(bar)[1]
+    ghosts, halfway = [], {}
+
+    def play(robot):
+        robot.mouse_move_to_pos(window.point(start))
+        robot.mouse_down(0)
+        for step in range(1, 7):
+            robot.mouse_move_to_pos(window.point(start + 25j * step))
+            ghosts.append(bar.sketch.vertices(bar.sketch.document, 12))
+        while session.jobs.kinds:
+            robot.yield_()
+        halfway.update(
+            grab=bar.grab,
+            rough=bar.sketch.is_rough(bar.document, 12),
+            known=bar.sketch.knows(bar.document, roughly=True),
+            positions=bar.sketch.positions(bar.document, 12),
+        )
+        robot.mouse_up(0)
+
+    window.run(play)
+    assert None not in ghosts
+    assert halfway["grab"] is not None
+    assert halfway["known"]
+    assert halfway["rough"]
+    assert np.abs(halfway["positions"] - before).max() > 40
+    window.settle()
+    assert bar.sketch.knows(bar.document)
+    assert not bar.sketch.is_rough(bar.document, 12)
+    exact = bar.sketch.positions(bar.document, 12)
+    np.testing.assert_allclose(halfway["positions"], exact, rtol=0, atol=0.01 * bar.picture.size[0])
+
+
+def test_a_new_handle_moves_nothing(window, bar):
+    start = handle_places(bar)[1]
+    window.run(lambda robot: drag(robot, window, start, start + 120j))
+    window.settle()
+    before = bar.shown.positions
+    posing.add_handle(window.session, handle_places(bar)[0] + 200)
+    window.settle()
+    np.testing.assert_allclose(bar.shown.positions, before, rtol=0, atol=1e-9)
+    posing.remove_handles(window.session, frozenset({0}))
+    window.settle()
+    np.testing.assert_allclose(bar.shown.positions, before, rtol=0, atol=1e-9)
+
+
+def test_a_key_between_keys_starts_from_what_is_shown(window, bar):
+    session = window.session
+    playback.seek(session, 20)
+    window.settle()
+    target = bar.shown.pose.targets[1]
+    posing.wish(session, {1: Target(position=target.position + 150j)})
+    window.settle()
+    playback.seek(session, 10)
+    window.settle()
+    between = bar.shown.positions
+    posing.insert_key(session)
+    window.settle()
+    assert [key.frame for key in bar.document.keys] == [0, 10, 20]
+    np.testing.assert_allclose(bar.shown.positions, between, rtol=0, atol=1.0)
+
+
+def test_without_auto_key_a_pose_is_loose_until_it_is_inserted(window, bar):
+    session = window.session
+    window.run(lambda robot: robot.key_press(int(window.Key.k)))
+    assert not session.preferences.auto_key
+    playback.seek(session, 12)
+    start = handle_places(bar)[1]
+    window.run(lambda robot: drag(robot, window, start, start + 100j))
+    window.settle()
+    assert [key.frame for key in bar.document.keys] == [0]
+    assert bar.loose is not None
+    window.run(lambda robot: robot.key_press(int(window.Key.i)))
+    window.settle()
+    assert bar.loose is None
+    assert [key.frame for key in bar.document.keys] == [0, 12]
+
+
+def test_inserting_a_key_where_there_is_one_says_so(window, bar):
+    before = bar.document
+    window.run(lambda robot: robot.key_press(int(window.Key.i)))
+    assert bar.document is before
+    (toast,) = window.session.toasts
+    assert toast.text == "Frame 0 has a key already; posing changes it."
+
+
+def test_keys_of_the_pointer(window, bar):
+    session = window.session
+    places = handle_places(bar)
+
+    def play(robot):
+        robot.mouse_move_to_pos(window.point(places[0]))
+        robot.key_down(int(window.Key.mod_ctrl))
+        robot.mouse_click(0)
+        robot.key_up(int(window.Key.mod_ctrl))
+
+    window.run(play)
+    assert bar.document.anchor == bar.document.handle(0).position
+
+    def select_both(robot):
+        robot.mouse_move_to_pos(window.point(places[0]))
+        robot.mouse_click(0)
+        robot.key_down(int(window.Key.mod_shift))
+        robot.mouse_move_to_pos(window.point(places[1]))
+        robot.mouse_click(0)
+        robot.key_up(int(window.Key.mod_shift))
+
+    window.run(select_both)
+    assert bar.selected == {0, 1}
+    window.run(lambda robot: robot.key_press(int(window.Key.up_arrow)))
+    window.settle()
+    assert bar.document.keys[0].pose.targets[0].position.imag > places[0].imag
+
+    def alt_click(robot):
+        robot.mouse_move_to_pos(window.point(handle_places(bar)[1]))
+        robot.key_down(int(window.Key.mod_alt))
+        robot.mouse_click(0)
+        robot.key_up(int(window.Key.mod_alt))
+
+    window.run(alt_click)
+    assert [handle.id for handle in bar.document.handles] == [0]
+
+    low, high = complex(-20, -20), complex(*bar.picture.size) * 0.5 + 300j
+    window.run(lambda robot: drag(robot, window, low + 600j, high - 900j))
+    assert session.pointer is None
+
+
+def test_alt_drag_turns_the_shape(window, bar):
+    start = handle_places(bar)[1]
+    reach = 0.03 * bar.picture.size[0]
+
+    def turn(robot):
+        robot.mouse_move_to_pos(window.point(start))
+        robot.key_down(int(window.Key.mod_alt))
+        robot.mouse_down(0)
+        for angle in (0.0, 0.3, 0.6):
+            robot.mouse_move_to_pos(window.point(start + reach * 4 * np.exp(1j * angle)))
+        robot.mouse_up(0)
+        robot.key_up(int(window.Key.mod_alt))
+
+    window.run(turn)
+    window.settle()
+    assert bar.document.keys[0].pose.targets[1].rotation is not None
+
+
+def test_wheel_zooms_at_the_pointer_and_home_fits(window, bar):
+    place = handle_places(bar)[0]
+    before = window.point(place)
+
+    def zoom(robot):
+        robot.mouse_move_to_pos(before)
+        robot.mouse_wheel_y(3)
+
+    window.run(zoom)
+    after = window.point(place)
+    assert bar.camera is not None
+    np.testing.assert_allclose([after.x, after.y], [before.x, before.y], rtol=0, atol=1.0)
+    window.run(lambda robot: robot.key_press(int(window.Key.home)))
+    assert bar.camera is None
+
+
+def test_unsaved_changes_are_asked_about(window, bar, tmp_path):
+    session = window.session
+    saving.quit_lissom(session)
+    window.frames(3)
+    assert not session.quitting
+
+    def decline(robot):
+        robot.set_ref("//$FOCUSED")
+        robot.item_click("Cancel")
+
+    window.run(decline)
+    assert session.dialog is None
+    assert session.project is bar
+    bar.path = tmp_path / "kept.lissom"
+    saving.save_then(session, do(saving.give_up))
+    window.settle()
+    assert bar.path.is_file()
+    assert session.project is None
+
+
+def test_ctrl_click_on_the_shape_puts_the_anchor_there(window, bent):
+    before, wanted = len(bent.document.handles), complex(bent.shown.positions.mean())
+
+    def play(robot):
+        robot.mouse_move_to_pos(window.point(wanted))
+        robot.key_down(int(window.Key.mod_ctrl))
+        robot.mouse_click(0)
+        robot.key_up(int(window.Key.mod_ctrl))
+
+    window.run(play)
+    window.settle()
+    assert len(bent.document.handles) == before
+    assert bent.document.anchor is not None
+    moved = bent.document.map_of(bent.document.keys[1].pose)(np.array([bent.document.anchor]))
+    assert abs(moved[0] - wanted) < 3
+    assert abs(canvas._anchor(bent, bent.shown) - wanted) < 3
+    posing.anchor_at(window.session, 0)
+    window.settle()
+    assert canvas._anchor(bent, bent.shown) is None  # the handle itself shows it
+
+
+def test_an_anchor_that_was_chosen_for_the_person_is_shown(window, bent):
+    assert bent.document.anchor is None
+    place = canvas._anchor(bent, bent.shown)
+    rest = bent.sketch.stage.sites.anchor
+    moved = bent.document.map_of(bent.document.keys[1].pose)(np.array([rest]))
+    assert abs(place - moved[0]) < 3
+    shown = window.picture()
+    editing.edit(window.session, set_anchor(complex(bent.document.handle(0).position)))
+    window.settle()
+    assert window.picture() != shown

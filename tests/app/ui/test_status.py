@@ -1,0 +1,101 @@
+"""What the status bar says."""
+
+import re
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from app.document.keyframe import Target
+from app.editor.actions import playback, posing
+from app.motion.prepared import Motion, prepare_motion
+from app.reports.curves import TIMES, Extremes, measure_curves
+from app.ui import bars
+from engine.maps import distortion
+from engine.maps.bounds import Bounds
+
+
+def facts(window):
+    return [fact.text for fact in bars._facts(window.session)]
+
+
+def test_without_a_project_it_shows_the_frames_per_second_only(window):
+    (fps,) = facts(window)
+    assert re.fullmatch(r"\d+ fps", fps)
+
+
+def test_a_pose_shows_its_distortion_the_handles_and_the_solver(window, bent):
+    window.session.solver_seconds = 0.0064  # the clock of the tests stands still in a job
+    shown, handles, solver, _ = facts(window)
+    proven = bent.document.keys[1].pose.certificate
+    uses = Extremes(proven.k, proven.sigma_a, proven.sigma_b).uses(bent.document.bounds)
+    most = max(uses, key=lambda use: use.share)
+    assert shown == f"{most.name} {most.value:.2f} {most.sign} {most.bound:.2f}"
+    assert most.share > 0.01
+    assert handles == "2 handles"
+    assert solver == "solver 6 ms"
+
+
+def test_inbetweens_show_what_was_measured(window, bent):
+    playback.seek(window.session, 12)
+    window.settle()
+    window.frames(2)
+    shown, *_ = facts(window)
+    halfway = bent.sketch.inbetweens(bent.document, 0).frame(np.array([0.5, 0.5]))
+    fz, fzbar = halfway.fz, halfway.fzbar
+    values = {
+        "k": distortion.k(fz, fzbar).max(),
+        "σa": distortion.sigma_a(fz, fzbar).max(),
+        "σb": distortion.sigma_b(fz, fzbar).min(),
+    }
+    name, value, _, _ = shown.split()
+    assert float(value) == pytest.approx(values[name], abs=0.011)
+
+
+@pytest.mark.usefixtures("bent")
+def test_a_bound_that_is_reached_warns(window):
+    posing.wish(window.session, {1: Target(position=complex(9000, 0))})
+    window.settle()
+    fact = bars._facts(window.session)[0]
+    assert fact.warns
+    assert not bars._facts(window.session)[1].warns
+
+
+def test_extremes_between_the_times_that_were_measured(bent):
+    curves = measure_curves(bent.document, bent.sketch)
+    assert curves.extremes.shape == (TIMES, 3)
+    np.testing.assert_array_equal(curves.extremes_at(0), curves.extremes[0])
+    np.testing.assert_allclose(curves.extremes_at(24), curves.extremes[-1], rtol=1e-12, atol=0)
+    middle = curves.extremes_at(12)
+    low, high = np.sort(curves.extremes[TIMES // 2 - 1 : TIMES // 2 + 1], axis=0)
+    assert (low <= middle).all()
+    assert (middle <= high).all()
+    # In a loop the way back follows the last key, and leads up to the first.
+    last = bent.document.keys[-1]
+    looped = replace(
+        bent.document,
+        loop=True,
+        keys=(replace(bent.document.keys[0], frame=10), last),
+        frames=replace(bent.document.frames, last=48),
+    )
+    motion = prepare_motion(looped, Motion.at_rest(looped, bent.sketch.figure))
+    again = measure_curves(looped, motion)
+    assert again.extremes_at(5) == again.extremes_at(53)
+    assert again.extremes_at(5) != again.extremes_at(20)
+
+
+def test_shares_count_from_no_distortion_to_the_bound():
+    bounds = Bounds(k=0.5, sigma_a=4.0, sigma_b=0.25)
+    none, half, full, folded = (
+        [use.share for use in extremes.uses(bounds)]
+        for extremes in (
+            Extremes(0.0, 1.0, 1.0),
+            Extremes(0.25, 2.0, 0.5),
+            Extremes(0.5, 4.0, 0.25),
+            Extremes(np.inf, np.inf, -1.0),
+        )
+    )
+    np.testing.assert_allclose(
+        [none, half, full], [[0] * 3, [0.5] * 3, [1] * 3], rtol=0, atol=1e-12
+    )
+    assert min(folded) > 100

@@ -1,0 +1,382 @@
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from documents import CENTRE, RADIUS, disc_document
+from imgui_bundle import ImVec2
+from PIL import Image
+
+from app.document import key_commands
+from app.document.history import History
+from app.document.keyframe import Handle, Keyframe, Pose, Target
+from app.document.settings import Meshing
+from app.document.settings_commands import set_export
+from app.editor.actions import editing, exporting, measuring, playback, posing
+from app.editor.session import Project
+from app.motion.prepared import Figure, Motion
+from app.storage.picture import Picture
+from engine.maps.boundary import Boundary
+from engine.maps.bounds import Bounds
+from engine.maps.certificate import certify
+from engine.maps.harmonic_map import HarmonicMap
+
+STRETCH = 0.3
+
+
+@pytest.fixture(scope="module")
+def _stretched():
+    """A disc with two handles: at rest at frame 0, stretched sideways at frame 24."""
+    empty = disc_document()
+    domain, rest = empty.domain, empty.keys[0].pose
+    boundary = Boundary.sample(domain.outline, domain.cage)
+    handles = (
+        Handle(id=0, name="left", position=CENTRE - RADIUS / 2),
+        Handle(id=1, name="right", position=CENTRE + RADIUS / 2),
+    )
+    keys = []
+    for frame, factor in ((0, 0.0), (24, STRETCH)):
+        psi = factor * (domain.cage - CENTRE)
+        shape = HarmonicMap(cage=domain.cage, phi=rest.phi, psi=psi)
+        places = shape(np.array([handle.position for handle in handles]))
+        targets = {
+            handle.id: Target(position=complex(place))
+            for handle, place in zip(handles, places, strict=True)
+        }
+        pose = Pose(
+            targets=targets,
+            phi=rest.phi,
+            psi=psi,
+            certificate=certify(shape, boundary, empty.bounds),
+        )
+        keys.append(Keyframe(frame=frame, pose=pose))
+    return replace(empty, handles=handles, next_handle=2, keys=tuple(keys))
+
+
+@pytest.fixture
+def project(window, _stretched):
+    y, x = np.mgrid[200:0:-1, 0:200] - 0.5
+    inside = np.abs(x + 1j * y - CENTRE) < RADIUS
+    rgba = np.where(inside, 255, 0).astype(np.uint8)[..., None].repeat(4, axis=2)
+    window.session.project = Project(
+        name="disc",
+        history=History(_stretched, saved=True),
+        picture=Picture(rgba=rgba, notices=()),
+        path=None,
+        sketch=Motion.at_rest(_stretched, Figure.sketch(_stretched.domain)),
+    )
+    playback.seek(window.session, 24)
+    window.settle()
+    return window.session.project
+
+
+@pytest.fixture
+def tab(window):
+    """A function that lets the robot play in a tab, and waits for what that leads to."""
+
+    def play(title, act):
+        def body(robot):
+            robot.set_ref(f"//{title}")
+            act(robot)
+
+        window.show_tab(title)
+        window.run(body)
+        window.settle()
+
+    return play
+
+
+def largest(project, field):
+    return max(getattr(key.pose.certificate, field) for key in project.document.keys)
+
+
+def test_handle_is_chosen_renamed_weighed_and_deleted(project, tab):
+    tab("Handle", lambda robot: robot.item_click("**/###handle 0"))
+    assert project.selected == {0}
+
+    def change(robot):
+        robot.item_input_value("**/##name", "paw")
+        robot.item_input_value("**/##weight", 2.5)
+
+    tab("Handle", change)
+    handle = project.document.handle(0)
+    assert (handle.name, handle.weight) == ("paw", 2.5)
+    tab("Handle", lambda robot: robot.item_click("**/###delete handles"))
+    assert [handle.id for handle in project.document.handles] == [1]
+    assert project.history.undo_label == "Delete handle"
+
+
+def test_target_typed_in_poses_the_shape(window, project, tab):
+    editing.select(window.session, frozenset({1}))
+    before = project.document.key(24).pose
+    wish = before.targets[1].position
+    tab("Handle", lambda robot: robot.item_input_value("**/##target y", wish.imag - 20.0))
+    after = project.document.key(24).pose
+    assert after.targets[1].position == pytest.approx(wish - 20j, abs=0.01)
+    place = project.document.map_of(after)(np.array([project.document.handle(1).position]))
+    np.testing.assert_allclose(place, wish - 20j, rtol=0, atol=2)
+
+
+def test_turn_is_taken_from_the_shape_then_typed_then_freed(window, project, tab):
+    editing.select(window.session, frozenset({1}))
+    turn = project.shown.handle_turns[1]
+    tab("Handle", lambda robot: robot.item_click("**/##turns"))
+    assert project.document.key(24).pose.targets[1].rotation == pytest.approx(turn, abs=1e-6)
+    tab("Handle", lambda robot: robot.item_input_value("**/##angle", 10.0))
+    rotation = project.document.key(24).pose.targets[1].rotation
+    assert rotation == pytest.approx(np.radians(10.0), abs=1e-4)
+    tab("Handle", lambda robot: robot.item_click("**/##turns"))
+    assert project.document.key(24).pose.targets[1].rotation is None
+
+
+def test_anchor_goes_to_the_handle_and_back(window, project, tab):
+    editing.select(window.session, frozenset({0}))
+    tab("Handle", lambda robot: robot.item_click("**/###anchor here"))
+    assert project.document.anchor == project.document.handle(0).position
+    tab("Handle", lambda robot: robot.item_click("**/###clear anchor"))
+    assert project.document.anchor is None
+
+
+def test_tighter_bounds_bring_keys_in_as_one_step(window, project, tab):
+    before = project.document
+    reached = largest(project, "k")
+    bound = round(0.6 * reached, 2)
+    tab("Deform", lambda robot: robot.item_input_value("**/##bound k", bound))
+    assert project.document.bounds.k == pytest.approx(bound, abs=1e-6)
+    assert largest(project, "k") <= bound
+    assert all(key.pose.certificate.certified for key in project.document.keys)
+    assert project.document.key(0).pose is before.key(0).pose
+    assert project.history.undo_label == "Set bounds"
+    editing.undo(window.session)
+    assert project.document is before
+
+
+def test_knob_that_is_dragged_sets_the_bound_once(window, project, tab):
+    before = project.document
+
+    def drag(robot):
+        name = "**/bound sigma_a track"
+        middle = robot.item_info(name).rect_full.get_center()
+        robot.mouse_move(name)
+        robot.mouse_down(0)
+        robot.mouse_move_to_pos(ImVec2(middle.x + 90, middle.y))
+        assert project.document is before
+        assert project.drafted_bounds.sigma_a > Bounds().sigma_a
+        robot.mouse_up(0)
+
+    tab("Deform", drag)
+    assert project.document.bounds.sigma_a > Bounds().sigma_a
+    assert project.drafted_bounds is None
+    editing.undo(window.session)
+    assert project.document is before
+    editing.redo(window.session)
+    tab("Deform", lambda robot: robot.item_click("**/###reset bounds"))
+    assert project.document.bounds == Bounds()
+
+
+def test_pose_that_finds_no_way_in_stays_and_is_told(window, project, tab):
+    posing.remove_handles(window.session, frozenset({0, 1}))
+    pose = project.document.key(24).pose
+    bound = round(0.5 * largest(project, "k"), 2)
+    tab("Deform", lambda robot: robot.item_input_value("**/##bound k", bound))
+    kept = project.document.key(24).pose
+    assert kept.phi is pose.phi
+    assert not kept.certificate.certified
+    assert any("frame 24" in toast.text for toast in window.session.toasts)
+
+
+def test_cancelled_solving_changes_nothing(project, tab):
+    before = project.document
+
+    def act(robot):
+        robot.item_click("**/Solve all keys again")
+        robot.item_click("**/###stop")
+
+    tab("Deform", act)
+    assert project.document is before
+    assert project.renewal is None
+
+
+def test_heat_map_and_curves_follow_the_document(window, project, tab):
+    def act(robot):
+        robot.item_click("**/heat map/###sigma_a")
+        robot.item_click("**/curves/###absolute")
+
+    tab("Distortion", act)
+    assert window.session.overlays.heat_map == "sigma_a"
+    curves = project.curves
+    assert curves.document is project.document
+    assert curves.k_share.max() <= 1 + 1e-3
+    assert curves.k.max() == pytest.approx(largest(project, "k"), rel=0.1)
+    editing.edit(window.session, key_commands.move_keys(frozenset({24}), 4))
+    window.settle()
+    assert project.curves.document is project.document
+    assert project.curves.frames[-1] == 28
+
+
+def test_curves_of_an_older_document_are_not_kept(window, project, tab):
+    tab("Distortion", lambda _: None)
+    editing.edit(window.session, key_commands.move_keys(frozenset({24}), 4))
+    older = project.document
+    measuring.keep_up(window.session)
+    editing.edit(window.session, key_commands.move_keys(frozenset({28}), 4))
+    window.settle()
+    assert project.curves.document is project.document is not older
+
+
+@pytest.mark.usefixtures("project")
+def test_curves_are_saved_as_picture_and_table(window, tab, tmp_path):
+    for suffix in (".png", ".csv"):
+
+        def act(robot, suffix=suffix):
+            robot.item_click(f"**/###{suffix[1:]}")
+            window.session.dialog = replace(window.session.dialog, folder=tmp_path)
+
+        tab("Distortion", act)
+        window.run(lambda robot: robot.item_click("//###dialog/Save"))
+        window.settle()
+    table = np.genfromtxt(tmp_path / "disc distortion.csv", delimiter=",", names=True)
+    assert table["frame"][-1] == 24
+    assert max(table["k_share_0"]) <= 1 + 1e-3
+    with Image.open(tmp_path / "disc distortion.png") as picture:
+        assert picture.size[0] > 1000
+
+
+@pytest.mark.usefixtures("project")
+def test_outline_cage_and_mesh_are_shown(window, tab):
+    before = window.picture()
+
+    def act(robot):
+        for name in ("Outline", "Cage", "Mesh"):
+            robot.item_click(f"**/{name}")
+
+    tab("Domain", act)
+    overlays = window.session.overlays
+    assert (overlays.outline, overlays.cage, overlays.wireframe) == (True, True, True)
+    assert window.picture() != before
+
+
+def test_rebuilt_domain_keeps_handles_and_poses_as_one_step(window, project, tab):
+    before = project.document
+
+    def act(robot):
+        robot.item_click("**/detail/###normal")
+        robot.item_input_value("**/##triangles", 4000.0)
+        robot.item_click("**/###rebuild")
+
+    tab("Domain", act)
+    after = project.document
+    assert after.meshing == Meshing(triangles=4_000, detail="normal")
+    assert len(after.domain.mesh.triangles) > 1.5 * len(before.domain.mesh.triangles)
+    assert after.handles == before.handles
+    for frame in (0, 24):
+        old, new = before.key(frame).pose, after.key(frame).pose
+        assert new.certificate.certified
+        places = np.array([handle.position for handle in after.handles])
+        np.testing.assert_allclose(
+            after.map_of(new)(places), before.map_of(old)(places), rtol=0, atol=3
+        )
+    assert after.key(0).pose.certificate.k < 1e-6
+    assert project.history.undo_label == "Rebuild domain"
+    editing.undo(window.session)
+    assert project.document is before
+
+
+def test_rebuilt_domain_keeps_a_pose_that_no_handle_holds(window, project, tab):
+    posing.remove_handles(window.session, frozenset({0, 1}))
+
+    def act(robot):
+        robot.item_input_value("**/##triangles", 4000.0)
+        robot.item_click("**/###rebuild")
+
+    tab("Domain", act)
+    assert project.document.meshing.triangles == 4_000
+    certificate = project.document.key(24).pose.certificate
+    assert certificate.k == pytest.approx(STRETCH, rel=0.01)
+
+
+def test_domain_that_cannot_be_built_is_told(window, project, tab):
+    before = project.document
+    project.picture = replace(project.picture, rgba=np.zeros_like(project.picture.rgba))
+
+    def act(robot):
+        robot.item_click("**/detail/###fine")
+        robot.item_click("**/###rebuild")
+
+    tab("Domain", act)
+    assert project.document is before
+    assert project.renewal is None
+    assert [toast.tone for toast in window.session.toasts] == ["error"]
+
+
+def test_export_settings_are_entered_and_undone(window, project, tab):
+    before = project.document
+    width, height = project.picture.size
+
+    def act(robot):
+        robot.item_click("**/framing/###fit")
+        robot.item_click("**/framing/###canvas")
+        robot.item_input_value("**/##width", width // 2)
+        robot.item_click("**/range/###own")
+        robot.item_input_value("**/##last frame", 3)
+        robot.item_click("**/background/###colour")
+
+    tab("Export", act)
+    settings = project.document.export
+    assert settings.size == (width // 2, round((width // 2) * height / width))
+    assert (settings.frames.first, settings.frames.last) == (0, 3)
+    assert settings.background == "#ffffff"
+    while project.history.undo_label == "Set export":
+        editing.undo(window.session)
+    assert project.document is before
+
+
+def test_frame_of_the_export_shows_only_with_its_tab(window, project, tab):
+    tab("Export", lambda _: None)
+    assert window.session.export_frame is not None
+    assert project.reach is not None
+    tab("Handle", lambda _: None)
+    assert window.session.export_frame is None
+
+
+def test_export_is_started_repeated_and_told(window, project, tab, tmp_path):
+    session = window.session
+    exporting.set_export(session, replace(project.document.export, size=(80, 60)))
+
+    def choose(robot):
+        robot.item_click("**/range/###own")
+        robot.item_input_value("**/##last frame", 2)
+        robot.item_click("**/###choose output")
+        session.dialog = replace(session.dialog, folder=tmp_path, name="frames")
+
+    tab("Export", choose)
+    window.run(lambda robot: robot.item_click("//###dialog/Save"))
+    window.frames(2)
+    assert project.export_to == tmp_path / "frames"
+    assert not (tmp_path / "frames").exists()
+    tab("Export", lambda robot: robot.item_click("**/###start"))
+    for _ in range(200):
+        window.frames()
+        if session.export is None:
+            break
+    names = sorted(path.name for path in (tmp_path / "frames").iterdir())
+    assert names == [f"frame_{number:04d}.png" for number in range(3)]
+    told = next(toast for toast in session.toasts if toast.tone == "good")
+    assert told.label == "Open folder"
+    assert told.action.arguments == (tmp_path / "frames",)
+
+
+def test_export_that_cannot_begin_is_told(window, project, tab, tmp_path):
+    project.export_to = tmp_path / "missing" / "frames"
+    tab("Export", lambda robot: robot.item_click("**/###start"))
+    assert window.session.export is None
+    assert any("does not exist" in toast.text for toast in window.session.toasts)
+
+
+def test_the_export_tab_changes_nothing_by_itself(window, project):
+    settings = replace(project.document.export, format="mp4", background="transparent")
+    editing.edit(window.session, set_export(settings))
+    before = project.document
+    window.show_tab("Export")
+    window.frames(5)
+    assert project.document is before
+    window.show_tab("Handle")

@@ -1,0 +1,455 @@
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from documents import CENTRE, RADIUS, disc_document
+from hypothesis import given
+from hypothesis import strategies as st
+from imgui_bundle import ImVec2, imgui
+
+from app.document.easing import HOLD, LINEAR, PRESETS
+from app.document.history import History
+from app.document.keyframe import Handle, Keyframe, Target
+from app.document.settings import FrameRange
+from app.editor.actions import editing, keys, playback, timeline_pointing
+from app.editor.session import Project
+from app.editor.timeline_view import Strip
+from app.motion.prepared import Figure, Motion
+from app.storage.picture import Picture
+
+FRAMES = (0, 12, 24, 48)
+
+
+def waving_document():
+    """A disc that turns to and fro: four keys, two handles, of which one lags at frame 24."""
+    empty = disc_document()
+    rest = empty.keys[0].pose
+    handles = (
+        Handle(id=0, name="left", position=CENTRE - RADIUS / 2),
+        Handle(id=1, name="right", position=CENTRE + RADIUS / 2),
+    )
+    keys = []
+    for frame, angle in zip(FRAMES, (0.0, 0.3, -0.3, 0.1), strict=True):
+        turn = np.exp(1j * angle)
+        targets = {h.id: Target(position=CENTRE + (h.position - CENTRE) * turn) for h in handles}
+        if frame == 24:
+            targets[1] = Target(position=CENTRE + RADIUS)
+        phi = CENTRE + (empty.domain.cage - CENTRE) * turn
+        keys.append(Keyframe(frame=frame, pose=replace(rest, targets=targets, phi=phi)))
+    return replace(
+        empty, handles=handles, next_handle=2, keys=tuple(keys), frames=FrameRange(0, 60)
+    )
+
+
+@pytest.fixture
+def project(window):
+    document = waving_document()
+    window.session.project = Project(
+        name="disc",
+        history=History(document, saved=True),
+        picture=Picture(rgba=np.full((200, 200, 4), 160, np.uint8), notices=()),
+        path=None,
+        sketch=Motion.at_rest(document, Figure.sketch(document.domain)),
+    )
+    window.settle()
+    return window.session.project
+
+
+class Hand:
+    """The robot's pointer, told by frames."""
+
+    def __init__(self, robot, keys):
+        self.robot = robot
+        robot.set_ref("###Timeline")
+        first, last = keys[0].frame, keys[-1].frame
+        begin, end = self.place(f"key {first}"), self.place(f"key {last}")
+        self._step, self._y = (end.x - begin.x) / (last - first), begin.y
+        self._origin = begin.x - first * self._step
+
+    def place(self, name):
+        return self.robot.item_info(f"**/{name}").rect_full.get_center()
+
+    def x(self, frame):
+        return self._origin + frame * self._step
+
+    def click(self, name, button=0):
+        self.robot.item_click(f"**/{name}", button)
+
+    def go_to(self, frame, y=None):
+        self.robot.mouse_move_to_pos(ImVec2(self.x(frame), self._y if y is None else y))
+
+    def press(self, name):
+        self.robot.mouse_move(f"**/{name}")
+        self.robot.mouse_down(0)
+
+    def drag(self, name, *frames):
+        """Take something, go to the frames in turn, and let go."""
+        y = self.place(name).y
+        self.press(name)
+        for frame in frames:
+            self.go_to(frame, y)
+        self.robot.mouse_up(0)
+
+
+@pytest.fixture
+def play(window, project):
+    """Let the robot play with the timeline."""
+
+    def play(what):
+        window.run(lambda robot: what(Hand(robot, project.document.keys)))
+        window.settle()
+        return project.document
+
+    return play
+
+
+def frames_of(document):
+    return tuple(key.frame for key in document.keys)
+
+
+def undo_all(window):
+    steps = 0
+    while window.session.project.history.undo_label is not None:
+        editing.undo(window.session)
+        steps += 1
+    return steps
+
+
+def test_click_chooses_a_key_and_goes_there(window, project, play):
+    play(lambda hand: hand.click("key 24"))
+    assert project.chosen == {24}
+    assert playback.current_frame(window.session, project) == 24
+
+    def add(hand):
+        hand.robot.key_down(int(window.Key.mod_shift))
+        hand.click("key 48")
+        hand.click("key 24")
+        hand.click("key 0")
+        hand.robot.key_up(int(window.Key.mod_shift))
+
+    play(add)
+    assert project.chosen == {0, 48}
+    assert project.history.undo_label is None
+
+
+def test_drag_moves_keys_by_whole_frames_in_one_step(window, project, play):
+    first = project.document
+    moved = play(lambda hand: hand.drag("key 24", 26.4, 29.7))
+    assert frames_of(moved) == (0, 12, 30, 48)
+    assert project.chosen == {30}
+    assert moved.keys[2].pose is first.keys[2].pose
+    editing.undo(window.session)
+    assert project.document is first
+
+
+def test_keys_are_seen_moving_while_they_are_dragged(project, play):
+    seen = []
+
+    def look(hand):
+        hand.press("key 24")
+        for frame in (30, 36):
+            hand.go_to(frame)
+            hand.robot.yield_(2)
+            seen.append(frames_of(project.document))
+            assert hand.place("key 24").x == pytest.approx(hand.x(frame), abs=1.0)
+        hand.robot.mouse_up(0)
+
+    play(look)
+    assert seen == [(0, 12, 30, 48), (0, 12, 36, 48)]
+
+
+def test_drag_back_leaves_nothing_to_undo(project, play):
+    first = project.document
+    assert play(lambda hand: hand.drag("key 24", 30, 24)) is first
+    assert project.history.undo_label is None
+    assert project.history.is_saved
+
+
+def test_escape_takes_a_drag_back(window, project, play):
+    first = project.document
+
+    def escape(hand):
+        hand.press("key 24")
+        hand.go_to(30)
+        hand.robot.key_press(int(window.Key.escape))
+        hand.go_to(40)
+        hand.robot.mouse_up(0)
+
+    assert play(escape) is first
+    assert project.chosen == {24}
+
+
+def test_keys_stop_before_others_and_at_frame_0(play):
+    assert frames_of(play(lambda hand: hand.drag("key 24", 20, 12))) == (0, 12, 13, 48)
+    assert frames_of(play(lambda hand: hand.drag("key 13", -8))) == (0, 1, 12, 48)
+    assert frames_of(play(lambda hand: hand.drag("key 12", 24, 50, 63))) == (0, 1, 48, 63)
+
+
+def test_drag_past_the_end_makes_the_animation_longer(window, project, play):
+    first = project.document
+    longer = play(lambda hand: hand.drag("key 48", 61))
+    assert frames_of(longer) == (0, 12, 24, 61)
+    assert longer.frames == FrameRange(0, 61)
+    assert undo_all(window) == 1
+    assert project.document is first
+
+
+def test_several_keys_move_together(window, project, play):
+    def box(hand):
+        hand.go_to(8, hand.place("ground").y + 35)
+        hand.robot.mouse_down(0)
+        hand.go_to(16)
+        hand.go_to(30)
+        hand.robot.mouse_up(0)
+
+    play(box)
+    assert project.chosen == {12, 24}
+    assert frames_of(play(lambda hand: hand.drag("key 12", 17))) == (0, 17, 29, 48)
+    assert project.chosen == {17, 29}
+
+    def click_beside(hand):
+        hand.go_to(55)
+        hand.robot.mouse_click(0)
+
+    play(click_beside)
+    assert project.chosen == frozenset()
+    assert undo_all(window) == 1
+
+
+def test_ctrl_drag_copies_and_del_deletes(window, project, play):
+    first = project.document
+
+    def copy(hand):
+        hand.robot.key_down(int(window.Key.mod_ctrl))
+        hand.drag("key 12", 20, 36)
+        hand.robot.key_up(int(window.Key.mod_ctrl))
+
+    copied = play(copy)
+    assert frames_of(copied) == (0, 12, 24, 36, 48)
+    assert copied.keys[3].pose is first.keys[1].pose
+    assert project.chosen == {36}
+    deleted = play(lambda hand: hand.robot.key_press(int(window.Key.delete)))
+    assert frames_of(deleted) == FRAMES
+    assert undo_all(window) == 2
+    assert project.document is first
+
+
+def test_menu_of_a_key_begins_with_delete(window, play):
+    def delete(hand):
+        hand.click("key 24", 1)
+        hand.robot.item_click("//$FOCUSED/###Delete")
+
+    assert frames_of(play(delete)) == (0, 12, 48)
+    assert undo_all(window) == 1
+
+
+def test_double_click_inserts_a_key(window, project, play):
+    def insert(hand):
+        hand.go_to(55)
+        hand.robot.mouse_double_click(0)
+
+    first = project.document
+    assert frames_of(play(insert)) == (*FRAMES, 55)
+    assert undo_all(window) == 1
+    playback.seek(window.session, 6)
+    inserted = play(lambda hand: hand.robot.key_press(int(window.Key.i)))
+    assert frames_of(inserted) == (0, 6, 12, 24, 48)
+    assert undo_all(window) == 1
+    assert project.document is first
+
+
+def test_easing_is_chosen_and_drawn_by_hand(window, project, play):
+    first = project.document
+    seen = []
+
+    def choose(hand):
+        hand.click("interval 12")
+        hand.robot.item_click("//$FOCUSED/in-out")
+        seen.append([key.easing for key in project.document.keys])
+        hand.robot.item_drag_with_delta("//$FOCUSED/control 1", ImVec2(30, -400))
+
+    curve = play(choose).keys[1].easing.curve
+    assert seen == [[LINEAR, PRESETS["in-out"], LINEAR, LINEAR]]
+    assert curve[0] == pytest.approx(0.42 + 30 / 150, abs=0.05)
+    assert curve[1:] == (1.0, *PRESETS["in-out"].curve[2:])
+    assert undo_all(window) == 2
+    assert project.document is first
+
+
+def test_easing_of_all_chosen_keys_is_changed_together(window, play):
+    editing.choose_keys(window.session, frozenset({0, 24}))
+
+    def choose(hand):
+        hand.click("interval 24")
+        hand.robot.item_click("//$FOCUSED/hold")
+
+    easings = [key.easing for key in play(choose).keys]
+    assert easings == [HOLD, LINEAR, HOLD, LINEAR]
+    assert undo_all(window) == 1
+
+
+def test_playhead_is_dragged_and_stops_at_the_ends(window, project, play):
+    play(lambda hand: hand.drag("playhead", 7.2))
+    assert playback.current_frame(window.session, project) == 7
+    play(lambda hand: hand.drag("playhead", 63))
+    assert playback.current_frame(window.session, project) == 60
+    play(lambda hand: hand.drag("playhead", -3))
+    assert playback.current_frame(window.session, project) == 0
+
+    def press(hand):
+        hand.go_to(33, hand.place("ruler").y)
+        hand.robot.mouse_down(0)
+        hand.robot.mouse_up(0)
+
+    play(press)
+    assert playback.current_frame(window.session, project) == 33
+    assert project.history.undo_label is None
+
+
+def test_work_range_and_end_are_dragged(window, project, play):
+    first = project.document
+    assert play(lambda hand: hand.drag("work start", 5, 10)).work == FrameRange(10, 60)
+    assert play(lambda hand: hand.drag("work end", 5, 40)).work == FrameRange(10, 40)
+    assert play(lambda hand: hand.drag("work range", 90)).work == FrameRange(30, 60)
+    assert play(lambda hand: hand.drag("animation end", 40, 54)).frames == FrameRange(0, 54)
+    assert project.document.work == FrameRange(30, 54)
+    assert play(lambda hand: hand.drag("animation end", 10)).frames == FrameRange(0, 48)
+    play(lambda hand: hand.robot.item_double_click("**/work start"))
+    assert project.document.work is None
+    assert undo_all(window) == 6
+    assert project.document is first
+
+
+def test_menu_reverses_and_scales(window, project, play):
+    first = project.document
+    poses = [key.pose for key in first.keys]
+
+    def choose(path):
+        def through(hand):
+            hand.click("###more")
+            hand.robot.set_ref("//$FOCUSED")
+            hand.robot.menu_click(path)
+
+        return play(through)
+
+    backwards = choose("###Reverse")
+    assert frames_of(backwards) == (0, 24, 36, 48)
+    assert [key.pose for key in backwards.keys] == poses[::-1]
+    assert choose("Make last key equal first").keys[-1].pose is poses[-1]
+    assert frames_of(choose("###Scale time/Half as long")) == (0, 12, 18, 24)
+    editing.choose_keys(window.session, frozenset({18, 24}))
+    assert frames_of(choose("###Scale time/Twice as long")) == (0, 12, 18, 30)
+    assert project.chosen == {18, 30}
+    undo_all(window)
+    assert project.document is first
+
+
+def test_a_drag_goes_to_where_the_button_is_let_go(window, project, play):
+    places = {}
+    play(lambda hand: places.update(key=hand.place("key 24"), x=hand.x(30)))
+    io = imgui.get_io()
+    io.add_mouse_pos_event(*places["key"])
+    window.frames(3)
+    io.add_mouse_button_event(0, down=True)
+    window.frames(2)
+    # All of the way, and the end of it, before the next frame.
+    io.add_mouse_pos_event(places["x"], places["key"].y)
+    io.add_mouse_button_event(0, down=False)
+    window.frames(4)
+    assert frames_of(project.document) == (0, 12, 30, 48)
+    assert project.history.undo_label == "Move keys"
+
+
+def test_a_strip_that_is_scrolled_by_a_drag_stays_so(window, project, play):
+    timeline_pointing.look_at(window.session, Strip(0.0, 1.5))
+    window.frames(2)
+
+    def drag_beyond_the_edge(hand):
+        hand.press("key 0")
+        edge = hand.robot.item_info("**/key 0").rect_full.get_center()
+        hand.robot.mouse_move_to_pos(ImVec2(1275, edge.y))
+        for _ in range(10):
+            hand.robot.yield_()
+        assert project.timing.held.start > 0
+        hand.robot.mouse_up(0)
+
+    play(drag_beyond_the_edge)
+    assert project.timing.strip.start > 0
+
+
+def test_wheel_zooms_at_the_pointer_and_scrolls(window, project, play):
+    def zoom(hand):
+        hand.go_to(24)
+        hand.robot.key_down(int(window.Key.mod_ctrl))
+        for _ in range(6):
+            hand.robot.mouse_wheel_y(1.0)
+        hand.robot.key_up(int(window.Key.mod_ctrl))
+        assert hand.place("key 24").x == pytest.approx(hand.x(24), abs=3.0)
+
+    play(zoom)
+    zoomed = project.timing.strip
+    assert zoomed is not None
+    window.run(lambda robot: robot.mouse_wheel_y(-1.0))
+    assert project.timing.strip.start > zoomed.start
+    assert project.timing.strip.scale == zoomed.scale
+    timeline_pointing.fit(window.session)
+    assert project.timing.strip is None
+
+
+def test_timeline_follows_the_playhead_while_playing(window, project):
+    timeline_pointing.look_at(window.session, Strip(0.0, 4.0))
+    window.frames(2)
+    assert project.timing.strip.start == 0.0
+    playback.toggle_play(window.session)
+    playback.set_speed(window.session, 2.0)
+    window.frames(45)
+    frame = playback.current_frame(window.session, project)
+    assert frame > 30
+    assert project.timing.strip.start > 10
+    playback.halt(window.session)
+
+
+def test_speed_is_changed_while_playing(window, project):
+    playback.toggle_play(window.session)
+    window.frames(30)
+    before = playback.current_frame(window.session, project)
+    keys.set_fps(window.session, 60.0)
+    assert playback.current_frame(window.session, project) == before
+    playback.halt(window.session)
+
+
+@given(
+    st.sets(st.integers(0, 30), min_size=1, max_size=8),
+    st.integers(0, 255),
+    st.integers(-40, 40),
+    st.booleans(),
+)
+def test_keys_go_to_the_nearest_place_that_is_free(frames, subset, wanted, copies):
+    document = disc_document()
+    poses = [replace(document.keys[0], frame=frame) for frame in sorted(frames)]
+    document = replace(document, keys=tuple(poses), frames=FrameRange(0, 100))
+    dragged = frozenset(f for i, f in enumerate(sorted(frames)) if subset >> i & 1) or frozenset(
+        {min(frames)}
+    )
+
+    def is_possible(by):
+        there = {frame + by for frame in dragged}
+        return by == 0 or (min(there) >= 0 and not there & (frames if copies else frames - dragged))
+
+    by = timeline_pointing.shift_of(document, dragged, wanted, copies=copies)
+    assert is_possible(by)
+    nearest = max(wanted, -min(dragged))
+    assert not any(is_possible(o) for o in range(-40, 120) if abs(o - nearest) < abs(by - nearest))
+
+
+def test_keys_that_fall_short_are_known(project):
+    lags = [project.timing.reach.lags[key.pose] for key in project.document.keys]
+    assert [set(lag) for lag in lags] == [set(), set(), {1}, set()]
+
+
+def test_last_frame_and_speed_are_typed(window, project, play):
+    play(lambda hand: hand.robot.item_input_value("##last", 90))
+    assert project.document.frames == FrameRange(0, 90)
+    play(lambda hand: hand.robot.item_input_value("##fps", 12))
+    assert project.document.fps == 12
+    assert undo_all(window) == 2

@@ -1,0 +1,104 @@
+"""What goes wrong is told in words, and the window lives on."""
+
+import errno
+
+import pytest
+
+from app.editor.actions import exporting, files, saving
+from app.storage.assets import sample_images
+from app.storage.autosave import find_leftovers, write_autosave
+from app.ui.timeline import timeline
+
+
+@pytest.fixture
+def project(window):
+    return window.open(sample_images() / "bar.png")
+
+
+def texts(window):
+    return [toast.text for toast in window.session.toasts]
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "reason"),
+    [
+        ("torn.png", b"\x89PNG\r\n\x1a\n and no more", "not a picture"),
+        ("torn.lissom", b"PK no zip at all", "not a Lissom project"),
+        ("missing.png", None, "cannot read"),
+    ],
+)
+def test_a_file_that_cannot_be_opened_says_why(window, tmp_path, name, content, reason):
+    path = tmp_path / name
+    if content is not None:
+        path.write_bytes(content)
+    files.open_file(window.session, path)
+    window.settle()
+    assert window.session.project is None
+    (text,) = texts(window)
+    assert name in text
+    assert reason in text
+
+
+def test_a_full_disk_loses_nothing(window, project, tmp_path, monkeypatch):
+    path = tmp_path / "kept.lissom"
+    saving.write(window.session, path, None)
+    window.settle()
+    before = path.read_bytes()
+
+    def full(*_):
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr("app.storage.files.os.fsync", full)
+    saving.write(window.session, path, None)
+    window.settle()
+    assert any("No space left" in text for text in texts(window))
+    assert path.read_bytes() == before
+    assert list(tmp_path.iterdir()) == [path]
+    assert window.session.project is project
+
+
+@pytest.mark.usefixtures("project")
+def test_an_export_that_cannot_begin_says_why(window, tmp_path):
+    out = tmp_path / "file"
+    out.write_bytes(b"")
+    window.act(exporting.start, out)
+    window.settle()
+    assert window.session.export is None
+    assert any("it is a file" in text for text in texts(window))
+
+
+@pytest.mark.usefixtures("project")
+def test_a_panel_that_raises_is_told_and_the_rest_lives_on(window, monkeypatch, capfd):
+    def broken(*_):
+        raise ZeroDivisionError("a bug")
+
+    monkeypatch.setattr(timeline, "draw_bar", broken)
+    window.frames(3)
+    (toast,) = window.session.toasts
+    assert "Timeline" in toast.text
+    assert "a bug" in toast.details
+    window.session.toasts = []
+    monkeypatch.undo()
+    window.frames(3)
+    assert window.session.toasts == []
+    capfd.readouterr()
+
+
+def test_unsaved_work_comes_back_after_a_crash(window, project):
+    write_autosave(window.folder, project.document)
+    (kept,) = window.folder.glob("unsaved-*.lissom")
+    assert find_leftovers(window.folder) == []  # this very process is running
+    orphan = kept.with_name("unsaved-99999999.lissom")
+    kept.rename(orphan)
+    assert find_leftovers(window.folder) == [orphan]
+    window.session.project = None
+    files.offer_recovery(window.session)
+    window.frames(3)
+    assert window.session.dialog is not None
+    window.session.dialog = None
+    files.recover(window.session, orphan)
+    window.settle()
+    recovered = window.session.project
+    assert recovered is not None
+    assert not recovered.history.is_saved
+    assert not orphan.exists()

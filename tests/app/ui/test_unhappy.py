@@ -1,0 +1,569 @@
+"""Hands that do two things at once, work that fails, and windows that are too small."""
+
+import threading
+from contextlib import contextmanager
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from imgui_bundle import ImVec2, imgui
+
+from app.document import handle_commands, key_commands
+from app.document.keyframe import Target
+from app.document.settings import FrameRange, Meshing
+from app.editor.actions import (
+    editing,
+    exporting,
+    files,
+    keys,
+    playback,
+    posing,
+    rebuilding,
+    saving,
+    timeline_pointing,
+    viewing,
+)
+from app.editor.timeline_view import KeyBox
+from app.storage.assets import sample_images
+from app.storage.autosave import SECONDS
+from app.ui.viewport import canvas
+from engine.maps.bounds import Bounds
+
+BAR = sample_images() / "bar.png"
+TABS = ("Handle", "Deform", "Distortion", "Domain", "Export")
+
+
+@contextmanager
+def held_up(monkeypatch, where):
+    """Let the worker wait where it calls a function, until the block ends."""
+    module, name = where.rsplit(".", 1)
+    gate, real = threading.Event(), getattr(__import__(module, fromlist=[name]), name)
+
+    def waits(*arguments, **options):
+        gate.wait(10)
+        return real(*arguments, **options)
+
+    with monkeypatch.context() as patch:
+        patch.setattr(where, waits)
+        try:
+            yield
+        finally:
+            gate.set()
+
+
+def place_of(project, identity):
+    shown = project.shown
+    index = [handle.id for handle in shown.document.handles].index(identity)
+    return complex(shown.handle_places[index])
+
+
+def undo_all(window):
+    while window.session.project.history.undo_label is not None:
+        window.act(editing.undo)
+
+
+def details(window):
+    return [toast.details for toast in window.session.toasts if toast.details]
+
+
+def frames_of(project):
+    return [key.frame for key in project.document.keys]
+
+
+def press(robot, *chord):
+    robot.key_press(sum(int(key) for key in chord))
+
+
+# Two things at once.
+
+
+def test_undo_during_a_drag(window, bent):
+    first = bent.document
+    start = place_of(bent, 1)
+
+    def play(robot):
+        robot.mouse_move_to_pos(window.point(start))
+        robot.mouse_down(0)
+        robot.mouse_move_to_pos(window.point(start - 20j))
+        window.session.jobs.settle()
+        robot.yield_()
+        assert bent.document is not first
+        press(robot, window.Key.mod_ctrl, window.Key.z)
+        assert bent.document is first
+        robot.mouse_move_to_pos(window.point(start - 40j))
+        robot.mouse_up(0)
+
+    window.run(play)
+    window.settle()
+    assert frames_of(bent) == [0, 24]
+    assert bent.document is not first
+    editing.undo(window.session)
+    assert bent.document is first
+
+
+def test_undo_of_a_drag_that_is_not_to_be_seen_yet_takes_nothing_else_back(
+    window, bent, monkeypatch
+):
+    before = bent.document
+    with held_up(monkeypatch, "app.solving.drag.certify"):
+        posing.wish(window.session, {1: Target(position=900 + 50j)})
+        window.act(editing.undo)
+    window.settle()
+    assert bent.document is before
+    editing.undo(window.session)
+    assert frames_of(bent) == [0]
+
+
+def test_undo_takes_a_loose_pose_back_first(window, bent):
+    window.act(viewing.toggle_auto_key)
+    before = bent.document
+    posing.wish(window.session, {1: Target(position=place_of(bent, 1) - 80j)})
+    window.settle()
+    assert bent.loose is not None
+    window.run(lambda robot: press(robot, window.Key.mod_ctrl, window.Key.z))
+    assert bent.loose is None
+    assert bent.document is before
+
+
+def test_deleting_a_handle_while_it_is_dragged(window, bent):
+    start = place_of(bent, 1)
+
+    def play(robot):
+        robot.mouse_move_to_pos(window.point(start))
+        robot.mouse_down(0)
+        robot.mouse_move_to_pos(window.point(start - 20j))
+        press(robot, window.Key.delete)
+        robot.mouse_move_to_pos(window.point(start - 40j))
+        robot.mouse_up(0)
+
+    window.run(play)
+    window.settle()
+    assert [handle.id for handle in bent.document.handles] == [0]
+    assert bent.selected == frozenset()
+    assert bent.grab is None
+
+
+def test_deleting_a_key_while_it_is_dragged(window, bent):
+    def play(robot):
+        robot.set_ref("###Timeline")
+        robot.mouse_move("**/key 24")
+        at = robot.item_info("**/key 24").rect_full.get_center()
+        robot.mouse_down(0)
+        robot.mouse_move_to_pos(ImVec2(at.x + 60, at.y))
+        assert frames_of(bent) != [0, 24]
+        press(robot, window.Key.delete)
+        robot.mouse_move_to_pos(ImVec2(at.x + 90, at.y))
+        robot.mouse_up(0)
+
+    window.run(play)
+    window.settle()
+    assert frames_of(bent) == [0]
+    assert bent.chosen == frozenset()
+    assert bent.timing.gesture is None
+
+
+@pytest.mark.parametrize(
+    ("change", "frames"),
+    [
+        (editing.delete, [0]),
+        (lambda session: editing.edit(session, key_commands.move_keys({24}, 6)), [0, 30]),
+        (lambda session: keys.scale(session, 0.5), [0, 12]),
+    ],
+)
+def test_key_that_goes_while_the_solver_still_follows_does_not_come_back(
+    window, bent, change, frames
+):
+    editing.choose_keys(window.session, frozenset({24}))
+    posing.wish(window.session, {1: Target(position=place_of(bent, 1) - 150j)})
+    assert bent.grab is not None
+    change(window.session)
+    window.settle()
+    assert frames_of(bent) == frames
+
+
+def test_other_changes_leave_the_solver_at_work(window, bent):
+    posing.wish(window.session, {1: Target(position=place_of(bent, 1) - 150j)})
+    keys.set_fps(window.session, 12.0)
+    assert bent.grab is not None
+    window.settle()
+    assert bent.document.lags(bent.document.key(24).pose)[1] < 10
+
+
+def test_bounds_and_places_that_change_end_the_pull(window, bent):
+    for command in (
+        handle_commands.weigh_handle(1, 3.0),
+        handle_commands.move_handle(1, bent.document.handle(1).position - 30),
+    ):
+        posing.wish(window.session, {1: Target(position=place_of(bent, 1) - 20j)})
+        editing.edit(window.session, command)
+        assert bent.grab is None
+
+
+def test_playhead_that_goes_elsewhere_ends_the_pull(window, bent):
+    posing.wish(window.session, {1: Target(position=place_of(bent, 1) - 150j)})
+    playback.scrub(window.session, 24)
+    assert bent.grab is not None
+    playback.scrub(window.session, 7)
+    assert bent.grab is None
+    window.settle()
+    assert frames_of(bent) == [0, 24]
+
+
+def test_playhead_stays_in_the_animation_that_undo_makes_shorter(window, bent):
+    window.act(keys.set_last_frame, 100)
+    window.act(playback.seek, 90)
+    window.act(editing.undo)
+    assert playback.current_frame(window.session, bent) == bent.document.frames.last == 48
+    window.act(editing.redo)
+    assert playback.current_frame(window.session, bent) in bent.document.frames
+
+
+@pytest.mark.usefixtures("bent")
+def test_end_of_the_work_range_before_its_beginning_takes_that_along(window):
+    session = window.session
+    for frame, key, work in ((20, "b", (20, 48)), (10, "n", (10, 10)), (30, "b", (30, 30))):
+        playback.seek(session, frame)
+        window.run(lambda robot, key=key: press(robot, getattr(window.Key, key)))
+        assert session.project.document.work == FrameRange(*work)
+
+
+def test_only_what_is_there_is_selected(window, bent):
+    editing.select(window.session, frozenset({1, 7}))
+    assert bent.selected == {1}
+    timeline_pointing.begin(
+        window.session, KeyBox(start=0.0, keeps=frozenset({24, 31})), bent.timing.strip
+    )
+    timeline_pointing.move(window.session, 10.0)
+    assert bent.chosen == {0, 24}
+    timeline_pointing.cancel(window.session)
+    assert bent.chosen == {24}
+
+
+def test_loose_pose_stays_when_a_handle_is_deleted_by_its_key(window, bent):
+    window.act(viewing.toggle_auto_key)
+    posing.wish(window.session, {1: Target(position=place_of(bent, 1) - 80j)})
+    window.settle()
+    before = bent.shown.positions
+    editing.select(window.session, frozenset({0}))
+    window.run(lambda robot: press(robot, window.Key.delete))
+    window.settle()
+    assert [handle.id for handle in bent.document.handles] == [1]
+    assert bent.loose is not None
+    np.testing.assert_allclose(bent.shown.positions, before, rtol=0, atol=1e-9)
+
+
+def test_loose_pose_over_a_cage_that_is_rebuilt_is_given_up(window, bent):
+    session = window.session
+    window.act(viewing.toggle_auto_key)
+    posing.wish(session, {1: Target(position=place_of(bent, 1) - 80j)})
+    window.settle()
+    cage = bent.document.domain.cage
+    viewing.draft_meshing(session, Meshing(triangles=1_500, detail="fine"))
+    rebuilding.rebuild(session)
+    window.settle()
+    assert len(bent.document.domain.cage) != len(cage)
+    assert bent.loose is None
+    assert bent.meshing is None
+    assert bent.shown.is_current
+
+
+# The solver at its bounds.
+
+
+def test_handle_out_of_reach_is_told_and_freed_again(window, bent, monkeypatch):
+    session = window.session
+    undo_all(window)
+    editing.redo(session)
+    editing.redo(session)
+    playback.seek(session, 0)
+    rebuilding.choose_bounds(session, Bounds(k=0.3, sigma_a=1.3, sigma_b=0.8))
+    window.settle()
+    start = place_of(bent, 1)
+    far = start + 0.5 * bent.picture.size[0]
+
+    def pull(robot, end, steps=4):
+        robot.mouse_move_to_pos(window.point(place_of(bent, 1)))
+        robot.mouse_down(0)
+        for step in range(1, steps + 1):
+            robot.mouse_move_to_pos(window.point(start + (end - start) * step / steps))
+        robot.mouse_up(0)
+
+    viewing.look_from(session, replace(bent.view(session.screen), scale=0.3))
+    window.frames(2)
+    window.run(lambda robot: pull(robot, far))
+    window.settle()
+    pose = bent.document.key(0).pose
+    assert pose.certificate.certified
+    assert bent.document.bounds.allow(
+        k=pose.certificate.k, sigma_a=pose.certificate.sigma_a, sigma_b=pose.certificate.sigma_b
+    )
+    np.testing.assert_allclose(pose.targets[1].position, far, rtol=0, atol=10)
+    assert bent.shown.lags[1] > 100
+
+    wishes, written = [], []
+    mark, text = canvas.mark_handles, imgui.text_colored
+
+    def marked(marks, **options):
+        wishes.extend(mark.wish for mark in marks)
+        return mark(marks, **options)
+
+    def told(colour, words):
+        written.append(words)
+        text(colour, words)
+
+    with monkeypatch.context() as patch:
+        patch.setattr(canvas, "mark_handles", marked)
+        patch.setattr(imgui, "text_colored", told)
+        window.show_tab("Handle")
+        editing.select(session, frozenset())
+        window.frames(2)
+        editing.select(session, frozenset({1}))
+        window.frames(3)
+    assert wishes[-1] == pose.targets[1].position
+    assert any("held back by the bounds" in words for words in written)
+
+    window.run(lambda robot: pull(robot, start))
+    window.settle()
+    assert bent.shown.lags[1] < 5
+    assert bent.document.key(0).pose.certificate.certified
+
+
+def test_bound_that_bounds_nothing_is_refused_in_words(window, bent):
+    window.show_tab("Deform")
+    before = bent.document
+
+    def enter(robot):
+        robot.set_ref("//Deform")
+        robot.item_input_value("**/##bound k", -3.0)
+
+    window.run(enter)
+    window.settle()
+    assert bent.document is before
+    (toast,) = window.session.toasts
+    assert "between 0 and 1" in toast.text
+    assert toast.details == ""
+
+
+# Work that takes long, or fails.
+
+
+def test_scrubbing_while_the_worker_builds(window, bent, monkeypatch):
+    with held_up(monkeypatch, "app.editor.actions.upkeep.prepare_motion"):
+        keys.set_variant(window.session, "nu")
+        for frame in (3, 17, 9, 24, 0, 12):
+            window.act(playback.scrub, frame)
+            window.frames(2)
+            assert playback.current_frame(window.session, bent) == frame
+            assert bent.shown is not None
+        assert not bent.shown.is_current
+    window.settle()
+    assert bent.shown.is_current
+    assert bent.shown.frame == 12
+
+
+def test_poses_that_follow_each_other_twice_are_prepared_once(window, bent):
+    keys.set_variant(window.session, "nu")
+    editing.edit(window.session, key_commands.copy_keys({0, 24}, 48))
+    window.settle()
+    assert frames_of(bent) == [0, 24, 48, 72]
+    # None of it is known of this one, and at first only roughly.
+    keys.set_variant(window.session, "metric")
+    for _ in range(20):
+        window.frames()
+        window.session.jobs.settle()
+    assert bent.sketch.knows(bent.document)
+    assert len(bent.sketch.pieces) == 2
+
+
+FAILURES = {
+    "In-betweens": (
+        "app.editor.actions.upkeep.prepare_motion",
+        lambda session: keys.set_variant(session, "nu"),
+    ),
+    "Measuring": (
+        "app.editor.actions.measuring.measure_curves",
+        lambda session: keys.set_variant(session, "nu"),
+    ),
+    "Measuring the motion": (
+        "app.editor.actions.exporting.measure_reach",
+        lambda session: keys.set_variant(session, "nu"),
+    ),
+    "Solving the keys": ("app.editor.actions.rebuilding.go_on", rebuilding.solve_again),
+    "Rebuilding": (
+        "app.solving.renewal.build_domain",
+        lambda session: (
+            viewing.draft_meshing(session, Meshing(triangles=1_500, detail="normal")),
+            rebuilding.rebuild(session),
+        ),
+    ),
+    "Posing": (
+        "app.solving.drag.certify",
+        lambda session: posing.wish(session, {1: Target(position=900 + 50j)}),
+    ),
+    "Inserting a key": (
+        "app.editor.actions.posing.pose_at",
+        lambda session: keys.insert_at(session, 12),
+    ),
+    "Saving": (
+        "app.editor.actions.saving.save_project",
+        lambda session: saving.write(session, session.folder / "bar.lissom", None),
+    ),
+    "Opening": ("app.editor.actions.files.open_picture", lambda session: files.load(session, BAR)),
+}
+
+
+@pytest.mark.parametrize("kind", FAILURES)
+def test_job_that_raises_is_told_once_and_the_window_lives_on(
+    window, bent, monkeypatch, request, kind
+):
+    where, begin = FAILURES[kind]
+    asked = []
+
+    def broken(*_, **__):
+        asked.append(kind)
+        raise ZeroDivisionError("a bug")
+
+    if kind == "Measuring the motion":
+        # It asks in every frame.
+        window.show_tab("Export")
+        window.settle()
+        request.addfinalizer(lambda: window.show_tab("Handle"))
+    with monkeypatch.context() as patch:
+        patch.setattr(where, broken)
+        begin(window.session)
+        window.settle()
+        window.frames(20)
+    (text,) = details(window)
+    assert "a bug" in text
+    assert asked == [kind]
+    window.session.toasts = []
+    undo_all(window)
+    assert frames_of(bent) == [0]
+    assert bent.document.handles == ()
+    playback.seek(window.session, 5)
+    posing.add_handle(window.session, complex(*bent.picture.size) / 2)
+    window.settle()
+    assert bent.shown.is_current
+    assert bent.renewal is None
+
+
+WAITING = {
+    "In-betweens": (
+        "app.editor.actions.upkeep.prepare_motion",
+        lambda session: keys.set_variant(session, "nu"),
+    ),
+    "Measuring the motion": (
+        "app.editor.actions.exporting.measure_reach",
+        exporting.keep_reach,
+    ),
+    "Solving the keys": ("app.editor.actions.rebuilding.go_on", rebuilding.solve_again),
+    "Posing": (
+        "app.solving.drag.certify",
+        lambda session: posing.wish(session, {1: Target(position=900 + 50j)}),
+    ),
+    "Inserting a key": (
+        "app.editor.actions.posing.pose_at",
+        lambda session: keys.insert_at(session, 12),
+    ),
+}
+
+
+@pytest.mark.parametrize("kind", WAITING)
+def test_results_for_a_closed_project_go_nowhere(window, bent, monkeypatch, kind):
+    where, begin = WAITING[kind]
+    before = bent.document
+    with held_up(monkeypatch, where):
+        begin(window.session)
+        window.frames(2)
+        assert kind in window.session.jobs.kinds
+        closed = bent.document
+        saving.give_up(window.session)
+        files.load(window.session, sample_images() / "s.png")
+        window.frames(3)
+    window.settle()
+    other = window.session.project
+    assert other.name == "s"
+    assert len(other.document.keys) == 1
+    assert other.history.undo_label is None
+    assert other.reach is None or other.reach.source[0] is other.document.domain
+    assert (other.grab, other.renewal, other.loose) == (None, None, None)
+    assert other.shown.is_current
+    assert bent.document is closed
+    assert closed.handles == before.handles
+    assert [toast for toast in window.session.toasts if toast.tone == "error"] == []
+
+
+@pytest.mark.usefixtures("bent")
+def test_work_that_is_given_up_while_it_is_kept_does_not_come_back(window, monkeypatch):
+    with held_up(monkeypatch, "app.editor.actions.saving.write_autosave"):
+        window.clock.now += 2 * SECONDS
+        window.frames(2)
+        assert saving.AUTOSAVING in window.session.jobs.kinds
+        saving.give_up(window.session)
+        window.frames(2)
+    window.settle()
+    assert list(window.folder.glob("unsaved-*")) == []
+
+
+def test_saved_work_is_not_kept_as_unsaved(window, bent, tmp_path):
+    window.clock.now += 2 * SECONDS
+    window.settle()
+    assert len(list(window.folder.glob("unsaved-*"))) == 1
+    saving.write(window.session, tmp_path / "bar.lissom", None)
+    window.settle()
+    assert bent.history.is_saved
+    assert list(window.folder.glob("unsaved-*")) == []
+
+
+# Where the pointer is right, and windows in which little is.
+
+
+def test_click_in_the_plot_goes_to_its_frame(window, bent):
+    window.act(playback.seek, 0)
+    window.show_tab("Distortion")
+    window.settle()
+
+    def click(robot):
+        robot.set_ref("//Distortion")
+        box = robot.item_info("##over time k").rect_full
+        robot.mouse_move_to_pos(box.get_center())
+        robot.mouse_click(0)
+
+    window.run(click)
+    assert 8 <= playback.current_frame(window.session, bent) <= 16
+
+
+@pytest.fixture
+def sized(window):
+    yield window.resize
+    window.resize((1280, 800))
+
+
+SIZES = [((400, 300), 1.0), ((1280, 800), 3.0), ((400, 300), 3.0), ((60, 40), 1.0)]
+
+
+@pytest.mark.parametrize("size", SIZES)
+@pytest.mark.parametrize("kind", ["welcome", "empty", "one key", "two keys"])
+def test_every_panel_draws_in_every_window(window, sized, request, size, kind):
+    if kind == "two keys":
+        request.getfixturevalue("bent")
+    elif kind != "welcome":
+        window.open(BAR)
+        if kind == "one key":
+            posing.add_handle(window.session, 500 + 100j)
+            posing.wish(window.session, {0: Target(position=500 + 120j)})
+            window.settle()
+    sized(*size)
+    for tab in TABS:
+        window.show_tab(tab)
+        window.settle()
+        assert window.picture().size == size[0]
+    if window.session.project is not None:
+        window.act(viewing.show_heat_map, "sigma_b")
+        window.act(viewing.toggle, "onion")
+        window.act(playback.toggle_play)
+        window.frames(5)
+    window.act(viewing.show_shortcuts)
+    window.frames(3)
+    assert window.picture().size == size[0]
+    assert details(window) == []

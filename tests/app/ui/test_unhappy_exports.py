@@ -1,0 +1,195 @@
+"""Exports that are cancelled, fail midway, or outlive their project."""
+
+import errno
+import os
+
+import pytest
+from PIL import Image
+
+from app.document.settings import ExportSettings
+from app.editor.actions import exporting, files, keys, posing, saving
+from app.storage.assets import sample_images
+
+BAR = sample_images() / "bar.png"
+SIZE = (120, 40)
+FRAMES = 9
+
+
+@pytest.fixture
+def project(window, monkeypatch):
+    """A bar with a handle and nine frames, exported at one of them in each frame of the window."""
+    monkeypatch.setattr("app.ui.window.exporter.BUDGET", 0.0)
+    project = window.open(BAR)
+    posing.add_handle(window.session, complex(*project.picture.size) / 2)
+    keys.set_last_frame(window.session, FRAMES - 1)
+    exporting.set_export(window.session, ExportSettings(size=SIZE))
+    window.settle()
+    return project
+
+
+def begin(window, out, count=3):
+    """Start an export, and wait until some of its frames are drawn."""
+    session = window.session
+    window.act(exporting.start, out)
+    for _ in range(200):
+        if session.export is not None and session.export.done >= count:
+            return
+        session.jobs.settle()
+        window.frames()
+    pytest.fail(f"no export: {texts(window)}")
+
+
+def finish(window):
+    for _ in range(200):
+        if window.session.export is None:
+            break
+        window.frames()
+    window.settle()
+
+
+def texts(window):
+    return [toast.text for toast in window.session.toasts]
+
+
+def is_whole(path):
+    with Image.open(path) as picture:
+        picture.load()
+        return picture.size == SIZE
+
+
+def test_cancelled_frames_are_whole_and_the_next_export_works(window, project, tmp_path):
+    out = tmp_path / "frames"
+    begin(window, out)
+    window.act(exporting.cancel)
+    window.settle()
+    assert window.session.export is None
+    written = sorted(out.iterdir())
+    assert [path.name for path in written] == [f"frame_{i:04d}.png" for i in range(len(written))]
+    assert 0 < len(written) < FRAMES
+    assert all(map(is_whole, written))
+    assert any("cancelled" in text for text in texts(window))
+    before = project.document
+    posing.remove_handles(window.session, frozenset({0}))
+    assert project.document is not before
+    window.act(exporting.start, out)
+    window.settle()
+    finish(window)
+    written = sorted(out.iterdir())
+    assert len(written) == FRAMES
+    assert all(map(is_whole, written))
+
+
+@pytest.mark.usefixtures("project")
+@pytest.mark.parametrize("name", ["film.apng", "film.gif", "film.webp", "sheet.png"])
+def test_cancelled_file_is_not_there(window, tmp_path, name):
+    format_ = "spritesheet" if name == "sheet.png" else name.split(".")[1]
+    exporting.set_export(window.session, ExportSettings(format=format_, size=SIZE))
+    begin(window, tmp_path / name)
+    assert list(tmp_path.iterdir()) != []
+    window.act(exporting.cancel)
+    window.settle()
+    assert list(tmp_path.iterdir()) == []
+    window.act(exporting.start, tmp_path / name)
+    window.settle()
+    finish(window)
+    assert [path.name for path in tmp_path.iterdir()] == [name]
+
+
+def test_export_is_cancelled_while_it_is_prepared(window, project, tmp_path):
+    exporting.start(window.session, tmp_path / "frames")
+    exporting.cancel(window.session)
+    window.settle()
+    assert window.session.export is None
+    assert project.export_to is None
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_disk_that_gets_full_midway_ends_the_export(window, project, tmp_path, monkeypatch):
+    out = tmp_path / "frames"
+    sync, written = os.fsync, []
+
+    def full_after_three(file):
+        written.append(file)
+        if len(written) > 3:
+            raise OSError(errno.ENOSPC, "No space left on device")
+        sync(file)
+
+    with monkeypatch.context() as patch:
+        patch.setattr("app.storage.files.os.fsync", full_after_three)
+        begin(window, out, count=1)
+        finish(window)
+    (text,) = (text for text in texts(window) if "export" in text)
+    assert "No space left" in text
+    assert len(written) < FRAMES
+    left = list(out.iterdir())
+    assert all(path.suffix == ".png" for path in left)
+    assert all(map(is_whole, left))
+    assert window.session.project is project
+    window.act(exporting.repeat)
+    window.settle()
+    finish(window)
+    assert len(list(out.iterdir())) == FRAMES
+
+
+@pytest.mark.usefixtures("project")
+def test_frame_that_cannot_be_drawn_ends_the_export(window, tmp_path, monkeypatch):
+    def broken(*_, **__):
+        raise ZeroDivisionError("a bug")
+
+    with monkeypatch.context() as patch:
+        patch.setattr("app.export.png.encode_png", broken)
+        window.act(exporting.start, tmp_path / "frames")
+        window.settle()
+        finish(window)
+    (toast,) = (toast for toast in window.session.toasts if toast.details)
+    assert "a bug" in toast.details
+    window.session.toasts = []
+    assert window.session.export is None
+    assert list((tmp_path / "frames").iterdir()) == []
+    window.act(exporting.repeat)
+    window.settle()
+    finish(window)
+    assert len(list((tmp_path / "frames").iterdir())) == FRAMES
+
+
+@pytest.mark.usefixtures("project")
+def test_export_goes_on_when_another_project_is_opened(window, tmp_path):
+    out = tmp_path / "frames"
+    begin(window, out)
+    saving.give_up(window.session)
+    window.frames(2)
+    files.load(window.session, sample_images() / "s.png")
+    window.settle()
+    other = window.session.project
+    assert other.name == "s"
+    finish(window)
+    assert len(list(out.iterdir())) == FRAMES
+    assert all(map(is_whole, out.iterdir()))
+    assert other.export_to is None
+    assert other.document.export == ExportSettings()
+    assert any("Exported 9 frames" in text for text in texts(window))
+
+
+@pytest.mark.usefixtures("project")
+def test_second_export_waits_for_the_first(window, tmp_path):
+    begin(window, tmp_path / "first")
+    window.act(exporting.start, tmp_path / "second")
+    window.settle()
+    finish(window)
+    assert [path.name for path in tmp_path.iterdir()] == ["first"]
+
+
+def test_picture_may_go_once_it_is_open(window, tmp_path):
+    picture = tmp_path / "gone.png"
+    picture.write_bytes(BAR.read_bytes())
+    window.open(picture)
+    picture.unlink()
+    path = tmp_path / "kept.lissom"
+    saving.write(window.session, path, None)
+    keys.set_last_frame(window.session, 2)
+    window.act(exporting.start, tmp_path / "frames")
+    window.settle()
+    finish(window)
+    assert len(list((tmp_path / "frames").iterdir())) == 3
+    reopened = window.open(path)
+    assert reopened.document.picture.data == BAR.read_bytes()

@@ -1,0 +1,482 @@
+"""Drags: what they reach, and what they must never do."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from deform_shapes import (
+    BAR_POINTS,
+    STAR_POINTS,
+    assert_sound,
+    bar,
+    bar_boundary,
+    dense_outline,
+    extremes,
+    star,
+    star_boundary,
+)
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from numpy.testing import assert_allclose, assert_array_equal
+
+from app.storage.assets import sample_images
+from app.storage.picture import decode_picture
+from engine.deform import Deformer, Handles, Status
+from engine.deform.certified_step import add_samples
+from engine.domain.build import build_domain
+from engine.domain.outline.cage import offset_cage
+from engine.errors import EngineError
+from engine.maps import Boundary, Bounds
+from engine.maps.harmonic_map import HarmonicMap
+
+BOUNDS = Bounds()
+BENT = BAR_POINTS + np.array([0, 0.3j, 0])
+ARCHED = BAR_POINTS + np.array([0, 1j, 0])
+
+
+def dragged(deformer, targets, steps, state=None):
+    state = deformer.start() if state is None else state
+    wish = deformer.handles.wish(targets)
+    for _ in range(steps):
+        state = deformer.step(state, wish)
+    return state
+
+
+@pytest.mark.parametrize("turn", [0.0, 0.7, 3.0])
+def test_similarities_are_met_exactly(turn):
+    deformer = star()
+    targets = np.exp(1j * turn) * STAR_POINTS + 3 - 1j
+    state, _ = deformer.settle(deformer.start(), deformer.handles.wish(targets))
+    assert state.status is Status.CONVERGED
+    assert_allclose(deformer.positions(state), targets, rtol=0, atol=1e-5)
+    assert_allclose(state.certificate.sigma_a, 1, atol=1e-3)
+    assert_allclose(state.certificate.sigma_b, 1, atol=1e-3)
+    assert_allclose(deformer.rotations(state), turn, atol=1e-3)
+
+
+@pytest.mark.parametrize("affine", [(1.3, 0.0), (1.25 * np.exp(0.5j), 0.3), (0.9, -0.2j)])
+def test_affine_targets_are_met_when_allowed(affine):
+    deformer = star()
+    a, b = affine
+    targets = a * STAR_POINTS + b * STAR_POINTS.conj()
+    state, _ = deformer.settle(deformer.start(), deformer.handles.wish(targets))
+    assert state.status is Status.CONVERGED
+    # λ is large but finite: the handles give way a little to the energy.
+    assert_allclose(deformer.positions(state), targets, rtol=0, atol=2e-3 * deformer.boundary.size)
+    from_affine = deformer.start(
+        HarmonicMap(
+            cage=deformer.boundary.cage,
+            phi=a * deformer.boundary.cage,
+            psi=np.conj(b) * deformer.boundary.cage,
+        )
+    )
+    back, _ = deformer.settle(from_affine, deformer.handles.wish(targets))
+    assert_allclose(deformer.positions(back), deformer.positions(state), atol=1e-4)
+
+
+def test_affine_targets_that_the_bounds_forbid_end_at_the_bounds():
+    bounds = Bounds(k=0.2, sigma_a=1.5, sigma_b=0.6)
+    deformer = bar(bounds)
+    state, _ = deformer.settle(deformer.start(), deformer.handles.wish(2 * BAR_POINTS))
+    assert state.status is Status.BOUNDS_REACHED
+    assert_sound(state, bounds)
+    assert state.certificate.sigma_a > 1.45
+
+
+@pytest.mark.parametrize(
+    ("factor", "shift"), [(np.exp(0.8j), 0), (1, 50 - 20j), (1e-3, 0), (200j, 1e4)]
+)
+def test_drags_are_equivariant(factor, shift):
+    targets = STAR_POINTS + np.array([0, 0.3j, 0.1, -0.2j, 0.2 - 0.1j, 0])
+    deformer = star()
+    here = dragged(deformer, targets, 6)
+    boundary = Boundary.sample(
+        factor * deformer.boundary.outline + shift, factor * deformer.boundary.cage + shift
+    )
+    there_deformer = Deformer(
+        boundary=boundary,
+        handles=Handles.place(boundary, factor * STAR_POINTS + shift),
+        bounds=BOUNDS,
+    )
+    there = dragged(there_deformer, factor * targets + shift, 6)
+    points = 0.8 * deformer.boundary.outline
+    # Rotated boxes have other diagonals: L enters the stiffness, the samples and the leash.
+    tolerance = 1e-6 if abs(np.angle(factor**2)) in (0, np.pi) else 0.06
+    assert_allclose(
+        (there.map(factor * points + shift) - shift) / factor,
+        here.map(points),
+        rtol=0,
+        atol=tolerance,
+    )
+
+
+def test_a_recorded_drag_is_repeated_bit_for_bit():
+    rng = np.random.default_rng(4)
+    path = STAR_POINTS + 0.3 * (rng.normal(size=(15, 6)) + 1j * rng.normal(size=(15, 6)))
+
+    def run():
+        deformer = star()
+        state = deformer.start()
+        for row in path:
+            state, _ = deformer.follow(state, deformer.handles.wish(row))
+        return state
+
+    first, second = run(), run()
+    assert_array_equal(first.map.phi, second.map.phi)
+    assert_array_equal(first.map.psi, second.map.psi)
+    assert first.certificate == second.certificate
+
+
+WILD = {
+    "three times as far": lambda rng: 3 * STAR_POINTS * np.exp(1j * rng.normal()) + 1,
+    "swapped": lambda rng: STAR_POINTS[rng.permutation(6)],
+    "collapsed": lambda _: np.full(6, 0.1 + 0.2j),
+    "outside": lambda rng: STAR_POINTS + 10 * np.exp(2j * np.pi * rng.random(6)),
+}
+
+
+@pytest.mark.parametrize("name", WILD)
+def test_wild_requests_stay_certified_and_the_shape_comes_back(name):
+    deformer = star()
+    state = deformer.start()
+    wish = deformer.handles.wish(WILD[name](np.random.default_rng(1)))
+    lengths = []
+    for step in range(40):
+        state = deformer.step(state, wish)
+        lengths.append(state.statistics.length)
+        assert state.certificate.certified
+        assert np.isfinite(state.map.phi).all()
+        if step % 13 == 0:
+            assert_sound(state, BOUNDS)
+    assert state.status in (Status.LAGGING, Status.BOUNDS_REACHED)
+    assert state.statistics.handle_error > 0.01
+    assert np.mean(lengths) > 0.1
+    state, _ = deformer.settle(state, deformer.handles.wish(STAR_POINTS))
+    assert state.status is Status.CONVERGED
+    assert_allclose(deformer.positions(state), STAR_POINTS, rtol=0, atol=1e-5)
+    assert_allclose(state.map(0.9 * STAR_POINTS), 0.9 * STAR_POINTS, atol=1e-4)
+
+
+def test_sixty_random_jerks():
+    deformer = star()
+    rng = np.random.default_rng(11)
+    state = deformer.start()
+    for jerk in range(60):
+        targets = STAR_POINTS + 0.8 * (rng.normal(size=6) + 1j * rng.normal(size=6))
+        state = dragged(deformer, targets, 2, state)
+        assert state.certificate.certified
+        if jerk % 10 == 9:
+            assert_sound(state, BOUNDS)
+    state, _ = deformer.settle(state, deformer.handles.wish(STAR_POINTS))
+    assert state.status is Status.CONVERGED
+    assert_allclose(deformer.positions(state), STAR_POINTS, rtol=0, atol=1e-5)
+
+
+@settings(max_examples=8)
+@given(
+    st.integers(0, 10**6),
+    st.floats(0.02, 3.0),
+    st.sampled_from(
+        [BOUNDS, Bounds(k=0.3, sigma_a=2.0, sigma_b=0.5), Bounds(k=0.1, sigma_a=1.2, sigma_b=0.8)]
+    ),
+)
+def test_any_drag_keeps_the_certificate(seed, size, bounds):
+    rng = np.random.default_rng(seed)
+    deformer = star(bounds)
+    state = deformer.start()
+    for _ in range(6):
+        targets = STAR_POINTS + size * (rng.normal(size=6) + 1j * rng.normal(size=6))
+        state = dragged(deformer, targets, 3, state)
+        assert state.certificate.certified
+    assert_sound(state, bounds)
+
+
+def test_bounds_that_are_active_are_used_up():
+    bounds = Bounds(k=0.15, sigma_a=1.6, sigma_b=0.7)
+    deformer = bar(bounds)
+    targets = ARCHED
+    state, _ = deformer.settle(deformer.start(), deformer.handles.wish(targets))
+    assert_sound(state, bounds)
+    near = bounds.towards_identity(0.01)
+    certificate = state.certificate
+    assert not near.allow(k=certificate.k, sigma_a=certificate.sigma_a, sigma_b=certificate.sigma_b)
+    loose = bar()
+    free, _ = loose.settle(loose.start(), loose.handles.wish(targets))
+    # The bounds cost energy or accuracy, never less than nothing.
+    assert free.statistics.handle_error <= state.statistics.handle_error
+
+
+def test_a_new_handle_moves_nothing():
+    deformer = bar()
+    state, _ = deformer.settle(deformer.start(), deformer.handles.wish(BENT))
+    more = Deformer(
+        boundary=deformer.boundary,
+        handles=Handles.place(deformer.boundary, [*BAR_POINTS, 1 + 0.2j]),
+        bounds=deformer.bounds,
+    )
+    held = np.append(BENT, more.positions(state)[-1])
+    before = state.map(deformer.boundary.outline)
+    for _ in range(5):
+        state = more.step(state, more.handles.wish(held))
+        assert_allclose(state.map(deformer.boundary.outline), before, atol=2e-3)
+    # Fewer handles go on from the same map too, without a jump.
+    fewer = Deformer(
+        boundary=deformer.boundary,
+        handles=Handles.place(deformer.boundary, BAR_POINTS[:2]),
+        bounds=deformer.bounds,
+    )
+    before = state.map(deformer.boundary.outline)
+    state = fewer.step(state, fewer.handles.wish(held[:2]))
+    assert np.abs(state.map(deformer.boundary.outline) - before).max() < 0.22
+    assert state.certificate.certified
+
+
+def test_without_handles_the_pose_stays():
+    deformer = bar()
+    state = dragged(deformer, BENT, 5)
+    none = Deformer(
+        boundary=deformer.boundary,
+        handles=Handles.place(deformer.boundary, []),
+        bounds=deformer.bounds,
+    )
+    after = none.step(state, none.handles.wish([]))
+    assert after.map is state.map
+    assert after.status is Status.CONVERGED
+
+
+def test_one_handle_carries_the_shape_without_turning_it():
+    boundary = bar_boundary()
+    deformer = Deformer(boundary=boundary, handles=Handles.place(boundary, [0.5]), bounds=BOUNDS)
+    state, _ = deformer.settle(deformer.start(), deformer.handles.wish([3 + 2j]))
+    assert_allclose(state.map(boundary.outline), boundary.outline + 2.5 + 2j, atol=1e-3)
+
+
+def test_tightened_bounds_are_walked_into_through_certified_maps():
+    deformer = bar()
+    wish = deformer.handles.wish(ARCHED)
+    state, _ = deformer.settle(deformer.start(), wish)
+    loose = state.certificate
+    tight = Bounds(k=0.5 * loose.k, sigma_a=1 + 0.6 * (loose.sigma_a - 1), sigma_b=0.6)
+    deformer = bar(tight)
+    before = deformer.start
+    with pytest.raises(EngineError, match="start map"):
+        before(state.map)
+    for steps in range(200):  # noqa: B007 - the count is asserted
+        at = deformer.positions(state)
+        state = deformer.step(state, wish)
+        assert np.abs(deformer.positions(state) - at).max() < 0.2
+        assert state.certificate.certified
+        assert state.certificate.k <= state.limits.k
+        if state.status is not Status.TIGHTENING:
+            break
+    assert 0 < steps < 150
+    state, _ = deformer.settle(state, wish)
+    assert_sound(state, tight)
+    resumed = deformer.resume(dragged(bar(), ARCHED, 60).map)
+    assert resumed.status is Status.TIGHTENING
+    assert resumed.certificate.certified
+    resumed, _ = deformer.settle(resumed, wish)
+    assert_sound(resumed, tight)
+    # Wider bounds let the handles go on.
+    wide = bar()
+    state, _ = wide.settle(state, wish)
+    assert state.status is Status.CONVERGED
+    assert state.certificate.k > tight.k
+
+
+def test_a_map_that_finds_no_way_into_its_bounds_says_so(monkeypatch):
+    deformer = bar()
+    wish = deformer.handles.wish(ARCHED)
+    state, _ = deformer.settle(deformer.start(), wish)
+    # Steps that go nowhere.
+    monkeypatch.setattr("engine.deform.certified_step.line_search", lambda *_: 0.0)
+    stuck, steps = bar(Bounds(k=0.05)).settle(state, wish)
+    assert stuck.status is Status.OUTSIDE
+    assert steps < 80
+    assert stuck.certificate.certified
+    assert stuck.map is state.map
+
+
+def test_rotations_are_met():
+    deformer = star()
+    angle = np.full(6, np.nan)
+    angle[1] = 0.8
+    wish = deformer.handles.wish(STAR_POINTS, angle)
+    state, _ = deformer.settle(deformer.start(), wish)
+    assert state.status is Status.CONVERGED
+    assert_sound(state, BOUNDS)
+    turned = deformer.rotations(state)
+    assert 0.6 < turned[1] < 0.81
+    assert abs(turned[3]) < 0.1
+    free, _ = deformer.settle(state, deformer.handles.wish(STAR_POINTS))
+    assert_allclose(deformer.rotations(free), 0, atol=1e-3)
+
+
+def test_heavier_handles_win():
+    boundary = bar_boundary()
+    targets = np.array([-1.8, 2.5, 1.8])
+    errors = []
+    for weights in ([1, 1, 1], [1, 30, 1]):
+        deformer = Deformer(
+            boundary=boundary,
+            handles=Handles.place(boundary, BAR_POINTS, weights),
+            bounds=Bounds(k=0.5, sigma_a=1.8, sigma_b=0.4),
+        )
+        state, _ = deformer.settle(deformer.start(), deformer.handles.wish(targets), at_most=150)
+        errors.append(abs(deformer.positions(state)[1] - targets[1]))
+    assert errors[1] < errors[0]
+
+
+@pytest.mark.parametrize(
+    ("points", "weights", "message"),
+    [
+        ([5.0], None, "Handle 0 .* outside"),
+        ([0.0, np.nan], None, "finite"),
+        ([0.0], [1, 2], "as many weights"),
+        ([0.0], [0.0], "must be positive"),
+        ([0.0], [np.nan], "must be positive"),
+    ],
+)
+def test_bad_handles_are_refused(points, weights, message):
+    with pytest.raises(EngineError, match=message):
+        Handles.place(star_boundary(), points, weights)
+
+
+@pytest.mark.parametrize(
+    ("targets", "rotations", "message"),
+    [
+        ([0.0], None, "as many targets"),
+        ([0.0, np.inf], None, "finite"),
+        ([0.0, 1.0], None, "same point"),
+        ([0.0, 0.0], [0.0], "angles"),
+        ([0.0, 0.0], [np.inf, 0.0], "angles"),
+    ],
+)
+def test_bad_wishes_are_refused(targets, rotations, message):
+    handles = Handles.place(star_boundary(), [0.1, 0.1])
+    with pytest.raises(EngineError, match=message):
+        handles.wish(targets, rotations)
+
+
+def test_handles_at_one_point_with_one_target_work():
+    boundary = bar_boundary()
+    deformer = Deformer(
+        boundary=boundary, handles=Handles.place(boundary, [0, 0, 1.5, -1.5]), bounds=BOUNDS
+    )
+    targets = np.array([0.1j, 0.1j, 1.5, -1.5])
+    state, _ = deformer.settle(deformer.start(), deformer.handles.wish(targets))
+    assert_allclose(deformer.positions(state)[:2], 0.1j, atol=1e-3)
+
+
+def test_a_sample_picture_is_dragged():
+    picture = decode_picture((sample_images() / "giraffe.png").read_bytes(), "")
+    domain, _ = build_domain(picture.rgba, triangles=1000, detail="coarse")
+    boundary = Boundary.sample(domain.outline, domain.cage)
+    top, left = (
+        boundary.outline[np.argmax(v)] for v in (boundary.outline.imag, -boundary.outline.real)
+    )
+    centre = domain.mesh.vertices.mean()
+    places = [
+        domain.mesh.vertices[np.argmin(np.abs(domain.mesh.vertices - p))]
+        for p in (top, left, centre)
+    ]
+    deformer = Deformer(boundary=boundary, handles=Handles.place(boundary, places), bounds=BOUNDS)
+    far = np.array(places) + boundary.size * np.array([0.3, -2j, 0.1])
+    state = deformer.start()
+    for _ in range(25):
+        state = deformer.step(state, deformer.handles.wish(far))
+        assert state.certificate.certified
+    k, sigma_a, sigma_b = extremes(state.map, dense_outline(boundary, 10_000))
+    certificate = state.certificate
+    assert k <= certificate.k <= BOUNDS.k
+    assert sigma_a <= certificate.sigma_a <= BOUNDS.sigma_a
+    assert sigma_b >= certificate.sigma_b >= BOUNDS.sigma_b
+    state, _ = deformer.settle(state, deformer.handles.wish(places))
+    assert state.status is Status.CONVERGED
+    assert_allclose(deformer.positions(state), places, rtol=0, atol=1e-4 * boundary.size)
+
+
+def test_handles_do_not_pull_while_the_shape_walks_into_its_bounds():
+    deformer = bar()
+    far = deformer.handles.wish(BAR_POINTS + np.array([-40, 0, 40]))
+    state = deformer.start()
+    for _ in range(30):
+        state = deformer.step(state, far)
+    certificate = state.certificate
+    tight = bar(Bounds(k=0.6 * certificate.k, sigma_a=0.8 * certificate.sigma_a, sigma_b=0.3))
+    stretched = np.ptp(tight.positions(state).real)
+    for _ in range(80):
+        state = tight.step(state, far)
+        if state.status is not Status.TIGHTENING:
+            break
+        assert np.ptp(tight.positions(state).real) <= stretched
+        stretched = np.ptp(tight.positions(state).real)
+    assert state.status is Status.LAGGING
+
+
+def test_a_drag_that_does_not_get_on_begins_its_barrier_afresh():
+    deformer = star()
+    state = dragged(deformer, 9 * STAR_POINTS, 30)
+    stale = replace(
+        state,
+        duals=np.full((3, len(state.boundary.points)), 1e6),
+        schedule=replace(state.schedule, idle=4, best=0.0),
+    )
+    after = deformer.step(stale, state.wish)
+    assert after.duals is None
+    assert after.boundary is deformer.boundary
+    assert after.schedule.reach == 1.0
+    again = deformer.step(replace(stale, schedule=replace(stale.schedule, idle=5)), state.wish)
+    assert again.duals is not None
+
+
+def test_samples_are_added_where_a_bound_was_broken():
+    base = star_boundary()
+    duals = np.arange(3.0 * len(base.points)).reshape(3, -1)
+    same, kept = add_samples(base, base, duals, np.array([], dtype=int))
+    assert same is base
+    assert_array_equal(kept, duals)
+    more, longer = add_samples(base, base, duals, np.array([3, 7]))
+    assert len(more.points) == len(base.points) + 2
+    assert longer.shape == (3, len(more.points))
+    assert longer[0, 4] == duals[0, 4]
+    assert longer[0, 9] == duals[0, 8]
+    fewer, none = add_samples(base, more, longer, np.arange(200))
+    assert fewer is base
+    assert none is None
+
+
+def test_a_wild_drag_adds_samples():
+    deformer = star(Bounds(k=0.3, sigma_a=2.0, sigma_b=0.5))
+    state = deformer.start()
+    wish = deformer.handles.wish(STAR_POINTS[[3, 5, 1, 0, 2, 4]])
+    most = 0
+    for _ in range(40):
+        state = deformer.step(state, wish)
+        most = max(most, len(state.boundary.points))
+    assert most > len(deformer.boundary.points)
+
+
+def test_a_shape_that_stays_entangled_is_settled_anew():
+    # A thin band whose handles were dragged through each other under tight bounds.
+    x = np.linspace(0, 3, 14)
+    spine = x + 0.25j * np.sin(2.2 * x)
+    outline = np.concatenate([spine - 0.12j, (spine + 0.12j)[::-1]])
+    boundary = Boundary.sample(outline, offset_cage(outline, 0.06))
+    points = spine[[1, 4, 7, 10, 12]]
+    handles = Handles.place(boundary, points)
+    bounds = Bounds(k=0.4, sigma_a=3, sigma_b=0.4)
+    deformer = Deformer(boundary=boundary, handles=handles, bounds=bounds)
+    state = deformer.start()
+    for share in np.linspace(0, 1, 12):
+        state, _ = deformer.follow(state, handles.wish(points + share * (points[::-1] - points)))
+    home = handles.wish(points)
+    assert deformer.settle(state, home)[0].status is Status.BOUNDS_REACHED
+    back, _ = deformer.settle_anew(state, home)
+    assert back.status is Status.CONVERGED
+    assert_allclose(deformer.positions(back), points, rtol=0, atol=1e-6)
+    # What the handles cannot reach from anywhere stays as the drag left it.
+    far = handles.wish(5 * points)
+    reached, _ = deformer.settle_anew(back, far)
+    assert reached.status is not Status.CONVERGED
+    assert reached.certificate.certified

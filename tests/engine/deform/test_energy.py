@@ -1,0 +1,218 @@
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from deform_shapes import STAR_POINTS, star_boundary
+from numpy.testing import assert_allclose
+
+from engine.deform import Handles
+from engine.deform.barrier import Barrier
+from engine.deform.energy import symmetric_dirichlet, symmetric_dirichlet_derivatives
+from engine.deform.newton import line_search, newton_direction
+from engine.deform.objective import Objective
+from engine.maps import Bounds
+
+WALLS = Bounds(k=0.7, sigma_a=3.0, sigma_b=0.15)
+RNG = np.random.default_rng(0)
+A = RNG.uniform(0.6, 1.8, 200)
+B = A * RNG.uniform(0.02, 0.65, 200)
+B = np.minimum(B, A - 0.2)
+
+
+def densities():
+    dirichlet = (symmetric_dirichlet, symmetric_dirichlet_derivatives)
+    all_walls = Barrier(walls=WALLS, weight=0.3)
+    pairs = {"symmetric Dirichlet": dirichlet, "barrier": (all_walls.value, all_walls.derivatives)}
+    # One wall at a time: the others are far away.
+    for name, walls in {
+        "k": Bounds(k=0.7, sigma_a=1e6, sigma_b=1e-9),
+        "sigma_a": Bounds(k=1 - 1e-9, sigma_a=3.0, sigma_b=1e-9),
+        "sigma_b": Bounds(k=1 - 1e-9, sigma_a=1e6, sigma_b=0.15),
+    }.items():
+        one = Barrier(walls=walls, weight=2.0)
+        pairs[name] = (one.value, one.derivatives)
+    return pairs
+
+
+@pytest.mark.parametrize(("value", "derivatives"), densities().values(), ids=densities())
+def test_radial_derivatives_agree_with_finite_differences(value, derivatives):
+    h = 1e-5
+    exact = derivatives(A, B)
+    ahead_a, behind_a = derivatives(A + h, B), derivatives(A - h, B)
+    ahead_b, behind_b = derivatives(A, B + h), derivatives(A, B - h)
+    tolerance = {"rtol": 2e-5, "atol": 2e-5}
+    assert_allclose(exact.value, value(A, B), rtol=1e-14)
+    assert_allclose(exact.a, (value(A + h, B) - value(A - h, B)) / (2 * h), **tolerance)
+    assert_allclose(exact.b_per_b * B, (value(A, B + h) - value(A, B - h)) / (2 * h), **tolerance)
+    assert_allclose(exact.aa, (ahead_a.a - behind_a.a) / (2 * h), **tolerance)
+    assert_allclose(exact.ab, (ahead_b.a - behind_b.a) / (2 * h), **tolerance)
+    by_b = (ahead_b.b_per_b * (B + h) - behind_b.b_per_b * (B - h)) / (2 * h)
+    assert_allclose(exact.bb, by_b, **tolerance)
+
+
+@pytest.mark.parametrize(("value", "derivatives"), densities().values(), ids=densities())
+def test_only_one_eigenvalue_can_be_negative(value, derivatives):
+    # The exact Hessian of h(|F|, |G|) in real coordinates, against its projection by one maximum.
+    exact = derivatives(A, B)
+    assert np.all(np.isfinite(value(A, B)))
+    assert np.all(exact.b_per_b > 0)
+    determinant = exact.aa * exact.bb - exact.ab**2
+    assert np.all(exact.aa > 0)
+    assert np.all(determinant > -1e-9 * exact.aa * exact.bb)
+
+
+def test_the_densities_are_smooth_where_the_map_is_conformal():
+    a, b = np.array([1.3]), np.array([0.0])
+    for _, derivatives in densities().values():
+        radial = derivatives(a, b)
+        assert_allclose(radial.b_per_b, radial.bb, rtol=1e-12)
+        assert_allclose(radial.ab, 0, atol=1e-12)
+
+
+def test_energy_and_barrier_are_infinite_outside():
+    one = np.array([1.0])
+    barrier = Barrier(walls=WALLS, weight=1.0)
+    assert symmetric_dirichlet(one, np.array([0.0])) == 2
+    assert np.isinf(symmetric_dirichlet(one, one))
+    for a, b in [(1.0, 0.71), (2.5, 0.51), (0.3, 0.16)]:
+        assert np.isinf(barrier.value(np.array([a]), np.array([b])))
+
+
+def test_dual_variables_follow_the_slack():
+    barrier = Barrier(walls=WALLS, weight=0.3)
+    central = barrier.weight / barrier.slacks(A, B)
+    assert_allclose(barrier.current_duals(A, B), central, rtol=1e-14)
+    # A step that goes nowhere from central duals leaves them; one into the wall raises them.
+    assert_allclose(barrier.next_duals(A, B, A, B), central, rtol=1e-12)
+    assert np.all(barrier.next_duals(A, B, A, 1.01 * B) > central)
+    wild = Barrier(walls=WALLS, weight=0.3, duals=np.full((3, 200), 1e9))
+    assert np.all(wild.current_duals(A, B) <= 1.0001e4 * central)
+    with_exact = Barrier(walls=WALLS, weight=0.3, duals=central).derivatives(A, B)
+    assert_allclose(with_exact, barrier.derivatives(A, B), rtol=1e-12, atol=1e-12)
+
+
+def problem(*, sketched, rotations=None, barrier=True, seed=3):
+    boundary = star_boundary()
+    handles = Handles.place(boundary, STAR_POINTS, [1, 2, 1, 1, 0.5, 1])
+    wish = handles.wish(1.02 * STAR_POINTS + 0.01j, rotations)
+    walls = Barrier(walls=WALLS, weight=0.2) if barrier else None
+    objective = Objective(
+        boundary=boundary, handles=handles, wish=wish, barrier=walls, sketched=sketched
+    )
+    rng = np.random.default_rng(seed)
+    n = len(boundary.cage)
+    noise = rng.normal(size=(2, n)) + 1j * rng.normal(size=(2, n))
+    # Swollen, so that h_a > 0 at all samples and nothing is projected.
+    phi = 1.5 * boundary.cage + 0.002 * noise[0]
+    psi = 0.1 * boundary.cage + 0.002 * noise[1]
+    return objective, phi, psi, rng
+
+
+@pytest.mark.parametrize("rotations", [None, np.array([0.3, np.nan, -0.2, np.nan, np.nan, 3.0])])
+@pytest.mark.parametrize("barrier", [True, False])
+def test_gradient_agrees_with_finite_differences(rotations, barrier):
+    objective, phi, psi, rng = problem(sketched=True, rotations=rotations, barrier=barrier)
+    jet = objective.jet(phi, psi)
+    gradient = objective.gradient(jet, objective.radial(jet))
+    n = len(phi)
+    for _ in range(5):
+        x = rng.normal(size=4 * n - 2)
+        change = x.view(complex).conj()
+        moved = objective.jet(change[:n], np.concatenate([[0], change[n:]]))
+        h = 1e-6
+        ahead = objective.value(jet.advanced(h, moved))
+        behind = objective.value(jet.advanced(-h, moved))
+        assert_allclose(gradient @ x, (ahead - behind) / (2 * h), rtol=1e-5)
+
+
+@pytest.mark.parametrize("barrier", [True, False])
+def test_hessian_is_exact_where_nothing_is_projected(barrier):
+    objective, phi, psi, rng = problem(sketched=False, barrier=barrier)
+    jet = objective.jet(phi, psi)
+    assert np.all(objective.radial(jet).a > 0)
+    assert_products(objective, jet, len(phi), rng)
+
+
+def test_hessian_of_rotations_is_exact_at_their_wish():
+    objective, phi, psi, rng = problem(sketched=False)
+    jet = objective.jet(phi, psi)
+    wish = objective.handles.wish(jet.positions, np.angle(jet.fz))
+    objective = Objective(
+        boundary=objective.boundary, handles=objective.handles, wish=wish, barrier=None
+    )
+    assert_products(objective, jet, len(phi), rng)
+
+
+def test_hessian_of_rotations_is_the_projection():
+    objective, phi, psi, _ = problem(sketched=False, barrier=False)
+    jet = objective.jet(phi, psi)
+    handles = objective.handles
+    turned = np.full(6, np.nan)
+    turned[2] = np.angle(jet.fz[2]) - 0.4
+    both = [
+        np.triu(
+            Objective(
+                boundary=objective.boundary, handles=handles, wish=handles.wish(jet.positions, r)
+            ).hessian(jet, objective.radial(jet))
+        )
+        for r in (None, turned)
+    ]
+    difference = both[1] - both[0]
+    difference = difference + np.triu(difference, 1).T
+    stiffness = 2 * handles.arm**2 * handles.stiffness[2]
+    exact = 2 * stiffness * np.array([[0, -0.4], [-0.4, 1.0]])
+    values, vectors = np.linalg.eigh(exact)
+    kept = values[1] * np.outer(vectors[:, 1], vectors[:, 1])
+    row = handles.derivatives[2] / jet.fz[2]
+    rows = np.array([row.view(float), (-1j * row).view(float)])
+    n = len(phi)
+    assert_allclose(difference[: 2 * n, : 2 * n], rows.T @ kept @ rows, atol=1e-9)
+    assert_allclose(difference[2 * n :], 0, atol=1e-12)
+
+
+def assert_products(objective, jet, n, rng):
+    hessian = np.triu(objective.hessian(jet, objective.radial(jet)))
+    hessian = hessian + np.triu(hessian, 1).T
+    h = 1e-6
+    for _ in range(3):
+        x = rng.normal(size=4 * n - 2)
+        change = x.view(complex).conj()
+        moved = objective.jet(change[:n], np.concatenate([[0], change[n:]]))
+        ahead, behind = jet.advanced(h, moved), jet.advanced(-h, moved)
+        by_gradient = (
+            objective.gradient(ahead, objective.radial(ahead))
+            - objective.gradient(behind, objective.radial(behind))
+        ) / (2 * h)
+        product = hessian @ x
+        assert_allclose(product, by_gradient, rtol=0, atol=1e-6 * np.abs(product).max())
+
+
+def test_the_coarse_hessian_resembles_the_exact_one():
+    objective, phi, psi, rng = problem(sketched=True)
+    jet = objective.jet(phi, psi)
+    coarse = np.triu(objective.hessian(jet, objective.radial(jet)))
+    whole = replace(objective, sketched=False)
+    exact = np.triu(whole.hessian(jet, objective.radial(jet)))
+    coarse, exact = (h + np.triu(h, 1).T for h in (coarse, exact))
+    assert not np.array_equal(coarse, exact)
+    for _ in range(20):
+        x = rng.normal(size=len(exact))
+        assert_allclose(x @ coarse @ x, x @ exact @ x, rtol=0.3)
+
+
+def test_newton_finds_the_free_minimum_in_30_steps():
+    boundary = star_boundary()
+    handles = Handles.place(boundary, STAR_POINTS)
+    targets = STAR_POINTS * np.exp(1j * np.array([0, 0.9, 0, -0.6, 0, 0.5]))
+    objective = Objective(boundary=boundary, handles=handles, wish=handles.wish(targets))
+    phi, psi = boundary.cage.copy(), np.zeros_like(boundary.cage)
+    for steps in range(31):  # noqa: B007 - the count is the point
+        jet = objective.jet(phi, psi)
+        direction = newton_direction(objective, jet)
+        if -direction.slope < 1e-8 * objective.value(jet):
+            break
+        length = line_search(objective, jet, direction, objective.value(jet))
+        assert length > 0
+        phi, psi = phi + length * direction.phi, psi + length * direction.psi
+    assert steps <= 30
+    assert 2 < objective.value(jet) < 5

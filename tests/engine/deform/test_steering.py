@@ -1,0 +1,107 @@
+"""The parts that steer a drag: schedule, limits and leash."""
+
+import numpy as np
+from deform_shapes import STAR_POINTS, star_boundary
+from numpy.testing import assert_allclose
+
+from engine.deform import Handles
+from engine.deform.leash import LEASH, cut_to_leash
+from engine.deform.limits import closing_limits, limits_for, place_walls
+from engine.deform.objective import Objective
+from engine.deform.schedule import IDLE_AT_REST, Schedule
+from engine.maps import Bounds, Certificate
+
+BOUNDS = Bounds(k=0.5, sigma_a=2.0, sigma_b=0.5)
+A, B = np.array([1.0, 1.2]), np.array([0.1, 0.3])
+
+
+def certificate(k=0.26, sigma_a=1.51, sigma_b=0.89):
+    return Certificate(k=k, sigma_a=sigma_a, sigma_b=sigma_b, winding=0, certified=True)
+
+
+def after(schedule, length, shortfall=0.5):
+    return schedule.after(length=length, shortfall=shortfall, moving=True, overshot=False)
+
+
+def test_short_steps_raise_the_barrier_and_draw_in_the_leash():
+    start = Schedule()
+    short, full = after(start, 0.1), after(start, 1.0)
+    assert short.weight > start.weight > full.weight
+    assert short.reach < start.reach
+    assert after(short, 1.0).reach > short.reach
+    assert after(start, 0.5).weight == start.weight
+    overshot = start.after(length=0.1, shortfall=0.5, moving=True, overshot=True)
+    assert overshot.weight == start.weight
+
+
+def test_a_drag_without_progress_is_renewed_and_then_at_rest():
+    schedule = after(Schedule(), 1.0)
+    seen = []
+    for _ in range(IDLE_AT_REST):
+        assert not schedule.at_rest
+        schedule = after(schedule, 0.1)
+        seen.append(schedule.asks_for_renewal)
+    assert sum(seen) == 4
+    assert schedule.at_rest
+    assert schedule.renewed().weight < schedule.weight
+    assert schedule.renewed().at_rest
+    assert not schedule.for_new_wish().at_rest
+    progress = after(schedule, 0.1, shortfall=0.4)
+    assert progress.idle == 0
+
+
+def test_a_step_keeps_some_slack_of_the_map():
+    walls, required = place_walls(BOUNDS, A, B, certificate())
+    assert 0.25 < required.k < walls.k < BOUNDS.k
+    assert 1.5 < required.sigma_a < walls.sigma_a < BOUNDS.sigma_a
+    assert 0.9 > required.sigma_b > walls.sigma_b > BOUNDS.sigma_b
+    # A map that has less slack between its samples may keep it.
+    walls, required = place_walls(BOUNDS, A, B, certificate(k=0.4999))
+    assert required.k >= 0.4999
+    # One between walls and bounds at a sample gets walls around it.
+    walls, _ = place_walls(BOUNDS, np.array([1.0]), np.array([0.49999]), certificate())
+    assert 0.49999 < walls.k < 0.5
+
+
+def test_limits_close_in_and_never_open():
+    wide = limits_for(certificate(k=0.7, sigma_a=2.5, sigma_b=0.3), BOUNDS)
+    assert wide.k > 0.7
+    assert wide.sigma_a > 2.5
+    assert wide.sigma_b < 0.3
+    nearer = closing_limits(BOUNDS, wide, np.array([1.5]), np.array([0.9]))
+    assert 0.6 < nearer.k < 0.7
+    assert nearer.sigma_a < wide.sigma_a
+    assert nearer.sigma_b == BOUNDS.sigma_b
+    assert closing_limits(BOUNDS, nearer, np.array([1.6]), np.array([1.1])).k == nearer.k
+    assert closing_limits(BOUNDS, nearer, A, B) == BOUNDS
+
+
+def leashed(targets, rotations=None, reach=1.0):
+    boundary = star_boundary()
+    handles = Handles.place(boundary, STAR_POINTS)
+    wish = handles.wish(targets, rotations)
+    jet = Objective(boundary=boundary, handles=handles, wish=wish).jet(
+        boundary.cage, 0 * boundary.cage
+    )
+    near, cut = cut_to_leash(handles, boundary.size, reach, jet, wish)
+    return near, cut, LEASH * boundary.size * reach
+
+
+def test_the_leash_is_as_long_as_its_reach():
+    far = STAR_POINTS + 3 + 1j
+    for reach in (1.0, 0.25):
+        near, cut, length = leashed(far, reach=reach)
+        assert cut
+        assert_allclose(near.positions, STAR_POINTS + length * np.exp(1j * np.angle(3 + 1j)))
+    near, cut, length = leashed(STAR_POINTS + 0.01)
+    assert not cut
+    assert_allclose(near.positions, STAR_POINTS + 0.01)
+    assert np.isnan(near.rotations).all()
+
+
+def test_common_rotations_are_turned_along_the_circle():
+    near, cut, _ = leashed(np.exp(3j) * STAR_POINTS)
+    assert cut
+    assert np.angle(near.positions[1] / STAR_POINTS[1]) > 0.15
+    near, _, _ = leashed(STAR_POINTS, np.array([2.0, *[np.nan] * 5]))
+    assert_allclose(near.rotations[0], 0.2)

@@ -1,0 +1,196 @@
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from interpolation_shapes import around, bar, inner_points, letter_l, narrow_u, random_map, spiral
+from numpy.testing import assert_allclose
+from shapes import star_polygons
+
+from engine.dirichlet import hilbert
+from engine.dirichlet.cauchy_integral import cauchy_integrals
+from engine.dirichlet.hilbert import HilbertTransform
+from engine.dirichlet.panels import NODES, Panels
+from engine.dirichlet.product_integration import is_near, panel_weights
+from engine.errors import EngineError
+from engine.geometry.polygon import box_diagonal, edges
+from engine.interpolation.metric_residual import OutlineMetric
+
+
+def far_cage(outline):
+    """Return a cage that asks for no refinement of its own."""
+    centre = outline.mean()
+    return centre + 3 * box_diagonal(outline) * np.exp(2j * np.pi * np.arange(8) / 8)
+
+
+def without_constant(values):
+    return values - 1j * values[0].imag
+
+
+def entire(z):
+    """Return some holomorphic functions with their derivatives, each (t, 3)."""
+    values = np.column_stack([z**2, np.exp(z), np.sin(2 * z)])
+    slopes = np.column_stack([2 * z, np.exp(z), 2 * np.cos(2 * z)])
+    return values, slopes
+
+
+@given(polygon=star_polygons(largest=14), seed=st.integers(0, 100))
+@settings(max_examples=12)
+def test_holomorphic_functions_are_found_from_their_real_parts(polygon, seed):
+    transform = HilbertTransform.on(polygon, far_cage(polygon))
+    points = inner_points(polygon, 60, seed)
+    values, slopes = transform.extend(entire(transform.nodes)[0].real, points)
+    expected, expected_slopes = entire(points)
+    assert_allclose(without_constant(values), without_constant(expected), rtol=0, atol=1e-5)
+    # Slopes lose digits next to the corners only.
+    distance = np.abs(points[:, None] - polygon).min(axis=1)
+    away = distance > 0.1
+    assert_allclose(slopes[away], expected_slopes[away], rtol=0, atol=5e-3)
+
+
+@pytest.mark.parametrize("shape", [bar(), letter_l(), narrow_u(0.1)])
+def test_values_are_accurate_on_the_outline_itself(shape):
+    outline, cage = shape
+    transform = HilbertTransform.on(outline, cage)
+    middles = outline + 0.5 * edges(outline)
+    anywhere = outline + 0.123 * edges(outline)
+    outside = middles * (1 + 1e-15)
+    points = np.concatenate([outline, middles, anywhere, outside])
+    values, slopes = transform.extend(entire(transform.nodes)[0].real, points)
+    expected, expected_slopes = entire(points)
+    assert_allclose(without_constant(values), without_constant(expected), rtol=0, atol=1e-5)
+    count = len(outline)
+    assert_allclose(slopes[count:], expected_slopes[count:], rtol=0, atol=2e-3)
+
+
+def corner_function(z):
+    """Return a function with the worst singularity of the letter L's inward corner, z^(2/3)."""
+    return (-(z - (1 + 1j)) * np.exp(-0.25j * np.pi)) ** (2 / 3)
+
+
+def test_singularities_at_inward_corners_are_resolved():
+    outline, cage = letter_l()
+    transform = HilbertTransform.on(outline, cage)
+    points = inner_points(outline, 200, 0)
+    values, _ = transform.extend(corner_function(transform.nodes).real[:, None], points)
+    expected = corner_function(points)[:, None]
+    assert_allclose(without_constant(values), without_constant(expected), rtol=0, atol=1e-6)
+
+
+def metric_data(maps, points):
+    """Return what the metric variant asks for: singular near the cage, and no one's real part."""
+    columns = zip(*(f.derivatives(points) for f in maps), strict=True)
+    return OutlineMetric.of(*(np.array(column) for column in columns)).residuals(np.array([0.5]))
+
+
+def solutions(shape, coarsenesses):
+    outline, cage = shape
+    maps = [random_map(shape, seed) for seed in (3, 4)]
+    points = np.concatenate([inner_points(outline, 150, 0), outline + 0.3 * edges(outline)])
+    for coarseness in coarsenesses:
+        panels = Panels.on(outline, cage, coarseness=coarseness)
+        transform = HilbertTransform.of(outline, panels)
+        values, _ = transform.extend(metric_data(maps, transform.nodes), points)
+        yield len(transform.nodes), without_constant(values)
+
+
+@pytest.mark.parametrize("shape", [letter_l(), narrow_u(0.04), spiral()])
+def test_the_error_falls_fast_as_panels_shorten(shape):
+    (fine, reference), *others = solutions(shape, (1.0, 2.0, 4.0, 8.0))
+    errors = [np.abs(values - reference).max() for _, values in others]
+    counts = [fine, *(count for count, _ in others)]
+    assert counts == sorted(counts, reverse=True)
+    assert errors[0] < 5e-6
+    # Half the panels' length, some 20 times the accuracy, while there is length to halve.
+    assert errors[0] < errors[-1] / 10
+
+
+def test_the_nodes_that_the_shape_asks_for_are_enough():
+    (_, reference), (_, values) = solutions(letter_l(), (0.6, 1.0))
+    assert_allclose(values, reference, rtol=0, atol=1e-8)
+
+
+def test_the_number_of_nodes_comes_from_the_shape():
+    # The cage is far, so that the gap alone asks for more.
+    wide, narrow = (
+        len(Panels.on(outline, far_cage(outline)))
+        for outline in (narrow_u(gap)[0] for gap in (0.2, 0.01))
+    )
+    assert narrow > 1.25 * wide
+    outline, _ = letter_l()
+    far, near = (len(Panels.on(outline, around(outline, offset))) for offset in (0.2, 0.01))
+    assert near > 1.5 * far
+
+
+def test_a_shape_that_needs_too_many_nodes_is_coarsened_and_then_refused(monkeypatch):
+    outline, cage = narrow_u()
+    finest = len(Panels.on(outline, cage)) * NODES
+    monkeypatch.setattr(hilbert, "MOST_NODES", finest - 1)
+    transform = HilbertTransform.on(outline, cage)
+    assert len(transform.nodes) < finest
+    monkeypatch.setattr(hilbert, "MOST_NODES", 500)
+    with pytest.raises(EngineError, match="nodes for the metric variant"):
+        HilbertTransform.on(outline, cage)
+
+
+def test_panels_tile_the_outline():
+    outline, cage = spiral()
+    panels = Panels.on(outline, cage)
+    lengths = panels.differentials().sum(axis=1)
+    assert_allclose(np.abs(lengths).sum(), np.abs(edges(outline)).sum(), rtol=1e-12, atol=0)
+    starts = np.where(panels.forward, panels.origin, panels.origin + panels.span)
+    assert_allclose(np.roll(starts, -1), starts + lengths, rtol=0, atol=1e-13)
+    # ∮ dζ / (ζ − z) = 2πi inside.
+    ones = np.ones((panels.nodes.size, 1))
+    points = inner_points(outline, 50, 2)
+    values, slopes = cauchy_integrals(panels, ones, points)
+    assert_allclose(values, 1, rtol=0, atol=1e-10)
+    assert_allclose(slopes, 0, rtol=0, atol=1e-7)
+
+
+@pytest.mark.parametrize("power", [1, 3])
+def test_panel_integrals_are_exact_for_polynomials_in_the_parameter(power):
+    rng = np.random.default_rng(0)
+    w = np.concatenate(
+        [
+            rng.uniform(-0.3, 1.3, 30) + 1j * 10.0 ** rng.uniform(-6, 0, 30),
+            3 * rng.normal(size=10) + 5j,
+        ]
+    )
+    tau = (1 + np.polynomial.legendre.leggauss(NODES)[0]) / 2
+    weights, slope_weights = panel_weights(w, power)
+    # ∫ τ^(3 power) q τ^(q−1) / (τ^q − w) dτ = ∫ x³ / (x − w) dx over [0, 1], x = τ^q.
+    logarithm = np.log((1 - w) / -w)
+    expected = 1 / 3 + w / 2 + w**2 + w**3 * logarithm
+    assert_allclose(weights @ tau ** (3 * power), expected, rtol=1e-10, atol=1e-10)
+    slopes = 3 * (1 / 2 + w + w**2 * logarithm)
+    assert_allclose(slope_weights @ tau ** (3 * power), slopes, rtol=1e-7, atol=1e-7)
+
+
+def test_far_from_a_panel_plain_quadrature_is_as_good():
+    w = np.array([0.5 + 4j, -6.0 + 0.1j, 9.0 - 1j])
+    x, weights = np.polynomial.legendre.leggauss(NODES)
+    for power in (1, 3):
+        assert not is_near(w, power).any()
+        tau = (1 + x) / 2
+        plain = weights / 2 * power * tau ** (power - 1) / (tau**power - w[:, None])
+        assert_allclose(panel_weights(w, power)[0], plain, rtol=0, atol=1e-11)
+
+
+def test_fast_evaluation_agrees_with_the_sum_over_all_panels():
+    outline, cage = narrow_u()
+    panels = Panels.on(outline, cage)
+    rng = np.random.default_rng(1)
+    tau = np.tile(np.arange(len(panels))[:, None], NODES).ravel()
+    densities = np.cos(tau[:, None] * rng.uniform(0, 0.3, 3))
+    points = inner_points(outline, 400, 3)
+    values, slopes = cauchy_integrals(panels, densities, points)
+    direct, direct_slopes = np.zeros((2, len(points), 3), dtype=complex)
+    for panel in range(len(panels)):
+        w = (points - panels.origin[panel]) / panels.span[panel]
+        weights, slope_weights = panel_weights(w, int(panels.power[panel]))
+        own = densities[panel * NODES : (panel + 1) * NODES] / (2j * np.pi)
+        sign = 1 if panels.forward[panel] else -1
+        direct += sign * weights @ own
+        direct_slopes += sign / panels.span[panel] * (slope_weights @ own)
+    assert_allclose(values, direct, rtol=0, atol=1e-11)
+    assert_allclose(slopes, direct_slopes, rtol=0, atol=1e-8)

@@ -1,0 +1,195 @@
+import numpy as np
+import pictures
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from numpy.testing import assert_allclose
+from outlines import check_outline, diagonal, interior_angles
+from scipy import ndimage
+from scipy.spatial import cKDTree
+
+from engine.arrays import Bytes
+from engine.domain.outline.tracing import Detail, Outline, trace_outline
+from engine.domain.picture.mask import subject_mask
+from engine.errors import EngineError
+from engine.geometry.polygon import as_xy, contains, signed_area
+
+
+def outlined(rgba: Bytes, detail: Detail = "normal") -> Outline:
+    return trace_outline(subject_mask(rgba).mask, detail=detail)
+
+
+PICTURES = {
+    "blob": pictures.blob(),
+    "large blob": pictures.blob(1024, 9),
+    "letters": pictures.letter("R&g", 200),
+    "small letter": pictures.letter("g", 40),
+    "tiny letter": pictures.letter("A", 14),
+    "hairlines": pictures.stick_figure(line=1),
+    "thick lines": pictures.stick_figure(800, line=4),
+    "diagonal hairline": pictures.painted(np.eye(300, dtype=np.bool_)),
+    "star": pictures.star(5),
+    "needles": pictures.star(9, inner=0.15),
+    "gear": pictures.star(24, inner=0.7),
+    "ring": pictures.ring(),
+    "nearly closed ring": pictures.ring(mouth=3),
+    "C": pictures.ring(mouth=30),
+    "few dots": pictures.dots(5),
+    "many dots": pictures.dots(60),
+    "glow": pictures.glow(),
+    "wide glow over the border": pictures.glow(width=0.4),
+    "noise": pictures.noise(0.6),
+    "ragged cloud": pictures.cloud(300, 1),
+    "icon of 48": pictures.star(5, 48),
+    "icon of 12": pictures.star(5, 12),
+    "icon of 8": pictures.painted(np.ones((8, 8), dtype=np.bool_)),
+    "whole picture": np.full((50, 80, 4), 200, dtype=np.uint8),
+    "plain background": pictures.on_plain(pictures.star(7, 300), (250, 250, 240), noise=2),
+    "checkerboard": pictures.painted(np.indices((128, 128)).sum(axis=0) // 8 % 2 == 0),
+}
+
+
+@pytest.mark.parametrize("name", PICTURES)
+def test_outline_and_cage_are_sound(name: str) -> None:
+    mask = subject_mask(PICTURES[name]).mask
+    check_outline(mask, trace_outline(mask, detail="normal"))
+
+
+@pytest.mark.parametrize("detail", ["coarse", "fine"])
+@pytest.mark.parametrize("name", ["letters", "hairlines", "needles", "ragged cloud", "icon of 48"])
+def test_outlines_of_every_detail_are_sound(name: str, detail: Detail) -> None:
+    mask = subject_mask(PICTURES[name]).mask
+    check_outline(mask, trace_outline(mask, detail=detail))
+
+
+strokes = st.tuples(
+    *[st.floats(0.1, 0.9)] * 4,
+    st.floats(0.004, 0.1),
+)
+
+
+@settings(max_examples=40)
+@given(
+    ends=st.lists(strokes, min_size=1, max_size=7),
+    size=st.sampled_from([64, 200, 400]),
+    detail=st.sampled_from(["coarse", "normal", "fine"]),
+)
+def test_random_unions_of_strokes(
+    ends: list[tuple[float, float, float, float, float]], size: int, detail: Detail
+) -> None:
+    mask = pictures.capsules(size, ends)[..., 3] > 0
+    rows, columns = np.nonzero(mask)
+    if len(rows) and max(np.ptp(rows), np.ptp(columns)) >= 7:
+        check_outline(mask, trace_outline(mask, detail=detail))
+
+
+def test_points_are_pixels_of_the_picture_with_y_up() -> None:
+    mask = np.zeros((100, 300), dtype=np.bool_)
+    mask[10:30, 200:280] = True  # near the upper right corner
+    points = trace_outline(mask, detail="normal").points
+    margin = 0.8  # pixels: the least one of small subjects
+    assert_allclose(points.real.min(), 200 - margin, rtol=0, atol=0.2)
+    assert_allclose(points.real.max(), 280 + margin, rtol=0, atol=0.2)
+    assert_allclose(points.imag.min(), 70 - margin, rtol=0, atol=0.2)
+    assert_allclose(points.imag.max(), 90 + margin, rtol=0, atol=0.2)
+
+
+def test_the_margin_is_what_the_detail_says() -> None:
+    mask = pictures.blob(900, depth=0.0)[..., 3] > 0
+    rows, columns = np.nonzero(mask)
+    tree = cKDTree(np.column_stack([columns + 0.5, mask.shape[0] - rows - 0.5]))
+    for detail, share in (("coarse", 0.012), ("normal", 0.006), ("fine", 0.003)):
+        points = trace_outline(mask, detail=detail).points  # type: ignore[arg-type]
+        distance, _ = tree.query(as_xy(points))
+        assert_allclose(distance - 0.5, share * diagonal(mask), rtol=0, atol=0.6)
+
+
+@pytest.mark.parametrize("size", [200, 400, 1024])
+@pytest.mark.parametrize("gap", [3, 5, 12])
+def test_limbs_a_few_pixels_apart_stay_separate(gap: int, size: int) -> None:
+    mask = pictures.limbs(gap, size)[..., 3] > 0
+    outline = trace_outline(mask, detail="normal")
+    check_outline(mask, outline)
+    for share in (0.5, 0.7, 0.88):
+        middle = size // 2 + gap / 2 + 1j * (size - share * size)
+        assert not contains(outline.points, np.array([middle])).any()
+        assert not contains(outline.cage, np.array([middle])).any()
+
+
+def test_a_nearly_closed_ring_stays_open_or_says_so() -> None:
+    wide, shut = outlined(pictures.ring(mouth=8)), outlined(pictures.ring(mouth=0))
+    centre = np.array([150 + 150j])
+    assert not contains(wide.points, centre).any()
+    assert contains(shut.points, centre).all()
+    assert shut.notices == ("1 hole filled, 30.9% of the subject",)
+
+
+def test_a_gap_that_has_to_be_closed_is_told() -> None:
+    outline = outlined(pictures.ring(1024, mouth=2))
+    assert contains(outline.points, np.array([512 + 512j])).all()
+    assert any("closes over gaps of" in notice for notice in outline.notices)
+
+
+def test_parts_are_joined_by_the_shortest_bridges() -> None:
+    mask = np.zeros((200, 400), dtype=np.bool_)
+    for left in (20, 150, 340):
+        mask[80:120, left : left + 40] = True
+    outline = trace_outline(mask, detail="normal")
+    check_outline(mask, outline)
+    assert outline.notices == ("3 parts joined by invisible bridges",)
+    # Each bridge is as straight and narrow as it can be.
+    between = np.array([100, 105 + 30j, 105 - 30j, 265, 265 + 30j]) + 100j
+    assert contains(outline.points, between).tolist() == [True, False, False, True, False]
+
+
+def test_holes_and_specks_are_told() -> None:
+    rgba = pictures.blob(300, depth=0.0)
+    rgba[140:150, 100:110, 3] = 0
+    rgba[140:150, 180:184, 3] = 0
+    rgba[5, 5] = rgba[290, 8] = 255
+    outline = outlined(rgba)
+    assert outline.notices == (
+        "2 specks dropped (0.01% of the subject)",
+        "2 holes filled, the largest 0.3% of the subject",
+    )
+    assert not contains(outline.points, np.array([5.5 + 294.5j])).any()
+
+
+def test_icons_get_smooth_sides() -> None:
+    # A disc of 48 pixels: a staircase would turn left and right by 90 or 45 degrees.
+    points = outlined(pictures.blob(48, depth=0.0)).points
+    turns = 180 - interior_angles(points)
+    assert turns.min() > -5
+    assert turns.max() < 30
+
+
+def test_twenty_megapixels() -> None:
+    rgba = np.kron(pictures.blob(250, 7), np.ones((18, 18, 1), dtype=np.uint8))
+    mask = subject_mask(rgba).mask
+    outline = trace_outline(mask, detail="normal")
+    small = outlined(pictures.blob(250, 7))
+    check_outline(mask[::9, ::9], trace_outline(mask[::9, ::9], detail="normal"))
+    rows, columns = np.nonzero(mask & ~ndimage.binary_erosion(mask))
+    assert contains(outline.points, columns + 0.5 + 1j * (mask.shape[0] - rows - 0.5)).all()
+    assert_allclose(
+        signed_area(outline.points) / 18**2, signed_area(small.points), rtol=0.02, atol=0
+    )
+
+
+def test_hairlines_of_large_pictures_are_not_lost() -> None:
+    mask = np.zeros((3000, 3000), dtype=np.bool_)
+    mask[1400:1600, 1400:1600] = True
+    mask[1501, 100:2900] = mask[100:2900, 1503] = True
+    check_outline(mask, trace_outline(mask, detail="normal"))
+
+
+def test_an_intricate_drawing_keeps_to_few_vertices() -> None:
+    outline = outlined(pictures.blob(900, 20, 0.3))
+    assert len(outline.points) <= 200
+    assert any(notice.startswith("margin widened") for notice in outline.notices)
+
+
+@pytest.mark.parametrize("density", [0.01, 0.1, 0.3])
+def test_scattered_noise_is_too_fragmented(density: float) -> None:
+    with pytest.raises(EngineError, match="too fragmented"):
+        outlined(pictures.noise(density))

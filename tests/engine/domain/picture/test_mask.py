@@ -1,0 +1,126 @@
+import io
+
+import numpy as np
+import pictures
+import pytest
+from numpy.testing import assert_array_equal
+from PIL import Image
+from scipy import ndimage
+
+from engine.arrays import Booleans, Bytes
+from engine.domain.picture.mask import subject_mask
+from engine.errors import EngineError
+
+WHITE = (255, 255, 255)
+
+
+def visible(rgba: Bytes) -> Booleans:
+    return rgba[..., 3] > 0
+
+
+def test_the_subject_is_what_is_not_transparent() -> None:
+    rgba = pictures.star(5, 120)
+    subject = subject_mask(rgba)
+    assert_array_equal(subject.mask, rgba[..., 3] > 0)
+    assert subject.notices == ()
+    assert not subject.mask.flags.writeable
+
+
+def test_a_wide_nearly_invisible_haze_is_left_out() -> None:
+    rgba = pictures.blob(100)
+    rgba[10:90, 10:90, 3] = np.maximum(rgba[10:90, 10:90, 3], 3)
+    subject = subject_mask(rgba)
+    assert_array_equal(subject.mask, rgba[..., 3] >= 8)
+    assert "nearly invisible" in subject.notices[0]
+
+
+def test_a_narrow_nearly_invisible_rim_is_kept() -> None:
+    rgba = pictures.blob(200)
+    rim = ndimage.binary_dilation(visible(rgba)) & ~visible(rgba)
+    rgba[rim, 3] = 3
+    assert_array_equal(subject_mask(rgba).mask, visible(rgba))
+
+
+@pytest.mark.parametrize("noise", [0.0, 3.0])
+def test_a_plain_background_is_removed(noise: float) -> None:
+    drawing = pictures.blob(200)
+    subject = subject_mask(pictures.on_plain(drawing, (230, 240, 250), noise=noise))
+    assert "uniform background removed" in subject.notices[0]
+    assert np.mean(subject.mask != visible(drawing)) < 0.002
+
+
+def test_a_background_with_jpeg_artefacts_is_removed() -> None:
+    drawing = pictures.star(5, 240)
+    file = io.BytesIO()
+    Image.fromarray(pictures.on_plain(drawing, WHITE)).convert("RGB").save(file, "JPEG", quality=75)
+    subject = subject_mask(np.asarray(Image.open(file).convert("RGBA")))
+    assert "uniform background removed" in subject.notices[0]
+    assert not np.any((drawing[..., 3] > 200) & ~subject.mask)
+    assert subject.mask.sum() < 1.3 * (drawing[..., 3] > 0).sum()
+
+
+def test_large_pictures_lose_their_background_to_the_pixel() -> None:
+    drawing = np.kron(pictures.blob(250), np.ones((7, 7, 1), dtype=np.uint8))
+    subject = subject_mask(pictures.on_plain(drawing, WHITE))
+    assert_array_equal(subject.mask, visible(drawing))
+
+
+def test_teeth_behind_a_thin_opening_are_not_eaten() -> None:
+    teeth = np.zeros((400, 400), dtype=np.bool_)
+    teeth[150:250, 120:280] = True
+    teeth[199:201, 280:360] = True  # a line of the background's colour leads out
+    drawing = pictures.ring(400)
+    drawing[..., 3] = 255 * (pictures.blob(400, depth=0.0)[..., 3] > 0)
+    drawing[teeth, 3] = 0
+    mask = subject_mask(pictures.on_plain(drawing, WHITE)).mask
+    assert mask[160:240, 130:270].all()
+
+
+def test_a_thin_gap_before_a_background_stays_open() -> None:
+    drawing = pictures.limbs(3)
+    mask = subject_mask(pictures.on_plain(drawing, WHITE)).mask
+    assert_array_equal(mask, visible(drawing))
+
+
+def test_a_picture_without_plain_background_is_kept_whole() -> None:
+    rgba = np.full((60, 90, 4), 255, dtype=np.uint8)
+    rgba[..., :3] = np.random.default_rng(0).integers(0, 256, (60, 90, 3))
+    subject = subject_mask(rgba)
+    assert subject.mask.all()
+    assert "whole rectangle" in subject.notices[0]
+
+
+def test_a_picture_of_nothing_but_background_is_kept_whole() -> None:
+    subject = subject_mask(np.full((60, 90, 4), 255, dtype=np.uint8))
+    assert subject.mask.all()
+    assert "would leave 0.0% of the picture" in subject.notices[0]
+
+
+def test_the_tolerance_decides_what_belongs_to_the_background() -> None:
+    rgba = pictures.on_plain(pictures.blob(200), WHITE)
+    rgba[:60, :60, :3] = 235
+    assert not subject_mask(rgba, tolerance=25).mask[:50, :50].any()
+    assert subject_mask(rgba, tolerance=10).mask[5:50, 5:50].all()
+
+
+@pytest.mark.parametrize(
+    ("rgba", "message"),
+    [
+        (np.zeros((20, 20, 4), dtype=np.uint8), "fully transparent"),
+        (np.full((20, 20, 4), 7, dtype=np.uint8), "fully transparent"),
+        (np.zeros((0, 20, 4), dtype=np.uint8), "no pixels"),
+        (pictures.painted(np.eye(20) * np.eye(20)[0] > 0), "only 1 × 1 pixels"),
+        (np.full((7, 7, 4), 255, dtype=np.uint8), "only 7 × 7 pixels"),
+        (np.zeros((20, 20, 3), dtype=np.uint8), "must be uint8"),
+        (np.zeros((20, 20, 4)), "must be uint8"),
+    ],
+)
+def test_unusable_pictures_are_refused(rgba: Bytes, message: str) -> None:
+    with pytest.raises(EngineError, match=message):
+        subject_mask(rgba)
+
+
+@pytest.mark.parametrize("tolerance", [-1, 256])
+def test_a_tolerance_beyond_the_levels_is_refused(tolerance: int) -> None:
+    with pytest.raises(EngineError, match=str(tolerance)):
+        subject_mask(pictures.blob(50), tolerance=tolerance)

@@ -1,0 +1,217 @@
+"""What `prepare` accepts and refuses, timing, turns and the anchor's pose."""
+
+import numpy as np
+import pytest
+from interpolation_shapes import bar, bent, inner_points, letter_l, random_map
+from numpy.testing import assert_allclose, assert_array_equal
+
+from engine.dirichlet.hilbert import HilbertTransform
+from engine.domain.meshing.triangulation import triangulate
+from engine.errors import EngineError
+from engine.geometry import polygon
+from engine.interpolation import Variant, prepare, prepare_inbetweens, prepare_sites
+from engine.interpolation.keyframe_samples import sample_keyframes
+from engine.interpolation.timing import smooth
+from engine.maps.harmonic_map import HarmonicMap
+from engine.paths.complex_log import root_sheets
+
+OUTLINE, CAGE = SHAPE = letter_l()
+MAPS = [random_map(SHAPE, seed) for seed in (1, 2, 5)]
+POINTS = inner_points(OUTLINE, 25, 0)
+
+
+def between(maps=MAPS, points=POINTS, outline=OUTLINE, **options):
+    return prepare(maps, points, outline=outline, **{"variant": "nu"} | options)
+
+
+def test_frames_are_pure_and_their_inputs_frozen():
+    prepared = between(variant="metric")
+    first = prepared.frame(0.3)
+    prepared.frame(1.9)
+    again = prepared.frame(0.3)
+    assert_array_equal(first.positions, again.positions)
+    first.positions[:] = 0  # a frame is the caller's own
+    assert_array_equal(prepared.frame(0.3).positions, again.positions)
+    for array in (prepared.sites.paths.nodes, prepared.keyframes[0].log_fz):
+        with pytest.raises(ValueError, match="read-only"):
+            array[0] = 0
+
+
+@pytest.mark.parametrize("variant", list(Variant))
+def test_intervals_are_prepared_one_at_a_time_and_keyframes_shared(variant):
+    whole = between(variant=variant)
+    sites = prepare_sites(OUTLINE, CAGE, POINTS)
+    keys = sample_keyframes(MAPS[:2], sites.paths, sites.outline_samples)
+    keys += sample_keyframes(MAPS[2:], sites.paths, sites.outline_samples, first=2)
+    sheets = root_sheets(np.array([key.anchor_fz for key in keys]))
+    transform = HilbertTransform.on(OUTLINE, CAGE)
+    for i, pair in enumerate((keys[:2], keys[1:])):
+        interval = prepare_inbetweens(variant, sites, pair, sheets[i : i + 2], transform=transform)
+        frame = interval.frame(np.array([0.6, 0.4]))
+        expected = whole.frame(i + 0.4)
+        assert_allclose(frame.positions, expected.positions, rtol=0, atol=1e-12)
+        weights = np.array([0.6, 0.4])
+        position = interval.anchor_position(weights)
+        assert_allclose(position + interval.offsets(weights), frame.positions, rtol=0, atol=1e-13)
+        assert interval.nbytes >= 0
+    assert whole.nbytes > 0
+
+
+@pytest.mark.parametrize("variant", ["nu", "eta", "scaled-eta", "metric"])
+def test_parts_add_up_to_the_positions(variant):
+    piece = between(variant=variant).pieces[0]
+    weights = np.array([0.25, 0.75])
+    phi, conj_psi = piece.parts(weights)
+    positions = piece.anchor_position(weights) + phi + piece.rho(weights) * conj_psi
+    assert_allclose(positions, piece.frame(weights).positions, rtol=0, atol=1e-12)
+
+
+@pytest.mark.parametrize("variant", ["nu", "scaled-eta", "metric"])
+def test_scattered_points_and_a_mesh_give_the_same(variant):
+    mesh = triangulate(OUTLINE, 500)
+    options = {"variant": variant, "anchor": 0.7 + 0.4j, "points": mesh.vertices}
+    scattered, meshed = (
+        between(triangles=triangles, **options).frame(0.6) for triangles in (None, mesh.triangles)
+    )
+    size = polygon.diameter(OUTLINE)
+    assert_allclose(scattered.positions, meshed.positions, rtol=0, atol=2e-6 * size)
+    assert_allclose(scattered.fz, meshed.fz, rtol=1e-7, atol=0)
+
+
+def test_the_default_anchor_is_the_centre_of_the_largest_disc():
+    outline, _ = bar()
+    prepared = prepare([bent(bar()), bent(bar(), turn=1)], [0j], outline=outline, variant="nu")
+    assert abs(prepared.sites.anchor.imag) < 1e-3
+    assert polygon.distance_to_boundary(outline, np.array([prepared.sites.anchor]))[0] > 0.499
+
+
+def test_easing_changes_the_pace_only():
+    prepared, eased = between(), between(easing=smooth)
+    assert_allclose(
+        eased.frame(1.25).positions, prepared.frame(1 + smooth(0.25)).positions, rtol=0, atol=1e-13
+    )
+    for time in (0, 1, 2):
+        assert_allclose(eased.frame(time).positions, MAPS[time](POINTS), rtol=0, atol=1e-11)
+
+
+@pytest.mark.parametrize(
+    ("easing", "time"),
+    [(lambda s: 1.5 * s, 0.9), (lambda s: s - 0.1, 0.05), (lambda s: s / 2, 2.0)],
+)
+def test_an_easing_that_leaves_the_interval_is_refused(easing, time):
+    prepared = between(easing=easing)
+    with pytest.raises(EngineError, match="easing"):
+        prepared.frame(time)
+
+
+@pytest.mark.parametrize("variant", ["nu", "eta", "scaled-eta", "linear"])
+def test_splines_pass_all_keyframes_smoothly(variant):
+    prepared = between(variant=variant, easing=None)
+    for time, f in enumerate(MAPS):
+        assert_allclose(prepared.frame(time).positions, f(POINTS), rtol=0, atol=1e-10)
+    if variant != "scaled-eta":
+        h = 1e-4
+        before, at, after = (prepared.frame(1 + k * h).positions for k in (-1, 0, 1))
+        speed = np.abs(after - before).max() / h
+        assert np.abs(after - 2 * at + before).max() < 100 * h * h * speed
+
+
+def test_splines_are_refused_for_metric():
+    with pytest.raises(EngineError, match="negative"):
+        between(variant="metric", easing=None)
+    with pytest.raises(EngineError, match="smooth rho"):
+        between(variant="scaled-eta", easing=None, smooth_rho=True)
+
+
+def test_the_anchor_follows_a_curve():
+    keys = [complex(f(np.array([0.5 + 0.5j]))[0]) for f in MAPS]
+
+    def curve(time):
+        first = min(int(time), 1)
+        s = time - first
+        return (1 - s) * keys[first] + s * keys[first + 1] + 2j * s * (1 - s)
+
+    straight, curved = (
+        between(anchor=0.5 + 0.5j, anchor_curve=anchor_curve).frame(0.5)
+        for anchor_curve in (None, curve)
+    )
+    assert_allclose(curved.positions - straight.positions, 0.5j, rtol=0, atol=1e-12)
+    assert_allclose(curved.fz, straight.fz, rtol=0, atol=0)
+    with pytest.raises(EngineError, match="curve must pass"):
+        between(anchor=0.5 + 0.5j, anchor_curve=lambda _: 0j)
+
+
+def test_a_full_turn_is_kept_and_flipped_by_its_integer():
+    maps = [bent(bar()), bent(bar(), turn=3.0)]
+    options = {"outline": bar()[0], "anchor": 0, "points": np.array([1 + 0j])}
+    angles = [
+        np.angle(between(maps, turns=turns, **options).frame(0.5).positions[0])
+        for turns in (None, [0], [-1], [1])
+    ]
+    expected = np.array([1.5, 1.5, 1.5 - np.pi, 1.5 - np.pi])
+    assert_allclose(np.exp(1j * np.array(angles)), np.exp(1j * expected), rtol=0, atol=1e-9)
+
+
+def test_a_turn_only_rotates_eta_but_changes_the_shape_of_nu():
+    maps = [random_map(SHAPE, seed, bend=0.2) for seed in (2, 3)]
+    for variant, same in (("eta", True), ("metric", True), ("nu", False)):
+        first, second = (
+            between(maps, variant=variant, turns=turns).frame(0.3) for turns in ([0], [1])
+        )
+        modulus = np.abs(first.fz), np.abs(second.fz)
+        assert_allclose(*modulus, rtol=1e-9, atol=0)
+        stretch = [np.angle(frame.fzbar / frame.fz) for frame in (first, second)]
+        assert np.allclose(*np.exp(1j * np.array(stretch)), atol=1e-9) is same
+
+
+@pytest.mark.parametrize("time", [-1e-9, 2.0001, float("nan"), float("inf")])
+def test_times_out_of_range_are_refused(time):
+    with pytest.raises(EngineError, match="out of range"):
+        between().frame(time)
+
+
+def test_folds_are_found_wherever_they_are():
+    _, cage = bar()
+    conformal = bent(bar())
+    # ν = 1.5 z vanishes in the middle and folds both ends.
+    ends = HarmonicMap(cage=cage, phi=cage, psi=0.375 * cage**2 * 2)
+    with pytest.raises(EngineError, match=r"Keyframe 1 folds: at \(-?2, .*sigma_b is -"):
+        prepare([conformal, ends], [0j], outline=bar()[0])
+    # f_z = z has a zero in the middle, where nothing on the outline folds.
+    zero = HarmonicMap(cage=cage, phi=cage**2 / 2, psi=0 * cage)
+    with pytest.raises(EngineError, match=r"Keyframe 0 folds inside: f_z winds 1 times"):
+        prepare([zero, conformal], [1 + 0.1j], outline=bar()[0], anchor=1.5)
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"maps": MAPS[:1]}, "at least two keyframes, not 1"),
+        ({"maps": []}, "at least two keyframes, not 0"),
+        ({"maps": [MAPS[0], HarmonicMap.identity(1.01 * CAGE)]}, "another cage"),
+        ({"variant": "wobbly"}, "no variant 'wobbly'; there are nu, eta"),
+        ({"anchor": [0.5, 0.6]}, "One anchor is needed, not 2"),
+        ({"anchor": []}, "One anchor is needed, not 0"),
+        ({"anchor": 2 + 2j}, "anchor at .* is outside"),
+        ({"points": np.append(POINTS, 2 + 2j)}, "point 25 at .* is outside the outline"),
+        ({"points": OUTLINE * (1 + 1e-7)}, "outside"),
+        ({"points": []}, "at least 1"),
+        ({"turns": [1]}, "2 integers"),
+        ({"outline": np.append(OUTLINE, OUTLINE[:1])}, "repeats"),
+        ({"triangles": [[0, 1]]}, "shape"),
+    ],
+)
+def test_bad_input_is_refused(changes, message):
+    with pytest.raises(EngineError, match=message):
+        between(**changes)
+
+
+def test_points_on_the_outline_within_a_billionth_are_taken():
+    middles = OUTLINE + 0.4 * polygon.edges(OUTLINE)
+    outside = middles - 0.9e-9j * polygon.diameter(OUTLINE) * polygon.edges(OUTLINE) / np.abs(
+        polygon.edges(OUTLINE)
+    )
+    for variant in Variant:
+        on, off = (between(points=z, variant=variant).frame(0.5) for z in (middles, outside))
+        assert_allclose(on.positions, off.positions, rtol=0, atol=1e-7)
+        assert np.isfinite(off.fzbar).all()

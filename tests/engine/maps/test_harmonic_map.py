@@ -1,0 +1,110 @@
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from numpy.testing import assert_allclose
+from shapes import points_inside_disc, regular_polygon
+
+from engine.errors import EngineError
+from engine.maps import distortion
+from engine.maps.harmonic_map import HarmonicMap
+
+CAGE = regular_polygon(20, 1.2)
+POINTS = points_inside_disc(1.0, 80, seed=5)
+
+
+def random_map(seed: int, size: float = 0.1) -> HarmonicMap:
+    rng = np.random.default_rng(seed)
+    phi, psi = rng.normal(size=(2, 20)) + 1j * rng.normal(size=(2, 20))
+    return HarmonicMap(cage=CAGE, phi=CAGE + size * phi, psi=size * psi)
+
+
+def test_affine_maps_are_exact():
+    a, b, c = 1.5 + 0.5j, 0.3 - 0.2j, 7 - 2j
+    affine = HarmonicMap(cage=CAGE, phi=a * CAGE + c, psi=np.conj(b) * CAGE)
+    assert_allclose(affine(POINTS), a * POINTS + b * POINTS.conj() + c, rtol=0, atol=1e-13)
+    fz, fzbar = affine.derivatives(POINTS)
+    assert_allclose(fz, a, rtol=0, atol=1e-13)
+    assert_allclose(fzbar, b, rtol=0, atol=1e-13)
+    singular_values = np.linalg.svd(
+        [[a.real + b.real, b.imag - a.imag], [a.imag + b.imag, a.real - b.real]], compute_uv=False
+    )
+    assert_allclose(distortion.sigma_a(fz, fzbar), singular_values[0], rtol=1e-13, atol=0)
+    assert_allclose(distortion.sigma_b(fz, fzbar), singular_values[1], rtol=1e-12, atol=0)
+
+
+def test_the_identity_is_the_identity():
+    identity = HarmonicMap.identity(CAGE)
+    assert_allclose(identity(POINTS), POINTS, rtol=0, atol=1e-14)
+
+
+@given(st.integers(0, 10_000))
+def test_derivatives_agree_with_finite_differences(seed):
+    f = random_map(seed)
+    h = 1e-3
+    by_x, by_y = (
+        (
+            8 * (f(POINTS + h * d) - f(POINTS - h * d))
+            - (f(POINTS + 2 * h * d) - f(POINTS - 2 * h * d))
+        )
+        / (12 * h)
+        for d in (1, 1j)
+    )
+    fz, fzbar = f.derivatives(POINTS)
+    assert_allclose(fz, (by_x - 1j * by_y) / 2, rtol=0, atol=1e-7)
+    assert_allclose(fzbar, (by_x + 1j * by_y) / 2, rtol=0, atol=1e-7)
+    fzz, fzbarzbar = f.second_derivatives(POINTS)
+    ahead, behind = f.derivatives(POINTS + h), f.derivatives(POINTS - h)
+    far_ahead, far_behind = f.derivatives(POINTS + 2 * h), f.derivatives(POINTS - 2 * h)
+    for second, order in ((fzz, 0), (fzbarzbar, 1)):
+        difference = 8 * (ahead[order] - behind[order]) - (far_ahead[order] - far_behind[order])
+        assert_allclose(second, difference / (12 * h), rtol=0, atol=1e-5)
+
+
+def test_the_gauge_does_not_change_the_map():
+    f = random_map(1)
+    c = 3 - 4j
+    g = HarmonicMap(cage=CAGE, phi=f.phi + c, psi=f.psi - np.conj(c))
+    assert_allclose(g(POINTS), f(POINTS), rtol=0, atol=1e-13)
+
+
+def test_nu_and_eta_are_holomorphic_and_antiholomorphic():
+    f = random_map(2)
+    h = 1e-5
+    nu_by, eta_by = [], []
+    for d in (1, 1j):
+        ahead, behind = f.derivatives(POINTS + h * d), f.derivatives(POINTS - h * d)
+        nu_by.append((distortion.nu(*ahead) - distortion.nu(*behind)) / (2 * h))
+        eta_by.append((distortion.eta(*ahead) - distortion.eta(*behind)) / (2 * h))
+    assert_allclose(nu_by[0] + 1j * nu_by[1], 0, rtol=0, atol=1e-6)
+    assert_allclose(eta_by[0] - 1j * eta_by[1], 0, rtol=0, atol=1e-6)
+    assert np.abs(nu_by[0]).max() > 0.1
+
+
+@given(st.integers(0, 10_000))
+def test_distortions_agree_with_each_other(seed):
+    fz, fzbar = random_map(seed, 0.02).derivatives(POINTS)
+    k = distortion.k(fz, fzbar)
+    assert_allclose(np.abs(distortion.mu(fz, fzbar)), k, rtol=1e-12, atol=1e-300)
+    assert_allclose(np.abs(distortion.nu(fz, fzbar)), k, rtol=1e-12, atol=1e-300)
+    assert_allclose(
+        distortion.eta(fz, fzbar), distortion.mu(fz, fzbar) * np.abs(fz) ** 2, rtol=1e-12
+    )
+    inside = k < 1
+    fz, fzbar, k = fz[inside], fzbar[inside], k[inside]
+    assert_allclose(distortion.K(fz, fzbar), (1 + k) / (1 - k), rtol=1e-9, atol=0)
+    assert np.all(distortion.tau(fz, fzbar) >= 1)
+
+
+@pytest.mark.parametrize(
+    ("phi", "message"),
+    [
+        (CAGE[:-1], "as many coefficients"),
+        (np.full(20, np.nan), "finite"),
+        (CAGE.reshape(4, 5), "one-dimensional"),
+        (["a"] * 20, "complex numbers"),
+    ],
+)
+def test_bad_coefficients_are_refused(phi, message):
+    with pytest.raises(EngineError, match=message):
+        HarmonicMap(cage=CAGE, phi=phi, psi=CAGE)

@@ -1,0 +1,236 @@
+"""Series in time against the direct path, and what they cost."""
+
+from dataclasses import dataclass
+from functools import cache
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from interpolation_shapes import bar, bent, inner_points, letter_l, narrow_u, random_map
+from numpy.testing import assert_allclose, assert_array_equal
+
+from engine import chebyshev
+from engine.dirichlet.hilbert import HilbertTransform
+from engine.errors import EngineError
+from engine.interpolation import Variant, prepare
+from engine.maps import distortion
+from engine.streaming import Distortions, Positions, build_series, finish
+from engine.streaming.build import DEGREES, MOST_ROWS
+from engine.streaming.channels import Sample
+
+SHAPES = {"bar": bar(), "letter L": letter_l(), "narrow U": narrow_u(0.1)}
+cases = st.tuples(st.sampled_from(sorted(SHAPES)), st.integers(0, 10_000))
+
+
+@cache
+def transform_of(name):
+    return HilbertTransform.on(*SHAPES[name])
+
+
+def prepared(name, variant, maps):
+    outline, _ = SHAPES[name]
+    points = np.concatenate([inner_points(outline, 200, 1), outline])
+    transform = transform_of(name) if variant == "metric" else None
+    return prepare(maps, points, outline=outline, variant=variant, transform=transform)
+
+
+def random_pair(name, seed):
+    return [random_map(SHAPES[name], 2 * seed + i) for i in range(2)]
+
+
+def direct(between, time):
+    return between.frame(np.array([1 - time, time]))
+
+
+def as_complex(values):
+    return values.astype(float).view(complex)
+
+
+@pytest.mark.parametrize("variant", Variant)
+@given(case=cases, seed=st.integers(0, 10_000))
+@settings(max_examples=2)
+def test_positions_are_those_of_the_direct_path(variant, case, seed):
+    motion = prepared(case[0], variant, random_pair(*case))
+    between, diameter = motion.pieces[0], motion.sites.diameter
+    series = finish(build_series(Positions.of(between, motion.sites)))
+    for time in np.random.default_rng(seed).random(12):
+        found = as_complex(series.values(time))
+        assert_allclose(found, direct(between, time).positions, rtol=0, atol=1e-6 * diameter)
+    assert series.error < 1e-6 * diameter
+    assert max(len(piece.rows) for piece in series.pieces) <= MOST_ROWS
+
+
+@pytest.mark.parametrize("variant", Variant)
+def test_keyframes_are_exact_to_float32(variant):
+    motion = prepared("letter L", variant, random_pair("letter L", 5))
+    series = finish(build_series(Positions.of(motion.pieces[0], motion.sites)))
+    for time, key in enumerate(motion.keyframes):
+        expected = key.positions.astype(np.complex64)
+        assert_array_equal(series.values(float(time)).view(np.complex64), expected)
+        beside = series.values(abs(time - 1e-9)).view(np.complex64)
+        jump = 0.3 if variant == Variant.SCALED_ETA else 1e-6  # the direct path's ρ jumps
+        assert_allclose(beside, expected, rtol=0, atol=jump)
+
+
+@pytest.mark.parametrize("variant", Variant)
+def test_distortions_are_those_of_the_direct_path(variant):
+    motion = prepared("letter L", variant, random_pair("letter L", 8))
+    between = motion.pieces[0]
+    series = finish(build_series(Distortions.of(between)))
+    for time in np.random.default_rng(0).random(12):
+        fz, fzbar = as_complex(series.values(time)).reshape(2, -1)
+        frame = direct(between, time)
+        for measure in (distortion.sigma_a, distortion.sigma_b):
+            largest = np.abs(measure(frame.fz, frame.fzbar)).max()
+            difference = measure(fz, fzbar) - measure(frame.fz, frame.fzbar)
+            assert_allclose(difference / largest, 0, rtol=0, atol=5e-5)
+        k = distortion.k(frame.fz, frame.fzbar)
+        assert_allclose(distortion.k(fz, fzbar), k, rtol=0, atol=3e-4)
+
+
+def test_a_scaled_map_far_from_its_bounds_has_its_rho_in_the_series():
+    # As in Figure 4: |f_z| grows by more than the root of e, and η must be scaled.
+    _, cage = SHAPES["bar"]
+    grown = 2 * np.exp(0.5 * cage + 1)
+    maps = [bent(SHAPES["bar"]), bent(SHAPES["bar"])]
+    maps[1] = type(maps[0])(cage=cage, phi=grown, psi=0.4 * grown)
+    motion = prepared("bar", "scaled-eta", maps)
+    between = motion.pieces[0]
+    series = finish(build_series(Positions.of(between, motion.sites)))
+    assert series.rho is not None
+    for time in np.random.default_rng(3).random(60):
+        exact = between.rho(np.array([1 - time, time]))
+        assert_allclose(series.rho(time), exact, rtol=0, atol=2e-6)
+    assert min(series.rho(time) for time in (0.25, 0.5, 0.75)) < 0.9
+    assert series.rho(0.0) == series.rho(1.0) == 1.0
+
+
+@pytest.mark.parametrize(
+    "options",
+    [
+        ({"bend": 0.5}, {"bend": -0.4}),  # conformal: there is nothing to scale
+        ({"stretch": 1.4}, {"stretch": 1.4, "turn": 1.0}),  # rigid: no need to
+    ],
+)
+def test_a_rho_that_changes_nothing_is_left_out(options):
+    maps = [bent(SHAPES["bar"], **option) for option in options]
+    motion = prepared("bar", "scaled-eta", maps)
+    assert finish(build_series(Positions.of(motion.pieces[0], motion.sites))).rho is None
+
+
+@dataclass(frozen=True)
+class Curves:
+    """Values that have nothing to do with maps."""
+
+    function: object
+    tolerance: float = 1e-6
+    inbetweens: object = None
+
+    def sample(self, time):
+        return Sample(np.asarray(self.function(time), dtype=float), None)
+
+
+def test_points_that_move_alike_share_their_functions_of_time():
+    # Below 1 in size: the rounding of float32 must stay well under the tolerance.
+    directions = np.random.default_rng(0).uniform(-0.5, 0.5, size=5000)
+    series = finish(build_series(Curves(lambda t: directions * np.sin(9 * t))))
+    (piece,) = series.pieces
+    assert len(piece.rows) == 3  # of both ends, and one more
+    assert series.nbytes < 3 * 4 * 5000 + 10_000
+    assert_array_equal(series.values(0.0), 0)
+
+
+def test_pieces_are_short_where_the_motion_is_hard():
+    places = np.linspace(0, 1, 400)
+    peak = 0.015
+
+    def function(t):
+        return places / ((t - 0.3) ** 2 + peak**2) * peak**2
+
+    series = finish(build_series(Curves(function)))
+    lengths = {piece.start: piece.end - piece.start for piece in series.pieces}
+    assert len(lengths) > 2
+    assert min(lengths, key=lengths.get) == pytest.approx(0.3, abs=0.1)
+    for t in np.random.default_rng(0).random(200):
+        assert_allclose(series.values(t), function(t), rtol=0, atol=1e-6)
+    assert [p.end for p in series.pieces[:-1]] == [p.start for p in series.pieces[1:]]
+    for piece in series.pieces[1:]:
+        left, right = (series.values(piece.start + side) for side in (-1e-9, 1e-9))
+        assert_allclose(left, right, rtol=0, atol=1e-6)
+
+
+def test_many_functions_of_time_are_parted_in_pieces():
+    turns = np.linspace(-30, 30, 3000)
+    series = finish(build_series(Curves(lambda t: np.cos(turns * t))))
+    assert len(series.pieces) > 1
+    assert max(len(piece.rows) for piece in series.pieces) <= MOST_ROWS
+
+
+def test_what_is_not_smooth_ends_and_tells_its_error():
+    series = finish(build_series(Curves(lambda t: np.array([float(t > 0.317), t]))))
+    assert series.error > 0.01
+    assert len(series.pieces) < 20
+
+
+def test_far_from_the_origin_the_tolerance_is_what_float32_holds():
+    maps = [bent(SHAPES["bar"], shift=9000j), bent(SHAPES["bar"], bend=0.7, shift=9000j)]
+    motion = prepared("bar", "nu", maps)
+    series = finish(build_series(Positions.of(motion.pieces[0], motion.sites)))
+    assert len(series.pieces) == 1
+    found = as_complex(series.values(0.4))
+    assert_allclose(found, direct(motion.pieces[0], 0.4).positions, rtol=0, atol=9000 * 2**-21)
+
+
+def test_building_goes_in_small_steps_that_may_take_turns():
+    motions = [prepared("bar", variant, random_pair("bar", 2)) for variant in ("nu", "metric")]
+    channels = [Positions.of(motion.pieces[0], motion.sites) for motion in motions]
+    calls = []
+
+    @dataclass(frozen=True)
+    class Counted:
+        source: Positions
+        inbetweens = property(lambda self: self.source.inbetweens)
+        tolerance = property(lambda self: self.source.tolerance)
+
+        def sample(self, time):
+            calls.append(time)
+            return self.source.sample(time)
+
+    waiting = [(build_series(Counted(source)), finish(build_series(source))) for source in channels]
+    calls.clear()
+    steps = 0
+    while waiting:
+        steps += 1
+        before = len(calls)
+        build, expected = waiting.pop(0)
+        try:
+            next(build)
+            waiting.append((build, expected))
+        except StopIteration as stop:
+            assert_array_equal(stop.value.values(0.37), expected.values(0.37))
+        assert len(calls) - before <= 1
+    assert steps > 2 * DEGREES[0]
+
+
+def test_values_are_written_where_they_are_wanted():
+    series = finish(build_series(Curves(lambda t: np.linspace(0, 1, 50) * np.exp(t))))
+    room = np.zeros(50, dtype=np.float32)
+    assert series.values(0.3, out=room) is room
+    assert_array_equal(room, series.values(0.3))
+    assert series.size == 50
+    for time in (-0.1, 1.1, float("nan")):
+        with pytest.raises(EngineError, match="outside"):
+            series.values(time)
+
+
+@pytest.mark.parametrize("degree", DEGREES)
+def test_chebyshev_coefficients_and_their_basis(degree):
+    assert_allclose(chebyshev.nodes(2 * degree)[::2], chebyshev.nodes(degree), rtol=0, atol=1e-15)
+    rng = np.random.default_rng(degree)
+    expected = rng.normal(size=degree + 1)
+    values = np.polynomial.chebyshev.chebval(chebyshev.nodes(degree), expected)
+    assert_allclose(chebyshev.to_coefficients(degree) @ values, expected, rtol=0, atol=1e-12)
+    for x in (-1.0, -0.3, 0.77, 1.0):
+        found = chebyshev.basis(x, degree + 1) @ expected
+        assert_allclose(found, np.polynomial.chebyshev.chebval(x, expected), rtol=0, atol=1e-12)

@@ -1,0 +1,70 @@
+"""Shapes, handles and probes for the tests of the deformer."""
+
+from functools import cache
+
+import numpy as np
+from interpolation_shapes import around, subdivided
+
+from engine.deform import Deformer, Handles
+from engine.maps import Boundary, Bounds
+
+
+@cache
+def star_boundary() -> Boundary:
+    """A star with five arms."""
+    radii = np.tile([1.0, 0.42], 5)
+    corners = radii * np.exp(1j * (np.pi / 2 + np.pi / 5 * np.arange(10)))
+    outline = subdivided(corners, 0.35)
+    return Boundary.sample(outline, around(outline, 0.035))
+
+
+@cache
+def bar_boundary() -> Boundary:
+    outline = subdivided(np.array([-2 - 0.5j, 2 - 0.5j, 2 + 0.5j, -2 + 0.5j]), 0.5)
+    return Boundary.sample(outline, around(outline, 0.06))
+
+
+STAR_POINTS = np.concatenate([[0.0], 0.8 * np.exp(1j * np.pi * (0.5 + 0.4 * np.arange(5)))])
+BAR_POINTS = np.array([-1.8, 0.0, 1.8])
+
+
+def star(bounds: Bounds = Bounds()) -> Deformer:
+    boundary = star_boundary()
+    return Deformer(boundary=boundary, handles=Handles.place(boundary, STAR_POINTS), bounds=bounds)
+
+
+def bar(bounds: Bounds = Bounds()) -> Deformer:
+    boundary = bar_boundary()
+    return Deformer(boundary=boundary, handles=Handles.place(boundary, BAR_POINTS), bounds=bounds)
+
+
+def dense_outline(boundary: Boundary, count: int = 30_000):
+    """Return about `count` samples, the vertices among them."""
+    outline = boundary.outline
+    each = count // len(outline)
+    side = np.roll(outline, -1) - outline
+    return (outline[:, None] + side[:, None] * np.arange(each) / each).ravel()
+
+
+def extremes(harmonic_map, points):
+    """Return the largest k and sigma_a and the smallest sigma_b at points."""
+    fz, fzbar = harmonic_map.derivatives(points)
+    a, b = np.abs(fz), np.abs(fzbar)
+    return (b / a).max(), (a + b).max(), (a - b).min()
+
+
+def assert_sound(state, bounds):
+    """Hold a state's map against 30,000 samples of the outline and some inside."""
+    boundary, certificate = state.boundary, state.certificate
+    assert certificate.certified
+    assert certificate.winding == 0
+    assert bounds.allow(k=certificate.k, sigma_a=certificate.sigma_a, sigma_b=certificate.sigma_b)
+    outline = dense_outline(boundary)
+    # Star-shaped about the origin: scaled outlines are inside.
+    inside = np.concatenate([r * boundary.outline for r in (0.2, 0.5, 0.8, 0.97)])
+    k, sigma_a, sigma_b = extremes(state.map, np.concatenate([outline, inside]))
+    assert k <= certificate.k
+    assert sigma_a <= certificate.sigma_a
+    assert sigma_b >= certificate.sigma_b
+    fz, _ = state.map.derivatives(outline)
+    assert abs(np.angle(np.roll(fz, -1) / fz).sum()) < 1e-6

@@ -1,0 +1,238 @@
+"""Documents, random commands on them, and exact comparison, shared by the tests."""
+
+import dataclasses
+import struct
+from collections.abc import Mapping
+from math import inf, tau
+from types import MappingProxyType
+
+import numpy as np
+from shapes import regular_polygon
+
+from app.document import handle_commands, key_commands, settings_commands
+from app.document.commands import Command
+from app.document.easing import HOLD, PRESETS, Easing
+from app.document.keyframe import Handle, Keyframe, Pose, Target
+from app.document.model import Document, PictureFile, new_document
+from app.document.settings import (
+    EXPORT_FORMATS,
+    FRAMINGS,
+    VARIANTS,
+    ExportSettings,
+    FrameRange,
+    Meshing,
+)
+from engine.domain.build import Domain
+from engine.domain.meshing.mesh import Mesh
+from engine.maps.bounds import Bounds
+from engine.maps.certificate import Certificate
+
+RADIUS = 90.0
+CENTRE = 100 + 100j
+PICTURE = PictureFile(data=bytes(range(256)), suffix=".png", size=(200, 200))
+
+
+def disc_domain(n: int = 12) -> Domain:
+    """A disc around the middle of the picture, as a fan of triangles."""
+    outline = CENTRE + RADIUS * regular_polygon(n)
+    fan = [[0, i, i + 1] for i in range(1, n - 1)]
+    mesh = Mesh(vertices=outline, triangles=np.array(fan, dtype=np.int32))
+    return Domain(outline=outline, cage=CENTRE + 1.2 * RADIUS * regular_polygon(n), mesh=mesh)
+
+
+def disc_document() -> Document:
+    """A new document: one key, no handles."""
+    return new_document(PICTURE, disc_domain(), Meshing())
+
+
+def inside(rng: np.random.Generator) -> complex:
+    """A random point of the disc."""
+    return CENTRE + complex(0.9 * RADIUS * np.sqrt(rng.random()) * np.exp(1j * tau * rng.random()))
+
+
+def random_pose(rng: np.random.Generator, document: Document, domain: Domain | None = None) -> Pose:
+    cage = document.domain.cage if domain is None else domain.cage
+    noise = rng.normal(size=(4, len(cage)))
+    return Pose(
+        targets={
+            handle.id: Target(
+                position=inside(rng), rotation=rng.normal() if rng.random() < 0.3 else None
+            )
+            for handle in document.handles
+        },
+        phi=cage * np.exp(1j * rng.normal()) + noise[0] + 1j * noise[1],
+        psi=noise[2] + 1j * noise[3],
+        certificate=Certificate(
+            k=float(rng.choice([rng.random(), inf])),
+            sigma_a=1 + rng.random(),
+            sigma_b=float(rng.choice([rng.random(), -inf])),
+            winding=rng.choice([0, 1, None]),
+            certified=bool(rng.integers(2)),
+        ),
+    )
+
+
+def random_command(rng: np.random.Generator, document: Document) -> Command:
+    """One of all commands; some are not possible on the document."""
+    makers = (_random_handle_command, _random_key_command, _random_settings_command)
+    return makers[rng.integers(3)](rng, document)
+
+
+def _random_handle_command(rng: np.random.Generator, document: Document) -> Command:
+    commands = [
+        handle_commands.add_handle(inside(rng), weight=1 + rng.random()),
+        handle_commands.add_handle(inside(rng), name=f"é {rng.integers(4)}"),
+        handle_commands.add_handle(CENTRE + 2 * RADIUS),
+    ]
+    if document.handles:
+        handle = document.handles[rng.integers(len(document.handles))]
+        commands += [
+            handle_commands.move_handle(handle.id, inside(rng)),
+            handle_commands.rename_handle(handle.id, f"name {rng.integers(3)}"),
+            handle_commands.weigh_handle(handle.id, float(rng.integers(1, 3))),
+            handle_commands.remove_handles({handle.id}),
+        ]
+    return commands[rng.integers(len(commands))]
+
+
+def _random_key_command(rng: np.random.Generator, document: Document) -> Command:
+    count = rng.integers(1, len(document.keys) + 1)
+    frames = [key.frame for key in rng.choice(np.array(document.keys), count, replace=False)]
+    by = int(rng.integers(-8, 9))
+    easing = [*PRESETS.values(), Easing(tuple(rng.random(4).tolist()))][rng.integers(6)]
+    pose = random_pose(rng, document)
+    commands = [
+        key_commands.pose_key(frames[0], pose),
+        key_commands.insert_key(int(rng.integers(80)), pose),
+        key_commands.insert_key(int(rng.integers(80)), pose, easing=easing),
+        key_commands.move_keys(frames, by),
+        key_commands.copy_keys(frames, by),
+        key_commands.delete_keys(frames),
+        key_commands.reverse_keys(frames),
+        key_commands.scale_keys(frames, rng.choice([0.5, 1.0, 1.5, 2.0])),
+        key_commands.scale_time(rng.choice([0.5, 1.0, 1.5, 2.0])),
+        key_commands.match_ends(),
+        key_commands.set_easing(frames, easing),
+        key_commands.set_turns(frames, int(rng.integers(-1, 2))),
+    ]
+    return commands[rng.integers(len(commands))]
+
+
+def _random_settings_command(rng: np.random.Generator, document: Document) -> Command:
+    frames = FrameRange(int(rng.integers(4)), int(rng.integers(4, 90)))
+    poses = [random_pose(rng, document) for _ in document.keys]
+    bounds = Bounds(k=0.5 + rng.random() / 3)
+    domain = disc_domain(int(rng.integers(10, 16)))
+    again = [random_pose(rng, document, domain) for _ in document.keys]
+    commands = [
+        settings_commands.set_fps(float(rng.choice([12, 23.976, 60]))),
+        settings_commands.set_frames(frames),
+        settings_commands.set_work_range(None if rng.random() < 0.5 else frames),
+        settings_commands.set_loop(loop=bool(rng.integers(2))),
+        settings_commands.set_variant(VARIANTS[rng.integers(len(VARIANTS))]),
+        settings_commands.set_anchor(None if rng.random() < 0.3 else inside(rng)),
+        settings_commands.set_export(_random_export(rng)),
+        settings_commands.set_bounds(bounds),
+        settings_commands.set_bounds(bounds, poses),
+        settings_commands.replace_domain(domain, Meshing(detail="fine"), again),
+    ]
+    return commands[rng.integers(len(commands))]
+
+
+def _random_export(rng: np.random.Generator) -> ExportSettings:
+    return ExportSettings(
+        format=EXPORT_FORMATS[rng.integers(len(EXPORT_FORMATS))],
+        size=None if rng.random() < 0.5 else (int(rng.integers(1, 5000)), 1080),
+        background=["transparent", "#12aBef"][rng.integers(2)],
+        framing=FRAMINGS[rng.integers(2)],
+        frames=None if rng.random() < 0.5 else FrameRange(2, int(rng.integers(2, 50))),
+    )
+
+
+def full_document() -> Document:
+    """A document with something other than the default in every field."""
+    empty = disc_document()
+    more = MappingProxyType({"colour": "#123456", "nested": {"list": [1, None, "ü"]}})
+    handles = (
+        Handle(id=1, name="nose", position=110 + 95.5j, weight=2.5, unknown=more),
+        Handle(id=4, name="Fuß\n\ud800", position=60 + 100j),
+    )
+    targets = {
+        1: Target(position=1e3 - 0.1j, rotation=-0.25, unknown=more),
+        4: Target(position=complex(-0.0, 5e-324)),
+    }
+    cage = empty.domain.cage
+    bent = Pose(
+        targets=targets,
+        phi=cage * np.exp(0.3j) + 1 / 3,
+        psi=0.01 * cage.conj(),
+        certificate=Certificate(k=0.25, sigma_a=1.5, sigma_b=0.75, winding=0, certified=True),
+    )
+    folded = Pose(
+        targets=targets,
+        phi=bent.psi,
+        psi=bent.phi,
+        certificate=Certificate(k=inf, sigma_a=2.0, sigma_b=-inf, winding=None, certified=False),
+    )
+    return dataclasses.replace(
+        empty,
+        meshing=Meshing(detail="coarse", triangles=2_000, tolerance=7),
+        handles=handles,
+        next_handle=9,
+        keys=(
+            Keyframe(frame=3, pose=bent, easing=PRESETS["in-out"], unknown=more),
+            Keyframe(frame=10, pose=folded, easing=Easing((0.1, 0.2, 1 / 3, 1.0)), turns=-1),
+            Keyframe(frame=40, pose=bent, easing=HOLD),
+        ),
+        frames=FrameRange(1, 60),
+        work=FrameRange(3, 40),
+        fps=23.976,
+        loop=True,
+        anchor=100.5 + 99j,
+        variant="scaled-eta",
+        bounds=Bounds(k=0.5, sigma_a=3.0, sigma_b=0.4),
+        export=ExportSettings(
+            format="mp4",
+            size=(1920, 1080),
+            background="#00ff7F",
+            framing="fit",
+            frames=FrameRange(3, 9),
+        ),
+        unknown=MappingProxyType({"extension": [1, 2], "bounds": {"tau": 4}}),
+    )
+
+
+def differences(first: object, second: object, where: str = "document") -> list[str]:
+    """Return the places at which two values are not the same to the last bit."""
+    if type(first) is not type(second) and not isinstance(first, Mapping):
+        return [where]
+    if isinstance(first, np.ndarray):
+        same = (first.dtype, first.shape) == (second.dtype, second.shape)
+        return [] if same and first.tobytes() == second.tobytes() else [where]
+    parts, others = _parts(first), _parts(second)
+    if not parts:
+        return [] if _bits(first) == _bits(second) else [where]
+    if parts.keys() != others.keys():
+        return [where]
+    return [
+        place
+        for name, part in parts.items()
+        for place in differences(part, others[name], f"{where}.{name}")
+    ]
+
+
+def _parts(value: object) -> dict[object, object]:
+    if dataclasses.is_dataclass(value):
+        return {field.name: getattr(value, field.name) for field in dataclasses.fields(value)}
+    if isinstance(value, Mapping):
+        return dict(value)
+    return dict(enumerate(value)) if isinstance(value, (tuple, list)) else {}
+
+
+def _bits(value: object) -> object:
+    """Return something that is equal for equal bits only, and for empty containers."""
+    if isinstance(value, complex):
+        return struct.pack("<dd", value.real, value.imag)
+    if isinstance(value, float):
+        return struct.pack("<d", value)
+    return dict(value) if isinstance(value, Mapping) else value

@@ -1,0 +1,152 @@
+"""The whole window without a display, with ImGui's test engine in it."""
+
+import tempfile
+from collections.abc import Callable
+from dataclasses import fields
+from pathlib import Path
+
+from imgui_bundle import ImVec2, hello_imgui, imgui
+from PIL import Image
+
+from app.document.settings import Meshing
+from app.editor.action import do
+from app.editor.actions import files
+from app.editor.jobs import Jobs
+from app.editor.session import Project, Session
+from app.render.gpu.context import create_context
+from app.render.renderer import Renderer
+from app.storage.preferences import Preferences
+from app.ui.window.offscreen import Offscreen
+from app.ui.window.window import Window
+
+Robot = imgui.test_engine.TestContext
+FRAME = 1 / 60
+MOST_FRAMES = 5000
+
+
+class Clock:
+    """A clock that goes only when it is told to."""
+
+    def __init__(self) -> None:
+        self.now = 0.0
+
+    def __call__(self) -> float:
+        return self.now
+
+
+class Harness:
+    """The one window of a process, its clock, and a robot that does what a person would."""
+
+    Key = imgui.Key
+
+    def __init__(self) -> None:
+        self.clock = Clock()
+        self.folder = Path(tempfile.mkdtemp(prefix="lissom-test-"))
+        self.session = Session(clock=self.clock, jobs=Jobs(), folder=self.folder)
+        self._tests = 0
+        gl = create_context()
+        self._window = Window(self.session, lambda: Renderer(gl))
+        self._screen = Offscreen(self._window, gl, with_test_engine=True)
+        self._engine = hello_imgui.get_imgui_test_engine()
+        settings = imgui.test_engine.get_io(self._engine)
+        settings.config_run_speed = imgui.test_engine.TestRunSpeed.fast
+        settings.config_log_to_tty = False
+        self.frames(3)
+
+    def resize(self, size: tuple[int, int], scale: float = 1.0) -> None:
+        """Give the window another size in pixels, and its contents another scale."""
+        self._screen.resize(size)
+        self.session.preferences = Preferences(scale=scale, theme=self.session.preferences.theme)
+        self.frames(3)
+
+    def reset(self) -> None:
+        """Go back to the welcome view of a person who opens Lissom for the first time."""
+        fresh = Session(clock=self.clock, jobs=self.session.jobs, folder=self.folder)
+        self.session.jobs.settle()
+        self.session.jobs.deliver()
+        for field in fields(Session):
+            if field.name not in {"screen", "full_detail"}:
+                setattr(self.session, field.name, getattr(fresh, field.name))
+        # Small meshes, so that the tests are quick.
+        self.session.meshing = Meshing(triangles=2_000, detail="coarse")
+        for leftover in self.folder.iterdir():
+            leftover.unlink()
+        self.frames(3)
+
+    def open(self, path: Path) -> Project:
+        """Open a picture or a project, and wait until it is there with all its in-betweens."""
+        files.load(self.session, path)
+        self.settle()
+        assert self.session.project is not None, [toast.text for toast in self.session.toasts]
+        return self.session.project
+
+    def point(self, place: complex) -> ImVec2:
+        """Return where a place of the drawing's plane is on the screen."""
+        return self._screen.point(place)
+
+    def show_tab(self, title: str) -> None:
+        """Bring a panel to the front."""
+        self._screen.show_tab(title)
+        self.frames(3)
+
+    def text_height(self) -> float:
+        """Return the height of a line of text in pixels."""
+        return imgui.get_style().font_size_base * imgui.get_style().font_scale_main
+
+    def status_height(self) -> float:
+        """Return how much of the window's height the style's paddings take around a line."""
+        style = imgui.get_style()
+        return style.frame_padding.y + style.window_padding.y + style.display_safe_area_padding.y
+
+    def frames(self, count: int = 1) -> None:
+        """Draw some frames, with the clock going on."""
+        for _ in range(count):
+            self._frame()
+
+    def act(self, verb: Callable[..., None], *arguments: object) -> None:
+        """Do something as a panel would ask for it, with its errors told as theirs are."""
+        self._window.ask(do(verb, *arguments))
+        self.frames()
+
+    def settle(self) -> None:
+        """Draw frames until no job is left."""
+        for _ in range(MOST_FRAMES):
+            self.frames()
+            if not self.session.jobs.kinds:
+                break
+            assert self.session.jobs.settle(), self.session.jobs.kinds
+        self.frames(2)
+
+    def run(self, play: Callable[[Robot], None]) -> None:
+        """Let the test engine's robot do something with the window, as a person would."""
+        self._tests += 1
+        failures: list[BaseException] = []
+        test = imgui.test_engine.register_test(self._engine, "lissom", f"{self._tests}")
+
+        def body(robot: Robot) -> None:
+            try:
+                play(robot)
+            except BaseException as error:  # noqa: BLE001 - raised again below
+                failures.append(error)
+                robot.finish(imgui.test_engine.TestStatus.error)
+
+        test.test_func = body
+        imgui.test_engine.queue_test(self._engine, test)
+        for _ in range(MOST_FRAMES):
+            self.frames()
+            if imgui.test_engine.is_test_queue_empty(self._engine):
+                break
+        if failures:
+            raise failures[0]
+        assert test.output.status == imgui.test_engine.TestStatus.success, (
+            test.output.log.get_text()
+        )
+
+    def picture(self) -> Image.Image:
+        """Return what is on the screen."""
+        self._frame(painted=True)
+        return self._screen.picture()
+
+    def _frame(self, *, painted: bool = False) -> None:
+        self.clock.now += FRAME
+        self._screen.frame(painted=painted)

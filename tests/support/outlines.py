@@ -1,0 +1,73 @@
+"""What must hold of every outline and its cage."""
+
+import numpy as np
+import shapely
+from scipy import ndimage
+
+from engine.arrays import Booleans, Complexes, Floats
+from engine.domain.outline.tracing import Outline
+from engine.geometry.polygon import (
+    as_xy,
+    box_diagonal,
+    contains,
+    distance_to_boundary,
+    edges,
+    is_simple,
+    signed_area,
+)
+
+SPECK = 2e-4
+
+
+def check_cage(outline: Complexes, cage: Complexes) -> None:
+    assert len(cage) == len(outline)
+    assert signed_area(cage) > 0
+    around = shapely.Polygon(as_xy(cage))
+    assert around.is_valid
+    assert around.contains_properly(shapely.Polygon(as_xy(outline)))
+    nearest = min(
+        distance_to_boundary(outline, cage).min(), distance_to_boundary(cage, outline).min()
+    )
+    assert nearest >= 0.0003 * box_diagonal(outline)
+
+
+def diagonal(mask: Booleans) -> float:
+    rows, columns = np.nonzero(mask)
+    return float(np.hypot(np.ptp(rows) + 1, np.ptp(columns) + 1))
+
+
+def without_specks(mask: Booleans) -> Booleans:
+    labels, _ = ndimage.label(mask, np.ones((3, 3)))
+    areas = np.bincount(labels.ravel())
+    areas[0] = 0
+    return np.asarray((areas >= SPECK * areas.sum())[labels])
+
+
+def corners_of(mask: Booleans) -> Complexes:
+    """The four corners of every pixel, in the outline's coordinates."""
+    padded = np.pad(mask, 1)
+    nodes = padded[:-1, :-1] | padded[:-1, 1:] | padded[1:, :-1] | padded[1:, 1:]
+    rows, columns = np.nonzero(nodes)
+    return columns + 1j * (mask.shape[0] - rows)
+
+
+def interior_angles(polygon: Complexes) -> Floats:
+    along = edges(polygon)
+    return np.degrees(np.pi - np.angle(along / np.roll(along, 1)))
+
+
+def check_outline(mask: Booleans, outline: Outline, *, most: int = 200) -> None:
+    points, size = outline.points, diagonal(mask)
+    assert is_simple(points)
+    assert signed_area(points) > 0
+    check_cage(points, outline.cage)
+    lengths = np.abs(edges(points))
+    assert lengths.min() >= 0.001 * size
+    assert lengths.max() <= 0.0701 * size
+    assert interior_angles(points).min() >= 20
+    assert interior_angles(points).max() <= 345
+    assert len(points) <= most
+    # Whole pixels, not only their centres.
+    assert contains(points, corners_of(without_specks(mask)), tolerance=1e-9).all()
+    for array in (points, outline.cage):
+        assert not array.flags.writeable

@@ -1,0 +1,82 @@
+"""The rooms of the project: their layers, their size, and the faces by which they are entered."""
+
+import ast
+from itertools import chain
+from pathlib import Path
+
+import pytest
+from importlinter.cli import lint_imports
+
+ROOT = Path(__file__).parents[1]
+ROOTS = ("app", "engine")
+MOST_IN_A_ROOM = 12  # modules and sub-packages together
+MOST_LOOSE = 5  # modules beside the packages of app and engine
+# Rooms whose modules are found by their names, and that nothing else imports from.
+BY_NAME = {"app.cli", "app.cli.bench", "app.cli.commands"}
+
+
+def module_files() -> dict[str, Path]:
+    """Return the file of every module and package, by its dotted name."""
+    files = {}
+    for path in chain.from_iterable((ROOT / root).rglob("*.py") for root in ROOTS):
+        parts = path.relative_to(ROOT).with_suffix("").parts
+        files[".".join(parts[:-1] if parts[-1] == "__init__" else parts)] = path
+    return files
+
+
+FILES = module_files()
+PACKAGES = sorted(name for name, path in FILES.items() if path.name == "__init__.py")
+
+
+def test_the_layers_keep_their_direction():
+    assert lint_imports(config_filename="pyproject.toml", is_debug_mode=False) == 0
+
+
+@pytest.mark.parametrize("package", PACKAGES)
+def test_a_room_can_be_seen_at_a_glance(package):
+    folder = FILES[package].parent
+    modules = {path.stem for path in folder.glob("*.py")} - {"__init__"}
+    rooms = {path.parent.name for path in folder.glob("*/__init__.py")}
+    assert len(modules | rooms) <= MOST_IN_A_ROOM
+    if package in ROOTS:
+        assert len(modules) <= MOST_LOOSE
+
+
+@pytest.mark.parametrize("package", PACKAGES)
+def test_a_room_says_what_goes_in_what_comes_out_and_what_it_imports(package):
+    text = ast.get_docstring(ast.parse(FILES[package].read_text(encoding="utf-8"))) or ""
+    for what in ("In: ", "Out: ", "Imports: "):
+        assert f"\n{what}" in text, f"{package} does not say {what!r}"
+
+
+@pytest.mark.parametrize("package", PACKAGES)
+def test_a_face_has_nothing_but_public_names(package):
+    docstring, *statements = ast.parse(FILES[package].read_text(encoding="utf-8")).body
+    assert isinstance(docstring, ast.Expr)
+    for statement in statements:
+        assert isinstance(statement, (ast.ImportFrom, ast.Assign))
+
+
+@pytest.mark.parametrize("name", sorted(FILES))
+def test_a_room_is_entered_by_its_face(name):
+    for node in ast.walk(ast.parse(FILES[name].read_text(encoding="utf-8"))):
+        if not isinstance(node, ast.ImportFrom) or (node.module or "").split(".")[0] not in ROOTS:
+            continue
+        module = node.module or ""
+        package = module if module in PACKAGES else module.rpartition(".")[0]
+        is_inside = name == package or name.startswith(f"{package}.")
+        if is_inside or package in ROOTS or package in BY_NAME:
+            continue
+        assert module == package, f"{name} imports from {module}, not from {package}"
+        for alias in node.names:
+            is_room = f"{module}.{alias.name}" in PACKAGES
+            assert is_room or alias.name in public_names(package), (
+                f"{name} takes {alias.name} from {package}, whose face does not have it"
+            )
+
+
+def public_names(package: str) -> set[str]:
+    for node in ast.parse(FILES[package].read_text(encoding="utf-8")).body:
+        if isinstance(node, ast.Assign) and ast.unparse(node.targets[0]) == "__all__":
+            return set(ast.literal_eval(node.value))
+    return set()
