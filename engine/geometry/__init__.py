@@ -1,34 +1,44 @@
-"""Plane geometry of closed polygons, for every room above.
+"""Plane geometry of segments and closed polygons, for every room above.
 
-In: polygons by their vertices, and points.
-Out: samples, distances, areas, and whether something is inside.
+In: polygons by their vertices, segments by their ends, and points.
+Out: samples, pieces, triangles, distances, areas, and whether something is inside.
 Imports: `engine.arrays`, `engine.errors`.
 """
 
 from engine.geometry.polygon import (
     as_xy,
     box_diagonal,
+    constrained_delaunay,
     contains,
     deepest_point,
     diameter,
     distance_to_boundary,
-    distance_to_segments,
     edges,
+    require_around,
+    require_inside,
     require_simple,
     sample_graded,
     signed_area,
+    winding,
 )
+from engine.geometry.segments import Pieces, bisect, distance_to_segments
 
 __all__ = [
+    "Pieces",
     "as_xy",
+    "bisect",
     "box_diagonal",
+    "constrained_delaunay",
     "contains",
     "deepest_point",
     "diameter",
     "distance_to_boundary",
     "distance_to_segments",
     "edges",
+    "require_around",
+    "require_inside",
     "require_simple",
     "sample_graded",
     "signed_area",
+    "winding",
 ]

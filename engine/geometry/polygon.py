@@ -3,8 +3,9 @@
 import numpy as np
 import shapely
 
-from engine.arrays import Booleans, Complexes, Floats
+from engine.arrays import Booleans, Complexes, Floats, Indices
 from engine.errors import EngineError
+from engine.geometry.segments import Pieces, bisect, distance_to_segments
 
 
 def edges(polygon: Complexes) -> Complexes:
@@ -53,16 +54,6 @@ def require_simple(polygon: Complexes, name: str) -> None:
         raise EngineError(f"The {name} runs clockwise; give its vertices counter-clockwise.")
 
 
-def distance_to_segments(points: Complexes, starts: Complexes, ends: Complexes) -> Floats:
-    """Return the distances (p, s) between each of p points and each of s segments."""
-    along = ends - starts
-    offset = points[:, None] - starts
-    length2 = np.maximum(np.abs(along) ** 2, np.finfo(np.float64).tiny)
-    parameter = np.clip((offset * along.conj()).real / length2, 0.0, 1.0)
-    distances: Floats = np.abs(offset - parameter * along)
-    return distances
-
-
 def distance_to_boundary(polygon: Complexes, points: Complexes) -> Floats:
     """Return the distance (p,) of each point from the closed polyline."""
     ring = shapely.LinearRing(as_xy(polygon))
@@ -103,6 +94,75 @@ def contains(polygon: Complexes, points: Complexes, *, tolerance: float = 0.0) -
     return inside
 
 
+def require_inside(
+    outline: Complexes, points: Complexes, name: str, *, tolerance: float = 0.0
+) -> None:
+    """Raise `EngineError` unless all points lie in the closed polygon, or that near to it.
+
+    Parameters
+    ----------
+    outline : complex128, shape (n,)
+    points : complex128, shape (p,)
+    name : str
+        What one of the points is called in the error.
+    tolerance : float
+        As in `contains`.
+    """
+    outside = np.flatnonzero(~contains(outline, points, tolerance=tolerance))
+    if len(outside):
+        number = f" {outside[0]}" if len(points) > 1 else ""
+        count = f" ({len(outside)} of {len(points)} are)" if len(outside) > 1 else ""
+        z = points[outside[0]]
+        raise EngineError(
+            f"The {name}{number} at ({z.real:.6g}, {z.imag:.6g}) is outside the outline{count}; "
+            "place it on the shape."
+        )
+
+
+def require_around(cage: Complexes, outline: Complexes) -> None:
+    """Raise `EngineError` unless a cage winds once around the outline, with room between them.
+
+    Only that: published cages are known that cross themselves elsewhere.
+
+    Parameters
+    ----------
+    cage, outline : complex128, shapes (n,) and (p,)
+    """
+    if shapely.intersects(shapely.LinearRing(as_xy(cage)), shapely.Polygon(as_xy(outline))):
+        raise EngineError(
+            "The cage touches or crosses the outline; the outline must lie strictly inside it."
+        )
+    if winding(cage, complex(outline[0])) != 1:
+        raise EngineError(
+            "The cage does not run once counter-clockwise around the outline; check its order."
+        )
+
+
+def winding(polygon: Complexes, point: complex) -> int:
+    """Return how often a polygon runs counter-clockwise around a point that is not on it."""
+    spokes = polygon - point
+    return round(float(np.angle(np.roll(spokes, -1) / spokes).sum() / (2 * np.pi)))
+
+
+def constrained_delaunay(polygon: Complexes) -> Indices:
+    """Cut the inside of a simple polygon into triangles without further points.
+
+    Returns
+    -------
+    intp, shape (n - 2, 3)
+        The vertices of each triangle, counter-clockwise: the constrained Delaunay triangulation.
+    """
+    inside = shapely.Polygon(as_xy(polygon))
+    parts = shapely.get_parts(shapely.constrained_delaunay_triangles(inside))
+    corners = shapely.get_coordinates(parts).reshape(-1, 4, 2)[:, :3] @ [1, 1j]
+    by_place = np.argsort(polygon)
+    triangles: Indices = by_place[np.searchsorted(polygon[by_place], corners)]
+    a, b, c = polygon[triangles].T
+    clockwise = ((b - a).conj() * (c - a)).imag < 0
+    triangles[clockwise] = triangles[clockwise][:, ::-1]
+    return triangles
+
+
 def sample_graded(
     polygon: Complexes, centres: Complexes, *, ratio: float, longest: float
 ) -> Complexes:
@@ -133,25 +193,11 @@ def sample_graded(
     EngineError
         If a centre lies on the polygon.
     """
-    pending = np.arange(len(polygon), dtype=np.float64)
-    width = np.ones(len(polygon))
-    starts, ends = polygon, np.roll(polygon, -1)
-    places: list[Floats] = []
-    samples: list[Complexes] = []
-    while len(starts):
-        distance = distance_to_segments(centres, starts, ends).min(axis=0)
+
+    def is_fine(pieces: Pieces) -> Booleans:
+        distance = distance_to_segments(centres, pieces.starts, pieces.ends).min(axis=0)
         if np.any(distance == 0):
             raise EngineError("A cage vertex lies on the outline; the cage must keep a distance.")
-        fine = np.abs(ends - starts) <= np.minimum(ratio * distance, longest)
-        places.append(pending[fine])
-        samples.append(starts[fine])
-        coarse = ~fine
-        half = width[coarse] / 2
-        middle = (starts[coarse] + ends[coarse]) / 2
-        pending = np.concatenate([pending[coarse], pending[coarse] + half])
-        starts, ends = (
-            np.concatenate([starts[coarse], middle]),
-            np.concatenate([middle, ends[coarse]]),
-        )
-        width = np.concatenate([half, half])
-    return np.concatenate(samples)[np.argsort(np.concatenate(places))]
+        return np.asarray(pieces.lengths <= np.minimum(ratio * distance, longest))
+
+    return bisect(Pieces.whole(polygon, np.roll(polygon, -1)), is_fine).starts

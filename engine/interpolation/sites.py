@@ -9,13 +9,13 @@ from engine.arrays import Complexes, as_points, readonly
 from engine.errors import EngineError
 from engine.geometry import (
     box_diagonal,
-    contains,
     deepest_point,
     diameter,
+    require_around,
+    require_inside,
     require_simple,
     sample_graded,
 )
-from engine.maps import require_around
 from engine.paths import ON_OUTLINE, IntegrationPaths, lay_paths, mesh_network, scattered_network
 
 # Segments between the samples of the outline, over the distance to the nearest cage vertex and over
@@ -97,8 +97,8 @@ def prepare_sites(
     require_around(cage, outline)
     tolerance = ON_OUTLINE * diameter(outline)
     root = np.array([deepest_point(outline)]) if anchor is None else _single(anchor)
-    _require_inside(outline, root, tolerance, "anchor")
-    _require_inside(outline, points, tolerance, "point")
+    require_inside(outline, root, "anchor", tolerance=tolerance)
+    require_inside(outline, points, "point", tolerance=tolerance)
     if triangles is None:
         network = scattered_network(outline, points, root)
     else:
@@ -131,15 +131,3 @@ def _as_triangles(values: npt.ArrayLike) -> npt.NDArray[np.int32]:
             f"{triangles.shape}."
         )
     return triangles.astype(np.int32)
-
-
-def _require_inside(outline: Complexes, points: Complexes, tolerance: float, name: str) -> None:
-    outside = np.flatnonzero(~contains(outline, points, tolerance=tolerance))
-    if len(outside):
-        number = f" {outside[0]}" if len(points) > 1 else ""
-        count = f" ({len(outside)} points are)" if len(outside) > 1 else ""
-        z = points[outside[0]]
-        raise EngineError(
-            f"The {name}{number} at ({z.real:.6g}, {z.imag:.6g}) is outside the outline{count}; "
-            "in-betweens exist only inside it."
-        )

@@ -8,7 +8,7 @@ Imports: `engine.geometry`.
 from engine.maps import distortion
 from engine.maps.boundary import Boundary
 from engine.maps.bounds import Bounds
-from engine.maps.cauchy import cauchy_coordinates, cauchy_derivatives, evaluate, require_around
+from engine.maps.cauchy import cauchy_coordinates, cauchy_derivatives, evaluate
 from engine.maps.certificate import Certificate, certify, certify_samples
 from engine.maps.harmonic_map import HarmonicMap
 
@@ -23,5 +23,4 @@ __all__ = [
     "certify_samples",
     "distortion",
     "evaluate",
-    "require_around",
 ]

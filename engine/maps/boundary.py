@@ -6,8 +6,14 @@ from typing import Self
 import numpy as np
 
 from engine.arrays import Complexes, Floats, Indices, as_points, readonly
-from engine.geometry import box_diagonal, distance_to_segments, require_simple, sample_graded
-from engine.maps.cauchy import cauchy_coordinates, cauchy_derivatives, require_around
+from engine.geometry import (
+    box_diagonal,
+    distance_to_segments,
+    require_around,
+    require_simple,
+    sample_graded,
+)
+from engine.maps.cauchy import cauchy_coordinates, cauchy_derivatives
 
 # Segments of the outline: at most this fraction of their distance to the nearest cage vertex, and
 # of the diagonal of the outline. Measured: the extremes on the samples are then within a few

@@ -17,40 +17,13 @@ formulas give the values of another function (0 for constants), which no caller 
 from collections.abc import Iterator
 
 import numpy as np
-import shapely
 
 from engine.arrays import Complexes
 from engine.errors import EngineError
-from engine.geometry import as_xy
 
 TWO_PI_I = 2j * np.pi
 # Entries of one block of points × cage vertices: 16 bytes each, so that a few blocks stay in cache.
 BLOCK_ENTRIES = 1 << 17
-
-
-def require_around(cage: Complexes, outline: Complexes) -> None:
-    """Refuse a cage that does not wind once around the outline, with room between them.
-
-    Only that: published cages are known that cross themselves elsewhere.
-
-    Parameters
-    ----------
-    cage, outline : complex128, shapes (n,) and (p,)
-
-    Raises
-    ------
-    EngineError
-        If the cage meets the outline, or does not run counter-clockwise around it.
-    """
-    if shapely.intersects(shapely.LinearRing(as_xy(cage)), shapely.Polygon(as_xy(outline))):
-        raise EngineError(
-            "The cage touches or crosses the outline; the outline must lie strictly inside it."
-        )
-    turns = edge_logarithms(cage, outline[:1]).imag.sum() / (2 * np.pi)
-    if round(float(turns)) != 1:
-        raise EngineError(
-            "The cage does not run once counter-clockwise around the outline; check its order."
-        )
 
 
 def edge_logarithms(cage: Complexes, points: Complexes) -> Complexes:

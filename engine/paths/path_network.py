@@ -13,7 +13,7 @@ import shapely
 from engine.arrays import Booleans, Complexes, Indices, Integers
 from engine.domain.meshing import Mesh
 from engine.errors import EngineError
-from engine.geometry import as_xy, box_diagonal
+from engine.geometry import as_xy, box_diagonal, constrained_delaunay
 from engine.paths.spanning_tree import breadth_first_parents
 
 CELL = 1 / 50  # longest edge of the triangles between scattered points, over the box diagonal
@@ -96,7 +96,9 @@ def mesh_network(
 
 def scattered_network(outline: Complexes, points: Complexes, anchor: Complexes) -> Network:
     """Join the anchor (1,) to scattered points (m,) inside a simple polygon, or on it."""
-    corners, triangles = _refine(*_cut_into_triangles(outline), CELL * box_diagonal(outline))
+    corners, triangles = _refine(
+        outline, constrained_delaunay(outline), CELL * box_diagonal(outline)
+    )
     portals, sides = _portals(corners, triangles)
     ends = np.concatenate([anchor, points])
     cells = shapely.STRtree(shapely.polygons(as_xy(corners)[triangles]))
@@ -127,16 +129,6 @@ def _crosses(outline: Complexes, starts: Complexes, ends: Complexes) -> Booleans
     crosses = np.zeros(len(starts), dtype=np.bool_)
     crosses[touching] = ~shapely.covers(room, segments[touching])
     return crosses
-
-
-def _cut_into_triangles(outline: Complexes) -> tuple[Complexes, Indices]:
-    """Cut a simple polygon into triangles without adding corners."""
-    cells = shapely.get_parts(
-        shapely.constrained_delaunay_triangles(shapely.Polygon(as_xy(outline)))
-    )
-    rings = shapely.get_coordinates(cells).reshape(-1, 4, 2)[:, :3]
-    corners, triangles = np.unique(rings[..., 0] + 1j * rings[..., 1], return_inverse=True)
-    return corners, triangles.reshape(-1, 3)
 
 
 def _sides(triangles: Indices) -> tuple[Indices, Indices]:

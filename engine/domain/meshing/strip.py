@@ -9,8 +9,7 @@ from scipy.sparse.csgraph import connected_components
 
 from engine.arrays import Booleans, Complexes, Indices
 from engine.domain.meshing.half_edges import OUTLINE, HalfEdgeMesh, disjoint
-from engine.domain.meshing.mesh import signed_areas
-from engine.geometry import as_xy, edges
+from engine.geometry import as_xy, constrained_delaunay, edges
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -64,23 +63,11 @@ def triangulate_strip(
     intp, shape (m, 3)
         Counter-clockwise triangles on the points of the lattice.
     """
-    mesh = HalfEdgeMesh(lattice.points, _constrained_delaunay(outline))
+    mesh = HalfEdgeMesh(lattice.points, constrained_delaunay(outline))
     _cut_border(mesh, ring)
     rim = np.flatnonzero(lattice.twins == OUTLINE)
     _insert_all(mesh, np.concatenate([np.unique(lattice.origins[rim]), loose]))
     return mesh.triangles[~_enclosed(mesh, *lattice.ends(rim))]
-
-
-def _constrained_delaunay(outline: Complexes) -> Indices:
-    """Triangulate the inside of a polygon without further points."""
-    polygon = shapely.Polygon(as_xy(outline))
-    parts = shapely.get_parts(shapely.constrained_delaunay_triangles(polygon))
-    corners = shapely.get_coordinates(parts).reshape(-1, 4, 2)[:, :3] @ [1, 1j]
-    by_place = np.argsort(outline)
-    triangles: Indices = by_place[np.searchsorted(outline[by_place], corners)]
-    clockwise = signed_areas(outline, triangles) < 0
-    triangles[clockwise] = triangles[clockwise][:, ::-1]
-    return triangles
 
 
 def _cut_border(mesh: HalfEdgeMesh, ring: Ring) -> None:

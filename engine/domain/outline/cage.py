@@ -5,13 +5,13 @@ import numpy as np
 from engine.arrays import Booleans, Complexes, Floats, readonly
 from engine.domain.outline.crossings import crossing_edges, self_crossings
 from engine.domain.outline.curve import arc_lengths, limit_growth
+from engine.domain.outline.gaps import empty_disc_radius
 from engine.errors import EngineError
 from engine.geometry import box_diagonal, distance_to_boundary, edges, require_simple
 
 MITER_LIMIT = 2.0  # of the offset: how far a sharp corner of the cage stands out
 ROOM = 0.7  # of the way to the middle of a gap
 LEAST_DISTANCE = 0.0003  # of the diagonal
-FACING, SQUARE_ON = 0.2, 0.7  # cosines: what lies opposite, and what straight ahead
 LEAST_ALONG = 0.1  # cosine between an edge of the cage and of the outline
 SLOPE = 0.5  # by which the offset may change per length of an edge
 SHRINKING = 0.8
@@ -85,23 +85,18 @@ def _miters(outline: Complexes) -> Complexes:
 def _room_outside(outline: Complexes, directions: Complexes) -> Floats:
     """Return how far the offset may go at each vertex (n,) before it fills half a gap.
 
-    Two edges come closest at a vertex of one of them, so vertices against edges are enough. The
-    largest disc that touches a vertex with normal m from outside and passes through q has the
-    radius |q - p| / (2 cos a), a the angle between m and q - p.
+    Two edges come closest at a vertex of one of them, so vertices against edges are enough.
     """
     along = edges(outline)
     to_start = outline[None, :] - outline[:, None]
     parameter = np.clip(-(to_start * along.conj()).real / np.abs(along) ** 2, 0, 1)
     across = to_start + parameter * along  # from vertex to the nearest point of each edge
-    distance = np.abs(across)
     outside = (along.conj() * to_start).imag > 0
-    cosine = (across * (directions / np.abs(directions)).conj()[:, None]).real
-    cosine /= np.maximum(distance, np.finfo(np.float64).tiny)
-    facing = outside & (cosine > FACING)
+    normals = directions / np.abs(directions)
+    radius = np.where(outside, empty_disc_radius(normals[:, None], across), np.inf)
     here = np.arange(len(outline))
-    facing[here, here] = facing[here, here - 1] = False  # a vertex's own edges
-    half = np.where(facing, distance / 2, np.inf)
-    radius = half / np.maximum(cosine, SQUARE_ON)
+    radius[here, here] = radius[here, here - 1] = np.inf  # a vertex's own edges
+    half = np.where(np.isfinite(radius), np.abs(across) / 2, np.inf)
     # A convex vertex itself approaches the other side; in a notch the walls do.
     convex = (np.roll(along, 1).conj() * along).imag > 0
     at_vertex = np.where(convex, radius.min(axis=1) / np.abs(directions), half.min(axis=1))

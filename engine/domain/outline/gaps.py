@@ -29,12 +29,6 @@ def half_gaps(curve: Complexes, normals: Complexes, *, reach: float, separation:
     -------
     float64, shape (n,)
         The radius, or infinity where no other part of the curve lies opposite within 2 `reach`.
-
-    Notes
-    -----
-    The disc that touches p with normal n and passes through q has the radius |q - p| / (2 cos a),
-    a the angle between n and q - p. The cosine is kept above 0.7 because normals at corners point
-    past what is nearest to them; that only makes the gap look narrower.
     """
     radius = np.full(len(curve), np.inf)
     spacing = float(np.abs(edges(curve)).mean())
@@ -47,10 +41,28 @@ def half_gaps(curve: Complexes, normals: Complexes, *, reach: float, separation:
     across = curve[second] - curve[first]
     limbs = apart * spacing > DETOUR * np.abs(across)
     first, second, across = first[limbs], second[limbs], across[limbs]
-    distance = np.abs(across)
     for here, direction in ((first, across), (second, -across)):
-        cosine = (direction * normals[here].conj()).real / np.maximum(distance, 1e-300)
-        facing = cosine > FACING
-        half = distance[facing] / (2 * np.maximum(cosine[facing], SQUARE_ON))
-        np.minimum.at(radius, here[facing], half)
+        np.minimum.at(radius, here, empty_disc_radius(normals[here], direction))
     return radius
+
+
+def empty_disc_radius(normals: Complexes, across: Complexes) -> Floats:
+    """Return the radius of the disc that touches a curve from outside and another place of it.
+
+    Parameters
+    ----------
+    normals : complex128
+        Outward unit normals m where the disc touches.
+    across : complex128, of a shape that broadcasts with that of `normals`
+        Vectors q - p from there to the other places.
+
+    Returns
+    -------
+    float64
+        |q - p| / (2 cos a), a the angle between m and q - p; infinity where q does not lie
+        opposite. The cosine is kept above 0.7 because normals at corners point past what is nearest
+        to them; that only makes the disc smaller.
+    """
+    distance = np.abs(across)
+    cosine = (across * normals.conj()).real / np.maximum(distance, np.finfo(np.float64).tiny)
+    return np.where(cosine > FACING, distance / (2 * np.maximum(cosine, SQUARE_ON)), np.inf)

@@ -1,0 +1,116 @@
+"""Straight segments: their distances from points, and pieces of them that are halved over again."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Self
+
+import numpy as np
+
+from engine.arrays import Booleans, Complexes, Floats, Indices
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Pieces:
+    """Dyadic pieces of segments, in order of the segments and along each of them.
+
+    Build them with `Pieces.whole`, and cut them with `halved` or `bisect`.
+
+    Parameters
+    ----------
+    origin, span : complex128, shape (s,)
+        Where each segment starts, and the vector from there to its end.
+    segment : intp, shape (c,)
+        The segment that each piece belongs to.
+    place, width : float64, shape (c,)
+        Where the piece starts and how long it is, as shares of its segment: exact numbers.
+    """
+
+    origin: Complexes
+    span: Complexes
+    segment: Indices
+    place: Floats
+    width: Floats
+
+    @classmethod
+    def whole(cls, starts: Complexes, ends: Complexes) -> Self:
+        """Return every segment (s,) as one piece."""
+        count = len(starts)
+        return cls(
+            origin=starts,
+            span=ends - starts,
+            segment=np.arange(count),
+            place=np.zeros(count),
+            width=np.ones(count),
+        )
+
+    def __len__(self) -> int:
+        """Return the number of pieces."""
+        return len(self.segment)
+
+    @property
+    def starts(self) -> Complexes:
+        """Where the pieces start (c,)."""
+        return self.origin[self.segment] + self.place * self.span[self.segment]
+
+    @property
+    def ends(self) -> Complexes:
+        """Where the pieces end (c,); of two neighbours the one's end is the other's start."""
+        return self.origin[self.segment] + (self.place + self.width) * self.span[self.segment]
+
+    @property
+    def lengths(self) -> Floats:
+        """How long the pieces are (c,)."""
+        return self.width * np.abs(self.span[self.segment])
+
+    def select(self, chosen: Booleans) -> "Pieces":
+        """Return the pieces that are marked in `chosen` (c,)."""
+        return Pieces(
+            origin=self.origin,
+            span=self.span,
+            segment=self.segment[chosen],
+            place=self.place[chosen],
+            width=self.width[chosen],
+        )
+
+    def halved(self, chosen: Booleans) -> "Pieces":
+        """Return the pieces with two halves instead of each that is marked in `chosen` (c,)."""
+        parent = np.repeat(np.arange(len(self)), 1 + chosen)
+        second = np.diff(parent, prepend=-1) == 0
+        width = np.where(chosen, self.width / 2, self.width)[parent]
+        return Pieces(
+            origin=self.origin,
+            span=self.span,
+            segment=self.segment[parent],
+            place=self.place[parent] + second * width,
+            width=width,
+        )
+
+
+def bisect(pieces: Pieces, is_fine: Callable[[Pieces], Booleans]) -> Pieces:
+    """Halve pieces until each of them is fine.
+
+    Parameters
+    ----------
+    pieces : Pieces
+    is_fine : callable
+        Tells for each of some pieces (c,) whether it may stay as it is; every piece is asked about
+        once.
+    """
+    new = np.ones(len(pieces), dtype=np.bool_)
+    while True:
+        coarse = new.copy()
+        coarse[new] = ~is_fine(pieces.select(new))
+        if not coarse.any():
+            return pieces
+        pieces = pieces.halved(coarse)
+        new = np.repeat(coarse, 1 + coarse)
+
+
+def distance_to_segments(points: Complexes, starts: Complexes, ends: Complexes) -> Floats:
+    """Return the distances (p, s) between each of p points and each of s segments."""
+    along = ends - starts
+    offset = points[:, None] - starts
+    length2 = np.maximum(np.abs(along) ** 2, np.finfo(np.float64).tiny)
+    parameter = np.clip((offset * along.conj()).real / length2, 0.0, 1.0)
+    distances: Floats = np.abs(offset - parameter * along)
+    return distances

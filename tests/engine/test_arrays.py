@@ -1,0 +1,51 @@
+import numpy as np
+import pytest
+from numpy.testing import assert_array_equal
+
+from engine.arrays import as_points, readonly
+from engine.errors import EngineError
+
+
+def test_a_frozen_array_is_a_copy_that_nobody_writes_to() -> None:
+    values = np.arange(6.0).reshape(2, 3)
+    frozen = readonly(values)
+    values[0, 0] = 9
+    assert_array_equal(frozen, [[0, 1, 2], [3, 4, 5]])
+    with pytest.raises(ValueError, match="read-only"):
+        frozen[0, 0] = 1
+    assert values.flags.writeable
+
+
+def test_a_view_of_a_writable_array_is_copied() -> None:
+    values = np.arange(6.0)
+    view = values[:3]
+    view.setflags(write=False)
+    frozen = readonly(view)
+    values[0] = 9
+    assert frozen[0] == 0
+
+
+def test_a_frozen_array_is_not_copied_again() -> None:
+    frozen = readonly(np.arange(3.0))
+    assert readonly(frozen) is frozen
+
+
+@pytest.mark.parametrize(
+    ("values", "reason"),
+    [
+        (["a"], "must be complex numbers"),
+        ([[1, 2]], "one-dimensional"),
+        ([1, 2], "at least 3 entries, not 2"),
+        ([0, 1, np.nan], "must be finite, but entry 2 is"),
+        ([0, complex(0, np.inf), 1], "must be finite, but entry 1 is"),
+    ],
+)
+def test_points_that_cannot_be_used_are_refused_in_words(values: list, reason: str) -> None:
+    with pytest.raises(EngineError, match=reason):
+        as_points(values, "outline", at_least=3)
+
+
+def test_points_become_complex_and_frozen() -> None:
+    points = as_points([1, 2, 3], "points")
+    assert points.dtype == np.complex128
+    assert not points.flags.writeable
