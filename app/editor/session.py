@@ -15,7 +15,7 @@ from app.motion import Box, Build, Motion, Reach, Shown
 from app.render import View, fit_view
 from app.reports import Curves
 from app.solving import Drag, Renewal, Rig
-from app.storage import Picture, Preferences
+from app.storage import Autosave, Picture, Preferences
 from engine.arrays import Bytes
 from engine.maps import Bounds
 
@@ -304,6 +304,7 @@ class Session:
     folder: Path  # for settings and unsaved work
     preferences: Preferences = field(default_factory=Preferences)
     kept_preferences: Preferences = field(init=False)  # as they are on the disk
+    autosave: Autosave = field(init=False)
     project: Project | None = None
     overlays: Overlays = field(default_factory=Overlays)
     screen: tuple[int, int] = (640, 480)  # pixels of the viewport
@@ -324,8 +325,9 @@ class Session:
     quitting: bool = False
 
     def __post_init__(self) -> None:
-        """Take the preferences to be as they were read."""
+        """Take the preferences to be as they were read, and nothing to be kept yet."""
         self.kept_preferences = self.preferences
+        self.autosave = Autosave(self.folder)
 
     @property
     def usual_folder(self) -> Path:

@@ -6,7 +6,7 @@ Imports: `app.document`.
 """
 
 from app.storage.assets import sample_images, shader_source
-from app.storage.autosave import SECONDS, find_leftovers, forget_autosave, write_autosave
+from app.storage.autosave import SECONDS, Autosave, find_leftovers, remove_leftover
 from app.storage.files import (
     atomic_file,
     check_writable,
@@ -45,6 +45,7 @@ __all__ = [
     "MOST_GHOSTS",
     "SECONDS",
     "SMALLEST_SCALE",
+    "Autosave",
     "JsonObject",
     "Picture",
     "Preferences",
@@ -57,11 +58,11 @@ __all__ = [
     "check_writable",
     "decode_picture",
     "find_leftovers",
-    "forget_autosave",
     "load_preferences",
     "load_project",
     "open_picture",
     "read_arrays",
+    "remove_leftover",
     "sample_images",
     "save_preferences",
     "save_project",
@@ -70,5 +71,4 @@ __all__ = [
     "without_repeats",
     "write_arrays",
     "write_atomically",
-    "write_autosave",
 ]

@@ -1,67 +1,106 @@
-"""Unsaved work that survives a crash: one file for each running window, removed when it is safe."""
+"""Unsaved work that survives a crash: one file for each running window, removed when it is safe.
 
-import ctypes
+Beside each file lies one that its window holds a lock on. The system lets go of a lock however a
+process ends, whereas a process's number is soon given to another one and proves nothing.
+"""
+
 import os
-import re
 import secrets
 import sys
+from contextlib import suppress
 from pathlib import Path
 
 from app.document import Document
 from app.storage.project_file import save_project
 
-SYNCHRONIZE, WAIT_TIMEOUT = 0x00100000, 0x102  # of the system calls of Windows
+if sys.platform == "win32":
+    import msvcrt
+else:
+    import fcntl
+
 SECONDS = 20.0  # between a change and its autosave, at least
-_NAME = re.compile(r"unsaved-(\d+)(?:-(\w+))?\.lissom")
-# A number of a process is given again to a later one, in a sandbox always.
-_OWN = (os.getpid(), secrets.token_hex(4))
+# What the system says of a lock that is held; other errors mean that it knows no locks there.
+HELD = (BlockingIOError, PermissionError)
 
 
-def write_autosave(folder: Path, document: Document) -> None:
-    """Keep the document of this process, in place of an earlier one."""
-    folder.mkdir(parents=True, exist_ok=True)
-    save_project(_path(folder), document)
+class Autosave:
+    """The unsaved work of one window.
 
+    Parameters
+    ----------
+    folder : Path
+        Where it is kept; made when there is something to keep.
+    """
 
-def forget_autosave(folder: Path) -> None:
-    """Remove what this process kept."""
-    _path(folder).unlink(missing_ok=True)
+    def __init__(self, folder: Path) -> None:
+        self._path = folder / f"unsaved-{secrets.token_hex(8)}.lissom"
+        self._lock: int | None = None
+
+    def write(self, document: Document) -> None:
+        """Keep a document, in place of an earlier one.
+
+        Raises
+        ------
+        LissomError, OSError
+            If the file cannot be written.
+        """
+        self._path.parent.mkdir(parents=True, exist_ok=True)
+        if self._lock is None:
+            # Without locks other windows offer this work while it is still in use, which loses
+            # nothing; hidden after a crash, it would be lost.
+            with suppress(OSError):
+                self._lock = os.open(_lock_of(self._path), os.O_RDWR | os.O_CREAT, 0o600)
+                _hold(self._lock)
+        save_project(self._path, document)
+
+    def forget(self) -> None:
+        """Remove what was kept."""
+        self._path.unlink(missing_ok=True)
+        if self._lock is not None:
+            os.close(self._lock)
+            self._lock = None
+            _lock_of(self._path).unlink(missing_ok=True)
 
 
 def find_leftovers(folder: Path) -> list[Path]:
-    """Return what processes kept that are gone, the newest first."""
-    found = []
+    """Return what windows kept that are gone, the newest first."""
+    found = {}
     for path in folder.glob("unsaved-*.lissom"):
-        match = _NAME.fullmatch(path.name)
-        if match and not _is_kept(int(match[1]), match[2]):
-            found.append(path)
-    return sorted(found, key=lambda path: path.stat().st_mtime, reverse=True)
+        if not _is_held(_lock_of(path)):
+            with suppress(FileNotFoundError):  # its window has just forgotten it
+                found[path] = path.stat().st_mtime
+    return sorted(found, key=lambda path: found[path], reverse=True)
 
 
-def _path(folder: Path) -> Path:
-    return folder / "unsaved-{}-{}.lissom".format(*_OWN)
+def remove_leftover(path: Path) -> None:
+    """Remove what a window kept that is gone."""
+    path.unlink(missing_ok=True)
+    _lock_of(path).unlink(missing_ok=True)
 
 
-def _is_kept(process: int, token: str | None) -> bool:
-    """Tell whether the process that wrote a file is still running."""
-    if process == _OWN[0]:
-        return token == _OWN[1]
-    return _is_running(process)
+def _lock_of(path: Path) -> Path:
+    return path.with_suffix(".lock")
 
 
-def _is_running(process: int) -> bool:
-    if sys.platform == "win32":
-        # Signal 0 is no question there, but Ctrl+C.
-        kernel = ctypes.windll.kernel32
-        handle = kernel.OpenProcess(SYNCHRONIZE, False, process)  # noqa: FBT003 - the system's call
-        is_running = bool(handle) and kernel.WaitForSingleObject(handle, 0) == WAIT_TIMEOUT
-        kernel.CloseHandle(handle)
-        return is_running
+def _is_held(lock: Path) -> bool:
     try:
-        os.kill(process, 0)
-    except ProcessLookupError:
-        return False
+        descriptor = os.open(lock, os.O_RDWR)
     except OSError:
-        # It exists, but is another person's.
+        return False
+    try:
+        _hold(descriptor)
+    except HELD:
         return True
-    return True
+    except OSError:
+        return False
+    finally:
+        os.close(descriptor)
+    return False
+
+
+def _hold(descriptor: int) -> None:
+    """Lock an open file until it is closed, by whatever ends the process too."""
+    if sys.platform == "win32":
+        msvcrt.locking(descriptor, msvcrt.LK_NBLCK, 1)
+    else:
+        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)

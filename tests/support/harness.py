@@ -69,6 +69,7 @@ class Harness:
                 setattr(self.session, field.name, getattr(fresh, field.name))
         # Small meshes, so that the tests are quick.
         self.session.meshing = Meshing(triangles=2_000, detail="coarse")
+        self.session.autosave.forget()
         for leftover in self.folder.iterdir():
             leftover.unlink()
         self.frames(3)

@@ -10,7 +10,7 @@ from app.editor import Jobs, Session
 from app.editor.actions import files
 from app.render import Renderer
 from app.render.gpu import window_context
-from app.storage import forget_autosave, load_preferences, save_preferences, settings_folder
+from app.storage import load_preferences, save_preferences, settings_folder
 from app.ui.dialogs import find_system_dialogs
 from app.ui.window import Window, has_display
 
@@ -64,6 +64,6 @@ def run(arguments: argparse.Namespace) -> int:
         session.jobs.close()
         if session.quitting:
             # One that was being written when the person left.
-            forget_autosave(folder)
+            session.autosave.forget()
         save_preferences(folder, session.preferences)
     return 0

@@ -17,11 +17,10 @@ from app.storage import (
     Picture,
     decode_picture,
     find_leftovers,
-    forget_autosave,
     load_project,
     open_picture,
+    remove_leftover,
     sample_images,
-    write_autosave,
 )
 
 PICTURES = (
@@ -116,7 +115,7 @@ def show(session: Session, path: Path, opened: Opened) -> None:
     # A sample is the person's to play with, not to save over.
     is_sample = path.parent == sample_images()
     is_project = path.suffix.lower() == PROJECT and not is_sample
-    forget_autosave(session.folder)
+    session.autosave.forget()
     session.project = Project(
         name=path.stem,
         history=History(opened.document, saved=True),
@@ -179,7 +178,7 @@ def recover(session: Session, path: Path) -> None:
 
 def throw_away(session: Session, path: Path) -> None:
     """Delete unsaved work."""
-    path.unlink(missing_ok=True)
+    remove_leftover(path)
     session.tell("The unsaved work was thrown away.")
 
 
@@ -192,6 +191,6 @@ def _show_recovered(session: Session, path: Path, opened: Opened) -> None:
         sketch=opened.sketch,
         is_opaque=bool((opened.picture.rgba[..., 3] == OPAQUE).all()),
     )
-    write_autosave(session.folder, opened.document)
-    path.unlink(missing_ok=True)
+    session.autosave.write(opened.document)
+    remove_leftover(path)
     session.tell("This is the work that was not saved. Save it now.", tone="good")

@@ -6,7 +6,7 @@ from app.editor.action import Action, do
 from app.editor.failures import report
 from app.editor.jobs import Job
 from app.editor.session import FileDialog, Project, Question, Session
-from app.storage import SECONDS, forget_autosave, save_preferences, save_project, write_autosave
+from app.storage import SECONDS, save_preferences, save_project
 
 PROJECT = ".lissom"
 SAVING, AUTOSAVING, KEEPING = "Saving", "Autosaving", "Keeping preferences"
@@ -85,7 +85,7 @@ def close(session: Session) -> None:
 def give_up(session: Session) -> None:
     """Close the project, whatever it holds."""
     session.project = None
-    forget_autosave(session.folder)
+    session.autosave.forget()
 
 
 def quit_lissom(session: Session) -> None:
@@ -95,7 +95,7 @@ def quit_lissom(session: Session) -> None:
 
 def leave(session: Session) -> None:
     """Close the window."""
-    forget_autosave(session.folder)
+    session.autosave.forget()
     session.quitting = True
 
 
@@ -136,7 +136,7 @@ def autosave(session: Session) -> None:
     if project.history.is_saved:
         if project.kept is not None:
             project.kept = None
-            forget_autosave(session.folder)
+            session.autosave.forget()
         return
     is_due = now - project.kept_at >= SECONDS and project.kept is not project.document
     if is_due and AUTOSAVING not in session.jobs.kinds:
@@ -144,18 +144,18 @@ def autosave(session: Session) -> None:
 
 
 def _keep(session: Session, project: Project, now: float) -> None:
-    document, folder = project.document, session.folder
+    document = project.document
     project.kept, project.kept_at = document, now
 
     def done(_: None) -> None:
         # In the meantime it may have been saved, or closed.
         if session.project is not project or project.kept is not document:
-            forget_autosave(folder)
+            session.autosave.forget()
 
     session.jobs.put(
         Job(
             kind=AUTOSAVING,
-            work=lambda: write_autosave(folder, document),
+            work=lambda: session.autosave.write(document),
             done=done,
             failed=lambda error: report(session, "Unsaved work cannot be kept", error),
         )

@@ -11,7 +11,6 @@ from app.cli.main import COMMANDS, main
 from app.editor.actions import saving
 from app.editor.jobs import Job
 from app.storage.assets import sample_images
-from app.storage.autosave import write_autosave
 
 SAMPLE = sample_images() / "giraffe.lissom"
 
@@ -116,7 +115,7 @@ def test_an_autosave_that_is_written_while_the_person_leaves_is_not_offered(tmp_
             def keep():
                 begun.set()
                 left.wait(10)
-                write_autosave(session.folder, disc_document())
+                session.autosave.write(disc_document())
 
             session.jobs.put(Job(kind=saving.AUTOSAVING, work=keep, done=print, failed=print))
             assert begun.wait(10)

@@ -1,6 +1,5 @@
 """Files that are dropped, work that is kept by itself, and preferences that outlive a crash."""
 
-import os
 import threading
 
 import pytest
@@ -8,11 +7,10 @@ import pytest
 from app.document.keyframe import Target
 from app.editor.actions import editing, posing, saving, viewing
 from app.editor.session import Question
-from app.storage import autosave
 from app.storage.assets import sample_images
-from app.storage.autosave import SECONDS, find_leftovers
+from app.storage.autosave import SECONDS
 from app.storage.preferences import CHECKER, Preferences, load_preferences
-from app.storage.project_file import load_project
+from app.storage.project_file import load_project, save_project
 
 BAR, RING = sample_images() / "bar.png", sample_images() / "ring.png"
 
@@ -209,11 +207,11 @@ def test_the_autosave_goes_with_work_that_is_given_up(window, project, kept, ver
 def test_nothing_stays_of_work_that_is_given_up_meanwhile(window, project, monkeypatch, verb):
     may_write = threading.Event()
 
-    def write_late(folder, document):
+    def save_late(path, document):
         may_write.wait(60)
-        autosave.write_autosave(folder, document)
+        save_project(path, document)
 
-    monkeypatch.setattr(saving, "write_autosave", write_late)
+    monkeypatch.setattr("app.storage.autosave.save_project", save_late)
     project.kept_at = window.clock.now
     change(window, project)
     pass_time(window, SECONDS)
@@ -222,15 +220,6 @@ def test_nothing_stays_of_work_that_is_given_up_meanwhile(window, project, monke
     may_write.set()
     window.settle()
     assert list(window.folder.glob("unsaved-*")) == []
-
-
-def test_a_file_of_an_earlier_process_of_this_number_is_a_leftover(window, project):
-    autosave.write_autosave(window.folder, project.document)
-    (own,) = window.folder.glob("unsaved-*.lissom")
-    assert find_leftovers(window.folder) == []
-    earlier = own.with_name(f"unsaved-{os.getpid()}-0badcafe.lissom")
-    own.rename(earlier)
-    assert find_leftovers(window.folder) == [earlier]
 
 
 def test_preferences_are_kept_as_soon_as_they_change(window):

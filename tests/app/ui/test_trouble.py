@@ -6,7 +6,7 @@ import pytest
 
 from app.editor.actions import exporting, files, saving
 from app.storage.assets import sample_images
-from app.storage.autosave import find_leftovers, write_autosave
+from app.storage.autosave import Autosave, find_leftovers
 from app.ui.timeline import timeline
 
 
@@ -85,11 +85,11 @@ def test_a_panel_that_raises_is_told_and_the_rest_lives_on(window, monkeypatch, 
 
 
 def test_unsaved_work_comes_back_after_a_crash(window, project):
-    write_autosave(window.folder, project.document)
-    (kept,) = window.folder.glob("unsaved-*.lissom")
-    assert find_leftovers(window.folder) == []  # this very process is running
-    orphan = kept.with_name("unsaved-99999999.lissom")
-    kept.rename(orphan)
+    crashed = Autosave(window.folder)
+    crashed.write(project.document)
+    (orphan,) = window.folder.glob("unsaved-*.lissom")
+    assert find_leftovers(window.folder) == []
+    orphan.with_suffix(".lock").unlink()
     assert find_leftovers(window.folder) == [orphan]
     window.session.project = None
     files.offer_recovery(window.session)
@@ -102,3 +102,4 @@ def test_unsaved_work_comes_back_after_a_crash(window, project):
     assert recovered is not None
     assert not recovered.history.is_saved
     assert not orphan.exists()
+    crashed.forget()

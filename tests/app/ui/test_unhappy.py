@@ -495,7 +495,7 @@ def test_results_for_a_closed_project_go_nowhere(window, bent, monkeypatch, kind
 
 @pytest.mark.usefixtures("bent")
 def test_work_that_is_given_up_while_it_is_kept_does_not_come_back(window, monkeypatch):
-    with held_up(monkeypatch, "app.editor.actions.saving.write_autosave"):
+    with held_up(monkeypatch, "app.storage.autosave.save_project"):
         window.clock.now += 2 * SECONDS
         window.frames(2)
         assert saving.AUTOSAVING in window.session.jobs.kinds

@@ -1,0 +1,93 @@
+"""What a window kept is offered once it is gone, whatever else runs, and never while it lives."""
+
+import os
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from documents import differences, disc_document, full_document
+
+from app.storage.autosave import Autosave, find_leftovers, remove_leftover
+from app.storage.project_file import load_project, save_project
+
+TESTS = Path(__file__).parents[2]
+# Keeps a document in the folder that it is given, and waits.
+KEEP = f"""
+import sys
+sys.path[:0] = [{str(TESTS / "support")!r}, {str(TESTS.parent)!r}]
+from pathlib import Path
+from documents import disc_document
+from app.storage.autosave import Autosave
+Autosave(Path(sys.argv[1])).write(disc_document())
+print("kept", flush=True)
+sys.stdin.read()
+"""
+
+
+@pytest.fixture
+def autosave(tmp_path):
+    own = Autosave(tmp_path)
+    yield own
+    own.forget()
+
+
+def test_the_work_of_a_killed_process_is_offered_and_of_a_living_one_not(tmp_path):
+    with subprocess.Popen(
+        [sys.executable, "-c", KEEP, str(tmp_path)],
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        text=True,
+    ) as process:
+        assert process.stdout.readline() == "kept\n"
+        assert find_leftovers(tmp_path) == []
+        process.send_signal(signal.SIGKILL)
+    (leftover,) = find_leftovers(tmp_path)
+    assert not differences(load_project(leftover), disc_document())
+    remove_leftover(leftover)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_the_number_of_a_living_process_hides_nothing(tmp_path):
+    path = tmp_path / f"unsaved-{os.getppid()}-0badcafe.lissom"
+    save_project(path, disc_document())
+    assert find_leftovers(tmp_path) == [path]
+
+
+def test_the_work_of_another_living_window_is_not_offered(tmp_path, autosave):
+    other = Autosave(tmp_path)
+    other.write(disc_document())
+    autosave.write(full_document())
+    assert find_leftovers(tmp_path) == []
+    other.forget()
+    (kept,) = tmp_path.glob("unsaved-*.lissom")
+    assert not differences(load_project(kept), full_document())
+
+
+def test_leftovers_come_newest_first(tmp_path, autosave):
+    for age, name in enumerate(["b", "c", "a"]):
+        path = tmp_path / f"unsaved-{name}.lissom"
+        path.write_bytes(b"")
+        os.utime(path, (1000 - age, 1000 - age))
+    autosave.write(disc_document())
+    assert [path.stem[-1] for path in find_leftovers(tmp_path)] == ["b", "c", "a"]
+
+
+def test_nothing_stays_of_what_is_forgotten(tmp_path, autosave):
+    for _ in range(2):
+        autosave.write(disc_document())
+        autosave.forget()
+        autosave.forget()
+        assert list(tmp_path.iterdir()) == []
+
+
+def test_where_the_system_knows_no_locks_work_is_offered_rather_than_hidden(
+    tmp_path, monkeypatch, autosave
+):
+    def no_locks(_):
+        raise OSError(38, "Function not implemented")
+
+    monkeypatch.setattr("app.storage.autosave._hold", no_locks)
+    autosave.write(disc_document())
+    assert len(find_leftovers(tmp_path)) == 1
