@@ -508,7 +508,7 @@ def test_work_that_is_given_up_while_it_is_kept_does_not_come_back(window, monke
 def test_saved_work_is_not_kept_as_unsaved(window, bent, tmp_path):
     window.clock.now += 2 * SECONDS
     window.settle()
-    assert len(list(window.folder.glob("unsaved-*"))) == 1
+    assert len(list(window.folder.glob("unsaved-*.lissom"))) == 1
     saving.write(window.session, tmp_path / "bar.lissom", None)
     window.settle()
     assert bent.history.is_saved
