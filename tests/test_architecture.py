@@ -12,7 +12,7 @@ ROOTS = ("app", "engine")
 MOST_IN_A_ROOM = 12  # modules and sub-packages together
 MOST_LOOSE = 5  # modules beside the packages of app and engine
 # Rooms whose modules are found by their names, and that nothing else imports from.
-BY_NAME = {"app.cli", "app.cli.bench", "app.cli.commands"}
+BY_NAME = {"app.cli", "app.cli.bench", "app.cli.commands", "app.cli.usage"}
 
 
 def module_files() -> dict[str, Path]:

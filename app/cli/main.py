@@ -14,8 +14,8 @@ from app.errors import EXPECTED_ERRORS
 EXIT_INTERRUPTED = 130
 EXIT_PIPE_CLOSED = 141
 
-# Subcommand → its summary. The module of that name in app.cli.commands defines
-# `add_arguments(parser)` and `run(arguments)`; only the one that is asked for is loaded.
+# Subcommand → its summary. The module of that name in app.cli.usage declares its options, which is
+# quickly loaded; that in app.cli.commands runs it, and is loaded when all that was said is right.
 COMMANDS = {
     "window": "Open the window, with a picture or a project if one is named.",
     "domain": "Find a picture's outline; build the cage and the triangulation.",
@@ -35,8 +35,8 @@ def main(argv: Sequence[str] | None = None) -> int:
     words = list(sys.argv[1:] if argv is None else argv)
     if not words or (words[0] not in COMMANDS and not words[0].startswith("-")):
         words = ["window", *words]
-    arguments = build_parser(words).parse_args(words)
     try:
+        arguments = build_parser(words).parse_args(words)
         status = int(
             importlib.import_module(f"app.cli.commands.{arguments.command}").run(arguments)
         )
@@ -72,7 +72,7 @@ def build_parser(words: Sequence[str]) -> argparse.ArgumentParser:
             formatter_class=argparse.RawDescriptionHelpFormatter,
         )
         if name in words:
-            importlib.import_module(f"app.cli.commands.{name}").add_arguments(subparser)
+            importlib.import_module(f"app.cli.usage.{name}").add_arguments(subparser)
     return parser
 
 

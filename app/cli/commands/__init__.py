@@ -1,4 +1,4 @@
-"""One command a module, with `add_arguments(parser)` and `run(arguments)`.
+"""What each command does, one command a module with `run(arguments)`.
 
 In: parsed arguments.
 Out: an exit status.

@@ -3,32 +3,9 @@
 import argparse
 import json
 import math
-from pathlib import Path
 
-from app.document import VARIANTS
 from app.reports import Report, certify_document
 from app.storage import load_project
-
-EPILOG = """\
-Keyframes are certified: their k, sigma_a and sigma_b hold at every point of the shape, not only at
-samples. For each interval between two keys the extremes of the in-betweens over time and space
-stand beside the two keys' own. The exit status is 0 if every keyframe is certified and every
-interval is within its keyframes' bounds, 1 if not.
-
-examples:
-  lissom certify wave.lissom
-  lissom certify wave.lissom --variant nu --json
-"""
-
-
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Declare the options of `lissom certify`."""
-    parser.epilog = EPILOG
-    parser.add_argument("project", metavar="PROJECT", type=Path, help="the .lissom file")
-    parser.add_argument(
-        "--variant", choices=VARIANTS, help="how to blend the keyframes (default: the project's)"
-    )
-    parser.add_argument("--json", action="store_true", help="print JSON instead of a table")
 
 
 def run(arguments: argparse.Namespace) -> int:

@@ -28,13 +28,6 @@ from app.render.gpu import (
 )
 from app.ui.dialogs import find_system_dialogs
 
-EPILOG = """\
-The exit status is 0 if Lissom can render here, 1 if not. "--" marks what is missing, with what to
-install; everything but rendering can be done without.
-
-examples:
-  lissom doctor
-"""
 LIBRARIES: Final = (
     *("numpy", "scipy", "pillow", "shapely", "contourpy"),
     *("moderngl", "glcontext", "glfw", "imgui-bundle"),
@@ -47,11 +40,6 @@ class Finding(NamedTuple):
     name: str
     text: str
     works: bool = True
-
-
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Declare the options of `lissom doctor`."""
-    parser.epilog = EPILOG
 
 
 def run(_: argparse.Namespace) -> int:

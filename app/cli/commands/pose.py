@@ -1,50 +1,19 @@
 """`lissom pose`: picture + pose script → project."""
 
 import argparse
-from pathlib import Path
 
 from app.cli.console import StatusLine, notice
-from app.cli.options import add_meshing_options, meshing_of
+from app.document import Meshing
 from app.solving import load_pose_script, pose_document
 from app.storage import check_writable, open_picture, save_project
-
-EPILOG = """\
-SCRIPT.json is an animation as a small text. Coordinates are pixels of the picture with the origin
-at its lower left corner and y up, as in `lissom domain`:
-
-  {"schema": 1, "fps": 24, "loop": false, "variant": "metric",
-   "bounds": {"k": 0.8, "sigma_a": 5.0, "sigma_b": 0.2}, "anchor": [400, 500],
-   "handles": {"nose": [120, 880], "hoof": [300, 40]},
-   "keys": [{"frame": 0}, {"frame": 24, "targets": {"nose": [90, 400]}, "ease": "in-out"}]}
-
-Left out, fps is 24, loop false, variant "metric" (or nu, scaled-eta, eta, linear), bounds as above,
-the anchor the engine's choice, and ease "linear" (or in, out, in-out, hold, or four numbers from 0
-to 1 of a Bézier curve); it leads to the next key. A handle that a key does not name keeps its
-target of the key before, at first its place in the picture. Each key is solved by a drag from the
-key before; where the bounds hold a handle back, the key is kept and a notice says by how much.
-
-examples:
-  lissom pose giraffe.png nod.json --out nod.lissom
-  lissom pose giraffe.png nod.json --out nod.lissom --triangles 20000 --detail fine
-"""
-
-
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Declare the options of `lissom pose`."""
-    parser.epilog = EPILOG
-    parser.add_argument("picture", metavar="PICTURE", type=Path, help="the drawing")
-    parser.add_argument("script", metavar="SCRIPT.json", type=Path, help="handles and keys")
-    parser.add_argument(
-        "--out", metavar="PROJECT.lissom", type=Path, required=True, help="where to write"
-    )
-    add_meshing_options(parser)
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Solve the keys of a script and write the project."""
     check_writable(arguments.out)
     script = load_pose_script(arguments.script)
-    opened = open_picture(arguments.picture, meshing_of(arguments))
+    meshing = Meshing(triangles=arguments.triangles, detail=arguments.detail)
+    opened = open_picture(arguments.picture, meshing)
     for message in opened.notices:
         notice(message)
     status = StatusLine()

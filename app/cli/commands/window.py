@@ -3,7 +3,6 @@
 import argparse
 import sys
 import time
-from pathlib import Path
 
 from app.cli.console import fail
 from app.editor import Jobs, Session
@@ -18,28 +17,9 @@ from app.ui.window import Window, has_display
 # the usual 5 ms a job that seldom lets go would leave two frames a second.
 SWITCH = 0.0005
 
-EPILOG = """\
-Without FILE the window opens with samples to try. `lissom FILE` is short for `lissom window FILE`.
-
-examples:
-  lissom
-  lissom giraffe.png
-  lissom wave.lissom
-"""
-
-
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Declare the options of `lissom window`."""
-    parser.epilog = EPILOG
-    parser.add_argument(
-        "file", metavar="FILE", nargs="?", type=Path, help="a picture or a .lissom project"
-    )
-
 
 def run(arguments: argparse.Namespace) -> int:
     """Open the window, and close it when the person does."""
-    if arguments.file is not None and not arguments.file.is_file():
-        fail(f"{arguments.file} is no command and no file (see 'lissom --help')")
     if not has_display():
         fail(
             "there is no display for the window; the command line works without one, for example "

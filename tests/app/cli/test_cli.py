@@ -1,16 +1,21 @@
 import os
+import pkgutil
 import subprocess
 import sys
 import threading
+from typing import get_args
 
 import pytest
 from documents import disc_document
 
+from app.cli import commands, options, usage
 from app.cli.commands import window
 from app.cli.main import COMMANDS, main
+from app.document import EXPORT_FORMATS, FRAMINGS, VARIANTS, Meshing
 from app.editor.actions import saving
 from app.editor.jobs import Job
 from app.storage.assets import sample_images
+from engine.domain.outline import Detail
 
 SAMPLE = sample_images() / "giraffe.lissom"
 
@@ -29,7 +34,7 @@ def error_line(text: str) -> str:
 
 
 @pytest.mark.parametrize(
-    "words", [["nonsense"], ["domain"], ["domain", "a.png", "--out"], ["--nonsense"]]
+    "words", [["nonsense"], ["domain"], ["domain", __file__, "--out"], ["--nonsense"]]
 )
 def test_bad_usage_is_one_line(words, capsys):
     with pytest.raises(SystemExit) as leaving:
@@ -57,10 +62,63 @@ def test_the_program_runs_as_a_process(tmp_path):
     assert run("--version").stdout.startswith("lissom ")
 
 
-def test_help_does_not_load_the_numerics():
-    code = "import sys, app.cli.main as m; m.build_parser([]); print('numpy' in sys.modules)"
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert done.stdout.strip() == "False"
+LOADED = """
+import sys
+from app.cli.main import main
+try:
+    main(sys.argv[1:])
+except SystemExit as leaving:
+    heavy = {"numpy", "scipy", "PIL", "shapely", "moderngl", "imgui_bundle"} & set(sys.modules)
+    print("left with", leaving.code, "and", sorted(heavy), file=sys.stderr)
+"""
+
+
+@pytest.mark.parametrize(
+    ("words", "status"),
+    [
+        ("--help", 0),
+        ("--version", 0),
+        ("domain --help", 0),
+        ("window no.lissom", 2),
+        ("domain", 2),
+        ("domain {here} --out x.npz --detail finest", 2),
+        ("domain no.png --out x.npz", 2),
+        ("pose no.png no.json --out x.lissom", 2),
+        ("certify no.lissom", 2),
+        ("certify {here} --variant mu", 2),
+        ("deform no.npz --out x.npz", 2),
+        ("interpolate no.npz --variant nu --times 0,1 --out x.npz", 2),
+        ("interpolate {here} --variant nu --times one --out x.npz", 2),
+        ("export no.lissom --out x", 2),
+        ("export {here} --out x --size big", 2),
+        ("bench everything", 2),
+        ("nonsense", 2),
+    ],
+)
+def test_what_is_answered_from_the_words_alone_loads_nothing_heavy(words, status):
+    words = words.format(here=__file__).split()
+    done = subprocess.run(
+        [sys.executable, "-c", LOADED, *words], capture_output=True, text=True, check=False
+    )
+    assert done.stderr.splitlines()[-1] == f"left with {status} and []"
+    if status == 2:
+        assert error_line(done.stderr)
+
+
+def test_the_words_to_choose_from_are_those_that_the_program_knows():
+    assert set(options.DETAILS) == set(get_args(Detail))
+    assert set(options.VARIANTS) == set(VARIANTS)
+    assert set(options.EXPORT_FORMATS) == set(EXPORT_FORMATS)
+    assert set(options.FRAMINGS) == set(FRAMINGS)
+    defaults = Meshing()
+    assert defaults.detail == options.DEFAULT_DETAIL
+    assert defaults.triangles == options.DEFAULT_TRIANGLES
+
+
+def test_every_command_says_what_it_understands_and_does_it():
+    for room in (commands, usage):
+        modules = {module.name for module in pkgutil.iter_modules(room.__path__)}
+        assert modules == set(COMMANDS)
 
 
 def test_a_reader_that_stops_early_is_no_error():

@@ -1,0 +1,24 @@
+"""What is said to `lissom certify`."""
+
+import argparse
+
+from app.cli.options import add_variant_option, input_file
+
+EPILOG = """\
+Keyframes are certified: their k, sigma_a and sigma_b hold at every point of the shape, not only at
+samples. For each interval between two keys the extremes of the in-betweens over time and space
+stand beside the two keys' own. The exit status is 0 if every keyframe is certified and every
+interval is within its keyframes' bounds, 1 if not.
+
+examples:
+  lissom certify wave.lissom
+  lissom certify wave.lissom --variant nu --json
+"""
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare the options of `lissom certify`."""
+    parser.epilog = EPILOG
+    parser.add_argument("project", metavar="PROJECT", type=input_file, help="the .lissom file")
+    add_variant_option(parser)
+    parser.add_argument("--json", action="store_true", help="print JSON instead of a table")

@@ -1,0 +1,38 @@
+"""What is said to `lissom deform`."""
+
+import argparse
+from pathlib import Path
+
+from app.cli.options import input_file
+
+EPILOG = """\
+CASE.npz holds the shape and what is asked of it:
+  outline      (p,)   complex128  the domain's boundary, counter-clockwise
+  cage         (n,)   complex128  the cage around it, counter-clockwise
+  handles      (h,)   complex128  points of the shape that are held
+  targets      (h,)   complex128  where they should be
+  k_max, sigma_a_max, sigma_b_min  scalars, bounds on the distortion
+  phi, psi     (n,)   complex128  optional, the map to start from
+  path         (s, h) complex128  optional, positions of the handles on the way to the targets
+
+MAP.npz holds outline, cage and
+  phi, psi     (n,)   complex128  the map
+  handles_mapped (h,) complex128  where the handles are
+  k, sigma_a, sigma_b             proven for the whole shape: nowhere beyond
+  certified                       whether that is within the bounds, and the map injective
+  status                          "converged", or "bounds reached" or "lagging" where handles
+                                  could not follow
+  steps                           Newton steps in all
+
+examples:
+  lissom deform case.npz --out map.npz
+"""
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare the options of `lissom deform`."""
+    parser.epilog = EPILOG
+    parser.add_argument(
+        "case", metavar="CASE.npz", type=input_file, help="shape, handles and targets"
+    )
+    parser.add_argument("--out", metavar="MAP.npz", type=Path, required=True, help="where to write")

@@ -1,0 +1,16 @@
+"""What is said to `lissom doctor`."""
+
+import argparse
+
+EPILOG = """\
+The exit status is 0 if Lissom can render here, 1 if not. "--" marks what is missing, with what to
+install; everything but rendering can be done without.
+
+examples:
+  lissom doctor
+"""
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare the options of `lissom doctor`."""
+    parser.epilog = EPILOG

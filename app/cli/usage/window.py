@@ -1,0 +1,31 @@
+"""What is said to `lissom window`."""
+
+import argparse
+from pathlib import Path
+
+from app.errors import LissomError
+
+EPILOG = """\
+Without FILE the window opens with samples to try. `lissom FILE` is short for `lissom window FILE`.
+
+examples:
+  lissom
+  lissom giraffe.png
+  lissom wave.lissom
+"""
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare the options of `lissom window`."""
+    parser.epilog = EPILOG
+    parser.add_argument(
+        "file", metavar="FILE", nargs="?", type=_existing, help="a picture or a .lissom project"
+    )
+
+
+def _existing(text: str) -> Path:
+    """Return the path of a file; whatever is no command is taken for one."""
+    path = Path(text)
+    if not path.is_file():
+        raise LissomError(f"{text} is no command and no file (see 'lissom --help')")
+    return path
