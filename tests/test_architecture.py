@@ -14,6 +14,9 @@ MOST_LOOSE = 5  # modules beside the packages of app and engine
 # Rooms whose modules are found by their names, and that nothing else imports from.
 BY_NAME = {"app.cli", "app.cli.bench", "app.cli.commands", "app.cli.usage"}
 
+# Calls that say what a thing is, and compute nothing.
+DECLARATIONS = {"TypeVar", "field", "get_args"}
+
 
 def module_files() -> dict[str, Path]:
     """Return the file of every module and package, by its dotted name."""
@@ -73,6 +76,22 @@ def test_a_room_is_entered_by_its_face(name):
             assert is_room or alias.name in public_names(package), (
                 f"{name} takes {alias.name} from {package}, whose face does not have it"
             )
+
+
+@pytest.mark.parametrize("name", sorted(name for name in FILES if name.startswith("engine")))
+def test_the_engine_computes_nothing_when_it_is_loaded(name):
+    for statement in ast.parse(FILES[name].read_text(encoding="utf-8")).body:
+        if isinstance(statement, ast.FunctionDef):
+            continue
+        inside = statement.body if isinstance(statement, ast.ClassDef) else [statement]
+        calls = [
+            ast.unparse(node.func)
+            for part in inside
+            if not isinstance(part, ast.FunctionDef)
+            for node in ast.walk(part)
+            if isinstance(node, ast.Call)
+        ]
+        assert set(calls) <= DECLARATIONS
 
 
 def public_names(package: str) -> set[str]:

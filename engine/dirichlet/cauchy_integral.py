@@ -8,11 +8,12 @@ Time and memory grow with the sum of points and nodes, not with their product.
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from functools import cache
 
 import numpy as np
 from scipy.special import comb
 
-from engine.arrays import Complexes, Floats, Indices
+from engine.arrays import Complexes, Floats, Indices, readonly
 from engine.dirichlet.panels import Panels
 from engine.dirichlet.product_integration import panel_weights, reach
 from engine.geometry import distance_to_segments
@@ -23,8 +24,6 @@ FAR = 2.5
 # Pairs of points and near panels up to which a square is not divided: cheaper than dividing it.
 FEW_PAIRS = 256
 BLOCK = 4096  # points that are integrated exactly at a time
-RANKS = np.arange(TERMS)
-BINOMIALS = comb(RANKS, RANKS[:, None])  # [j, k]: what ((z − c) + d)^k gives to (z − c)^j
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -149,8 +148,9 @@ def _translated(square: Square, quarter: Square) -> Complexes:
     """Expand the polynomial of a square about the centre of one of its quarters."""
     shift = (quarter.centre - square.centre) / square.radius
     shrink = quarter.radius / square.radius
-    powers, shrunk = shift**RANKS, shrink**RANKS
-    matrix = BINOMIALS * powers[np.maximum(RANKS - RANKS[:, None], 0)] * shrunk[:, None]
+    ranks = np.arange(TERMS)
+    powers, shrunk = shift**ranks, shrink**ranks
+    matrix = _binomials() * powers[np.maximum(ranks - ranks[:, None], 0)] * shrunk[:, None]
     return np.asarray(matrix @ square.taylor)
 
 
@@ -158,3 +158,10 @@ def _blocks(groups: list[Indices]) -> Iterator[Indices]:
     points = np.concatenate(groups) if groups else np.empty(0, dtype=np.intp)
     for start in range(0, len(points), BLOCK):
         yield points[start : start + BLOCK]
+
+
+@cache
+def _binomials() -> Floats:
+    """Return [j, k]: what ((z − c) + d)^k gives to (z − c)^j."""
+    ranks = np.arange(TERMS)
+    return readonly(comb(ranks, ranks[:, None]).astype(np.float64))

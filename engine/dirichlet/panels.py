@@ -1,6 +1,7 @@
 """Straight panels of an outline, on which densities are polynomials in a graded parameter."""
 
 from dataclasses import dataclass
+from functools import cache
 from typing import Self
 
 import numpy as np
@@ -91,43 +92,45 @@ class Panels:
 
     def arcs(self) -> Floats:
         """Return τ^power at the nodes, (p, NODES): their distance from the origin over the span."""
-        result: Floats = TAU ** self.power[:, None]
+        tau, _ = gauss_legendre()
+        result: Floats = tau ** self.power[:, None]
         return result
 
     def differentials(self) -> Complexes:
         """Return dζ at the nodes, (p, NODES), counter-clockwise: the weights of line integrals."""
-        speed = self.power[:, None] * TAU ** (self.power[:, None] - 1)
+        tau, weights = gauss_legendre()
+        speed = self.power[:, None] * tau ** (self.power[:, None] - 1)
         sign = np.where(self.forward, 1.0, -1.0)
-        result: Complexes = (sign * self.span)[:, None] * speed * WEIGHTS
+        result: Complexes = (sign * self.span)[:, None] * speed * weights
         return result
 
     def increments(self, values: Complexes) -> Complexes:
         """Return dμ at the nodes, like the values (p, NODES, j): weights of integrals of dμ."""
         sign = np.where(self.forward, 1.0, -1.0)
-        slopes = np.einsum("ik,pkj->pij", DIFFERENTIATION, values)
-        result: Complexes = sign[:, None, None] * WEIGHTS[:, None] * slopes
+        _, weights = gauss_legendre()
+        _, differentiation = legendre_matrices()
+        slopes = np.einsum("ik,pkj->pij", differentiation, values)
+        result: Complexes = sign[:, None, None] * weights[:, None] * slopes
         return result
 
 
-def _gauss_legendre() -> tuple[Floats, Floats]:
+@cache
+def gauss_legendre() -> tuple[Floats, Floats]:
+    """Return the Gauss-Legendre nodes of [0, 1] and their weights, (NODES,) each."""
     x, weights = np.polynomial.legendre.leggauss(NODES)
     return readonly((1 + x) / 2), readonly(weights / 2)
 
 
-TAU, WEIGHTS = _gauss_legendre()
-
-
-def _legendre_matrices() -> tuple[Floats, Floats]:
+@cache
+def legendre_matrices() -> tuple[Floats, Floats]:
     """Return the matrices from values at the nodes to Legendre coefficients and to derivatives."""
+    tau, weights = gauss_legendre()
     degrees = np.arange(NODES)
-    values = np.polynomial.legendre.legvander(2 * TAU - 1, NODES - 1)
-    to_legendre = (2 * degrees + 1)[:, None] * values.T * WEIGHTS
+    values = np.polynomial.legendre.legvander(2 * tau - 1, NODES - 1)
+    to_legendre = (2 * degrees + 1)[:, None] * values.T * weights
     by_degree = np.polynomial.legendre.legder(np.eye(NODES), scl=2.0)
-    slopes = np.polynomial.legendre.legval(2 * TAU - 1, by_degree).T
+    slopes = np.polynomial.legendre.legval(2 * tau - 1, by_degree).T
     return readonly(to_legendre), readonly(slopes @ to_legendre)
-
-
-TO_LEGENDRE, DIFFERENTIATION = _legendre_matrices()
 
 
 def _room(

@@ -10,7 +10,7 @@ recurrence of the Legendre functions.
 import numpy as np
 
 from engine.arrays import Booleans, Complexes, Floats, Indices
-from engine.dirichlet.panels import DIFFERENTIATION, NODES, TAU, TO_LEGENDRE, WEIGHTS
+from engine.dirichlet.panels import NODES, gauss_legendre, legendre_matrices
 
 # Bernstein ellipse beyond which Gauss-Legendre quadrature is exact to 1e-12: its error falls like
 # SEPARATION^(-2 NODES). Within it the recurrence is used; its rounding grows like SEPARATION^NODES.
@@ -46,7 +46,8 @@ def panel_weights(w: Complexes, power: int) -> tuple[Complexes, Complexes]:
         weights += each
         # dτ / (τ^q − w) is Σ dτ / (q r^(q−1) (τ − r)).
         slope_weights += each / (power * root ** (power - 1))[:, None]
-    return weights, slope_weights @ DIFFERENTIATION
+    _, differentiation = legendre_matrices()
+    return weights, slope_weights @ differentiation
 
 
 def _roots(w: Complexes, power: int) -> list[Complexes]:
@@ -67,9 +68,11 @@ def _ellipse(root: Complexes) -> Floats:
 
 def _root_weights(root: Complexes) -> Complexes:
     """Return the weights of ∫ μ dτ / (τ − r) over [0, 1]."""
-    weights = WEIGHTS / (TAU - root[:, None])
+    tau, own = gauss_legendre()
+    to_legendre, _ = legendre_matrices()
+    weights = own / (tau - root[:, None])
     near = np.flatnonzero(_ellipse(root) < SEPARATION)
-    weights[near] = _legendre_integrals(2 * root[near] - 1) @ TO_LEGENDRE
+    weights[near] = _legendre_integrals(2 * root[near] - 1) @ to_legendre
     return weights
 
 

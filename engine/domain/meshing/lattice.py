@@ -7,7 +7,7 @@ import numpy as np
 from engine.arrays import Booleans, Complexes, Floats, Indices
 from engine.geometry import edges
 
-ROW_HEIGHT = np.sqrt(3.0) / 2
+ROW_HEIGHT = 3.0**0.5 / 2
 """Distance between neighbouring rows over the spacing of the points in a row."""
 
 

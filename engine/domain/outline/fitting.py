@@ -16,7 +16,7 @@ SPACING = 0.5  # of the local margin, between the points that may become vertice
 LEASH, INNER, OUTER = 0.3, 0.5, 0.6  # of the local margin: smoothing; edges within, without
 SMOOTHING = 4  # rounds
 TIGHTENING = 0.6
-MOST_TURN = np.radians(160)  # at a vertex: sharper spikes have no room for triangles or a cage
+MOST_TURN = 160.0  # degrees, at a vertex: sharper spikes have no room for triangles or a cage
 MOST_ATTEMPTS = 10
 
 
@@ -76,7 +76,7 @@ def _graded(curve: MarginCurve, shortest: float) -> tuple[Complexes, Floats]:
 def _faults(polygon: Complexes, corners: Complexes) -> Complexes:
     """Return the places where a polygon crosses itself, turns back or leaves out a corner."""
     along = edges(polygon)
-    sharp = np.abs(np.angle(along / np.roll(along, 1))) > MOST_TURN
+    sharp = np.abs(np.angle(along / np.roll(along, 1))) > np.radians(MOST_TURN)
     crossing = self_crossings(polygon).any(axis=1)
     crossing |= np.roll(crossing, 1)  # the vertices at both ends of such an edge
     if crossing.any() or sharp.any():

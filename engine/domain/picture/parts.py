@@ -16,7 +16,6 @@ MOST_DROPPED = 0.05  # of the subject's area
 CLOUD = 6  # parts from which on gaps are closed as well as bridged
 CLOUD_GAP = 0.04  # of the diagonal: widest half gap that is closed in a cloud of parts
 BRIDGE_WIDTHS = (0.012, 0.05)  # of the diagonal
-EIGHT_NEIGHBOURS = np.ones((3, 3))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -58,7 +57,7 @@ def join_parts(mask: Booleans, diagonal: float) -> WholePiece:
     EngineError
         If the mask falls into too many parts to be joined.
     """
-    labels, count = ndimage.label(mask, EIGHT_NEIGHBOURS)
+    labels, count = ndimage.label(mask, np.ones((3, 3)))
     areas = np.bincount(labels.ravel(), minlength=count + 1)[1:].astype(np.float64)
     kept = areas >= SPECK * areas.sum()
     _require_few_parts(areas, kept)
