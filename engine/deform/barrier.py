@@ -14,7 +14,7 @@ import numpy as np
 
 from engine.arrays import Floats
 from engine.deform.energy import Radial
-from engine.maps import Bounds
+from engine.maps import Limits
 
 # A dual variable stays within this factor of weight / slack, so that it forgets old walls.
 DUAL_RANGE = 1e4
@@ -26,14 +26,14 @@ class Barrier:
 
     Parameters
     ----------
-    walls : Bounds
+    walls : Limits
         Where it becomes infinite.
     weight : float
     duals : float64, shape (3, m), or None
         One for each bound and sample, positive; None for weight / slack, the exact Hessian.
     """
 
-    walls: Bounds
+    walls: Limits
     weight: float
     duals: Floats | None = None
 
@@ -56,14 +56,14 @@ class Barrier:
         """Return the barrier with its derivatives, strictly within the walls."""
         first_a, b_per_b, aa, ab, bb = (np.zeros(np.shape(a)) for _ in range(5))
         duals = self.current_duals(a, b)
-        for (u, slope), dual in zip(self._distances(a), duals, strict=True):
+        for (u, u_a), dual in zip(self._distances(a), duals, strict=True):
             slack, far = u - b, u + b
             product = slack * far
             near_curvature, far_curvature = dual / slack, self.weight / (far * far)
-            first_a -= 2.0 * self.weight * slope * u / product
+            first_a -= 2.0 * self.weight * u_a * u / product
             b_per_b += 2.0 * self.weight / product
-            aa += slope * slope * (near_curvature + far_curvature)
-            ab += slope * (far_curvature - near_curvature)
+            aa += u_a * u_a * (near_curvature + far_curvature)
+            ab += u_a * (far_curvature - near_curvature)
             bb += near_curvature + far_curvature
         return Radial(self.value(a, b), first_a, b_per_b, aa, ab, bb)
 

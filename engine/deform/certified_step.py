@@ -7,7 +7,7 @@ import numpy as np
 from engine.arrays import Floats, Indices, readonly
 from engine.deform.newton import Direction, line_search, newton_direction
 from engine.deform.objective import Jet, Objective
-from engine.maps import Boundary, Bounds, Certificate, HarmonicMap, certify_samples
+from engine.maps import Boundary, Certificate, HarmonicMap, Limits, certify_segments
 
 # No point of the shape moves farther (of L) in one step: removed handles make no jump.
 FARTHEST = 0.05
@@ -47,7 +47,7 @@ def take_certified_step(
     jet: Jet,
     harmonic_map: HarmonicMap,
     certificate: Certificate,
-    required: Bounds,
+    required: Limits,
 ) -> CertifiedStep:
     """Step as far along Newton's direction as the map stays certified within `required`.
 
@@ -56,7 +56,7 @@ def take_certified_step(
     objective : Objective
     jet, harmonic_map, certificate
         Of the map at the start.
-    required : Bounds
+    required : Limits
     """
     direction = _moderate(newton_direction(objective, jet), objective.boundary)
     value = objective.value(jet)
@@ -67,16 +67,10 @@ def take_certified_step(
             break
         phi = harmonic_map.phi + length * direction.phi
         psi = harmonic_map.psi + length * direction.psi
-        reached = jet.advanced(length, direction.jet)
-        tried, segments = certify_samples(
-            objective.boundary,
-            np.column_stack([phi, psi]),
-            np.column_stack([reached.f, reached.g]),
-            required,
-        )
-        if tried.certified:
-            harmonic_map = HarmonicMap(cage=harmonic_map.cage, phi=phi, psi=psi)
-            certificate = tried
+        tried = HarmonicMap(cage=harmonic_map.cage, phi=phi, psi=psi)
+        proof, segments = certify_segments(tried, objective.boundary, required)
+        if proof.certified:
+            harmonic_map, certificate = tried, proof
             break
         if refusals == 0:
             broken = segments

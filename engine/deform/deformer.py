@@ -22,23 +22,34 @@ from engine.deform.barrier import Barrier
 from engine.deform.certified_step import CertifiedStep, add_samples, take_certified_step
 from engine.deform.energy import symmetric_dirichlet
 from engine.deform.handles import Handles, Wish
-from engine.deform.leash import LEASH, cut_to_leash
-from engine.deform.limits import closing_limits, limits_for, place_walls
 from engine.deform.objective import Jet, Objective
-from engine.deform.schedule import FULL, LEAST_RESTING, Schedule
+from engine.deform.steering import (
+    FULL,
+    LEASH,
+    LEAST_RESTING,
+    Schedule,
+    closing_limits,
+    cut_to_leash,
+    limits_for,
+    place_walls,
+)
 from engine.errors import EngineError
-from engine.maps import Boundary, Bounds, Certificate, HarmonicMap, certify
+from engine.maps import Boundary, Bounds, Certificate, HarmonicMap, Limits, certify
 
 # On the way into tightened bounds the barrier weighs at least this much, and the handles are this
 # much softer.
-LEAST_TIGHTENING, SOFTNESS = 0.1, 0.003
+LEAST_TIGHTENING = 0.1
+SOFTNESS = 0.003
 # Expected gain relative to the objective: near rest, where a sketched Hessian would go in circles,
 # and at rest.
-NEAR_REST, REST = 1e-4, 1e-8
-# Handles that are where they should be (of L), bounds that are reached (relative).
-ARRIVED, REACHED = 1e-3, 0.02
+NEAR_REST = 1e-4
+REST = 1e-8
+# Handles that are where they should be (of L), and bounds that are reached (relative).
+ARRIVED = 1e-3
+REACHED = 0.02
 # One row of a recorded path: so many steps, or until the expected gain is below this.
-PATH_STEPS, PATH_REST = 10, 1e-3
+PATH_STEPS = 10
+PATH_REST = 1e-3
 
 
 class Status(Enum):
@@ -70,7 +81,9 @@ class Statistics:
         Gain that Newton's model expected of the whole step.
     length : float
         Part of the step that was taken.
-    barrier_weight, reach : float
+    barrier_weight : float
+    leash : float
+        Part of it that was paid out.
     refusals : int
         Maps that were tried and not certified.
     samples : int
@@ -81,7 +94,7 @@ class Statistics:
     decrement: float
     length: float
     barrier_weight: float
-    reach: float
+    leash: float
     refusals: int
     samples: int
 
@@ -97,7 +110,7 @@ class State:
     map : HarmonicMap
     certificate : Certificate
         Of the map, for its limits.
-    limits : Bounds
+    limits : Limits
         What the map is held to: the bounds, or looser ones on the way into tightened bounds.
     status : Status
     statistics : Statistics or None
@@ -113,7 +126,7 @@ class State:
 
     map: HarmonicMap
     certificate: Certificate
-    limits: Bounds
+    limits: Limits
     status: Status = Status.LAGGING
     statistics: Statistics | None = None
     boundary: Boundary
@@ -211,13 +224,13 @@ class Deformer:
         The same states and wishes give the same maps, bit for bit on one machine. Cost: 24 s n² for
         s samples in the Hessian, n the number of cage vertices; then 22 n³ for its factors.
         """
-        if len(wish.positions) == 0:
-            return replace(state, status=Status.CONVERGED)
+        if len(wish.positions) == 0 and self._is_within(state.certificate):
+            return replace(state, limits=self.bounds, status=Status.CONVERGED)
         step = self._prepare(state, wish)
         taken = take_certified_step(
             step.objective, step.jet, state.map, state.certificate, step.required
         )
-        decrement = -taken.direction.slope / 2
+        decrement = -taken.direction.derivative / 2
         error = _handle_error(step.jet, wish, self.boundary.size)
         schedule = step.schedule.after(
             length=taken.length,
@@ -253,7 +266,7 @@ class Deformer:
                 decrement=decrement,
                 length=taken.length,
                 barrier_weight=step.schedule.weight,
-                reach=step.schedule.reach,
+                leash=step.schedule.leash,
                 refusals=taken.refusals,
                 samples=len(state.boundary.points),
             ),
@@ -271,7 +284,7 @@ class Deformer:
         limits = closing_limits(self.bounds, state.limits, a, b)
         walls, required = place_walls(limits, a, b, state.certificate)
         schedule = state.schedule if _same(wish, state.wish) else state.schedule.for_new_wish()
-        tightening = limits != self.bounds
+        tightening = limits is not self.bounds
         if tightening:
             # Held softly where it is, the shape gives in to its energy; later handles pull again.
             handles, leashed = self.handles.softened(SOFTNESS), False
@@ -279,7 +292,7 @@ class Deformer:
             schedule = replace(schedule, weight=max(schedule.weight, LEAST_TIGHTENING))
         else:
             handles = self.handles
-            wish, leashed = cut_to_leash(handles, self.boundary.size, schedule.reach, jet, wish)
+            wish, leashed = cut_to_leash(handles, self.boundary.size, schedule.leash, jet, wish)
         barrier = Barrier(walls=walls, weight=schedule.weight, duals=state.duals)
         return _Step(
             jet=jet,
@@ -323,6 +336,11 @@ class Deformer:
         ]
         return (state if values[0] <= values[1] else fresh), count + more
 
+    def _is_within(self, certificate: Certificate) -> bool:
+        return self.bounds.allow(
+            k=certificate.k, sigma_a=certificate.sigma_a, sigma_b=certificate.sigma_b
+        )
+
     def follow(self, state: State, wish: Wish) -> tuple[State, int]:
         """Take the few steps that one row of a recorded path gets; return their number too."""
         for count in range(1, PATH_STEPS + 1):
@@ -363,8 +381,8 @@ class _Step(NamedTuple):
     jet: Jet
     objective: Objective
     barrier: Barrier
-    limits: Bounds
-    required: Bounds
+    limits: Limits
+    required: Limits
     schedule: Schedule
     leashed: bool
     tightening: bool
@@ -382,6 +400,8 @@ class _Step(NamedTuple):
 
 
 def _handle_error(jet: Jet, wish: Wish, size: float) -> float:
+    if len(wish.positions) == 0:
+        return 0.0
     return float(np.sqrt(np.mean(np.abs(jet.positions - wish.positions) ** 2))) / size
 
 

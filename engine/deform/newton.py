@@ -26,20 +26,20 @@ class Direction(NamedTuple):
         The change of the coefficients; psi_0 stays.
     jet : Jet
         The same change, measured.
-    slope : float
-        Derivative of the objective along it, negative. Half its size is the Newton decrement, the
-        expected gain.
+    derivative : float
+        Of the objective along the direction, negative. Half its size is the gain that the quadratic
+        model expects.
     """
 
     phi: Complexes
     psi: Complexes
     jet: Jet
-    slope: float
+    derivative: float
 
     def scaled(self, factor: float) -> "Direction":
         """Return the direction times a factor."""
         jet = Jet(*(factor * part for part in self.jet))
-        return Direction(factor * self.phi, factor * self.psi, jet, factor * self.slope)
+        return Direction(factor * self.phi, factor * self.psi, jet, factor * self.derivative)
 
 
 def newton_direction(objective: Objective, jet: Jet) -> Direction:
@@ -47,12 +47,12 @@ def newton_direction(objective: Objective, jet: Jet) -> Direction:
     radial = objective.radial(jet)
     gradient = objective.gradient(jet, radial)
     solution = _solve(objective.hessian(jet, radial), gradient)
-    slope = -float(gradient @ solution)
+    derivative = -float(gradient @ solution)
     # The unknowns are the conjugates (see `objective`).
     change = -solution.view(np.complex128).conj()
     n = len(objective.boundary.cage)
     phi, psi = change[:n], np.concatenate([[0.0], change[n:]])
-    return Direction(phi, psi, objective.jet(phi, psi), slope)
+    return Direction(phi, psi, objective.jet(phi, psi), derivative)
 
 
 def line_search(
@@ -77,7 +77,7 @@ def line_search(
             length *= 0.7
             continue
         reached = objective.value(jet.advanced(length, direction.jet))
-        if reached <= value + SUFFICIENT * length * direction.slope + rounding:
+        if reached <= value + SUFFICIENT * length * direction.derivative + rounding:
             return length
         length *= 0.5 if np.isfinite(reached) else 0.7
     return 0.0

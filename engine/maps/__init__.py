@@ -7,9 +7,9 @@ Imports: `engine.geometry`.
 
 from engine.maps import distortion
 from engine.maps.boundary import Boundary
-from engine.maps.bounds import Bounds
+from engine.maps.bounds import Bounds, Limits
 from engine.maps.cauchy import cauchy_coordinates, cauchy_derivatives, evaluate
-from engine.maps.certificate import Certificate, certify, certify_samples
+from engine.maps.certificate import Certificate, certify, certify_segments
 from engine.maps.harmonic_map import HarmonicMap
 
 __all__ = [
@@ -17,10 +17,11 @@ __all__ = [
     "Bounds",
     "Certificate",
     "HarmonicMap",
+    "Limits",
     "cauchy_coordinates",
     "cauchy_derivatives",
     "certify",
-    "certify_samples",
+    "certify_segments",
     "distortion",
     "evaluate",
 ]

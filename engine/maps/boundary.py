@@ -15,11 +15,11 @@ from engine.geometry import (
 )
 from engine.maps.cauchy import cauchy_coordinates, cauchy_derivatives
 
-# Segments of the outline: at most this fraction of their distance to the nearest cage vertex, and
-# of the diagonal of the outline. Measured: the extremes on the samples are then within a few
-# thousandths of those on the whole outline.
-RATIO = 0.5
-LONGEST = 1 / 200
+# Longest segments of the outline, over their distance to the nearest cage vertex, and over the
+# diagonal of the outline. Measured: the extremes on the samples are then within a few thousandths
+# of those on the whole outline.
+SEGMENT_PER_DISTANCE = 0.5
+SEGMENT_PER_SIZE = 1 / 200
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -43,7 +43,7 @@ class Boundary:
         C_j' at the samples.
     curvature_kernel : float64, shape (m, n)
         1 / (2π d_j²) with d_j the distance of cage vertex j from the segment: times the jumps of
-        the slopes of Φ it bounds |Φ'''| on the segment.
+        Δφ/Δz it bounds |Φ'''| on the segment.
     vertex_coordinates : complex128, shape (p, n)
         C_j at the outline's vertices.
     """
@@ -80,16 +80,17 @@ class Boundary:
         require_simple(outline, "outline")
         require_around(cage, outline)
         size = box_diagonal(outline)
-        points = sample_graded(outline, cage, ratio=RATIO, longest=LONGEST * size)
+        points = sample_graded(
+            outline, cage, ratio=SEGMENT_PER_DISTANCE, longest=SEGMENT_PER_SIZE * size
+        )
         ends = np.roll(points, -1)
         half = np.abs(ends - points) / 2
-        weights = half + np.roll(half, 1)
         return cls(
             outline=outline,
             cage=cage,
             size=size,
             points=readonly(points),
-            weights=readonly(weights / weights.sum()),
+            weights=readonly(_arc_lengths(half)),
             half_lengths=readonly(half),
             derivatives=readonly(cauchy_derivatives(cage, points)),
             curvature_kernel=readonly(_curvature_kernel(cage, points, ends)),
@@ -102,8 +103,9 @@ class Boundary:
         Parameters
         ----------
         segments : int, shape (s,)
-            Distinct.
+            In any order.
         """
+        segments = np.unique(segments)
         starts = self.points[segments]
         ends = self.points[(segments + 1) % len(self.points)]
         middles = (starts + ends) / 2
@@ -115,15 +117,21 @@ class Boundary:
         kernel[first] = _curvature_kernel(self.cage, starts, middles)
         kernel[first + 1] = _curvature_kernel(self.cage, middles, ends)
         rows = cauchy_derivatives(self.cage, middles)
-        weights = half + np.roll(half, 1)
         return replace(
             self,
             points=readonly(points),
-            weights=readonly(weights / weights.sum()),
+            weights=readonly(_arc_lengths(half)),
             half_lengths=readonly(half),
             derivatives=readonly(np.insert(self.derivatives, segments + 1, rows, axis=0)),
             curvature_kernel=readonly(kernel),
         )
+
+
+def _arc_lengths(half_lengths: Floats) -> Floats:
+    """Return the arc length from the middle of the segment before each sample to that after it."""
+    lengths: Floats = half_lengths + np.roll(half_lengths, 1)
+    lengths /= lengths.sum()
+    return lengths
 
 
 def _curvature_kernel(cage: Complexes, starts: Complexes, ends: Complexes) -> Floats:

@@ -1,15 +1,44 @@
-"""The distortion that a person allows."""
+"""The distortion that a person allows, and what a map is held to."""
 
 from dataclasses import dataclass
 from math import isfinite
-from typing import Self
 
 from engine.errors import EngineError
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Bounds:
-    """Limits that hold at every point of the shape: k ≤ `k`, σ_a ≤ `sigma_a`, σ_b ≥ `sigma_b`.
+class Limits:
+    """Limits that hold at every point of a shape: k ≤ `k`, σ_a ≤ `sigma_a`, σ_b ≥ `sigma_b`.
+
+    Any numbers. What a person allows are `Bounds`; the solver also holds maps to limits that the
+    identity does not keep, as on the way of an enlarged map into tighter bounds.
+
+    Parameters
+    ----------
+    k, sigma_a, sigma_b : float
+    """
+
+    k: float
+    sigma_a: float
+    sigma_b: float
+
+    def allow(self, *, k: float, sigma_a: float, sigma_b: float) -> bool:
+        """Tell whether distortions up to these values are within the limits; NaN never is."""
+        return bool(k <= self.k and sigma_a <= self.sigma_a and sigma_b >= self.sigma_b)
+
+    def towards_identity(self, fraction: float) -> "Limits":
+        """Return the limits moved by a fraction of what lies between them and the identity."""
+        rest = 1.0 - fraction
+        return Limits(
+            k=rest * self.k,
+            sigma_a=1.0 + rest * (self.sigma_a - 1.0),
+            sigma_b=1.0 + rest * (self.sigma_b - 1.0),
+        )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Bounds(Limits):
+    """Limits that a person sets; the identity, where every drag starts, lies strictly within them.
 
     Parameters
     ----------
@@ -23,7 +52,7 @@ class Bounds:
     Raises
     ------
     EngineError
-        If the identity is not strictly within the bounds: every drag starts there.
+        If the identity is not strictly within the bounds.
     """
 
     k: float = 0.8
@@ -39,16 +68,3 @@ class Bounds:
             raise EngineError(
                 f"The bound on sigma_b must be between 0 and 1, not {self.sigma_b:g}."
             )
-
-    def allow(self, *, k: float, sigma_a: float, sigma_b: float) -> bool:
-        """Tell whether distortions up to these values are within the bounds."""
-        return bool(k <= self.k and sigma_a <= self.sigma_a and sigma_b >= self.sigma_b)
-
-    def towards_identity(self, fraction: float) -> Self:
-        """Return the bounds tightened by a fraction of what lies between them and the identity."""
-        keep = 1.0 - fraction
-        return type(self)(
-            k=keep * self.k,
-            sigma_a=1.0 + keep * (self.sigma_a - 1.0),
-            sigma_b=1.0 + keep * (self.sigma_b - 1.0),
-        )

@@ -3,8 +3,8 @@
 The coordinates of Weber, Ben-Chen and Gotsman (2009) span the holomorphic functions of Equation
 (14), Φ(z) = Σ C_j(z) φ_j. With the cage vertices z_j in counter-clockwise order, B_j = z_j − z and
 ℓ_j(z) = log(B_{j+1} / B_j), everything here follows from one real logarithm per vertex and one
-arctangent per edge: the integrand of Cauchy's formula is linear along an edge, with slope
-s_j = (φ_{j+1} − φ_j) / (z_{j+1} − z_j), so that
+arctangent per edge: the integrand of Cauchy's formula is linear along an edge, with the divided
+difference s_j = (φ_{j+1} − φ_j) / (z_{j+1} − z_j), so that
 
     2πi Φ(z)   = Σ ℓ_j (φ_j + s_j (z − z_j)),
     2πi Φ'(z)  = Σ ℓ_j s_j,
@@ -62,17 +62,17 @@ def edge_logarithms(cage: Complexes, points: Complexes) -> Complexes:
     return logarithms
 
 
-def edge_slopes(cage: Complexes, coefficients: Complexes) -> Complexes:
+def divided_differences(cage: Complexes, coefficients: Complexes) -> Complexes:
     """Return s_j = (φ_{j+1} − φ_j) / (z_{j+1} − z_j), shaped like `coefficients` (n, ...)."""
     lengths = np.roll(cage, -1) - cage
     rise = np.roll(coefficients, -1, axis=0) - coefficients
     return rise / lengths.reshape(-1, *[1] * (coefficients.ndim - 1))
 
 
-def slope_jumps(cage: Complexes, coefficients: Complexes) -> Complexes:
-    """Return s_j − s_{j−1}, the jumps of the slopes at the vertices, shaped like `coefficients`."""
-    slopes = edge_slopes(cage, coefficients)
-    return slopes - np.roll(slopes, 1, axis=0)
+def difference_jumps(cage: Complexes, coefficients: Complexes) -> Complexes:
+    """Return s_j − s_{j−1} at the vertices, shaped like `coefficients`."""
+    differences = divided_differences(cage, coefficients)
+    return differences - np.roll(differences, 1, axis=0)
 
 
 def cauchy_coordinates(cage: Complexes, points: Complexes) -> Complexes:
@@ -105,8 +105,8 @@ def cauchy_second_derivatives(cage: Complexes, points: Complexes) -> Complexes:
     chord = (np.roll(cage, -1) - np.roll(cage, 1)) / TWO_PI_I
     second = np.empty((len(points), len(cage)), dtype=np.complex128)
     for block in _blocks(len(points), len(cage)):
-        reach = cage - points[block, None]
-        second[block] = chord / (np.roll(reach, 1, axis=1) * reach * np.roll(reach, -1, axis=1))
+        b = cage - points[block, None]
+        second[block] = chord / (np.roll(b, 1, axis=1) * b * np.roll(b, -1, axis=1))
     return second
 
 
@@ -136,11 +136,12 @@ def evaluate(
     taken in blocks that stay in cache, so that memory does not grow with m·n. Accurate to rounding
     at distances from the cage that are not small against its edges.
     """
-    slopes = edge_slopes(cage, coefficients)
-    jumps = slope_jumps(cage, coefficients)
-    # Taken about the middle of the cage: far from the origin z Σ ℓ_j s_j would cancel.
+    differences = divided_differences(cage, coefficients)
+    jumps = difference_jumps(cage, coefficients)
+    # z is measured from the middle of the cage: far from the origin Σ ℓ_j (φ_j − s_j z_j) and
+    # z Σ ℓ_j s_j would both be large, and their sum would lose digits.
     middle = cage.mean()
-    offsets = coefficients - slopes * (cage - middle)[:, None]
+    offsets = coefficients - differences * (cage - middle)[:, None]
     results = [np.empty((len(points), coefficients.shape[1]), np.complex128) for _ in orders]
     for block in _blocks(len(points), len(cage)):
         z = points[block]
@@ -149,9 +150,11 @@ def evaluate(
             if logarithms is None or order == 2:
                 result[block] = (1.0 / (cage - z[:, None])) @ jumps
             elif order == 1:
-                result[block] = logarithms @ slopes
+                result[block] = logarithms @ differences
             else:
-                result[block] = logarithms @ offsets + (z - middle)[:, None] * (logarithms @ slopes)
+                result[block] = logarithms @ offsets + (z - middle)[:, None] * (
+                    logarithms @ differences
+                )
             result[block] /= TWO_PI_I
     return results
 

@@ -24,8 +24,8 @@ import numpy as np
 from engine.arrays import Booleans, Complexes, Floats, Indices
 from engine.errors import EngineError
 from engine.maps.boundary import Boundary
-from engine.maps.bounds import Bounds
-from engine.maps.cauchy import evaluate, slope_jumps
+from engine.maps.bounds import Limits
+from engine.maps.cauchy import difference_jumps, evaluate
 from engine.maps.harmonic_map import HarmonicMap
 
 # Segments are bisected until the reported extremes are this close to attained ones.
@@ -52,7 +52,9 @@ class Certificate:
         Winding number of f_z along the outline, the number of its zeros inside; None if f_z
         vanishes, or nearly, on the outline.
     certified : bool
-        The map is locally injective and keeps to the bounds that it was tested for.
+        The map is locally injective and keeps to the limits that it was tested for.
+    limits : Limits or None
+        Those limits; None where they are not told, as in a file.
     """
 
     k: float
@@ -60,10 +62,11 @@ class Certificate:
     sigma_b: float
     winding: int | None
     certified: bool
+    limits: Limits | None = None
 
 
-def certify(harmonic_map: HarmonicMap, boundary: Boundary, bounds: Bounds) -> Certificate:
-    """Bound the distortion of a map in the whole domain, and test it against `bounds`.
+def certify(harmonic_map: HarmonicMap, boundary: Boundary, limits: Limits) -> Certificate:
+    """Bound the distortion of a map in the whole domain, and test it against `limits`.
 
     Raises
     ------
@@ -72,50 +75,47 @@ def certify(harmonic_map: HarmonicMap, boundary: Boundary, bounds: Bounds) -> Ce
 
     Notes
     -----
-    Cost: O(m n) for m samples, and n logarithms for each bisected segment. A map within the bounds
-    by less than the rounding is not certified; nothing else that holds is refused unless a bound is
-    touched within 2⁻¹⁴ of a segment.
+    Cost: O(m n) for m samples, and n logarithms for each bisected segment. A map within the limits
+    by less than the rounding is not certified, nor one whose derivatives overflow; nothing else
+    that holds is refused unless a limit is touched within 2⁻¹⁴ of a segment.
     """
-    if not np.array_equal(harmonic_map.cage, boundary.cage):
-        raise EngineError("The map is over another cage than the outline's samples.")
-    coefficients = np.column_stack([harmonic_map.phi, harmonic_map.psi])
-    # Constants do not matter to derivatives; without them a far shape loses no digits.
-    values = boundary.derivatives @ (coefficients - coefficients[0])
-    certificate, _ = certify_samples(boundary, coefficients, values, bounds)
+    certificate, _ = certify_segments(harmonic_map, boundary, limits)
     return certificate
 
 
-def certify_samples(
-    boundary: Boundary, coefficients: Complexes, values: Complexes, bounds: Bounds
+def certify_segments(
+    harmonic_map: HarmonicMap, boundary: Boundary, limits: Limits
 ) -> tuple[Certificate, Indices]:
-    """Certify a map whose F and G at the samples are known.
-
-    Parameters
-    ----------
-    boundary : Boundary
-    coefficients : complex128, shape (n, 2)
-        φ and ψ.
-    values : complex128, shape (m, 2)
-        F and G at the samples.
-    bounds : Bounds
+    """Certify a map like `certify`, and tell where it is not within the limits.
 
     Returns
     -------
     Certificate
     Indices
-        The segments on which a bound is broken or could not be proven.
+        The segments on which a limit is broken or could not be proven.
+
+    Raises
+    ------
+    EngineError
+        If the map is over another cage.
     """
-    jumps = np.abs(slope_jumps(boundary.cage, coefficients))
-    errors = (boundary.curvature_kernel @ jumps) * (boundary.half_lengths**2 / 2)[:, None]
-    segments = _Segments(
-        starts=boundary.points,
-        ends=np.roll(boundary.points, -1),
-        first=values,
-        last=np.roll(values, -1, axis=0),
-        errors=errors,
-        origins=np.arange(len(values)),
-    )
-    return _bisect(boundary.cage, coefficients, segments, bounds)
+    if not np.array_equal(harmonic_map.cage, boundary.cage):
+        raise EngineError("The map is over another cage than the outline's samples.")
+    coefficients = np.column_stack([harmonic_map.phi, harmonic_map.psi])
+    with np.errstate(over="ignore", invalid="ignore"):
+        # Constants do not matter to derivatives; without them a far shape loses no digits.
+        values = boundary.derivatives @ (coefficients - coefficients[0])
+        jumps = np.abs(difference_jumps(boundary.cage, coefficients))
+        errors = (boundary.curvature_kernel @ jumps) * (boundary.half_lengths**2 / 2)[:, None]
+        segments = _Segments(
+            starts=boundary.points,
+            ends=np.roll(boundary.points, -1),
+            first=values,
+            last=np.roll(values, -1, axis=0),
+            errors=errors,
+            origins=np.arange(len(values)),
+        )
+        return _bisect(boundary.cage, coefficients, segments, limits)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -155,13 +155,18 @@ class _Extremes:
     sigma_b: float = inf
 
     def include(self, k: Floats, sigma_a: Floats, sigma_b: Floats) -> None:
-        self.k = max(self.k, float(k.max(initial=0.0)))
-        self.sigma_a = max(self.sigma_a, float(sigma_a.max(initial=0.0)))
-        self.sigma_b = min(self.sigma_b, float(sigma_b.min(initial=inf)))
+        self.k = max(self.k, _or_worst(k.max(initial=0.0), inf))
+        self.sigma_a = max(self.sigma_a, _or_worst(sigma_a.max(initial=0.0), inf))
+        self.sigma_b = min(self.sigma_b, _or_worst(sigma_b.min(initial=inf), -inf))
+
+
+def _or_worst(value: float, worst: float) -> float:
+    """Return the value, or the worst one in place of NaN, which compares with nothing."""
+    return worst if np.isnan(value) else float(value)
 
 
 def _bisect(
-    cage: Complexes, coefficients: Complexes, segments: _Segments, bounds: Bounds
+    cage: Complexes, coefficients: Complexes, segments: _Segments, limits: Limits
 ) -> tuple[Certificate, Indices]:
     attained, proven = _Extremes(), _Extremes()
     turn, bisections = 0.0, 0
@@ -180,43 +185,43 @@ def _bisect(
         both = error_f + error_g
         sigma_a = np.maximum(a + b, a_last + b_last) + both
         sigma_b = np.minimum(r - b, r_last - b_last) - both
-        loose = ~clear | _exceed(attained, bounds, k, sigma_a, sigma_b)
-        outside = ~clear | (k > bounds.k) | (sigma_a > bounds.sigma_a) | (sigma_b < bounds.sigma_b)
-        count = int(np.count_nonzero(loose))
+        # All said positively: what is not a number is neither tight nor within.
+        tight = clear & _are_tight(attained, limits, k, sigma_a, sigma_b)
+        within = clear & (k <= limits.k) & (sigma_a <= limits.sigma_a) & (sigma_b >= limits.sigma_b)
+        count = int(np.count_nonzero(~tight))
         bisections += count
         if count == 0 or depth == DEEPEST or bisections > MOST_BISECTIONS:
             proven.include(k, sigma_a, sigma_b)
             turn = turn + float(delta.sum()) if clear.all() else inf
-            broken.append(segments.origins[outside])
+            broken.append(segments.origins[~within])
             break
-        done = ~loose
-        broken.append(segments.origins[done & outside])
-        proven.include(k[done], sigma_a[done], sigma_b[done])
-        turn += float(delta[done].sum())
-        segments = segments.halves(loose, cage, coefficients)
-    return _conclude(proven, turn, bounds), np.unique(np.concatenate(broken))
+        broken.append(segments.origins[tight & ~within])
+        proven.include(k[tight], sigma_a[tight], sigma_b[tight])
+        turn += float(delta[tight].sum())
+        segments = segments.halves(~tight, cage, coefficients)
+    return _conclude(proven, turn, limits), np.unique(np.concatenate(broken))
 
 
-def _exceed(
-    attained: _Extremes, bounds: Bounds, k: Floats, sigma_a: Floats, sigma_b: Floats
+def _are_tight(
+    attained: _Extremes, limits: Limits, k: Floats, sigma_a: Floats, sigma_b: Floats
 ) -> Booleans:
-    """Tell which enclosures are worse than both the attained extremes and the bounds excuse."""
+    """Tell which enclosures are no worse than the attained extremes or the limits excuse."""
     slack = TIGHTNESS * attained.sigma_a
     k_goal = attained.k + TIGHTNESS
     sigma_a_goal = attained.sigma_a + slack
     sigma_b_goal = attained.sigma_b - slack
-    # As long as a bound is kept at all points seen, the enclosure must try to keep it too.
-    if attained.k <= bounds.k:
-        k_goal = min(k_goal, bounds.k)
-    if attained.sigma_a <= bounds.sigma_a:
-        sigma_a_goal = min(sigma_a_goal, bounds.sigma_a)
-    if attained.sigma_b >= bounds.sigma_b:
-        sigma_b_goal = max(sigma_b_goal, bounds.sigma_b)
-    loose: Booleans = (k > k_goal) | (sigma_a > sigma_a_goal) | (sigma_b < sigma_b_goal)
-    return loose
+    # As long as a limit is kept at all points seen, the enclosure must try to keep it too.
+    if attained.k <= limits.k:
+        k_goal = min(k_goal, limits.k)
+    if attained.sigma_a <= limits.sigma_a:
+        sigma_a_goal = min(sigma_a_goal, limits.sigma_a)
+    if attained.sigma_b >= limits.sigma_b:
+        sigma_b_goal = max(sigma_b_goal, limits.sigma_b)
+    tight: Booleans = (k <= k_goal) & (sigma_a <= sigma_a_goal) & (sigma_b >= sigma_b_goal)
+    return tight
 
 
-def _conclude(proven: _Extremes, turn: float, bounds: Bounds) -> Certificate:
+def _conclude(proven: _Extremes, turn: float, limits: Limits) -> Certificate:
     winding = None if turn == inf else round(turn / (2 * pi))
     # Zeros of F inside make k infinite there; without k < 1 on the outline σ_b obeys no minimum
     # principle, and only |f_z| − |f_z̄| ≥ −|f_z̄| remains.
@@ -228,7 +233,8 @@ def _conclude(proven: _Extremes, turn: float, bounds: Bounds) -> Certificate:
         sigma_a=proven.sigma_a,
         sigma_b=sigma_b,
         winding=winding,
-        certified=injective and bounds.allow(k=k, sigma_a=proven.sigma_a, sigma_b=sigma_b),
+        certified=injective and limits.allow(k=k, sigma_a=proven.sigma_a, sigma_b=sigma_b),
+        limits=limits,
     )
 
 

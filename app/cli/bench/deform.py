@@ -85,7 +85,7 @@ def _newton_steps(boundary: Boundary, handles: Handles, wish: Wish) -> int:
         jet = objective.jet(phi, psi)
         value = objective.value(jet)
         direction = newton_direction(objective, jet)
-        if -direction.slope < 1e-8 * value:
+        if -direction.derivative < 1e-8 * value:
             return steps
         length = line_search(objective, jet, direction, value)
         phi, psi = phi + length * direction.phi, psi + length * direction.psi

@@ -10,7 +10,6 @@ import numpy.typing as npt
 from app.errors import LissomError
 from app.storage import check_writable, read_arrays, write_arrays
 from engine.deform import Deformer, Handles
-from engine.geometry import require_simple
 from engine.maps import Boundary, Bounds, HarmonicMap
 
 LIMITS = ("k_max", "sigma_a_max", "sigma_b_min")
@@ -27,7 +26,6 @@ def run(arguments: argparse.Namespace) -> int:
     k, sigma_a, sigma_b = (_scalar(case, name) for name in LIMITS)
     bounds = Bounds(k=k, sigma_a=sigma_a, sigma_b=sigma_b)
     boundary = Boundary.sample(case["outline"], case["cage"])
-    require_simple(boundary.cage, "cage")
     handles = Handles.place(boundary, case["handles"])
     wishes = [handles.wish(row) for row in _rows(case, len(handles.points))]
     deformer = Deformer(boundary=boundary, handles=handles, bounds=bounds)

@@ -5,11 +5,17 @@ from deform_shapes import STAR_POINTS, star_boundary
 from numpy.testing import assert_allclose
 
 from engine.deform import Handles
-from engine.deform.leash import LEASH, cut_to_leash
-from engine.deform.limits import closing_limits, limits_for, place_walls
 from engine.deform.objective import Objective
-from engine.deform.schedule import IDLE_AT_REST, Schedule
-from engine.maps import Bounds, Certificate
+from engine.deform.steering import (
+    IDLE_AT_REST,
+    LEASH,
+    Schedule,
+    closing_limits,
+    cut_to_leash,
+    limits_for,
+    place_walls,
+)
+from engine.maps import Bounds, Certificate, Limits
 
 BOUNDS = Bounds(k=0.5, sigma_a=2.0, sigma_b=0.5)
 A, B = np.array([1.0, 1.2]), np.array([0.1, 0.3])
@@ -27,8 +33,8 @@ def test_short_steps_raise_the_barrier_and_draw_in_the_leash():
     start = Schedule()
     short, full = after(start, 0.1), after(start, 1.0)
     assert short.weight > start.weight > full.weight
-    assert short.reach < start.reach
-    assert after(short, 1.0).reach > short.reach
+    assert short.leash < start.leash
+    assert after(short, 1.0).leash > short.leash
     assert after(start, 0.5).weight == start.weight
     overshot = start.after(length=0.1, shortfall=0.5, moving=True, overshot=True)
     assert overshot.weight == start.weight
@@ -76,21 +82,32 @@ def test_limits_close_in_and_never_open():
     assert closing_limits(BOUNDS, nearer, A, B) == BOUNDS
 
 
-def leashed(targets, rotations=None, reach=1.0):
+def test_limits_may_be_far_from_the_identity():
+    # A map twice as large under σ_b ≥ 0.95: its walls' slack reaches far beyond 1.
+    a, b = np.array([2.0]), np.array([0.01])
+    large = certificate(k=0.01, sigma_a=2.02, sigma_b=1.98)
+    _, required = place_walls(Limits(k=0.5, sigma_a=5.0, sigma_b=0.95), a, b, large)
+    assert 1.0 < required.sigma_b < 1.98
+    small = certificate(k=0.01, sigma_a=0.42, sigma_b=0.38)
+    _, required = place_walls(Limits(k=0.5, sigma_a=1.05, sigma_b=0.2), 0.2 * a, b, small)
+    assert 0.42 < required.sigma_a < 1.0
+
+
+def leashed(targets, rotations=None, leash=1.0):
     boundary = star_boundary()
     handles = Handles.place(boundary, STAR_POINTS)
     wish = handles.wish(targets, rotations)
     jet = Objective(boundary=boundary, handles=handles, wish=wish).jet(
         boundary.cage, 0 * boundary.cage
     )
-    near, cut = cut_to_leash(handles, boundary.size, reach, jet, wish)
-    return near, cut, LEASH * boundary.size * reach
+    near, cut = cut_to_leash(handles, boundary.size, leash, jet, wish)
+    return near, cut, LEASH * boundary.size * leash
 
 
-def test_the_leash_is_as_long_as_its_reach():
+def test_the_leash_is_as_long_as_it_is_paid_out():
     far = STAR_POINTS + 3 + 1j
-    for reach in (1.0, 0.25):
-        near, cut, length = leashed(far, reach=reach)
+    for leash in (1.0, 0.25):
+        near, cut, length = leashed(far, leash=leash)
         assert cut
         assert_allclose(near.positions, STAR_POINTS + length * np.exp(1j * np.angle(3 + 1j)))
     near, cut, length = leashed(STAR_POINTS + 0.01)

@@ -3,11 +3,11 @@ import pytest
 from deform_shapes import STAR_POINTS, dense_outline, extremes, star, star_boundary
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from numpy.testing import assert_allclose
+from numpy.testing import assert_allclose, assert_array_equal
 from scipy.linalg import eigh
 
 from engine.errors import EngineError
-from engine.maps import Boundary, Bounds, certify
+from engine.maps import Boundary, Bounds, Limits, certify
 from engine.maps import certificate as certificate_module
 from engine.maps.cauchy import cauchy_derivatives
 from engine.maps.harmonic_map import HarmonicMap
@@ -106,8 +106,8 @@ def hidden_between_vertices(height):
 
 def test_a_fold_between_the_samples_is_found(monkeypatch):
     # With samples as sparse as the vertices the certificate must bisect its way to the fold.
-    monkeypatch.setattr("engine.maps.boundary.RATIO", 1e9)
-    monkeypatch.setattr("engine.maps.boundary.LONGEST", 1e9)
+    monkeypatch.setattr("engine.maps.boundary.SEGMENT_PER_DISTANCE", 1e9)
+    monkeypatch.setattr("engine.maps.boundary.SEGMENT_PER_SIZE", 1e9)
     sparse = Boundary.sample(BOUNDARY.outline, CAGE)
     assert len(sparse.points) == len(BOUNDARY.outline)
     hidden = 0
@@ -139,6 +139,61 @@ def test_garbage_is_not_certified():
     rng = np.random.default_rng(7)
     phi, psi = rng.normal(size=(2, len(CAGE))) * 1e6
     assert not certify(over_cage(phi, psi), BOUNDARY, LOOSE).certified
+
+
+OVERFLOWING = 1e308 * np.exp(1j * np.arange(len(CAGE)))
+
+
+@pytest.mark.parametrize(
+    ("phi", "psi"), [(CAGE, OVERFLOWING), (OVERFLOWING, 0 * CAGE), (OVERFLOWING, OVERFLOWING)]
+)
+def test_what_overflows_is_not_certified(phi, psi):
+    certificate = certify(over_cage(phi, psi), BOUNDARY, LOOSE)
+    assert not certificate.certified
+    assert certificate.k == np.inf
+    assert certificate.sigma_b < 0
+
+
+def test_one_sample_that_is_not_a_number_is_enough_to_refuse():
+    # Only G has it there: all that compares with it is false.
+    segments = certificate_module._Segments(
+        starts=CAGE[:3],
+        ends=np.roll(CAGE[:3], -1),
+        first=np.array([[1, 0], [1, np.nan], [1, 0]], dtype=complex),
+        last=np.array([[1, np.nan], [1, 0], [1, 0]], dtype=complex),
+        errors=np.zeros((3, 2)),
+        origins=np.arange(3),
+    )
+    coefficients = np.column_stack([CAGE, 0 * CAGE])
+    proof, broken = certificate_module._bisect(CAGE + 9, coefficients, segments, LOOSE)
+    assert not proof.certified
+    assert proof.k == np.inf
+    assert {0, 1} <= set(broken.tolist())
+
+
+def test_a_certificate_tells_what_it_was_made_for():
+    bounds = Bounds(k=0.3)
+    certificate = certify(noisy(3, 0.01), BOUNDARY, bounds)
+    assert certificate.limits is bounds
+    assert not bounds.allow(k=np.nan, sigma_a=1.0, sigma_b=1.0)
+    assert not bounds.allow(k=0.1, sigma_a=np.nan, sigma_b=1.0)
+    assert not bounds.allow(k=0.1, sigma_a=1.0, sigma_b=np.nan)
+
+
+def test_limits_hold_any_numbers():
+    # A map of twice the size is held to limits that the identity does not keep.
+    f = over_cage(2 * CAGE, 0 * CAGE)
+    assert certify(f, BOUNDARY, Limits(k=0.5, sigma_a=3.0, sigma_b=1.5)).certified
+    assert not certify(f, BOUNDARY, Limits(k=0.5, sigma_a=3.0, sigma_b=2.1)).certified
+
+
+def test_segments_are_refined_in_any_order():
+    sorted_, mixed = (BOUNDARY.refined(np.array(s)) for s in ([2, 5, 9], [9, 2, 5, 2]))
+    assert_array_equal(mixed.points, sorted_.points)
+    assert_array_equal(mixed.half_lengths, sorted_.half_lengths)
+    assert_array_equal(mixed.derivatives, sorted_.derivatives)
+    assert_array_equal(mixed.curvature_kernel, sorted_.curvature_kernel)
+    assert_allclose(mixed.derivatives, cauchy_derivatives(CAGE, mixed.points), atol=1e-12)
 
 
 def test_refining_changes_no_result():

@@ -1,0 +1,210 @@
+"""What steers a drag: how far a step looks ahead, how the walls push, and where they stand."""
+
+from dataclasses import dataclass, replace
+from math import inf
+from typing import Self
+
+import numpy as np
+
+from engine.arrays import Complexes, Floats
+from engine.deform.handles import Handles, Wish
+from engine.deform.objective import Jet
+from engine.maps import Certificate, Limits
+
+# The leash: a handle is pulled towards a point at most this far (of L) ahead of it, and turned by
+# at most this angle; farther away the quadratic model says nothing. Both times the part of the
+# leash that is paid out.
+LEASH = 0.02
+TURN_LEASH = 0.2
+# Least part of the leash that is paid out.
+SHORTEST_LEASH = 0.1
+# Handles whose correlation with their targets is weaker have no common rotation.
+CORRELATED = 0.5
+# Weight of the barrier at the start, and at most.
+FIRST_WEIGHT = 1e-2
+MOST_WEIGHT = 100.0
+# Least weight while handles move, and when they have arrived.
+LEAST_MOVING = 1e-3
+LEAST_RESTING = 1e-6
+# Factors of the weight after a step that the bounds cut short, and after a full one.
+RAISE = 4.0
+LOWER = 0.5
+# Lengths of steps that the bounds have cut short, and that they have not.
+SHORT = 0.3
+FULL = 0.7
+# A drag gets on when its shortfall (handles from their targets, over L) is this much less than
+# ever.
+PROGRESS = 1e-3
+# After so many steps without progress the barrier is begun afresh: where steps have been cut often,
+# dual variables and added samples can hold a map fast that would have a way out.
+RENEWALS = (5, 10, 20, 30)
+# After so many the drag is at rest.
+IDLE_AT_REST = 50
+# The walls stand inside the limits by this part of the way to the identity.
+MARGIN = 1e-4
+# A step leaves at least this part of the slack between the walls and the map.
+KEPT = 0.1
+# While a map is outside its bounds the limits follow it at this relative distance.
+FOLLOW = 0.005
+# Maps are held this far (of the way to the identity) inside their bounds: then whoever certifies
+# them anew, from other samples or on another machine, finds them within.
+ROUNDING = 1e-9
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Schedule:
+    """Barrier weight and length of the leash, raised and lowered by what became of the steps.
+
+    Parameters
+    ----------
+    weight : float
+        Of the barrier: raised when a step was cut short, lowered when it was not.
+    leash : float
+        Part of the leash that is paid out, the other way round: the trust region.
+    best : float
+        Smallest shortfall since the wish changed.
+    idle : int
+        Steps without progress.
+    """
+
+    weight: float = FIRST_WEIGHT
+    leash: float = 1.0
+    best: float = inf
+    idle: int = 0
+
+    def for_new_wish(self) -> Self:
+        """Return the schedule with nothing reached yet."""
+        return replace(self, best=inf, idle=0)
+
+    def after(self, *, length: float, shortfall: float, moving: bool, overshot: bool) -> Self:
+        """Return the schedule of the next step.
+
+        Parameters
+        ----------
+        length : float
+            Part of the step that was taken.
+        shortfall : float
+            How far the drag is from its wish.
+        moving : bool
+            Whether the handles are still far from their targets.
+        overshot : bool
+            Whether the length says nothing of the walls.
+        """
+        progress = shortfall < self.best - PROGRESS
+        weight, leash = self.weight, self.leash
+        if length < SHORT and not overshot:
+            weight = min(RAISE * weight, MOST_WEIGHT)
+            leash = max(leash / 2, SHORTEST_LEASH)
+        elif length > FULL:
+            least = LEAST_MOVING if moving else LEAST_RESTING
+            weight, leash = max(LOWER * weight, least), min(2 * leash, 1.0)
+        return replace(
+            self,
+            weight=weight,
+            leash=leash,
+            best=shortfall if progress else self.best,
+            idle=0 if progress else self.idle + 1,
+        )
+
+    def renewed(self) -> Self:
+        """Return the schedule with a barrier and a leash as at the start."""
+        return replace(self, weight=FIRST_WEIGHT, leash=1.0)
+
+    @property
+    def asks_for_renewal(self) -> bool:
+        """Whether the barrier should be begun afresh now."""
+        return self.idle in RENEWALS
+
+    @property
+    def at_rest(self) -> bool:
+        """Whether more steps would most likely lead nowhere."""
+        return self.idle >= IDLE_AT_REST
+
+
+def cut_to_leash(
+    handles: Handles, size: float, leash: float, jet: Jet, wish: Wish
+) -> tuple[Wish, bool]:
+    """Return the wish cut to a part of the leash, and whether that cut anything.
+
+    What all handles want to turn together, they turn: straight ways to a wish that is mainly a
+    rotation would squeeze the shape.
+    """
+    distance, most = LEASH * size * leash, TURN_LEASH * leash
+    positions = _turned(handles, jet.positions, wish.positions, most)
+    pull = wish.positions - positions
+    cut = distance / np.maximum(np.abs(pull), distance)
+    # Free handles have NaN, which passes through.
+    turn = np.angle(np.exp(1j * wish.rotations) * jet.fz.conj())
+    near = np.angle(jet.fz) + np.clip(turn, -most, most)
+    leashed = bool(np.any(cut < 1.0) or np.any(np.abs(turn) > most))
+    return Wish(positions + cut * pull, near), leashed
+
+
+def _turned(handles: Handles, positions: Complexes, targets: Complexes, most: float) -> Complexes:
+    """Return the positions turned as a whole towards the targets (Procrustes), up to an angle."""
+    if len(positions) == 0:
+        return positions
+    weights = handles.stiffness / handles.stiffness.sum()
+    centre = weights @ positions
+    from_centre, wanted = positions - centre, targets - weights @ targets
+    correlation = weights @ (from_centre.conj() * wanted)
+    scale = weights @ (np.abs(from_centre) * np.abs(wanted))
+    if abs(correlation) <= CORRELATED * scale:
+        return positions
+    angle = np.clip(np.angle(correlation), -most, most)
+    turned: Complexes = centre + np.exp(1j * angle) * from_centre
+    return turned
+
+
+def limits_for(certificate: Certificate, bounds: Limits) -> Limits:
+    """Return the bounds, widened as far as the map of a certificate needs it."""
+    k, sigma_a, sigma_b = certificate.k, certificate.sigma_a, certificate.sigma_b
+    return Limits(
+        k=max(bounds.k, k + FOLLOW * (1 - k)),
+        sigma_a=max(bounds.sigma_a, sigma_a * (1 + FOLLOW)),
+        sigma_b=min(bounds.sigma_b, sigma_b * (1 - FOLLOW)),
+    )
+
+
+def closing_limits(bounds: Limits, before: Limits, a: Floats, b: Floats) -> Limits:
+    """Return the bounds, or limits that close in on a map that is outside of them."""
+    k, sigma_a, sigma_b = _extremes(a, b)
+    if k < bounds.k and sigma_a < bounds.sigma_a and sigma_b > bounds.sigma_b:
+        return bounds
+    return Limits(
+        k=bounds.k if k < bounds.k else min(before.k, k + FOLLOW * (1 - k)),
+        sigma_a=bounds.sigma_a
+        if sigma_a < bounds.sigma_a
+        else min(before.sigma_a, sigma_a * (1 + FOLLOW)),
+        sigma_b=bounds.sigma_b
+        if sigma_b > bounds.sigma_b
+        else max(before.sigma_b, sigma_b * (1 - FOLLOW)),
+    )
+
+
+def place_walls(
+    limits: Limits, a: Floats, b: Floats, certificate: Certificate
+) -> tuple[Limits, Limits]:
+    """Return the walls of the barrier, and the bounds that the next map must keep everywhere."""
+    inner = limits.towards_identity(MARGIN)
+    k, sigma_a, sigma_b = _extremes(a, b)
+    # A map may start between the walls and the limits.
+    walls = Limits(
+        k=max(inner.k, k + (limits.k - k) / 4),
+        sigma_a=max(inner.sigma_a, sigma_a + (limits.sigma_a - sigma_a) / 4),
+        sigma_b=min(inner.sigma_b, sigma_b + (limits.sigma_b - sigma_b) / 4),
+    )
+    required = Limits(
+        k=walls.k - KEPT * (walls.k - k),
+        sigma_a=walls.sigma_a - KEPT * (walls.sigma_a - sigma_a),
+        sigma_b=walls.sigma_b - KEPT * (walls.sigma_b - sigma_b),
+    )
+    # Between its samples the present map may have less slack than that.
+    for asked in (required, walls, limits.towards_identity(ROUNDING)):
+        if asked.allow(k=certificate.k, sigma_a=certificate.sigma_a, sigma_b=certificate.sigma_b):
+            return walls, asked
+    return walls, limits
+
+
+def _extremes(a: Floats, b: Floats) -> tuple[float, float, float]:
+    return float((b / a).max()), float((a + b).max()), float((a - b).min())
