@@ -8,7 +8,7 @@ import numpy.typing as npt
 
 from engine.arrays import Complexes, Floats, as_points, readonly
 from engine.errors import EngineError
-from engine.geometry import contains
+from engine.geometry import require_inside
 from engine.maps import Boundary, cauchy_coordinates, cauchy_derivatives
 
 # λ = STIFFNESS / L² for a handle of weight 1.
@@ -84,12 +84,7 @@ class Handles:
             If a point is outside the outline or not finite, or a weight is not positive.
         """
         points = as_points(points, "handles")
-        inside = contains(boundary.outline, points, tolerance=COINCIDENT * boundary.size)
-        if not inside.all():
-            bad = int(np.flatnonzero(~inside)[0])
-            raise EngineError(
-                f"Handle {bad} at {points[bad]:.6g} is outside the outline; place it on the shape."
-            )
+        require_inside(boundary.outline, points, "handle", tolerance=COINCIDENT * boundary.size)
         stiffness = _weights(weights, len(points)) * STIFFNESS / boundary.size**2
         coordinates = cauchy_coordinates(boundary.cage, points)
         distances = np.abs(points[:, None] - points)

@@ -369,7 +369,7 @@ def test_heavier_handles_win():
 @pytest.mark.parametrize(
     ("points", "weights", "message"),
     [
-        ([5.0], None, "Handle 0 .* outside"),
+        ([5.0], None, "handle at .* outside"),
         ([0.0, np.nan], None, "finite"),
         ([0.0], [1, 2], "as many weights"),
         ([0.0], [0.0], "must be positive"),
