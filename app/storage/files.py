@@ -1,7 +1,8 @@
 """Reading and writing files so that the person's work is never half there."""
 
 import os
-import tempfile
+import secrets
+import stat
 import zipfile
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
@@ -13,6 +14,8 @@ import numpy.typing as npt
 
 from app.errors import LissomError
 
+NEW_FILE = os.O_WRONLY | os.O_CREAT | os.O_EXCL | getattr(os, "O_BINARY", 0)
+
 
 def write_atomically(path: Path, write: Callable[[IO[bytes]], object]) -> None:
     """Write a file so that at any moment the old or the new one is whole.
@@ -20,14 +23,14 @@ def write_atomically(path: Path, write: Callable[[IO[bytes]], object]) -> None:
     Parameters
     ----------
     path : Path
-        Used exactly as given; an existing file is replaced.
+        Used exactly as given; an existing file is replaced. Of a link, that is what it points to.
     write : callable
         Writes the contents to the open binary file that it is handed.
 
     Raises
     ------
     LissomError
-        If `path` is a folder, its folder is missing, or the disk refuses.
+        As `check_writable`, or if the disk refuses.
     """
     with atomic_file(path) as file:
         write(file)
@@ -43,19 +46,21 @@ def atomic_file(path: Path) -> Iterator[IO[bytes]]:
         As `write_atomically`; an `OSError` of the block counts as the disk's refusal.
     """
     check_writable(path)
+    target = Path(os.path.realpath(path))
+    temporary = target.with_name(f".lissom-{secrets.token_hex(8)}.part")
     try:
-        handle, name = tempfile.mkstemp(prefix=f".{path.name}.", suffix=".part", dir=path.parent)
-    except OSError as error:
-        raise LissomError(f"cannot write {path}: {_reason(error)}") from error
-    temporary = Path(name)
-    try:
-        with os.fdopen(handle, "wb") as file:
+        # The file that is replaced hands on its permissions. Those of a new one are the system's
+        # affair: to ask for the umask would change it for all threads.
+        mode = stat.S_IMODE(target.stat().st_mode) if target.exists() else None
+        with os.fdopen(
+            os.open(temporary, NEW_FILE, 0o666 if mode is None else 0o600), "wb"
+        ) as file:
             yield file
             file.flush()
             os.fsync(file.fileno())
-        # mkstemp makes files private; a file made here gets what any other program would give it.
-        temporary.chmod(_mode_for(path))
-        temporary.replace(path)
+        if mode is not None:
+            temporary.chmod(mode)
+        temporary.replace(target)
     except OSError as error:
         raise LissomError(f"cannot write {path}: {_reason(error)}") from error
     finally:
@@ -63,11 +68,21 @@ def atomic_file(path: Path) -> Iterator[IO[bytes]]:
 
 
 def check_writable(path: Path) -> None:
-    """Refuse an output path that cannot work, before any long computation."""
+    """Refuse an output path that cannot work, before any long computation.
+
+    Raises
+    ------
+    LissomError
+        If it is a folder, or a link that leads in a circle, or its folder is missing.
+    """
     if path.is_dir():
         raise LissomError(f"cannot write {path}: it is a folder; name a file")
-    if not path.parent.is_dir():
-        raise LissomError(f"cannot write {path}: the folder {path.parent} does not exist")
+    target = Path(os.path.realpath(path))
+    if target.is_symlink():
+        raise LissomError(f"cannot write {path}: it is a link that leads in a circle")
+    if not target.parent.is_dir():
+        folder = target.parent if path.is_symlink() else path.parent
+        raise LissomError(f"cannot write {path}: the folder {folder} does not exist")
 
 
 def write_arrays(path: Path, arrays: Mapping[str, npt.ArrayLike]) -> None:
@@ -111,11 +126,3 @@ def read_arrays(
 
 def _reason(error: OSError) -> str:
     return error.strerror or str(error)
-
-
-def _mode_for(path: Path) -> int:
-    if path.exists():
-        return path.stat().st_mode & 0o777
-    mask = os.umask(0)
-    os.umask(mask)
-    return 0o666 & ~mask
