@@ -1,8 +1,8 @@
 """How time runs inside an interval between two keys."""
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from reprlib import repr as shortened
 from typing import Self
 
 from app.errors import LissomError
@@ -31,13 +31,15 @@ class Easing:
     curve: tuple[float, float, float, float] | None
 
     def __post_init__(self) -> None:
-        if self.curve is not None and not (
-            len(self.curve) == 4 and all(0.0 <= value <= 1.0 for value in self.curve)
-        ):
+        if self.curve is None:
+            return
+        if not (len(self.curve) == 4 and all(0.0 <= value <= 1.0 for value in self.curve)):
             raise LissomError(
-                f"An easing curve is four numbers from 0 to 1, not {self.curve!r}: outside them "
-                "the in-betweens could leave their bounds."
+                f"An easing curve is four numbers from 0 to 1, not {shortened(self.curve)}: "
+                "outside them the in-betweens could leave their bounds."
             )
+        # Only now: a whole number may be too large for a float.
+        object.__setattr__(self, "curve", tuple(float(value) for value in self.curve))
 
     def __call__(self, s: float) -> float:
         """Return the weight of the second key at the fraction s of the interval."""
@@ -79,18 +81,17 @@ class Easing:
         if isinstance(value, str):
             if value not in PRESETS:
                 raise LissomError(
-                    f"There is no easing {value!r}; take one of {', '.join(PRESETS)}, or four "
-                    "numbers from 0 to 1."
+                    f"There is no easing {shortened(value)}; take one of {', '.join(PRESETS)}, or "
+                    "four numbers from 0 to 1."
                 )
             return PRESETS[value]
         if not isinstance(value, Sequence) or not all(
-            isinstance(number, (int, float))
-            and not isinstance(number, bool)
-            and math.isfinite(number)
-            for number in value
+            isinstance(number, (int, float)) and not isinstance(number, bool) for number in value
         ):
-            raise LissomError(f"An easing is a name or four numbers from 0 to 1, not {value!r}.")
-        return cls(tuple(float(number) for number in value))  # type: ignore[arg-type]
+            raise LissomError(
+                f"An easing is a name or four numbers from 0 to 1, not {shortened(value)}."
+            )
+        return cls(tuple(value))
 
     def written(self) -> str | list[float]:
         """Return what `parse` reads back as this easing."""

@@ -89,6 +89,11 @@ def test_what_is_left_out_has_its_documented_default():
         (["keys", 1, "target"], {}, "unknown field 'target'"),
         (["keys", 1, "ease"], "bouncy", "no easing 'bouncy'"),
         (["keys", 1, "ease"], [0, 0, 2, 1], "four numbers from 0 to 1"),
+        (["keys", 1, "ease"], [10**400, 0, 1, 1], "four numbers from 0 to 1"),
+        (["keys", 1, "ease"], [float("nan"), 0, 1, 1], "four numbers from 0 to 1"),
+        (["keys", 1, "ease"], {"x": 1}, "a name or four numbers from 0 to 1"),
+        (["keys", 1, "frame"], 10**400, "a whole number from 0 to"),
+        (["keys", 1, "targets", "nose"], [10**400, 0], "must be finite"),
     ],
 )
 def test_whatever_a_script_cannot_say_is_refused(path, value, message):
