@@ -24,7 +24,7 @@ LIBGL: Final = "libGL.so.1"
 OPENGL: Final = 330  # the version that every shader is written for
 REMEDIES: Final[dict[Backend, str]] = {
     "egl": "install EGL: sudo apt install libegl1 libgl1 libgl1-mesa-dri",
-    "osmesa": "install OSMesa: sudo apt install libosmesa6",
+    "osmesa": "install OSMesa, where Mesa still has it: sudo apt install libosmesa6",
     "native": "install a graphics driver with OpenGL 3.3, and run it where there is a display",
 }
 
