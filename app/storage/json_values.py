@@ -2,6 +2,7 @@
 
 import json
 import math
+from collections import Counter
 from typing import Any
 
 from app.errors import LissomError
@@ -83,7 +84,6 @@ def without_repeats(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
     """Refuse repeated fields; the `object_pairs_hook` of `json.loads`."""
     content = dict(pairs)
     if len(content) < len(pairs):
-        names = [name for name, _ in pairs]
-        repeated = next(name for name in names if names.count(name) > 1)
+        (repeated, _), *_ = Counter(name for name, _ in pairs).most_common(1)
         raise LissomError(f"the field {repeated!r} stands twice in one object")
     return content

@@ -58,12 +58,15 @@ class Preferences:
 
 def settings_folder() -> Path:
     """Return the folder for settings and unsaved work of this person; it may not exist yet."""
+    # By hand, since platformdirs heeds XDG_CONFIG_HOME on macOS too: it would lose settings there.
     home = Path.home()
     if sys.platform == "win32":
-        return Path(os.environ.get("APPDATA", home / "AppData" / "Roaming")) / "Lissom"
+        return Path(os.environ.get("APPDATA") or home / "AppData" / "Roaming") / "Lissom"
     if sys.platform == "darwin":
         return home / "Library" / "Application Support" / "Lissom"
-    return Path(os.environ.get("XDG_CONFIG_HOME") or home / ".config") / "lissom"
+    # A path that is not absolute is to be ignored, says the standard.
+    chosen = Path(os.environ.get("XDG_CONFIG_HOME", ""))
+    return (chosen if chosen.is_absolute() else home / ".config") / "lissom"
 
 
 def load_preferences(folder: Path) -> Preferences:
@@ -91,8 +94,9 @@ def _understood(content: dict[str, Any]) -> Preferences:
 
     def number(name: str, low: float, high: float) -> Any:
         value = content.get(name)
-        is_number = isinstance(value, (int, float)) and low <= value <= high
-        return value if is_number else getattr(Preferences(), name)
+        if isinstance(value, (int, float)) and not isinstance(value, bool) and low <= value <= high:
+            return value
+        return getattr(Preferences(), name)
 
     recent = content.get("recent")
     paths = recent if isinstance(recent, list) else []

@@ -50,10 +50,10 @@ def test_a_damaged_file_is_as_none(tmp_path, content):
     ("name", "values"),
     [
         ("theme", ["purple", 3, None, ["dark"]]),
-        ("scale", [0, 0.7499, 3.01, 1e300, -1, "1", None, float("nan"), float("inf"), [1]]),
+        ("scale", [True, 0, 0.7499, 3.01, 1e300, -1, "1", None, float("nan"), float("inf"), [1]]),
         ("auto_key", [None, 0, "no", {}]),
         ("backdrop", ["#12345", "#1234567", "#GGGGGG", "red", 7, None]),
-        ("ghosts_before", [-1, 7, "2", None, float("nan")]),
+        ("ghosts_before", [True, -1, 7, "2", None, float("nan")]),
         ("ghosts_after", [-1, 7, {}]),
         ("ghost_step", [0, 25, []]),
         ("recent", ["/a.png", 3, None, {}]),
@@ -102,5 +102,18 @@ def test_the_folder_follows_the_system(monkeypatch, tmp_path):
     monkeypatch.setenv("HOME", str(tmp_path))
     monkeypatch.setenv("XDG_CONFIG_HOME", "/etc/mine")
     assert settings_folder() == Path("/etc/mine/lissom")
+    for nowhere in ("", "relative"):
+        monkeypatch.setenv("XDG_CONFIG_HOME", nowhere)
+        assert settings_folder() == tmp_path / ".config" / "lissom"
     monkeypatch.delenv("XDG_CONFIG_HOME")
     assert settings_folder() == tmp_path / ".config" / "lissom"
+    monkeypatch.setenv("XDG_CONFIG_HOME", "/etc/mine")
+    monkeypatch.setattr("app.storage.preferences.sys.platform", "darwin")
+    assert settings_folder() == tmp_path / "Library" / "Application Support" / "Lissom"
+    monkeypatch.setattr("app.storage.preferences.sys.platform", "win32")
+    monkeypatch.setenv("APPDATA", "/mine/Roaming")
+    assert settings_folder() == Path("/mine/Roaming/Lissom")
+    monkeypatch.setenv("APPDATA", "")
+    assert settings_folder() == tmp_path / "AppData" / "Roaming" / "Lissom"
+    monkeypatch.delenv("APPDATA")
+    assert settings_folder() == tmp_path / "AppData" / "Roaming" / "Lissom"
