@@ -6,7 +6,7 @@ from pathlib import Path
 import moderngl
 import numpy as np
 import pytest
-from drawings import Easel
+from drawings import BACKENDS, Easel
 from PIL import Image
 
 from app.render.gpu.context import create_context
@@ -16,7 +16,7 @@ GOLDEN = Path(__file__).parent / "golden"
 TOLERANCE = 2  # levels, of 255
 
 
-@pytest.fixture(scope="module", params=["egl", "osmesa"])
+@pytest.fixture(scope="module", params=BACKENDS)
 def gl(request: pytest.FixtureRequest) -> Iterator[moderngl.Context]:
     """A context of each backend in turn; where one is missing, its tests fail and say so."""
     context = create_context(request.param)

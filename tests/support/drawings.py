@@ -1,7 +1,11 @@
 """Pictures, meshes and a place to draw them for the tests of drawing."""
 
+import ctypes
+from contextlib import suppress
+
 import moderngl
 import numpy as np
+import pytest
 
 from app.render.gpu.gpu_mesh import GpuMesh, Pose, StreamedVertices, VertexSource, singles
 from app.render.gpu.gpu_picture import GpuPicture
@@ -10,6 +14,19 @@ from app.render.renderer import Renderer
 from app.render.scene import Scene
 from app.render.view import View
 from engine.arrays import Bytes, Complexes, Integers
+
+
+def _has_osmesa() -> bool:
+    for name in ("libOSMesa.so.8", "libOSMesa.so.6", "libOSMesa.8.dylib", "osmesa.dll"):
+        with suppress(OSError):
+            return bool(ctypes.CDLL(name))
+    return False
+
+
+# `.ci/setup` installs it wherever it can be had.
+HAS_OSMESA = _has_osmesa()
+NEEDS_OSMESA = pytest.mark.skipif(not HAS_OSMESA, reason="newer Mesa does not have OSMesa")
+BACKENDS = ["egl", pytest.param("osmesa", marks=NEEDS_OSMESA)]
 
 
 class Easel:

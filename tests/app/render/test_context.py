@@ -1,9 +1,6 @@
-import ctypes
-from contextlib import suppress
-
 import moderngl
 import pytest
-from drawings import Easel, grid_mesh, soft_blob
+from drawings import BACKENDS, NEEDS_OSMESA, Easel, grid_mesh, soft_blob
 from numpy.testing import assert_array_equal
 
 from app.errors import LissomError
@@ -13,18 +10,7 @@ from app.render.scene import Scene
 from app.render.view import canvas_view
 
 
-def has_osmesa():
-    for name in context_module._OSMesa._NAMES:
-        with suppress(OSError):
-            return bool(ctypes.CDLL(name))
-    return False
-
-
-# `.ci/setup` installs it wherever it can be had.
-needs_osmesa = pytest.mark.skipif(not has_osmesa(), reason="newer Mesa has no OSMesa")
-
-
-@pytest.mark.parametrize("backend", ["egl", pytest.param("osmesa", marks=needs_osmesa)])
+@pytest.mark.parametrize("backend", BACKENDS)
 def test_a_probe_tells_what_a_backend_offers(backend):
     report = probe(backend)
     assert report.problem == ""
@@ -66,7 +52,7 @@ def test_where_nothing_works_the_error_names_the_packages(monkeypatch):
         create_context()
 
 
-@needs_osmesa
+@NEEDS_OSMESA
 def test_contexts_follow_and_accompany_each_other():
     def draw(gl):
         with gl:
