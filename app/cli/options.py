@@ -13,7 +13,6 @@ DETAILS = ("coarse", "normal", "fine")
 DEFAULT_DETAIL = "normal"
 DEFAULT_TRIANGLES = 100_000
 VARIANTS = ("metric", "nu", "scaled-eta", "eta", "linear")
-EXPORT_FORMATS = ("png", "apng", "gif", "webp", "spritesheet", "mp4")
 FRAMINGS = ("canvas", "fit")
 
 

@@ -2,7 +2,7 @@
 
 In: commands.
 Out: frozen documents, each of them valid, and where time stands in them.
-Imports: `engine`, `app.errors`; no pictures, no graphics, no window, no clock.
+Imports: `engine`, `app.errors`, `app.export_formats`; no pictures, graphics, window or clock.
 """
 
 from app.document import handle_commands, key_commands, settings_commands
@@ -15,11 +15,9 @@ from app.document.keyframe import Handle, Keyframe, Pose, Target
 from app.document.model import Document, PictureFile, new_document
 from app.document.playhead import Playhead
 from app.document.settings import (
-    EXPORT_FORMATS,
     FRAMINGS,
     LAST_FRAME,
     VARIANTS,
-    ExportFormat,
     ExportSettings,
     FrameRange,
     Framing,
@@ -38,7 +36,6 @@ from app.document.timeline import (
 )
 
 __all__ = [
-    "EXPORT_FORMATS",
     "FRAMINGS",
     "HOLD",
     "LAST_FRAME",
@@ -48,7 +45,6 @@ __all__ = [
     "Command",
     "Document",
     "Easing",
-    "ExportFormat",
     "ExportSettings",
     "FrameRange",
     "Framing",

@@ -5,13 +5,12 @@ from dataclasses import dataclass
 from typing import Literal, get_args
 
 from app.document.checks import require, require_size
+from app.export_formats import EXPORT_FORMATS
 from engine.domain.outline import Detail
 
 Variant = Literal["metric", "nu", "scaled-eta", "eta", "linear"]
-ExportFormat = Literal["png", "apng", "gif", "webp", "spritesheet", "mp4"]
 Framing = Literal["canvas", "fit"]
 VARIANTS: tuple[Variant, ...] = get_args(Variant)
-EXPORT_FORMATS: tuple[ExportFormat, ...] = get_args(ExportFormat)
 FRAMINGS: tuple[Framing, ...] = get_args(Framing)
 
 LAST_FRAME = 999_999
@@ -58,7 +57,7 @@ class ExportSettings:
         None exports the work range, or everything where there is none.
     """
 
-    format: ExportFormat = "png"
+    format: str = "png"
     size: tuple[int, int] | None = None
     background: str = "transparent"
     framing: Framing = "canvas"

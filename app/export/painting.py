@@ -1,13 +1,15 @@
 """The pictures of an export, drawn by the renderer that the window draws with."""
 
-from collections.abc import Iterator
-from contextlib import ExitStack, contextmanager
-from typing import Final
+from contextlib import ExitStack
+from typing import Final, NamedTuple
+
+import numpy as np
 
 from app.document import Document
 from app.errors import EXPECTED_ERRORS, LissomError
+from app.export.framing import shown_box
 from app.export.plan import ExportPlan, Poses
-from app.export.run import Draw
+from app.motion import box_around
 from app.render import TRANSPARENT, Background, Colour, Renderer, Scene
 from app.render.gpu import (
     Context,
@@ -19,17 +21,22 @@ from app.render.gpu import (
     Target,
     singles,
 )
-from engine.arrays import Bytes
+from engine.arrays import Bytes, Complexes
 
 _SMALL: Final = 0.75  # pixels of the frame per pixel of the picture
 _NO_ERROR: Final = "GL_NO_ERROR"
+_OUTSIDE: Final = 1.0  # pixels; less than this is seen by nobody
 
 
-@contextmanager
-def painter(
-    context: Context, document: Document, picture: Bytes, poses: Poses, plan: ExportPlan
-) -> Iterator[Draw]:
-    """Lend a function that draws frames, for as long as a `with` block lasts.
+class PosedFrame(NamedTuple):
+    """A frame of the timeline, and where the vertices (v,) are in it."""
+
+    frame: float
+    positions: Complexes
+
+
+class Painter:
+    """Owner of what the frames of an export are drawn with.
 
     Parameters
     ----------
@@ -45,43 +52,88 @@ def painter(
     Raises
     ------
     LissomError
-        If the picture or the frames are too large for the context. The function raises it where a
-        frame cannot be drawn.
+        If the picture or the frames are too large for the context.
     """
-    mesh = document.domain.mesh
-    with ExitStack() as owned:
-        renderer = Renderer(context)
-        owned.callback(renderer.release)
-        # At its own size the drawing comes out exact from one sample a pixel; made much smaller it
-        # is finer from four.
-        target = Target(renderer.programs, plan.view.size, 2 if plan.view.scale < _SMALL else 1)
-        owned.callback(target.release)
-        # Errors up to here are a window's, or of moderngl, which binds the framebuffer of before
-        # again though it may be gone. A target without memory has raised by itself.
-        while context.error != _NO_ERROR:
-            pass
-        texture = GpuPicture(context, picture)
-        owned.callback(texture.release)
-        gpu_mesh = GpuMesh(renderer.programs, texture, rest=mesh.vertices, triangles=mesh.triangles)
-        owned.callback(gpu_mesh.release)
-        vertices = StreamedVertices(context, len(mesh.vertices))
-        pose = Pose(gpu_mesh, vertices)
-        owned.callback(pose.release)
-        scene = Scene(background=Background(colour=_colour(plan)), pose=pose)
 
-        def draw(frame: float) -> Bytes:
-            try:
-                vertices.write(singles(poses.positions(frame)))
-                renderer.draw(target, plan.view, scene)
-                pixels = target.read_straight_rgba()
-            except (*EXPECTED_ERRORS, GlError) as error:
-                raise LissomError(f"frame {frame:g} cannot be drawn: {error}") from error
-            # OpenGL goes on after an error, with pictures that are black or of another frame.
-            if context.error != _NO_ERROR:
-                raise LissomError(f"frame {frame:g} cannot be drawn: OpenGL failed; try again")
-            return pixels
+    def __init__(
+        self, context: Context, document: Document, picture: Bytes, poses: Poses, plan: ExportPlan
+    ) -> None:
+        self._context = context
+        self._poses = poses
+        self._view = plan.view
+        mesh = document.domain.mesh
+        self._reach = box_around(mesh.vertices)
+        # The mesh has a margin around the drawing, which may lie off the canvas from the start.
+        self._room = shown_box(plan.view).joined(self._reach)
+        with ExitStack() as owned:
+            self._renderer = Renderer(context)
+            owned.callback(self._renderer.release)
+            programs = self._renderer.programs
+            # At its own size the drawing comes out exact from one sample a pixel; made much smaller
+            # it is finer from four.
+            self._target = Target(programs, plan.view.size, 2 if plan.view.scale < _SMALL else 1)
+            owned.callback(self._target.release)
+            # Errors up to here are a window's, or of moderngl, which binds the framebuffer of
+            # before again though it may be gone. A target without memory has raised by itself.
+            while context.error != _NO_ERROR:
+                pass
+            texture = GpuPicture(context, picture)
+            owned.callback(texture.release)
+            gpu_mesh = GpuMesh(programs, texture, rest=mesh.vertices, triangles=mesh.triangles)
+            owned.callback(gpu_mesh.release)
+            self._vertices = StreamedVertices(context, len(mesh.vertices))
+            pose = Pose(gpu_mesh, self._vertices)
+            owned.callback(pose.release)
+            self._scene = Scene(background=Background(colour=_colour(plan)), pose=pose)
+            self._owned = owned.pop_all()
 
-        yield draw
+    def pose(self, frame: float) -> PosedFrame:
+        """Work out where the vertices are at a frame; on any thread, one frame at a time.
+
+        Raises
+        ------
+        LissomError
+            If the motion fails there.
+        """
+        try:
+            positions = self._poses.positions(frame)
+        except EXPECTED_ERRORS as error:
+            raise LissomError(f"frame {frame:g} cannot be drawn: {error}") from error
+        box = box_around(positions)
+        if not np.isfinite(box).all():
+            raise LissomError(f"frame {frame:g} cannot be drawn: its points are not all finite")
+        self._reach = self._reach.joined(box)
+        return PosedFrame(frame, positions)
+
+    def draw(self, posed: PosedFrame) -> Bytes:
+        """Return the picture of a posed frame, uint8 (h, w, 4) with straight alpha.
+
+        Raises
+        ------
+        LissomError
+            If the frame cannot be drawn.
+        """
+        try:
+            self._vertices.write(singles(posed.positions))
+            self._renderer.draw(self._target, self._view, self._scene)
+            pixels = self._target.read_straight_rgba()
+        except (*EXPECTED_ERRORS, GlError) as error:
+            raise LissomError(f"frame {posed.frame:g} cannot be drawn: {error}") from error
+        # OpenGL goes on after an error, with pictures that are black or of another frame.
+        if self._context.error != _NO_ERROR:
+            raise LissomError(f"frame {posed.frame:g} cannot be drawn: OpenGL failed; try again")
+        return pixels
+
+    @property
+    def notices(self) -> tuple[str, ...]:
+        """What the person should know about the frames that were posed."""
+        if self._room.contains(self._reach, slack=_OUTSIDE):
+            return ()
+        return ("the motion leaves the frame; the framing 'fit' shows all of it",)
+
+    def release(self) -> None:
+        """Let everything go."""
+        self._owned.close()
 
 
 def _colour(plan: ExportPlan) -> Colour:

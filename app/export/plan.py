@@ -10,32 +10,20 @@ import numpy as np
 
 from app.document import (
     Document,
-    ExportFormat,
     ExportSettings,
     FrameRange,
     exported_frames,
     frame_times,
 )
 from app.errors import LissomError
-from app.export.framing import frame_view, shown_box
+from app.export.framing import frame_view
+from app.export_formats import EXPORT_FORMATS
 from app.motion import Box, box_around
 from app.render import View
 from app.storage import check_writable
 from engine.arrays import Complexes
 
-# The ends of the file names that each format goes by; PNG frames go to a folder.
-SUFFIXES: Final[dict[ExportFormat, tuple[str, ...]]] = {
-    "png": (),
-    "apng": (".apng", ".png"),
-    "gif": (".gif",),
-    "webp": (".webp",),
-    "spritesheet": (".png",),
-    "mp4": (".mp4",),
-}
-VIDEO_REMEDY: Final = "pip install 'lissom[video]'"
 _FRAME_NAME: Final = re.compile(r"frame_\d{4,}\.png")
-# Less than this, in pixels, is seen by nobody.
-_OUTSIDE: Final = 1.0
 
 
 class Poses(Protocol):
@@ -72,7 +60,7 @@ class ExportPlan:
     ----------
     out : Path
     format : str
-        One of `EXPORT_FORMATS`.
+        A name of `EXPORT_FORMATS`.
     view : View
         What every frame shows, and its size.
     background : tuple of 3 ints, optional
@@ -90,7 +78,7 @@ class ExportPlan:
     """
 
     out: Path
-    format: ExportFormat
+    format: str
     view: View
     background: tuple[int, int, int] | None
     times: tuple[float, ...]
@@ -122,18 +110,27 @@ def check_request(document: Document, request: ExportRequest) -> None:
             f"frames {document.frames.first} to {document.frames.last}"
         )
     frame_times(document, frames, request.fps)
-    if settings.format == "png":
-        _check_folder(request.out)
+    name, format_ = settings.format, EXPORT_FORMATS[settings.format]
+    if format_.suffixes:
+        _check_file(request.out, name)
     else:
-        _check_file(request.out, settings.format)
-    if settings.format == "mp4":
-        if settings.background == "transparent":
-            raise LissomError(
-                "mp4 has no transparency: choose a background colour such as #ffffff, or the "
-                "format apng or webp"
-            )
-        if importlib.util.find_spec("av") is None:
-            raise LissomError(f"mp4 needs PyAV, which is not installed: {VIDEO_REMEDY}")
+        _check_folder(request.out)
+    if not format_.is_transparent and settings.background == "transparent":
+        raise LissomError(
+            f"{name} has no transparency: choose a background colour such as #ffffff, or the "
+            "format apng or webp"
+        )
+    if missing(name):
+        raise LissomError(
+            f"{name} needs the library {format_.library}, which is not installed: {missing(name)}"
+        )
+
+
+def missing(name: str) -> str:
+    """Return how to install what a format needs and this machine lacks; empty if it has all."""
+    format_ = EXPORT_FORMATS[name]
+    is_there = not format_.library or importlib.util.find_spec(format_.library) is not None
+    return "" if is_there else format_.remedy
 
 
 def plan_export(document: Document, request: ExportRequest, poses: Poses) -> ExportPlan:
@@ -144,7 +141,7 @@ def plan_export(document: Document, request: ExportRequest, poses: Poses) -> Exp
     document : Document
     request : ExportRequest
     poses : Poses
-        The document's.
+        The document's; looked at only where the framing depends on the motion.
 
     Raises
     ------
@@ -154,7 +151,8 @@ def plan_export(document: Document, request: ExportRequest, poses: Poses) -> Exp
     settings = request.settings
     frames = _frames(document, settings)
     times = tuple(frame_times(document, frames, request.fps))
-    reach = _reach(poses, times)
+    is_fitted = settings.framing == "fit"
+    reach = _reach(poses, times) if is_fitted else box_around(document.domain.mesh.vertices)
     plan = ExportPlan(
         out=request.out,
         format=settings.format,
@@ -165,9 +163,7 @@ def plan_export(document: Document, request: ExportRequest, poses: Poses) -> Exp
         fps=document.fps if request.fps is None else request.fps,
         loop=document.loop,
     )
-    # The mesh has a margin around the drawing, which may lie off the canvas from the start.
-    shown = shown_box(plan.view).joined(box_around(document.domain.mesh.vertices))
-    return replace(plan, notices=(*_left_out(shown, reach), *_strange_frames(plan)))
+    return replace(plan, notices=tuple(_strange_frames(plan)))
 
 
 def _frames(document: Document, settings: ExportSettings) -> FrameRange:
@@ -198,17 +194,17 @@ def _check_folder(out: Path) -> None:
         raise LissomError(f"cannot write {out}: the folder {out.parent} does not exist")
 
 
-def _check_file(out: Path, format_: ExportFormat) -> None:
+def _check_file(out: Path, name: str) -> None:
     check_writable(out)
-    suffixes = SUFFIXES[format_]
+    suffixes = EXPORT_FORMATS[name].suffixes
     if out.suffix.lower() in _all_suffixes().difference(suffixes):
         raise LissomError(
-            f"{out} is not named like {format_}; let the name end in {' or '.join(suffixes)}"
+            f"{out} is not named like {name}; let the name end in {' or '.join(suffixes)}"
         )
 
 
 def _all_suffixes() -> set[str]:
-    return {suffix for suffixes in SUFFIXES.values() for suffix in suffixes}
+    return {suffix for format_ in EXPORT_FORMATS.values() for suffix in format_.suffixes}
 
 
 def _colour(background: str) -> tuple[int, int, int] | None:
@@ -218,15 +214,9 @@ def _colour(background: str) -> tuple[int, int, int] | None:
     return red, green, blue
 
 
-def _left_out(shown: Box, reach: Box) -> list[str]:
-    if shown.contains(reach, slack=_OUTSIDE):
-        return []
-    return ["the motion leaves the frame; the framing 'fit' shows all of it"]
-
-
 def _strange_frames(plan: ExportPlan) -> list[str]:
     """Tell of frames in the folder that this export will not write again."""
-    if plan.format != "png" or not plan.out.is_dir():
+    if EXPORT_FORMATS[plan.format].suffixes or not plan.out.is_dir():
         return []
     names = {path.name for path in plan.out.iterdir() if _FRAME_NAME.fullmatch(path.name)}
     others = sorted(names.difference(plan.frame_name(index) for index in range(len(plan.times))))

@@ -1,43 +1,47 @@
-"""Drawing, encoding and writing the frames of an export, a few at a time."""
+"""Posing, drawing, encoding and writing the frames of an export, a few at a time."""
 
-import importlib
 from collections import deque
-from collections.abc import Callable, Generator
+from collections.abc import Callable, Generator, Iterator
 from concurrent.futures import Future, ThreadPoolExecutor
-from contextlib import ExitStack
-from typing import IO, Final
+from contextlib import contextmanager
+from typing import Any, Final, TypeVar
 
-from app.errors import LissomError
-from app.export.apng import ApngWriter
-from app.export.frame_writer import FrameWriter
-from app.export.gif import GifWriter
 from app.export.plan import ExportPlan
-from app.export.png import PngSequence
-from app.export.spritesheet import SpritesheetWriter
-from app.export.webp import WebpWriter
-from app.storage import atomic_file
+from app.export.writers import FrameWriter, open_writer
 from engine.arrays import Bytes
 
-Draw = Callable[[float], Bytes]
-"""Returns the picture, uint8 (h, w, 4) with straight alpha, of a frame of the timeline."""
+T = TypeVar("T")
 
 ENCODERS: Final = 2  # threads
-AHEAD: Final = 4  # frames that are drawn but not yet encoded
+AHEAD: Final = 4  # frames that are posed but not yet drawn, or drawn but not yet written
 
 
-def export(plan: ExportPlan, draw: Draw) -> Generator[int]:
+def export(
+    plan: ExportPlan,
+    pose: Callable[[float], T],
+    draw: Callable[[T], Bytes],
+    *,
+    waits: bool = True,
+) -> Generator[int]:
     """Make what was planned, one frame at each step.
 
     Parameters
     ----------
     plan : ExportPlan
+    pose : callable
+        Returns what `draw` needs of a frame of the timeline. It is called in their order, on a
+        thread of its own.
     draw : callable
-        It is called on the thread that takes the steps, which may be the one of a window.
+        Returns the picture, uint8 (h, w, 4) with straight alpha. It is called on the thread that
+        takes the steps, which may be the one of a window.
+    waits : bool
+        Whether a step waits until another frame is drawn. Else it returns at once where there is
+        nothing to draw yet, and nowhere does the thread that takes it wait for others.
 
     Yields
     ------
     int
-        The number of frames that are drawn, after each of them.
+        The number of frames that are drawn.
 
     Raises
     ------
@@ -50,49 +54,50 @@ def export(plan: ExportPlan, draw: Draw) -> Generator[int]:
     of them whole, and of any other format nothing stays. The memory does not grow with the number
     of frames (that of a sprite sheet does with its size).
     """
-    if plan.format == "png":
-        _make_folder(plan)
-        yield from _write(plan, draw, PngSequence(plan))
-    else:
-        with atomic_file(plan.out) as file, ExitStack() as cleanup:
-            yield from _write(plan, draw, _writer(file, plan, cleanup))
-
-
-def _write(plan: ExportPlan, draw: Draw, writer: FrameWriter) -> Generator[int]:
-    waiting: deque[Future[bytes]] = deque()
-    encoders = ThreadPoolExecutor(ENCODERS, thread_name_prefix="encoder")
-    try:
-        for index, time in enumerate(plan.times):
-            waiting.append(encoders.submit(writer.encode, index, draw(time)))
-            while len(waiting) > AHEAD or (waiting and waiting[0].done()):
-                writer.add(waiting.popleft().result())
+    with (
+        open_writer(plan) as writer,
+        _threads("poses", 1) as poses,
+        _threads("encoder", ENCODERS) as encoders,
+        _threads("writer", 1) as writers,
+    ):
+        times = iter(plan.times)
+        posed: deque[Future[T]] = deque()
+        written: deque[Future[None]] = deque()
+        for index in range(len(plan.times)):
+            while len(posed) <= AHEAD and (time := next(times, None)) is not None:
+                posed.append(poses.submit(pose, time))
+            while len(written) > AHEAD or (written and written[0].done()):
+                yield from _come(written[0], index, waits=waits)
+                written.popleft().result()
+            yield from _come(posed[0], index, waits=waits)
+            frame = draw(posed.popleft().result())
+            encoded = encoders.submit(writer.encode, index, frame)
+            written.append(writers.submit(_add, writer, encoded))
             yield index + 1
-        while waiting:
-            writer.add(waiting.popleft().result())
+        for due in written:
+            yield from _come(due, len(plan.times), waits=waits)
+            due.result()
+        end = writers.submit(writer.finish)
+        yield from _come(end, len(plan.times), waits=waits)
+        end.result()
+
+
+def _come(due: Future[Any], count: int, *, waits: bool) -> Iterator[int]:
+    """Go on yielding the count until something is done, unless it may be waited for."""
+    while not waits and not due.done():
+        yield count
+
+
+def _add(writer: FrameWriter, encoded: Future[bytes]) -> None:
+    writer.add(encoded.result())
+
+
+@contextmanager
+def _threads(name: str, count: int) -> Iterator[ThreadPoolExecutor]:
+    """Lend threads; what they have not begun at the end of the block they never do."""
+    pool = ThreadPoolExecutor(count, thread_name_prefix=name)
+    try:
+        yield pool
     finally:
         # Files that are half written are finished first.
-        encoders.shutdown(cancel_futures=True)
-    writer.finish()
-
-
-def _writer(file: IO[bytes], plan: ExportPlan, cleanup: ExitStack) -> FrameWriter:
-    match plan.format:
-        case "apng":
-            return ApngWriter(file, plan)
-        case "gif":
-            return GifWriter(file, plan)
-        case "webp":
-            return WebpWriter(file, plan)
-        case "spritesheet":
-            return SpritesheetWriter(file, plan)
-    # Not imported at the top: it needs an extra, and loading it takes long.
-    video = importlib.import_module("app.export.video").VideoWriter(file, plan)
-    cleanup.callback(video.close)
-    return video  # type: ignore[no-any-return]
-
-
-def _make_folder(plan: ExportPlan) -> None:
-    try:
-        plan.out.mkdir(exist_ok=True)
-    except OSError as error:
-        raise LissomError(f"cannot make the folder {plan.out}: {error.strerror}") from error
+        pool.shutdown(cancel_futures=True)

@@ -10,7 +10,6 @@ from typing import Any, TypeVar, cast
 from app.document import (
     Document,
     Easing,
-    ExportFormat,
     ExportSettings,
     FrameRange,
     Framing,
@@ -148,7 +147,7 @@ def _read_meshing(content: JsonObject) -> Meshing:
 
 def _read_export(content: JsonObject) -> ExportSettings:
     return ExportSettings(
-        format=cast(ExportFormat, as_text(content["format"], "export.format")),
+        format=as_text(content["format"], "export.format"),
         size=_read_optional(content["size"], "export.size", read_size),
         background=as_text(content["background"], "export.background"),
         framing=cast(Framing, as_text(content["framing"], "export.framing")),

@@ -15,13 +15,13 @@ from app.document.easing import HOLD, PRESETS, Easing
 from app.document.keyframe import Handle, Keyframe, Pose, Target
 from app.document.model import Document, PictureFile, new_document
 from app.document.settings import (
-    EXPORT_FORMATS,
     FRAMINGS,
     VARIANTS,
     ExportSettings,
     FrameRange,
     Meshing,
 )
+from app.export_formats import EXPORT_FORMATS
 from engine.domain.build import Domain
 from engine.domain.meshing.mesh import Mesh
 from engine.maps.bounds import Bounds
@@ -141,7 +141,7 @@ def _random_settings_command(rng: np.random.Generator, document: Document) -> Co
 
 def _random_export(rng: np.random.Generator) -> ExportSettings:
     return ExportSettings(
-        format=EXPORT_FORMATS[rng.integers(len(EXPORT_FORMATS))],
+        format=tuple(EXPORT_FORMATS)[rng.integers(len(EXPORT_FORMATS))],
         size=None if rng.random() < 0.5 else (int(rng.integers(1, 5000)), 1080),
         background=["transparent", "#12aBef"][rng.integers(2)],
         framing=FRAMINGS[rng.integers(2)],

@@ -1,7 +1,6 @@
 """`lissom doctor`: what works on this machine."""
 
 import argparse
-import importlib.util
 import os
 import platform
 import sys
@@ -11,7 +10,8 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from app.errors import LissomError
-from app.export import VIDEO_REMEDY
+from app.export import missing
+from app.export_formats import EXPORT_FORMATS
 from app.render import Renderer, Scene, canvas_view
 from app.render.gpu import (
     AUTOMATIC,
@@ -50,7 +50,7 @@ def run(_: argparse.Namespace) -> int:
     )
     print(", ".join(f"{name} {_version(name)}" for name in LIBRARIES))
     rendering = [_rendering(backend) for backend in AUTOMATIC]
-    for finding in (*rendering, _display(), _dialogs(), _video()):
+    for finding in (*rendering, _display(), _dialogs(), *_formats()):
         print(f"{'ok' if finding.works else '--'}  {finding.name}: {finding.text}")
     if any(finding.works for finding in rendering):
         print("Lissom can render here.")
@@ -115,11 +115,16 @@ def _dialogs() -> Finding:
     return Finding(name, remedy, works=False)
 
 
-def _video() -> Finding:
-    name = "mp4"
-    if importlib.util.find_spec("av") is None:
-        return Finding(name, f"PyAV is not installed: {VIDEO_REMEDY}", works=False)
-    return Finding(name, f"PyAV {_version('av')}")
+def _formats() -> list[Finding]:
+    """Return how it stands about the formats that need more than Lissom always has."""
+    found = []
+    for name, format_ in EXPORT_FORMATS.items():
+        if missing(name):
+            text = f"{format_.library} is not installed: {missing(name)}"
+            found.append(Finding(name, text, works=False))
+        elif format_.library:
+            found.append(Finding(name, f"{format_.library} {_version(format_.library)}"))
+    return found
 
 
 def _version(library: str) -> str:

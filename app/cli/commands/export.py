@@ -6,21 +6,17 @@ from dataclasses import replace
 from pathlib import Path
 
 from app.cli.console import StatusLine, notice
-from app.document import (
-    ExportFormat,
-    ExportSettings,
-    FrameRange,
-)
+from app.document import ExportSettings, FrameRange
 from app.export import (
-    SUFFIXES,
     ExportPlan,
     ExportRequest,
+    Painter,
     check_request,
     export,
-    painter,
     plan_export,
     sheet_grid,
 )
+from app.export_formats import EXPORT_FORMATS, format_by_suffix
 from app.motion import Animation
 from app.render.gpu import create_context
 from app.storage import decode_picture, load_project
@@ -40,16 +36,14 @@ def run(arguments: argparse.Namespace) -> int:
         status.show("preparing the in-betweens")
         animation = Animation(document, arguments.variant)
         plan = plan_export(document, request, animation)
-        with (
-            painter(context, document, picture.rgba, animation, plan) as draw,
-            closing(export(plan, draw)) as steps,
-        ):
+        painter = Painter(context, document, picture.rgba, animation, plan)
+        with closing(export(plan, painter.pose, painter.draw)) as steps:
             for done in steps:
                 status.show(f"{done} of {len(plan.times)} frames")
     finally:
         status.clear()
         context.release()
-    for message in plan.notices:
+    for message in (*painter.notices, *plan.notices):
         notice(message)
     print(_summary(plan))
     return 0
@@ -67,18 +61,16 @@ def _settings(own: ExportSettings, arguments: argparse.Namespace) -> ExportSetti
     return replace(own, **{name: value for name, value in given.items() if value is not None})
 
 
-def _format_of(out: Path) -> ExportFormat | None:
-    """Return the one format that a name stands for; .png stands for several."""
-    suffix = out.suffix.lower()
-    formats = [format_ for format_, suffixes in SUFFIXES.items() if suffix in suffixes]
-    return formats[0] if len(formats) == 1 and not out.is_dir() else None
+def _format_of(out: Path) -> str | None:
+    """Return the one format that a name stands for."""
+    return None if out.is_dir() else format_by_suffix().get(out.suffix.lower())
 
 
 def _summary(plan: ExportPlan) -> str:
     width, height = plan.view.size
     count = len(plan.times)
     text = f"{plan.out}: {count} {'frame' if count == 1 else 'frames'} of {width} × {height} pixels"
-    if plan.format == "png":
+    if not EXPORT_FORMATS[plan.format].suffixes:
         names = dict.fromkeys((plan.frame_name(0), plan.frame_name(count - 1)))
         return f"{text}, {' to '.join(names)}"
     if plan.format == "spritesheet":

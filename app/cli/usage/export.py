@@ -2,26 +2,21 @@
 
 import argparse
 import re
+import textwrap
 from pathlib import Path
 
-from app.cli.options import EXPORT_FORMATS, FRAMINGS, add_variant_option, input_file
+from app.cli.options import FRAMINGS, add_variant_option, input_file
+from app.export_formats import EXPORT_FORMATS, format_by_suffix
 
 EPILOG = """\
 What is not given is as the project's own export settings have it.
 
 formats:
-  png          frame_0000.png, ... in the folder --out, which is made if it is missing. Frame 0 of
-               the timeline is frame_0000.png; numbers go on one by one from that of the first
-               frame, with --fps too, and have more digits if one needs them. Frames of before
-               with the same names are replaced, other files stay.
-  apng, webp   an animation with exact colours and transparency
-  gif          an animation in 255 colours a frame; each pixel is opaque or transparent, so that
-               soft edges become hard
-  spritesheet  all frames in one PNG, row by row; how many is told on standard output
-  mp4          H.264 video; needs a background colour and pip install 'lissom[video]'
-Without --format, an --out that ends in .apng, .gif, .webp or .mp4 chooses it. Animations of a
-project that loops play for ever, others once. PNGs have straight alpha. Interrupted, png leaves
-the frames that are done, each of them whole, and every other format nothing.
+{formats}
+Without --format, an --out that ends in {telling} chooses it. Animations
+of a project that loops play for ever, others once. PNGs have straight alpha; colours are those of
+sRGB. Interrupted, png leaves the frames that are done, each of them whole, and every other format
+nothing.
 
 examples:
   lissom export wave.lissom --out frames
@@ -32,7 +27,7 @@ examples:
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the options of `lissom export`."""
-    parser.epilog = EPILOG
+    parser.epilog = EPILOG.format(formats=_formats(), telling=_telling())
     parser.add_argument("project", metavar="PROJECT", type=input_file, help="the .lissom file")
     parser.add_argument(
         "--out",
@@ -57,7 +52,28 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--framing", choices=FRAMINGS, help="the picture's own canvas, or all of the motion"
     )
     add_variant_option(parser)
-    parser.add_argument("--format", choices=EXPORT_FORMATS, help="what to write")
+    parser.add_argument("--format", choices=tuple(EXPORT_FORMATS), help="what to write")
+
+
+def _formats() -> str:
+    """Return what the help tells of the formats."""
+    column = max(map(len, EXPORT_FORMATS)) + 4
+    return "\n".join(
+        textwrap.fill(
+            format_.about,
+            width=98,
+            initial_indent=f"  {name}".ljust(column),
+            subsequent_indent=" " * column,
+            break_on_hyphens=False,
+        )
+        for name, format_ in EXPORT_FORMATS.items()
+    )
+
+
+def _telling() -> str:
+    """Return the ends of names that choose a format, in words."""
+    *others, last = format_by_suffix()
+    return f"{', '.join(others)} or {last}"
 
 
 def _frames(text: str) -> tuple[int, int]:

@@ -3,7 +3,7 @@
 import os
 import subprocess
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -14,7 +14,8 @@ from app.editor.failures import report
 from app.editor.jobs import Job
 from app.editor.session import ExportRun, FileDialog, Project, Session
 from app.errors import LissomError
-from app.export import SUFFIXES, ExportRequest, check_request, plan_export
+from app.export import ExportRequest, check_request, plan_export
+from app.export_formats import EXPORT_FORMATS
 from app.motion import Animation, Box, Reach, measure_reach, source_of
 
 PREPARING, MEASURING = "Preparing the export", "Measuring the motion"
@@ -50,7 +51,7 @@ def destination(project: Project) -> Path | None:
     out = project.export_to
     if out is None:
         return None
-    suffixes = SUFFIXES[project.document.export.format]
+    suffixes = EXPORT_FORMATS[project.document.export.format].suffixes
     if out.suffix.lower() in (suffixes or ("",)):
         return out
     return out.with_suffix(suffixes[0]) if suffixes else out.with_name(f"{out.stem} frames")
@@ -101,8 +102,8 @@ def advance(session: Session, run: ExportRun, done: int) -> None:
         session.export = replace(run, done=done)
 
 
-def finish(session: Session, run: ExportRun) -> None:
-    """Tell that an export is complete."""
+def finish(session: Session, run: ExportRun, notices: Sequence[str]) -> None:
+    """Tell that an export is complete, and what the person should know about it."""
     session.export = None
     folder = run.plan.out if run.plan.out.is_dir() else run.plan.out.parent
     count = len(run.plan.times)
@@ -113,7 +114,7 @@ def finish(session: Session, run: ExportRun) -> None:
         label="Open folder",
         action=do(open_folder, folder),
     )
-    for notice in run.plan.notices:
+    for notice in (*notices, *run.plan.notices):
         session.tell(notice[:1].upper() + notice[1:] + ".")
 
 
@@ -183,7 +184,7 @@ def _ask(session: Session, chosen: Callable[[Path], Action]) -> None:
     project = session.project
     if project is None or session.export is not None:
         return
-    suffixes = SUFFIXES[project.document.export.format]
+    suffixes = EXPORT_FORMATS[project.document.export.format].suffixes
     out = destination(project)
     if out is None:
         name = f"{project.name}{suffixes[0]}" if suffixes else f"{project.name} frames"

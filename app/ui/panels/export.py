@@ -1,16 +1,15 @@
 """What the next export makes, where to, and how far it is."""
 
-import importlib.util
 from dataclasses import replace
-from functools import cache
 
 from imgui_bundle import ImVec2, imgui
 from imgui_bundle import icons_fontawesome_6 as icons
 
-from app.document import EXPORT_FORMATS, ExportFormat, ExportSettings, FrameRange, exported_frames
+from app.document import ExportSettings, FrameRange, exported_frames
 from app.editor import Action, Project, Session, do
 from app.editor.actions import exporting
-from app.export import VIDEO_REMEDY, frame_view, shown_box
+from app.export import frame_view, missing, shown_box
+from app.export_formats import EXPORT_FORMATS
 from app.motion import Box, box_around
 from app.render import View
 from app.ui.shortcuts import BINDINGS
@@ -27,15 +26,7 @@ from app.ui.style import (
     tip,
 )
 
-FORMAT_NAMES: dict[ExportFormat, str] = {
-    "png": "PNG frames",
-    "apng": "Animated PNG",
-    "gif": "GIF",
-    "webp": "WebP",
-    "spritesheet": "Sprite sheet",
-    "mp4": "MP4 video",
-}
-BACKGROUNDS = (("transparent", "Clear"), ("colour", "Colour"))
+BACKGROUNDS = (("transparent", "Transparent"), ("colour", "Colour"))
 FRAMINGS = (("canvas", "Canvas"), ("fit", "All motion"))
 RANGES = (("played", "What plays"), ("own", "From – to"))
 WHITE = "#ffffff"
@@ -68,13 +59,14 @@ def draw(session: Session, look: Look) -> list[Action]:
 
 def _picture(look: Look, settings: ExportSettings) -> ExportSettings:
     label(look, "Format")
-    if imgui.begin_combo("##format", FORMAT_NAMES[settings.format]):
-        for format_ in EXPORT_FORMATS:
-            if imgui.selectable(FORMAT_NAMES[format_], format_ == settings.format)[0]:
-                settings = _with_format(settings, format_)
+    if imgui.begin_combo("##format", EXPORT_FORMATS[settings.format].label):
+        for name, format_ in EXPORT_FORMATS.items():
+            if imgui.selectable(format_.label, name == settings.format)[0]:
+                settings = _with_format(settings, name)
         imgui.end_combo()
-    if settings.format == "mp4" and not _has_video():
-        small(look, f"Videos need PyAV: {VIDEO_REMEDY}")
+    if missing(settings.format):
+        needs = f"needs {EXPORT_FORMATS[settings.format].library}: {missing(settings.format)}"
+        small(look, f"{EXPORT_FORMATS[settings.format].label} {needs}")
     label(look, "Background")
     settings = _background(look, settings)
     label(look, "Framing")
@@ -84,27 +76,23 @@ def _picture(look: Look, settings: ExportSettings) -> ExportSettings:
     return settings
 
 
-def _with_format(settings: ExportSettings, format_: ExportFormat) -> ExportSettings:
-    lacks_background = format_ == "mp4" and settings.background == "transparent"
-    background = WHITE if lacks_background else settings.background
-    return replace(settings, format=format_, background=background)
-
-
-@cache
-def _has_video() -> bool:
-    return importlib.util.find_spec("av") is not None
+def _with_format(settings: ExportSettings, name: str) -> ExportSettings:
+    has_background = settings.background != "transparent" or EXPORT_FORMATS[name].is_transparent
+    background = settings.background if has_background else WHITE
+    return replace(settings, format=name, background=background)
 
 
 def _background(look: Look, settings: ExportSettings) -> ExportSettings:
     is_clear = settings.background == "transparent"
     size = 0.0 if is_clear else imgui.get_frame_height() + imgui.get_style().item_inner_spacing.x
-    imgui.begin_disabled(settings.format == "mp4" and not is_clear)
+    format_ = EXPORT_FORMATS[settings.format]
+    imgui.begin_disabled(not format_.is_transparent and not is_clear)
     chosen = segments(
         look, "background", BACKGROUNDS, "transparent" if is_clear else "colour", room=size
     )
     imgui.end_disabled()
-    if settings.format == "mp4":
-        tip("Videos have no transparency")
+    if not format_.is_transparent:
+        tip(f"{format_.label} has no transparency")
     match chosen:
         case "transparent":
             return replace(settings, background="transparent")
@@ -201,7 +189,7 @@ def _frames(look: Look, project: Project, settings: ExportSettings) -> ExportSet
 def _output(session: Session, look: Look, project: Project) -> list[Action]:
     actions: list[Action] = []
     out = exporting.destination(project)
-    label(look, "File" if project.document.export.format != "png" else "Folder")
+    label(look, "File" if EXPORT_FORMATS[project.document.export.format].suffixes else "Folder")
     button = 1.15 * imgui.get_frame_height()
     gap = imgui.get_style().item_inner_spacing.x
     imgui.set_next_item_width(imgui.get_content_region_avail().x - button - gap)

@@ -1,11 +1,10 @@
 """Draws an export in the window's own OpenGL context, between the window's frames."""
 
 from collections.abc import Generator
-from contextlib import ExitStack
 
 from app.editor import ExportRun, Session
 from app.editor.actions import exporting
-from app.export import export, painter
+from app.export import Painter, export
 from app.render import Renderer
 
 BUDGET = 0.02  # seconds of each frame of the window
@@ -22,8 +21,8 @@ class Exporter:
 
     def __init__(self, renderer: Renderer) -> None:
         self._context = renderer.programs.context
-        self._owned = ExitStack()
         self._plan: object = None
+        self._painter: Painter | None = None
         self._steps: Generator[int] | None = None
 
     def go_on(self, session: Session) -> None:
@@ -43,23 +42,23 @@ class Exporter:
         """End the export that is under way; whole frames stay."""
         if self._steps is not None:
             self._steps.close()
-        self._steps = self._plan = None
-        self._owned.close()
+        if self._painter is not None:
+            self._painter.release()
+        self._steps = self._painter = self._plan = None
 
     def _draw(self, session: Session, run: ExportRun) -> None:
-        if self._steps is None:
-            draw = self._owned.enter_context(
-                painter(self._context, run.document, run.picture, run.poses, run.plan)
-            )
-            self._plan, self._steps = run.plan, export(run.plan, draw)
+        if self._steps is None or self._painter is None:
+            painter = Painter(self._context, run.document, run.picture, run.poses, run.plan)
+            self._plan, self._painter = run.plan, painter
+            self._steps = export(run.plan, painter.pose, painter.draw, waits=False)
         begun = session.clock()
-        while True:
-            done = next(self._steps, None)
-            if done is None:
-                self.release()
-                exporting.finish(session, run)
-                return
+        drawn = run.done
+        for done in self._steps:
             exporting.advance(session, run, done)
-            if session.clock() - begun >= BUDGET or session.export is None:
+            # Nothing new: the other threads are at work.
+            if done == drawn or session.clock() - begun >= BUDGET:
                 return
-            run = session.export
+            drawn = done
+        notices = self._painter.notices
+        self.release()
+        exporting.finish(session, run, notices)

@@ -11,7 +11,7 @@ from documents import disc_document
 from app.cli import commands, options, usage
 from app.cli.commands import window
 from app.cli.main import COMMANDS, main
-from app.document import EXPORT_FORMATS, FRAMINGS, VARIANTS, Meshing
+from app.document import FRAMINGS, VARIANTS, Meshing
 from app.editor.actions import saving
 from app.editor.jobs import Job
 from app.storage.assets import sample_images
@@ -108,7 +108,6 @@ def test_what_is_answered_from_the_words_alone_loads_nothing_heavy(words, status
 def test_the_words_to_choose_from_are_those_that_the_program_knows():
     assert set(options.DETAILS) == set(get_args(Detail))
     assert set(options.VARIANTS) == set(VARIANTS)
-    assert set(options.EXPORT_FORMATS) == set(EXPORT_FORMATS)
     assert set(options.FRAMINGS) == set(FRAMINGS)
     defaults = Meshing()
     assert defaults.detail == options.DEFAULT_DETAIL

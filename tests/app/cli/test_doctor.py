@@ -35,7 +35,7 @@ def test_what_is_there_is_named(capsys, monkeypatch):
     said = capsys.readouterr().out
     assert "ok  display for the window: WAYLAND_DISPLAY=wayland-7" in said
     assert "ok  file dialogs of the system: kdialog" in said
-    assert "ok  mp4: PyAV " in said
+    assert "ok  mp4: av " in said
     assert "numpy " in said
 
 

@@ -1,4 +1,7 @@
 import itertools
+import struct
+import subprocess
+import sys
 import threading
 from fractions import Fraction
 from pathlib import Path
@@ -11,9 +14,11 @@ from PIL import Image, ImageSequence
 
 from app.errors import LissomError
 from app.export.plan import ExportPlan
-from app.export.png import PngSequence
 from app.export.run import AHEAD, export
-from app.export.spritesheet import sheet_grid
+from app.export.writers import FILE_WRITERS, FOLDER_WRITERS, table
+from app.export.writers.png import PngSequence
+from app.export.writers.spritesheet import SpritesheetWriter, sheet_grid
+from app.export_formats import EXPORT_FORMATS
 from app.render.view import canvas_view
 from engine.arrays import Bytes
 
@@ -46,13 +51,80 @@ def draw(time: float, size: tuple[int, int] = SIZE) -> Bytes:
     return frame
 
 
+def at_once(time: float) -> float:
+    """Poses that take no time: the time itself."""
+    return time
+
+
 def run(plan: ExportPlan, drawing=draw) -> None:
-    assert list(export(plan, drawing)) == list(range(1, len(plan.times) + 1))
+    assert list(export(plan, at_once, drawing)) == list(range(1, len(plan.times) + 1))
 
 
 def rgba_frames(path: Path) -> list[Bytes]:
     with Image.open(path) as image:
         return [np.asarray(frame.convert("RGBA")) for frame in ImageSequence.Iterator(image)]
+
+
+def test_every_format_of_the_table_has_a_writer():
+    files = {name for name, format_ in EXPORT_FORMATS.items() if format_.suffixes}
+    assert FILE_WRITERS.keys() == files
+    assert FOLDER_WRITERS.keys() == EXPORT_FORMATS.keys() - files
+
+
+def test_video_is_loaded_only_when_it_is_asked_for():
+    code = "import sys, app.export; sys.exit('av' in sys.modules)"
+    subprocess.run([sys.executable, "-c", code], check=True)
+
+
+def chunk_before_the_data(png: bytes, kind: bytes) -> bytes:
+    head = png[: png.index(b"IDAT")]
+    start = head.index(kind)
+    (length,) = struct.unpack(">I", head[start - 4 : start])
+    return head[start + 4 : start + 4 + length]
+
+
+@pytest.mark.parametrize("format_", ["png", "apng", "spritesheet"])
+def test_pngs_say_that_their_colours_are_those_of_srgb(tmp_path, format_):
+    plan = plan_for(tmp_path / "out", format_)
+    run(plan)
+    path = plan.out / plan.frame_name(0) if format_ == "png" else plan.out
+    assert chunk_before_the_data(path.read_bytes(), b"sRGB") == b"\0"
+    with Image.open(path) as image:
+        assert image.info["srgb"] == 0
+
+
+def test_the_thread_that_draws_never_waits_for_others_unless_it_may(tmp_path, monkeypatch):
+    """Poses, encoding, the format's own work and its end go on while steps return at once."""
+    may_go_on, threads = threading.Event(), set()
+
+    def held(time: float) -> float:
+        threads.add(threading.current_thread())
+        assert may_go_on.wait(timeout=20)
+        return time
+
+    class Held(SpritesheetWriter):
+        def encode(self, index: int, _frame: Bytes) -> bytes:
+            return str(held(index)).encode()
+
+        def add(self, encoded: bytes) -> None:
+            held(float(encoded))
+
+        def finish(self) -> None:
+            held(0)
+
+    monkeypatch.setattr(table, "FILE_WRITERS", {"spritesheet": Held})
+    plan = plan_for(tmp_path / "out", "spritesheet")
+    steps = export(plan, held, draw, waits=False)
+    stops = []
+    for done in steps:
+        # Where nothing more can be drawn, the others are let go on until something is.
+        if stops and stops[-1] == done:
+            may_go_on.set()
+        else:
+            may_go_on.clear()
+            stops.append(done)
+    assert stops == list(range(FRAMES + 1))
+    assert threading.current_thread() not in threads
 
 
 def test_png_frames_are_exact_and_numbered_from_the_first_ones_own_number(tmp_path):
@@ -197,7 +269,7 @@ def test_video_has_the_colours_the_rate_and_even_sides(tmp_path):
         assert_allclose(frame[30:, :].reshape(-1, 3).mean(axis=0), (20, 60, 200), rtol=0, atol=4)
 
 
-@pytest.mark.parametrize("format_", ["png", "apng", "gif", "webp", "spritesheet", "mp4"])
+@pytest.mark.parametrize("format_", EXPORT_FORMATS)
 def test_the_same_export_twice_is_the_same_bytes(tmp_path, format_):
     outputs = [tmp_path / "first", tmp_path / "second"]
     for out in outputs:
@@ -211,7 +283,7 @@ def test_the_same_export_twice_is_the_same_bytes(tmp_path, format_):
     assert first == second
 
 
-@pytest.mark.parametrize("format_", ["png", "apng", "gif", "webp", "spritesheet", "mp4"])
+@pytest.mark.parametrize("format_", EXPORT_FORMATS)
 @pytest.mark.parametrize("ending", ["failed", "closed", "interrupted"])
 def test_an_export_that_ends_early_leaves_whole_frames_only(tmp_path, format_, ending):
     def failing(time: float) -> Bytes:
@@ -222,7 +294,7 @@ def test_an_export_that_ends_early_leaves_whole_frames_only(tmp_path, format_, e
         return draw(time)
 
     plan = plan_for(tmp_path / "out", format_, background=(1, 2, 3))
-    steps = export(plan, failing)
+    steps = export(plan, at_once, failing)
     if ending == "closed":
         next(itertools.islice(steps, 4, None))
         steps.close()
@@ -247,7 +319,7 @@ def test_a_file_of_before_survives_an_export_that_fails(tmp_path):
         raise LissomError(f"frame {time} cannot be drawn")
 
     with pytest.raises(LissomError):
-        list(export(plan, failing))
+        list(export(plan, at_once, failing))
     assert plan.out.read_bytes() == b"before"
 
 

@@ -1,6 +1,7 @@
 """Frames of documents, drawn in both kinds of contexts."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 
@@ -12,9 +13,8 @@ from numpy.testing import assert_array_equal
 
 from app.document.model import Document
 from app.errors import LissomError
-from app.export.painting import painter
+from app.export.painting import Painter
 from app.export.plan import ExportPlan, ExportRequest, Poses, plan_export
-from app.export.run import Draw
 from engine.arrays import Bytes
 
 SEEN = BLOB[..., 3] >= 8
@@ -30,10 +30,34 @@ def plan_of(document: Document, poses: Poses, **settings: object) -> ExportPlan:
     return plan_export(document, ExportRequest(out=Path("out"), settings=settings_), poses)
 
 
+@contextmanager
 def drawing(
     gl: moderngl.Context, document: Document, poses: Poses, **settings: object
-) -> Iterator[Draw]:
-    return painter(gl, document, BLOB, poses, plan_of(document, poses, **settings))
+) -> Iterator[Callable[[float], Bytes]]:
+    painter = Painter(gl, document, BLOB, poses, plan_of(document, poses, **settings))
+    yield lambda frame: painter.draw(painter.pose(frame))
+    painter.release()
+
+
+def notices(gl: moderngl.Context, document: Document, poses: Poses, **settings: object):
+    painter = Painter(gl, document, BLOB, poses, plan_of(document, poses, **settings))
+    for frame in range(11):
+        painter.pose(frame)
+    painter.release()
+    return painter.notices
+
+
+def test_a_motion_that_leaves_the_frame_is_told_once_it_is_posed(gl, document):
+    assert notices(gl, document, Sliding(document, 0), framing="canvas") == ()
+    assert notices(gl, document, Sliding(document, 12), framing="fit") == ()
+    (notice,) = notices(gl, document, Sliding(document, 12), framing="canvas")
+    assert "leaves the frame" in notice
+
+
+def test_a_drawing_that_fills_its_canvas_does_not_leave_it(gl):
+    full = still_document(np.full((600, 800, 4), 255, dtype=np.uint8))
+    assert full.domain.mesh.vertices.real.min() < -2
+    assert notices(gl, full, Sliding(full, 0), framing="canvas") == ()
 
 
 def still(gl: moderngl.Context, document: Document, **settings: object) -> Bytes:
@@ -105,10 +129,9 @@ def test_a_frame_that_fails_is_an_error_that_names_it(gl, document):
                 gl.enable_direct(0xFFFF)  # no such switch: OpenGL notes an error
             return places
 
-    plan = plan_of(document, Sliding(document, 0))
-    with painter(gl, document, BLOB, Failing(document, 0), plan) as draw:
+    with drawing(gl, document, Failing(document, 0)) as draw:
         draw(1.0)
-        with pytest.raises(LissomError, match=r"frame 2 cannot be drawn.*not finite"):
+        with pytest.raises(LissomError, match=r"frame 2 cannot be drawn.*not all finite"):
             draw(2.0)
         with pytest.raises(LissomError, match="frame 3 cannot be drawn: OpenGL"):
             draw(3.0)

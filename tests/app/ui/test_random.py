@@ -14,7 +14,7 @@ from PIL import Image, ImageDraw
 from app.document import handle_commands, key_commands, settings_commands
 from app.document.easing import PRESETS, Easing
 from app.document.keyframe import Target
-from app.document.settings import EXPORT_FORMATS, VARIANTS, ExportSettings, FrameRange, Meshing
+from app.document.settings import VARIANTS, ExportSettings, FrameRange, Meshing
 from app.editor import jobs
 from app.editor.actions import (
     editing,
@@ -27,6 +27,7 @@ from app.editor.actions import (
     viewing,
 )
 from app.editor.timeline_view import Strip
+from app.export_formats import EXPORT_FORMATS
 from app.storage.project_file import load_project, save_project
 from app.ui.shortcuts import ARROWS, BINDINGS, MODIFIERS
 from engine.maps.boundary import Boundary

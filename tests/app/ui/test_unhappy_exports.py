@@ -137,7 +137,7 @@ def test_frame_that_cannot_be_drawn_ends_the_export(window, tmp_path, monkeypatc
         raise ZeroDivisionError("a bug")
 
     with monkeypatch.context() as patch:
-        patch.setattr("app.export.png.encode_png", broken)
+        patch.setattr("app.export.writers.png.encode_png", broken)
         window.act(exporting.start, tmp_path / "frames")
         window.settle()
         finish(window)

@@ -1,25 +1,28 @@
 """What turns the frames of an export into files."""
 
-from typing import Protocol
-
 from engine.arrays import Bytes
 
 
-class FrameWriter(Protocol):
-    """One format's way to files.
+class FrameWriter:
+    """One format's way to files; the base of all of them.
 
     `encode` is called once for each frame, on several threads and out of order; all else on one
-    thread, in the order of the frames.
+    thread at a time, in the order of the frames. Nothing is called on the thread that draws, but
+    `close`.
     """
 
     def encode(self, index: int, frame: Bytes) -> bytes:
         """Do the long part of the work for a frame, uint8 (h, w, 4) with straight alpha."""
+        raise NotImplementedError
 
     def add(self, encoded: bytes) -> None:
         """Put the next frame, as `encode` returned it, where it belongs."""
 
     def finish(self) -> None:
         """Write what comes after the last frame."""
+
+    def close(self) -> None:
+        """Let go of what must not outlive the file, whether it is finished or not."""
 
 
 def duration(index: int, fps: float, *, per_second: int) -> int:

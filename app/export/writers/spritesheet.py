@@ -4,17 +4,17 @@ import math
 from typing import IO, Final
 
 import numpy as np
-from PIL import Image
 
 from app.errors import LissomError
 from app.export.plan import ExportPlan
-from app.export.png import COMPRESSION
+from app.export.writers.frame_writer import FrameWriter
+from app.export.writers.png import save_png
 from engine.arrays import Bytes
 
 LARGEST: Final = 16_384  # pixels each way: what graphics cards hold, and a gigabyte at most
 
 
-class SpritesheetWriter:
+class SpritesheetWriter(FrameWriter):
     """Collects the frames and writes the sheet in the end.
 
     Parameters
@@ -41,12 +41,9 @@ class SpritesheetWriter:
         self._sheet[top : top + self._height, left : left + self._width] = frame
         return b""
 
-    def add(self, encoded: bytes) -> None:
-        """Do nothing: the frame is in its place already."""
-
     def finish(self) -> None:
         """Write the sheet."""
-        Image.fromarray(self._sheet).save(self._file, "PNG", compress_level=COMPRESSION)
+        save_png(self._sheet, self._file)
 
 
 def sheet_grid(plan: ExportPlan) -> tuple[int, int]:

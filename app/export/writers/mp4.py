@@ -8,6 +8,7 @@ import numpy as np
 
 from app.errors import LissomError
 from app.export.plan import ExportPlan
+from app.export.writers.frame_writer import FrameWriter
 from engine.arrays import Bytes
 
 _CODEC: Final = "libx264"
@@ -17,7 +18,7 @@ _OPTIONS: Final = {"crf": "15", "rc-lookahead": "10", "x264-params": "cpu-indepe
 _BT709: Final = 1  # as FFmpeg numbers colour spaces, primaries and transfer curves
 
 
-class VideoWriter:
+class VideoWriter(FrameWriter):
     """Writes an MP4 file frame by frame.
 
     A side that is odd gets one more row or column of the background, since H.264 keeps colours in
@@ -78,7 +79,7 @@ class VideoWriter:
     def finish(self) -> None:
         """Write the last frames and the index."""
         self._container.mux(self._stream.encode(None))
-        self.close()
+        self._container.close()
 
     def close(self) -> None:
         """Let the encoder go; it must not outlive its file."""

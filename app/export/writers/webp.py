@@ -11,8 +11,8 @@ from typing import IO, Final
 from PIL import Image
 
 from app.errors import LissomError
-from app.export.frame_writer import duration
 from app.export.plan import ExportPlan
+from app.export.writers.frame_writer import FrameWriter, duration
 from engine.arrays import Bytes
 
 LARGEST: Final = 16_383  # pixels each way
@@ -24,7 +24,7 @@ _LONGEST: Final = 2**24 - 1  # milliseconds of a frame
 _METHOD, _EFFORT = 1, 20
 
 
-class WebpWriter:
+class WebpWriter(FrameWriter):
     """Writes an animated WebP file frame by frame.
 
     Parameters

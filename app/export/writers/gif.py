@@ -11,8 +11,8 @@ import numpy as np
 from PIL import Image
 
 from app.errors import LissomError
-from app.export.frame_writer import duration
 from app.export.plan import ExportPlan
+from app.export.writers.frame_writer import FrameWriter, duration
 from engine.arrays import Bytes
 
 FASTEST: Final = 50  # pictures a second: programs slow down those that last under 2/100 second
@@ -24,7 +24,7 @@ _CLEARED_AFTERWARDS, _HAS_CLEAR = 2 << 2, 1
 _PALETTE_OF_256: Final = 0x80 | 7
 
 
-class GifWriter:
+class GifWriter(FrameWriter):
     """Writes an animated GIF file frame by frame.
 
     GIF knows no soft edges: a pixel is opaque, in its own colour, where its alpha is at least

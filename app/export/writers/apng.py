@@ -10,7 +10,8 @@ from fractions import Fraction
 from typing import IO, Final
 
 from app.export.plan import ExportPlan
-from app.export.png import encode_png
+from app.export.writers.frame_writer import FrameWriter
+from app.export.writers.png import encode_png
 from engine.arrays import Bytes
 
 _SIGNATURE: Final = b"\x89PNG\r\n\x1a\n"
@@ -20,7 +21,7 @@ _LARGEST: Final = 65_000
 _DISPOSE_NONE, _BLEND_SOURCE = 0, 0
 
 
-class ApngWriter:
+class ApngWriter(FrameWriter):
     """Writes an animated PNG file frame by frame.
 
     Parameters
@@ -44,7 +45,7 @@ class ApngWriter:
         chunks = list(_chunks(encoded))
         is_first = not self._started
         if is_first:
-            self._start(next(data for kind, data in chunks if kind == b"IHDR"))
+            self._start([chunk for chunk in chunks if chunk[0] in {b"IHDR", b"sRGB"}])
         self._write(b"fcTL", self._frame_control())
         for kind, data in chunks:
             if kind == b"IDAT":
@@ -55,10 +56,11 @@ class ApngWriter:
         """Write the closing chunk."""
         self._write(b"IEND", b"")
 
-    def _start(self, header: bytes) -> None:
+    def _start(self, chunks: list[tuple[bytes, bytes]]) -> None:
         self._started = True
         self._file.write(_SIGNATURE)
-        self._write(b"IHDR", header)
+        for chunk in chunks:
+            self._write(*chunk)
         plays = 0 if self._plan.loop else 1  # 0 goes on for ever
         self._write(b"acTL", struct.pack(">II", len(self._plan.times), plays))
 

@@ -1,11 +1,12 @@
 """PNG pictures, and a sequence of them in a folder."""
 
 import io
-from typing import Final
+from typing import IO, Final
 
-from PIL import Image
+from PIL import Image, PngImagePlugin
 
 from app.export.plan import ExportPlan
+from app.export.writers.frame_writer import FrameWriter
 from app.storage import write_atomically
 from engine.arrays import Bytes
 
@@ -13,14 +14,26 @@ from engine.arrays import Bytes
 COMPRESSION: Final = 3
 
 
+# Perceptual intent, the usual one. Programs that manage colours leave a file that does not say what
+# its numbers mean as it is, whatever the screen.
+_SRGB: Final = (b"sRGB", b"\0")
+
+
+def save_png(frame: Bytes, file: IO[bytes]) -> None:
+    """Write a frame, uint8 (h, w, 4), as a PNG file in the colours of sRGB."""
+    tags = PngImagePlugin.PngInfo()
+    tags.add(*_SRGB)
+    Image.fromarray(frame).save(file, "PNG", compress_level=COMPRESSION, pnginfo=tags)
+
+
 def encode_png(frame: Bytes) -> bytes:
     """Return the bytes of a PNG file with a frame, uint8 (h, w, 4)."""
     stream = io.BytesIO()
-    Image.fromarray(frame).save(stream, "PNG", compress_level=COMPRESSION)
+    save_png(frame, stream)
     return stream.getvalue()
 
 
-class PngSequence:
+class PngSequence(FrameWriter):
     """Writes each frame to a file of its own, as soon as it is drawn.
 
     Parameters
@@ -38,9 +51,3 @@ class PngSequence:
         path = self._plan.out / self._plan.frame_name(index)
         write_atomically(path, lambda file: file.write(data))
         return b""
-
-    def add(self, encoded: bytes) -> None:
-        """Do nothing: the file is there already."""
-
-    def finish(self) -> None:
-        """Do nothing: nothing comes after the last file."""

@@ -1,0 +1,65 @@
+"""The writer of each format: one entry of a table each."""
+
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import closing, contextmanager
+from types import MappingProxyType
+from typing import IO, Final
+
+from app.errors import LissomError
+from app.export.plan import ExportPlan
+from app.export.writers.apng import ApngWriter
+from app.export.writers.frame_writer import FrameWriter
+from app.export.writers.gif import GifWriter
+from app.export.writers.png import PngSequence
+from app.export.writers.spritesheet import SpritesheetWriter
+from app.export.writers.webp import WebpWriter
+from app.storage import atomic_file
+
+
+def _video(file: IO[bytes], plan: ExportPlan) -> FrameWriter:
+    from app.export.writers.mp4 import VideoWriter  # noqa: PLC0415 - slow, and needs an extra
+
+    return VideoWriter(file, plan)
+
+
+# By the names of `EXPORT_FORMATS`: those of frames in a folder, and those of one file.
+FOLDER_WRITERS: Final[Mapping[str, Callable[[ExportPlan], FrameWriter]]] = MappingProxyType(
+    {"png": PngSequence}
+)
+FILE_WRITERS: Final[Mapping[str, Callable[[IO[bytes], ExportPlan], FrameWriter]]] = (
+    MappingProxyType(
+        {
+            "apng": ApngWriter,
+            "gif": GifWriter,
+            "webp": WebpWriter,
+            "spritesheet": SpritesheetWriter,
+            "mp4": _video,
+        }
+    )
+)
+
+
+@contextmanager
+def open_writer(plan: ExportPlan) -> Iterator[FrameWriter]:
+    """Lend the writer of a plan's format for as long as a `with` block lasts.
+
+    A file takes its place when the block ends, and is absent if that is with an error.
+
+    Raises
+    ------
+    LissomError
+        If the folder or the file cannot be made, or the format cannot hold such frames.
+    """
+    if plan.format in FOLDER_WRITERS:
+        try:
+            plan.out.mkdir(exist_ok=True)
+        except OSError as error:
+            raise LissomError(f"cannot make the folder {plan.out}: {error.strerror}") from error
+        with closing(FOLDER_WRITERS[plan.format](plan)) as writer:
+            yield writer
+    else:
+        with (
+            atomic_file(plan.out) as file,
+            closing(FILE_WRITERS[plan.format](file, plan)) as writer,
+        ):
+            yield writer
