@@ -1,4 +1,4 @@
-"""Reading a picture file into straight-alpha RGBA pixels."""
+"""Reading a picture file into sRGB pixels with straight alpha."""
 
 import io
 import struct
@@ -8,9 +8,10 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from PIL import Image, ImageOps, UnidentifiedImageError
+from PIL import Image, ImageFile, ImageOps, UnidentifiedImageError
 
 from app.errors import LissomError
+from app.storage.colour import to_srgb
 from engine.arrays import Bytes, Floats, readonly
 
 # PostScript and PDF are left out on purpose: Pillow would run an interpreter for them.
@@ -51,7 +52,7 @@ class Picture:
     Parameters
     ----------
     rgba : uint8, shape (h, w, 4)
-        Straight alpha, first row on top, rotated as its EXIF data asks.
+        sRGB with straight alpha, first row on top, rotated as its EXIF data asks.
     suffix : str
         That files of its format end in, such as ".png", whatever the file's own name.
     notices : tuple of str
@@ -112,12 +113,15 @@ def decode_picture(data: bytes, name: str) -> Picture:
 
 def _decode(data: bytes) -> Picture:
     notices = []
-    image: Image.Image = Image.open(io.BytesIO(data), formats=tuple(FORMATS))
-    suffix = FORMATS[image.format or ""]
-    frames = getattr(image, "n_frames", 1)
+    file = Image.open(io.BytesIO(data), formats=tuple(FORMATS))
+    suffix = FORMATS[file.format or ""]
+    frames = getattr(file, "n_frames", 1)
     if frames > 1:
         notices.append(f"used the first of {frames} frames")
-    image.load()
+    is_deep = _is_deep(file)
+    file.load()
+    image: Image.Image = file
+    profile = image.info.get("icc_profile")
     orientation = image.getexif().get(EXIF_ORIENTATION, 1)
     if orientation in range(2, 9):
         image = ImageOps.exif_transpose(image)
@@ -126,8 +130,29 @@ def _decode(data: bytes) -> Picture:
         greys = np.nan_to_num(np.asarray(image, dtype=np.float64))
         image = Image.fromarray(_scale_deep_grey(greys, is_float=image.mode == "F"))
         notices.append("reduced its deep greys to 8 bits")
+    elif is_deep:
+        notices.append("reduced its deep colours to 8 bits per channel")
+    image, notice = to_srgb(image, profile)
+    if notice:
+        notices.append(notice)
     rgba = readonly(np.asarray(image.convert("RGBA")))
     return Picture(rgba=rgba, suffix=suffix, notices=tuple(notices))
+
+
+def _is_deep(image: ImageFile.ImageFile) -> bool:
+    """Tell whether a picture that is not loaded yet has more than 8 bits per channel.
+
+    Pillow has no mode for deep colours: it drops the lower bits as it decodes. Only its name for
+    the layout in the file ("RGB;16B"), or the largest value of a PPM, tells.
+    """
+    for tile in image.tile:
+        arguments = tile.args if isinstance(tile.args, tuple) else (tile.args,)
+        for argument in arguments:
+            if isinstance(argument, str) and ";16" in argument:
+                return True
+            if image.format == "PPM" and isinstance(argument, int) and argument > 255:
+                return True
+    return False
 
 
 def _scale_deep_grey(greys: Floats, *, is_float: bool) -> Bytes:

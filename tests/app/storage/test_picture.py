@@ -1,9 +1,21 @@
 import io
+import struct
+import zlib
 
 import numpy as np
 import pytest
 from numpy.testing import assert_array_equal
-from PIL import Image
+from PIL import Image, ImageCms
+from profiles import (
+    DISPLAY_P3,
+    SRGB,
+    decoded,
+    encoded,
+    grey_profile,
+    press_profile,
+    rgb_profile,
+    to_xyz,
+)
 
 from app.errors import LissomError
 from app.storage.picture import decode_picture, read_picture_file
@@ -64,6 +76,122 @@ def test_floating_point_greys(scale, white):
     greys = np.linspace(0, scale, 12, dtype=np.float32).reshape(3, 4)
     pixels = rgba_of(encode(Image.fromarray(greys), "TIFF"))
     assert_array_equal(pixels[..., 0], np.rint(greys / white * 255).astype(np.uint8))
+
+
+def deep_png(samples: np.ndarray) -> bytes:
+    """A PNG file of 16 bits per channel, which Pillow does not write."""
+
+    def chunk(name: bytes, content: bytes) -> bytes:
+        checksum = struct.pack(">I", zlib.crc32(name + content))
+        return struct.pack(">I", len(content)) + name + content + checksum
+
+    height, width, channels = samples.shape
+    colours = {1: 0, 2: 4, 3: 2, 4: 6}[channels]
+    rows = b"".join(b"\0" + row.tobytes() for row in samples.astype(">u2"))
+    return (
+        b"\x89PNG\r\n\x1a\n"
+        + chunk(b"IHDR", struct.pack(">IIBBBBB", width, height, 16, colours, 0, 0, 0))
+        + chunk(b"IDAT", zlib.compress(rows))
+        + chunk(b"IEND", b"")
+    )
+
+
+@pytest.mark.parametrize("channels", [1, 2, 3, 4])
+def test_sixteen_bits_are_reduced_with_a_notice(channels):
+    samples = np.random.default_rng(4).integers(0, 65536, (5, 7, channels), np.uint16)
+    picture = decode_picture(deep_png(samples), "drawing")
+    read = picture.rgba[..., {1: [0], 2: [0, 3], 3: [0, 1, 2], 4: [0, 1, 2, 3]}[channels]]
+    assert np.abs(read - samples / 257).max() < 1
+    (notice,) = picture.notices
+    assert "8 bits" in notice
+
+
+def test_sixteen_bits_of_other_formats_are_noticed_too():
+    samples = np.full((3, 5, 3), 0x80FF, ">u2").tobytes()
+    tags = [(256, 3, 5), (257, 3, 3), (258, 3, 16), (259, 3, 1), (262, 3, 2), (273, 4, 122)]
+    tags += [(277, 3, 3), (278, 3, 3), (279, 4, len(samples))]
+    directory = b"".join(
+        struct.pack(">HHI", tag, kind, 1)
+        + (struct.pack(">HH", value, 0) if kind == 3 else struct.pack(">I", value))
+        for tag, kind, value in tags
+    )
+    tiff = b"MM\0*" + struct.pack(">IH", 8, len(tags)) + directory + bytes(4)
+    for data in (b"P6 5 3 65535\n" + samples, tiff + samples):
+        picture = decode_picture(data, "drawing")
+        assert abs(int(picture.rgba[1, 1, 0]) - 0x80) <= 1
+        assert picture.notices == ("reduced its deep colours to 8 bits per channel",)
+    assert decode_picture(b"P6 5 3 255\n" + samples[:45], "drawing").notices == ()
+
+
+def srgb_of(colours: np.ndarray) -> np.ndarray:
+    """What the definitions of Display P3 and sRGB give."""
+    matrix = np.linalg.solve(to_xyz(SRGB), to_xyz(DISPLAY_P3))
+    return 255 * encoded(decoded(colours / 255) @ matrix.T)
+
+
+@pytest.mark.parametrize("mode", ["RGB", "RGBA", "P", "L", "LA"])
+def test_the_colours_of_a_profile_become_srgb(mode):
+    image = Image.fromarray(np.dstack([RGB, ALPHA])).convert(mode)
+    profile = rgb_profile("Display P3", DISPLAY_P3)
+    picture = decode_picture(encode(image, "PNG", icc_profile=profile), "drawing")
+    plain = np.asarray(image.convert("RGBA"))
+    assert np.abs(picture.rgba[..., :3] - srgb_of(plain[..., :3])).max() <= 2
+    assert_array_equal(picture.rgba[..., 3], plain[..., 3])
+    assert not picture.rgba.flags.writeable
+    if mode in {"L", "LA"}:
+        # Greys are the same in both.
+        assert_array_equal(picture.rgba, plain)
+        assert picture.notices == ()
+    else:
+        assert picture.notices == ("converted its colours from Display P3 to sRGB",)
+
+
+@pytest.mark.parametrize(
+    "profile",
+    [
+        rgb_profile("sRGB by definition", SRGB),
+        ImageCms.ImageCmsProfile(ImageCms.createProfile("sRGB")).tobytes(),
+    ],
+)
+def test_srgb_stays_as_it_is_whatever_its_profile_is_called(profile):
+    pixels = np.dstack([RGB, ALPHA])
+    data = encode(Image.fromarray(pixels), "PNG", icc_profile=profile)
+    picture = decode_picture(data, "drawing")
+    assert_array_equal(picture.rgba, pixels)
+    assert picture.notices == ()
+
+
+def test_greys_with_a_profile():
+    data = encode(Image.fromarray(GREY), "PNG", icc_profile=grey_profile("Linear", 1.0))
+    picture = decode_picture(data, "drawing")
+    assert np.abs(picture.rgba[..., 0] - 255 * encoded(GREY / 255)).max() <= 2
+    assert picture.notices == ("converted its colours from Linear to sRGB",)
+
+
+def test_inks_with_a_profile():
+    """L* of the press above: halfway is a grey of about 119, far from the inks' own 191."""
+    image = Image.new("CMYK", (8, 8), (255, 255, 0, 0))
+    data = encode(image, "TIFF", icc_profile=press_profile("Press"))
+    picture = decode_picture(data, "drawing")
+    light = ((50 + 16) / 116) ** 3
+    assert np.abs(picture.rgba[4, 4, :3] - 255 * encoded(np.array(light))).max() <= 2
+    assert picture.notices == ("converted its colours from Press to sRGB",)
+
+
+@pytest.mark.parametrize(
+    ("profile", "what"),
+    [
+        (b"no profile", "damaged"),
+        (rgb_profile("Torn", DISPLAY_P3)[:200], "damaged"),
+        (grey_profile("Greys", 2.2), "another kind of picture"),
+        (press_profile("Press"), "another kind of picture"),
+    ],
+)
+def test_a_profile_that_cannot_be_used_is_told(profile, what):
+    picture = decode_picture(encode(Image.fromarray(RGB), "PNG", icc_profile=profile), "drawing")
+    assert_array_equal(picture.rgba[..., :3], RGB)
+    (notice,) = picture.notices
+    assert what in notice
 
 
 def test_cmyk_becomes_rgb():
