@@ -16,8 +16,8 @@ from app.render.gpu import (
     GlError,
     GpuMesh,
     GpuPicture,
-    Pose,
-    StreamedVertices,
+    PosedMesh,
+    PositionBuffer,
     Target,
     singles,
 )
@@ -81,10 +81,10 @@ class Painter:
             owned.callback(texture.release)
             gpu_mesh = GpuMesh(programs, texture, rest=mesh.vertices, triangles=mesh.triangles)
             owned.callback(gpu_mesh.release)
-            self._vertices = StreamedVertices(context, len(mesh.vertices))
-            pose = Pose(gpu_mesh, self._vertices)
+            self._positions = PositionBuffer(context, len(mesh.vertices))
+            pose = PosedMesh(gpu_mesh, self._positions)
             owned.callback(pose.release)
-            self._scene = Scene(background=Background(colour=_colour(plan)), pose=pose)
+            self._scene = Scene(background=Background(colour=_colour(plan)), meshes=(pose,))
             self._owned = owned.pop_all()
 
     def pose(self, frame: float) -> PosedFrame:
@@ -114,7 +114,7 @@ class Painter:
             If the frame cannot be drawn.
         """
         try:
-            self._vertices.write(singles(posed.positions))
+            self._positions.write(singles(posed.positions))
             self._renderer.draw(self._target, self._view, self._scene)
             pixels = self._target.read_straight_rgba()
         except (*EXPECTED_ERRORS, GlError) as error:

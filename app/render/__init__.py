@@ -7,7 +7,7 @@ Imports: `app.motion`, `app.storage`; with `app.render.gpu` it alone sees OpenGL
 
 from app.render.draw_lists import DrawLists, Textures
 from app.render.handles import HandleMark, HandleStyle, mark_anchor, mark_handles
-from app.render.layer import Layer, shader_is_faster
+from app.render.posable_mesh import PosableMesh, shader_is_faster
 from app.render.ramp import heat_ramp
 from app.render.renderer import Renderer
 from app.render.scene import (
@@ -34,8 +34,8 @@ __all__ = [
     "HandleMark",
     "HandleStyle",
     "Heat",
-    "Layer",
     "Line",
+    "PosableMesh",
     "Renderer",
     "Scene",
     "Textures",

@@ -1,35 +1,15 @@
 """Draws Dear ImGui's draw lists with moderngl, so that the whole window works without a display."""
 
 import ctypes
+from typing import Final
 
 import moderngl
 import numpy as np
 from imgui_bundle import imgui
 
-VERTEX_SHADER = """
-#version 330
-uniform vec4 place;  // scale and offset from pixels to clip space
-in vec2 position;
-in vec2 uv;
-in vec4 colour;
-out vec2 at;
-out vec4 tint;
-void main() {
-    at = uv;
-    tint = colour;
-    gl_Position = vec4(position * place.xy + place.zw, 0.0, 1.0);
-}
-"""
-FRAGMENT_SHADER = """
-#version 330
-uniform sampler2D image;
-in vec2 at;
-in vec4 tint;
-out vec4 colour;
-void main() {
-    colour = tint * texture(image, at);
-}
-"""
+from app.render.gpu import Programs, ShaderFiles
+
+_INTERFACE: Final = ShaderFiles(vertex=("interface.vert",), fragment=("interface.frag",))
 CHUNK = 1 << 16  # bytes that the buffers start with
 
 
@@ -42,13 +22,13 @@ class DrawLists:
 
     Parameters
     ----------
-    gl : moderngl.Context
-        Current whenever a method is called. ImGui's context exists already.
+    programs : Programs
+        Its context is current whenever a method is called. ImGui's context exists already.
     """
 
-    def __init__(self, gl: moderngl.Context) -> None:
-        self._gl = gl
-        self._program = gl.program(vertex_shader=VERTEX_SHADER, fragment_shader=FRAGMENT_SHADER)
+    def __init__(self, programs: Programs) -> None:
+        self._gl = gl = programs.context
+        self._program = programs.get(_INTERFACE)
         self._vertices = gl.buffer(reserve=CHUNK, dynamic=True)
         self._indices = gl.buffer(reserve=CHUNK, dynamic=True)
         self._array = self._make_array()

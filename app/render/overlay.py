@@ -6,14 +6,14 @@ from typing import Final
 import moderngl
 import numpy as np
 
-from app.render.gpu import Programs, Singles, Stages, set_uniforms
+from app.render.gpu import Programs, ShaderFiles, Singles, set_uniforms
 from app.render.scene import Disc, Line
 from app.render.view import View
 
-_LINE: Final = Stages(vertex=("line.vert",), fragment=("line.frag",))
+_LINE: Final = ShaderFiles(vertex=("line.vert",), fragment=("line.frag",))
 _LINE_LAYOUT: Final = "2f 2f 2f 2f 4f 1f 1f 1f /i"
 _LINE_FIELDS: Final = ("before", "start", "end", "after", "ink", "width", "dash", "travelled")
-_DISC: Final = Stages(vertex=("disc.vert",), fragment=("disc.frag",))
+_DISC: Final = ShaderFiles(vertex=("disc.vert",), fragment=("disc.frag",))
 _DISC_LAYOUT: Final = "2f 1f 1f 1f 4f 4f /i"
 _DISC_FIELDS: Final = ("centre", "radius", "rim_width", "softness", "fill", "rim")
 
@@ -43,10 +43,10 @@ class _Instances:
     """Rectangles of one program, one instance a row of floats; the buffer grows as needed."""
 
     def __init__(
-        self, programs: Programs, stages: Stages, layout: str, fields: tuple[str, ...]
+        self, programs: Programs, files: ShaderFiles, layout: str, fields: tuple[str, ...]
     ) -> None:
         self._context = programs.context
-        self._program = programs.get(stages)
+        self._program = programs.get(files)
         self._layout = layout
         self._fields = fields
         self._buffer = self._context.buffer(reserve=1 << 14, dynamic=True)

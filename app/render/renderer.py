@@ -6,18 +6,18 @@ from typing import Final
 
 import moderngl
 
-from app.render.gpu import Pose, Programs, Stages, Target
+from app.render.gpu import PosedMesh, Programs, ShaderFiles, Target
 from app.render.overlay import Overlay
 from app.render.ramp import heat_ramp
 from app.render.scene import Background, Colour, Ghost, Heat, Scene, Wireframe
 from app.render.view import View
 
-_BACKGROUND: Final = Stages(vertex=("screen.vert",), fragment=("background.frag",))
-_PICTURE: Final = Stages(vertex=("mesh.vert",), fragment=("picture.frag", "sample.glsl"))
-_HEAT: Final = Stages(vertex=("heat.vert",), fragment=("heat.frag", "sample.glsl"))
-_WIRE: Final = Stages(vertex=("mesh.vert",), geometry="wire.geom", fragment=("wire.frag",))
+_BACKGROUND: Final = ShaderFiles(vertex=("screen.vert",), fragment=("background.frag",))
+_PICTURE: Final = ShaderFiles(vertex=("mesh.vert",), fragment=("picture.frag", "sample.glsl"))
+_HEAT: Final = ShaderFiles(vertex=("heat.vert",), fragment=("heat.frag", "sample.glsl"))
+_WIRE: Final = ShaderFiles(vertex=("mesh.vert",), geometry="wire.geom", fragment=("wire.frag",))
 _BORDER: Final = replace(_WIRE, geometry="border.geom")
-_GHOST: Final = Stages(vertex=("screen.vert",), fragment=("ghost.frag",))
+_GHOST: Final = ShaderFiles(vertex=("screen.vert",), fragment=("ghost.frag",))
 _PICTURE_UNIT, _RAMP_UNIT, _LAYER_UNIT = 0, 1, 0
 
 
@@ -50,10 +50,11 @@ class Renderer:
         for ghost in scene.ghosts:
             self._draw_ghost(ghost, target, view)
         self._blend_over()
-        if scene.pose is not None:
-            self._draw_pose(scene.pose, view, scene.heat)
-        if scene.pose is not None and scene.wireframe is not None:
-            self._draw_wireframe(scene.pose, view, scene.wireframe)
+        for mesh in scene.meshes:
+            self._draw_mesh(mesh, view, scene.heat)
+        if scene.wireframe is not None:
+            for mesh in scene.meshes:
+                self._draw_wireframe(mesh, view, scene.wireframe)
         self._overlay.draw(view, scene.lines, scene.discs)
 
     def _blend_over(self) -> None:
@@ -73,11 +74,11 @@ class Renderer:
         }
         self.programs.draw_screen(_BACKGROUND, uniforms)
 
-    def _draw_pose(self, pose: Pose, view: View, heat: Heat | None) -> None:
+    def _draw_mesh(self, mesh: PosedMesh, view: View, heat: Heat | None) -> None:
         uniforms: dict[str, object] = {"view": view.transform, "picture": _PICTURE_UNIT}
-        with pose.picture.bound(_PICTURE_UNIT):
+        with mesh.picture.bound(_PICTURE_UNIT):
             if heat is None:
-                pose.draw(_PICTURE, uniforms)
+                mesh.draw(_PICTURE, uniforms)
                 return
             self._ramp.use(_RAMP_UNIT)
             uniforms |= {
@@ -86,17 +87,17 @@ class Renderer:
                 "contours": float(heat.contours),
                 "strength": heat.strength,
             }
-            pose.draw(_HEAT, uniforms)
+            mesh.draw(_HEAT, uniforms)
 
-    def _draw_wireframe(self, pose: Pose, view: View, wireframe: Wireframe) -> None:
+    def _draw_wireframe(self, mesh: PosedMesh, view: View, wireframe: Wireframe) -> None:
         uniforms: Mapping[str, object] = {
             "view": view.transform,
             "frame_size": view.size,
             "ink": wireframe.colour,
             "width": wireframe.width,
         }
-        pose.draw(_WIRE, uniforms)
-        pose.draw_border(_BORDER, uniforms)
+        mesh.draw(_WIRE, uniforms)
+        mesh.draw_border(_BORDER, uniforms)
 
     def _draw_ghost(self, ghost: Ghost, target: Target, view: View) -> None:
         # On a layer of its own: limbs that overlap would shine through each other.
@@ -107,7 +108,8 @@ class Renderer:
         self._layer.framebuffer.use()
         self._layer.framebuffer.clear()
         self._blend_over()
-        self._draw_pose(ghost.pose, view, None)
+        for mesh in ghost.meshes:
+            self._draw_mesh(mesh, view, None)
         target.framebuffer.use()
         self._layer.texture.use(_LAYER_UNIT)
         uniforms = {"frame": _LAYER_UNIT, "tint": ghost.tint, "opacity": ghost.opacity}

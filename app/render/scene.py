@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import Final
 
-from app.render.gpu import Pose
+from app.render.gpu import PosedMesh
 from engine.arrays import Complexes
 
 Colour = tuple[float, float, float, float]
@@ -32,7 +32,7 @@ class Background:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Heat:
-    """A heat map of the values that the pose was given.
+    """A heat map of the values that the meshes were given.
 
     Parameters
     ----------
@@ -64,13 +64,14 @@ class Ghost:
 
     Parameters
     ----------
-    pose : Pose
+    meshes : tuple of PosedMesh
+        The drawing in that frame, the furthest first.
     tint : tuple of float
         Red, green and blue.
     opacity : float
     """
 
-    pose: Pose
+    meshes: tuple[PosedMesh, ...]
     tint: tuple[float, float, float]
     opacity: float
 
@@ -131,10 +132,10 @@ class Scene:
     Parameters
     ----------
     background : Background
-    pose : Pose, optional
-        The drawing in this frame.
+    meshes : tuple of PosedMesh
+        The drawing in this frame, the furthest first.
     heat : Heat, optional
-        Paints the drawing in the colours of the values last written to the pose.
+        Paints the drawing in the colours of the values last written to its meshes.
     wireframe : Wireframe, optional
     ghosts : tuple of Ghost
         The furthest first.
@@ -143,7 +144,7 @@ class Scene:
     """
 
     background: Background = Background()
-    pose: Pose | None = None
+    meshes: tuple[PosedMesh, ...] = ()
     heat: Heat | None = None
     wireframe: Wireframe | None = None
     ghosts: tuple[Ghost, ...] = ()

@@ -7,8 +7,8 @@ import moderngl
 import numpy as np
 import pytest
 
-from app.render.gpu.gpu_mesh import GpuMesh, Pose, StreamedVertices, VertexSource, singles
-from app.render.gpu.gpu_picture import GpuPicture
+from app.render.gpu.mesh import GpuMesh, PosedMesh, PositionBuffer, VertexSource, singles
+from app.render.gpu.picture import GpuPicture
 from app.render.gpu.target import Target
 from app.render.renderer import Renderer
 from app.render.scene import Scene
@@ -35,7 +35,7 @@ class Easel:
     def __init__(self, gl: moderngl.Context) -> None:
         self.gl = gl
         self.renderer = Renderer(gl)
-        self._owned: list[GpuPicture | GpuMesh | Pose] = []
+        self._owned: list[GpuPicture | GpuMesh | PosedMesh] = []
 
     def mesh(self, picture: Bytes, rest: Complexes, triangles: Integers) -> GpuMesh:
         gpu_picture = GpuPicture(self.gl, picture)
@@ -43,13 +43,13 @@ class Easel:
         self._owned += [gpu_picture, mesh]
         return mesh
 
-    def pose(self, mesh: GpuMesh, points: Complexes) -> Pose:
-        source = StreamedVertices(self.gl, len(points))
+    def pose(self, mesh: GpuMesh, points: Complexes) -> PosedMesh:
+        source = PositionBuffer(self.gl, len(points))
         source.write(singles(points))
         return self.pose_of(mesh, source)
 
-    def pose_of(self, mesh: GpuMesh, source: VertexSource) -> Pose:
-        pose = Pose(mesh, source)
+    def pose_of(self, mesh: GpuMesh, source: VertexSource) -> PosedMesh:
+        pose = PosedMesh(mesh, source)
         self._owned.append(pose)
         return pose
 

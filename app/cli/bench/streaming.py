@@ -10,7 +10,15 @@ from app.cli.bench.table import Row, Table, measure
 from app.document import Document, Meshing, Pose, Variant
 from app.motion import Stage
 from app.render import Renderer, Scene, fit_view
-from app.render.gpu import GpuPicture, SeriesVertices, Target, create_context, gpu_mesh
+from app.render.gpu import (
+    GpuMesh,
+    GpuPicture,
+    PosedMesh,
+    PositionBuffer,
+    SeriesBuffer,
+    Target,
+    create_context,
+)
 from app.solving import load_pose_script, pose_document
 from app.storage import open_picture, sample_images
 from engine.arrays import Floats
@@ -183,24 +191,22 @@ def _drawing(interval: Interval, series: dict[Variant, Series]) -> Table:
     context = create_context()
     renderer = Renderer(context)
     picture = GpuPicture(context, np.full((1000, 1000, 4), 255, dtype=np.uint8))
-    gpu = gpu_mesh.GpuMesh(renderer.programs, picture, rest=mesh.vertices, triangles=mesh.triangles)
+    gpu = GpuMesh(renderer.programs, picture, rest=mesh.vertices, triangles=mesh.triangles)
     target = Target(renderer.programs, (8, 8))
     view = fit_view(0j, 1000 + 1000j, target.size)
     rows = []
     for variant, found in series.items():
-        by_shader = SeriesVertices(
+        by_shader = SeriesBuffer(
             context, len(mesh.vertices), max(len(piece.rows) for piece in found.pieces)
         )
-        streamed = gpu_mesh.StreamedVertices(context, len(mesh.vertices))
-        poses = gpu_mesh.Pose(gpu, by_shader), gpu_mesh.Pose(gpu, streamed)
-        scenes = [Scene(pose=pose) for pose in poses]
+        streamed = PositionBuffer(context, len(mesh.vertices))
+        poses = PosedMesh(gpu, by_shader), PosedMesh(gpu, streamed)
+        scenes = [Scene(meshes=(pose,)) for pose in poses]
 
-        def shade(time: float, source: SeriesVertices = by_shader, series: Series = found) -> None:
+        def shade(time: float, source: SeriesBuffer = by_shader, series: Series = found) -> None:
             source.place(series, time)
 
-        def write(
-            time: float, source: gpu_mesh.StreamedVertices = streamed, series: Series = found
-        ) -> None:
+        def write(time: float, source: PositionBuffer = streamed, series: Series = found) -> None:
             source.write(series.values(time).reshape(-1, 2))
 
         for name, place, scene in (

@@ -19,8 +19,8 @@ from app.render.gpu import (
     GlError,
     GpuMesh,
     GpuPicture,
-    Pose,
-    StreamedVertices,
+    PosedMesh,
+    PositionBuffer,
     Target,
     create_context,
     probe,
@@ -86,10 +86,10 @@ def _draws_exactly(backend: Backend) -> bool:
         renderer = Renderer(context)
         texture = GpuPicture(context, picture)
         mesh = GpuMesh(renderer.programs, texture, rest=rest, triangles=triangles)
-        vertices = StreamedVertices(context, len(rest))
+        vertices = PositionBuffer(context, len(rest))
         vertices.write(singles(rest))
         target = Target(renderer.programs, (16, 12))
-        renderer.draw(target, canvas_view((16, 12)), Scene(pose=Pose(mesh, vertices)))
+        renderer.draw(target, canvas_view((16, 12)), Scene(meshes=(PosedMesh(mesh, vertices),)))
         return np.array_equal(target.read_straight_rgba(), picture)
     finally:
         # Everything that was made in it goes with it.

@@ -5,7 +5,6 @@ Out: textures, vertex buffers and targets, released by their owners.
 Imports: `app.motion`, `app.storage`, ModernGL.
 """
 
-from app.render.gpu import gpu_mesh
 from app.render.gpu.context import (
     AUTOMATIC,
     Backend,
@@ -17,10 +16,10 @@ from app.render.gpu.context import (
     probe,
     window_context,
 )
-from app.render.gpu.gpu_mesh import GpuMesh, Pose, Singles, StreamedVertices, singles
-from app.render.gpu.gpu_picture import GpuPicture
-from app.render.gpu.programs import Programs, Stages, set_uniforms
-from app.render.gpu.series_vertices import SeriesVertices
+from app.render.gpu.mesh import GpuMesh, PosedMesh, PositionBuffer, Singles, singles
+from app.render.gpu.picture import GpuPicture
+from app.render.gpu.programs import Programs, ShaderFiles, set_uniforms
+from app.render.gpu.series_buffer import SeriesBuffer
 from app.render.gpu.target import Target
 
 __all__ = [
@@ -30,16 +29,15 @@ __all__ = [
     "GlError",
     "GpuMesh",
     "GpuPicture",
-    "Pose",
+    "PosedMesh",
+    "PositionBuffer",
     "Programs",
-    "SeriesVertices",
+    "SeriesBuffer",
+    "ShaderFiles",
     "Singles",
-    "Stages",
-    "StreamedVertices",
     "Target",
     "create_context",
     "finish",
-    "gpu_mesh",
     "is_software",
     "probe",
     "set_uniforms",

@@ -12,7 +12,7 @@ HEADER: Final = "#version 330 core\n"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Stages:
+class ShaderFiles:
     """The files of a program; those of one stage are joined in order.
 
     Parameters
@@ -35,26 +35,26 @@ class Programs:
 
     def __init__(self, context: moderngl.Context) -> None:
         self.context = context
-        self._compiled: dict[Stages, moderngl.Program] = {}
-        self._screens: dict[Stages, moderngl.VertexArray] = {}
+        self._compiled: dict[ShaderFiles, moderngl.Program] = {}
+        self._screens: dict[ShaderFiles, moderngl.VertexArray] = {}
 
-    def get(self, stages: Stages) -> moderngl.Program:
+    def get(self, files: ShaderFiles) -> moderngl.Program:
         """Return a program, compiled when it is asked for first."""
-        if stages not in self._compiled:
-            self._compiled[stages] = self.context.program(
-                vertex_shader=_join(*stages.vertex, constants=stages.constants),
-                fragment_shader=_join(*stages.fragment),
-                geometry_shader=_join(stages.geometry) if stages.geometry else None,
+        if files not in self._compiled:
+            self._compiled[files] = self.context.program(
+                vertex_shader=_join(*files.vertex, constants=files.constants),
+                fragment_shader=_join(*files.fragment),
+                geometry_shader=_join(files.geometry) if files.geometry else None,
             )
-        return self._compiled[stages]
+        return self._compiled[files]
 
-    def draw_screen(self, stages: Stages, uniforms: Mapping[str, object]) -> None:
+    def draw_screen(self, files: ShaderFiles, uniforms: Mapping[str, object]) -> None:
         """Draw the triangle of screen.vert, which covers the whole frame."""
-        program = self.get(stages)
-        if stages not in self._screens:
-            self._screens[stages] = self.context.vertex_array(program, [])
+        program = self.get(files)
+        if files not in self._screens:
+            self._screens[files] = self.context.vertex_array(program, [])
         set_uniforms(program, uniforms)
-        self._screens[stages].render(moderngl.TRIANGLES, vertices=3)
+        self._screens[files].render(moderngl.TRIANGLES, vertices=3)
 
     def release(self) -> None:
         """Let the programs go."""

@@ -7,10 +7,10 @@ import numpy as np
 
 from app.errors import LissomError
 from app.render.gpu.context import largest_size
-from app.render.gpu.programs import Programs, Stages
+from app.render.gpu.programs import Programs, ShaderFiles
 from engine.arrays import Bytes
 
-_STRAIGHT: Final = Stages(vertex=("screen.vert",), fragment=("straight.frag",))
+_STRAIGHT: Final = ShaderFiles(vertex=("screen.vert",), fragment=("straight.frag",))
 
 
 class Target:

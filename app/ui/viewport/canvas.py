@@ -14,8 +14,8 @@ from app.render import (
     HandleMark,
     HandleStyle,
     Heat,
-    Layer,
     Line,
+    PosableMesh,
     Renderer,
     Scene,
     Wireframe,
@@ -23,7 +23,7 @@ from app.render import (
     mark_handles,
     shader_is_faster,
 )
-from app.render.gpu import GpuMesh, GpuPicture, Pose, Target
+from app.render.gpu import GpuMesh, GpuPicture, PosedMesh, Target
 from app.storage import CHECKER
 from app.ui.style import PALETTES, Palette
 from engine.arrays import Floats
@@ -104,17 +104,17 @@ class _Drawing:
         self._renderer = renderer
         self._picture = GpuPicture(renderer.programs.context, project.picture.rgba)
         self._meshes: dict[Figure, GpuMesh] = {}
-        self._layers: dict[tuple[Figure, int], Layer] = {}
-        self._heated: tuple[Pose, Vertices, HeatMap] | None = None
+        self._posables: dict[tuple[Figure, int], PosableMesh] = {}
+        self._heated: tuple[PosedMesh, Vertices, HeatMap] | None = None
 
-    def layer(self, figure: Figure, number: int = 0) -> Layer:
+    def posable(self, figure: Figure, number: int = 0) -> PosableMesh:
         """Return the poses of a figure with this number, 0 for the drawing itself."""
-        if (figure, number) not in self._layers:
+        if (figure, number) not in self._posables:
             by_shader = shader_is_faster(self._renderer.programs.context)
-            self._layers[figure, number] = Layer(self._mesh(figure), by_shader=by_shader)
-        return self._layers[figure, number]
+            self._posables[figure, number] = PosableMesh(self._mesh(figure), by_shader=by_shader)
+        return self._posables[figure, number]
 
-    def heat(self, pose: Pose, shown: Shown, heat_map: HeatMap) -> None:
+    def heat(self, pose: PosedMesh, shown: Shown, heat_map: HeatMap) -> None:
         """Upload a distortion of what is shown, if it is another than before."""
         wanted = (pose, shown.vertices, heat_map)
         if self._heated != wanted:
@@ -123,8 +123,8 @@ class _Drawing:
 
     def keep_only(self, figures: tuple[Figure, ...]) -> None:
         """Let the buffers of other figures go."""
-        for figure, number in [key for key in self._layers if key[0] not in figures]:
-            self._layers.pop((figure, number)).release()
+        for figure, number in [key for key in self._posables if key[0] not in figures]:
+            self._posables.pop((figure, number)).release()
         for figure in [figure for figure in self._meshes if figure not in figures]:
             self._meshes.pop(figure).release()
 
@@ -189,7 +189,7 @@ def _scene(session: Session, project: Project, shown: Shown, drawing: _Drawing) 
     overlays = session.overlays
     figures = [motion.figure for motion in (project.sketch, project.full) if motion is not None]
     drawing.keep_only((*figures, shown.figure))
-    pose = drawing.layer(shown.figure).place(shown.vertices)
+    pose = drawing.posable(shown.figure).pose(shown.vertices)
     heat = None
     if overlays.heat_map != "none":
         drawing.heat(pose, shown, overlays.heat_map)
@@ -199,7 +199,7 @@ def _scene(session: Session, project: Project, shown: Shown, drawing: _Drawing) 
     lines, discs = _marks(session, project, shown, palette)
     return Scene(
         background=_background(session, palette),
-        pose=pose,
+        meshes=(pose,),
         heat=heat,
         wireframe=wireframe,
         ghosts=_ghosts(session, project, shown, drawing) if overlays.onion else (),
@@ -240,8 +240,8 @@ def _ghosts(
             vertices = project.sketch.vertices(known, frame)
             if vertices is None or time_of(known, frame) == time_of(known, shown.frame):
                 continue
-            pose = drawing.layer(project.sketch.figure, number).place(vertices)
-            ghosts.append(Ghost(pose=pose, tint=tint, opacity=GHOST_OPACITY / step**0.5))
+            pose = drawing.posable(project.sketch.figure, number).pose(vertices)
+            ghosts.append(Ghost(meshes=(pose,), tint=tint, opacity=GHOST_OPACITY / step**0.5))
     return tuple(ghosts)
 
 

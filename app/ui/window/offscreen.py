@@ -5,7 +5,7 @@ from imgui_bundle import ImVec2, hello_imgui, imgui
 from PIL import Image
 
 from app.render import DrawLists
-from app.render.gpu import Context, finish
+from app.render.gpu import Context, Programs, finish
 from app.ui.window.window import SIZE, Window
 
 
@@ -122,4 +122,4 @@ class Offscreen:
         return params
 
     def _attach(self) -> None:
-        self._lists = DrawLists(self._gl)
+        self._lists = DrawLists(Programs(self._gl))

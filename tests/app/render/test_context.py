@@ -59,7 +59,7 @@ def test_contexts_follow_and_accompany_each_other():
             easel = Easel(gl)
             rest, triangles = grid_mesh(120, 90, 4)
             pose = easel.pose(easel.mesh(soft_blob(), rest, triangles), rest)
-            frame = easel.frame(canvas_view((120, 90)), Scene(pose=pose))
+            frame = easel.frame(canvas_view((120, 90)), Scene(meshes=(pose,)))
             easel.release()
             return frame
 

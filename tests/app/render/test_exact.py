@@ -14,7 +14,7 @@ def at_rest(easel: Easel, picture: Bytes, cells: int) -> Bytes:
     height, width, _ = picture.shape
     rest, triangles = grid_mesh(width, height, cells)
     pose = easel.pose(easel.mesh(picture, rest, triangles), rest)
-    return easel.frame(canvas_view((width, height)), Scene(pose=pose))
+    return easel.frame(canvas_view((width, height)), Scene(meshes=(pose,)))
 
 
 def without_hidden_colours(picture: Bytes) -> Bytes:
@@ -46,7 +46,8 @@ def test_the_same_frame_comes_out_twice(easel):
     turned = (rest - 60 - 45j) * np.exp(0.4j) * 1.3 + 60 + 45j
     mesh = easel.mesh(picture, rest, triangles)
     frames = [
-        easel.frame(canvas_view((120, 90)), Scene(pose=easel.pose(mesh, turned))) for _ in range(2)
+        easel.frame(canvas_view((120, 90)), Scene(meshes=(easel.pose(mesh, turned),)))
+        for _ in range(2)
     ]
     assert_array_equal(*frames)
 
@@ -57,7 +58,7 @@ def test_a_coloured_background_is_exact_where_it_is_seen(easel):
     pose = easel.pose(easel.mesh(picture, rest, triangles), rest)
     colour = (12 / 255, 200 / 255, 77 / 255, 1.0)
     frame = easel.frame(
-        canvas_view((120, 90)), Scene(background=Background(colour=colour), pose=pose)
+        canvas_view((120, 90)), Scene(background=Background(colour=colour), meshes=(pose,))
     )
     alpha = picture[..., 3:] / 255
     wanted = picture[..., :3] * alpha + np.array([12, 200, 77]) * (1 - alpha)

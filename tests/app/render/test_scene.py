@@ -8,8 +8,8 @@ from drawings import Easel, grid_mesh, soft_blob
 from numpy.testing import assert_allclose, assert_array_equal
 
 from app.errors import LissomError
-from app.render.gpu.gpu_mesh import GpuMesh, Pose, StreamedVertices, border_edges, singles
-from app.render.gpu.gpu_picture import GpuPicture
+from app.render.gpu.mesh import GpuMesh, PosedMesh, PositionBuffer, border_edges, singles
+from app.render.gpu.picture import GpuPicture
 from app.render.gpu.target import Target
 from app.render.handles import HandleMark, mark_handles
 from app.render.scene import Background, Disc, Ghost, Heat, Line, Scene, Wireframe
@@ -35,7 +35,7 @@ def blob_mesh(easel: Easel, cells: int = 10) -> tuple[GpuMesh, Complexes]:
 
 def test_the_drawing_on_a_checkerboard(easel, check_golden):
     mesh, rest = blob_mesh(easel)
-    scene = Scene(background=PAPER, pose=easel.pose(mesh, bent(rest)))
+    scene = Scene(background=PAPER, meshes=(easel.pose(mesh, bent(rest)),))
     check_golden("checkerboard", easel.frame(VIEW, scene))
 
 
@@ -43,28 +43,28 @@ def test_a_heat_map(easel, check_golden):
     mesh, rest = blob_mesh(easel)
     pose = easel.pose(mesh, bent(rest))
     pose.write_heat((rest.real / WIDTH + 0.1 * np.sin(rest.imag / 9)).astype(np.float32))
-    scene = Scene(background=NIGHT, pose=pose, heat=Heat(low=0.0, high=1.0))
+    scene = Scene(background=NIGHT, meshes=(pose,), heat=Heat(low=0.0, high=1.0))
     check_golden("heat", easel.frame(VIEW, scene))
 
 
 def test_a_wireframe(easel, check_golden):
     mesh, rest = blob_mesh(easel)
     wireframe = Wireframe(colour=(0.05, 0.12, 0.3, 0.8))
-    scene = Scene(background=PAPER, pose=easel.pose(mesh, bent(rest)), wireframe=wireframe)
+    scene = Scene(background=PAPER, meshes=(easel.pose(mesh, bent(rest)),), wireframe=wireframe)
     check_golden("wireframe", easel.frame(VIEW, scene))
 
 
 def test_onion_skins(easel, check_golden):
     mesh, rest = blob_mesh(easel)
     ghosts = tuple(
-        Ghost(pose=easel.pose(mesh, bent(rest, amount) + shift), tint=tint, opacity=opacity)
+        Ghost(meshes=(easel.pose(mesh, bent(rest, amount) + shift),), tint=tint, opacity=opacity)
         for amount, shift, tint, opacity in (
             (2.0, -30.0, (0.95, 0.45, 0.1), 0.3),
             (1.5, -15.0, (0.95, 0.45, 0.1), 0.5),
             (0.0, 30.0, (0.1, 0.5, 0.95), 0.4),
         )
     )
-    scene = Scene(background=PAPER, pose=easel.pose(mesh, bent(rest)), ghosts=ghosts)
+    scene = Scene(background=PAPER, meshes=(easel.pose(mesh, bent(rest)),), ghosts=ghosts)
     check_golden("onion_skins", easel.frame(VIEW, scene))
 
 
@@ -84,7 +84,7 @@ def test_outline_cage_and_handles(easel, check_golden):
     )
     scene = Scene(
         background=PAPER,
-        pose=easel.pose(mesh, rest),
+        meshes=(easel.pose(mesh, rest),),
         lines=(
             Line(points=outline, colour=(0.0, 0.47, 0.84, 1.0), closed=True),
             Line(points=cage, colour=(0.92, 0.37, 0.16, 0.6), width=3.0, closed=True),
@@ -102,7 +102,7 @@ def test_an_edge_of_the_wireframe_has_its_width_within_and_on_the_border(easel):
     transparent = easel.mesh(
         np.zeros((40, 40, 4), np.uint8), corners, np.array([[0, 1, 2], [0, 2, 3]], np.int32)
     )
-    scene = Scene(pose=easel.pose(transparent, turned), wireframe=wireframe)
+    scene = Scene(meshes=(easel.pose(transparent, turned),), wireframe=wireframe)
     alpha = easel.frame(View(centre=0j, scale=2.0, size=(160, 160)), scene)[..., 3]
     assert alpha.max() == 128
     lengths = 4 * 80 + np.sqrt(2) * 80
@@ -143,12 +143,33 @@ def test_later_triangles_lie_on_top(easel):
     folded = halves.copy()
     folded[4:] -= 10  # the right half over the left one
     view = canvas_view((20, 20))
-    later = easel.frame(view, Scene(pose=easel.pose(easel.mesh(picture, halves, quads), folded)))
+    pose = easel.pose(easel.mesh(picture, halves, quads), folded)
+    later = easel.frame(view, Scene(meshes=(pose,)))
     assert_allclose(later[10, 5], [127, 0, 128, 255], rtol=0, atol=1)
-    earlier = easel.frame(
-        view, Scene(pose=easel.pose(easel.mesh(picture, halves, quads[::-1].copy()), folded))
-    )
+    # What is drawn carries its own order, whatever that of the mesh.
+    pose.paint_in_order(quads[::-1].copy())
+    earlier = easel.frame(view, Scene(meshes=(pose,)))
     assert_array_equal(earlier[10, 5], [255, 0, 0, 255])
+    pose.paint_in_order(quads)
+    assert_array_equal(easel.frame(view, Scene(meshes=(pose,))), later)
+    with pytest.raises(LissomError, match="4 triangles to be painted, not 3"):
+        pose.paint_in_order(quads[1:])
+
+
+def test_later_meshes_lie_on_top_of_a_scene_and_of_a_ghost(easel):
+    corners = np.array([0, 20, 20 + 20j, 20j])
+    quad = np.array([[0, 1, 2], [0, 2, 3]], np.int32)
+    red, blue = (
+        easel.pose(easel.mesh(np.full((20, 20, 4), colour, np.uint8), corners, quad), corners)
+        for colour in ((255, 0, 0, 255), (0, 0, 255, 128))
+    )
+    view = canvas_view((20, 20))
+    for meshes, wanted in (((red, blue), [127, 0, 128, 255]), ((blue, red), [255, 0, 0, 255])):
+        frame = easel.frame(view, Scene(meshes=meshes))
+        assert_allclose(frame[10, 5], wanted, rtol=0, atol=1)
+    ghost = Ghost(meshes=(red, blue), tint=(1.0, 1.0, 1.0), opacity=0.5)
+    frame = easel.frame(view, Scene(ghosts=(ghost,)))
+    assert_array_equal(np.unique(frame[..., 3]), [128])
 
 
 def test_limbs_of_a_ghost_do_not_shine_through_each_other(easel):
@@ -156,7 +177,7 @@ def test_limbs_of_a_ghost_do_not_shine_through_each_other(easel):
     rest, triangles = grid_mesh(20, 20, 2, margin=0.0)
     mesh = easel.mesh(picture, rest, triangles)
     folded = 2 * np.abs(rest.real - 10) + 1j * rest.imag
-    ghost = Ghost(pose=easel.pose(mesh, folded), tint=(1.0, 0.0, 0.0), opacity=0.5)
+    ghost = Ghost(meshes=(easel.pose(mesh, folded),), tint=(1.0, 0.0, 0.0), opacity=0.5)
     frame = easel.frame(canvas_view((20, 20)), Scene(ghosts=(ghost,)))
     assert_array_equal(np.unique(frame[5:-5, 5:-5, 3]), [128])
 
@@ -207,7 +228,9 @@ def test_the_drawings_border_has_no_steps(easel):
     rest, triangles = grid_mesh(80, 80, 4)
     turned = (rest - 40 - 40j) * np.exp(0.1j) + 40 + 40j
     pose = easel.pose(easel.mesh(picture, rest, triangles), turned)
-    alpha = easel.frame(View(centre=40 + 40j, scale=1.0, size=(120, 120)), Scene(pose=pose))[..., 3]
+    alpha = easel.frame(View(centre=40 + 40j, scale=1.0, size=(120, 120)), Scene(meshes=(pose,)))[
+        ..., 3
+    ]
     # Along a slanted border the columns' sums change evenly, not by whole pixels.
     heights = alpha[:, 30:90].sum(axis=0) / 255
     assert np.abs(np.diff(heights, n=2)).max() < 0.25
@@ -219,7 +242,7 @@ def test_oversampling_comes_nearer_to_the_mean_of_what_a_pixel_shows(easel):
     picture = np.full((240, 240, 4), 255, np.uint8)
     picture[..., :3] = np.kron(rng.integers(0, 256, (60, 60, 3)), np.ones((4, 4, 1)))
     rest, triangles = grid_mesh(240, 240, 5)
-    scene = Scene(pose=easel.pose(easel.mesh(picture, rest, triangles), rest))
+    scene = Scene(meshes=(easel.pose(easel.mesh(picture, rest, triangles), rest),))
     view = fit_view(0j, 240 + 240j, (48, 48))
     wanted = picture[..., :3].reshape(48, 5, 48, 5, 3).mean(axis=(1, 3))
     errors = [
@@ -242,8 +265,8 @@ def test_what_cannot_be_drawn_is_refused(easel):
     with pytest.raises(LissomError, match=r"picture has 100000 × 1 pixels"):
         GpuPicture(gl, np.zeros((1, 100_000, 4), np.uint8))
     mesh, rest = blob_mesh(easel, 2)
-    source = StreamedVertices(gl, len(rest))
-    pose = Pose(mesh, source)
+    source = PositionBuffer(gl, len(rest))
+    pose = PosedMesh(mesh, source)
     with pytest.raises(LissomError, match="not finite"):
         source.write(np.full((len(rest), 2), np.nan, np.float32))
     with pytest.raises(LissomError, match=r"\(9, 2\) positions, not \(8, 2\)"):
@@ -251,7 +274,7 @@ def test_what_cannot_be_drawn_is_refused(easel):
     with pytest.raises(LissomError, match="9 values, not"):
         pose.write_heat(np.zeros(8, np.float32))
     with pytest.raises(ValueError, match="given no values"):
-        easel.frame(VIEW, Scene(pose=pose, heat=Heat(low=0.0, high=1.0)))
+        easel.frame(VIEW, Scene(meshes=(pose,), heat=Heat(low=0.0, high=1.0)))
     pose.release()
     target = Target(programs, (10, 10))
     with pytest.raises(ValueError, match="cannot fill a frame"):

@@ -7,11 +7,11 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 from app.errors import LissomError
 from app.motion.vertices import Placed, Streamed
-from app.render.gpu.gpu_mesh import GpuMesh, Pose
+from app.render.gpu.mesh import GpuMesh, PosedMesh
 from app.render.gpu.programs import set_uniforms
-from app.render.gpu.series_vertices import SeriesVertices, most_rows
+from app.render.gpu.series_buffer import SeriesBuffer, most_rows
 from app.render.gpu.target import Target
-from app.render.layer import Layer, shader_is_faster
+from app.render.posable_mesh import PosableMesh, shader_is_faster
 from app.render.scene import Background, Ghost, Heat, Scene, Wireframe
 from app.render.view import View
 from app.storage.assets import shader_source
@@ -51,13 +51,13 @@ def blob_mesh(easel: Easel) -> tuple[GpuMesh, Complexes]:
     return easel.mesh(soft_blob(WIDTH, HEIGHT), rest, triangles), rest
 
 
-def series_pose(easel: Easel, mesh: GpuMesh, series: Series, time: float) -> Pose:
-    source = SeriesVertices(easel.gl, mesh.count, max(len(p.rows) for p in series.pieces))
+def series_pose(easel: Easel, mesh: GpuMesh, series: Series, time: float) -> PosedMesh:
+    source = SeriesBuffer(easel.gl, mesh.count, max(len(p.rows) for p in series.pieces))
     source.place(series, time)
     return easel.pose_of(mesh, source)
 
 
-def streamed_pose(easel: Easel, mesh: GpuMesh, series: Series, time: float) -> Pose:
+def streamed_pose(easel: Easel, mesh: GpuMesh, series: Series, time: float) -> PosedMesh:
     return easel.pose(mesh, series.values(time).astype(float).view(complex))
 
 
@@ -65,7 +65,7 @@ def streamed_pose(easel: Easel, mesh: GpuMesh, series: Series, time: float) -> P
 def test_the_shader_places_vertices_as_the_processor_does(easel, rows):
     _, rest = blob_mesh(easel)
     series = bending(rest, rows)
-    source = SeriesVertices(easel.gl, len(rest), rows + 1)
+    source = SeriesBuffer(easel.gl, len(rest), rows + 1)
     ((name, value),) = source.constants
     program = easel.gl.program(
         vertex_shader=f"#version 330 core\n#define {name} {value}\n{shader_source(source.shader)}"
@@ -99,10 +99,10 @@ def test_both_ways_give_the_same_picture(easel, time):
         for heat in (None, Heat(low=0.0, high=1.0)):
             scene = Scene(
                 background=Background(colour=(1.0, 1.0, 1.0, 1.0)),
-                pose=pose,
+                meshes=(pose,),
                 heat=heat,
                 wireframe=Wireframe(colour=(0.0, 0.1, 0.3, 0.8)),
-                ghosts=(Ghost(pose=ghost, tint=(0.9, 0.3, 0.1), opacity=0.5),),
+                ghosts=(Ghost(meshes=(ghost,), tint=(0.9, 0.3, 0.1), opacity=0.5),),
             )
             frames.append(easel.frame(VIEW, scene).astype(int))
     by_shader, by_processor = frames[:2], frames[2:]
@@ -116,21 +116,21 @@ def test_both_ways_give_the_same_picture(easel, time):
 def test_a_frame_after_another_series_is_its_own(easel):
     mesh, rest = blob_mesh(easel)
     first, second = bending(rest), bending(rest * 0.7, rows=4)
-    source = SeriesVertices(easel.gl, mesh.count, 8)
+    source = SeriesBuffer(easel.gl, mesh.count, 8)
     pose = easel.pose_of(mesh, source)
     for series, time in ((first, 0.9), (second, 0.2), (first, 0.1)):
         source.place(series, time)
-        frame = easel.frame(VIEW, Scene(pose=pose)).astype(int)
-        expected = easel.frame(VIEW, Scene(pose=streamed_pose(easel, mesh, series, time)))
+        frame = easel.frame(VIEW, Scene(meshes=(pose,))).astype(int)
+        expected = easel.frame(VIEW, Scene(meshes=(streamed_pose(easel, mesh, series, time),)))
         assert (np.abs(frame - expected).max(axis=2) > 2).mean() < 2e-3
 
 
 def test_what_does_not_fit_is_refused(easel):
     _, rest = blob_mesh(easel)
     with pytest.raises(LissomError, match="rows of a series, not 99"):
-        SeriesVertices(easel.gl, len(rest), 99)
+        SeriesBuffer(easel.gl, len(rest), 99)
     assert most_rows(easel.gl) >= MOST_ROWS
-    source = SeriesVertices(easel.gl, len(rest), 4)
+    source = SeriesBuffer(easel.gl, len(rest), 4)
     with pytest.raises(LissomError, match="a piece of 7 rows"):
         source.place(bending(rest), 0.1)
     with pytest.raises(LissomError, match="does not fit"):
@@ -139,10 +139,10 @@ def test_what_does_not_fit_is_refused(easel):
 
 
 @pytest.mark.parametrize("by_shader", [False, True])
-def test_a_layer_shows_what_it_was_given_last(easel, by_shader):
+def test_a_mesh_shows_what_it_was_given_last(easel, by_shader):
     mesh, rest = blob_mesh(easel)
     series, long = bending(rest), bending(rest * 0.8, rows=MOST_ROWS + 3)
-    layer = Layer(mesh, by_shader=by_shader)
+    posable = PosableMesh(mesh, by_shader=by_shader)
     for vertices in (
         Placed(positions=rest),
         Streamed(series, None, 0.3),
@@ -151,12 +151,12 @@ def test_a_layer_shows_what_it_was_given_last(easel, by_shader):
         Streamed(long, None, 0.2),
         Streamed(series, None, 0.1),
     ):
-        pose = layer.place(vertices)
-        assert layer.place(vertices) is pose
-        frame = easel.frame(VIEW, Scene(pose=pose)).astype(int)
-        expected = easel.frame(VIEW, Scene(pose=easel.pose(mesh, vertices.positions)))
+        pose = posable.pose(vertices)
+        assert posable.pose(vertices) is pose
+        frame = easel.frame(VIEW, Scene(meshes=(pose,))).astype(int)
+        expected = easel.frame(VIEW, Scene(meshes=(easel.pose(mesh, vertices.positions),)))
         assert (np.abs(frame - expected).max(axis=2) > 2).mean() < 2e-3
-    layer.release()
+    posable.release()
 
 
 def test_only_a_graphics_card_places_vertices_by_itself(gl):

@@ -7,13 +7,13 @@ import moderngl
 import numpy as np
 
 from app.errors import LissomError
-from app.render.gpu.gpu_mesh import Attribute
+from app.render.gpu.mesh import Attribute
 from engine.streaming import Piece, Series
 
 _RESERVED: Final = 2  # attributes of a mesh that are not the series'
 
 
-class SeriesVertices:
+class SeriesBuffer:
     """Owner of a series' rows on the graphics card.
 
     Between two frames of one piece of a series, only the weights change: a few numbers.

@@ -3,11 +3,11 @@
 import moderngl
 
 from app.motion import Streamed, Vertices
-from app.render.gpu import GpuMesh, Pose, SeriesVertices, StreamedVertices, is_software, singles
+from app.render.gpu import GpuMesh, PosedMesh, PositionBuffer, SeriesBuffer, is_software, singles
 from engine.streaming import MOST_ROWS, Series
 
 
-class Layer:
+class PosableMesh:
     """Owner of the poses of a mesh.
 
     Parameters
@@ -22,14 +22,14 @@ class Layer:
         self._mesh = mesh
         self._context = mesh.programs.context
         self._by_shader = by_shader
-        self._written = StreamedVertices(self._context, mesh.count)
-        self._pose = Pose(mesh, self._written)
-        self._series: SeriesVertices | None = None
-        self._series_pose: Pose | None = None
-        self._current: tuple[Vertices, Pose] | None = None
+        self._written = PositionBuffer(self._context, mesh.count)
+        self._pose = PosedMesh(mesh, self._written)
+        self._series: SeriesBuffer | None = None
+        self._series_pose: PosedMesh | None = None
+        self._current: tuple[Vertices, PosedMesh] | None = None
 
-    def place(self, vertices: Vertices) -> Pose:
-        """Return the pose with its vertices there; they are uploaded if they are others now."""
+    def pose(self, vertices: Vertices) -> PosedMesh:
+        """Return the mesh with its vertices there; they are uploaded if they are others now."""
         if self._current is None or self._current[0] is not vertices:
             self._current = vertices, self._placed(vertices)
         return self._current[1]
@@ -40,11 +40,11 @@ class Layer:
         if self._series_pose is not None:
             self._series_pose.release()
 
-    def _placed(self, vertices: Vertices) -> Pose:
+    def _placed(self, vertices: Vertices) -> PosedMesh:
         if isinstance(vertices, Streamed) and self._by_shader and _fits(vertices.series):
             if self._series is None or self._series_pose is None:
-                self._series = SeriesVertices(self._context, self._mesh.count, MOST_ROWS)
-                self._series_pose = Pose(self._mesh, self._series)
+                self._series = SeriesBuffer(self._context, self._mesh.count, MOST_ROWS)
+                self._series_pose = PosedMesh(self._mesh, self._series)
             self._series.place(vertices.series, vertices.time)
             return self._series_pose
         self._written.write(singles(vertices.positions))

@@ -10,8 +10,8 @@ import numpy as np
 import numpy.typing as npt
 
 from app.errors import LissomError
-from app.render.gpu.gpu_picture import GpuPicture
-from app.render.gpu.programs import Programs, Stages, set_uniforms
+from app.render.gpu.picture import GpuPicture
+from app.render.gpu.programs import Programs, ShaderFiles, set_uniforms
 from engine.arrays import Complexes, Integers, readonly
 
 Singles = npt.NDArray[np.float32]
@@ -55,8 +55,8 @@ class VertexSource(Protocol):
         """Let the buffers go."""
 
 
-class StreamedVertices:
-    """Owner of a buffer of positions that are written anew for every frame.
+class PositionBuffer:
+    """Owner of positions that the program writes anew for every frame.
 
     Parameters
     ----------
@@ -65,7 +65,7 @@ class StreamedVertices:
         Number of vertices, v.
     """
 
-    shader: Final = "streamed.glsl"
+    shader: Final = "positions.glsl"
     constants: Final = ()
     uniforms: Final[Mapping[str, object]] = MappingProxyType({})
 
@@ -99,7 +99,7 @@ class StreamedVertices:
 
 
 class GpuMesh:
-    """Owner of what all poses of a drawing share: triangles and places in the picture.
+    """Owner of what all poses of a drawing share: its places in the picture, and its border.
 
     Parameters
     ----------
@@ -109,7 +109,7 @@ class GpuMesh:
     rest : complex128, shape (v,)
         The undeformed vertices in pixels of the picture, y up from its lower left corner.
     triangles : int32, shape (m, 3)
-        They are painted in this order where the pose overlaps itself.
+        In the order in which a pose paints them as long as it is told no other.
     """
 
     def __init__(
@@ -122,28 +122,26 @@ class GpuMesh:
         width, height = picture.size
         uv = np.column_stack([rest.real / width, rest.imag / height])
         self.uv = context.buffer(uv.astype(np.float32).tobytes())
-        self.triangles = context.buffer(np.asarray(triangles, dtype=np.uint32).tobytes())
-        self._corners = readonly(triangles)
+        self.triangles = readonly(triangles)
         self._border: moderngl.Buffer | None = None
 
     @property
     def border(self) -> moderngl.Buffer:
         """The edges of the border, two vertices each, the mesh on their left."""
         if self._border is None:
-            edges = border_edges(self._corners)
+            edges = border_edges(self.triangles)
             self._border = self.programs.context.buffer(edges.astype(np.uint32).tobytes())
         return self._border
 
     def release(self) -> None:
         """Let the buffers go."""
         self.uv.release()
-        self.triangles.release()
         if self._border is not None:
             self._border.release()
 
 
-class Pose:
-    """A mesh with a vertex source, ready to be drawn; owner of the source and of the bindings.
+class PosedMesh:
+    """A mesh with a vertex source, ready to be drawn; owner of the source and of its draw order.
 
     Parameters
     ----------
@@ -157,8 +155,10 @@ class Pose:
         self.picture = mesh.picture
         self._mesh = mesh
         self._source = source
+        self._triangles = mesh.triangles
+        self._order = mesh.programs.context.buffer(_indices(mesh.triangles))
         self._heat: moderngl.Buffer | None = None
-        self._bindings: dict[Stages, moderngl.VertexArray] = {}
+        self._bindings: dict[ShaderFiles, moderngl.VertexArray] = {}
 
     def write_heat(self, values: Singles) -> None:
         """Upload the quantity (v,) that a heat map shows."""
@@ -168,25 +168,36 @@ class Pose:
             self._heat = self._mesh.programs.context.buffer(reserve=values.nbytes, dynamic=True)
         self._heat.write(np.ascontiguousarray(values, dtype=np.float32).data)
 
-    def draw(self, stages: Stages, uniforms: Mapping[str, object]) -> None:
-        """Draw the triangles with a mesh program, that is `stages` and the source's shader."""
-        binding = self._bound(stages, self._mesh.triangles)
+    def paint_in_order(self, triangles: Integers) -> None:
+        """Paint the mesh's triangles (m, 3) in this order: where they overlap, the last is seen."""
+        if triangles is self._triangles:
+            return
+        if triangles.shape != self._triangles.shape:
+            raise LissomError(
+                f"the mesh has {len(self._triangles)} triangles to be painted, not {len(triangles)}"
+            )
+        self._order.write(_indices(triangles))
+        self._triangles = triangles
+
+    def draw(self, files: ShaderFiles, uniforms: Mapping[str, object]) -> None:
+        """Draw the triangles with a mesh program: its files, and the source's shader."""
+        binding = self._bound(files, self._order)
         set_uniforms(binding.program, {**uniforms, **self._source.uniforms})
         binding.render(moderngl.TRIANGLES)
 
-    def draw_border(self, stages: Stages, uniforms: Mapping[str, object]) -> None:
+    def draw_border(self, files: ShaderFiles, uniforms: Mapping[str, object]) -> None:
         """Draw the edges of the border with a program of their own."""
-        binding = self._bound(stages, self._mesh.border)
+        binding = self._bound(files, self._mesh.border)
         set_uniforms(binding.program, {**uniforms, **self._source.uniforms})
         binding.render(moderngl.LINES)
 
-    def _bound(self, stages: Stages, indices: moderngl.Buffer) -> moderngl.VertexArray:
-        if stages not in self._bindings:
+    def _bound(self, files: ShaderFiles, indices: moderngl.Buffer) -> moderngl.VertexArray:
+        if files not in self._bindings:
             source = self._source
-            vertex = (*stages.vertex, source.shader)
-            linked = replace(stages, vertex=vertex, constants=source.constants)
-            self._bindings[stages] = self._bind(self._mesh.programs.get(linked), indices)
-        return self._bindings[stages]
+            vertex = (*files.vertex, source.shader)
+            linked = replace(files, vertex=vertex, constants=source.constants)
+            self._bindings[files] = self._bind(self._mesh.programs.get(linked), indices)
+        return self._bindings[files]
 
     def _bind(self, program: moderngl.Program, indices: moderngl.Buffer) -> moderngl.VertexArray:
         if "heat" in program and self._heat is None:
@@ -207,4 +218,9 @@ class Pose:
         self._bindings.clear()
         if self._heat is not None:
             self._heat.release()
+        self._order.release()
         self._source.release()
+
+
+def _indices(triangles: Integers) -> bytes:
+    return np.asarray(triangles, dtype=np.uint32).tobytes()
