@@ -6,8 +6,8 @@ Imports: `app.motion`, `app.storage`; with `app.render.gpu` it alone sees OpenGL
 """
 
 from app.render.draw_lists import DrawLists, Textures
+from app.render.drawn_mesh import DrawnMesh, shader_is_faster
 from app.render.handles import HandleMark, HandleStyle, mark_anchor, mark_handles
-from app.render.posable_mesh import PosableMesh, shader_is_faster
 from app.render.ramp import heat_ramp
 from app.render.renderer import Renderer
 from app.render.scene import (
@@ -30,12 +30,12 @@ __all__ = [
     "Colour",
     "Disc",
     "DrawLists",
+    "DrawnMesh",
     "Ghost",
     "HandleMark",
     "HandleStyle",
     "Heat",
     "Line",
-    "PosableMesh",
     "Renderer",
     "Scene",
     "Textures",

@@ -10,12 +10,12 @@ from app.render import (
     Background,
     Colour,
     Disc,
+    DrawnMesh,
     Ghost,
     HandleMark,
     HandleStyle,
     Heat,
     Line,
-    PosableMesh,
     Renderer,
     Scene,
     Wireframe,
@@ -104,15 +104,15 @@ class _Drawing:
         self._renderer = renderer
         self._picture = GpuPicture(renderer.programs.context, project.picture.rgba)
         self._meshes: dict[Figure, GpuMesh] = {}
-        self._posables: dict[tuple[Figure, int], PosableMesh] = {}
+        self._drawn_meshes: dict[tuple[Figure, int], DrawnMesh] = {}
         self._heated: tuple[PosedMesh, Vertices, HeatMap] | None = None
 
-    def posable(self, figure: Figure, number: int = 0) -> PosableMesh:
+    def drawn_mesh(self, figure: Figure, number: int = 0) -> DrawnMesh:
         """Return the poses of a figure with this number, 0 for the drawing itself."""
-        if (figure, number) not in self._posables:
+        if (figure, number) not in self._drawn_meshes:
             by_shader = shader_is_faster(self._renderer.programs.context)
-            self._posables[figure, number] = PosableMesh(self._mesh(figure), by_shader=by_shader)
-        return self._posables[figure, number]
+            self._drawn_meshes[figure, number] = DrawnMesh(self._mesh(figure), by_shader=by_shader)
+        return self._drawn_meshes[figure, number]
 
     def heat(self, pose: PosedMesh, shown: Shown, heat_map: HeatMap) -> None:
         """Upload a distortion of what is shown, if it is another than before."""
@@ -123,8 +123,8 @@ class _Drawing:
 
     def keep_only(self, figures: tuple[Figure, ...]) -> None:
         """Let the buffers of other figures go."""
-        for figure, number in [key for key in self._posables if key[0] not in figures]:
-            self._posables.pop((figure, number)).release()
+        for figure, number in [key for key in self._drawn_meshes if key[0] not in figures]:
+            self._drawn_meshes.pop((figure, number)).release()
         for figure in [figure for figure in self._meshes if figure not in figures]:
             self._meshes.pop(figure).release()
 
@@ -189,7 +189,7 @@ def _scene(session: Session, project: Project, shown: Shown, drawing: _Drawing) 
     overlays = session.overlays
     figures = [motion.figure for motion in (project.sketch, project.full) if motion is not None]
     drawing.keep_only((*figures, shown.figure))
-    pose = drawing.posable(shown.figure).pose(shown.vertices)
+    pose = drawing.drawn_mesh(shown.figure).pose(shown.vertices)
     heat = None
     if overlays.heat_map != "none":
         drawing.heat(pose, shown, overlays.heat_map)
@@ -240,7 +240,7 @@ def _ghosts(
             vertices = project.sketch.vertices(known, frame)
             if vertices is None or time_of(known, frame) == time_of(known, shown.frame):
                 continue
-            pose = drawing.posable(project.sketch.figure, number).pose(vertices)
+            pose = drawing.drawn_mesh(project.sketch.figure, number).pose(vertices)
             ghosts.append(Ghost(meshes=(pose,), tint=tint, opacity=GHOST_OPACITY / step**0.5))
     return tuple(ghosts)
 

@@ -7,11 +7,11 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 from app.errors import LissomError
 from app.motion.vertices import Placed, Streamed
+from app.render.drawn_mesh import DrawnMesh, shader_is_faster
 from app.render.gpu.mesh import GpuMesh, PosedMesh
 from app.render.gpu.programs import set_uniforms
 from app.render.gpu.series_buffer import SeriesBuffer, most_rows
 from app.render.gpu.target import Target
-from app.render.posable_mesh import PosableMesh, shader_is_faster
 from app.render.scene import Background, Ghost, Heat, Scene, Wireframe
 from app.render.view import View
 from app.storage.assets import shader_source
@@ -142,7 +142,7 @@ def test_what_does_not_fit_is_refused(easel):
 def test_a_mesh_shows_what_it_was_given_last(easel, by_shader):
     mesh, rest = blob_mesh(easel)
     series, long = bending(rest), bending(rest * 0.8, rows=MOST_ROWS + 3)
-    posable = PosableMesh(mesh, by_shader=by_shader)
+    drawn = DrawnMesh(mesh, by_shader=by_shader)
     for vertices in (
         Placed(positions=rest),
         Streamed(series, None, 0.3),
@@ -151,12 +151,12 @@ def test_a_mesh_shows_what_it_was_given_last(easel, by_shader):
         Streamed(long, None, 0.2),
         Streamed(series, None, 0.1),
     ):
-        pose = posable.pose(vertices)
-        assert posable.pose(vertices) is pose
+        pose = drawn.pose(vertices)
+        assert drawn.pose(vertices) is pose
         frame = easel.frame(VIEW, Scene(meshes=(pose,))).astype(int)
         expected = easel.frame(VIEW, Scene(meshes=(easel.pose(mesh, vertices.positions),)))
         assert (np.abs(frame - expected).max(axis=2) > 2).mean() < 2e-3
-    posable.release()
+    drawn.release()
 
 
 def test_only_a_graphics_card_places_vertices_by_itself(gl):

@@ -7,7 +7,7 @@ from app.render.gpu import GpuMesh, PosedMesh, PositionBuffer, SeriesBuffer, is_
 from engine.streaming import MOST_ROWS, Series
 
 
-class PosableMesh:
+class DrawnMesh:
     """Owner of the poses of a mesh.
 
     Parameters
