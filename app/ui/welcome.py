@@ -126,22 +126,24 @@ def _card(look: Look, sample: files.Sample, image: Thumbnail | None) -> bool:
 
 def _recent(session: Session, look: Look) -> list[Action]:
     actions: list[Action] = []
-    recent = session.preferences.recent[:MOST_RECENT]
+    recent = files.recent_files(session)[:MOST_RECENT]
     if not recent:
         return actions
     imgui.dummy(ImVec2(0, 0.8 * look.em))
     imgui.push_font(look.bold, 0)
     imgui.text("Recent")
     imgui.pop_font()
-    for path in recent:
+    for index, (path, is_there) in enumerate(recent):
+        imgui.begin_disabled(not is_there)
         clicked, _ = imgui.selectable(
-            f"{icons.ICON_FA_CLOCK_ROTATE_LEFT}  {path.name}###{path}",
+            f"{icons.ICON_FA_CLOCK_ROTATE_LEFT}  {path.name}###recent {index}",
             False,  # noqa: FBT003
             0,
             ImVec2(WIDTH * look.em, 0),
         )
         imgui.same_line(16 * look.em)
-        small(look, str(path.parent))
+        small(look, str(path.parent) if is_there else f"not found in {path.parent}")
+        imgui.end_disabled()
         if clicked:
             actions.append(do(files.open_file, path))
     return actions

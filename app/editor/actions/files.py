@@ -1,7 +1,8 @@
 """Opening pictures and projects."""
 
+import os
 from collections.abc import Sequence
-from functools import cache
+from functools import cache, lru_cache
 from pathlib import Path
 from typing import NamedTuple
 
@@ -30,6 +31,7 @@ PICTURES = (
 OPENABLE = (PROJECT, *PICTURES)
 OPENING = "Opening"
 OPAQUE = 255
+LOOK = 2.0  # seconds between two looks at whether files are still there
 
 
 class Sample(NamedTuple):
@@ -57,6 +59,17 @@ def samples() -> tuple[Sample, ...]:
             )
         )
     return tuple(sorted(found, key=lambda sample: sample.what))
+
+
+def recent_files(session: Session) -> tuple[tuple[Path, bool], ...]:
+    """Return the files that were open last, and whether each is still there."""
+    # They may lie on a slow disk, and this is asked for in every frame.
+    return _found(session.preferences.recent, int(session.clock() / LOOK))
+
+
+@lru_cache(maxsize=1)
+def _found(paths: tuple[Path, ...], _: int) -> tuple[tuple[Path, bool], ...]:
+    return tuple((path, os.path.isfile(path)) for path in paths)  # noqa: PTH113 - never raises
 
 
 class Opened(NamedTuple):

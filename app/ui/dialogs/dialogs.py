@@ -6,28 +6,10 @@ from app.editor import Action, Dialog, FileDialog, Question, Session, ShortcutSh
 from app.editor.actions import answer, browse, close_dialog, use_own_dialogs
 from app.ui.dialogs.file_browser import FileBrowser
 from app.ui.dialogs.native_dialog import NativeDialog
-from app.ui.shortcuts import BINDINGS
+from app.ui.shortcuts import BINDINGS, GESTURES
 from app.ui.style import Look, heading, main_button
 
 GOING_ON = (browse, use_own_dialogs)  # with the dialog that is open
-# What the pointer does, for the sheet of keys; it is handled by the viewport and the timeline.
-POINTER = {
-    "Click on the shape": "Add a handle",
-    "Drag a handle": "Pose",
-    "Shift+click, drag on empty canvas": "Select several",
-    "Alt+drag a handle": "Turn the shape there",
-    "Alt+click a handle": "Delete it",
-    "Ctrl+click the shape or a handle": "Put the anchor there",
-    "Right click a handle": "Menu",
-    "Arrows, with Shift ×10": "Nudge the selection",
-    "Middle drag, or Space and drag": "Move the view",
-    "Wheel": "Zoom at the pointer",
-    "Tap Space": "Play or halt",
-    "Drag a key, with Ctrl": "Move it in time, copy it",
-    "Click between keys": "Change the easing",
-    "Double-click on the track": "Insert a key",
-    "Wheel on the timeline, with Ctrl": "Scroll, zoom",
-}
 
 
 class Dialogs:
@@ -41,6 +23,7 @@ class Dialogs:
         """Draw the open dialog, if there is one."""
         self._follow_session(session)
         dialog = session.dialog
+        _use_keyboard(is_used=isinstance(dialog, Question))
         if dialog is None:
             return []
         title = "Keys and mouse" if isinstance(dialog, ShortcutSheet) else dialog.title
@@ -92,6 +75,15 @@ class Dialogs:
                 return []
 
 
+def _use_keyboard(*, is_used: bool) -> None:
+    """Let Tab and arrows go from button to button, and Enter press one.
+
+    Elsewhere these keys have other meanings: arrows nudge handles, Space plays.
+    """
+    io, flag = imgui.get_io(), imgui.ConfigFlags_.nav_enable_keyboard
+    io.config_flags = io.config_flags | flag if is_used else io.config_flags & ~flag
+
+
 def _waiting(look: Look) -> list[Action]:
     imgui.text_unformatted("Choose in the dialog of the system, which has a window of its own.")
     imgui.dummy(ImVec2(0, 0.4 * look.em))
@@ -105,6 +97,8 @@ def _waiting(look: Look) -> list[Action]:
 
 def _question(question: Question, look: Look) -> list[Action]:
     actions: list[Action] = []
+    # Keys press a button only where one sees which.
+    imgui.set_nav_cursor_visible(True)
     imgui.push_text_wrap_pos(30 * look.em)
     imgui.text_unformatted(question.text)
     imgui.pop_text_wrap_pos()
@@ -115,6 +109,8 @@ def _question(question: Question, look: Look) -> list[Action]:
         is_main = index == 0
         if main_button(look, text) if is_main else imgui.button(text):
             actions.append(do(answer, action))
+        if is_main:
+            imgui.set_item_default_focus()
     imgui.same_line()
     if imgui.button("Cancel"):
         actions.append(do(close_dialog))
@@ -122,16 +118,16 @@ def _question(question: Question, look: Look) -> list[Action]:
 
 
 def _shortcuts(look: Look) -> None:
-    groups = list(dict.fromkeys(binding.group for binding in BINDINGS.values()))
+    groups = list(dict.fromkeys(binding.menu for binding in BINDINGS.values()))
     rows: dict[str, list[tuple[str, str]]] = {
         group: [
             (binding.label, binding.keys_in_words)
             for binding in BINDINGS.values()
-            if binding.group == group and binding.keys
+            if binding.menu == group and binding.keys_in_words
         ]
         for group in groups
     }
-    rows["Pointer"] = [(text, keys) for keys, text in POINTER.items()]
+    rows["Pointer"] = [(gesture.what, gesture.how) for gesture in GESTURES]
     columns = (groups[: (len(groups) + 1) // 2], [*groups[(len(groups) + 1) // 2 :]], ["Pointer"])
     if imgui.begin_table("sheet", len(columns), imgui.TableFlags_.sizing_fixed_fit):
         for column in columns:

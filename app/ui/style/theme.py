@@ -108,6 +108,8 @@ def _load_with_icons(name: str) -> imgui.ImFont:
     font = hello_imgui.load_font(f"fonts/{name}", FONT_SIZE)
     icons = hello_imgui.FontLoadingParams(merge_to_last_font=True)
     hello_imgui.load_font("fonts/Font_Awesome_6_Free-Solid-900.otf", 0.9 * FONT_SIZE, icons)
+    # Last, for what the others lack: the signs of the keys of a Mac.
+    hello_imgui.load_font("fonts/Inconsolata-Medium.ttf", FONT_SIZE, icons)
     return font
 
 

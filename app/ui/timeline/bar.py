@@ -9,8 +9,7 @@ from app.document import LAST_FRAME, Variant
 from app.editor import Action, Project, Session, do
 from app.editor.actions import keys, playback, viewing
 from app.storage import LARGEST_GHOST_STEP, MOST_GHOSTS
-from app.ui.bars import bound_button
-from app.ui.shortcuts import BINDINGS
+from app.ui.shortcuts import BINDINGS, bound_button
 from app.ui.style import Look, icon_button, ink, tip
 from app.ui.timeline.menus import time_menu
 from app.ui.timeline.track import in_seconds

@@ -16,7 +16,7 @@ from engine.maps.bounds import Bounds
 
 
 def facts(window):
-    return [fact.text for fact in bars._facts(window.session)]
+    return [fact.text for fact in bars.facts(window.session)]
 
 
 def test_without_a_project_it_shows_the_frames_per_second_only(window):
@@ -56,9 +56,9 @@ def test_inbetweens_show_what_was_measured(window, bent):
 def test_a_bound_that_is_reached_warns(window):
     posing.wish(window.session, {1: Target(position=complex(9000, 0))})
     window.settle()
-    fact = bars._facts(window.session)[0]
+    fact = bars.facts(window.session)[0]
     assert fact.warns
-    assert not bars._facts(window.session)[1].warns
+    assert not bars.facts(window.session)[1].warns
 
 
 def test_extremes_between_the_times_that_were_measured(bent):

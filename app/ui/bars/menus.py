@@ -1,0 +1,51 @@
+"""The menu bar."""
+
+from collections.abc import Callable
+
+from imgui_bundle import imgui
+
+from app.editor import Action, Session, do
+from app.editor.actions import files
+from app.ui.bars import backdrop_menu
+from app.ui.shortcuts import BINDINGS, bound_item
+from app.ui.style import Look
+
+
+def draw_menus(session: Session, _: Look) -> list[Action]:
+    """Draw the menus, as the table of shortcuts has them."""
+    actions: list[Action] = []
+    for title in dict.fromkeys(binding.menu for binding in BINDINGS.values()):
+        if not imgui.begin_menu(title):
+            continue
+        for name, binding in BINDINGS.items():
+            if binding.menu != title:
+                continue
+            if binding.parted:
+                imgui.separator()
+            actions += bound_item(session, name)
+            if name in BELOW:
+                actions += BELOW[name](session)
+        imgui.end_menu()
+    return actions
+
+
+def _recent(session: Session) -> list[Action]:
+    """Draw the menu of the files that were open last."""
+    recent = files.recent_files(session)
+    if not imgui.begin_menu("Open recent", bool(recent)):
+        return []
+    actions = []
+    for index, (path, is_there) in enumerate(recent):
+        note = "" if is_there else "not found"
+        if imgui.menu_item(f"{path.name}###recent {index}", note, False, is_there)[0]:  # noqa: FBT003
+            actions.append(do(files.open_file, path))
+        imgui.set_item_tooltip(str(path))
+    imgui.end_menu()
+    return actions
+
+
+# What is more than an entry, by the name of the entry above it.
+BELOW: dict[str, Callable[[Session], list[Action]]] = {
+    "open": _recent,
+    "smaller": backdrop_menu.draw,
+}

@@ -1,0 +1,42 @@
+"""What the pointer does, for the sheet of keys; the viewport and the timeline handle it."""
+
+from dataclasses import dataclass
+
+from imgui_bundle import imgui
+
+from app.ui.shortcuts.keys import with_key
+
+CTRL, SHIFT, ALT = (
+    int(key) for key in (imgui.Key.mod_ctrl, imgui.Key.mod_shift, imgui.Key.mod_alt)
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Gesture:
+    """How something is done, and what that is."""
+
+    how: str
+    what: str
+
+
+GESTURES = (
+    Gesture("Click the shape", "Add a handle"),
+    Gesture("Drag a handle", "Pose"),
+    Gesture("Drag the ring around a handle", "Turn the shape there"),
+    Gesture(with_key(ALT, "drag a handle"), "Turn the shape there"),
+    Gesture(with_key(ALT, "click a handle"), "Delete it"),
+    Gesture(with_key(CTRL, "click the shape"), "Put the anchor there"),
+    Gesture(with_key(SHIFT, "click a handle"), "Select several"),
+    Gesture("Drag beside the shape", "Select by a box"),
+    Gesture("Right click a handle", "Menu"),
+    Gesture("Arrows, with Shift ×10", "Nudge the selection"),
+    Gesture("Middle drag, or Space and drag", "Move the view"),
+    Gesture("Wheel", "Zoom at the pointer"),
+    Gesture("Esc", "Take back what is being dragged"),
+    Gesture("Drag a key", "Move it in time"),
+    Gesture(with_key(CTRL, "drag a key"), "Copy it"),
+    Gesture("Click between keys", "Change the easing"),
+    Gesture("Double-click the track", "Insert a key"),
+    Gesture("Wheel on the timeline", "Scroll"),
+    Gesture(with_key(CTRL, "wheel on the timeline"), "Zoom in time"),
+)

@@ -1,0 +1,39 @@
+"""Keys in words, as the system writes them that Lissom runs on."""
+
+import sys
+from functools import cache
+
+from imgui_bundle import imgui
+
+Key = imgui.Key
+# On macOS Dear ImGui takes the command key for Ctrl.
+IS_MAC = sys.platform == "darwin"
+MODIFIERS = {int(Key.mod_ctrl): "Ctrl", int(Key.mod_shift): "Shift", int(Key.mod_alt): "Alt"}
+# In the order in which Apple writes them.
+MAC_MODIFIERS = {int(Key.mod_alt): "⌥", int(Key.mod_shift): "⇧", int(Key.mod_ctrl): "⌘"}
+KEY_NAMES = {
+    "UpArrow": "Up",
+    "DownArrow": "Down",
+    "LeftArrow": "Left",
+    "RightArrow": "Right",
+    "PageUp": "PgUp",
+    "PageDown": "PgDn",
+    "Delete": "Del",
+    "Equal": "+",
+    "Minus": "−",
+}
+
+
+@cache
+def in_words(chord: int, *, is_mac: bool = IS_MAC) -> str:
+    """Return a key chord as menus show it: "Ctrl+Shift+S", or "⇧⌘S" on macOS."""
+    names = MAC_MODIFIERS if is_mac else MODIFIERS
+    key = imgui.get_key_name(Key(chord & ~sum(MODIFIERS)))
+    parts = [name for modifier, name in names.items() if chord & modifier]
+    return ("" if is_mac else "+").join([*parts, KEY_NAMES.get(key, key)])
+
+
+@cache
+def with_key(modifier: int, what: str, *, is_mac: bool = IS_MAC) -> str:
+    """Return what the pointer does while a modifier is held: "Ctrl+click", or "⌘ click"."""
+    return f"{MAC_MODIFIERS[modifier]} {what}" if is_mac else f"{MODIFIERS[modifier]}+{what}"

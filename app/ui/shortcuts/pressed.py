@@ -1,0 +1,58 @@
+"""What the keyboard asks for, wherever the pointer is."""
+
+from imgui_bundle import imgui
+
+from app.editor import Action, Session, do
+from app.editor.actions import playback, posing
+from app.ui.shortcuts.table import BINDINGS
+
+Key = imgui.Key
+ARROWS = {Key.left_arrow: -1, Key.right_arrow: 1, Key.up_arrow: 1j, Key.down_arrow: -1j}
+
+
+def pressed(session: Session) -> list[Action]:
+    """Return the actions whose keys were pressed, unless the person types into a field."""
+    if session.dialog is not None:
+        return []
+    if _close_menu() or imgui.get_io().want_text_input:
+        return []
+    actions = []
+    for binding in BINDINGS.values():
+        flags = imgui.InputFlags_.route_always
+        if binding.repeats:
+            flags |= imgui.InputFlags_.repeat
+        if any(imgui.shortcut(keys, flags) for keys in binding.keys) and binding.possible(session):
+            actions.append(binding.action)
+    return actions + _nudges(session) + _space(session)
+
+
+def _close_menu() -> bool:
+    """Close the menu or popup in front by Escape; return whether there was one."""
+    popups = imgui.get_current_context().open_popup_stack
+    # A field that is typed into has Escape for itself.
+    if not popups.size() or not imgui.shortcut(Key.escape, imgui.InputFlags_.route_global):
+        return False
+    level = popups.size() - 1
+    # With its menu: while the pointer is on its entry there, it would open again.
+    while level and popups[level].window.flags & imgui.WindowFlags_.child_menu:
+        level -= 1
+    imgui.internal.close_popup_to_level(level, restore_focus_to_window_under_popup=True)
+    return True
+
+
+def _nudges(session: Session) -> list[Action]:
+    if session.project is None or not session.project.selected:
+        return []
+    reach = 10.0 if imgui.get_io().key_shift else 1.0
+    return [
+        do(posing.nudge, reach * direction)
+        for key, direction in ARROWS.items()
+        if imgui.is_key_pressed(key)
+    ]
+
+
+def _space(session: Session) -> list[Action]:
+    """Return playing where Space was tapped, and not held to move the view."""
+    if session.project is None or not imgui.is_key_released(Key.space):
+        return []
+    return [do(playback.tap_space)]

@@ -1,0 +1,34 @@
+"""Menu entries and buttons of what the table names."""
+
+from imgui_bundle import imgui
+
+from app.editor import Action, Session
+from app.ui.shortcuts.table import BINDINGS
+from app.ui.style import Look, icon_button
+
+
+def bound_item(session: Session, name: str) -> list[Action]:
+    """Draw the menu entry of a named action."""
+    binding = BINDINGS[name]
+    clicked, _ = imgui.menu_item(
+        binding.title(session),
+        binding.keys_in_words,
+        binding.is_active(session),
+        binding.possible(session),
+    )
+    return [binding.action] if clicked else []
+
+
+def bound_button(session: Session, look: Look, name: str, icon: str = "") -> list[Action]:
+    """Draw the button of a named action, with its icon or another one."""
+    binding = BINDINGS[name]
+    is_pressed = icon_button(
+        look,
+        icon or binding.icon,
+        binding.label,
+        binding.hint or binding.label,
+        keys=binding.keys_in_words,
+        active=binding.is_active(session),
+        enabled=binding.possible(session),
+    )
+    return [binding.action] if is_pressed else []

@@ -1,0 +1,206 @@
+"""Questions answered by keys, menus closed by them, and keys in words."""
+
+import pytest
+from imgui_bundle import imgui
+
+from app.editor import Question, do
+from app.editor.actions import posing, show_dialog
+from app.storage.assets import sample_images
+from app.ui.shortcuts import BINDINGS
+from app.ui.shortcuts.keys import in_words, with_key
+
+OPEN = imgui.test_engine.TestAction.open
+CTRL, SHIFT, ALT = (
+    int(key) for key in (imgui.Key.mod_ctrl, imgui.Key.mod_shift, imgui.Key.mod_alt)
+)
+
+
+@pytest.fixture
+def asked(window):
+    """A question with two answers and Cancel; returns which of them were given."""
+    given = []
+
+    def give(_, what):
+        given.append(what)
+
+    answers = tuple((text, do(give, text)) for text in ("Save", "Don't save"))
+    window.act(show_dialog, Question(title="Unsaved changes", text="?", answers=answers))
+    window.frames(3)
+    return given
+
+
+def press(window, *keys):
+    def play(robot):
+        for key in keys:
+            robot.key_press(int(key))
+
+    window.run(play)
+
+
+@pytest.mark.parametrize("key", [imgui.Key.enter, imgui.Key.keypad_enter, imgui.Key.space])
+def test_enter_gives_the_first_answer(window, asked, key):
+    press(window, key)
+    assert asked == ["Save"]
+    assert window.session.dialog is None
+
+
+@pytest.mark.parametrize("key", [imgui.Key.tab, imgui.Key.right_arrow])
+def test_keys_lead_to_the_other_answers(window, asked, key):
+    press(window, key, imgui.Key.enter)
+    assert asked == ["Don't save"]
+
+
+def test_keys_lead_to_cancel_and_escape_is_cancel(window, asked):
+    press(window, imgui.Key.tab, imgui.Key.tab, imgui.Key.enter)
+    assert window.session.dialog is None
+    window.act(show_dialog, Question(title="Again", text="?", answers=()))
+    press(window, imgui.Key.escape)
+    assert window.session.dialog is None
+    assert asked == []
+
+
+def test_after_a_question_arrows_nudge_again(window, asked):
+    del asked
+    press(window, imgui.Key.escape)
+    project = window.open(sample_images() / "bar.png")
+    place = complex(*project.picture.size) / 2
+    posing.add_handle(window.session, place)
+    window.settle()
+    press(window, imgui.Key.up_arrow)
+    window.settle()
+    assert project.document.keys[0].pose.targets[0].position == place + 1j
+
+
+def count_menus():
+    return imgui.get_current_context().open_popup_stack.size()
+
+
+def test_escape_closes_a_menu_and_the_next_click_counts(window):
+    project = window.open(sample_images() / "bar.png")
+
+    def play(robot):
+        robot.set_ref("##MainMenuBar")
+        robot.menu_action(OPEN, "View")
+        assert count_menus() == 1
+        robot.key_press(int(imgui.Key.escape))
+        robot.yield_()
+        assert count_menus() == 0
+        robot.mouse_move_to_pos(window.point(complex(*project.picture.size) / 2))
+        robot.mouse_click(0)
+
+    window.run(play)
+    assert len(project.document.handles) == 1
+
+
+def test_escape_closes_a_menu_with_those_that_lead_to_it(window):
+    window.open(sample_images() / "bar.png")
+
+    def play(robot):
+        robot.set_ref("##MainMenuBar")
+        robot.menu_action(OPEN, "View/Backdrop")
+        assert count_menus() == 2
+        robot.key_press(int(imgui.Key.escape))
+        robot.yield_()
+        assert count_menus() == 0
+
+    window.run(play)
+
+
+@pytest.mark.usefixtures("bent")
+def test_escape_in_a_field_of_a_popup_leaves_the_popup(window):
+    def play(robot):
+        robot.set_ref("Timeline")
+        robot.item_click("**/more")
+        robot.set_ref("//$FOCUSED")
+        robot.menu_action(OPEN, "###Scale time")
+        robot.item_click("//$FOCUSED/###percent")
+        assert imgui.get_io().want_text_input
+        count = count_menus()
+        robot.key_press(int(imgui.Key.escape))
+        robot.yield_()
+        assert not imgui.get_io().want_text_input
+        assert count_menus() == count
+
+    window.run(play)
+
+
+def test_keys_are_written_as_the_system_writes_them():
+    chord = CTRL | SHIFT | int(imgui.Key.s)
+    assert in_words(chord, is_mac=False) == "Ctrl+Shift+S"
+    assert in_words(chord, is_mac=True) == "⇧⌘S"
+    assert in_words(ALT | int(imgui.Key.up_arrow), is_mac=True) == "⌥Up"
+    assert with_key(ALT, "drag", is_mac=False) == "Alt+drag"
+    assert with_key(ALT, "drag", is_mac=True) == "⌥ drag"
+
+
+def test_the_fonts_have_the_signs_of_all_keys(window):
+    window.frames()
+    font = imgui.get_font()
+    signs = {
+        sign for binding in BINDINGS.values() for key in binding.keys for sign in in_words(key)
+    }
+    for sign in signs | set("⌥⇧⌘σ×−…“”–"):
+        assert font.is_glyph_in_font(ord(sign)), sign
+
+
+@pytest.mark.usefixtures("bent")
+def test_menus_are_made_from_the_table(window):
+    """Each entry is in its menu, and does what its keys do."""
+    found = []
+
+    def look(robot):
+        robot.set_ref("##MainMenuBar")
+        for name, binding in BINDINGS.items():
+            robot.menu_click(binding.menu)
+            path = f"//$FOCUSED/{'###' if binding.detail else ''}{binding.label}"
+            if robot.item_exists(path):
+                found.append(name)
+            robot.popup_close_all()
+
+    window.run(look)
+    assert found == list(BINDINGS)
+
+
+def test_the_layout_can_be_put_back(window):
+    window.open(sample_images() / "ring.png")
+    panel = imgui.internal.find_window_by_name("###Timeline").dock_node
+    before = panel.size.y
+    imgui.internal.dock_builder_set_node_size(panel.id_, imgui.ImVec2(panel.size.x, 500))
+    window.frames(3)
+
+    def reset(robot):
+        robot.set_ref("##MainMenuBar")
+        robot.menu_click("View/Reset layout")
+
+    window.run(reset)
+    window.frames(3)
+    after = imgui.internal.find_window_by_name("###Timeline").dock_node.size.y
+    assert after == pytest.approx(before, abs=1)
+
+
+def test_recent_files_that_are_gone_are_marked(window, tmp_path):
+    there, gone = tmp_path / "there.png", tmp_path / "gone.png"
+    there.write_bytes((sample_images() / "bar.png").read_bytes())
+    preferences = window.session.preferences
+    for path in (gone, there):
+        preferences = preferences.with_recent(path)
+    window.session.preferences = preferences
+    window.frames(3)
+
+    def open_gone(robot):
+        robot.set_ref("Welcome")
+        place = robot.item_info("**/###recent 1").rect_full.get_center()
+        robot.mouse_move_to_pos(place)
+        robot.mouse_click(0)
+
+    window.run(open_gone)
+    window.settle()
+    assert window.session.toasts == []
+
+    def open_recent(robot):
+        robot.set_ref("##MainMenuBar")
+        robot.menu_click("File/Open recent/###recent 0")
+
+    window.run(open_recent)
+    window.settle()
+    assert window.session.project.name == "there"
