@@ -231,6 +231,8 @@ class Project:
         The one that the autosave holds, from the time `kept_at` on.
     gesture : object, optional
         Commands given while it lasts make one step of undo together.
+    held : int
+        The widget whose gesture that is.
     """
 
     name: str
@@ -265,6 +267,7 @@ class Project:
     loose: Pose | None = None
     camera: View | None = None
     gesture: object | None = None
+    held: int = 0
 
     @property
     def document(self) -> Document:

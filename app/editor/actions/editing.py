@@ -20,10 +20,18 @@ def edit(session: Session, command: Command) -> None:
     _forget_what_is_gone(project)
 
 
-def hold(session: Session, held: bool) -> None:  # noqa: FBT001 - the only argument
-    """Note whether the pointer holds on to something; called once a frame."""
+def hold(session: Session, held: int) -> None:
+    """Note what the pointer or the keyboard holds on to; called once a frame.
+
+    Parameters
+    ----------
+    session : Session
+    held : int
+        A number of the widget, 0 for nothing; another one begins another step of undo.
+    """
     project = session.project
-    if project and held != (project.gesture is not None):
+    if project and held != project.held:
+        project.held = held
         project.gesture = object() if held else None
 
 

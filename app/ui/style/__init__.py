@@ -16,6 +16,7 @@ from app.ui.style.theme import (
     Palette,
     apply_theme,
     ink,
+    interface_scale,
     load_fonts,
 )
 from app.ui.style.widgets import (
@@ -47,6 +48,7 @@ __all__ = [
     "heading",
     "icon_button",
     "ink",
+    "interface_scale",
     "label",
     "load_fonts",
     "main_button",

@@ -136,7 +136,8 @@ def track(
     edit = None
     if is_held or imgui.is_item_deactivated():
         share = (imgui.get_mouse_pos().x - low) / (high - low)
-        if not imgui.is_item_activated() or abs(share - scale.share(value)) * (high - low) > knob:
+        # In the frame of the press, another widget may have ended its own edit.
+        if not imgui.is_item_activated():
             edit = Edit(scale.value(share), is_final=not is_held)
             value = edit.value
     place = low + scale.share(value) * (high - low)

@@ -96,6 +96,17 @@ class Look:
     em: float  # pixels
 
 
+def interface_scale(scale: float) -> float:
+    """Return how many pixels of the window a pixel of the design takes.
+
+    Parameters
+    ----------
+    scale : float
+        What the person chose; the system's own scale is on top of it.
+    """
+    return scale * imgui.get_style().font_scale_dpi
+
+
 def load_fonts() -> tuple[imgui.ImFont, imgui.ImFont]:
     """Load the text font (with icons) as the default; return the bold and the fixed-width one."""
     _load_with_icons("Roboto/Roboto-Regular.ttf")

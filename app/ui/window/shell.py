@@ -15,13 +15,14 @@ from app.ui import bars, toasts, welcome
 from app.ui.dialogs import Dialogs
 from app.ui.panel import Panel
 from app.ui.shortcuts import pressed
-from app.ui.style import FONT_SIZE, PALETTES, Look, apply_theme, load_fonts
+from app.ui.style import FONT_SIZE, PALETTES, Look, apply_theme, interface_scale, load_fonts
 from app.ui.window.docking import Docking
 from app.ui.window.guard import allow_recovery, guard
 
 # Saved layouts of another number are forgotten: they name other panels.
 LAYOUT = 1
 IDLE_FPS = 10.0
+LEFT = imgui.MouseButton_.left
 
 
 class Shell:
@@ -99,7 +100,7 @@ class Shell:
             palette=PALETTES[preferences.theme],
             bold=bold,
             mono=mono,
-            em=imgui.get_font_size() or FONT_SIZE * preferences.scale,
+            em=imgui.get_font_size() or FONT_SIZE * interface_scale(preferences.scale),
         )
 
     def _layout(self) -> hello_imgui.DockingParams:
@@ -142,24 +143,30 @@ class Shell:
 
     def _apply_theme(self) -> None:
         preferences = self.session.preferences
-        self._themed = (preferences.theme, preferences.scale)
+        self._themed = self._theme
         palette = PALETTES[preferences.theme]
         apply_theme(palette, preferences.scale)
         hello_imgui.get_runner_params().imgui_window_params.background_color = palette.panel
 
+    @property
+    def _theme(self) -> tuple[str, float]:
+        """What the style depends on: the theme, and how large everything is on this screen."""
+        preferences = self.session.preferences
+        return preferences.theme, interface_scale(preferences.scale)
+
     def _begin_frame(self) -> None:
         session = self.session
-        if self._themed != (session.preferences.theme, session.preferences.scale):
+        if self._themed != self._theme:
             self._apply_theme()
-        self._docking.begin_frame(session.preferences.scale)
+        self._docking.begin_frame(interface_scale(session.preferences.scale))
         # The tab that shows it asks for it in every frame.
         session.export_frame = None
         playback.halt_at_end(session)
         # Panels are to see the frame that it is by now.
         self._attempt(partial(upkeep.keep_up, session))
         moving = session.project is not None and session.project.playhead.since is not None
-        busy = moving or bool(session.jobs.kinds or session.toasts)
-        hello_imgui.get_runner_params().fps_idling.enable_idling = not busy
+        if moving or session.jobs.kinds or session.toasts or session.export is not None:
+            hello_imgui.request_refresh()
 
     def _draw_over_panels(self) -> None:
         session = self.session
@@ -169,8 +176,8 @@ class Shell:
             self._part("The welcome view", partial(welcome.draw, thumbnail=self._thumbnail))()
         self._part("The dialog", self._dialogs.draw)()
         self._part("The messages", toasts.draw)()
-        held = imgui.is_any_item_active() or imgui.is_mouse_down(imgui.MouseButton_.left)
-        self._actions.append(do(editing.hold, held))
+        held = imgui.internal.get_active_id()
+        self._actions.append(do(editing.hold, held or int(imgui.is_mouse_down(LEFT))))
 
     def _apply_actions(self) -> None:
         actions, self._actions = self._actions, []

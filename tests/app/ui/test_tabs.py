@@ -380,3 +380,27 @@ def test_the_export_tab_changes_nothing_by_itself(window, project):
     window.frames(5)
     assert project.document is before
     window.show_tab("Handle")
+
+
+def test_each_widget_makes_a_step_of_its_own(window, project, tab):
+    """A name that is typed, and the track of the weight that is pressed while it still is."""
+    editing.select(window.session, frozenset({0}))
+    steps = []
+
+    def change(robot):
+        robot.item_click("**/##name")
+        robot.key_chars_replace("paw")
+        track = robot.item_info("**/weight track").rect_full
+        robot.mouse_move_to_pos(ImVec2(track.min.x + 0.8 * track.get_width(), track.get_center().y))
+        robot.mouse_down(0)
+        robot.mouse_move_to_pos(ImVec2(track.min.x + 0.9 * track.get_width(), track.get_center().y))
+        robot.mouse_up(0)
+
+    before = project.document
+    tab("Handle", change)
+    assert project.document.handle(0).name == "paw"
+    assert project.document.handle(0).weight > 10
+    while project.history.undo_label is not None and project.document is not before:
+        steps.append(project.history.undo_label)
+        editing.undo(window.session)
+    assert steps == ["Set handle weight", "Rename handle"]
