@@ -5,7 +5,7 @@ from imgui_bundle import icons_fontawesome_6 as icons
 
 from app.editor import Action, Session, Toast, do
 from app.editor.actions import dismiss
-from app.ui.style import Look, ink, small
+from app.ui.style import TOAST, Look, ink, small
 
 SECONDS = {"info": 5.0, "good": 8.0, "error": 15.0}
 FADE = 0.25  # seconds
@@ -36,7 +36,7 @@ def draw(session: Session, look: Look) -> list[Action]:
         imgui.push_style_var(imgui.StyleVar_.window_border_size, 1.0)
         imgui.push_style_var(imgui.StyleVar_.window_rounding, 0.5 * look.em)
         imgui.push_style_color(imgui.Col_.window_bg, look.palette.raised)
-        imgui.begin(f"##toast{toast.born}{toast.text}", flags=_FLAGS)
+        imgui.begin(f"{TOAST}{toast.born}{toast.text}", flags=_FLAGS)
         imgui.internal.bring_window_to_display_front(imgui.internal.get_current_window())
         actions += _contents(toast, look)
         hovered = imgui.is_window_hovered(imgui.HoveredFlags_.root_and_child_windows)

@@ -53,9 +53,9 @@ class Harness:
         settings.config_log_to_tty = False
         self.frames(3)
 
-    def resize(self, size: tuple[int, int], scale: float = 1.0) -> None:
-        """Give the window another size in pixels, and its contents another scale."""
-        self._screen.resize(size)
+    def resize(self, size: tuple[int, int], scale: float = 1.0, *, density: float = 1.0) -> None:
+        """Give the window another size in pixels, its contents another scale, or a finer screen."""
+        self._screen.resize(size, density)
         self.session.preferences = Preferences(scale=scale, theme=self.session.preferences.theme)
         self.frames(3)
 

@@ -21,7 +21,9 @@ from app.ui.style.theme import (
 )
 from app.ui.style.widgets import (
     FILL,
+    TOAST,
     at_end,
+    begin_tip,
     heading,
     icon_button,
     label,
@@ -40,11 +42,13 @@ __all__ = [
     "PALETTES",
     "SMALL",
     "TITLE",
+    "TOAST",
     "Look",
     "Palette",
     "Scale",
     "apply_theme",
     "at_end",
+    "begin_tip",
     "heading",
     "icon_button",
     "ink",

@@ -8,6 +8,8 @@ from app.ui.style.theme import SMALL, Look
 
 LABEL_WIDTH = 6.2  # em
 FILL = -imgui.FLT_MIN  # as a width: the rest of the line
+TOAST = "##toast"  # begins the names of the windows of messages
+TIP_ROOM = (28.0, 8.0)  # em: width and height that hardly any tooltip exceeds
 
 
 def heading(look: Look, text: str, *, framed: bool = False) -> None:
@@ -48,9 +50,31 @@ def at_end(width: float) -> None:
     imgui.set_cursor_pos_x(imgui.get_cursor_pos_x() + imgui.get_content_region_avail().x - width)
 
 
+def begin_tip() -> bool:
+    """Begin a tooltip where the pointer rests on the last item; it covers no message.
+
+    Returns
+    -------
+    bool
+        Whether it shows; then it is to be ended by `imgui.end_tooltip`.
+    """
+    if not imgui.is_item_hovered(imgui.HoveredFlags_.for_tooltip):
+        return False
+    mouse, em = imgui.get_mouse_pos(), imgui.get_font_size()
+    room = TIP_ROOM[0] * em, TIP_ROOM[1] * em
+    for window in imgui.get_current_context().windows:
+        if not window.was_active or not window.name.startswith(TOAST):
+            continue
+        if mouse.x + room[0] > window.pos.x and mouse.y + room[1] > window.pos.y:
+            # Messages are in the lower right corner: up and to the left there is none.
+            corner = ImVec2(mouse.x - 0.4 * em, mouse.y - 0.4 * em)
+            imgui.set_next_window_pos(corner, imgui.Cond_.always, ImVec2(1, 1))
+    return imgui.begin_tooltip()
+
+
 def tip(text: str, keys: str = "") -> None:
     """Explain the last item where the pointer rests on it, and name its keys."""
-    if imgui.is_item_hovered(imgui.HoveredFlags_.for_tooltip) and imgui.begin_tooltip():
+    if begin_tip():
         imgui.text_unformatted(text)
         if keys:
             imgui.same_line()

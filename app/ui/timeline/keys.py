@@ -8,7 +8,7 @@ from imgui_bundle import icons_fontawesome_6 as icons
 from app.document import LAST_FRAME, Keyframe
 from app.editor import Action, KeyBox, KeyDrag, Project, TimeGesture, do
 from app.editor.actions import editing, keys, timeline_pointing
-from app.ui.style import ink
+from app.ui.style import begin_tip, ink
 from app.ui.timeline.menus import key_menu, track_menu
 from app.ui.timeline.track import (
     ROUNDING,
@@ -197,7 +197,7 @@ def lags(project: Project, key: Keyframe) -> list[str]:
 
 def _tell(track: Track, key: Keyframe) -> None:
     """Explain a key in a tooltip."""
-    if not imgui.is_item_hovered(imgui.HoveredFlags_.for_tooltip) or not imgui.begin_tooltip():
+    if not begin_tip():
         return
     palette, document = track.look.palette, track.project.document
     imgui.text_unformatted(f"Key at frame {key.frame}")

@@ -1,13 +1,12 @@
 """What the viewport shows: the drawing, its ghosts, and all that marks it."""
 
 import numpy as np
-from imgui_bundle import ImVec4
+from imgui_bundle import ImVec4, imgui
 
 from app.document import time_of
 from app.editor import HeatMap, Project, Session
 from app.motion import Box, Figure, Shown, Vertices
 from app.render import (
-    Background,
     Colour,
     Disc,
     DrawnMesh,
@@ -24,8 +23,8 @@ from app.render import (
     shader_is_faster,
 )
 from app.render.gpu import GpuMesh, GpuPicture, PosedMesh, Target
-from app.storage import CHECKER
-from app.ui.style import PALETTES, Palette
+from app.ui.style import PALETTES, Palette, interface_scale
+from app.ui.viewport.backdrop import background, measure_brightness
 from engine.arrays import Floats
 from engine.maps import distortion
 
@@ -103,6 +102,7 @@ class _Drawing:
         self.project = project
         self._renderer = renderer
         self._picture = GpuPicture(renderer.programs.context, project.picture.rgba)
+        self.brightness = measure_brightness(project.picture.rgba)
         self._meshes: dict[Figure, GpuMesh] = {}
         self._drawn_meshes: dict[tuple[Figure, int], DrawnMesh] = {}
         self._heated: tuple[PosedMesh, Vertices, HeatMap] | None = None
@@ -157,7 +157,14 @@ def _inputs(session: Session, project: Project) -> tuple[object, ...]:
         session.overlays,
         session.export_frame,
         session.preferences,
+        _scale(session),
     )
+
+
+def _scale(session: Session) -> float:
+    """Return how many pixels of the picture a pixel of the design takes."""
+    density = imgui.get_io().display_framebuffer_scale.x or 1.0
+    return interface_scale(session.preferences.scale) * density
 
 
 def measure(shown: Shown, heat_map: HeatMap) -> Floats:
@@ -198,7 +205,9 @@ def _scene(session: Session, project: Project, shown: Shown, drawing: _Drawing) 
     wireframe = Wireframe(colour=_colour(palette.text, 0.35)) if overlays.wireframe else None
     lines, discs = _marks(session, project, shown, palette)
     return Scene(
-        background=_background(session, palette),
+        background=background(
+            session.preferences.backdrop, palette, drawing.brightness, _scale(session)
+        ),
         meshes=(pose,),
         heat=heat,
         wireframe=wireframe,
@@ -206,18 +215,6 @@ def _scene(session: Session, project: Project, shown: Shown, drawing: _Drawing) 
         lines=lines,
         discs=discs,
     )
-
-
-def _background(session: Session, palette: Palette) -> Background:
-    backdrop = session.preferences.backdrop
-    if backdrop == CHECKER:
-        return Background(
-            colour=_colour(palette.paper),
-            checks=_colour(palette.check),
-            square=12.0 * session.preferences.scale,
-        )
-    red, green, blue = (channel / 255 for channel in bytes.fromhex(backdrop[1:]))
-    return Background(colour=(red, green, blue, 1.0))
 
 
 def _ghosts(
@@ -248,7 +245,7 @@ def _ghosts(
 def _marks(
     session: Session, project: Project, shown: Shown, palette: Palette
 ) -> tuple[tuple[Line, ...], tuple[Disc, ...]]:
-    scale = session.preferences.scale
+    scale = _scale(session)
     document = shown.document
     lines: list[Line] = []
     if session.overlays.outline:

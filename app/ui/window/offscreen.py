@@ -38,6 +38,7 @@ class Offscreen:
         self._window = window
         self._gl = gl
         self._lists: DrawLists | None = None
+        self._density = 1.0
         self._set_size(size)
         self._params = self._headless_params()
         self._params.use_imgui_test_engine = with_test_engine
@@ -66,8 +67,17 @@ class Offscreen:
         picture = Image.frombytes("RGB", self._target.size, pixels)
         return picture.transpose(Image.Transpose.FLIP_TOP_BOTTOM)
 
-    def resize(self, size: tuple[int, int]) -> None:
-        """Give the window another size, and its panels the places that they have at first."""
+    def resize(self, size: tuple[int, int], density: float = 1.0) -> None:
+        """Give the window another size, and its panels the places that they have at first.
+
+        Parameters
+        ----------
+        size : tuple of int
+            In pixels of the screen.
+        density : float
+            Pixels of the screen in one of the window's, as macOS has them.
+        """
+        self._density = density
         with self._gl:
             self._target.color_attachments[0].release()
             self._target.release()
@@ -86,6 +96,7 @@ class Offscreen:
             raise RuntimeError("there is no drawing in the window")
         corner = imgui.internal.find_window_by_name(self._panel("Viewport").label).pos
         pixel = project.view(session.screen).to_pixels(np.array([place]))[0]
+        pixel /= self._density
         return ImVec2(corner.x + pixel.real, corner.y + pixel.imag)
 
     def move_mouse(self, point: ImVec2) -> None:
@@ -114,7 +125,9 @@ class Offscreen:
         begin = calls.pre_new_frame
 
         def begin_frame() -> None:
-            imgui.get_io().display_size = ImVec2(*self._target.size)
+            io, (width, height) = imgui.get_io(), self._target.size
+            io.display_size = ImVec2(width / self._density, height / self._density)
+            io.display_framebuffer_scale = ImVec2(self._density, self._density)
             begin()
 
         calls.pre_new_frame = begin_frame

@@ -54,7 +54,6 @@ class Shell:
     def runner_params(self) -> hello_imgui.RunnerParams:
         """Return what Hello ImGui needs to know; platform and renderer are left to the caller."""
         params = hello_imgui.RunnerParams()
-        params.app_window_params.window_title = "Lissom"
         window = params.imgui_window_params
         window.default_imgui_window_type = (
             hello_imgui.DefaultImGuiWindowType.provide_full_screen_dock_space

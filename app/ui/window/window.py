@@ -21,6 +21,7 @@ from app.ui.timeline import timeline
 from app.ui.viewport import Canvas, viewport
 from app.ui.window.exporter import Exporter
 from app.ui.window.shell import Shell
+from app.ui.window.title import NAME, window_title
 
 SIZE = (1280, 800)
 # Where the display of X11 or Wayland is named.
@@ -50,6 +51,7 @@ class Window:
         self._exporter: Exporter | None = None
         self._renderer: Renderer | None = None
         self._shell = Shell(session, self._panels(), self._thumbnail)
+        self._title = NAME
 
     def runner_params(self) -> hello_imgui.RunnerParams:
         """Return the parameters to run the window with."""
@@ -71,7 +73,10 @@ class Window:
             If there is no screen that it can be opened on.
         """
         params = self.runner_params()
-        params.callbacks.enqueue_post_init(self._accept_files)
+        params.app_window_params.window_title = self._title
+        calls = params.callbacks
+        calls.enqueue_post_init(self._accept_files)
+        calls.pre_new_frame = hello_imgui.sequence_functions(self._rename, calls.pre_new_frame)
         params.ini_folder_type = hello_imgui.IniFolderType.absolute_path
         params.ini_filename = str(self.session.folder / "window.ini")
         params.app_window_params.window_geometry.size = SIZE
@@ -149,6 +154,13 @@ class Window:
         """Open what is dropped on the window."""
         window = glfw_utils.glfw_window_hello_imgui()
         glfw.set_drop_callback(window, self._take_dropped)  # type: ignore[arg-type]  # a list of paths
+
+    def _rename(self) -> None:
+        """Name the window after what is open."""
+        title = window_title(self.session)
+        if title != self._title:
+            self._title = title
+            glfw.set_window_title(glfw_utils.glfw_window_hello_imgui(), title)
 
     def _take_dropped(self, _: object, paths: list[str]) -> None:
         self.ask(do(files.open_dropped, [Path(path) for path in paths]))

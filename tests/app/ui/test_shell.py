@@ -1,9 +1,13 @@
+import numpy as np
 import pytest
 from imgui_bundle import ImVec2, imgui
+from PIL import Image
 
-from app.editor.actions import viewing
+from app.editor.actions import editing, posing, saving, viewing
 from app.storage.assets import sample_images
+from app.ui.style import PALETTES
 from app.ui.style.widgets import shortened
+from app.ui.window.title import window_title
 
 
 def test_welcome_offers_the_samples(window):
@@ -112,6 +116,132 @@ def test_themes_change_nothing_else_at_a_larger_scale(window):
     assert window.picture() == before
     viewing.close_dialog(window.session)
     window.resize((1280, 800))
+
+
+@pytest.fixture
+def fine_screen(window):
+    """Gives the screen a scale of its own: a desktop's, or a density as on macOS."""
+
+    def set_up(*, dpi=1.0, density=1.0):
+        imgui.get_style().font_scale_dpi = dpi
+        window.resize((int(1280 * dpi * density), int(800 * dpi * density)), density=density)
+        window.settle()
+
+    yield set_up
+    set_up()
+
+
+@pytest.mark.parametrize("scale", [{"dpi": 2.0}, {"density": 2.0}])
+def test_a_finer_screen_shows_the_same_with_more_pixels(window, fine_screen, bar, scale):
+    """Panels take the same part of the window, and handles the same part of the picture."""
+    del bar
+    editing.select(window.session, frozenset())
+    window.frames(3)
+    width = _docked("Handle").size.x / imgui.get_io().display_size.x
+    coarse = window.picture()
+    fine_screen(**scale)
+    assert _docked("Handle").size.x / imgui.get_io().display_size.x == pytest.approx(
+        width, rel=0.02
+    )
+    fine = window.picture()
+    assert fine.size == (2560, 1600)
+    marks = [_blue(picture) for picture in (coarse, fine)]
+    assert marks[0] > 100
+    assert marks[1] == pytest.approx(4 * marks[0], rel=0.15)
+
+
+def _blue(picture):
+    """Return how many pixels of the viewport have the colour of a handle."""
+    pixels = np.asarray(picture.crop((0, 0, picture.width * 2 // 3, picture.height * 2 // 3)))
+    red, green, blue = (pixels[..., channel].astype(int) for channel in range(3))
+    return int(((blue > 200) & (red < 80) & (green < 140)).sum())
+
+
+def test_a_gesture_is_as_far_on_a_finer_screen(window, fine_screen, bar):
+    fine_screen(density=2.0)
+    start = complex(bar.shown.handle_places[1])
+
+    def drag(robot):
+        robot.mouse_move_to_pos(window.point(start))
+        robot.mouse_down(0)
+        robot.mouse_move_to_pos(window.point(start + 100j))
+        robot.mouse_up(0)
+
+    window.run(drag)
+    window.settle()
+    target = bar.document.keys[0].pose.targets[1]
+    assert abs(target.position - (start + 100j)) < 2
+
+
+def test_a_tooltip_covers_no_message(window, bar):
+    del bar
+    for number in range(3):
+        window.session.tell(f"Message {number}", tone="error")
+
+    places = []
+
+    def find(robot):
+        robot.set_ref("Timeline")
+        places.append(robot.item_info("**/Fit timeline").rect_full.get_center())
+
+    window.run(find)
+    imgui.get_io().add_mouse_pos_event(places[0].x, places[0].y)
+    window.frames(60)
+    windows = [other for other in imgui.get_current_context().windows if other.active]
+    toasts = [other.rect() for other in windows if other.name.startswith("##toast")]
+    (tooltip,) = (other.rect() for other in windows if other.name.startswith("##Tooltip"))
+    assert len(toasts) == 3
+    assert not any(toast.overlaps(tooltip) for toast in toasts)
+
+
+def test_the_title_names_the_file_and_marks_changes(window, tmp_path):
+    session = window.session
+    assert window_title(session) == "Lissom"
+    window.open(sample_images() / "bar.png")
+    assert window_title(session) == "bar – Lissom"
+    posing.add_handle(session, complex(*session.project.picture.size) / 2)
+    assert window_title(session) == "bar* – Lissom"
+    saving.write(session, tmp_path / "posed.lissom", None)
+    window.settle()
+    assert window_title(session) == "posed.lissom – Lissom"
+
+
+@pytest.mark.parametrize(
+    ("theme", "level", "stands_out"),
+    [("dark", 20, 150), ("dark", 128, None), ("light", 245, -150), ("light", 20, None)],
+)
+def test_a_drawing_stands_out_from_the_backdrop(window, tmp_path, theme, level, stands_out):
+    """A dark drawing in the dark theme lies on light squares, a light one likewise on dark ones."""
+    drawing = np.full((200, 200, 4), level, np.uint8)
+    drawing[..., 3] = 0
+    drawing[50:150, 50:150, 3] = 255
+    Image.fromarray(drawing).save(tmp_path / "plain.png")
+    if theme != "dark":
+        viewing.toggle_theme(window.session)
+    project = window.open(tmp_path / "plain.png")
+    window.frames(3)
+    picture = window.picture()
+
+    def seen(place):
+        point = window.point(place)
+        return picture.convert("L").getpixel((int(point.x), int(point.y)))
+
+    assert seen(100 + 100j) == pytest.approx(level, abs=3)
+    paper = seen(10 + 100j)
+    if stands_out is None:
+        assert paper == pytest.approx(_level(theme), abs=12)
+    else:
+        assert (paper - level) * np.sign(stands_out) > abs(stands_out)
+    viewing.set_backdrop(window.session, "#808080")
+    window.frames(3)
+    picture = window.picture()
+    assert seen(10 + 100j) == 128
+    assert project.picture.size == (200, 200)
+
+
+def _level(theme):
+    paper = PALETTES[theme].paper
+    return 255 * (paper.x + paper.y + paper.z) / 3
 
 
 def _docked(title):

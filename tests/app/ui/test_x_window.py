@@ -99,7 +99,7 @@ class Person:
 
     def _find(self, process):
         assert process.poll() is None, process.stderr.read()
-        return self.tell("search", "--onlyvisible", "--name", "^Lissom$", fails=True).strip()
+        return self.tell("search", "--onlyvisible", "--name", "Lissom$", fails=True).strip()
 
     def tell(self, *words, fails=False):
         """Let xdotool do something; return what it says."""
@@ -153,6 +153,10 @@ class Person:
 
         until(has_ended, "the end")
         assert process.returncode == 0
+
+    def title(self):
+        """Return what the window is called."""
+        return self.tell("getwindowname", self.window).strip()
 
     def geometry(self):
         """Return place and size of the window."""
@@ -224,8 +228,10 @@ def test_a_person_animates_a_drawing_and_finds_it_again(window, bar, person, tmp
         person.tell("key", "ctrl+s")
         until(lambda: not differ(person.see(field), selected_name), "the file browser")
         person.tell("type", "--delay", 40, "posed")
+        assert person.title() == "bar* – Lissom"
         person.tell("key", "Return")
         until(path.is_file, "the project")
+        until(lambda: person.title() == "posed.lissom – Lissom", "the name of the project")
         recent = (path,)
         until(lambda: load_preferences(settings).recent == recent, "the file among recent ones")
         person.tell("windowsize", "--sync", person.window, 1100, 700)

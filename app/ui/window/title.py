@@ -1,0 +1,15 @@
+"""What the window is called."""
+
+from app.editor import Session
+
+NAME = "Lissom"
+
+
+def window_title(session: Session) -> str:
+    """Return the name of what is open, marked by a star while it has changes that are not saved."""
+    project = session.project
+    if project is None:
+        return NAME
+    name = project.path.name if project.path is not None else project.name
+    mark = "" if project.history.is_saved else "*"
+    return f"{name}{mark} – {NAME}"
