@@ -6,5 +6,6 @@ Imports: `engine.geometry`.
 """
 
 from engine.domain.build import Domain, build_domain, mesh_inside, texture_coordinates
+from engine.domain.validity import require_domain
 
-__all__ = ["Domain", "build_domain", "mesh_inside", "texture_coordinates"]
+__all__ = ["Domain", "build_domain", "mesh_inside", "require_domain", "texture_coordinates"]

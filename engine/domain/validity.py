@@ -1,0 +1,98 @@
+"""Whether a domain is one: true of what `build_domain` makes, and to be asked of what is read."""
+
+import numpy as np
+
+from engine.arrays import Complexes, Integers
+from engine.domain.build import MOST_TRIANGLES, Domain
+from engine.domain.meshing import Mesh
+from engine.errors import EngineError
+from engine.geometry import (
+    box_diagonal,
+    distance_to_boundary,
+    require_around,
+    require_simple,
+    signed_area,
+)
+
+# A built outline and its cage have some 200 vertices; the cost of a map grows with their product.
+MOST_VERTICES = 500
+# Built meshes have as many triangles as are aimed at, but for a few percent.
+MOST_MESH_TRIANGLES = 2 * MOST_TRIANGLES
+# Farther out than any picture goes, and squares still have digits to spare.
+FARTHEST = 1e7
+# Of the diagonal: how far rounding may move a vertex off the edge of the outline that it is on,
+ON_OUTLINE = 1e-9
+# and how near a vertex of the cage may come. Samples of the outline are graded towards it, so that
+# this bounds their number; a built cage keeps 300 times that distance.
+NEAREST = 1e-6
+# Of the outline's area.
+SAME_AREA = 1e-9
+
+
+def require_domain(domain: Domain) -> None:
+    """Raise `EngineError` unless outline, cage and mesh belong together as a `Domain` says.
+
+    Notes
+    -----
+    The triangles all run counter-clockwise, so that they cover each point as often as the mesh's
+    own border runs around it. That border lies on the outline, so that it does so equally often
+    around all points inside and around none outside; and their areas make up the outline's, so that
+    it is once. Together: the triangles tile the inside, without gap or overlap.
+
+    Cost: a sort of the mesh's edges, 30 ms for 100,000 triangles.
+    """
+    for name, polygon in (("outline", domain.outline), ("cage", domain.cage)):
+        _require_near(polygon, name)
+        if not 3 <= len(polygon) <= MOST_VERTICES:
+            raise EngineError(
+                f"The {name} must have 3 to {MOST_VERTICES:,} vertices, not {len(polygon):,}."
+            )
+    require_simple(domain.outline, "outline")
+    require_around(domain.cage, domain.outline)
+    room = distance_to_boundary(domain.outline, domain.cage).min()
+    if room < NEAREST * box_diagonal(domain.outline):
+        raise EngineError("The cage comes too near the outline; it must keep a distance.")
+    _require_near(domain.mesh.vertices, "mesh")
+    _require_tiling(domain.mesh, domain.outline)
+
+
+def _require_near(points: Complexes, name: str) -> None:
+    if not (np.abs(points.real) <= FARTHEST).all() or not (np.abs(points.imag) <= FARTHEST).all():
+        raise EngineError(f"The {name} lies farther from the origin than {FARTHEST:,.0f} pixels.")
+
+
+def _require_tiling(mesh: Mesh, outline: Complexes) -> None:
+    vertices, triangles = mesh.vertices, mesh.triangles
+    if not 1 <= len(triangles) <= MOST_MESH_TRIANGLES:
+        raise EngineError(
+            f"The mesh must have 1 to {MOST_MESH_TRIANGLES:,} triangles, not {len(triangles):,}."
+        )
+    if triangles.min() < 0 or triangles.max() >= len(vertices):
+        raise EngineError("The mesh has triangles whose corners are none of its vertices.")
+    if not np.bincount(triangles.ravel(), minlength=len(vertices)).all():
+        raise EngineError("The mesh has vertices that belong to no triangle.")
+    areas = mesh.areas()
+    if not (areas > 0).all():
+        raise EngineError("The mesh has triangles that are flat or run clockwise.")
+    border = _border(triangles)
+    first, last = vertices[border[:, 0]], vertices[border[:, 1]]
+    distances = distance_to_boundary(outline, np.concatenate([first, last, (first + last) / 2]))
+    area = signed_area(outline)
+    if (
+        distances.max(initial=0.0) > ON_OUTLINE * box_diagonal(outline)
+        or abs(areas.sum() - area) > SAME_AREA * area
+    ):
+        raise EngineError("The mesh does not fill the inside of the outline exactly.")
+
+
+def _border(triangles: Integers) -> Integers:
+    """Return the directed edges (b, 2) that have no opposite one."""
+    ends = np.concatenate([triangles[:, [k, (k + 1) % 3]] for k in range(3)])
+    low, high = ends.min(axis=1).astype(np.int64), ends.max(axis=1)
+    keys, where, counts = np.unique(low << 32 | high, return_index=True, return_counts=True)
+    del keys
+    directions = np.sort(ends[:, 0].astype(np.int64) << 32 | ends[:, 1])
+    if counts.max() > 2 or (np.diff(directions) == 0).any():
+        raise EngineError("The mesh has edges on which triangles overlap.")
+    border: Integers = ends[where[counts == 1]]
+    return border

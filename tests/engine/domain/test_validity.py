@@ -1,0 +1,80 @@
+"""A domain from a file is asked for all that building one gives."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from pictures import blob, limbs, star
+from shapes import regular_polygon
+
+from engine.domain import Domain, build_domain, require_domain
+from engine.domain.meshing import Mesh
+from engine.errors import EngineError
+
+# A pentagon with a hole in its fan: the L-shaped outline 0, 2, 2+i, 1+i, 1+2i, 2i.
+OUTLINE = np.array([0, 2, 2 + 1j, 1 + 1j, 1 + 2j, 2j]) * 50 + 20 + 30j
+CAGE = np.array([-0.2 - 0.2j, 2.2 - 0.2j, 2.2 + 1.2j, 1.2 + 1.2j, 1.2 + 2.2j, -0.2 + 2.2j])
+TRIANGLES = np.array([[0, 1, 3], [1, 2, 3], [0, 3, 5], [3, 4, 5]], np.int32)
+
+
+def domain(outline=OUTLINE, cage=CAGE * 50 + 20 + 30j, vertices=OUTLINE, triangles=TRIANGLES):
+    mesh = Mesh(vertices=vertices, triangles=np.array(triangles, np.int32).reshape(-1, 3))
+    return Domain(outline=outline, cage=cage, mesh=mesh)
+
+
+def test_a_domain_made_by_hand_is_one():
+    require_domain(domain())
+    # Vertices on the outline's edges and inside are welcome.
+    middle = (OUTLINE[0] + OUTLINE[1]) / 2
+    split = [[0, 6, 3], [6, 1, 3], [1, 2, 3], [0, 3, 5], [3, 4, 5]]
+    require_domain(domain(vertices=np.append(OUTLINE, middle), triangles=split))
+
+
+@pytest.mark.parametrize("picture", [blob(), star(7), limbs(6)])
+def test_every_domain_that_is_built_is_one(picture):
+    built, _ = build_domain(picture, triangles=3_000, detail="normal")
+    require_domain(built)
+
+
+@pytest.mark.parametrize(
+    ("broken", "message"),
+    [
+        (domain(outline=OUTLINE[::-1]), "outline runs clockwise"),
+        (domain(outline=OUTLINE[[0, 2, 1, 3, 4, 5]]), "outline crosses"),
+        (domain(outline=OUTLINE[:2]), "outline must have 3 to"),
+        (domain(cage=(CAGE * 50 + 20 + 30j)[::-1]), "cage does not run once counter-clockwise"),
+        (domain(cage=0.5 * (OUTLINE - OUTLINE[3]) + OUTLINE[3]), "cage touches or crosses"),
+        (domain(cage=CAGE * 50 + 500), "cage does not run once"),
+        (domain(cage=200 * regular_polygon(501)), "cage must have 3 to 500 vertices"),
+        (domain(cage=OUTLINE + 1e-6 * (CAGE * 50 + 20 + 30j - OUTLINE)), "cage comes too near"),
+        (domain(cage=1e200 * CAGE), "cage lies farther"),
+        (domain(vertices=OUTLINE * 1e150), "mesh lies farther"),
+        (domain(triangles=[]), "mesh must have 1 to"),
+        (domain(triangles=[*TRIANGLES[:3], [3, 4, 6]]), "none of its vertices"),
+        (domain(triangles=[*TRIANGLES[:3], [3, 4, -1]]), "none of its vertices"),
+        (domain(vertices=np.append(OUTLINE, 45 + 45j)), "belong to no triangle"),
+        (domain(triangles=TRIANGLES[:, ::-1]), "flat or run clockwise"),
+        (domain(triangles=[*TRIANGLES[:3], [3, 5, 4]]), "flat or run clockwise"),
+        (domain(triangles=[*TRIANGLES, [3, 4, 5]]), "triangles overlap"),
+        (domain(triangles=[*TRIANGLES, [1, 2, 3]]), "triangles overlap"),
+        (domain(triangles=TRIANGLES[[1, 2, 3]]), "does not fill"),
+        # Across the notch: each corner lies on the outline, but not the edge between them.
+        (domain(triangles=[*TRIANGLES, [2, 4, 3]]), "does not fill"),
+        (domain(vertices=OUTLINE + 5), "does not fill"),
+        (domain(vertices=0.9 * OUTLINE), "does not fill"),
+    ],
+)
+def test_what_is_wrong_is_told(broken, message):
+    with pytest.raises(EngineError, match=message):
+        require_domain(broken)
+
+
+def test_a_mesh_that_goes_twice_around_fills_nothing():
+    """Each of its triangles is fine, no edge is shared by three, and its border is the outline."""
+    turned = replace(
+        domain().mesh,
+        vertices=np.concatenate([OUTLINE, OUTLINE]),
+        triangles=np.concatenate([TRIANGLES, TRIANGLES + 6]),
+    )
+    with pytest.raises(EngineError, match="does not fill"):
+        require_domain(replace(domain(), mesh=turned))
