@@ -11,7 +11,7 @@ from app.document.commands import Command
 from app.document.easing import HOLD, LINEAR, PRESETS, Easing
 from app.document.handle_commands import add_handle
 from app.document.history import History
-from app.document.keyframe import Handle, Keyframe, Pose, Target
+from app.document.keyframe import MOST_TURNS, Handle, Keyframe, Pose, Target
 from app.document.model import Document, PictureFile, new_document
 from app.document.playhead import Playhead
 from app.document.settings import (
@@ -40,6 +40,7 @@ __all__ = [
     "HOLD",
     "LAST_FRAME",
     "LINEAR",
+    "MOST_TURNS",
     "PRESETS",
     "VARIANTS",
     "Command",

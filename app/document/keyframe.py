@@ -10,6 +10,11 @@ from app.document.easing import LINEAR, Easing
 from engine.arrays import Complexes, as_points
 from engine.maps import Certificate
 
+# Beyond these nothing is to be seen, and squares would run out of digits.
+HEAVIEST = 1e6
+FARTHEST = 1e7  # pixels
+MOST_TURNS = 20
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Handle:
@@ -38,8 +43,9 @@ class Handle:
         require(bool(self.name.strip()), "A handle needs a name.")
         require_finite(self.position, f"The position of handle {self.name!r}")
         require(
-            0 < self.weight < math.inf,
-            f"The weight of handle {self.name!r} must be above 0, not {self.weight:g}.",
+            0 < self.weight <= HEAVIEST,
+            f"The weight of handle {self.name!r} must be above 0 and at most {HEAVIEST:,.0f}, "
+            f"not {self.weight:g}.",
         )
 
 
@@ -60,7 +66,11 @@ class Target:
     unknown: Unknown = field(default_factory=lambda: NOTHING, repr=False, hash=False)
 
     def __post_init__(self) -> None:
-        require_finite(self.position, "The target of a handle")
+        require(
+            abs(self.position.real) <= FARTHEST and abs(self.position.imag) <= FARTHEST,
+            f"The target of a handle must be within {FARTHEST:,.0f} pixels, not at "
+            f"{self.position:g}.",
+        )
         require(
             self.rotation is None or math.isfinite(self.rotation),
             f"The rotation of a handle must be finite, not {self.rotation}.",
@@ -111,3 +121,9 @@ class Keyframe:
     easing: Easing = LINEAR
     turns: int = 0
     unknown: Unknown = field(default_factory=lambda: NOTHING, repr=False, hash=False)
+
+    def __post_init__(self) -> None:
+        require(
+            abs(self.turns) <= MOST_TURNS,
+            f"There may be {MOST_TURNS} whole turns on the way to a key, not {self.turns}.",
+        )

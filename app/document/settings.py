@@ -6,6 +6,7 @@ from typing import Literal, get_args
 
 from app.document.checks import require, require_size
 from app.export_formats import EXPORT_FORMATS
+from engine.domain import MOST_TRIANGLES
 from engine.domain.outline import Detail
 
 Variant = Literal["metric", "nu", "scaled-eta", "eta", "linear"]
@@ -91,7 +92,10 @@ class Meshing:
     def __post_init__(self) -> None:
         details = get_args(Detail)
         require(self.detail in details, f"The detail is one of {details}, not {self.detail!r}.")
-        require(self.triangles > 0, f"There must be triangles, not {self.triangles}.")
+        require(
+            0 < self.triangles <= MOST_TRIANGLES,
+            f"There must be 1 to {MOST_TRIANGLES:,} triangles, not {self.triangles}.",
+        )
         require(
             0 <= self.tolerance <= 255,
             f"The tolerance is between 0 and 255 levels, not {self.tolerance}.",

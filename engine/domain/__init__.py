@@ -5,7 +5,20 @@ Out: a `Domain`: outline, cage and triangulation in the picture's pixels, y up.
 Imports: `engine.geometry`.
 """
 
-from engine.domain.build import Domain, build_domain, mesh_inside, texture_coordinates
+from engine.domain.build import (
+    MOST_TRIANGLES,
+    Domain,
+    build_domain,
+    mesh_inside,
+    texture_coordinates,
+)
 from engine.domain.validity import require_domain
 
-__all__ = ["Domain", "build_domain", "mesh_inside", "require_domain", "texture_coordinates"]
+__all__ = [
+    "MOST_TRIANGLES",
+    "Domain",
+    "build_domain",
+    "mesh_inside",
+    "require_domain",
+    "texture_coordinates",
+]

@@ -2,14 +2,13 @@
 
 from imgui_bundle import ImVec2, imgui
 
-from app.document import PRESETS, Easing, Keyframe
+from app.document import MOST_TURNS, PRESETS, Easing, Keyframe
 from app.editor import Action, Project, do
 from app.editor.actions import keys
 from app.ui.style import SMALL, Look, ink, label, small, tip
 
 SIDE = 12.0  # em: of the editor's square
 TILE = 4.4  # em: width of a preset
-MOST_TURNS = 20
 LABELS = {"linear": "Linear", "in": "In", "out": "Out", "in-out": "In-out", "hold": "Hold"}
 DIGITS = 3  # to which the pointer sets control points
 

@@ -18,7 +18,7 @@ from app.document import handle_commands as handles
 from app.document import key_commands as keys
 from app.document import settings_commands as settings
 from app.document.easing import HOLD, LINEAR, PRESETS
-from app.document.keyframe import Handle, Keyframe, Target
+from app.document.keyframe import MOST_TURNS, Handle, Keyframe, Target
 from app.document.model import Document, PictureFile, new_document
 from app.document.settings import VARIANTS, ExportSettings, FrameRange, Meshing
 from app.errors import LissomError
@@ -347,9 +347,17 @@ def test_a_domain_that_loses_a_handle_is_refused_by_the_handle_s_name():
         (lambda: ExportSettings(framing="zoom"), "framing"),
         (lambda: Meshing(detail="best"), "detail"),
         (lambda: Meshing(triangles=0), "triangles"),
+        (lambda: Meshing(triangles=10**30), "triangles"),
         (lambda: Meshing(tolerance=256), "tolerance"),
         (lambda: Handle(id=-1, name="x", position=0j), "id is not negative"),
-        (lambda: Target(position=complex(0, float("inf"))), "finite"),
+        (lambda: Handle(id=0, name="x", position=0j, weight=float("nan")), "weight"),
+        (lambda: Handle(id=0, name="x", position=0j, weight=1e300), "weight"),
+        (lambda: Target(position=complex(0, float("inf"))), "within 10,000,000 pixels"),
+        (lambda: Target(position=complex(1e300, 0)), "within 10,000,000 pixels"),
+        (lambda: Target(position=complex(float("nan"), 0)), "within 10,000,000 pixels"),
+        (lambda: Target(position=complex(0, float("nan"))), "within 10,000,000 pixels"),
+        (lambda: replace(DOCUMENT.keys[0], turns=MOST_TURNS + 1), "whole turns"),
+        (lambda: replace(DOCUMENT.keys[0], turns=-(10**30)), "whole turns"),
         (lambda: Target(position=0j, rotation=float("nan")), "rotation"),
         (lambda: replace(DOCUMENT, keys=()), "at least one key"),
         (lambda: replace(DOCUMENT, keys=DOCUMENT.keys[::-1]), "mixed up"),
