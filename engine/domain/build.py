@@ -6,7 +6,7 @@ import numpy as np
 
 from engine.arrays import Bytes, Complexes, Floats
 from engine.domain.meshing import Mesh, triangulate, with_limbs_on_top
-from engine.domain.outline import Detail, trace_outline
+from engine.domain.outline import Detail, enclose
 from engine.domain.picture import subject_mask
 from engine.errors import EngineError
 from engine.geometry import deepest_point
@@ -67,10 +67,10 @@ def build_domain(
             f"{MOST_TRIANGLES:,}, not {triangles:,}."
         )
     subject = subject_mask(rgba, tolerance=tolerance)
-    outline = trace_outline(subject.mask, detail=detail)
-    mesh = mesh_inside(outline.points, triangles)
-    domain = Domain(outline=outline.points, cage=outline.cage, mesh=mesh)
-    return domain, subject.notices + outline.notices
+    enclosure = enclose(subject.mask, detail=detail)
+    mesh = mesh_inside(enclosure.outline, triangles)
+    domain = Domain(outline=enclosure.outline, cage=enclosure.cage, mesh=mesh)
+    return domain, subject.notices + enclosure.notices
 
 
 def mesh_inside(outline: Complexes, triangles: int) -> Mesh:

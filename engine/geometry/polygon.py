@@ -47,7 +47,7 @@ def require_simple(polygon: Complexes, name: str) -> None:
     if len(polygon) < 3:
         raise EngineError(f"The {name} needs at least 3 vertices, not {len(polygon)}.")
     if np.any(edges(polygon) == 0):
-        raise EngineError(f"The {name} repeats a vertex; leave each vertex out but once.")
+        raise EngineError(f"The {name} repeats a vertex; give each vertex once.")
     if not is_simple(polygon):
         raise EngineError(f"The {name} crosses or touches itself; it must be a simple polygon.")
     if signed_area(polygon) <= 0:

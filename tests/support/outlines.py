@@ -5,7 +5,7 @@ import shapely
 from scipy import ndimage
 
 from engine.arrays import Booleans, Complexes, Floats
-from engine.domain.outline.tracing import Outline
+from engine.domain.outline.enclosure import Enclosure
 from engine.geometry.polygon import (
     as_xy,
     box_diagonal,
@@ -56,11 +56,11 @@ def interior_angles(polygon: Complexes) -> Floats:
     return np.degrees(np.pi - np.angle(along / np.roll(along, 1)))
 
 
-def check_outline(mask: Booleans, outline: Outline, *, most: int = 200) -> None:
-    points, size = outline.points, diagonal(mask)
+def check_outline(mask: Booleans, enclosure: Enclosure, *, most: int = 200) -> None:
+    points, size = enclosure.outline, diagonal(mask)
     assert is_simple(points)
     assert signed_area(points) > 0
-    check_cage(points, outline.cage)
+    check_cage(points, enclosure.cage)
     lengths = np.abs(edges(points))
     assert lengths.min() >= 0.001 * size
     assert lengths.max() <= 0.0701 * size
@@ -69,5 +69,5 @@ def check_outline(mask: Booleans, outline: Outline, *, most: int = 200) -> None:
     assert len(points) <= most
     # Whole pixels, not only their centres.
     assert contains(points, corners_of(without_specks(mask)), tolerance=1e-9).all()
-    for array in (points, outline.cage):
+    for array in (points, enclosure.cage):
         assert not array.flags.writeable

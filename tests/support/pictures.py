@@ -108,6 +108,15 @@ def ring(size: int = 300, mouth: float = 0.0) -> Bytes:
     return painted(closed & ((x < size / 2) | (np.abs(y - size / 2) >= mouth / 2)))
 
 
+def spiral(size: int, turns: float, share: float = 0.5) -> Bytes:
+    """An arm that winds around the centre; of the way from turn to turn it fills `share`."""
+    x, y = plane(size, size)
+    z = x - size / 2 + 1j * (y - size / 2)
+    radius = 0.48 * size
+    phase = (np.abs(z) / radius * turns - np.angle(z) / (2 * np.pi)) % 1
+    return painted((phase < share) & (np.abs(z) < radius))
+
+
 def dots(count: int, size: int = 400, radius: float = 8.0, seed: int = 0) -> Bytes:
     rng = np.random.default_rng(seed)
     x, y = plane(size, size)

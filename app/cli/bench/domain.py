@@ -10,7 +10,7 @@ from app.cli.bench.table import Row, Table, measure
 from app.storage import decode_picture, sample_images
 from engine.domain import build_domain
 from engine.domain.meshing import triangulate
-from engine.domain.outline import trace_outline
+from engine.domain.outline import enclose
 from engine.domain.picture import subject_mask
 from engine.maps import cauchy_coordinates, cauchy_derivatives, evaluate
 
@@ -44,17 +44,17 @@ def _samples(pictures: dict[str, bytes]) -> Table:
 def _stages(data: bytes) -> Table:
     rgba = decode_picture(data, "").rgba
     subject = subject_mask(rgba)
-    outline = trace_outline(subject.mask, detail="normal")
+    outline = enclose(subject.mask, detail="normal").outline
     rows = [
         Row(name="decode", seconds=measure(lambda: decode_picture(data, ""))),
         Row(name="mask", seconds=measure(lambda: subject_mask(rgba))),
         Row(
             name="outline and cage",
-            seconds=measure(lambda: trace_outline(subject.mask, detail="normal")),
+            seconds=measure(lambda: enclose(subject.mask, detail="normal")),
         ),
     ]
     for count in (10_000, 100_000, 1_000_000):
-        seconds = measure(partial(triangulate, outline.points, count), repeats=3)
+        seconds = measure(partial(triangulate, outline, count), repeats=3)
         rows.append(
             Row(
                 name=f"triangulation, {count:,}",

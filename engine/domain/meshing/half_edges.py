@@ -270,7 +270,7 @@ class HalfEdgeMesh:
         self.twins = np.concatenate([self.twins, empty])
 
     def _move(self, old: Indices, new: Indices) -> None:
-        """Let the half-edges at the places `old` be at the places `new`, as their twins see it."""
+        """Tell the twins of half-edges that have moved from `old` to `new` in the arrays."""
         place: npt.NDArray[np.intp] = np.arange(len(self.twins))
         place[old] = new
         twins = self.twins[old]

@@ -13,16 +13,16 @@ ROW_HEIGHT = 3.0**0.5 / 2
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Lattice:
-    """Sites of the triangular lattice, sorted by row, then by column.
+    """Points of the triangular lattice, sorted by row, then by column.
 
     Every odd row is shifted right by half a spacing.
 
     Parameters
     ----------
     columns, rows : int64, shape (s,)
-        Where the sites are in the lattice.
+        Where the points are in the lattice.
     points : complex128, shape (s,)
-        Where the sites are in the plane.
+        Where they are in the plane.
     """
 
     columns: Indices
@@ -30,14 +30,14 @@ class Lattice:
     points: Complexes
 
     def select(self, which: Booleans) -> "Lattice":
-        """Return the lattice of the sites marked in `which` (s,)."""
+        """Return the lattice of the points marked in `which` (s,)."""
         return Lattice(
             columns=self.columns[which], rows=self.rows[which], points=self.points[which]
         )
 
 
 def lattice_inside(polygon: Complexes, spacing: float) -> Lattice:
-    """Fill a simple polygon with the sites of a lattice, row by row (scan conversion).
+    """Fill a simple polygon with the points of a lattice, row by row (scan conversion).
 
     Points within rounding of the boundary may fall on either side.
 
@@ -45,7 +45,7 @@ def lattice_inside(polygon: Complexes, spacing: float) -> Lattice:
     ----------
     polygon : complex128, shape (n,)
     spacing : float
-        Distance between neighbouring sites.
+        Distance between neighbouring points.
     """
     origin = complex(polygon.real.min(), polygon.imag.min())
     row, x = _crossings(polygon, origin.imag, spacing)
@@ -65,7 +65,7 @@ def lattice_triangles(lattice: Lattice) -> Indices:
     if not len(lattice.rows):
         return np.empty((0, 3), dtype=np.intp)
     first = lattice.columns.min()
-    # Two spare columns, so that the neighbours of a row's last site are not found in the next row.
+    # Two spare columns, so that the neighbours of a row's last point are not found in the next row.
     width = int(np.ptp(lattice.columns)) + 3
     keys = lattice.rows * width + (lattice.columns - first + 1)
     odd = lattice.rows % 2

@@ -10,7 +10,7 @@ GOOD_ANGLE = 30.0
 """Degrees: a triangle may lose quality as long as its smallest angle stays above this."""
 
 
-def smooth(mesh: HalfEdgeMesh, corners: int, sweeps: int) -> None:
+def smooth_mesh(mesh: HalfEdgeMesh, corners: int, sweeps: int) -> None:
     """Move vertices, those on the outline along it, and flip edges to match.
 
     Parameters

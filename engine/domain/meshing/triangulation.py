@@ -13,13 +13,13 @@ from engine.domain.meshing.half_edges import OUTLINE, SEAM, HalfEdgeMesh
 from engine.domain.meshing.lattice import lattice_inside, lattice_triangles
 from engine.domain.meshing.mesh import Mesh
 from engine.domain.meshing.refinement import SHORTEST_EDGE, refine
-from engine.domain.meshing.smoothing import smooth
+from engine.domain.meshing.smoothing import smooth_mesh
 from engine.domain.meshing.strip import cut_edges, triangulate_strip
 from engine.errors import EngineError
 from engine.geometry import as_xy, box_diagonal, edges, require_simple, signed_area
 
 CLEARANCE = 0.6
-"""Least distance of a lattice site from the outline, in spacings.
+"""Least distance of a lattice point from the outline, in spacings.
 
 It must exceed the lattice's circumradius, 0.577, so that no part of the outline comes between the
 corners of a unit triangle, and every edge of the lattice is Delaunay.
@@ -149,7 +149,7 @@ def _fill(outline: Complexes, spacing: float, smallest: float) -> Mesh:
     band = HalfEdgeMesh(points, np.concatenate([strip, units[~core]]))
     _mark_seam(band, deep)
     refine(band, smallest)
-    smooth(band, len(outline), SWEEPS)
+    smooth_mesh(band, len(outline), SWEEPS)
     return _compact(band.points, np.concatenate([band.triangles, units[core]]))
 
 

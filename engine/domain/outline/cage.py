@@ -3,7 +3,7 @@
 import numpy as np
 
 from engine.arrays import Booleans, Complexes, Floats, readonly
-from engine.domain.outline.crossings import crossing_edges, self_crossings
+from engine.domain.outline.crossings import edges_that_cross, edges_that_meet
 from engine.domain.outline.curve import arc_lengths, limit_growth
 from engine.domain.outline.gaps import empty_disc_radius
 from engine.errors import EngineError
@@ -115,7 +115,5 @@ def _faulty_edges(outline: Complexes, cage: Complexes) -> Booleans:
     """Tell which edges (n,) of the cage are turned back, or meet the cage or the outline."""
     along, moved = edges(outline), edges(cage)
     turned = (moved * along.conj()).real <= LEAST_ALONG * np.abs(along) * np.abs(moved)
-    crossing = self_crossings(cage)
-    touching = crossing_edges(cage, outline)
-    faulty = turned | crossing.any(axis=1) | touching.any(axis=1) | touching.any(axis=0)
-    return np.asarray(faulty)
+    touching, touched = edges_that_meet(cage, outline)
+    return np.asarray(turned | edges_that_cross(cage) | touching | touched)

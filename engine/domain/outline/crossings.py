@@ -1,40 +1,37 @@
 """Where edges of polygons meet that should not."""
 
 import numpy as np
+import shapely
 
-from engine.arrays import Booleans, Complexes, Floats
-
-
-def crossing_edges(polygon: Complexes, other: Complexes) -> Booleans:
-    """Tell for each edge of one polygon (n,) and of another (m,) whether they meet, (n, m)."""
-    start, end = polygon[:, None], np.roll(polygon, -1)[:, None]
-    other_start, other_end = other[None, :], np.roll(other, -1)[None, :]
-    sides = _side(start, end, other_start) * _side(start, end, other_end)
-    other_sides = _side(other_start, other_end, start) * _side(other_start, other_end, end)
-    # On one line, the sides say nothing: only boxes that meet count.
-    return np.asarray(
-        (sides <= 0)
-        & (other_sides <= 0)
-        & _overlap(start.real, end.real, other_start.real, other_end.real)
-        & _overlap(start.imag, end.imag, other_start.imag, other_end.imag)
-    )
+from engine.arrays import Booleans, Complexes, Indices
+from engine.geometry import as_xy
 
 
-def self_crossings(polygon: Complexes) -> Booleans:
-    """Tell for each pair of edges of a polygon (n, n) whether they meet; neighbours never do."""
+def edges_that_meet(polygon: Complexes, other: Complexes) -> tuple[Booleans, Booleans]:
+    """Tell which edges of a polygon (n,) and of another (m,) meet one of the other polygon."""
+    own, met = _meetings(polygon, other)
+    marks = np.zeros(len(polygon), dtype=np.bool_), np.zeros(len(other), dtype=np.bool_)
+    marks[0][own] = True
+    marks[1][met] = True
+    return marks
+
+
+def edges_that_cross(polygon: Complexes) -> Booleans:
+    """Tell which edges (n,) of a polygon meet another of its edges that is no neighbour."""
     n = len(polygon)
-    meet = crossing_edges(polygon, polygon)
-    here = np.arange(n)
-    for step in (-1, 0, 1):
-        meet[here, (here + step) % n] = False
-    return meet
+    first, second = _meetings(polygon, polygon)
+    apart = (second - first) % n
+    crossing = np.zeros(n, dtype=np.bool_)
+    crossing[first[(apart > 1) & (apart < n - 1)]] = True
+    return crossing
 
 
-def _side(start: Complexes, end: Complexes, point: Complexes) -> Floats:
-    """Return -1, 0 or 1: to which side of the line from start to end the point lies."""
-    return np.sign(((end - start).conj() * (point - start)).imag)
+def _meetings(polygon: Complexes, other: Complexes) -> tuple[Indices, Indices]:
+    """Return the pairs of edges of two polygons that meet; O(n log n) where they are few."""
+    first, second = shapely.STRtree(_edges(other)).query(_edges(polygon), predicate="intersects")
+    return first, second
 
 
-def _overlap(a: Floats, b: Floats, c: Floats, d: Floats) -> Booleans:
-    """Tell whether the intervals between a and b and between c and d meet."""
-    return (np.minimum(a, b) <= np.maximum(c, d)) & (np.minimum(c, d) <= np.maximum(a, b))
+def _edges(polygon: Complexes) -> np.ndarray:
+    ends = np.stack([as_xy(polygon), as_xy(np.roll(polygon, -1))], axis=1)
+    return np.asarray(shapely.linestrings(ends))

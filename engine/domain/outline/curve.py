@@ -37,7 +37,7 @@ def outward_normals(curve: Complexes, reach: int) -> Complexes:
     return -1j * tangent / np.maximum(np.abs(tangent), np.finfo(np.float64).tiny)
 
 
-def smooth(curve: Complexes, leash: Floats, rounds: int) -> Complexes:
+def smooth_curve(curve: Complexes, leash: Floats, rounds: int) -> Complexes:
     """Smooth a curve by repeated averaging, no point further than `leash` (n,) from its place."""
     smoothed = curve
     for _ in range(rounds):

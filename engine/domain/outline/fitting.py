@@ -1,13 +1,16 @@
 """A polygon of few edges along a curve that keeps a margin around a mask."""
 
+from dataclasses import dataclass
+from typing import Self
+
 import numpy as np
 from scipy.spatial import cKDTree
 
 from engine.arrays import Complexes, Floats
-from engine.domain.outline.crossings import self_crossings
-from engine.domain.outline.curve import arc_lengths, at_arc_lengths, smooth
+from engine.domain.outline.crossings import edges_that_cross
+from engine.domain.outline.curve import arc_lengths, at_arc_lengths, smooth_curve
 from engine.domain.outline.margin import MarginCurve
-from engine.domain.outline.simplify import choose_vertices
+from engine.domain.outline.simplify import FARTHEST, choose_vertices
 from engine.geometry import as_xy, contains, edges
 
 FEWEST_EDGES = 40
@@ -20,7 +23,39 @@ MOST_TURN = 160.0  # degrees, at a vertex: sharper spikes have no room for trian
 MOST_ATTEMPTS = 10
 
 
-def fit_polygon(curve: MarginCurve, corners: Complexes, diagonal: float) -> Complexes | None:
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Candidates:
+    """The points of a curve that may become vertices of a polygon.
+
+    Parameters
+    ----------
+    points : complex128, shape (n,)
+        In order along the curve, closer where its margin is small.
+    margins : float64, shape (n,)
+    shortest, longest : float
+        Lengths of an edge of the polygon.
+    """
+
+    points: Complexes
+    margins: Floats
+    shortest: float
+    longest: float
+
+    @classmethod
+    def on(cls, curve: MarginCurve, diagonal: float) -> Self:
+        """Choose points on a curve around a subject whose box has this diagonal."""
+        shortest = SHORTEST_EDGE * diagonal
+        points, margins = _graded(curve, shortest)
+        longest = min(LONGEST_EDGE * diagonal, float(np.abs(edges(points)).sum()) / FEWEST_EDGES)
+        return cls(points=points, margins=margins, shortest=shortest, longest=longest)
+
+    @property
+    def fewest_edges(self) -> int:
+        """The number of edges below which no polygon with such edges follows the curve."""
+        return -(-len(self.points) // FARTHEST)
+
+
+def fit_polygon(candidates: Candidates, corners: Complexes) -> Complexes | None:
     """Fit a simple polygon of few edges to a curve around `corners`.
 
     Where it crosses itself, turns back or leaves out a corner, it is fitted again, closer to the
@@ -28,28 +63,25 @@ def fit_polygon(curve: MarginCurve, corners: Complexes, diagonal: float) -> Comp
 
     Parameters
     ----------
-    curve : MarginCurve
+    candidates : Candidates
     corners : complex128, shape (c,)
         Points that must lie inside.
-    diagonal : float
-        Of the subject's box: its edges are 0.12 to 7 % of it long.
 
     Returns
     -------
     complex128, shape (p,), or None
         Counter-clockwise; None if that does not help.
     """
-    points, margins = _graded(curve, SHORTEST_EDGE * diagonal)
-    longest = min(LONGEST_EDGE * diagonal, float(np.abs(edges(points)).sum()) / FEWEST_EDGES)
+    points, margins = candidates.points, candidates.margins
     slack = np.ones(len(points))
     for _ in range(MOST_ATTEMPTS):
-        smoothed = smooth(points, LEASH * slack * margins, SMOOTHING)
+        smoothed = smooth_curve(points, LEASH * slack * margins, SMOOTHING)
         chosen = choose_vertices(
             smoothed,
             INNER * slack * margins,
             OUTER * slack * margins,
-            shortest=SHORTEST_EDGE * diagonal,
-            longest=longest,
+            shortest=candidates.shortest,
+            longest=candidates.longest,
         )
         polygon = smoothed[chosen]
         faults = _faults(polygon, corners)
@@ -77,7 +109,7 @@ def _faults(polygon: Complexes, corners: Complexes) -> Complexes:
     """Return the places where a polygon crosses itself, turns back or leaves out a corner."""
     along = edges(polygon)
     sharp = np.abs(np.angle(along / np.roll(along, 1))) > np.radians(MOST_TURN)
-    crossing = self_crossings(polygon).any(axis=1)
+    crossing = edges_that_cross(polygon)
     crossing |= np.roll(crossing, 1)  # the vertices at both ends of such an edge
     if crossing.any() or sharp.any():
         return np.asarray(polygon[crossing | sharp])

@@ -22,6 +22,7 @@ NORMAL_REACH = 3  # samples before and after, over which normals are taken
 SLIT = 0.5  # of the width of closed gaps: what is left of a gap between the margins
 MOST_SAMPLES = 10_000
 SKETCH = 0.125  # of the margin: spacing that is always fine enough for it
+DEEP = 3.0  # margins: where the mask's outline lies farther inside the curve, it is lost
 SKIN = 0.25  # cells: margin of the curve on which gaps are looked for
 
 
@@ -63,11 +64,15 @@ class MarginCurve:
         Distance from the mask, nearly.
     enclosed : float
         Area that the curve encloses because it closes on itself, in cells.
+    fused : float
+        Share of the mask's own outline that the curve leaves far inside, because what lies opposite
+        is too close.
     """
 
     points: Complexes
     margins: Floats
     enclosed: float
+    fused: float
 
 
 def distance_field(mask: Booleans) -> DistanceField:
@@ -109,7 +114,15 @@ def curve_at_margin(
     ring, enclosed = _outer_ring(field.distance - level)
     ring, pockets = _without_slits(ring, SLIT * closing)
     _, nearest = tree.query(as_xy(ring))
-    return MarginCurve(points=ring, margins=margins[nearest], enclosed=enclosed + pockets)
+    shell = shapely.LinearRing(as_xy(ring))
+    shapely.prepare(shell)
+    followed = shapely.dwithin(shell, shapely.points(as_xy(skin)), DEEP * margin)
+    return MarginCurve(
+        points=ring,
+        margins=margins[nearest],
+        enclosed=enclosed + pockets,
+        fused=1 - float(np.mean(followed)),
+    )
 
 
 def _local_margins(

@@ -6,7 +6,7 @@ import numpy as np
 from scipy import ndimage
 
 from engine.arrays import Booleans, Bytes
-from engine.domain.picture.blocks import block_factor, reduce_blocks, repeat_blocks
+from engine.domain.picture.grid import block_factor, reduce_blocks, repeat_blocks
 
 WORKING_SIDE = 1400  # pixels: larger pictures are flooded in blocks
 COLOUR_BIN = 16  # levels: how finely colours are told apart when the border votes

@@ -14,7 +14,7 @@ from engine.domain.meshing.half_edges import (
 )
 from engine.domain.meshing.mesh import signed_areas, smallest_angles
 from engine.domain.meshing.refinement import refine
-from engine.domain.meshing.smoothing import smooth
+from engine.domain.meshing.smoothing import smooth_mesh
 from engine.geometry.polygon import as_xy
 
 SQUARE = np.array([0, 1, 1 + 1j, 1j]) * 0.5
@@ -157,7 +157,7 @@ def test_smoothing_improves_the_mean_and_keeps_corners_and_border() -> None:
     mesh = square_with(points_inside_disc(0.24, 300, 3) + 0.25 + 0.25j)
     refine(mesh, 20.0)
     before = smallest_angles(mesh.points, mesh.triangles)
-    smooth(mesh, 4, 5)
+    smooth_mesh(mesh, 4, 5)
     after = smallest_angles(mesh.points, mesh.triangles)
     assert_consistent(mesh, 0.25)
     np.testing.assert_array_equal(mesh.points[:4], SQUARE)
@@ -167,7 +167,7 @@ def test_smoothing_improves_the_mean_and_keeps_corners_and_border() -> None:
 
 def test_smoothing_leaves_the_mesh_delaunay() -> None:
     mesh = square_with(points_inside_disc(0.24, 300, 3) + 0.25 + 0.25j)
-    smooth(mesh, 4, 1)
+    smooth_mesh(mesh, 4, 1)
     corners = mesh.triangles.copy()
     mesh.restore_delaunay(np.arange(3 * mesh.count))
     np.testing.assert_array_equal(mesh.triangles, corners)
@@ -178,5 +178,5 @@ def test_smoothing_does_not_pull_a_vertex_out_of_a_notched_outline() -> None:
     arrowhead = np.array([-0.4 - 0.4j, 0.3j, 0.4 - 0.4j, 0.5j, 0.4j])
     fan = np.array([[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]])
     mesh = HalfEdgeMesh(arrowhead, fan)
-    smooth(mesh, 4, 3)
+    smooth_mesh(mesh, 4, 3)
     assert_consistent(mesh, 0.08)

@@ -6,7 +6,7 @@ from shapes import regular_polygon
 
 from engine.arrays import Booleans
 from engine.domain.outline.curve import limit_growth
-from engine.domain.outline.fitting import fit_polygon
+from engine.domain.outline.fitting import Candidates, fit_polygon
 from engine.domain.outline.gaps import half_gaps
 from engine.domain.outline.margin import MarginCurve, curve_at_margin, distance_field
 from engine.domain.outline.simplify import choose_vertices
@@ -124,8 +124,10 @@ def test_inner_and_outer_tolerances_are_told_apart() -> None:
 def test_a_polygon_that_cuts_corners_is_fitted_again(claimed: float) -> None:
     # Tolerances follow from the margins; too large ones must not leave out any corner.
     circle = 100 * regular_polygon(700)
-    curve = MarginCurve(points=1.01 * circle, margins=np.full(700, claimed), enclosed=0.0)
-    polygon = fit_polygon(curve, circle[::5], 283.0)
+    curve = MarginCurve(
+        points=1.01 * circle, margins=np.full(700, claimed), enclosed=0.0, fused=0.0
+    )
+    polygon = fit_polygon(Candidates.on(curve, 283.0), circle[::5])
     assert polygon is not None
     assert contains(polygon, circle[::5]).all()
 
@@ -138,8 +140,8 @@ def test_a_polygon_that_crosses_itself_is_fitted_again(narrowest: float, wave: f
     middle = x + 1j * wave * np.sin(x / 6)
     frame = [100 + 50j, -20 + 50j, -20 - 50j, 100 - 50j]
     points = np.concatenate([middle + 0.5j * gap, frame, (middle - 0.5j * gap)[::-1]])
-    curve = MarginCurve(points=points, margins=np.full(len(points), 11.0), enclosed=0.0)
-    polygon = fit_polygon(curve, np.array([-10 + 0j]), 200.0)
+    curve = MarginCurve(points=points, margins=np.full(len(points), 11.0), enclosed=0.0, fused=0.0)
+    polygon = fit_polygon(Candidates.on(curve, 200.0), np.array([-10 + 0j]))
     assert polygon is not None
     assert is_simple(polygon)
 
@@ -148,8 +150,8 @@ def test_a_polygon_that_turns_back_is_fitted_again() -> None:
     # The end of a slit of width 1: one vertex would be sharper than 20 degrees.
     slit = [50 + 0.5j, 0 + 0.5j, 0 - 0.5j, 50 - 0.5j]
     points = np.array([50 + 50j, -50 + 50j, -50 - 50j, 50 - 50j, *slit[::-1]])
-    curve = MarginCurve(points=points, margins=np.full(len(points), 2.0), enclosed=0.0)
-    polygon = fit_polygon(curve, np.array([-10 + 0j]), 141.0)
+    curve = MarginCurve(points=points, margins=np.full(len(points), 2.0), enclosed=0.0, fused=0.0)
+    polygon = fit_polygon(Candidates.on(curve, 141.0), np.array([-10 + 0j]))
     assert polygon is not None
     along = edges(polygon)
     assert np.abs(np.degrees(np.angle(along / np.roll(along, 1)))).max() <= 160

@@ -8,15 +8,17 @@ from outlines import check_outline, diagonal, interior_angles
 from scipy import ndimage
 from scipy.spatial import cKDTree
 
-from engine.arrays import Bytes
-from engine.domain.outline.tracing import Detail, Outline, trace_outline
+from engine.arrays import Bytes, Complexes
+from engine.domain.outline import enclosure, fitting
+from engine.domain.outline.enclosure import Detail, Enclosure, enclose
+from engine.domain.outline.fitting import Candidates
 from engine.domain.picture.mask import subject_mask
 from engine.errors import EngineError
 from engine.geometry.polygon import as_xy, contains, signed_area
 
 
-def outlined(rgba: Bytes, detail: Detail = "normal") -> Outline:
-    return trace_outline(subject_mask(rgba).mask, detail=detail)
+def outlined(rgba: Bytes, detail: Detail = "normal") -> Enclosure:
+    return enclose(subject_mask(rgba).mask, detail=detail)
 
 
 PICTURES = {
@@ -52,14 +54,14 @@ PICTURES = {
 @pytest.mark.parametrize("name", PICTURES)
 def test_outline_and_cage_are_sound(name: str) -> None:
     mask = subject_mask(PICTURES[name]).mask
-    check_outline(mask, trace_outline(mask, detail="normal"))
+    check_outline(mask, enclose(mask, detail="normal"))
 
 
 @pytest.mark.parametrize("detail", ["coarse", "fine"])
 @pytest.mark.parametrize("name", ["letters", "hairlines", "needles", "ragged cloud", "icon of 48"])
 def test_outlines_of_every_detail_are_sound(name: str, detail: Detail) -> None:
     mask = subject_mask(PICTURES[name]).mask
-    check_outline(mask, trace_outline(mask, detail=detail))
+    check_outline(mask, enclose(mask, detail=detail))
 
 
 strokes = st.tuples(
@@ -80,13 +82,13 @@ def test_random_unions_of_strokes(
     mask = pictures.capsules(size, ends)[..., 3] > 0
     rows, columns = np.nonzero(mask)
     if len(rows) and max(np.ptp(rows), np.ptp(columns)) >= 7:
-        check_outline(mask, trace_outline(mask, detail=detail))
+        check_outline(mask, enclose(mask, detail=detail))
 
 
 def test_points_are_pixels_of_the_picture_with_y_up() -> None:
     mask = np.zeros((100, 300), dtype=np.bool_)
     mask[10:30, 200:280] = True  # near the upper right corner
-    points = trace_outline(mask, detail="normal").points
+    points = enclose(mask, detail="normal").outline
     margin = 0.8  # pixels: the least one of small subjects
     assert_allclose(points.real.min(), 200 - margin, rtol=0, atol=0.2)
     assert_allclose(points.real.max(), 280 + margin, rtol=0, atol=0.2)
@@ -99,7 +101,7 @@ def test_the_margin_is_what_the_detail_says() -> None:
     rows, columns = np.nonzero(mask)
     tree = cKDTree(np.column_stack([columns + 0.5, mask.shape[0] - rows - 0.5]))
     for detail, share in (("coarse", 0.012), ("normal", 0.006), ("fine", 0.003)):
-        points = trace_outline(mask, detail=detail).points  # type: ignore[arg-type]
+        points = enclose(mask, detail=detail).outline  # type: ignore[arg-type]
         distance, _ = tree.query(as_xy(points))
         assert_allclose(distance - 0.5, share * diagonal(mask), rtol=0, atol=0.6)
 
@@ -108,25 +110,25 @@ def test_the_margin_is_what_the_detail_says() -> None:
 @pytest.mark.parametrize("gap", [3, 5, 12])
 def test_limbs_a_few_pixels_apart_stay_separate(gap: int, size: int) -> None:
     mask = pictures.limbs(gap, size)[..., 3] > 0
-    outline = trace_outline(mask, detail="normal")
+    outline = enclose(mask, detail="normal")
     check_outline(mask, outline)
     for share in (0.5, 0.7, 0.88):
         middle = size // 2 + gap / 2 + 1j * (size - share * size)
-        assert not contains(outline.points, np.array([middle])).any()
+        assert not contains(outline.outline, np.array([middle])).any()
         assert not contains(outline.cage, np.array([middle])).any()
 
 
 def test_a_nearly_closed_ring_stays_open_or_says_so() -> None:
     wide, shut = outlined(pictures.ring(mouth=8)), outlined(pictures.ring(mouth=0))
     centre = np.array([150 + 150j])
-    assert not contains(wide.points, centre).any()
-    assert contains(shut.points, centre).all()
+    assert not contains(wide.outline, centre).any()
+    assert contains(shut.outline, centre).all()
     assert shut.notices == ("1 hole filled, 30.9% of the subject",)
 
 
 def test_a_gap_that_has_to_be_closed_is_told() -> None:
     outline = outlined(pictures.ring(1024, mouth=2))
-    assert contains(outline.points, np.array([512 + 512j])).all()
+    assert contains(outline.outline, np.array([512 + 512j])).all()
     assert any("closes over gaps of" in notice for notice in outline.notices)
 
 
@@ -134,12 +136,12 @@ def test_parts_are_joined_by_the_shortest_bridges() -> None:
     mask = np.zeros((200, 400), dtype=np.bool_)
     for left in (20, 150, 340):
         mask[80:120, left : left + 40] = True
-    outline = trace_outline(mask, detail="normal")
+    outline = enclose(mask, detail="normal")
     check_outline(mask, outline)
     assert outline.notices == ("3 parts joined by invisible bridges",)
     # Each bridge is as straight and narrow as it can be.
     between = np.array([100, 105 + 30j, 105 - 30j, 265, 265 + 30j]) + 100j
-    assert contains(outline.points, between).tolist() == [True, False, False, True, False]
+    assert contains(outline.outline, between).tolist() == [True, False, False, True, False]
 
 
 def test_holes_and_specks_are_told() -> None:
@@ -152,12 +154,12 @@ def test_holes_and_specks_are_told() -> None:
         "2 specks dropped (0.01% of the subject)",
         "2 holes filled, the largest 0.3% of the subject",
     )
-    assert not contains(outline.points, np.array([5.5 + 294.5j])).any()
+    assert not contains(outline.outline, np.array([5.5 + 294.5j])).any()
 
 
 def test_icons_get_smooth_sides() -> None:
     # A disc of 48 pixels: a staircase would turn left and right by 90 or 45 degrees.
-    points = outlined(pictures.blob(48, depth=0.0)).points
+    points = outlined(pictures.blob(48, depth=0.0)).outline
     turns = 180 - interior_angles(points)
     assert turns.min() > -5
     assert turns.max() < 30
@@ -166,13 +168,13 @@ def test_icons_get_smooth_sides() -> None:
 def test_twenty_megapixels() -> None:
     rgba = np.kron(pictures.blob(250, 7), np.ones((18, 18, 1), dtype=np.uint8))
     mask = subject_mask(rgba).mask
-    outline = trace_outline(mask, detail="normal")
+    outline = enclose(mask, detail="normal")
     small = outlined(pictures.blob(250, 7))
-    check_outline(mask[::9, ::9], trace_outline(mask[::9, ::9], detail="normal"))
+    check_outline(mask[::9, ::9], enclose(mask[::9, ::9], detail="normal"))
     rows, columns = np.nonzero(mask & ~ndimage.binary_erosion(mask))
-    assert contains(outline.points, columns + 0.5 + 1j * (mask.shape[0] - rows - 0.5)).all()
+    assert contains(outline.outline, columns + 0.5 + 1j * (mask.shape[0] - rows - 0.5)).all()
     assert_allclose(
-        signed_area(outline.points) / 18**2, signed_area(small.points), rtol=0.02, atol=0
+        signed_area(outline.outline) / 18**2, signed_area(small.outline), rtol=0.02, atol=0
     )
 
 
@@ -180,12 +182,12 @@ def test_hairlines_of_large_pictures_are_not_lost() -> None:
     mask = np.zeros((3000, 3000), dtype=np.bool_)
     mask[1400:1600, 1400:1600] = True
     mask[1501, 100:2900] = mask[100:2900, 1503] = True
-    check_outline(mask, trace_outline(mask, detail="normal"))
+    check_outline(mask, enclose(mask, detail="normal"))
 
 
 def test_an_intricate_drawing_keeps_to_few_vertices() -> None:
     outline = outlined(pictures.blob(900, 20, 0.3))
-    assert len(outline.points) <= 200
+    assert len(outline.outline) <= 200
     assert any(notice.startswith("margin widened") for notice in outline.notices)
 
 
@@ -193,3 +195,48 @@ def test_an_intricate_drawing_keeps_to_few_vertices() -> None:
 def test_scattered_noise_is_too_fragmented(density: float) -> None:
     with pytest.raises(EngineError, match="too fragmented"):
         outlined(pictures.noise(density))
+
+
+@pytest.fixture
+def fitted(monkeypatch: pytest.MonkeyPatch) -> list[tuple[int, int]]:
+    """The least number of edges, and that found, of every curve that a polygon is fitted to."""
+    record: list[tuple[int, int]] = []
+
+    def fit_polygon(candidates: Candidates, corners: Complexes) -> Complexes | None:
+        polygon = fitting.fit_polygon(candidates, corners)
+        record.append((candidates.fewest_edges, 0 if polygon is None else len(polygon)))
+        return polygon
+
+    monkeypatch.setattr(enclosure, "fit_polygon", fit_polygon)
+    return record
+
+
+def test_a_curve_that_few_vertices_cannot_follow_is_not_fitted(fitted) -> None:
+    # Several drafts would take over a thousand vertices each before the spiral is fused.
+    result = outlined(pictures.spiral(300, 10))
+    ((least, found),) = fitted
+    assert least <= found == len(result.outline) <= 200
+
+
+def test_where_every_curve_is_intricate_the_simplest_one_is_fitted(fitted, monkeypatch) -> None:
+    monkeypatch.setattr(enclosure, "MOST_VERTICES", 3)
+    result = outlined(pictures.blob())
+    ((least, found),) = fitted
+    assert 3 < least <= found == len(result.outline)
+    assert "margin widened 2.0 times for an outline of few vertices" in result.notices
+
+
+@pytest.mark.parametrize("name", ["needles", "ragged cloud", "hairlines"])
+def test_no_polygon_has_fewer_edges_than_foreseen(name: str, fitted) -> None:
+    outlined(PICTURES[name], "fine")
+    assert all(least <= found for least, found in fitted if found)
+
+
+def test_limbs_that_are_fused_are_told() -> None:
+    told = outlined(pictures.spiral(200, 20)).notices
+    (fused,) = [notice for notice in told if "fused" in notice]
+    share = int(fused.split("along ")[1].split("%")[0])
+    # All of the arm's two sides, but for its outermost turn.
+    assert 80 <= share <= 95
+    for apart in (pictures.limbs(12, 400), pictures.spiral(300, 4), pictures.star(7)):
+        assert not any("fused" in notice for notice in outlined(apart).notices)

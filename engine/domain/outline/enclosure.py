@@ -1,0 +1,181 @@
+"""From the mask of a subject to its outline, a polygon of few edges, and the cage around it."""
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from engine.arrays import Booleans, Complexes, readonly
+from engine.domain.outline.cage import offset_cage
+from engine.domain.outline.fitting import Candidates, fit_polygon
+from engine.domain.outline.margin import DistanceField, MarginCurve, curve_at_margin, distance_field
+from engine.domain.picture import join_parts, working_grid
+from engine.errors import EngineError
+
+Detail = Literal["coarse", "normal", "fine"]
+MARGINS: dict[Detail, float] = {"coarse": 0.012, "normal": 0.006, "fine": 0.003}  # of the diagonal
+LEAST_MARGIN = 0.8  # pixels of an enlarged subject: enough to straighten staircases
+# Of the diagonal: a cage that is closer makes boundary spikes, a farther one bad conditioning.
+LEAST_OFFSET, MOST_OFFSET = 0.005, 0.02
+NARROWEST_GAP = 0.002  # of the diagonal: below, two cages have no room in a gap
+# Vertices that are aimed at. Where an outline takes more, its margin is widened; where that is not
+# enough, gaps are closed, wider ones each time.
+MOST_VERTICES = 200
+WIDENING, MOST_WIDENED = 1.42, 2.0
+MOST_DRAFTS = 6
+LEAST_ENCLOSED = 0.001  # of the subject's area: what is told
+LEAST_FUSED = 0.03  # of the subject's outline: what is told
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Enclosure:
+    """The outline of a subject, and the cage around it.
+
+    Parameters
+    ----------
+    outline : complex128, shape (n,)
+        Simple, counter-clockwise, in pixels of the picture: origin at the lower left corner of
+        the picture, y up.
+    cage : complex128, shape (n,)
+        Simple, counter-clockwise, strictly around the outline, one vertex for each of its own.
+    notices : tuple of str
+        What had to be done to the subject, in words.
+    """
+
+    outline: Complexes
+    cage: Complexes
+    notices: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class _Draft:
+    """A curve for an outline, in cells, with what was done to get it."""
+
+    curve: MarginCurve
+    candidates: Candidates
+    offset: float  # from outline to cage, in cells
+    widening: float  # of the margin
+    closing: float  # cells: width below which gaps were closed
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class _Fit:
+    """An outline and its cage in cells, and the draft that they were fitted to."""
+
+    outline: Complexes
+    cage: Complexes
+    draft: _Draft
+
+
+def enclose(mask: Booleans, *, detail: Detail) -> Enclosure:
+    """Find the outline of a subject, and the cage around it.
+
+    Parameters
+    ----------
+    mask : bool, shape (h, w)
+        True on the subject, first row on top.
+    detail : {"coarse", "normal", "fine"}
+        How closely the outline follows: its margin is 1.2, 0.6 or 0.3 % of the diagonal of the
+        subject's box, wider where it would take too many vertices, narrower between limbs.
+
+    Returns
+    -------
+    Enclosure
+        Around every pixel of the mask, except specks. No edge of the outline is shorter than 0.1 %
+        of the diagonal or longer than 7 %.
+
+    Raises
+    ------
+    EngineError
+        If the subject falls into too many parts, or is too intricate for an outline.
+    """
+    grid = working_grid(mask)
+    piece = join_parts(grid.mask, grid.diagonal)
+    margin = max(MARGINS[detail] * grid.diagonal, LEAST_MARGIN * max(1.0, 1 / grid.cell))
+    fit = _best_fit(distance_field(piece.mask), margin, grid.diagonal)
+    return Enclosure(
+        outline=readonly(grid.to_picture(fit.outline)),
+        cage=readonly(grid.to_picture(fit.cage)),
+        notices=piece.notices + _told(fit.draft, int(np.count_nonzero(piece.mask))),
+    )
+
+
+def _best_fit(field: DistanceField, margin: float, diagonal: float) -> _Fit:
+    """Return the first outline of few vertices, or else the one of fewest.
+
+    The margin is widened while there are too many vertices; wider gaps are closed where that is
+    not enough, or where no outline or cage fits. A draft that few vertices cannot follow is fitted
+    only if every other fails.
+    """
+    widening, closing = 1.0, NARROWEST_GAP * diagonal
+    corners = field.boundary()
+    best: _Fit | None = None
+    intricate: list[_Draft] = []
+    for _ in range(MOST_DRAFTS):
+        draft = _draft(field, margin, diagonal, widening=widening, closing=closing)
+        fit = None
+        is_intricate = draft.candidates.fewest_edges > MOST_VERTICES
+        if is_intricate:
+            intricate.append(draft)
+        else:
+            fit = _fit(draft, corners)
+        if fit is not None and (best is None or len(fit.outline) < len(best.outline)):
+            best = fit
+        if best is not None and len(best.outline) <= MOST_VERTICES:
+            return best
+        if (is_intricate or fit is not None) and widening < MOST_WIDENED:
+            widening = min(MOST_WIDENED, WIDENING * widening)
+        else:
+            closing *= 2
+    intricate.sort(key=lambda draft: draft.candidates.fewest_edges)
+    while best is None and intricate:
+        best = _fit(intricate.pop(0), corners)
+    if best is None:
+        raise EngineError(
+            "The subject is too intricate for an outline; choose another detail, or close its "
+            "finest gaps in the picture."
+        )
+    return best
+
+
+def _told(draft: _Draft, area: int) -> tuple[str, ...]:
+    """Return, in words, what a draft makes of a subject of `area` cells."""
+    notices = []
+    if draft.curve.fused >= LEAST_FUSED:
+        notices.append(
+            "limbs too close together for outlines of their own are fused and move as one, along "
+            f"{draft.curve.fused:.0%} of the edge"
+        )
+    if draft.widening > 1:
+        notices.append(f"margin widened {draft.widening:.1f} times for an outline of few vertices")
+    share = draft.curve.enclosed / area
+    if share >= LEAST_ENCLOSED:
+        notices.append(f"the outline closes over gaps of {share:.1%} of the subject")
+    return tuple(notices)
+
+
+def _draft(
+    field: DistanceField, margin: float, diagonal: float, *, widening: float, closing: float
+) -> _Draft:
+    """Draft the curve that an outline is to follow."""
+    margin *= widening
+    offset = float(np.clip(margin, LEAST_OFFSET * diagonal, MOST_OFFSET * diagonal))
+    curve = curve_at_margin(field, margin=margin, offset=offset, closing=closing, diagonal=diagonal)
+    return _Draft(
+        curve=curve,
+        candidates=Candidates.on(curve, diagonal),
+        offset=offset,
+        widening=widening,
+        closing=closing,
+    )
+
+
+def _fit(draft: _Draft, corners: Complexes) -> _Fit | None:
+    """Fit outline and cage to a draft; return None where the subject is too intricate for them."""
+    outline = fit_polygon(draft.candidates, corners)
+    if outline is None:
+        return None
+    try:
+        return _Fit(outline=outline, cage=offset_cage(outline, draft.offset), draft=draft)
+    except EngineError:
+        return None
