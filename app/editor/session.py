@@ -219,6 +219,8 @@ class Project:
         Keys that are being solved again.
     export_to : Path, optional
         Where the next export goes: where the last one went, or was told to.
+    replaceable : Path, optional
+        Where exports may take the place of other files: the person agreed, or they are an export's.
     reach : Reach, optional
         Of the motion, as it was when the export's frame was looked at last.
     unreachable : tuple
@@ -254,6 +256,7 @@ class Project:
     drafted_bounds: Bounds | None = None
     renewal: Renewal | None = None
     export_to: Path | None = None
+    replaceable: Path | None = None
     reach: Reach | None = None
     unreachable: tuple[object, ...] = ()
     to_save: tuple[Path, Action | None] | None = None

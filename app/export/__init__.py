@@ -5,6 +5,7 @@ Out: PNG frames, animated pictures, sprite sheets, video.
 Imports: `app.render`, `app.motion`, `app.storage`.
 """
 
+from app.export.destination import folder_within, suited
 from app.export.framing import frame_view, shown_box
 from app.export.painting import Painter
 from app.export.plan import (
@@ -14,6 +15,7 @@ from app.export.plan import (
     check_request,
     missing,
     plan_export,
+    replaced_files,
 )
 from app.export.run import export
 from app.export.writers import encode_png, sheet_grid
@@ -26,9 +28,12 @@ __all__ = [
     "check_request",
     "encode_png",
     "export",
+    "folder_within",
     "frame_view",
     "missing",
     "plan_export",
+    "replaced_files",
     "sheet_grid",
     "shown_box",
+    "suited",
 ]

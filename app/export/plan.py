@@ -1,10 +1,9 @@
 """What an export will make, settled and checked before the first frame is drawn."""
 
 import importlib.util
-import re
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Final, Protocol
+from typing import Protocol
 
 import numpy as np
 
@@ -16,14 +15,12 @@ from app.document import (
     frame_times,
 )
 from app.errors import LissomError
+from app.export.destination import check_destination, frame_names, left_frames, replaced
 from app.export.framing import frame_view
 from app.export_formats import EXPORT_FORMATS
 from app.motion import Box, box_around
 from app.render import View
-from app.storage import check_writable
 from engine.arrays import Complexes
-
-_FRAME_NAME: Final = re.compile(r"frame_\d{4,}\.png")
 
 
 class Poses(Protocol):
@@ -87,10 +84,10 @@ class ExportPlan:
     loop: bool
     notices: tuple[str, ...] = ()
 
-    def frame_name(self, index: int) -> str:
-        """Return the file name of a picture of a PNG sequence; all have equally many digits."""
-        digits = max(4, len(str(self.first + len(self.times) - 1)))
-        return f"frame_{self.first + index:0{digits}d}.png"
+    @property
+    def names(self) -> list[str]:
+        """The file names of the pictures, where each is a file of its own."""
+        return frame_names(self.first, len(self.times))
 
 
 def check_request(document: Document, request: ExportRequest) -> None:
@@ -111,10 +108,7 @@ def check_request(document: Document, request: ExportRequest) -> None:
         )
     frame_times(document, frames, request.fps)
     name, format_ = settings.format, EXPORT_FORMATS[settings.format]
-    if format_.suffixes:
-        _check_file(request.out, name)
-    else:
-        _check_folder(request.out)
+    check_destination(request.out, name)
     if not format_.is_transparent and settings.background == "transparent":
         raise LissomError(
             f"{name} has no transparency: choose a background colour such as #ffffff, or the "
@@ -124,6 +118,14 @@ def check_request(document: Document, request: ExportRequest) -> None:
         raise LissomError(
             f"{name} needs the library {format_.library}, which is not installed: {missing(name)}"
         )
+
+
+def replaced_files(document: Document, request: ExportRequest) -> list[str]:
+    """Return the names of the files that an export would take the place of."""
+    settings = request.settings
+    frames = _frames(document, settings)
+    count = len(frame_times(document, frames, request.fps))
+    return replaced(request.out, settings.format, frame_names(frames.first, count))
 
 
 def missing(name: str) -> str:
@@ -163,7 +165,7 @@ def plan_export(document: Document, request: ExportRequest, poses: Poses) -> Exp
         fps=document.fps if request.fps is None else request.fps,
         loop=document.loop,
     )
-    return replace(plan, notices=tuple(_strange_frames(plan)))
+    return replace(plan, notices=_left_frames(plan))
 
 
 def _frames(document: Document, settings: ExportSettings) -> FrameRange:
@@ -180,33 +182,6 @@ def _reach(poses: Poses, times: tuple[float, ...]) -> Box:
     return box_around(np.array(corners))
 
 
-def _check_folder(out: Path) -> None:
-    if out.is_dir():
-        return
-    if out.exists():
-        raise LissomError(f"cannot write frames to {out}: it is a file; name a folder")
-    if out.suffix.lower() in _all_suffixes():
-        raise LissomError(
-            f"PNG frames go to a folder, but {out} is named like a file; name a folder, or choose "
-            "the format of the name"
-        )
-    if not out.parent.is_dir():
-        raise LissomError(f"cannot write {out}: the folder {out.parent} does not exist")
-
-
-def _check_file(out: Path, name: str) -> None:
-    check_writable(out)
-    suffixes = EXPORT_FORMATS[name].suffixes
-    if out.suffix.lower() in _all_suffixes().difference(suffixes):
-        raise LissomError(
-            f"{out} is not named like {name}; let the name end in {' or '.join(suffixes)}"
-        )
-
-
-def _all_suffixes() -> set[str]:
-    return {suffix for format_ in EXPORT_FORMATS.values() for suffix in format_.suffixes}
-
-
 def _colour(background: str) -> tuple[int, int, int] | None:
     if background == "transparent":
         return None
@@ -214,15 +189,12 @@ def _colour(background: str) -> tuple[int, int, int] | None:
     return red, green, blue
 
 
-def _strange_frames(plan: ExportPlan) -> list[str]:
+def _left_frames(plan: ExportPlan) -> tuple[str, ...]:
     """Tell of frames in the folder that this export will not write again."""
-    if EXPORT_FORMATS[plan.format].suffixes or not plan.out.is_dir():
-        return []
-    names = {path.name for path in plan.out.iterdir() if _FRAME_NAME.fullmatch(path.name)}
-    others = sorted(names.difference(plan.frame_name(index) for index in range(len(plan.times))))
+    others = [] if EXPORT_FORMATS[plan.format].suffixes else left_frames(plan.out, plan.names)
     if not others:
-        return []
+        return ()
     which = others[0] if len(others) == 1 else f"{others[0]} … {others[-1]}"
-    return [
-        f"{plan.out} holds {len(others)} frames of another export ({which}); they stay as they are"
-    ]
+    return (
+        f"{plan.out} holds {len(others)} frames of another export ({which}); they stay as they are",
+    )

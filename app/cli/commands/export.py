@@ -71,7 +71,7 @@ def _summary(plan: ExportPlan) -> str:
     count = len(plan.times)
     text = f"{plan.out}: {count} {'frame' if count == 1 else 'frames'} of {width} × {height} pixels"
     if not EXPORT_FORMATS[plan.format].suffixes:
-        names = dict.fromkeys((plan.frame_name(0), plan.frame_name(count - 1)))
+        names = dict.fromkeys((plan.names[0], plan.names[-1]))
         return f"{text}, {' to '.join(names)}"
     if plan.format == "spritesheet":
         columns, rows = sheet_grid(plan)

@@ -12,9 +12,9 @@ from app.editor.action import Action, do
 from app.editor.actions import editing, posing
 from app.editor.failures import report
 from app.editor.jobs import Job
-from app.editor.session import ExportRun, FileDialog, Project, Session
+from app.editor.session import ExportRun, FileDialog, Project, Question, Session
 from app.errors import LissomError
-from app.export import ExportRequest, check_request, plan_export
+from app.export import ExportRequest, check_request, plan_export, replaced_files, suited
 from app.export_formats import EXPORT_FORMATS
 from app.motion import Animation, Box, Reach, measure_reach, source_of
 
@@ -23,7 +23,7 @@ PREPARING, MEASURING = "Preparing the export", "Measuring the motion"
 
 def ask(session: Session) -> None:
     """Ask where to export to, and begin."""
-    _ask(session, lambda path: do(start, path))
+    _ask(session, lambda path: do(start_at, path))
 
 
 def choose(session: Session) -> None:
@@ -32,9 +32,26 @@ def choose(session: Session) -> None:
 
 
 def export_to(session: Session, out: Path) -> None:
-    """Note where the next export goes."""
-    if session.project:
-        session.project.export_to = out
+    """Note where the next export goes, as the person chose it."""
+    project = session.project
+    if project is not None:
+        project.export_to = out
+        if EXPORT_FORMATS[project.document.export.format].suffixes:
+            # The dialog has asked already whether it is to be replaced.
+            project.replaceable = out
+
+
+def start_at(session: Session, out: Path) -> None:
+    """Export to where the person chose."""
+    export_to(session, out)
+    start(session, out)
+
+
+def replace_files(session: Session, out: Path) -> None:
+    """Export, and replace what is there."""
+    if session.project is not None:
+        session.project.replaceable = out
+        start(session, out)
 
 
 def repeat(session: Session) -> None:
@@ -51,14 +68,11 @@ def destination(project: Project) -> Path | None:
     out = project.export_to
     if out is None:
         return None
-    suffixes = EXPORT_FORMATS[project.document.export.format].suffixes
-    if out.suffix.lower() in (suffixes or ("",)):
-        return out
-    return out.with_suffix(suffixes[0]) if suffixes else out.with_name(f"{out.stem} frames")
+    return suited(out, project.document.export.format)
 
 
 def start(session: Session, out: Path) -> None:
-    """Export into a folder or a file."""
+    """Export into a folder or a file; ask first if that takes the place of other files."""
     project = session.project
     if project is None or session.export is not None:
         return
@@ -66,6 +80,16 @@ def start(session: Session, out: Path) -> None:
     document, picture = project.document, project.picture.rgba
     request = ExportRequest(out=out, settings=document.export)
     check_request(document, request)
+    there = [] if project.replaceable == out else replaced_files(document, request)
+    if there:
+        what = "file" if len(there) == 1 else f"{len(there)} files"
+        which = there[0] if len(there) == 1 else f"{there[0]} … {there[-1]}"
+        session.dialog = Question(
+            title=f"Replace the {what}?",
+            text=f"{out.parent if out.name in there else out} holds {which} already.",
+            answers=(("Replace", do(replace_files, out)),),
+        )
+        return
     motion = project.full or project.sketch
     stage = motion.stage if motion.figure.domain is document.domain else None
 
@@ -76,7 +100,7 @@ def start(session: Session, out: Path) -> None:
 
     def done(run: ExportRun) -> None:
         session.export = run
-        project.export_to = out
+        project.export_to = project.replaceable = out
 
     session.jobs.put(
         Job(
@@ -94,6 +118,23 @@ def cancel(session: Session) -> None:
     if session.export is not None:
         session.export = None
         session.tell("The export was cancelled. Frames that were written stay.")
+
+
+def unless_running(session: Session, then: Action) -> None:
+    """Do something that ends an export, but ask first if one is under way."""
+    run = session.export
+    if run is None and PREPARING not in session.jobs.kinds:
+        then.apply(session)
+        return
+    done, total = (run.done, len(run.plan.times)) if run is not None else (0, 0)
+    how_far = f"{done} of {total} frames are drawn." if total else "It is being prepared."
+    is_one_file = run is not None and EXPORT_FORMATS[run.plan.format].suffixes
+    left = "No file is left" if is_one_file else "Frames that are written stay"
+    session.dialog = Question(
+        title="An export is running",
+        text=f"{how_far} {left} if it ends now.",
+        answers=(("Quit", then),),
+    )
 
 
 def advance(session: Session, run: ExportRun, done: int) -> None:

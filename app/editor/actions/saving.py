@@ -3,6 +3,7 @@
 from pathlib import Path
 
 from app.editor.action import Action, do
+from app.editor.actions import exporting
 from app.editor.failures import report
 from app.editor.jobs import Job
 from app.editor.session import FileDialog, Project, Question, Session
@@ -89,8 +90,8 @@ def give_up(session: Session) -> None:
 
 
 def quit_lissom(session: Session) -> None:
-    """Close the window, after a question if there are changes."""
-    unless_unsaved(session, do(leave))
+    """Close the window, after questions if an export is under way or there are changes."""
+    exporting.unless_running(session, do(unless_unsaved, do(leave)))
 
 
 def leave(session: Session) -> None:

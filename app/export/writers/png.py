@@ -43,11 +43,12 @@ class PngSequence(FrameWriter):
     """
 
     def __init__(self, plan: ExportPlan) -> None:
-        self._plan = plan
+        self._folder = plan.out
+        self._names = plan.names
 
     def encode(self, index: int, frame: Bytes) -> bytes:
         """Write a frame's file."""
         data = encode_png(frame)
-        path = self._plan.out / self._plan.frame_name(index)
+        path = self._folder / self._names[index]
         write_atomically(path, lambda file: file.write(data))
         return b""

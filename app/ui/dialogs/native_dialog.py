@@ -7,6 +7,7 @@ from imgui_bundle import portable_file_dialogs
 
 from app.editor import Action, FileDialog, Question, do
 from app.editor.actions import choose, close_dialog, show_dialog, use_own_dialogs
+from app.export import folder_within
 
 # Nobody finds and cancels a dialog so soon: one that is gone by then never came up. The system
 # tells no more of the two than that nothing was chosen.
@@ -73,6 +74,8 @@ def _filters(suffixes: tuple[str, ...]) -> list[str]:
 
 
 def _follow(dialog: FileDialog, chosen: Path) -> Action:
+    if dialog.wants_folder:
+        return do(choose, dialog, folder_within(chosen, dialog.name))
     path = dialog.path_of(str(chosen))
     if path == chosen or not path.exists():
         return do(choose, dialog, path)

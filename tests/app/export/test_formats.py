@@ -87,7 +87,7 @@ def chunk_before_the_data(png: bytes, kind: bytes) -> bytes:
 def test_pngs_say_that_their_colours_are_those_of_srgb(tmp_path, format_):
     plan = plan_for(tmp_path / "out", format_)
     run(plan)
-    path = plan.out / plan.frame_name(0) if format_ == "png" else plan.out
+    path = plan.out / plan.names[0] if format_ == "png" else plan.out
     assert chunk_before_the_data(path.read_bytes(), b"sRGB") == b"\0"
     with Image.open(path) as image:
         assert image.info["srgb"] == 0
@@ -303,8 +303,8 @@ def test_an_export_that_ends_early_leaves_whole_frames_only(tmp_path, format_, e
             list(steps)
     if format_ == "png":
         names = {path.name for path in plan.out.iterdir()}
-        assert names <= {plan.frame_name(index) for index in range(5)}
-        assert plan.frame_name(0) in names
+        assert names <= set(plan.names[:5])
+        assert plan.names[0] in names
         for name in names:
             assert_array_equal(rgba_frames(plan.out / name)[0], draw(int(name[6:10])))
     else:
@@ -325,7 +325,7 @@ def test_a_file_of_before_survives_an_export_that_fails(tmp_path):
 
 def test_a_frame_that_cannot_be_written_is_an_error(tmp_path):
     plan = plan_for(tmp_path / "frames", "png")
-    (plan.out / plan.frame_name(2)).mkdir(parents=True)
+    (plan.out / plan.names[2]).mkdir(parents=True)
     with pytest.raises(LissomError, match="frame_0002"):
         run(plan)
 

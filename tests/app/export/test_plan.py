@@ -40,7 +40,7 @@ def test_by_default_every_frame_shows_the_pictures_own_canvas(document, tmp_path
     assert plan.view.centre == complex(*SIZE) / 2
     assert plan.times == tuple(range(11))
     assert (plan.first, plan.fps, plan.background, plan.notices) == (0, 24.0, None, ())
-    assert plan.frame_name(7) == "frame_0007.png"
+    assert plan.names[7] == "frame_0007.png"
 
 
 def test_a_loop_leaves_out_its_last_frame_unless_it_is_asked_for(document, tmp_path):
@@ -55,14 +55,14 @@ def test_another_rate_numbers_its_pictures_on_from_the_first_frame(document, tmp
     plan = plan_of(document, tmp_path / "frames", fps=16.0, frames=FrameRange(4, 10))
     assert plan.times == (4, 5.5, 7, 8.5, 10)
     assert plan.fps == 16
-    assert [plan.frame_name(index) for index in (0, 4)] == ["frame_0004.png", "frame_0008.png"]
+    assert [plan.names[index] for index in (0, 4)] == ["frame_0004.png", "frame_0008.png"]
 
 
 @pytest.mark.parametrize(("last", "name"), [(9999, "frame_0001.png"), (10_000, "frame_00001.png")])
 def test_all_names_have_as_many_digits_as_the_longest_needs(document, tmp_path, last, name):
     plan = replace(plan_of(document, tmp_path / "frames"), first=1, times=(0.0,) * last)
-    assert plan.frame_name(0) == name
-    assert plan.frame_name(last - 1) == f"frame_{last}.png"
+    assert plan.names[0] == name
+    assert plan.names[last - 1] == f"frame_{last}.png"
 
 
 def test_fitted_frames_show_all_of_the_motion_on_the_pictures_own_pixels(document, tmp_path):

@@ -165,12 +165,25 @@ def test_a_name_that_its_suffix_makes_an_existing_one_is_asked_about(
     assert window.session.dialog is None
 
 
+def test_frames_land_in_a_folder_of_their_own_where_other_files_are(program, ask, chosen, tmp_path):
+    desktop = tmp_path / "Desktop"
+    desktop.mkdir()
+    (desktop / "letter.txt").write_text("")
+    ask(suffixes=(), name="walk frames", folder=desktop)
+    program.asked()
+    program.answer(str(desktop))
+    program.wait_for_the_window()
+    assert chosen == [desktop / "walk frames"]
+
+
 def test_a_folder_is_chosen_as_such(program, ask, chosen, tmp_path):
     ask(suffixes=(), name="walk frames")
     assert "--directory" in program.asked()
-    program.answer(f"{tmp_path}\n")
+    empty = tmp_path / "empty"
+    empty.mkdir()
+    program.answer(f"{empty}\n")
     program.wait_for_the_window()
-    assert chosen == [tmp_path]
+    assert chosen == [empty]
 
 
 def test_cancelling_the_dialog_closes_it(window, program, ask, chosen):

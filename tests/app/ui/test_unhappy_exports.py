@@ -3,12 +3,17 @@
 import errno
 import os
 
+import numpy as np
 import pytest
+from harness import MOST_FRAMES
+from imgui_bundle import hello_imgui
 from PIL import Image
 
 from app.document.settings import ExportSettings
 from app.editor.actions import exporting, files, keys, posing, saving
+from app.editor.session import Question
 from app.storage.assets import sample_images
+from app.ui.window import exporter
 
 BAR = sample_images() / "bar.png"
 SIZE = (120, 40)
@@ -16,22 +21,23 @@ FRAMES = 9
 
 
 @pytest.fixture
-def project(window, monkeypatch):
-    """A bar with a handle and nine frames, exported at one of them in each frame of the window."""
-    monkeypatch.setattr("app.ui.window.exporter.BUDGET", 0.0)
+def project(window):
+    """A bar with a handle and nine frames; each takes more than half of an export's share."""
     project = window.open(BAR)
     posing.add_handle(window.session, complex(*project.picture.size) / 2)
     keys.set_last_frame(window.session, FRAMES - 1)
     exporting.set_export(window.session, ExportSettings(size=SIZE))
     window.settle()
-    return project
+    window.clock.cost = 0.6 * exporter.BUDGET
+    yield project
+    window.clock.cost = 0.0
 
 
 def begin(window, out, count=3):
     """Start an export, and wait until some of its frames are drawn."""
     session = window.session
     window.act(exporting.start, out)
-    for _ in range(200):
+    for _ in range(MOST_FRAMES):
         if session.export is not None and session.export.done >= count:
             return
         session.jobs.settle()
@@ -40,7 +46,7 @@ def begin(window, out, count=3):
 
 
 def finish(window):
-    for _ in range(200):
+    for _ in range(MOST_FRAMES):
         if window.session.export is None:
             break
         window.frames()
@@ -55,6 +61,118 @@ def is_whole(path):
     with Image.open(path) as picture:
         picture.load()
         return picture.size == SIZE
+
+
+@pytest.mark.usefixtures("project")
+def test_window_gives_an_export_a_share_of_each_frame_and_never_idles_meanwhile(
+    window, tmp_path, monkeypatch
+):
+    session, awake = window.session, []
+    monkeypatch.setattr(hello_imgui, "request_refresh", lambda: awake.append(True))
+    saving.write(session, tmp_path / "saved.lissom", None)  # no autosave is to keep it awake
+    window.settle()
+    window.act(exporting.start, tmp_path / "frames")
+    session.jobs.settle()
+    session.toasts = []
+    steps = []
+    for _ in range(MOST_FRAMES):
+        awake.clear()
+        window.frames()
+        if session.export is None:
+            break
+        if steps:
+            assert session.jobs.kinds == ()
+            assert awake
+        steps.append(session.export.done)
+    assert steps[-1] == FRAMES
+    assert max(np.diff([0, *steps])) <= 2  # of them use the share up
+    session.toasts = []
+    awake.clear()
+    window.frames(2)
+    assert not awake
+
+
+def question(window):
+    """Return the open question, whatever it is about."""
+    dialog = window.session.dialog
+    assert isinstance(dialog, Question), dialog
+    return dialog
+
+
+def answer(window, text):
+    window.run(lambda robot: robot.item_click(f"//###dialog/{text}"))
+    window.frames(2)
+
+
+@pytest.mark.usefixtures("project")
+def test_frames_that_are_there_are_replaced_only_after_a_question(window, tmp_path):
+    out = tmp_path / "frames"
+    out.mkdir()
+    (out / "frame_0003.png").write_bytes(b"precious")
+    (out / "frame_0005.png").write_bytes(b"precious")
+    window.act(exporting.start, out)
+    window.settle()
+    assert window.session.export is None
+    assert question(window).title == "Replace the 2 files?"
+    assert "frame_0003.png … frame_0005.png" in question(window).text
+    answer(window, "Cancel")
+    assert (out / "frame_0003.png").read_bytes() == b"precious"
+    assert len(list(out.iterdir())) == 2
+    window.act(exporting.start, out)
+    answer(window, "Replace")
+    window.settle()
+    finish(window)
+    assert len(list(out.iterdir())) == FRAMES
+    assert all(map(is_whole, out.iterdir()))
+    # They are this export's own now.
+    window.act(exporting.repeat)
+    assert window.session.dialog is None
+    window.settle()
+    finish(window)
+
+
+def test_another_format_asks_before_it_replaces_a_file(window, project, tmp_path):
+    exporting.set_export(window.session, ExportSettings(format="gif", size=SIZE))
+    window.act(exporting.start_at, tmp_path / "bar.gif")
+    window.settle()
+    finish(window)
+    (tmp_path / "bar.webp").write_bytes(b"precious")
+    exporting.set_export(window.session, ExportSettings(format="webp", size=SIZE))
+    window.act(exporting.repeat)
+    assert question(window).title == "Replace the file?"
+    answer(window, "Cancel")
+    assert (tmp_path / "bar.webp").read_bytes() == b"precious"
+    assert project.export_to == tmp_path / "bar.gif"
+
+
+def test_dots_in_the_name_of_a_folder_are_no_endings(window, project, tmp_path):
+    exporting.export_to(window.session, tmp_path / "shot.010")
+    window.act(exporting.repeat)
+    window.settle()
+    finish(window)
+    assert [path.name for path in tmp_path.iterdir()] == ["shot.010"]
+    assert project.export_to == tmp_path / "shot.010"
+
+
+@pytest.mark.usefixtures("project")
+def test_quitting_asks_about_an_export_that_runs(window, tmp_path):
+    session = window.session
+    keys.set_last_frame(session, 2000)  # it is to last longer than the answers
+    saving.write(session, tmp_path / "saved.lissom", None)
+    window.settle()
+    begin(window, tmp_path / "frames")
+    window.act(saving.quit_lissom)
+    assert not session.quitting
+    assert question(window).title == "An export is running"
+    answer(window, "Cancel")
+    assert session.export is not None
+    window.act(saving.quit_lissom)
+    answer(window, "Quit")
+    assert session.quitting
+    session.quitting = False
+    hello_imgui.get_runner_params().app_shall_exit = False
+    exporting.cancel(session)
+    window.frames()
 
 
 def test_cancelled_frames_are_whole_and_the_next_export_works(window, project, tmp_path):
