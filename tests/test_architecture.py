@@ -99,3 +99,20 @@ def public_names(package: str) -> set[str]:
         if isinstance(node, ast.Assign) and ast.unparse(node.targets[0]) == "__all__":
             return set(ast.literal_eval(node.value))
     return set()
+
+
+def test_the_engine_is_tested_without_the_program():
+    support = {path.stem: path for path in (ROOT / "tests" / "support").glob("*.py")}
+    waiting = list((ROOT / "tests" / "engine").rglob("*.py"))
+    seen = set()
+    while waiting:
+        path = waiting.pop()
+        seen.add(path)
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            names = [alias.name for alias in node.names] if isinstance(node, ast.Import) else []
+            if isinstance(node, ast.ImportFrom):
+                names = [node.module or ""]
+            for name in names:
+                assert name.split(".")[0] != "app", f"{path} imports {name}"
+                if name in support and support[name] not in seen:
+                    waiting.append(support[name])

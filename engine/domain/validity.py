@@ -5,6 +5,7 @@ import numpy as np
 from engine.arrays import Complexes, Integers
 from engine.domain.build import MOST_TRIANGLES, Domain
 from engine.domain.meshing import Mesh
+from engine.domain.outline import LARGEST_OUTLINE
 from engine.errors import EngineError
 from engine.geometry import (
     box_diagonal,
@@ -14,8 +15,6 @@ from engine.geometry import (
     signed_area,
 )
 
-# A built outline and its cage have some 200 vertices; the cost of a map grows with their product.
-MOST_VERTICES = 500
 # Built meshes have as many triangles as are aimed at, but for a few percent.
 MOST_MESH_TRIANGLES = 2 * MOST_TRIANGLES
 # Farther out than any picture goes, and squares still have digits to spare.
@@ -43,9 +42,9 @@ def require_domain(domain: Domain) -> None:
     """
     for name, polygon in (("outline", domain.outline), ("cage", domain.cage)):
         _require_near(polygon, name)
-        if not 3 <= len(polygon) <= MOST_VERTICES:
+        if not 3 <= len(polygon) <= LARGEST_OUTLINE:
             raise EngineError(
-                f"The {name} must have 3 to {MOST_VERTICES:,} vertices, not {len(polygon):,}."
+                f"The {name} must have 3 to {LARGEST_OUTLINE:,} vertices, not {len(polygon):,}."
             )
     require_simple(domain.outline, "outline")
     require_around(domain.cage, domain.outline)

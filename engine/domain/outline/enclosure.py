@@ -21,6 +21,9 @@ NARROWEST_GAP = 0.002  # of the diagonal: below, two cages have no room in a gap
 # Vertices that are aimed at. Where an outline takes more, its margin is widened; where that is not
 # enough, gaps are closed, wider ones each time.
 MOST_VERTICES = 200
+# Vertices above which no outline is worth having: the cost of a map grows with their square.
+LARGEST_OUTLINE = 500
+WIDEST_GAP = 0.2  # of the diagonal: so wide ones are closed where else there would be more
 WIDENING, MOST_WIDENED = 1.42, 2.0
 MOST_DRAFTS = 6
 LEAST_ENCLOSED = 0.001  # of the subject's area: what is told
@@ -101,7 +104,7 @@ def enclose(mask: Booleans, *, detail: Detail) -> Enclosure:
 
 
 def _best_fit(field: DistanceField, margin: float, diagonal: float) -> _Fit:
-    """Return the first outline of few vertices, or else the one of fewest.
+    """Return the first outline of few vertices, or else the one of fewest that is bearable.
 
     The margin is widened while there are too many vertices; wider gaps are closed where that is
     not enough, or where no outline or cage fits. A draft that few vertices cannot follow is fitted
@@ -109,33 +112,36 @@ def _best_fit(field: DistanceField, margin: float, diagonal: float) -> _Fit:
     """
     widening, closing = 1.0, NARROWEST_GAP * diagonal
     corners = field.boundary()
-    best: _Fit | None = None
+    fits: list[_Fit] = []
     intricate: list[_Draft] = []
     for _ in range(MOST_DRAFTS):
         draft = _draft(field, margin, diagonal, widening=widening, closing=closing)
-        fit = None
         is_intricate = draft.candidates.fewest_edges > MOST_VERTICES
         if is_intricate:
             intricate.append(draft)
-        else:
-            fit = _fit(draft, corners)
-        if fit is not None and (best is None or len(fit.outline) < len(best.outline)):
-            best = fit
-        if best is not None and len(best.outline) <= MOST_VERTICES:
-            return best
+        fit = None if is_intricate else _fit(draft, corners)
+        if fit is not None:
+            if len(fit.outline) <= MOST_VERTICES:
+                return fit
+            fits.append(fit)
         if (is_intricate or fit is not None) and widening < MOST_WIDENED:
             widening = min(MOST_WIDENED, WIDENING * widening)
         else:
             closing *= 2
     intricate.sort(key=lambda draft: draft.candidates.fewest_edges)
-    while best is None and intricate:
-        best = _fit(intricate.pop(0), corners)
-    if best is None:
-        raise EngineError(
-            "The subject is too intricate for an outline; choose another detail, or close its "
-            "finest gaps in the picture."
-        )
-    return best
+    while not fits and intricate:
+        fit = _fit(intricate.pop(0), corners)
+        fits += [] if fit is None else [fit]
+    while min((len(fit.outline) for fit in fits), default=np.inf) > LARGEST_OUTLINE:
+        if closing > WIDEST_GAP * diagonal:
+            raise EngineError(
+                "The subject is too intricate for an outline; choose another detail, or close its "
+                "finest gaps in the picture."
+            )
+        fit = _fit(_draft(field, margin, diagonal, widening=widening, closing=closing), corners)
+        fits += [] if fit is None else [fit]
+        closing *= 2
+    return min(fits, key=lambda fit: len(fit.outline))
 
 
 def _told(draft: _Draft, area: int) -> tuple[str, ...]:

@@ -10,7 +10,7 @@ from scipy.spatial import cKDTree
 
 from engine.arrays import Bytes, Complexes
 from engine.domain.outline import enclosure, fitting
-from engine.domain.outline.enclosure import Detail, Enclosure, enclose
+from engine.domain.outline.enclosure import LARGEST_OUTLINE, Detail, Enclosure, enclose
 from engine.domain.outline.fitting import Candidates
 from engine.domain.picture.mask import subject_mask
 from engine.errors import EngineError
@@ -240,3 +240,9 @@ def test_limbs_that_are_fused_are_told() -> None:
     assert 80 <= share <= 95
     for apart in (pictures.limbs(12, 400), pictures.spiral(300, 4), pictures.star(7)):
         assert not any("fused" in notice for notice in outlined(apart).notices)
+
+
+def test_gaps_are_closed_before_an_outline_has_more_vertices_than_it_may() -> None:
+    result = outlined(pictures.spiral(600, 10))
+    assert len(result.outline) <= LARGEST_OUTLINE
+    assert any("fused" in notice for notice in result.notices)
