@@ -6,6 +6,7 @@ Imports: every room below but the command line and the panels.
 """
 
 from app.editor.action import Action, do
+from app.editor.failures import sentence
 from app.editor.jobs import Jobs
 from app.editor.session import (
     Boxing,
@@ -50,4 +51,5 @@ __all__ = [
     "Toast",
     "Turning",
     "do",
+    "sentence",
 ]

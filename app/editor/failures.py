@@ -6,10 +6,17 @@ from app.editor.session import Session
 from app.errors import EXPECTED_ERRORS
 
 
+def sentence(text: str) -> str:
+    """Return a text as a sentence; that of an exception begins in lower case, and does not end."""
+    begins_with_name = not text.partition(" ")[0].isalpha()
+    text = text if begins_with_name else text[:1].upper() + text[1:]
+    return text if text.endswith((".", "?", "…")) else f"{text}."
+
+
 def report(session: Session, what: str, error: Exception) -> None:
     """Show what failed, and why; a surprise comes with details to copy."""
     if isinstance(error, EXPECTED_ERRORS):
-        session.tell(f"{what}: {error}", tone="error")
+        session.tell(sentence(f"{what}: {error}"), tone="error")
     else:
         details = "".join(traceback.format_exception(error))
         session.tell(f"{what}.", tone="error", details=details)

@@ -23,7 +23,6 @@ class Use(NamedTuple):
 
     name: str
     value: float
-    sign: str  # of the inequality that keeps the bound
     bound: float
     share: float
 
@@ -40,9 +39,9 @@ class Extremes(NamedTuple):
         share_a = log(self.sigma_a) / log(bounds.sigma_a)
         share_b = log(max(self.sigma_b, TINY)) / log(bounds.sigma_b)
         return (
-            Use("k", self.k, "≤", bounds.k, self.k / bounds.k),
-            Use("σa", self.sigma_a, "≤", bounds.sigma_a, share_a),
-            Use("σb", self.sigma_b, "≥", bounds.sigma_b, share_b),
+            Use("k", self.k, bounds.k, self.k / bounds.k),
+            Use("σa", self.sigma_a, bounds.sigma_a, share_a),
+            Use("σb", self.sigma_b, bounds.sigma_b, share_b),
         )
 
 

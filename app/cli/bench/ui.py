@@ -27,7 +27,7 @@ from app.ui.window import SIZE, Offscreen, Window, has_display
 from engine.domain import mesh_inside
 
 SAMPLE, PICTURE = "giraffe.lissom", "dragon.png"
-TABS = ("Handle", "Deform", "Distortion", "Domain", "Export")
+TABS = ("Handle", "Deform", "Distortion", "Mesh", "Export")
 REFRESH = 1 / 60  # seconds from frame to frame of a screen
 REACH = 40.0  # pixels around a handle in which it is dragged
 PATIENCE = 120.0  # seconds that anything may take

@@ -10,7 +10,7 @@ from pathlib import Path
 from app.document import ExportSettings, settings_commands
 from app.editor.action import Action, do
 from app.editor.actions import editing, posing
-from app.editor.failures import report
+from app.editor.failures import report, sentence
 from app.editor.jobs import Job
 from app.editor.session import ExportRun, FileDialog, Project, Question, Session
 from app.errors import LissomError
@@ -156,7 +156,7 @@ def finish(session: Session, run: ExportRun, notices: Sequence[str]) -> None:
         action=do(open_folder, folder),
     )
     for notice in (*notices, *run.plan.notices):
-        session.tell(notice[:1].upper() + notice[1:] + ".")
+        session.tell(sentence(notice))
 
 
 def fail(session: Session, error: Exception) -> None:
@@ -196,7 +196,7 @@ def keep_reach(session: Session) -> None:
 
     def failed(error: Exception) -> None:
         project.unreachable = source
-        report(session, "The motion's reach could not be measured", error)
+        report(session, "The extent of the motion could not be measured", error)
 
     session.jobs.put(
         Job(

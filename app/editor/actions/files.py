@@ -10,7 +10,7 @@ from app.document import Document, History, Meshing
 from app.editor.action import do
 from app.editor.actions import playback, saving
 from app.editor.actions.saving import PROJECT
-from app.editor.failures import report
+from app.editor.failures import report, sentence
 from app.editor.jobs import Job
 from app.editor.session import FileDialog, Project, Question, Session
 from app.motion import Figure, Motion
@@ -102,10 +102,10 @@ def open_dropped(session: Session, paths: Sequence[Path]) -> None:
     usable = [path for path in paths if path.suffix.lower() in OPENABLE and not path.is_dir()]
     if usable:
         if len(paths) > 1:
-            session.tell(f"Of {len(paths)} files, {usable[0].name} is opened: one at a time.")
+            session.tell(f"Opened {usable[0].name}; only one file at a time.")
         open_file(session, usable[0])
     elif paths:
-        what = "a folder" if paths[0].is_dir() else "no picture and no project"
+        what = "a folder" if paths[0].is_dir() else "neither a picture nor a project"
         kinds = "a picture (PNG, JPEG, WebP, …)"
         session.tell(f"{paths[0].name} is {what}. Drop {kinds} or a {PROJECT} file.", tone="error")
 
@@ -141,7 +141,7 @@ def show(session: Session, path: Path, opened: Opened) -> None:
     elif len(opened.document.keys) > 1:
         playback.toggle_play(session)
     for notice in opened.notices:
-        session.tell(notice[:1].upper() + notice[1:] + ".")
+        session.tell(sentence(notice))
 
 
 def _read(path: Path, meshing: Meshing) -> Opened:
@@ -169,10 +169,10 @@ def offer_recovery(session: Session) -> None:
     if leftovers:
         session.dialog = Question(
             title="Unsaved work",
-            text="Lissom was not closed properly last time. Its unsaved work was kept.",
+            text="Lissom ended unexpectedly last time. Your unsaved work was kept.",
             answers=(
-                ("Open it", do(recover, leftovers[0])),
-                ("Throw it away", do(throw_away, leftovers[0])),
+                ("Open", do(recover, leftovers[0])),
+                ("Discard", do(throw_away, leftovers[0])),
             ),
         )
 
@@ -192,7 +192,7 @@ def recover(session: Session, path: Path) -> None:
 def throw_away(session: Session, path: Path) -> None:
     """Delete unsaved work."""
     remove_leftover(path)
-    session.tell("The unsaved work was thrown away.")
+    session.tell("The unsaved work was discarded.")
 
 
 def _show_recovered(session: Session, path: Path, opened: Opened) -> None:
@@ -206,4 +206,4 @@ def _show_recovered(session: Session, path: Path, opened: Opened) -> None:
     )
     session.autosave.write(opened.document)
     remove_leftover(path)
-    session.tell("This is the work that was not saved. Save it now.", tone="good")
+    session.tell("This is your unsaved work. Save it to keep it.", tone="good")

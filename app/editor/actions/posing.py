@@ -162,7 +162,7 @@ def insert_key(session: Session) -> None:
             )
         )
     else:
-        session.tell(f"Frame {frame} has a key already; posing changes it.")
+        session.tell(f"Frame {frame} has a key already. Drag a handle to change it.")
 
 
 def _insert(session: Session, project: Project, document: Document, frame: int, pose: Pose) -> None:
@@ -238,7 +238,7 @@ def _follow(session: Session, project: Project, grab: Grab) -> None:
 
     def failed(error: Exception) -> None:
         _end(project, grab)
-        report(session, "This pose could not be solved", error)
+        report(session, "This pose could not be found", error)
 
     session.jobs.put(Job(kind=POSING, work=work, done=done, failed=failed, urgent=True))
 

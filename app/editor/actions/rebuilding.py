@@ -4,7 +4,7 @@ from dataclasses import replace
 
 from app.document import set_bounds
 from app.editor.actions import editing, posing
-from app.editor.failures import report
+from app.editor.failures import report, sentence
 from app.editor.jobs import Job
 from app.editor.session import Project, Session
 from app.solving import Renewal, go_on
@@ -78,7 +78,7 @@ def _go_on(session: Session, project: Project, renewal: Renewal) -> None:
         return
     if project.document is not renewal.before:
         project.renewal = None
-        session.tell("The project changed meanwhile, so its keys were not solved again.")
+        session.tell("The keys were not posed again: the project changed meanwhile. Start again.")
         return
     if renewal.is_over:
         _keep(session, project, renewal)
@@ -89,7 +89,7 @@ def _go_on(session: Session, project: Project, renewal: Renewal) -> None:
     def failed(error: Exception) -> None:
         project.renewal = None
         builds = renewal.meshing is not None
-        report(session, f"The {'domain' if builds else 'bounds'} stayed as before", error)
+        report(session, f"The {'mesh was' if builds else 'limits were'} not changed", error)
 
     session.jobs.put(
         Job(
@@ -107,12 +107,12 @@ def _keep(session: Session, project: Project, renewal: Renewal) -> None:
     if renewal.domain is not None:
         project.loose = project.meshing = None
     for notice in renewal.notices:
-        session.tell(notice[:1].upper() + notice[1:] + ".")
+        session.tell(sentence(notice))
     if renewal.outside:
         frames = ", ".join(map(str, renewal.outside))
         poses = "pose" if len(renewal.outside) == 1 else "poses"
         session.tell(
-            f"No way into the bounds was found for the {poses} at frame {frames}. "
+            f"The {poses} at frame {frames} could not be brought within the limits. "
             "Move the handles there nearer to the drawing, or undo.",
             tone="error",
         )

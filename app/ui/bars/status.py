@@ -8,6 +8,7 @@ from app.editor import Action, Project, Session
 from app.reports import Extremes
 from app.ui.style import Look, tip
 
+WORDS = {"k": "Shear", "σa": "Stretch", "σb": "Squeeze"}
 SLOW = 0.3  # seconds after which a job is told of; shorter ones would only flicker
 AT_BOUND = 0.97  # of a bound: so much of it is used where a pose cannot go on
 
@@ -51,7 +52,7 @@ def facts(session: Session) -> list[Fact]:
         facts.append(Fact(f"{count} handle{'' if count == 1 else 's'}", "Handles of this drawing"))
     if session.solver_seconds:
         milliseconds = 1e3 * session.solver_seconds
-        facts.append(Fact(f"solver {milliseconds:.0f} ms", "What the last step of a pose took"))
+        facts.append(Fact(f"pose {milliseconds:.0f} ms", "What the last step of a pose took"))
     return [*facts, Fact(f"{imgui.get_io().framerate:.0f} fps", "Frames per second")]
 
 
@@ -70,10 +71,13 @@ def _distortion(project: Project) -> Fact | None:
     uses = extremes.uses(document.bounds)
     most = max(uses, key=lambda use: use.share)
     return Fact(
-        f"{most.name} {most.value:.2f} {most.sign} {most.bound:.2f}",
+        f"{WORDS[most.name]} {most.value:.2f}, limit {most.bound:.2f}",
         "\n".join(
-            ["Largest distortion of the whole shape, and its bound", ""]
-            + [f"{use.name} {use.value:.3f} {use.sign} {use.bound:.3f}" for use in uses]
+            ["Largest distortion of the whole shape, and its limit", ""]
+            + [
+                f"{WORDS[use.name]} ({use.name}) {use.value:.3f}, limit {use.bound:.3f}"
+                for use in uses
+            ]
         ),
         warns=most.share > AT_BOUND,
     )

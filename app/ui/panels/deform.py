@@ -46,7 +46,7 @@ LIMITS = (
         "k",
         "Shear",
         "k",
-        "Conformal distortion: 0 keeps every angle, 1 is a collapse",
+        "How far angles change: 0 keeps them, 1 is a collapse",
         Scale(left=0.0, right=0.98),
     ),
     Limit(
@@ -77,10 +77,10 @@ def draw(session: Session, look: Look) -> list[Action]:
     bounds = _wanted_bounds(project)
     reached, what = _reached(project)
     actions = _heading_with_reset(look, bounds)
-    small(look, f"Nothing goes beyond them. Bars: what {what} uses.")
+    small(look, f"Poses never exceed these limits. Bars: what {what} uses.")
     for limit in LIMITS:
         actions += _limit(look, limit, bounds, reached)
-    heading(look, "Solver")
+    heading(look, "Pose")
     _solver(session, look, project)
     heading(look, "Keys")
     actions += _keys(session, look, project)
@@ -103,14 +103,14 @@ def _reached(project: Project) -> tuple[tuple[Certificate, ...], str]:
 
 
 def _heading_with_reset(look: Look, bounds: Bounds) -> list[Action]:
-    heading(look, "Bounds", framed=True)
+    heading(look, "Limits", framed=True)
     at_end(1.15 * imgui.get_frame_height())
     is_default = bounds == Bounds()
     if icon_button(
         look,
         icons.ICON_FA_ARROW_ROTATE_LEFT,
         "reset bounds",
-        "Set the bounds that new drawings have",
+        "Back to the limits of new drawings",
         enabled=not is_default,
     ):
         return [do(rebuilding.choose_bounds, Bounds())]
@@ -137,7 +137,7 @@ def _limit(
     imgui.same_line(0, imgui.get_style().item_inner_spacing.x)
     imgui.set_next_item_width(FILL)
     entered = number(f"bound {limit.field}", bound)
-    tip(f"{limit.hint}: the bound")
+    tip(f"{limit.hint}: type its limit")
     imgui.set_cursor_pos_y(imgui.get_cursor_pos_y() - 0.5 * imgui.get_style().item_spacing.y)
     moved = track(
         look,
@@ -148,7 +148,7 @@ def _limit(
         colour=colour,
         used=used,
     )
-    tip(f"{limit.hint}: drag the bound")
+    tip(f"{limit.hint}: drag its limit")
     imgui.set_cursor_pos_y(imgui.get_cursor_pos_y() - 0.5 * imgui.get_style().item_spacing.y)
     if entered is not None:
         return [do(rebuilding.enter_bound, bounds, limit.field, entered)]
@@ -174,12 +174,12 @@ def _solver(session: Session, look: Look, project: Project) -> None:
         small(look, f"{1000 * session.solver_seconds:.0f} ms for the last steps")
         return
     if shown is None or pose is None:
-        _status(look, icons.ICON_FA_FILM, palette.dim, "An in-between of two keys")
-        small(look, "It stays within what the two keys have.")
+        _status(look, icons.ICON_FA_FILM, palette.dim, "An in-between")
+        small(look, "It stays within the distortion of its two keys.")
         return
     lags = [lag for lag in shown.lags.values() if lag > ARRIVED]
     if not pose.certificate.certified:
-        _status(look, icons.ICON_FA_TRIANGLE_EXCLAMATION, palette.danger, "Outside the bounds")
+        _status(look, icons.ICON_FA_TRIANGLE_EXCLAMATION, palette.danger, "Beyond the limits")
     elif lags:
         count = "1 handle is" if len(lags) == 1 else f"{len(lags)} handles are"
         _status(look, icons.ICON_FA_HAND, palette.warning, "Held back by the bounds")
@@ -187,7 +187,7 @@ def _solver(session: Session, look: Look, project: Project) -> None:
     else:
         _status(look, icons.ICON_FA_CIRCLE_CHECK, palette.good, "Every handle is in its place")
     if pose.certificate.certified:
-        small(look, "Proven: nothing folds, and no point goes beyond the bounds.")
+        small(look, "Proven: nothing folds, and no point exceeds the limits.")
 
 
 def _status(look: Look, icon: str, colour: imgui.ImVec4, text: str) -> None:
@@ -238,9 +238,9 @@ def _solving(project: Project) -> list[Action]:
         return [do(rebuilding.cancel)] if imgui.button("Cancel###stop", ImVec2(FILL, 0)) else []
     is_possible = project.renewal is None and bool(project.document.handles)
     imgui.begin_disabled(not is_possible)
-    is_pressed = imgui.button("Solve all keys again", ImVec2(FILL, 0))
+    is_pressed = imgui.button("Pose all keys again", ImVec2(FILL, 0))
     imgui.end_disabled()
     if is_pressed:
         return [do(rebuilding.solve_again)]
-    tip("Pull every key's handles to their places again, within the bounds of now")
+    tip("Pull the handles of every key to their targets again, within the limits")
     return []

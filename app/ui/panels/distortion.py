@@ -18,8 +18,8 @@ from engine.arrays import Floats
 from engine.domain.meshing import Mesh
 from engine.maps import Bounds
 
-HEAT_MAPS = (("none", "Off"), ("k", "k"), ("sigma_a", "σa"), ("sigma_b", "σb"))
-NAMES = {"k": "Shear k", "sigma_a": "Stretch σa", "sigma_b": "Squeeze σb"}
+HEAT_MAPS = (("none", "Off"), ("k", "Shear"), ("sigma_a", "Stretch"), ("sigma_b", "Squeeze"))
+NAMES = {"k": "Shear (k)", "sigma_a": "Stretch (σa)", "sigma_b": "Squeeze (σb)"}
 KINDS = (("relative", "Relative"), ("absolute", "Absolute"))
 BINS = 48
 HISTOGRAM, STRIP = 4.6, 0.45  # em
@@ -51,7 +51,7 @@ def draw(session: Session, look: Look) -> list[Action]:
     _spread(look, project, project.shown, "k" if heat_map == "none" else heat_map)
     heading(look, "Over time")
     if len(project.document.keys) < 2:
-        small(look, "Make a second key: then this shows how the in-betweens distort.")
+        small(look, "Make a second key to see how the in-betweens distort.")
         return actions
     return [*actions, *_over_time(session, look, project)]
 
@@ -127,7 +127,7 @@ def _spread(look: Look, project: Project, shown: Shown, heat_map: HeatMap) -> No
         _limit(look, high, vertical=True)
         implot.end_plot()
     name = NAMES[heat_map]
-    small(look, f"{name} over the area: at worst {histogram.worst:.2f}, the bound is {high:.2f}")
+    small(look, f"{name} over the area: {histogram.worst:.2f} at worst, limit {high:.2f}.")
 
 
 def _bars(look: Look, histogram: _Histogram, colours: tuple[int, ...]) -> None:
@@ -164,9 +164,9 @@ def _over_time(session: Session, look: Look, project: Project) -> list[Action]:
     actions += _plot(session, look, curves, upper, height)
     actions += _plot(session, look, curves, lower, height + FRAMES * look.em)
     if session.curves == "relative":
-        small(look, "Each point relative to its larger key. Red: the bound of the theory.")
+        small(look, "Each point relative to its larger key. Red: theoretical limit.")
     else:
-        small(look, "Red: the bounds that poses keep to.")
+        small(look, "Red: the limits of poses.")
     gap = imgui.get_style().item_spacing.x
     half = ImVec2((imgui.get_content_region_avail().x - gap) / 2, 0)
     imgui.begin_disabled(is_stale)
@@ -267,7 +267,7 @@ def _plot(session: Session, look: Look, curves: Curves, plot: _Plot, height: flo
     if is_over and imgui.is_mouse_clicked(imgui.MouseButton_.left):
         actions.append(do(playback.seek, round(implot.get_plot_mouse_pos().x)))
     implot.end_plot()
-    tip("Click to go to a frame")
+    tip("Click to go to that frame")
     return actions
 
 

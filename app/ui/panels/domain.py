@@ -27,8 +27,8 @@ DETAILS = (("coarse", "Coarse"), ("normal", "Normal"), ("fine", "Fine"))
 TRIANGLES = Scale(left=2_000, right=1_000_000, logarithmic=True)
 TOLERANCES = Scale(left=0, right=120)
 SHOWN: tuple[tuple[Overlay, str, str], ...] = (
-    ("outline", "Outline", "The edge of the domain, which moves with the drawing"),
-    ("cage", "Cage", "The polygon around the drawing at rest that all maps are made of"),
+    ("outline", "Outline", "The edge of the shape, which moves with the drawing"),
+    ("cage", "Cage", "The polygon around the drawing at rest that moves every point inside"),
     ("wireframe", "Mesh", "The triangles that the drawing is cut into"),
 )
 
@@ -42,7 +42,7 @@ def draw(session: Session, look: Look) -> list[Action]:
     actions = _toggles(session.overlays)
     heading(look, "Facts")
     _facts(look, project)
-    heading(look, "Build it again")
+    heading(look, "Rebuild")
     document = project.document
     draft = project.meshing or document.meshing
     chosen = _settings(look, project, draft)
@@ -59,9 +59,9 @@ def draw(session: Session, look: Look) -> list[Action]:
         text = f"{icons.ICON_FA_ARROWS_ROTATE}  Rebuild###rebuild"
         if main_button(look, text, FILL, enabled=is_new):
             actions.append(do(rebuilding.rebuild))
-        if is_new and imgui.button("Keep it as it is###forget", ImVec2(FILL, 0)):
+        if is_new and imgui.button("Revert###forget", ImVec2(FILL, 0)):
             actions.append(do(viewing.draft_meshing, document.meshing))
-    small(look, "Handles stay, and every key is solved again. Undo brings all of it back.")
+    small(look, "Handles stay, and every key is posed again. Undo brings all of it back.")
     return actions
 
 
@@ -88,7 +88,7 @@ def _facts(look: Look, project: Project) -> None:
     _fact(look, "Cage", f"{len(domain.cage):,} points")
     _fact(look, "Triangles", f"{len(domain.mesh.triangles):,}")
     _fact(look, "Vertices", f"{len(domain.mesh.vertices):,}")
-    _fact(look, "Flattest", f"{_smallest_angle(domain.mesh):.1f}° is the smallest angle")
+    _fact(look, "Least angle", f"{_smallest_angle(domain.mesh):.1f}°")
     imgui.pop_style_var()
 
 
@@ -109,14 +109,14 @@ def _settings(look: Look, project: Project, draft: Meshing) -> Meshing:
             draft = replace(draft, detail=detail)
     tip("How closely the outline follows the drawing")
     label(look, "Triangles")
-    hint = "How many triangles to aim at: more bend more smoothly, fewer draw faster"
+    hint = "How many triangles to aim at: more bend smoothly, fewer draw faster"
     entered = slider(look, "triangles", draft.triangles, TRIANGLES, text="%.0f", hint=hint)
     if entered is not None:
         digits = 0 if entered.is_final and entered.value < 10_000 else -3
         draft = replace(draft, triangles=int(round(entered.value, digits)))
     if project.is_opaque:
         label(look, "Tolerance")
-        hint = "How far the background may vary in colour, in levels of 255"
+        hint = "How far the background may vary in colour, 0 to 255"
         entered = slider(look, "tolerance", draft.tolerance, TOLERANCES, text="%.0f", hint=hint)
         if entered is not None:
             draft = replace(draft, tolerance=round(entered.value))

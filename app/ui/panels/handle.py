@@ -117,10 +117,10 @@ def _details(look: Look, project: Project, handle: Handle) -> list[Action]:
         actions.append(do(editing.edit, command))
     placed = _point(
         look,
+        project,
         "At rest",
-        "rest",
         handle.position,
-        "Where it sits on the drawing as it was, in pixels from the lower left corner",
+        "Where it sits on the drawing at rest, in pixels from the upper left corner",
     )
     if placed is not None:
         actions.append(do(editing.edit, handle_commands.move_handle(handle.id, placed)))
@@ -135,7 +135,11 @@ def _wish(look: Look, project: Project, handle: Handle) -> list[Action]:
         return actions
     target = shown.pose.targets[handle.id]
     wished = _point(
-        look, "Target", "target", target.position, "Where this pose wants it, in the same pixels"
+        look,
+        project,
+        "Target",
+        target.position,
+        "Where this pose wants it, in pixels from the upper left corner",
     )
     if wished is not None:
         actions.append(do(posing.wish, {handle.id: replace(target, position=wished)}))
@@ -155,7 +159,7 @@ def _turn(look: Look, project: Project, handle: Handle, target: Target) -> list[
     label(look, "Turn")
     is_turned = target.rotation is not None
     changed, turns = imgui.checkbox("##turns", is_turned)
-    tip("Turn the shape at this handle by an angle; otherwise it turns freely")
+    tip("Turn the shape at this handle by an angle, or let it turn freely")
     if changed and not turns:
         return [do(posing.free_turn, handle.id)]
     if changed and project.shown is not None:
@@ -168,27 +172,28 @@ def _turn(look: Look, project: Project, handle: Handle, target: Target) -> list[
         return []
     imgui.set_next_item_width(FILL)
     entered = number("angle", math.degrees(target.rotation), "%.1f°")
-    tip("Counter-clockwise, in degrees; Alt+drag turns it in the viewport")
+    tip("Counter-clockwise, in degrees; drag the ring around the handle to turn it")
     if entered is None:
         return []
     return [do(posing.wish, {handle.id: replace(target, rotation=math.radians(entered))})]
 
 
-def _point(look: Look, text: str, name: str, place: complex, hint: str) -> complex | None:
-    """Draw two fields for a place; return it where one was entered."""
+def _point(look: Look, project: Project, text: str, place: complex, hint: str) -> complex | None:
+    """Draw two fields for a place, as people count pixels: y down; return it if one was entered."""
+    height = project.picture.size[1]
     label(look, text)
     gap = imgui.get_style().item_inner_spacing.x
     each = (imgui.get_content_region_avail().x - gap) / 2
     imgui.set_next_item_width(each)
-    x = number(f"{name} x", place.real, "%.1f")
+    x = number(f"{text.lower()} x", place.real, "%.1f")
     tip(hint)
     imgui.same_line(0, gap)
     imgui.set_next_item_width(each)
-    y = number(f"{name} y", place.imag, "%.1f")
+    y = number(f"{text.lower()} y", height - place.imag, "%.1f")
     tip(hint)
     if x is None and y is None:
         return None
-    return complex(place.real if x is None else x, place.imag if y is None else y)
+    return complex(place.real if x is None else x, place.imag if y is None else height - y)
 
 
 def _anchor(look: Look, project: Project, chosen: list[Handle]) -> list[Action]:
@@ -196,15 +201,16 @@ def _anchor(look: Look, project: Project, chosen: list[Handle]) -> list[Action]:
     document = project.document
     holder = next((h.name for h in document.handles if h.position == document.anchor), None)
     if document.anchor is None:
-        small(look, "In-betweens follow the middle of the shape.")
+        small(look, "Automatic: in-betweens follow the middle of the shape.")
     elif holder is not None:
         small(
             look,
-            f"In-betweens follow “{shortened(holder, 12 * look.em)}”: its way is the straightest.",
+            f"In-betweens follow “{shortened(holder, 12 * look.em)}”: it goes the straightest way.",
         )
     else:
         anchor = document.anchor
-        small(look, f"In-betweens follow the point {anchor.real:.0f}, {anchor.imag:.0f}.")
+        y = project.picture.size[1] - anchor.imag
+        small(look, f"In-betweens follow the point {anchor.real:.0f}, {y:.0f}.")
     is_chosen = len(chosen) == 1 and chosen[0].position != document.anchor
     gap = imgui.get_style().item_spacing.x
     half = ImVec2((imgui.get_content_region_avail().x - gap) / 2, 0)
@@ -216,7 +222,7 @@ def _anchor(look: Look, project: Project, chosen: list[Handle]) -> list[Action]:
     tip("Let in-betweens follow the selected handle", "Ctrl+click")
     imgui.same_line()
     imgui.begin_disabled(document.anchor is None)
-    if imgui.button("Choose for me###clear anchor", half):
+    if imgui.button("Automatic anchor###clear anchor", half):
         actions.append(do(editing.edit, settings_commands.set_anchor(None)))
     imgui.end_disabled()
     return actions

@@ -297,7 +297,7 @@ BINDINGS: dict[str, Binding] = {
         menu="Time",
         keys=(Key.i,),
         icon=icons.ICON_FA_DIAMOND,
-        hint="Hold the pose that is shown in a key",
+        hint="Keep this pose in a key",
         parted=True,
     ),
     "loop": Binding(
@@ -306,7 +306,7 @@ BINDINGS: dict[str, Binding] = {
         menu="Time",
         keys=(Key.l,),
         icon=icons.ICON_FA_REPEAT,
-        hint="Loop: the end leads back to the beginning",
+        hint="Loop: the end leads back to the start",
         active=lambda session: session.project is not None and session.project.document.loop,
     ),
     "auto-key": Binding(
@@ -315,19 +315,19 @@ BINDINGS: dict[str, Binding] = {
         menu="Time",
         keys=(Key.k,),
         icon=icons.ICON_FA_KEY,
-        hint="Posing makes and changes keys by itself",
+        hint="Posing makes and changes keys",
         active=lambda session: session.preferences.auto_key,
         in_bar=True,
     ),
     "work start": Binding(
-        label="Start work range here",
+        label="Start playback range here",
         action=do(keys.start_work_here),
         menu="Time",
         keys=(Key.b,),
         parted=True,
     ),
     "work end": Binding(
-        label="End work range here", action=do(keys.end_work_here), menu="Time", keys=(Key.n,)
+        label="End playback range here", action=do(keys.end_work_here), menu="Time", keys=(Key.n,)
     ),
     "fit time": Binding(
         label="Fit timeline",

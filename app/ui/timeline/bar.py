@@ -16,11 +16,11 @@ from app.ui.timeline.track import in_seconds
 
 # Names and what they mean.
 VARIANTS: dict[Variant, tuple[str, str]] = {
-    "metric": ("Metric", "The usual one: stretch and shear stay within those of the keys"),
-    "nu": ("Nu (ν)", "Shear stays within the keys' at every point, stretch nearly so"),
-    "scaled-eta": ("Scaled eta (η)", "As eta, held within the bounds of the keys"),
-    "eta": ("Eta (η)", "May leave the bounds of the keys; to compare with"),
-    "linear": ("Linear", "Every point goes straight, and the shape may fold; to compare with"),
+    "metric": ("Metric – smooth, bounded", "Stretch and shear stay within those of the keys"),
+    "nu": ("Nu (ν) – even shear", "Shear stays within that of the keys, stretch nearly so"),
+    "scaled-eta": ("Scaled eta (η) – bounded", "As eta, held within the limits of the keys"),
+    "eta": ("Eta (η) – may overshoot", "May leave the limits of the keys; for comparison"),
+    "linear": ("Linear – may fold", "Every point goes straight; for comparison"),
 }
 GAP, TIGHT, WIDE = 0.35, 0.1, 1.1  # em between what belongs together closely, and less so
 FRAMES = 13.0  # em: room that the numbers of frames need
@@ -90,7 +90,7 @@ def _key_buttons(session: Session, look: Look, project: Project) -> list[Action]
     imgui.same_line(0, TIGHT * look.em)
     actions += bound_button(session, look, "auto-key")
     imgui.same_line(0, TIGHT * look.em)
-    if icon_button(look, icons.ICON_FA_ELLIPSIS, "more", "Reverse, scale time, work range"):
+    if icon_button(look, icons.ICON_FA_ELLIPSIS, "more", "Reverse, scale time, playback range"):
         imgui.open_popup("menu of time")
     return actions + time_menu(look, project)
 
@@ -111,7 +111,7 @@ def _frame(session: Session, look: Look, project: Project) -> list[Action]:
     changed, wanted = imgui.drag_int(
         "##frame", frame, 0.2, document.frames.first, document.frames.last
     )
-    tip("The present frame: drag, or double-click to type")
+    tip("The present frame: drag, or click to type")
     if changed:
         actions.append(do(playback.scrub, wanted))
     imgui.same_line(0, GAP * look.em)
@@ -120,7 +120,7 @@ def _frame(session: Session, look: Look, project: Project) -> list[Action]:
     imgui.set_next_item_width(3.8 * look.em)
     flags = imgui.InputTextFlags_.enter_returns_true
     changed, last = imgui.input_int("##last", document.frames.last, 0, 0, flags)
-    tip("The last frame: type, or drag the end on the track")
+    tip("The last frame: type it, or drag the end on the track")
     if changed and document.frames.first < last <= LAST_FRAME:
         actions.append(do(keys.set_last_frame, last))
     imgui.same_line(0, 0.8 * look.em)
@@ -162,7 +162,7 @@ def _width(look: Look, parts: list[tuple[float, Callable[[], list[Action]]]]) ->
 def _fps(project: Project) -> list[Action]:
     fps = project.document.fps
     changed, wanted = imgui.drag_float("##fps", fps, 0.1, SLOWEST, FASTEST, "%.4g fps")
-    tip("Frames per second: drag, or double-click to type")
+    tip("Frames per second: drag, or click to type")
     return [do(keys.set_fps, round(wanted, 3))] if changed and wanted > 0 else []
 
 
@@ -211,7 +211,7 @@ def _onion_skin(session: Session, look: Look) -> list[Action]:
 def _variant(project: Project) -> list[Action]:
     actions: list[Action] = []
     current = project.document.variant
-    if imgui.begin_combo("##variant", VARIANTS[current][0]):
+    if imgui.begin_combo("##variant", VARIANTS[current][0].split(" –")[0]):
         for variant, (name, what) in VARIANTS.items():
             if imgui.selectable(name, variant == current)[0]:
                 actions.append(do(keys.set_variant, variant))

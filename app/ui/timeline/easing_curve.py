@@ -150,7 +150,7 @@ def _control_points(
         imgui.set_next_item_allow_overlap()
         imgui.invisible_button(f"control {index + 1}", ImVec2(2 * reach, 2 * reach))
         hot = imgui.is_item_hovered() or imgui.is_item_active()
-        tip("Drag: both control points stay inside, so that in-betweens keep their bounds")
+        tip("Drag: both points stay inside the square, so that in-betweens keep their limits")
         draw_list.add_circle_filled(centre, 0.5 * em if hot else 0.42 * em, ink(palette.desk))
         draw_list.add_circle_filled(
             centre, 0.4 * em if hot else 0.32 * em, ink(palette.accent if hot else palette.text)
@@ -171,14 +171,14 @@ def _numbers(look: Look, easing: Easing) -> Easing | None:
         return None
     imgui.set_next_item_width(SIDE * 1.9 * look.em)
     changed, values = imgui.drag_float4("##numbers", list(easing.curve), 0.005, 0.0, 1.0, "%.2f")
-    tip("x and y of the first control point, then of the second one")
+    tip("x and y of the first control point, then of the second")
     return _curve([_unit(value) for value in values], easing.curve) if changed else None
 
 
 def _turns(look: Look, key: Keyframe, frames: frozenset[int]) -> list[Action]:
     label(look, "Whole turns")
     changed, turns = imgui.input_int("##turns", key.turns, 1, 1)
-    tip("How often the shape turns round on the way, counter-clockwise, beyond the shorter way")
+    tip("Full turns on the way to the next key, counter-clockwise; negative ones go clockwise")
     turns = min(max(turns, -MOST_TURNS), MOST_TURNS)
     return [do(keys.set_turns, frames, turns)] if changed and turns != key.turns else []
 

@@ -1,4 +1,4 @@
-"""The work range above the ruler, and the animation's end on the track."""
+"""The playback range above the ruler, and the animation's end on the track."""
 
 from imgui_bundle import ImVec2, imgui
 
@@ -49,7 +49,7 @@ def _work_range(track: Track) -> list[Action]:
             0.1 * em,
         )
         where = "begins" if side > 0 else "ends"
-        tip(f"Where playing {where}: drag, or double-click to play all frames")
+        tip(f"Playback {where} here: drag, or double-click to play all frames")
     draw_list.pop_clip_rect()
     return actions
 

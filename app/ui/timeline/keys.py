@@ -8,6 +8,7 @@ from imgui_bundle import icons_fontawesome_6 as icons
 from app.document import LAST_FRAME, Keyframe
 from app.editor import Action, KeyBox, KeyDrag, Project, TimeGesture, do
 from app.editor.actions import editing, keys, timeline_pointing
+from app.ui.shortcuts import with_key
 from app.ui.style import begin_tip, ink
 from app.ui.timeline.menus import key_menu, track_menu
 from app.ui.timeline.track import (
@@ -20,6 +21,7 @@ from app.ui.timeline.track import (
     write_tag,
 )
 
+CTRL = int(imgui.Key.mod_ctrl)
 REACH, SMALLEST = 0.55, 0.26  # em: half a key's diagonal, with room and among many
 GRIP = 1.45  # half the side of the box in which the pointer takes a key, as a part of that
 
@@ -189,7 +191,7 @@ def lags(project: Project, key: Keyframe) -> list[str]:
     short = {} if reach is None else reach.lags.get(key.pose, {})
     names = {handle.id: handle.name for handle in project.document.handles}
     return [
-        f"{names[identity]} stays {lag:.0f} px short of its target"
+        f"{names[identity]} is {lag:.0f} px short of its target"
         for identity, lag in short.items()
         if identity in names
     ]
@@ -206,9 +208,9 @@ def _tell(track: Track, key: Keyframe) -> None:
     if not key.pose.certificate.certified:
         imgui.text_colored(
             palette.danger,
-            f"{icons.ICON_FA_TRIANGLE_EXCLAMATION}  Not certified: in-betweens may fold here",
+            f"{icons.ICON_FA_TRIANGLE_EXCLAMATION}  Beyond the limits: in-betweens may fold here",
         )
     for text in lags(track.project, key):
         imgui.text_colored(palette.warning, f"{icons.ICON_FA_TRIANGLE_EXCLAMATION}  {text}")
-    imgui.text_disabled("Drag to move, Ctrl+drag to copy, right click for more")
+    imgui.text_disabled(f"Drag to move, {with_key(CTRL, 'drag')} to copy, right click for more")
     imgui.end_tooltip()

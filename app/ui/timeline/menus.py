@@ -74,7 +74,7 @@ def _time_items(look: Look, project: Project) -> list[Action]:
         ]
         imgui.set_next_item_width(5 * look.em)
         entered, percent = imgui.input_float(
-            "of its time###percent",
+            "of its length###percent",
             100.0,
             0,
             0,
@@ -85,7 +85,7 @@ def _time_items(look: Look, project: Project) -> list[Action]:
             actions.append(do(keys.scale, percent / 100))
             imgui.close_current_popup()
         imgui.end_menu()
-    if imgui.menu_item_simple("Make last key equal first", enabled=count > 1):
+    if imgui.menu_item_simple("Copy first pose to last key", enabled=count > 1):
         actions.append(do(keys.match_ends))
     imgui.separator()
     for name in ("work start", "work end"):

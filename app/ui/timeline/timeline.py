@@ -4,6 +4,7 @@ from imgui_bundle import ImVec2, imgui
 
 from app.editor import Action, EdgeDrag, KeyDrag, Scrub, Session, do
 from app.editor.actions import editing, playback, pointing, timeline_pointing
+from app.ui.shortcuts import with_key
 from app.ui.style import Look
 from app.ui.timeline.bar import draw_bar
 from app.ui.timeline.edges import draw_edges
@@ -12,6 +13,7 @@ from app.ui.timeline.keys import draw_box, draw_ground, draw_keys
 from app.ui.timeline.ruler import draw_overview, draw_playhead, draw_ruler
 from app.ui.timeline.track import Track, in_seconds, was_dragged
 
+CTRL = int(imgui.Key.mod_ctrl)
 ZOOM_STEP = 1.2  # a notch of the wheel
 SCROLL_STEP = 4.0  # em
 # Parts of the way beyond the edge by which the view follows the pointer in each frame.
@@ -125,12 +127,14 @@ def _hint(track: Track) -> str:
     if isinstance(gesture, KeyDrag):
         what = "Copied" if gesture.copies else "Moved"
         seconds = in_seconds(gesture.by, track.project.document.fps)
-        return f"{what} by {gesture.by:+d} frames, {seconds}; Esc takes it back"
+        return f"{what} by {gesture.by:+d} frames, {seconds}: Esc takes it back"
     if gesture is not None:
         return "Esc takes it back" if isinstance(gesture, EdgeDrag) else ""
     y = imgui.get_mouse_pos().y
     if y < track.ruler_top:
-        return "Drag the ends of the work range; double-click to play all frames"
+        return "Drag the ends of the playback range, double-click to play all frames"
     if y < track.track_top:
-        return "Drag to move the playhead; Ctrl+wheel zooms, wheel or middle drag scrolls"
-    return "Drag keys to move them, Ctrl+drag to copy; click between keys for their easing"
+        return f"Drag to move the playhead, wheel to scroll, {with_key(CTRL, 'wheel')} to zoom"
+    return (
+        f"Drag keys to move them, {with_key(CTRL, 'drag')} to copy, click between keys for easing"
+    )

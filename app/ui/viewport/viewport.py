@@ -185,7 +185,7 @@ def _menu(stage: _Stage, identity: int) -> list[Action]:
     if item("Delete", icons.ICON_FA_TRASH, "Alt+click"):
         actions.append(do(posing.remove_handles, frozenset({identity})))
     is_anchor = handle.position == stage.project.document.anchor
-    label = "Let the anchor be chosen" if is_anchor else "Make it the anchor"
+    label = "Automatic anchor" if is_anchor else "Make it the anchor"
     if item(label, icons.ICON_FA_ANCHOR, "Ctrl+click"):
         actions.append(do(posing.anchor_at, identity))
     is_turned = target is not None and target.rotation is not None
@@ -216,15 +216,15 @@ def _go_on(session: Session, stage: _Stage) -> list[Action]:
 
 def _hint(session: Session, stage: _Stage, hovered: int | None) -> str:
     if stage.project.playhead.since is not None:
-        return "Space halts"
+        return "Space stops"
     if hovered is not None:
         name = next(h.name for h in stage.shown.document.handles if h.id == hovered)
         return f"{name}: drag to pose, Alt+drag to turn, Ctrl+click for the anchor"
     if not session.overlays.handles:
-        return "The handles are hidden; H shows them"
+        return "The handles are hidden: H shows them"
     if stage.is_on_shape(stage.pointer):
         return "Click to add a handle, Ctrl+click to put the anchor here"
-    return "Drag to select; wheel to zoom, middle button to move the view"
+    return "Drag to select, wheel to zoom, middle drag to move the view"
 
 
 def _badges(look: Look, project: Project, corner: ImVec2, room: ImVec2) -> list[Action]:
@@ -287,5 +287,5 @@ def _pill(
         if imgui.button(label, ImVec2(extra, slim)):
             actions.append(do(posing.insert_key))
         imgui.pop_style_var(2)
-        tip("Hold this pose in a key", BINDINGS["insert key"].keys_in_words)
+        tip("Keep this pose in a key", BINDINGS["insert key"].keys_in_words)
     return actions

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from imgui_bundle import ImVec2, hello_imgui, imgui, implot
 
-from app.editor import Action, Session, do
+from app.editor import Action, Session, do, sentence
 from app.editor.actions import editing, playback, saving, upkeep
 from app.errors import EXPECTED_ERRORS
 from app.render import Thumbnail
@@ -199,6 +199,6 @@ class Shell:
         try:
             change()
         except EXPECTED_ERRORS as error:
-            self.session.tell(str(error), tone="error")
+            self.session.tell(sentence(str(error)), tone="error")
         except Exception as error:  # noqa: BLE001 - part of the frame guard
             self._report(f"That did not work: {error}", traceback.format_exc())

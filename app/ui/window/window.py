@@ -135,7 +135,7 @@ class Window:
                 place="side",
                 draw=distortion.draw,
             ),
-            Panel(title="Domain", icon=icons.ICON_FA_SHAPES, place="side", draw=domain.draw),
+            Panel(title="Mesh", icon=icons.ICON_FA_SHAPES, place="side", draw=domain.draw),
             Panel(title="Export", icon=icons.ICON_FA_FILE_EXPORT, place="side", draw=export.draw),
         ]
 

@@ -324,7 +324,7 @@ def test_inserting_a_key_where_there_is_one_says_so(window, bar):
     window.run(lambda robot: robot.key_press(int(window.Key.i)))
     assert bar.document is before
     (toast,) = window.session.toasts
-    assert toast.text == "Frame 0 has a key already; posing changes it."
+    assert toast.text == "Frame 0 has a key already. Drag a handle to change it."
 
 
 def test_keys_of_the_pointer(window, bar):

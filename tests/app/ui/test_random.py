@@ -45,7 +45,7 @@ LAST = 90  # frame beyond which the walk does not go
 # What ends the project is left out; what asks first is answered by Escape.
 LEAVING = {"close", "quit"}
 BOUND = [key for name, binding in BINDINGS.items() if name not in LEAVING for key in binding.keys]
-TABS = ("Handle", "Deform", "Distortion", "Domain", "Export")
+TABS = ("Handle", "Deform", "Distortion", "Mesh", "Export")
 WIDGETS = (
     *("button", "invisible_button", "selectable", "checkbox", "begin_combo", "slider_int"),
     *("menu_item", "menu_item_simple", "input_text", "input_int", "input_float"),

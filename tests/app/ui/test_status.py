@@ -8,6 +8,7 @@ import pytest
 
 from app.document.keyframe import Target
 from app.editor.actions import playback, posing
+from app.errors import LissomError
 from app.motion.prepared import Motion, prepare_motion
 from app.reports.curves import TIMES, Extremes, measure_curves
 from app.ui import bars
@@ -30,10 +31,11 @@ def test_a_pose_shows_its_distortion_the_handles_and_the_solver(window, bent):
     proven = bent.document.keys[1].pose.certificate
     uses = Extremes(proven.k, proven.sigma_a, proven.sigma_b).uses(bent.document.bounds)
     most = max(uses, key=lambda use: use.share)
-    assert shown == f"{most.name} {most.value:.2f} {most.sign} {most.bound:.2f}"
+    word = {"k": "Shear", "σa": "Stretch", "σb": "Squeeze"}[most.name]
+    assert shown == f"{word} {most.value:.2f}, limit {most.bound:.2f}"
     assert most.share > 0.01
     assert handles == "2 handles"
-    assert solver == "solver 6 ms"
+    assert solver == "pose 6 ms"
 
 
 def test_inbetweens_show_what_was_measured(window, bent):
@@ -44,11 +46,11 @@ def test_inbetweens_show_what_was_measured(window, bent):
     halfway = bent.sketch.inbetweens(bent.document, 0).frame(np.array([0.5, 0.5]))
     fz, fzbar = halfway.fz, halfway.fzbar
     values = {
-        "k": distortion.k(fz, fzbar).max(),
-        "σa": distortion.sigma_a(fz, fzbar).max(),
-        "σb": distortion.sigma_b(fz, fzbar).min(),
+        "Shear": distortion.k(fz, fzbar).max(),
+        "Stretch": distortion.sigma_a(fz, fzbar).max(),
+        "Squeeze": distortion.sigma_b(fz, fzbar).min(),
     }
-    name, value, _, _ = shown.split()
+    name, value = shown.split(",")[0].split()
     assert float(value) == pytest.approx(values[name], abs=0.011)
 
 
@@ -99,3 +101,20 @@ def test_shares_count_from_no_distortion_to_the_bound():
         [none, half, full], [[0] * 3, [0.5] * 3, [1] * 3], rtol=0, atol=1e-12
     )
     assert min(folded) > 100
+
+
+@pytest.mark.parametrize(
+    ("text", "wanted"),
+    [
+        ("cannot write out: it is a file", "Cannot write out: it is a file."),
+        ("cow.png is damaged", "cow.png is damaged."),
+        ("There is no key at frame 3.", "There is no key at frame 3."),
+    ],
+)
+def test_an_error_is_told_in_a_sentence(window, text, wanted):
+    def fail(_):
+        raise LissomError(text)
+
+    window.act(fail)
+    (toast,) = window.session.toasts
+    assert toast.text == wanted

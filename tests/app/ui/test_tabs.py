@@ -109,7 +109,12 @@ def test_target_typed_in_poses_the_shape(window, project, tab):
     editing.select(window.session, frozenset({1}))
     before = project.document.key(24).pose
     wish = before.targets[1].position
-    tab("Handle", lambda robot: robot.item_input_value("**/##target y", wish.imag - 20.0))
+    tab(
+        "Handle",
+        lambda robot: robot.item_input_value(
+            "**/##target y", project.picture.size[1] - wish.imag + 20.0
+        ),
+    )
     after = project.document.key(24).pose
     assert after.targets[1].position == pytest.approx(wish - 20j, abs=0.01)
     place = project.document.map_of(after)(np.array([project.document.handle(1).position]))
@@ -188,7 +193,7 @@ def test_cancelled_solving_changes_nothing(project, tab):
     before = project.document
 
     def act(robot):
-        robot.item_click("**/Solve all keys again")
+        robot.item_click("**/Pose all keys again")
         robot.item_click("**/###stop")
 
     tab("Deform", act)
@@ -249,7 +254,7 @@ def test_outline_cage_and_mesh_are_shown(window, tab):
         for name in ("Outline", "Cage", "Mesh"):
             robot.item_click(f"**/{name}")
 
-    tab("Domain", act)
+    tab("Mesh", act)
     overlays = window.session.overlays
     assert (overlays.outline, overlays.cage, overlays.wireframe) == (True, True, True)
     assert window.picture() != before
@@ -263,7 +268,7 @@ def test_rebuilt_domain_keeps_handles_and_poses_as_one_step(window, project, tab
         robot.item_input_value("**/##triangles", 4000.0)
         robot.item_click("**/###rebuild")
 
-    tab("Domain", act)
+    tab("Mesh", act)
     after = project.document
     assert after.meshing == Meshing(triangles=4_000, detail="normal")
     assert len(after.domain.mesh.triangles) > 1.5 * len(before.domain.mesh.triangles)
@@ -288,7 +293,7 @@ def test_rebuilt_domain_keeps_a_pose_that_no_handle_holds(window, project, tab):
         robot.item_input_value("**/##triangles", 4000.0)
         robot.item_click("**/###rebuild")
 
-    tab("Domain", act)
+    tab("Mesh", act)
     assert project.document.meshing.triangles == 4_000
     certificate = project.document.key(24).pose.certificate
     assert certificate.k == pytest.approx(STRETCH, rel=0.01)
@@ -302,7 +307,7 @@ def test_domain_that_cannot_be_built_is_told(window, project, tab):
         robot.item_click("**/detail/###fine")
         robot.item_click("**/###rebuild")
 
-    tab("Domain", act)
+    tab("Mesh", act)
     assert project.document is before
     assert project.renewal is None
     assert [toast.tone for toast in window.session.toasts] == ["error"]

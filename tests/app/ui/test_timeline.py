@@ -335,7 +335,7 @@ def test_menu_reverses_and_scales(window, project, play):
     backwards = choose("###Reverse")
     assert frames_of(backwards) == (0, 24, 36, 48)
     assert [key.pose for key in backwards.keys] == poses[::-1]
-    assert choose("Make last key equal first").keys[-1].pose is poses[-1]
+    assert choose("Copy first pose to last key").keys[-1].pose is poses[-1]
     assert frames_of(choose("###Scale time/Half as long")) == (0, 12, 18, 24)
     editing.choose_keys(window.session, frozenset({18, 24}))
     assert frames_of(choose("###Scale time/Twice as long")) == (0, 12, 18, 30)

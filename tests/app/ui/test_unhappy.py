@@ -30,7 +30,7 @@ from app.ui.viewport import canvas
 from engine.maps.bounds import Bounds
 
 BAR = sample_images() / "bar.png"
-TABS = ("Handle", "Deform", "Distortion", "Domain", "Export")
+TABS = ("Handle", "Deform", "Distortion", "Mesh", "Export")
 
 
 @contextmanager
