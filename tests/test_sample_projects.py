@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from app.document.timeline import exported_frames
-from app.reports.certification import certify_document
+from app.document.timeline import clip_of, exported_frames
+from app.reports.certification import certify_clip
 from app.solving.script import load_pose_script
 from app.storage.project_file import load_project
 
@@ -23,26 +23,32 @@ def test_four_creatures_move():
 def test_a_sample_is_what_its_script_says(name):
     document = load_project(SAMPLES / f"{name}.lissom")
     script = load_pose_script(SAMPLES / f"{name}.json")
-    assert document.picture.data == (SAMPLES / f"{name}.png").read_bytes()
-    assert {handle.name: handle.position for handle in document.handles} == script.handles
-    assert [key.frame for key in document.keys] == [key.frame for key in script.keys]
-    assert [key.easing for key in document.keys] == [key.ease for key in script.keys]
-    assert document.bounds == script.bounds
-    lags = [lag for key in document.keys for lag in document.lags(key.pose).values()]
+    assert document.figures[0].picture.data == (SAMPLES / f"{name}.png").read_bytes()
+    assert {
+        handle.name: handle.position for handle in document.figures[0].handles
+    } == script.handles
+    assert [key.frame for key in document.figures[0].keys] == [key.frame for key in script.keys]
+    assert [key.easing for key in document.figures[0].keys] == [key.ease for key in script.keys]
+    assert document.figures[0].bounds == script.bounds
+    lags = [
+        lag
+        for key in document.figures[0].keys
+        for lag in document.figures[0].lags(key.pose).values()
+    ]
     assert max(lags) < 2.0, "handles arrive, to two pixels"
 
 
 @pytest.mark.parametrize("name", NAMES)
 def test_a_sample_begins_and_ends_as_it_was_drawn(name):
     document = load_project(SAMPLES / f"{name}.lissom")
-    vertices = document.domain.mesh.vertices
-    for key in (document.keys[0], document.keys[-1]):
-        assert_allclose(document.map_of(key.pose)(vertices), vertices, rtol=0, atol=1e-2)
+    vertices = document.figures[0].domain.mesh.vertices
+    for key in (document.figures[0].keys[0], document.figures[0].keys[-1]):
+        assert_allclose(document.figures[0].map_of(key.pose)(vertices), vertices, rtol=0, atol=1e-2)
     assert exported_frames(document).last == document.frames.last - 1
 
 
 @pytest.mark.parametrize("name", ["character", "giraffe"])
 def test_a_sample_keeps_its_bounds(name):
-    report = certify_document(load_project(SAMPLES / f"{name}.lissom"))
+    report = certify_clip(clip_of(load_project(SAMPLES / f"{name}.lissom"), 0))
     assert report.certified
     assert all(np.isfinite(interval.reached.sigma_a) for interval in report.intervals)

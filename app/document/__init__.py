@@ -5,14 +5,19 @@ Out: frozen documents, each of them valid, and where time stands in them.
 Imports: `engine`, `app.errors`, `app.export_formats`; no pictures, graphics, window or clock.
 """
 
-from app.document import handle_commands, key_commands, settings_commands
 from app.document.checks import Unknown
-from app.document.commands import Command
+from app.document.commands import (
+    Command,
+    figure_commands,
+    handle_commands,
+    key_commands,
+    scene_commands,
+)
 from app.document.easing import HOLD, LINEAR, PRESETS, Easing
-from app.document.handle_commands import add_handle
+from app.document.figure import Figure, PictureFile, new_figure
 from app.document.history import History
 from app.document.keyframe import MOST_TURNS, Handle, Keyframe, Pose, Target
-from app.document.model import Document, PictureFile, new_document
+from app.document.model import Document
 from app.document.playhead import Playhead
 from app.document.settings import (
     FRAMINGS,
@@ -24,9 +29,10 @@ from app.document.settings import (
     Meshing,
     Variant,
 )
-from app.document.settings_commands import replace_domain, set_anchor, set_bounds
 from app.document.timeline import (
+    Clip,
     Moment,
+    clip_of,
     closes,
     exported_frames,
     frame_times,
@@ -43,10 +49,12 @@ __all__ = [
     "MOST_TURNS",
     "PRESETS",
     "VARIANTS",
+    "Clip",
     "Command",
     "Document",
     "Easing",
     "ExportSettings",
+    "Figure",
     "FrameRange",
     "Framing",
     "Handle",
@@ -60,18 +68,16 @@ __all__ = [
     "Target",
     "Unknown",
     "Variant",
-    "add_handle",
+    "clip_of",
     "closes",
     "exported_frames",
+    "figure_commands",
     "frame_times",
     "handle_commands",
     "intervals",
     "key_commands",
-    "new_document",
-    "replace_domain",
+    "new_figure",
     "resting_pose",
-    "set_anchor",
-    "set_bounds",
-    "settings_commands",
+    "scene_commands",
     "time_of",
 ]

@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 from app.document.commands import Command
+from app.document.figure import Figure
 from app.document.model import Document
 
 MEMORY = 512 * 1024 * 1024
@@ -122,15 +123,22 @@ class History:
 
 def _held_only_by(old: Document, new: Document) -> int:
     """Return the bytes of `old` that `new` does not share."""
-    held = SNAPSHOT_BYTES
-    if old.picture is not new.picture:
+    figures = {figure.id: figure for figure in new.figures}
+    return SNAPSHOT_BYTES + sum(
+        _figure_held_only_by(figure, figures.get(figure.id)) for figure in old.figures
+    )
+
+
+def _figure_held_only_by(old: Figure, new: Figure | None) -> int:
+    held = 0
+    if new is None or old.picture is not new.picture:
         held += len(old.picture.data)
-    if old.domain is not new.domain:
+    if new is None or old.domain is not new.domain:
         mesh = old.domain.mesh
         arrays = (old.domain.outline, old.domain.cage, mesh.vertices, mesh.triangles)
         held += sum(array.nbytes for array in arrays)
-    poses = {id(key.pose) for key in new.keys}
-    maps = {id(key.pose.phi) for key in new.keys}
+    kept = [] if new is None else [key.pose for key in new.keys]
+    poses, maps = {id(pose) for pose in kept}, {id(pose.phi) for pose in kept}
     for key in old.keys:
         if id(key.pose) not in poses:
             held += POSE_BYTES

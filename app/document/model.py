@@ -1,55 +1,15 @@
-"""The document: one picture, its domain, handles and keyframes, and how they play and export.
+"""The document: a scene of figures on one timeline, and how it plays and exports.
 
 Every value is frozen, and every document that exists is valid: the constructors refuse anything
 else, so that commands, history and the project file need no checks of their own.
 """
 
-import hashlib
-import re
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
-import numpy as np
-
-from app.document.checks import NOTHING, Unknown, require, require_finite, require_size
-from app.document.keyframe import Handle, Keyframe, Pose
-from app.document.settings import FASTEST, VARIANTS, ExportSettings, FrameRange, Meshing, Variant
+from app.document.checks import NOTHING, Unknown, require
+from app.document.figure import Figure
+from app.document.settings import FASTEST, ExportSettings, FrameRange
 from app.errors import LissomError
-from engine.domain import Domain
-from engine.geometry import box_diagonal, contains
-from engine.maps import Bounds, Certificate, HarmonicMap
-
-# Handles may sit on the outline itself, where rounding decides on which side they are.
-ON_OUTLINE = 1e-9
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class PictureFile:
-    """The picture as it was opened, byte for byte.
-
-    Parameters
-    ----------
-    data : bytes
-        Contents of the picture file.
-    suffix : str
-        Of its name, such as ".png".
-    size : tuple of int
-        Width and height in pixels as shown (after rotation by EXIF data).
-    """
-
-    data: bytes = field(repr=False)
-    suffix: str
-    size: tuple[int, int]
-    sha256: str = field(init=False)
-
-    def __post_init__(self) -> None:
-        require(len(self.data) > 0, "The picture is empty.")
-        require(
-            re.fullmatch(r"\.[a-z0-9]{1,8}", self.suffix) is not None,
-            f"A picture's file name ends as in '.png', not {self.suffix!r}.",
-        )
-        require_size(self.size, "picture")
-        object.__setattr__(self, "sha256", hashlib.sha256(self.data).hexdigest())
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -58,15 +18,8 @@ class Document:
 
     Parameters
     ----------
-    picture : PictureFile
-    domain : Domain
-    meshing : Meshing
-        What the domain was built with.
-    handles : tuple of Handle
-    next_handle : int
-        The id that the next handle will get.
-    keys : tuple of Keyframe
-        In the order of their frames; there is always one.
+    figures : tuple of Figure
+        From the one behind all others to the one in front; there is always one.
     frames : FrameRange
         All frames of the animation; every key lies in it.
     work : FrameRange, optional
@@ -75,35 +28,19 @@ class Document:
         Frames per second.
     loop : bool
         Whether the last frame leads back to the first one: both are the same moment.
-    anchor : complex, optional
-        The point of the picture whose place and turn are blended directly; None lets the engine
-        choose it.
-    variant : str
-        One of `VARIANTS`.
-    bounds : Bounds
-        Distortion that the solver allows in new poses.
     export : ExportSettings
     """
 
-    picture: PictureFile
-    domain: Domain
-    meshing: Meshing
-    handles: tuple[Handle, ...] = ()
-    next_handle: int = 0
-    keys: tuple[Keyframe, ...]
+    figures: tuple[Figure, ...]
     frames: FrameRange = FrameRange(0, 48)
     work: FrameRange | None = None
     fps: float = 24.0
     loop: bool = False
-    anchor: complex | None = None
-    variant: Variant = "metric"
-    bounds: Bounds = Bounds()
     export: ExportSettings = ExportSettings()
     unknown: Unknown = field(default_factory=lambda: NOTHING, repr=False, hash=False)
 
     def __post_init__(self) -> None:
-        self._check_handles()
-        self._check_keys()
+        self._check_figures()
         require(
             self.work is None or (self.work.first in self.frames and self.work.last in self.frames),
             f"The work range {self.work} is not within {self.frames}.",
@@ -113,100 +50,44 @@ class Document:
             f"The speed must be above 0 and at most {FASTEST:g} frames per second, "
             f"not {self.fps:g}.",
         )
-        require(
-            self.variant in VARIANTS,
-            f"The variant is one of {', '.join(VARIANTS)}, not {self.variant!r}.",
-        )
 
     @property
     def played(self) -> FrameRange:
         """The frames that play: the work range, or all."""
         return self.work or self.frames
 
-    def handle(self, identity: int) -> Handle:
-        """Return the handle with this id."""
-        for handle in self.handles:
-            if handle.id == identity:
-                return handle
-        raise LissomError(f"There is no handle with the id {identity}.")
+    @property
+    def canvas(self) -> tuple[int, int]:
+        """Width and height of the scene: those of the picture behind all others."""
+        return self.figures[0].picture.size
 
-    def key(self, frame: int) -> Keyframe:
-        """Return the key at this frame."""
-        for key in self.keys:
-            if key.frame == frame:
-                return key
-        raise LissomError(f"There is no key at frame {frame}.")
+    def figure(self, identity: int) -> Figure:
+        """Return the figure with this id."""
+        for figure in self.figures:
+            if figure.id == identity:
+                return figure
+        raise LissomError(f"There is no figure with the id {identity}.")
 
-    def map_of(self, pose: Pose) -> HarmonicMap:
-        """Return the map of a pose."""
-        return HarmonicMap(cage=self.domain.cage, phi=pose.phi, psi=pose.psi)
-
-    def lags(self, pose: Pose) -> Mapping[int, float]:
-        """Return by how many pixels each handle, by its id, falls short of its target."""
-        reached = self.map_of(pose)(np.array([handle.position for handle in self.handles], complex))
-        return {
-            handle.id: abs(pose.targets[handle.id].position - complex(place))
-            for handle, place in zip(self.handles, reached, strict=True)
-        }
-
-    def _check_handles(self) -> None:
-        for what, values in (
-            ("id", [handle.id for handle in self.handles]),
-            ("name", [handle.name for handle in self.handles]),
-            ("place", [handle.position for handle in self.handles]),
-        ):
-            seen = set()
-            for value in values:
-                require(value not in seen, f"Two handles have the {what} {value!r}.")
-                seen.add(value)
-        require(
-            all(handle.id < self.next_handle for handle in self.handles),
-            f"The next handle's id {self.next_handle} is taken.",
+    def with_figure(self, changed: Figure) -> "Document":
+        """Return the document with another figure of the same id, and with room for its keys."""
+        if changed is self.figure(changed.id):
+            return self
+        frames = FrameRange(
+            min(self.frames.first, changed.keys[0].frame),
+            max(self.frames.last, changed.keys[-1].frame),
         )
-        places = {f"handle {handle.name!r}": handle.position for handle in self.handles}
-        if self.anchor is not None:
-            require_finite(self.anchor, "The anchor")
-            places["anchor"] = self.anchor
-        if places:
-            outline = self.domain.outline
-            points = np.array(list(places.values()), dtype=np.complex128)
-            inside = contains(outline, points, tolerance=ON_OUTLINE * box_diagonal(outline))
-            for (name, place), is_inside in zip(places.items(), inside, strict=True):
+        figures = tuple(changed if figure.id == changed.id else figure for figure in self.figures)
+        return replace(self, figures=figures, frames=frames)
+
+    def _check_figures(self) -> None:
+        require(len(self.figures) > 0, "A document has at least one figure.")
+        identities = set()
+        for figure in self.figures:
+            require(figure.id not in identities, f"Two figures have the id {figure.id}.")
+            identities.add(figure.id)
+            for key in figure.keys:
                 require(
-                    bool(is_inside),
-                    f"The {name} at ({place.real:g}, {place.imag:g}) lies outside the shape; "
-                    "move it onto the shape or remove it.",
+                    key.frame in self.frames,
+                    f"The key at frame {key.frame} lies outside the animation's frames "
+                    f"{self.frames.first} to {self.frames.last}.",
                 )
-
-    def _check_keys(self) -> None:
-        require(len(self.keys) > 0, "An animation has at least one key.")
-        identities = {handle.id for handle in self.handles}
-        frame = -1
-        for key in self.keys:
-            require(key.frame != frame, f"Two keys are at frame {frame}.")
-            require(key.frame > frame, f"The keys at frames {frame} and {key.frame} are mixed up.")
-            frame = key.frame
-            require(
-                frame in self.frames,
-                f"The key at frame {frame} lies outside the animation's frames "
-                f"{self.frames.first} to {self.frames.last}.",
-            )
-            require(
-                key.pose.targets.keys() == identities,
-                f"The key at frame {frame} does not have one target for each handle.",
-            )
-            require(
-                len(key.pose.phi) == len(key.pose.psi) == len(self.domain.cage),
-                f"The key at frame {frame} has coefficients for a cage of {len(key.pose.phi)} "
-                f"vertices, not of {len(self.domain.cage)}.",
-            )
-
-
-def new_document(picture: PictureFile, domain: Domain, meshing: Meshing) -> Document:
-    """Return the document of a picture just opened: one key at frame 0, as it was drawn."""
-    identity = HarmonicMap.identity(domain.cage)
-    undistorted = Certificate(k=0.0, sigma_a=1.0, sigma_b=1.0, winding=0, certified=True)
-    pose = Pose(targets={}, phi=identity.phi, psi=identity.psi, certificate=undistorted)
-    return Document(
-        picture=picture, domain=domain, meshing=meshing, keys=(Keyframe(frame=0, pose=pose),)
-    )

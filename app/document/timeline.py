@@ -1,16 +1,55 @@
 """Which two keys a moment lies between, and how far it is from one to the other."""
 
 from bisect import bisect_right
+from dataclasses import dataclass
 from fractions import Fraction
 from typing import NamedTuple
 
-from app.document.keyframe import Pose
+import numpy as np
+
+from app.document.figure import Figure
+from app.document.keyframe import Keyframe, Pose
 from app.document.model import Document
 from app.document.settings import FrameRange
 from app.errors import LissomError
+from engine.arrays import Floats
 
 # Pixels: a handle at rest is where the identity takes it, up to rounding.
 SAME_PLACE = 1e-6
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Clip:
+    """A figure in the time of its scene: all that its motion follows from.
+
+    Clips are equal where the motion is.
+
+    Parameters
+    ----------
+    figure : Figure
+    frames : FrameRange
+        Of the scene.
+    loop : bool
+    """
+
+    figure: Figure
+    frames: FrameRange
+    loop: bool
+
+    @property
+    def keys(self) -> tuple[Keyframe, ...]:
+        """The figure's keys."""
+        return self.figure.keys
+
+    @property
+    def period(self) -> int:
+        """How many frames a loop takes until it comes round."""
+        return self.frames.last - self.frames.first
+
+
+def clip_of(document: Document, figure: int) -> Clip:
+    """Return the clip of the figure with this id."""
+    return Clip(figure=document.figure(figure), frames=document.frames, loop=document.loop)
 
 
 class Moment(NamedTuple):
@@ -26,8 +65,13 @@ class Moment(NamedTuple):
     interval: int
     weight: float
 
+    @property
+    def weights(self) -> Floats:
+        """Of both keys, float64 (2,); they sum to 1."""
+        return np.array([1.0 - self.weight, self.weight])
 
-def time_of(document: Document, frame: float) -> Moment:
+
+def time_of(clip: Clip, frame: float) -> Moment:
     """Return the moment that a frame shows.
 
     Before the first key and after the last one their poses stand still. In a loop the last key
@@ -36,21 +80,21 @@ def time_of(document: Document, frame: float) -> Moment:
 
     Parameters
     ----------
-    document : Document
+    clip : Clip
     frame : float
         Frame number; fractions lie between frames.
     """
-    keys = document.keys
-    period = document.frames.last - document.frames.first
-    if document.loop and period and frame not in document.frames:
-        frame = document.frames.first + (frame - document.frames.first) % period
+    keys = clip.keys
+    period = clip.period
+    if clip.loop and period and frame not in clip.frames:
+        frame = clip.frames.first + (frame - clip.frames.first) % period
     first, last = keys[0].frame, keys[-1].frame
     if len(keys) == 1:
         return Moment(0, 0.0)
     if first <= frame < last:
         index = bisect_right(keys, frame, key=lambda key: key.frame) - 1
         start, end = keys[index].frame, keys[index + 1].frame
-    elif closes(document) and frame != last:
+    elif closes(clip) and frame != last:
         index, start, end = len(keys) - 1, last, first + period
         frame = frame if frame > last else frame + period
     else:
@@ -58,23 +102,23 @@ def time_of(document: Document, frame: float) -> Moment:
     return Moment(index, keys[index].easing((frame - start) / (end - start)))
 
 
-def closes(document: Document) -> bool:
+def closes(clip: Clip) -> bool:
     """Tell whether there are frames that blend the last key into the first one."""
-    between = document.keys[-1].frame - document.keys[0].frame
-    period = document.frames.last - document.frames.first
-    return document.loop and 0 < between < period
+    between = clip.keys[-1].frame - clip.keys[0].frame
+    period = clip.period
+    return clip.loop and 0 < between < period
 
 
-def intervals(document: Document) -> tuple[tuple[int, int], ...]:
+def intervals(clip: Clip) -> tuple[tuple[int, int], ...]:
     """Return the indices of the two keys of each interval, in the order of `Moment.interval`."""
-    count = len(document.keys)
+    count = len(clip.keys)
     pairs = tuple((index, index + 1) for index in range(count - 1))
-    return (*pairs, (count - 1, 0)) if closes(document) else pairs
+    return (*pairs, (count - 1, 0)) if closes(clip) else pairs
 
 
-def resting_pose(document: Document, moment: Moment) -> Pose | None:
+def resting_pose(clip: Clip, moment: Moment) -> Pose | None:
     """Return the pose of the one key that a moment shows unblended; None where it blends two."""
-    keys = document.keys
+    keys = clip.keys
     if moment.weight == 0.0:
         return keys[moment.interval].pose
     if moment.weight == 1.0:
@@ -98,10 +142,16 @@ def exported_frames(document: Document) -> FrameRange:
 
 def _is_same(document: Document, first: int, second: int) -> bool:
     """Tell whether two frames show the same pose, or two that were solved for the same wishes."""
-    moments = time_of(document, first), time_of(document, second)
+    return all(
+        _poses_alike(clip_of(document, figure.id), first, second) for figure in document.figures
+    )
+
+
+def _poses_alike(clip: Clip, first: int, second: int) -> bool:
+    moments = time_of(clip, first), time_of(clip, second)
     if moments[0] == moments[1]:
         return True
-    poses = [resting_pose(document, moment) for moment in moments]
+    poses = [resting_pose(clip, moment) for moment in moments]
     if poses[0] is None or poses[1] is None:
         return False
     if poses[0] is poses[1]:

@@ -6,12 +6,12 @@ from math import inf
 from pathlib import Path
 from typing import Literal
 
-from app.document import Document, History, Meshing, Playhead, Pose, Target
+from app.document import Clip, Document, Figure, History, Meshing, Playhead, Pose, Target, clip_of
 from app.editor.action import Action
 from app.editor.jobs import Jobs
 from app.editor.timeline_view import Timing
 from app.export import ExportPlan, Poses
-from app.motion import Box, Build, Motion, Reach, Shown
+from app.motion import Box, Build, Extent, Motion, Shown
 from app.render import View, fit_view
 from app.reports import Curves
 from app.solving import Drag, Renewal, Rig
@@ -184,6 +184,38 @@ class Grab:
 
 
 @dataclass(slots=True, kw_only=True, eq=False)
+class Puppet:
+    """A figure as a window has it.
+
+    Parameters
+    ----------
+    picture : Picture
+        Decoded.
+    is_opaque : bool
+        Whether it has no transparency, so that its background was found by its colour.
+    coarse, fine : Motion
+        What can be shown of it, on a coarse mesh and on its own; `fine` may not be there yet.
+    shown : Shown, optional
+        None before the first frame of the window.
+    rig : Rig, optional
+        For the poses to come; None before the first of them.
+    build : Build, optional
+        The series that the worker makes when it has nothing else to do.
+    unmovable : Clip, optional
+        Its in-betweens failed; they are not tried again until it changes.
+    """
+
+    picture: Picture
+    is_opaque: bool
+    coarse: Motion
+    fine: Motion | None = None
+    shown: Shown | None = None
+    rig: Rig | None = None
+    build: Build | None = None
+    unmovable: Clip | None = None
+
+
+@dataclass(slots=True, kw_only=True, eq=False)
 class Project:
     """The document that is open, and how the person looks at it.
 
@@ -193,26 +225,22 @@ class Project:
         Of the picture or the project, without its suffix.
     path : Path, optional
         Of the project file; None for a new one.
-    sketch, full : Motion
-        What can be shown of it, on a coarse mesh and on its own; `full` may not be there yet.
+    puppets : dict of int to Puppet
+        One for each figure, by its id.
+    active : int
+        The id of the figure whose handles and keys are shown and changed.
     settling : Grab, optional
         Let go at a frame that the playhead has left since; the solver brings that pose to rest.
-    loose : Pose, optional
+    unkeyed : Pose, optional
         Posed with auto-key off, held by no key.
     camera : View, optional
         None fits the picture into the viewport.
-    unmovable : Document, optional
-        Its in-betweens failed; they are not tried again until it changes.
-    build : Build, optional
-        The series that the worker makes when it has nothing else to do.
-    unmeasurable : Document, optional
+    unmeasurable : Clip, optional
         Likewise for its distortion.
     curves : Curves, optional
         Distortion over time, of the document that it names.
     meshing : Meshing, optional
         What the domain will be rebuilt with; None as long as that is what it has.
-    is_opaque : bool
-        Whether the picture has no transparency, and its background was found by its colour.
     drafted_bounds : Bounds, optional
         What the person drags them to.
     renewal : Renewal, optional
@@ -221,7 +249,7 @@ class Project:
         Where the next export goes: where the last one went, or was told to.
     replaceable : Path, optional
         Where exports may take the place of other files: the person agreed, or they are an export's.
-    reach : Reach, optional
+    reach : Extent, optional
         Of the motion, as it was when the export's frame was looked at last.
     unreachable : tuple
         What of a document its reach could not be measured from.
@@ -239,25 +267,19 @@ class Project:
 
     name: str
     history: History
-    picture: Picture
     path: Path | None
-    sketch: Motion
-    full: Motion | None = None
-    rig: Rig | None = None
+    puppets: dict[int, Puppet]
+    active: int
     grab: Grab | None = None
     settling: Grab | None = None
-    shown: Shown | None = None
-    unmovable: Document | None = None
-    build: Build | None = None
-    unmeasurable: Document | None = None
+    unmeasurable: Clip | None = None
     curves: Curves | None = None
     meshing: Meshing | None = None
-    is_opaque: bool = False
     drafted_bounds: Bounds | None = None
     renewal: Renewal | None = None
     export_to: Path | None = None
     replaceable: Path | None = None
-    reach: Reach | None = None
+    reach: Extent | None = None
     unreachable: tuple[object, ...] = ()
     to_save: tuple[Path, Action | None] | None = None
     moved_at: float = -inf
@@ -267,7 +289,7 @@ class Project:
     timing: Timing = field(default_factory=Timing)
     selected: frozenset[int] = frozenset()  # ids of handles
     chosen: frozenset[int] = frozenset()  # frames of keys
-    loose: Pose | None = None
+    unkeyed: Pose | None = None
     camera: View | None = None
     gesture: object | None = None
     held: int = 0
@@ -276,6 +298,21 @@ class Project:
     def document(self) -> Document:
         """The document as it is now."""
         return self.history.document
+
+    @property
+    def figure(self) -> Figure:
+        """The figure that is posed, as it is now."""
+        return self.document.figure(self.active)
+
+    @property
+    def clip(self) -> Clip:
+        """The figure that is posed, in the time of its scene."""
+        return clip_of(self.document, self.active)
+
+    @property
+    def puppet(self) -> Puppet:
+        """The figure that is posed, as the window has it."""
+        return self.puppets[self.active]
 
     @property
     def is_posing(self) -> bool:
@@ -287,7 +324,7 @@ class Project:
         if self.camera is not None:
             return replace(self.camera, size=screen)
         margin = FIT_MARGIN * min(screen)
-        return fit_view(0j, complex(*self.picture.size), screen, margin=margin)
+        return fit_view(0j, complex(*self.document.canvas), screen, margin=margin)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -295,8 +332,8 @@ class ExportRun:
     """An export that is under way: what it draws, how, and how many frames are drawn."""
 
     document: Document
-    picture: Bytes
-    poses: Poses
+    pictures: Mapping[int, Bytes]
+    poses: Mapping[int, Poses]
     plan: ExportPlan
     done: int = 0
 

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Literal, Self
 
-from app.document import Document, FrameRange, Pose
+from app.document import Document, Figure, FrameRange, Pose
 from app.solving import LAG
 from engine.geometry import box_diagonal
 
@@ -134,40 +134,40 @@ TimeGesture = KeyDrag | EdgeDrag | KeyBox | Scrub
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Reach:
+class Shortfalls:
     """By how many pixels handles fall short of their targets in each key's pose.
 
     Parameters
     ----------
-    document : Document
+    figure : Figure
     lags : mapping of Pose to mapping of int to float
         Those that matter, by the handle's id.
     """
 
-    document: Document
+    figure: Figure
     lags: Mapping[Pose, Mapping[int, float]]
 
     @classmethod
-    def of(cls, document: Document, earlier: "Reach | None") -> "Reach":
-        """Measure the poses of a document; those that were measured before are not again."""
+    def of(cls, figure: Figure, earlier: "Shortfalls | None") -> "Shortfalls":
+        """Measure the poses of a figure; those that were measured before are not again."""
         known: Mapping[Pose, Mapping[int, float]] = {}
-        if earlier is not None and _has_same_shape(document, earlier.document):
+        if earlier is not None and _has_same_shape(figure, earlier.figure):
             known = earlier.lags
-        least = LAG * box_diagonal(document.domain.outline)
+        least = LAG * box_diagonal(figure.domain.outline)
         lags = {}
-        for pose in (key.pose for key in document.keys):
+        for pose in (key.pose for key in figure.keys):
             if pose in known:
                 lags[pose] = known[pose]
-            elif document.handles:
-                measured = document.lags(pose).items()
+            elif figure.handles:
+                measured = figure.lags(pose).items()
                 lags[pose] = {handle: lag for handle, lag in measured if lag > least}
             else:
                 lags[pose] = {}
-        return cls(document=document, lags=lags)
+        return cls(figure=figure, lags=lags)
 
 
-def _has_same_shape(document: Document, other: Document) -> bool:
-    return document.handles == other.handles and document.domain is other.domain
+def _has_same_shape(figure: Figure, other: Figure) -> bool:
+    return figure.handles == other.handles and figure.domain is other.domain
 
 
 @dataclass(slots=True, kw_only=True, eq=False)
@@ -183,11 +183,11 @@ class Timing:
         What it shows while the gesture lasts: nothing may move under the pointer.
     seen : int
         The frame that was shown last, so that the strip follows the playhead only when it moves.
-    reach : Reach, optional
+    shortfalls : Shortfalls, optional
     """
 
     strip: Strip | None = None
     gesture: TimeGesture | None = None
     held: Strip | None = None
     seen: int = 0
-    reach: Reach | None = None
+    shortfalls: Shortfalls | None = None

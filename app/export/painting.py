@@ -1,5 +1,6 @@
 """The pictures of an export, drawn by the renderer that the window draws with."""
 
+from collections.abc import Mapping
 from contextlib import ExitStack
 from typing import Final, NamedTuple
 
@@ -29,10 +30,10 @@ _OUTSIDE: Final = 1.0  # pixels; less than this is seen by nobody
 
 
 class PosedFrame(NamedTuple):
-    """A frame of the timeline, and where the vertices (v,) are in it."""
+    """A frame of the timeline, and where the vertices (v,) of each figure are in it."""
 
     frame: float
-    positions: Complexes
+    positions: tuple[Complexes, ...]
 
 
 class Painter:
@@ -43,10 +44,10 @@ class Painter:
     context : Context
         Current on the thread that draws.
     document : Document
-    picture : uint8, shape (h, w, 4)
-        The document's picture, decoded.
-    poses : Poses
-        The document's.
+    pictures : mapping of int to uint8, shape (h, w, 4)
+        The figures' pictures, decoded, by their ids.
+    poses : mapping of int to Poses
+        The figures', by their ids.
     plan : ExportPlan
 
     Raises
@@ -56,13 +57,18 @@ class Painter:
     """
 
     def __init__(
-        self, context: Context, document: Document, picture: Bytes, poses: Poses, plan: ExportPlan
+        self,
+        context: Context,
+        document: Document,
+        pictures: Mapping[int, Bytes],
+        poses: Mapping[int, Poses],
+        plan: ExportPlan,
     ) -> None:
         self._context = context
-        self._poses = poses
+        self._poses = [poses[figure.id] for figure in document.figures]
         self._view = plan.view
-        mesh = document.domain.mesh
-        self._reach = box_around(mesh.vertices)
+        meshes = [figure.domain.mesh for figure in document.figures]
+        self._reach = box_around(np.concatenate([mesh.vertices for mesh in meshes]))
         # The mesh has a margin around the drawing, which may lie off the canvas from the start.
         self._room = shown_box(plan.view).joined(self._reach)
         with ExitStack() as owned:
@@ -77,14 +83,16 @@ class Painter:
             # before again though it may be gone. A target without memory has raised by itself.
             while context.error != _NO_ERROR:
                 pass
-            texture = GpuPicture(context, picture)
-            owned.callback(texture.release)
-            gpu_mesh = GpuMesh(programs, texture, rest=mesh.vertices, triangles=mesh.triangles)
-            owned.callback(gpu_mesh.release)
-            self._positions = PositionBuffer(context, len(mesh.vertices))
-            pose = PosedMesh(gpu_mesh, self._positions)
-            owned.callback(pose.release)
-            self._scene = Scene(background=Background(colour=_colour(plan)), meshes=(pose,))
+            self._positions, drawn = [], []
+            for figure, mesh in zip(document.figures, meshes, strict=True):
+                texture = GpuPicture(context, pictures[figure.id])
+                owned.callback(texture.release)
+                gpu_mesh = GpuMesh(programs, texture, rest=mesh.vertices, triangles=mesh.triangles)
+                owned.callback(gpu_mesh.release)
+                self._positions.append(PositionBuffer(context, len(mesh.vertices)))
+                drawn.append(PosedMesh(gpu_mesh, self._positions[-1]))
+                owned.callback(drawn[-1].release)
+            self._scene = Scene(background=Background(colour=_colour(plan)), meshes=tuple(drawn))
             self._owned = owned.pop_all()
 
     def pose(self, frame: float) -> PosedFrame:
@@ -96,10 +104,10 @@ class Painter:
             If the motion fails there.
         """
         try:
-            positions = self._poses.positions(frame)
+            positions = tuple(poses.positions(frame) for poses in self._poses)
         except EXPECTED_ERRORS as error:
             raise LissomError(f"frame {frame:g} cannot be drawn: {error}") from error
-        box = box_around(positions)
+        box = box_around(np.concatenate(positions))
         if not np.isfinite(box).all():
             raise LissomError(f"frame {frame:g} cannot be drawn: its points are not all finite")
         self._reach = self._reach.joined(box)
@@ -114,7 +122,8 @@ class Painter:
             If the frame cannot be drawn.
         """
         try:
-            self._positions.write(singles(posed.positions))
+            for buffer, positions in zip(self._positions, posed.positions, strict=True):
+                buffer.write(singles(positions))
             self._renderer.draw(self._target, self._view, self._scene)
             pixels = self._target.read_straight_rgba()
         except (*EXPECTED_ERRORS, GlError) as error:

@@ -1,6 +1,7 @@
 """What an export will make, settled and checked before the first frame is drawn."""
 
 import importlib.util
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Protocol
@@ -24,7 +25,7 @@ from engine.arrays import Complexes
 
 
 class Poses(Protocol):
-    """Where the vertices of a document's mesh are at any time."""
+    """Where the vertices of a figure's mesh are at any time."""
 
     def positions(self, frame: float) -> Complexes:
         """Return the vertices, complex128 (v,), at a frame, whole or between two."""
@@ -135,15 +136,17 @@ def missing(name: str) -> str:
     return "" if is_there else format_.remedy
 
 
-def plan_export(document: Document, request: ExportRequest, poses: Poses) -> ExportPlan:
+def plan_export(
+    document: Document, request: ExportRequest, poses: Mapping[int, Poses]
+) -> ExportPlan:
     """Settle an export whose request has passed `check_request`.
 
     Parameters
     ----------
     document : Document
     request : ExportRequest
-    poses : Poses
-        The document's; looked at only where the framing depends on the motion.
+    poses : mapping of int to Poses
+        One for each figure, by its id; looked at only where the framing depends on the motion.
 
     Raises
     ------
@@ -154,11 +157,12 @@ def plan_export(document: Document, request: ExportRequest, poses: Poses) -> Exp
     frames = _frames(document, settings)
     times = tuple(frame_times(document, frames, request.fps))
     is_fitted = settings.framing == "fit"
-    reach = _reach(poses, times) if is_fitted else box_around(document.domain.mesh.vertices)
+    rest = np.concatenate([figure.domain.mesh.vertices for figure in document.figures])
+    reach = _reach(poses, times) if is_fitted else box_around(rest)
     plan = ExportPlan(
         out=request.out,
         format=settings.format,
-        view=frame_view(settings, document.picture.size, reach),
+        view=frame_view(settings, document.canvas, reach),
         background=_colour(settings.background),
         times=times,
         first=frames.first,
@@ -172,11 +176,12 @@ def _frames(document: Document, settings: ExportSettings) -> FrameRange:
     return settings.frames or exported_frames(document)
 
 
-def _reach(poses: Poses, times: tuple[float, ...]) -> Box:
+def _reach(poses: Mapping[int, Poses], times: tuple[float, ...]) -> Box:
     """Return the box around all vertices at all times."""
     corners: list[complex] = []
     for time in times:
-        corners += box_around(poses.positions(time))
+        positions = [figure.positions(time) for figure in poses.values()]
+        corners += box_around(np.concatenate(positions))
         if not np.isfinite(corners[-2:]).all():
             raise LissomError(f"frame {time:g} cannot be drawn: its points are not all finite")
     return box_around(np.array(corners))

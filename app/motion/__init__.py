@@ -1,13 +1,14 @@
-"""The motion of a document on a mesh: exact, prepared, and as series in time.
+"""The motion of a figure on a mesh: exact, prepared, and as series in time.
 
-In: a document and a frame.
+In: a clip (a figure in its scene's time) and a frame.
 Out: where the vertices are, and how far they reach.
 Imports: `app.document`.
 """
 
-from app.motion.extent import Box, Reach, box_around, measure_reach, source_of
-from app.motion.inbetweens import Animation, Stage
-from app.motion.prepared import Figure, Motion, prepare_motion
+from app.motion.extent import Box, Extent, box_around, extent_source, measure_extent
+from app.motion.inbetweens import Animation, PoseSampler
+from app.motion.posable_mesh import PosableMesh
+from app.motion.prepared import Motion, prepare_motion
 from app.motion.series_queue import Build, next_build, with_series
 from app.motion.shown_frame import Shown, show
 from app.motion.vertices import Streamed, Vertices
@@ -16,18 +17,18 @@ __all__ = [
     "Animation",
     "Box",
     "Build",
-    "Figure",
+    "Extent",
     "Motion",
-    "Reach",
+    "PosableMesh",
+    "PoseSampler",
     "Shown",
-    "Stage",
     "Streamed",
     "Vertices",
     "box_around",
-    "measure_reach",
+    "extent_source",
+    "measure_extent",
     "next_build",
     "prepare_motion",
     "show",
-    "source_of",
     "with_series",
 ]

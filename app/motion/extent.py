@@ -1,10 +1,11 @@
 """How far an animation moves over the plane."""
 
+from collections.abc import Mapping
 from typing import NamedTuple
 
 import numpy as np
 
-from app.document import Document, exported_frames
+from app.document import Document, clip_of, exported_frames
 from app.motion.prepared import Motion
 from engine.arrays import Complexes
 
@@ -31,33 +32,37 @@ def box_around(points: Complexes) -> Box:
     return Box(complex(x.min(), y.min()), complex(x.max(), y.max()))
 
 
-class Reach(NamedTuple):
+class Extent(NamedTuple):
     """The box around all that an export shows, and what of the document it follows from."""
 
     source: tuple[object, ...]
     box: Box
 
 
-def source_of(document: Document) -> tuple[object, ...]:
-    """Return all of a document that its reach depends on; equal where the reach is."""
-    return (
-        document.domain,
-        document.keys,
-        document.frames,
-        document.loop,
-        document.anchor,
-        document.variant,
-        exported_frames(document),
-    )
+def extent_source(document: Document) -> tuple[object, ...]:
+    """Return all of a document that its extent depends on; equal where the extent is."""
+    motions = [
+        (figure.domain, figure.keys, figure.anchor, figure.variant) for figure in document.figures
+    ]
+    return (*motions, document.frames, document.loop, exported_frames(document))
 
 
-def measure_reach(document: Document, motion: Motion) -> Reach | None:
-    """Measure a document's reach; None where the motion does not know all of its in-betweens."""
+def measure_extent(document: Document, motions: Mapping[int, Motion]) -> Extent | None:
+    """Measure a document's extent; None where the motions do not know all of its in-betweens.
+
+    Parameters
+    ----------
+    document : Document
+    motions : mapping of int to Motion
+        One for each figure, by its id.
+    """
     frames = exported_frames(document)
     corners: list[complex] = []
-    for frame in range(frames.first, frames.last + 1):
-        positions = motion.positions(document, frame)
-        if positions is None:
-            return None
-        corners += box_around(positions)
-    return Reach(source_of(document), box_around(np.array(corners)))
+    for figure in document.figures:
+        clip = clip_of(document, figure.id)
+        for frame in range(frames.first, frames.last + 1):
+            positions = motions[figure.id].positions(clip, frame)
+            if positions is None:
+                return None
+            corners += box_around(positions)
+    return Extent(extent_source(document), box_around(np.array(corners)))

@@ -1,13 +1,13 @@
-"""The in-betweens of a document at any frame: the one way to them for window, export and checks."""
+"""The in-betweens of a figure at any frame: the one way to them for window, export and checks."""
 
 import threading
 from collections.abc import Sequence
 
 import numpy as np
 
-from app.document import Document, Moment, Pose, Variant, intervals, resting_pose, time_of
+from app.document import Clip, Pose, Variant, intervals, resting_pose, time_of
 from engine import interpolation
-from engine.arrays import Complexes, Floats
+from engine.arrays import Complexes
 from engine.dirichlet import HilbertTransform, ProjectedTransform
 from engine.domain import Domain
 from engine.interpolation import (
@@ -23,7 +23,7 @@ from engine.maps import HarmonicMap
 from engine.paths import root_sheets
 
 
-class Stage:
+class PoseSampler:
     """Points of a domain at which in-betweens are wanted, with all that poses share there.
 
     It keeps the samples of each pose that it met; poses are frozen, so that they stay true.
@@ -35,7 +35,7 @@ class Stage:
         None lets the engine choose it.
     points : complex128, shape (m,), optional
         By default the vertices of the domain's mesh.
-    kin : Stage, optional
+    sibling : PoseSampler, optional
         With the same outline and cage; what depends on them alone is shared with it.
 
     Raises
@@ -50,7 +50,7 @@ class Stage:
         *,
         anchor: complex | None,
         points: Complexes | None = None,
-        kin: "Stage | None" = None,
+        sibling: "PoseSampler | None" = None,
     ) -> None:
         self.domain = domain
         self.anchor = anchor
@@ -65,7 +65,7 @@ class Stage:
         self._lock = threading.RLock()
         self._samples: dict[Pose, KeyframeSamples] = {}
         self._inbetweens: dict[tuple[Pose, Pose, int, Variant, bool], Inbetweens] = {}
-        self._kin = kin
+        self._sibling = sibling
         self._transform: HilbertTransform | None = None
         self._quick_transform: ProjectedTransform | None = None
 
@@ -76,10 +76,10 @@ class Stage:
             if self._transform is None:
                 self._transform = (
                     HilbertTransform.on(self.domain.outline, self.domain.cage)
-                    if self._kin is None
-                    else self._kin.transform
+                    if self._sibling is None
+                    else self._sibling.transform
                 )
-                self._kin = None
+                self._sibling = None
             return self._transform
 
     @property
@@ -144,65 +144,61 @@ def has_rough(variant: Variant) -> bool:
 
 
 class Animation:
-    """A document's motion at the points of a stage.
+    """A clip's motion at the points of a sampler.
 
     Parameters
     ----------
-    document : Document
+    clip : Clip
     variant : str, optional
-        The document's own by default.
+        The figure's own by default.
     points : complex128, shape (m,), optional
         By default the vertices of the domain's mesh.
-    stage : Stage, optional
-        An earlier animation's; it is used again if its domain and anchor are the document's, and
+    sampler : PoseSampler, optional
+        An earlier animation's; it is used again if its domain and anchor are the figure's, and
         then only poses that changed cost anything.
     """
 
     def __init__(
         self,
-        document: Document,
+        clip: Clip,
         variant: Variant | None = None,
         *,
         points: Complexes | None = None,
-        stage: Stage | None = None,
+        sampler: PoseSampler | None = None,
     ) -> None:
-        self.document = document
-        self.variant: Variant = document.variant if variant is None else variant
+        self.clip = clip
+        self.variant: Variant = clip.figure.variant if variant is None else variant
         if (
-            stage is None
-            or stage.domain is not document.domain
-            or stage.anchor != document.anchor
-            or (points is not None and points is not stage.sites.points)
+            sampler is None
+            or sampler.domain is not clip.figure.domain
+            or sampler.anchor != clip.figure.anchor
+            or (points is not None and points is not sampler.sites.points)
         ):
-            stage = Stage(document.domain, anchor=document.anchor, points=points)
-        self.stage = stage
-        stage.keep_only([key.pose for key in document.keys])
+            sampler = PoseSampler(clip.figure.domain, anchor=clip.figure.anchor, points=points)
+        self.sampler = sampler
+        sampler.keep_only([key.pose for key in clip.keys])
 
     def positions(self, frame: float) -> Complexes:
         """Return where the points (m,) are at a frame, which may lie between two numbers."""
-        moment = time_of(self.document, frame)
-        resting = resting_pose(self.document, moment)
+        moment = time_of(self.clip, frame)
+        resting = resting_pose(self.clip, moment)
         if resting is not None:
-            return self.stage.samples(resting).positions
-        return self._inbetweens(moment.interval).frame(_weights(moment)).positions
+            return self.sampler.samples(resting).positions
+        return self._inbetweens(moment.interval).frame(moment.weights).positions
 
     def frame(self, frame: float) -> Frame:
         """Return positions and derivatives of the points at a frame."""
-        moment = time_of(self.document, frame)
-        resting = resting_pose(self.document, moment)
+        moment = time_of(self.clip, frame)
+        resting = resting_pose(self.clip, moment)
         if resting is None:
-            return self._inbetweens(moment.interval).frame(_weights(moment))
-        positions = self.stage.samples(resting).positions
-        fz, fzbar = self.document.map_of(resting).derivatives(self.stage.sites.points)
+            return self._inbetweens(moment.interval).frame(moment.weights)
+        positions = self.sampler.samples(resting).positions
+        fz, fzbar = self.clip.figure.map_of(resting).derivatives(self.sampler.sites.points)
         return Frame(positions=positions, fz=fz, fzbar=fzbar, rho=None)
 
     def _inbetweens(self, interval: int) -> Inbetweens:
-        first, second = intervals(self.document)[interval]
-        keys = self.document.keys
-        return self.stage.inbetweens(
+        first, second = intervals(self.clip)[interval]
+        keys = self.clip.keys
+        return self.sampler.inbetweens(
             keys[first].pose, keys[second].pose, self.variant, turns=keys[first].turns
         )
-
-
-def _weights(moment: Moment) -> Floats:
-    return np.array([1.0 - moment.weight, moment.weight])

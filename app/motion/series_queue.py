@@ -5,8 +5,9 @@ from dataclasses import replace
 from functools import partial
 from types import MappingProxyType
 
-from app.document import Document, intervals, time_of
-from app.motion.prepared import Figure, Motion, Pair, Piece, pair_of
+from app.document import Clip, intervals, time_of
+from app.motion.posable_mesh import PosableMesh
+from app.motion.prepared import Motion, Pair, PreparedInterval, pair_of
 from engine.streaming import Channels, Distortions, Positions, Series, build_series
 
 BUDGET = 2**30  # bytes of the series of one figure
@@ -29,23 +30,23 @@ class Build:
     """
 
     def __init__(self, motion: Motion, pair: Pair, *, distortions: bool) -> None:
-        if motion.stage is None:
-            raise ValueError("a motion without a stage has nothing to stream")
-        self.figure: Figure = motion.figure
+        if motion.sampler is None:
+            raise ValueError("a motion without a sampler has nothing to stream")
+        self.mesh: PosableMesh = motion.mesh
         self.pair = pair
         self.distortions = distortions
         self.series: Series | None = None
-        inbetweens, sites = motion.pieces[pair].inbetweens, motion.stage.sites
+        inbetweens, sites = motion.ready[pair].inbetweens, motion.sampler.sites
         self._steps = _steps(
             partial(Distortions.of, inbetweens)
             if distortions
             else partial(Positions.of, inbetweens, sites)
         )
-        self._batch = max(1, BATCH // len(motion.figure.domain.mesh.vertices))
+        self._batch = max(1, BATCH // len(motion.mesh.domain.mesh.vertices))
 
     def is_of(self, motion: Motion | None) -> bool:
         """Tell whether a motion still has use for it."""
-        return motion is not None and motion.figure is self.figure and self.pair in motion.pieces
+        return motion is not None and motion.mesh is self.mesh and self.pair in motion.ready
 
     def advance(self) -> "Build":
         """Take some steps."""
@@ -59,15 +60,15 @@ class Build:
 
 
 def next_build(
-    motion: Motion, document: Document, frame: int, *, heat: bool, budget: int = BUDGET
+    motion: Motion, clip: Clip, frame: int, *, heat: bool, budget: int = BUDGET
 ) -> Build | None:
     """Return what is to be built next of a motion; None where all that is wanted is there.
 
     Parameters
     ----------
     motion : Motion
-        Of the document.
-    document : Document
+        Of the clip.
+    clip : Clip
     frame : int
         Where the playhead is; the intervals nearest to it come first.
     heat : bool
@@ -75,12 +76,12 @@ def next_build(
     budget : int
         In bytes. Intervals beyond it stay on the direct path.
     """
-    if motion.stage is None or not motion.knows(document):
+    if motion.sampler is None or not motion.knows(clip):
         return None
     used = 0
-    for pair in _by_nearness(document, frame):
-        piece = motion.pieces[pair]
-        for distortions, series in ((False, piece.series), (True, piece.distortions)):
+    for pair in _by_nearness(clip, frame):
+        prepared = motion.ready[pair]
+        for distortions, series in ((False, prepared.series), (True, prepared.distortions)):
             if distortions and not heat:
                 continue
             if series is None:
@@ -92,7 +93,7 @@ def next_build(
 
 
 def with_series(
-    motion: Motion, build: Build, document: Document, frame: int, *, budget: int = BUDGET
+    motion: Motion, build: Build, clip: Clip, frame: int, *, budget: int = BUDGET
 ) -> Motion:
     """Return a motion that has what was built; the series farthest from `frame` make room for it.
 
@@ -101,41 +102,43 @@ def with_series(
     series = build.series
     if series is None or not build.is_of(motion):
         return motion
-    pieces = dict(motion.pieces)
-    piece = pieces[build.pair]
+    ready = dict(motion.ready)
+    prepared = ready[build.pair]
     changed = (
-        piece._replace(distortions=series) if build.distortions else piece._replace(series=series)
+        prepared._replace(distortions=series)
+        if build.distortions
+        else prepared._replace(series=series)
     )
-    pieces[build.pair] = changed
-    if motion.knows(document):
-        for pair in reversed(_by_nearness(document, frame)):
-            if memory(pieces.values()) > budget and pair != build.pair:
-                pieces[pair] = pieces[pair]._replace(series=None, distortions=None)
-    return replace(motion, pieces=MappingProxyType(pieces))
+    ready[build.pair] = changed
+    if motion.knows(clip):
+        for pair in reversed(_by_nearness(clip, frame)):
+            if memory(ready.values()) > budget and pair != build.pair:
+                ready[pair] = ready[pair]._replace(series=None, distortions=None)
+    return replace(motion, ready=MappingProxyType(ready))
 
 
-def memory(pieces: Iterable[Piece]) -> int:
-    """Return the bytes that the series of some pieces take."""
+def memory(ready: Iterable[PreparedInterval]) -> int:
+    """Return the bytes that the series of some ready take."""
     return sum(
         series.nbytes
-        for piece in pieces
-        for series in (piece.series, piece.distortions)
+        for prepared in ready
+        for series in (prepared.series, prepared.distortions)
         if series is not None
     )
 
 
 def _expected(motion: Motion, *, distortions: bool) -> int:
     """Return the bytes that another series may take: as many as the largest one so far."""
-    kind = [p.distortions if distortions else p.series for p in motion.pieces.values()]
+    kind = [p.distortions if distortions else p.series for p in motion.ready.values()]
     sizes = [series.nbytes for series in kind if series is not None]
-    return max(sizes, default=EXPECTED * len(motion.figure.domain.mesh.vertices))
+    return max(sizes, default=EXPECTED * len(motion.mesh.domain.mesh.vertices))
 
 
-def _by_nearness(document: Document, frame: int) -> list[Pair]:
-    """Return the document's intervals, the one at the frame first; each once."""
-    current = time_of(document, frame).interval
-    order = sorted(range(len(intervals(document))), key=lambda i: (abs(i - current), i < current))
-    return list(dict.fromkeys(pair_of(document, interval) for interval in order))
+def _by_nearness(clip: Clip, frame: int) -> list[Pair]:
+    """Return the clip's intervals, the one at the frame first; each once."""
+    current = time_of(clip, frame).interval
+    order = sorted(range(len(intervals(clip))), key=lambda i: (abs(i - current), i < current))
+    return list(dict.fromkeys(pair_of(clip, interval) for interval in order))
 
 
 def _steps(channels: Callable[[], Channels]) -> Generator[None, None, Series]:

@@ -1,12 +1,13 @@
-"""What is on the screen: which pose of the document, on which mesh."""
+"""What is on the screen: which pose of a figure, on which mesh."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from app.document import Document, Pose, resting_pose, time_of
-from app.motion.prepared import Figure, Motion, Places
+from app.document import Clip, Pose, resting_pose, time_of
+from app.motion.posable_mesh import AttachedPoints, PosableMesh
+from app.motion.prepared import Motion
 from app.motion.vertices import Placed, Streamed, Vertices
 from engine.arrays import Complexes
 
@@ -17,38 +18,38 @@ class Shown:
 
     Parameters
     ----------
-    document : Document
+    clip : Clip
     frame : int
     pose : Pose, optional
         The pose that is shown; None for an in-between.
-    figure : Figure
+    mesh : PosableMesh
     vertices : Vertices
-        The figure's.
-    handles : Places
-        Of the document's handles in the figure.
+        The mesh's.
+    handles : AttachedPoints
+        Of the figure's handles in the mesh.
     is_current : bool
         Whether it shows what it should, and not an earlier state or a rough one while that is being
         prepared.
     """
 
-    document: Document
+    clip: Clip
     frame: int
     pose: Pose | None
-    figure: Figure
+    mesh: PosableMesh
     vertices: Vertices
-    handles: Places
+    handles: AttachedPoints
     is_current: bool
 
     @property
     def positions(self) -> Complexes:
-        """Where the figure's vertices are, (v,)."""
+        """Where the mesh's vertices are, (v,)."""
         return self.vertices.positions
 
     @property
     def derivatives(self) -> tuple[Complexes, Complexes]:
         """f_z and f_z̄ at the vertices, each (v,)."""
         streamed = self.vertices.derivatives if isinstance(self.vertices, Streamed) else None
-        return self.figure.derivatives(self.positions) if streamed is None else streamed
+        return self.mesh.derivatives(self.positions) if streamed is None else streamed
 
     @property
     def handle_places(self) -> Complexes:
@@ -61,19 +62,19 @@ class Shown:
         targets = {} if self.pose is None else self.pose.targets
         return {
             handle.id: abs(targets[handle.id].position - complex(place))
-            for handle, place in zip(self.document.handles, self.handle_places, strict=True)
+            for handle, place in zip(self.clip.figure.handles, self.handle_places, strict=True)
             if handle.id in targets
         }
 
     @property
     def handle_turns(self) -> list[float]:
         """By how much the shape turns at the handles, in radians."""
-        turns = self.handles.turns(self.figure.domain.mesh.vertices, self.positions)
+        turns = self.handles.turns(self.mesh.domain.mesh.vertices, self.positions)
         return [float(turn) for turn in turns]
 
 
 def show(
-    document: Document,
+    clip: Clip,
     frame: int,
     pose: Pose | None,
     motions: tuple[Motion, ...],
@@ -83,68 +84,66 @@ def show(
 
     Parameters
     ----------
-    document : Document
+    clip : Clip
     frame : int
     pose : Pose, optional
-        Shown instead of what the document has at the frame.
+        Shown instead of what the figure has at the frame.
     motions : tuple of Motion
         Where to look for it, the preferred one first; at least one.
     earlier : Shown, optional
         What was drawn before; it stays while nothing better is prepared.
     """
     if pose is None:
-        pose = resting_pose(document, time_of(document, frame))
+        pose = resting_pose(clip, time_of(clip, frame))
     for motion in motions:
-        if motion.figure.source is not document.domain:
+        if motion.mesh.source is not clip.figure.domain:
             continue
-        figure = motion.figure
-        if earlier is not None and _is_same(earlier, document, frame, pose, figure):
+        mesh = motion.mesh
+        if earlier is not None and _is_same(earlier, clip, frame, pose, mesh):
             return earlier if earlier.frame == frame else replace(earlier, frame=frame)
         if pose is not None:
-            vertices: Vertices | None = Placed(positions=figure.posed(pose))
+            vertices: Vertices | None = Placed(positions=mesh.posed(pose))
         else:
-            vertices = motion.vertices(document, frame)
+            vertices = motion.vertices(clip, frame)
         if vertices is not None:
-            handles = _locate(document, figure, earlier)
+            handles = _locate(clip, mesh, earlier)
             return Shown(
-                document=document,
+                clip=clip,
                 frame=frame,
                 pose=pose,
-                figure=figure,
+                mesh=mesh,
                 vertices=vertices,
                 handles=handles,
-                is_current=pose is not None or not motion.is_rough(document, frame),
+                is_current=pose is not None or not motion.is_rough(clip, frame),
             )
     if earlier is None:
-        raise ValueError("none of the motions is of the document's domain")
-    if earlier.figure.source is not document.domain:
+        raise ValueError("none of the motions is of the figure's domain")
+    if earlier.mesh.source is not clip.figure.domain:
         return replace(earlier, is_current=False)
     return replace(
         earlier,
-        document=document,
-        handles=_locate(document, earlier.figure, earlier),
+        clip=clip,
+        handles=_locate(clip, earlier.mesh, earlier),
         is_current=False,
     )
 
 
-def _is_same(
-    earlier: Shown, document: Document, frame: int, pose: Pose | None, figure: Figure
-) -> bool:
+def _is_same(earlier: Shown, clip: Clip, frame: int, pose: Pose | None, mesh: PosableMesh) -> bool:
     return (
         earlier.is_current
-        and earlier.document is document
-        and earlier.figure is figure
+        and earlier.clip == clip
+        and earlier.mesh is mesh
         and earlier.pose is pose
         and (earlier.frame == frame or pose is not None)
     )
 
 
-def _locate(document: Document, figure: Figure, earlier: Shown | None) -> Places:
+def _locate(clip: Clip, mesh: PosableMesh, earlier: Shown | None) -> AttachedPoints:
     if (
         earlier is not None
-        and earlier.figure is figure
-        and earlier.document.handles == document.handles
+        and earlier.mesh is mesh
+        and earlier.clip.figure.handles == clip.figure.handles
     ):
         return earlier.handles
-    places = np.array([handle.position for handle in document.handles], dtype=np.complex128)
-    return figure.locate(places, figure.domain.mesh.vertices)
+    places = np.array([handle.position for handle in clip.figure.handles], dtype=np.complex128)
+    return mesh.locate(places, mesh.domain.mesh.vertices)

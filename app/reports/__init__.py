@@ -5,7 +5,7 @@ Out: certificates, curves over time, and pictures of them.
 Imports: `app.motion`, `app.storage`.
 """
 
-from app.reports.certification import Report, certify_document
+from app.reports.certification import Report, certify_clip
 from app.reports.curve_picture import draw_curves
 from app.reports.curves import TIMES, Curves, Extremes, broken_lines, measure_curves, write_curves
 from app.reports.domain_preview import draw_preview
@@ -16,7 +16,7 @@ __all__ = [
     "Extremes",
     "Report",
     "broken_lines",
-    "certify_document",
+    "certify_clip",
     "draw_curves",
     "draw_preview",
     "measure_curves",

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from app.document import Document, Variant, intervals
+from app.document import Clip, Variant, intervals
 from app.motion import Animation
 from engine.arrays import Complexes
 from engine.maps import Boundary, Certificate, certify, distortion
@@ -77,14 +77,14 @@ class Report:
         )
 
 
-def certify_document(document: Document, variant: Variant | None = None) -> Report:
-    """Measure the distortion of a document over time and space.
+def certify_clip(clip: Clip, variant: Variant | None = None) -> Report:
+    """Measure the distortion of a figure over time and space.
 
     Parameters
     ----------
-    document : Document
+    clip : Clip
     variant : str, optional
-        The document's own by default.
+        The figure's own by default.
 
     Notes
     -----
@@ -92,19 +92,19 @@ def certify_document(document: Document, variant: Variant | None = None) -> Repo
     outline; there it is taken at graded samples, some hundred an edge, the same for keys and
     in-betweens.
     """
-    boundary = Boundary.sample(document.domain.outline, document.domain.cage)
+    boundary = Boundary.sample(clip.figure.domain.outline, clip.figure.domain.cage)
     keys = tuple(
-        (key.frame, certify(document.map_of(key.pose), boundary, document.bounds))
-        for key in document.keys
+        (key.frame, certify(clip.figure.map_of(key.pose), boundary, clip.figure.bounds))
+        for key in clip.keys
     )
-    animation = Animation(document, variant, points=boundary.points)
+    animation = Animation(clip, variant, points=boundary.points)
     reports = []
-    for first, last in intervals(document):
-        poses = document.keys[first].pose, document.keys[last].pose
-        ends = [_extremes(*document.map_of(pose).derivatives(boundary.points)) for pose in poses]
+    for first, last in intervals(clip):
+        poses = clip.keys[first].pose, clip.keys[last].pose
+        ends = [_extremes(*clip.figure.map_of(pose).derivatives(boundary.points)) for pose in poses]
         bound = ends[0].joined(ends[1])
-        inbetweens = animation.stage.inbetweens(
-            *poses, animation.variant, turns=document.keys[first].turns
+        inbetweens = animation.sampler.inbetweens(
+            *poses, animation.variant, turns=clip.keys[first].turns
         )
         reached = bound
         for t in np.linspace(0.0, 1.0, TIMES)[1:-1]:
@@ -112,8 +112,8 @@ def certify_document(document: Document, variant: Variant | None = None) -> Repo
             reached = reached.joined(_extremes(frame.fz, frame.fzbar))
         reports.append(
             IntervalReport(
-                first=document.keys[first].frame,
-                last=document.keys[last].frame,
+                first=clip.keys[first].frame,
+                last=clip.keys[last].frame,
                 reached=reached,
                 keys=bound,
             )

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from app.document import Document, intervals
+from app.document import Clip, intervals
 from app.motion import Motion
 from app.storage import write_atomically
 from engine.arrays import Floats
@@ -51,7 +51,7 @@ class Curves:
 
     Parameters
     ----------
-    document : Document
+    clip : Clip
     frames : float64, shape (t,)
     k, tau : float64, shape (t, p)
         At the points where each is the largest over all time.
@@ -62,7 +62,7 @@ class Curves:
         Of all points: the largest k and σ_a, and the smallest σ_b.
     """
 
-    document: Document
+    clip: Clip
     frames: Floats
     k: Floats
     tau: Floats
@@ -72,31 +72,31 @@ class Curves:
 
     def extremes_at(self, frame: float) -> Extremes:
         """Return the extremes at a frame, between those that were measured around it."""
-        if frame < self.frames[0] and self.document.loop:
-            frame += self.document.frames.last - self.document.frames.first
+        if frame < self.frames[0] and self.clip.loop:
+            frame += self.clip.period
         return Extremes(*(float(np.interp(frame, self.frames, row)) for row in self.extremes.T))
 
 
-def measure_curves(document: Document, motion: Motion) -> Curves:
-    """Measure a document at the vertices of a motion's figure.
+def measure_curves(clip: Clip, motion: Motion) -> Curves:
+    """Measure a clip at the vertices of a motion's mesh.
 
     Parameters
     ----------
-    document : Document
+    clip : Clip
         With at least two keys.
     motion : Motion
         That knows it.
     """
-    keys = document.keys
-    period = document.frames.last - document.frames.first
+    keys = clip.keys
+    period = clip.period
     frames, ks, taus, extremes = [], [], [], []
-    for interval, (first, last) in enumerate(intervals(document)):
-        piece = motion.inbetweens(document, interval)
+    for interval, (first, last) in enumerate(intervals(clip)):
+        inbetweens = motion.inbetweens(clip, interval)
         start = keys[first].frame
         end = keys[last].frame if last > first else keys[last].frame + period
         for share in np.linspace(0.0, 1.0, TIMES):
             t = keys[first].easing(float(share))
-            blended = piece.frame(np.array([1.0 - t, t]))
+            blended = inbetweens.frame(np.array([1.0 - t, t]))
             frames.append(start + share * (end - start))
             k = distortion.k(blended.fz, blended.fzbar)
             sigma_a = distortion.sigma_a(blended.fz, blended.fzbar)
@@ -106,7 +106,7 @@ def measure_curves(document: Document, motion: Motion) -> Curves:
             extremes.append((k.max(), sigma_a.max(), sigma_b.min()))
     worst_k, worst_tau = _worst(np.array(ks)), _worst(np.array(taus))
     return Curves(
-        document=document,
+        clip=clip,
         frames=np.array(frames, dtype=np.float64),
         k=worst_k,
         tau=worst_tau,

@@ -1,6 +1,6 @@
 """Poses from handles: drags, keys that are solved again, and pose scripts.
 
-In: a document, and where handles are wanted.
+In: a figure, and where handles are wanted.
 Out: certified poses.
 Imports: `app.motion`, `app.storage`.
 """

@@ -6,8 +6,8 @@ from typing import Self
 
 import numpy as np
 
-from app.document import Document, Pose, Target, resting_pose, time_of
-from app.motion import Animation, Stage
+from app.document import Clip, Figure, Pose, Target, resting_pose, time_of
+from app.motion import Animation, PoseSampler
 from engine.arrays import Booleans, Complexes
 from engine.deform import Deformer, Handles, State, Status, Wish
 from engine.maps import Boundary, Bounds, HarmonicMap, certify
@@ -19,54 +19,54 @@ LEEWAY = 0.02
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Rig:
-    """What solving poses needs of a document.
+    """What solving poses needs of a figure.
 
     Parameters
     ----------
-    document : Document
+    figure : Figure
     deformer : Deformer
-        For all of the document's handles, in their order.
+        For all of the figure's handles, in their order.
     """
 
-    document: Document
+    figure: Figure
     deformer: Deformer
 
     @classmethod
-    def of(cls, document: Document, earlier: "Rig | None" = None) -> Self:
-        """Return the rig of a document; what did not change is taken from an earlier one."""
+    def of(cls, figure: Figure, earlier: "Rig | None" = None) -> Self:
+        """Return the rig of a figure; what did not change is taken from an earlier one."""
         boundary = (
             earlier.deformer.boundary
-            if earlier is not None and earlier.document.domain is document.domain
-            else Boundary.sample(document.domain.outline, document.domain.cage)
+            if earlier is not None and earlier.figure.domain is figure.domain
+            else Boundary.sample(figure.domain.outline, figure.domain.cage)
         )
         handles = (
             earlier.deformer.handles
             if earlier is not None
             and earlier.deformer.boundary is boundary
-            and earlier.document.handles == document.handles
+            and earlier.figure.handles == figure.handles
             else Handles.place(
                 boundary,
-                np.array([handle.position for handle in document.handles], dtype=np.complex128),
-                [handle.weight for handle in document.handles],
+                np.array([handle.position for handle in figure.handles], dtype=np.complex128),
+                [handle.weight for handle in figure.handles],
             )
         )
         return cls(
-            document=document,
-            deformer=Deformer(boundary=boundary, handles=handles, bounds=document.bounds),
+            figure=figure,
+            deformer=Deformer(boundary=boundary, handles=handles, bounds=figure.bounds),
         )
 
     def wish(self, targets: Mapping[int, Target]) -> Wish:
         """Return where handles are wanted, as the deformer takes it."""
-        wanted = [targets[handle.id] for handle in self.document.handles]
+        wanted = [targets[handle.id] for handle in self.figure.handles]
         return self.deformer.handles.wish(
             np.array([target.position for target in wanted], dtype=np.complex128),
             [np.nan if target.rotation is None else target.rotation for target in wanted],
         )
 
     def within_bounds_of(self, pose: Pose) -> Deformer:
-        """Return a deformer that allows a pose, be it outside the document's present bounds."""
+        """Return a deformer that allows a pose, be it outside the figure's present bounds."""
         deformer = self.deformer
-        certificate = certify(self.document.map_of(pose), deformer.boundary, deformer.bounds)
+        certificate = certify(self.figure.map_of(pose), deformer.boundary, deformer.bounds)
         if certificate.certified:
             return deformer
         bounds = deformer.bounds
@@ -86,7 +86,7 @@ class Drag:
     ----------
     rig : Rig
     deformer : Deformer
-        Its bounds are the document's, or as much wider as the pose at the start asked for.
+        Its bounds are the figure's, or as much wider as the pose at the start asked for.
     state : State
     """
 
@@ -104,7 +104,7 @@ class Drag:
             If the pose folds.
         """
         deformer = rig.within_bounds_of(pose)
-        return cls(rig=rig, deformer=deformer, state=deformer.start(rig.document.map_of(pose)))
+        return cls(rig=rig, deformer=deformer, state=deformer.start(rig.figure.map_of(pose)))
 
     @classmethod
     def from_rest(cls, rig: Rig) -> Self:
@@ -152,7 +152,7 @@ class Drag:
         )
 
 
-def pose_at(rig: Rig, frame: float, kin: Stage | None = None) -> Pose:
+def pose_at(rig: Rig, clip: Clip, frame: float, sibling: PoseSampler | None = None) -> Pose:
     """Return the pose that an animation shows at a frame, as near as one map can be to it.
 
     Of a key it is the key's own. In-betweens are no maps over the cage: their derivatives are
@@ -161,20 +161,24 @@ def pose_at(rig: Rig, frame: float, kin: Stage | None = None) -> Pose:
     Parameters
     ----------
     rig : Rig
+        Of the clip's figure.
+    clip : Clip
     frame : float
-    kin : Stage, optional
-        Of the document's domain, for what it knows of the outline.
+    sibling : PoseSampler, optional
+        Of the figure's domain, for what it knows of the outline.
     """
-    document, boundary = rig.document, rig.deformer.boundary
-    moment = time_of(document, frame)
-    resting = resting_pose(document, moment)
+    figure, boundary = rig.figure, rig.deformer.boundary
+    moment = time_of(clip, frame)
+    resting = resting_pose(clip, moment)
     if resting is not None:
         return resting
-    keys = document.keys
+    keys = clip.keys
     after = moment.weight > 0.5
     near = keys[(moment.interval + after) % len(keys)].pose
-    stage = Stage(document.domain, anchor=document.anchor, points=boundary.points, kin=kin)
-    blended = Animation(document, points=boundary.points, stage=stage).frame(frame)
+    sampler = PoseSampler(
+        figure.domain, anchor=figure.anchor, points=boundary.points, sibling=sibling
+    )
+    blended = Animation(clip, points=boundary.points, sampler=sampler).frame(frame)
     fitted = fit_map(boundary, blended.fz, blended.fzbar, blended.positions)
     for share in (1.0, 0.5, 0.25, 0.0):
         phi = share * fitted.phi + (1.0 - share) * near.phi
@@ -184,11 +188,11 @@ def pose_at(rig: Rig, frame: float, kin: Stage | None = None) -> Pose:
         if certificate.certified:
             break
     else:
-        mixed, certificate = document.map_of(near), near.certificate
-    places = mixed(np.array([handle.position for handle in document.handles], dtype=np.complex128))
+        mixed, certificate = figure.map_of(near), near.certificate
+    places = mixed(np.array([handle.position for handle in figure.handles], dtype=np.complex128))
     targets = {
         handle.id: Target(position=complex(place))
-        for handle, place in zip(document.handles, places, strict=True)
+        for handle, place in zip(figure.handles, places, strict=True)
     }
     return Pose(targets=targets, phi=mixed.phi, psi=mixed.psi, certificate=certificate)
 

@@ -4,7 +4,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from app.document import Command, Document, Keyframe, Meshing, Pose, replace_domain, set_bounds
+from app.document import Command, Figure, Keyframe, Meshing, Pose, figure_commands
 from app.solving.drag import Rig, fit_map
 from engine.arrays import Bytes
 from engine.domain import Domain, build_domain
@@ -18,11 +18,11 @@ AT_REST = 1e-3  # pixels that coefficients of the drawing at rest may lack
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Renewal:
-    """A document on its way to other bounds or another domain.
+    """A figure on its way to other bounds or another domain.
 
     Parameters
     ----------
-    before : Document
+    before : Figure
     bounds : Bounds
         Of the poses to come.
     meshing : Meshing, optional
@@ -41,7 +41,7 @@ class Renewal:
         What was remedied, in words.
     """
 
-    before: Document
+    before: Figure
     bounds: Bounds
     meshing: Meshing | None = None
     pulls: bool = True
@@ -74,8 +74,8 @@ class Renewal:
     def command(self) -> Command:
         """What makes one step of undo of all of it."""
         if self.meshing is None or self.domain is None:
-            return set_bounds(self.bounds, self.poses)
-        return replace_domain(self.domain, self.meshing, self.poses)
+            return figure_commands.set_bounds(self.before.id, self.bounds, self.poses)
+        return figure_commands.replace_domain(self.before.id, self.domain, self.meshing, self.poses)
 
 
 def go_on(renewal: Renewal, picture: Bytes) -> Renewal:
@@ -86,7 +86,7 @@ def go_on(renewal: Renewal, picture: Bytes) -> Renewal:
     renewal : Renewal
         One that is not over.
     picture : uint8, shape (h, w, 4)
-        The document's, decoded.
+        The figure's, decoded.
 
     Raises
     ------
@@ -140,12 +140,12 @@ def _solved(renewal: Renewal, rig: Rig, key: Keyframe) -> Pose:
     return replace(key.pose, phi=state.map.phi, psi=state.map.psi, certificate=certificate)
 
 
-def _carried_over(document: Document, pose: Pose, rig: Rig) -> HarmonicMap:
-    """Return the map over the rig's cage that is nearest to a pose over the document's.
+def _carried_over(figure: Figure, pose: Pose, rig: Rig) -> HarmonicMap:
+    """Return the map over the rig's cage that is nearest to a pose over the figure's.
 
     The pose's map goes on from the old outline up to the old cage, where the new outline may lie.
     """
-    boundary, cage = rig.deformer.boundary, document.domain.cage
+    boundary, cage = rig.deformer.boundary, figure.domain.cage
     is_at_rest = np.allclose(pose.phi, cage, rtol=0.0, atol=AT_REST) and np.allclose(
         pose.psi, 0.0, rtol=0.0, atol=AT_REST
     )
@@ -153,6 +153,6 @@ def _carried_over(document: Document, pose: Pose, rig: Rig) -> HarmonicMap:
     if is_at_rest or not inside.any():
         return HarmonicMap.identity(boundary.cage)
     points = boundary.points[inside]
-    shape = document.map_of(pose)
+    shape = figure.map_of(pose)
     fz, fzbar = shape.derivatives(points)
     return fit_map(boundary, fz, fzbar, shape(points), inside=inside)

@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from dataclasses import replace
 
-from app.document import Document, FrameRange, Keyframe, Pose, Target, add_handle
+from app.document import Document, FrameRange, Keyframe, Pose, Target, handle_commands
 from app.solving.drag import Drag, Rig
 from app.solving.script import PoseKey, PoseScript
 from engine.geometry import box_diagonal
@@ -19,7 +19,7 @@ LAG = 0.005
 def pose_document(
     document: Document, script: PoseScript, progress: Callable[[str], None]
 ) -> tuple[Document, tuple[str, ...]]:
-    """Give a new document the handles and keys of a script.
+    """Give the figure in front of a new document the handles and keys of a script.
 
     Each key is solved by a drag from the key before, the first one from the drawing as it is. A
     handle that a key does not name keeps its target of the key before.
@@ -27,7 +27,7 @@ def pose_document(
     Parameters
     ----------
     document : Document
-        With the picture as it was drawn, as `open_picture` gives it.
+        With a picture in front as it was drawn, as `open_picture` gives it.
     script : PoseScript
     progress : callable
         Told in words what is being solved.
@@ -43,32 +43,37 @@ def pose_document(
     LissomError, EngineError
         If a handle or the anchor lies outside the shape.
     """
+    identity = document.figures[-1].id
     for name, place in script.handles.items():
-        document = add_handle(place, name=name)(document)
-    document = replace(
-        document,
-        fps=script.fps,
-        loop=script.loop,
+        document = handle_commands.add_handle(identity, place, name=name)(document)
+    figure = replace(
+        document.figure(identity),
         variant=script.variant,
         bounds=script.bounds,
         anchor=script.anchor,
     )
-    rig = Rig.of(document)
-    pose = document.keys[0].pose
+    rig = Rig.of(figure)
+    pose = figure.keys[0].pose
     keys, notices = [], []
     for key in script.keys:
         progress(f"solving the key at frame {key.frame}")
         pose, notice = _solve(rig, pose, key)
         notices += notice
         keys.append(Keyframe(frame=key.frame, pose=pose, easing=key.ease))
-    frames = FrameRange(0, keys[-1].frame)
-    return replace(document, keys=tuple(keys), frames=frames), tuple(notices)
+    posed = replace(
+        document,
+        figures=(*document.figures[:-1], replace(figure, keys=tuple(keys))),
+        frames=FrameRange(0, keys[-1].frame),
+        fps=script.fps,
+        loop=script.loop,
+    )
+    return posed, tuple(notices)
 
 
 def _solve(rig: Rig, start: Pose, key: PoseKey) -> tuple[Pose, list[str]]:
     """Drag the handles from a pose to the targets of a key."""
-    document = rig.document
-    identities = {handle.name: handle.id for handle in document.handles}
+    figure = rig.figure
+    identities = {handle.name: handle.id for handle in figure.handles}
     named = {identities[name]: Target(position=place) for name, place in key.targets.items()}
     targets = {**start.targets, **named}
     if all(start.targets[i].position == target.position for i, target in targets.items()):
@@ -79,12 +84,12 @@ def _solve(rig: Rig, start: Pose, key: PoseKey) -> tuple[Pose, list[str]]:
         if drag.is_over:
             break
     pose = drag.pose(targets)
-    size = box_diagonal(document.domain.outline)
+    size = box_diagonal(figure.domain.outline)
     reason = "held back by the bounds" if drag.at_bounds else "held back by the others"
     notices = [
-        f"frame {key.frame}: {document.handle(identity).name!r} stays {lag:.1f} pixels short of "
+        f"frame {key.frame}: {figure.handle(identity).name!r} stays {lag:.1f} pixels short of "
         f"its target, {reason}"
-        for identity, lag in document.lags(pose).items()
+        for identity, lag in figure.lags(pose).items()
         if lag > LAG * size
     ]
     return pose, notices

@@ -3,7 +3,7 @@
 from pathlib import Path
 from typing import NamedTuple
 
-from app.document import Document, Meshing, PictureFile, new_document
+from app.document import Document, Meshing, PictureFile, new_figure
 from app.storage.picture import Picture, decode_picture, read_picture_file
 from engine.domain import build_domain
 
@@ -33,5 +33,5 @@ def open_picture(path: Path, meshing: Meshing) -> OpenedPicture:
         tolerance=meshing.tolerance,
     )
     file = PictureFile(data=data, suffix=picture.suffix, size=picture.size)
-    document = new_document(file, domain, meshing)
+    document = Document(figures=(new_figure(file, domain, meshing),))
     return OpenedPicture(document, picture, picture.notices + remedies)

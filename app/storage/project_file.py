@@ -1,9 +1,9 @@
 """Saving and opening projects.
 
-A project is a zip file: `mimetype` (first, not packed), `project.json`, the picture byte for byte
-as `image/source.*`, the arrays of the domain under `domain/`, phi and psi of each key under
-`keys/`, and `thumbnail.png`. The maps are stored, not solved again, so that another solver never
-changes an animation.
+A project is a zip file: `mimetype` (first, not packed), `project.json`, and for each figure, under
+`figures/` and its id, the picture byte for byte as `source.*`, the arrays of the domain, and phi
+and psi of each key under `keys/`. The maps are stored, not solved again, so that another solver
+never changes an animation.
 """
 
 import json
@@ -13,7 +13,7 @@ import zlib
 from math import isfinite
 from pathlib import Path
 
-from app.document import Document, PictureFile
+from app.document import Document, Figure, PictureFile
 from app.errors import EXPECTED_ERRORS, LissomError
 from app.storage.archive import MEBIBYTE, Archive, array_member, write_archive
 from app.storage.files import write_atomically
@@ -62,15 +62,9 @@ def save_project(path: Path, document: Document, *, thumbnail: bytes | None = No
     content = write_document(document)
     members = {
         "project.json": json.dumps(content, indent=1, sort_keys=True, allow_nan=False).encode(),
-        f"image/source{document.picture.suffix}": document.picture.data,
-        "domain/outline.npy": array_member(document.domain.outline),
-        "domain/cage.npy": array_member(document.domain.cage),
-        "domain/vertices.npy": array_member(document.domain.mesh.vertices),
-        "domain/triangles.npy": array_member(document.domain.mesh.triangles),
     }
-    for index, key in enumerate(document.keys):
-        phi, psi = _coefficient_members(index)
-        members |= {phi: array_member(key.pose.phi), psi: array_member(key.pose.psi)}
+    for figure in document.figures:
+        members |= _figure_members(figure)
     if thumbnail is not None:
         members["thumbnail.png"] = thumbnail
     write_atomically(path, lambda file: write_archive(file, members))
@@ -117,16 +111,65 @@ def _read(archive: Archive) -> Document:
     if schema < 1:
         raise LissomError(f"its schema {schema} is none")
 
-    def coefficients(index: int) -> tuple[Complexes, Complexes]:
-        phi, psi = _coefficient_members(index)
-        return archive.points(phi), archive.points(psi)
+    return read_document(content, _Parts(archive))
 
-    return read_document(
-        content,
-        picture=_read_picture(archive, as_object(content["picture"], "picture")),
-        domain=_read_domain(archive),
-        coefficients=coefficients,
-    )
+
+def _figure_members(figure: Figure) -> dict[str, bytes]:
+    folder = _folder(figure.id)
+    mesh = figure.domain.mesh
+    members = {
+        f"{folder}/source{figure.picture.suffix}": figure.picture.data,
+        f"{folder}/outline.npy": array_member(figure.domain.outline),
+        f"{folder}/cage.npy": array_member(figure.domain.cage),
+        f"{folder}/vertices.npy": array_member(mesh.vertices),
+        f"{folder}/triangles.npy": array_member(mesh.triangles),
+    }
+    for index, key in enumerate(figure.keys):
+        phi, psi = _coefficient_members(figure.id, index)
+        members |= {phi: array_member(key.pose.phi), psi: array_member(key.pose.psi)}
+    return members
+
+
+def _folder(figure: int) -> str:
+    return f"figures/{figure}"
+
+
+def _coefficient_members(figure: int, index: int) -> tuple[str, str]:
+    keys = f"{_folder(figure)}/keys"
+    return f"{keys}/{index:05}.phi.npy", f"{keys}/{index:05}.psi.npy"
+
+
+class _Parts:
+    """The pictures and arrays of a project's figures."""
+
+    def __init__(self, archive: Archive) -> None:
+        self._archive = archive
+
+    def picture(self, figure: int, content: JsonObject) -> PictureFile:
+        suffix = as_text(content["suffix"], f"{content.where}.suffix")
+        picture = PictureFile(
+            data=self._archive.read(f"{_folder(figure)}/source{suffix}", largest=LARGEST_PICTURE),
+            suffix=suffix,
+            size=read_size(content["size"], f"{content.where}.size"),
+        )
+        if picture.sha256 != as_text(content["sha256"], f"{content.where}.sha256"):
+            raise LissomError("its picture is not the one that was saved: the checksums differ")
+        return picture
+
+    def domain(self, figure: int) -> Domain:
+        outline, cage, vertices = (
+            as_points(self._archive.points(f"{_folder(figure)}/{name}.npy"), name, at_least=3)
+            for name in ("outline", "cage", "vertices")
+        )
+        require_simple(outline, "outline")
+        triangles = self._archive.triangles(f"{_folder(figure)}/triangles.npy")
+        if len(triangles) == 0 or triangles.min() < 0 or triangles.max() >= len(vertices):
+            raise LissomError("its triangles do not belong to its vertices")
+        return Domain(outline=outline, cage=cage, mesh=Mesh(vertices=vertices, triangles=triangles))
+
+    def coefficients(self, figure: int, key: int) -> tuple[Complexes, Complexes]:
+        phi, psi = _coefficient_members(figure, key)
+        return self._archive.points(phi), self._archive.points(psi)
 
 
 def _read_json(archive: Archive) -> JsonObject:
@@ -151,34 +194,6 @@ def _finite(text: str) -> float:
     if not isfinite(number):
         raise LissomError(f"its project.json holds {text}, which is no number to reckon with")
     return number
-
-
-def _read_picture(archive: Archive, content: JsonObject) -> PictureFile:
-    suffix = as_text(content["suffix"], "picture.suffix")
-    picture = PictureFile(
-        data=archive.read(f"image/source{suffix}", largest=LARGEST_PICTURE),
-        suffix=suffix,
-        size=read_size(content["size"], "picture.size"),
-    )
-    if picture.sha256 != as_text(content["sha256"], "picture.sha256"):
-        raise LissomError("its picture is not the one that was saved: the checksums differ")
-    return picture
-
-
-def _read_domain(archive: Archive) -> Domain:
-    outline, cage, vertices = (
-        as_points(archive.points(f"domain/{name}.npy"), name, at_least=3)
-        for name in ("outline", "cage", "vertices")
-    )
-    require_simple(outline, "outline")
-    triangles = archive.triangles("domain/triangles.npy")
-    if len(triangles) == 0 or triangles.min() < 0 or triangles.max() >= len(vertices):
-        raise LissomError("its triangles do not belong to its vertices")
-    return Domain(outline=outline, cage=cage, mesh=Mesh(vertices=vertices, triangles=triangles))
-
-
-def _coefficient_members(index: int) -> tuple[str, str]:
-    return f"keys/{index:05}.phi.npy", f"keys/{index:05}.psi.npy"
 
 
 def _is_deeper(content: object, levels: int) -> bool:

@@ -5,12 +5,13 @@ from dataclasses import replace
 from importlib.metadata import version
 from math import inf, isfinite
 from types import MappingProxyType
-from typing import Any, TypeVar, cast
+from typing import Any, Protocol, TypeVar, cast
 
 from app.document import (
     Document,
     Easing,
     ExportSettings,
+    Figure,
     FrameRange,
     Framing,
     Handle,
@@ -44,36 +45,30 @@ Json = dict[str, Any]
 Value = TypeVar("Value")
 
 
+class FigureParts(Protocol):
+    """What a project holds of its figures besides `project.json`, by their ids."""
+
+    def picture(self, figure: int, content: JsonObject) -> PictureFile:
+        """Return the picture that these fields tell of."""
+
+    def domain(self, figure: int) -> Domain:
+        """Return the domain."""
+
+    def coefficients(self, figure: int, key: int) -> tuple[Complexes, Complexes]:
+        """Return phi and psi of the key with this index."""
+
+
 def write_document(document: Document) -> Json:
     """Return the fields of a document, those that this version does not know among them."""
     return _with_unknown(
         {
             "schema": SCHEMA,
             "app_version": version("lissom"),
-            "picture": {
-                "suffix": document.picture.suffix,
-                "sha256": document.picture.sha256,
-                "size": list(document.picture.size),
-            },
-            "domain": {
-                "detail": document.meshing.detail,
-                "triangles": document.meshing.triangles,
-                "tolerance": document.meshing.tolerance,
-            },
-            "handles": [_write_handle(handle) for handle in document.handles],
-            "next_handle": document.next_handle,
-            "keys": [_write_key(key) for key in document.keys],
+            "figures": [_write_figure(figure) for figure in document.figures],
             "frames": _write_range(document.frames),
             "work": _write_range(document.work),
             "fps": document.fps,
             "loop": document.loop,
-            "anchor": None if document.anchor is None else _write_point(document.anchor),
-            "variant": document.variant,
-            "bounds": {
-                "k": document.bounds.k,
-                "sigma_a": document.bounds.sigma_a,
-                "sigma_b": document.bounds.sigma_b,
-            },
             "export": {
                 "format": document.export.format,
                 "size": None if document.export.size is None else list(document.export.size),
@@ -86,50 +81,90 @@ def write_document(document: Document) -> Json:
     )
 
 
-def read_document(
-    content: JsonObject,
-    *,
-    picture: PictureFile,
-    domain: Domain,
-    coefficients: Callable[[int], tuple[Complexes, Complexes]],
-) -> Document:
+def read_document(content: JsonObject, parts: FigureParts) -> Document:
     """Return the document with these fields.
 
     Parameters
     ----------
     content : JsonObject
-    picture : PictureFile
-    domain : Domain
-    coefficients : callable
-        Returns phi and psi of the key with this index.
+    parts : FigureParts
+        What of the figures is not written in JSON.
 
     Raises
     ------
     LissomError, EngineError
         If a field is missing or of another kind, or the document would not be valid.
     """
-    handles = as_list(content["handles"], "handles")
-    keys = as_list(content["keys"], "keys")
-    bounds = as_object(content["bounds"], "bounds")
+    figures = as_list(content["figures"], "figures")
     document = Document(
-        picture=picture,
-        domain=domain,
-        meshing=_read_meshing(as_object(content["domain"], "domain")),
-        handles=tuple(_read_handle(handle, f"handles[{i}]") for i, handle in enumerate(handles)),
-        next_handle=as_whole(content["next_handle"], "next_handle"),
-        keys=tuple(_read_key(key, f"keys[{i}]", *coefficients(i)) for i, key in enumerate(keys)),
+        figures=tuple(
+            _read_figure(figure, f"figures[{i}]", parts) for i, figure in enumerate(figures)
+        ),
         frames=_read_range(content["frames"], "frames"),
         work=_read_optional(content["work"], "work", _read_range),
         fps=as_number(content["fps"], "fps"),
         loop=as_flag(content["loop"], "loop"),
-        anchor=_read_optional(content["anchor"], "anchor", as_point),
-        variant=cast(Variant, as_text(content["variant"], "variant")),
-        bounds=Bounds(
-            **{name: as_number(bounds[name], name) for name in ("k", "sigma_a", "sigma_b")}
-        ),
         export=_read_export(as_object(content["export"], "export")),
     )
     return replace(document, unknown=_unknown_of(content, write_document(document)))
+
+
+def _write_figure(figure: Figure) -> Json:
+    known = {
+        "id": figure.id,
+        "picture": {
+            "suffix": figure.picture.suffix,
+            "sha256": figure.picture.sha256,
+            "size": list(figure.picture.size),
+        },
+        "domain": {
+            "detail": figure.meshing.detail,
+            "triangles": figure.meshing.triangles,
+            "tolerance": figure.meshing.tolerance,
+        },
+        "handles": [_write_handle(handle) for handle in figure.handles],
+        "next_handle": figure.next_handle,
+        "keys": [_write_key(key) for key in figure.keys],
+        "anchor": None if figure.anchor is None else _write_point(figure.anchor),
+        "variant": figure.variant,
+        "bounds": {
+            "k": figure.bounds.k,
+            "sigma_a": figure.bounds.sigma_a,
+            "sigma_b": figure.bounds.sigma_b,
+        },
+    }
+    return _with_unknown(known, figure.unknown)
+
+
+def _read_figure(content: object, where: str, parts: FigureParts) -> Figure:
+    fields = as_object(content, where)
+    identity = as_whole(fields["id"], f"{where}.id")
+    handles = as_list(fields["handles"], f"{where}.handles")
+    keys = as_list(fields["keys"], f"{where}.keys")
+    bounds = as_object(fields["bounds"], f"{where}.bounds")
+    figure = Figure(
+        id=identity,
+        picture=parts.picture(identity, as_object(fields["picture"], f"{where}.picture")),
+        domain=parts.domain(identity),
+        meshing=_read_meshing(as_object(fields["domain"], f"{where}.domain")),
+        handles=tuple(
+            _read_handle(handle, f"{where}.handles[{i}]") for i, handle in enumerate(handles)
+        ),
+        next_handle=as_whole(fields["next_handle"], f"{where}.next_handle"),
+        keys=tuple(
+            _read_key(key, f"{where}.keys[{i}]", *parts.coefficients(identity, i))
+            for i, key in enumerate(keys)
+        ),
+        anchor=_read_optional(fields["anchor"], f"{where}.anchor", as_point),
+        variant=cast(Variant, as_text(fields["variant"], f"{where}.variant")),
+        bounds=Bounds(
+            **{
+                name: as_number(bounds[name], f"{where}.bounds.{name}")
+                for name in ("k", "sigma_a", "sigma_b")
+            }
+        ),
+    )
+    return replace(figure, unknown=_unknown_of(fields, _write_figure(figure)))
 
 
 def read_size(content: object, where: str) -> tuple[int, int]:
@@ -139,9 +174,9 @@ def read_size(content: object, where: str) -> tuple[int, int]:
 
 def _read_meshing(content: JsonObject) -> Meshing:
     return Meshing(
-        detail=cast(Detail, as_text(content["detail"], "domain.detail")),
-        triangles=as_whole(content["triangles"], "domain.triangles"),
-        tolerance=as_whole(content["tolerance"], "domain.tolerance"),
+        detail=cast(Detail, as_text(content["detail"], f"{content.where}.detail")),
+        triangles=as_whole(content["triangles"], f"{content.where}.triangles"),
+        tolerance=as_whole(content["tolerance"], f"{content.where}.tolerance"),
     )
 
 

@@ -4,11 +4,13 @@ import io
 from dataclasses import replace
 
 import numpy as np
+from documents import altered
 from drawings import soft_blob
 from PIL import Image
 
+from app.document.figure import PictureFile, new_figure
 from app.document.keyframe import Keyframe
-from app.document.model import Document, PictureFile, new_document
+from app.document.model import Document
 from app.document.settings import FrameRange, Meshing
 from engine.arrays import Bytes, Complexes
 from engine.domain.build import build_domain
@@ -23,25 +25,25 @@ def still_document(picture: Bytes = BLOB, *, triangles: int = 1_000) -> Document
     Image.fromarray(picture).save(stream, "PNG")
     file = PictureFile(data=stream.getvalue(), suffix=".png", size=(width, height))
     domain, _ = build_domain(picture, triangles=triangles, detail="normal")
-    return new_document(file, domain, Meshing(triangles=triangles))
+    return Document(figures=(new_figure(file, domain, Meshing(triangles=triangles)),))
 
 
 def moving_document(last: int = 6) -> Document:
     """The blob as it was drawn in frame 0, turned and bent in the last frame."""
     document = still_document()
-    cage, first = document.domain.cage, document.keys[0]
+    cage, first = document.figures[0].domain.cage, document.figures[0].keys[0]
     middle = cage.mean()
     z = cage - middle
     pose = replace(first.pose, phi=middle + z * np.exp(0.5j) + 5e-4 * z**2)
     keys = (first, Keyframe(frame=last, pose=pose))
-    return replace(document, keys=keys, frames=FrameRange(0, last), variant="nu")
+    return altered(document, keys=keys, frames=FrameRange(0, last), variant="nu")
 
 
 class Sliding:
     """Vertices that move by so much a frame, from where they are at rest in frame 0."""
 
     def __init__(self, document: Document, by: complex) -> None:
-        self._rest = document.domain.mesh.vertices
+        self._rest = document.figures[0].domain.mesh.vertices
         self._by = by
 
     def positions(self, frame: float) -> Complexes:

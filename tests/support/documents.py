@@ -9,11 +9,17 @@ from types import MappingProxyType
 import numpy as np
 from shapes import regular_polygon
 
-from app.document import handle_commands, key_commands, settings_commands
-from app.document.commands import Command
+from app.document.commands import (
+    Command,
+    figure_commands,
+    handle_commands,
+    key_commands,
+    scene_commands,
+)
 from app.document.easing import HOLD, PRESETS, Easing
+from app.document.figure import PictureFile, new_figure
 from app.document.keyframe import Handle, Keyframe, Pose, Target
-from app.document.model import Document, PictureFile, new_document
+from app.document.model import Document
 from app.document.settings import (
     FRAMINGS,
     VARIANTS,
@@ -41,8 +47,18 @@ def disc_domain(n: int = 12) -> Domain:
 
 
 def disc_document() -> Document:
-    """A new document: one key, no handles."""
-    return new_document(PICTURE, disc_domain(), Meshing())
+    """A new document: one figure with one key and no handles."""
+    return Document(figures=(new_figure(PICTURE, disc_domain(), Meshing()),))
+
+
+def altered(document: Document, **changes: object) -> Document:
+    """The document with other values in fields of its own, or of its one figure."""
+    (figure,) = document.figures
+    own = {field.name for field in dataclasses.fields(Document)} - {"unknown"}
+    scene = {name: value for name, value in changes.items() if name in own}
+    rest = {name: value for name, value in changes.items() if name not in own}
+    figures = (dataclasses.replace(figure, **rest),) if rest else document.figures
+    return dataclasses.replace(document, **{"figures": figures, **scene})
 
 
 def inside(rng: np.random.Generator) -> complex:
@@ -51,14 +67,14 @@ def inside(rng: np.random.Generator) -> complex:
 
 
 def random_pose(rng: np.random.Generator, document: Document, domain: Domain | None = None) -> Pose:
-    cage = document.domain.cage if domain is None else domain.cage
+    cage = document.figures[0].domain.cage if domain is None else domain.cage
     noise = rng.normal(size=(4, len(cage)))
     return Pose(
         targets={
             handle.id: Target(
                 position=inside(rng), rotation=rng.normal() if rng.random() < 0.3 else None
             )
-            for handle in document.handles
+            for handle in document.figures[0].handles
         },
         phi=cage * np.exp(1j * rng.normal()) + noise[0] + 1j * noise[1],
         psi=noise[2] + 1j * noise[3],
@@ -80,61 +96,63 @@ def random_command(rng: np.random.Generator, document: Document) -> Command:
 
 def _random_handle_command(rng: np.random.Generator, document: Document) -> Command:
     commands = [
-        handle_commands.add_handle(inside(rng), weight=1 + rng.random()),
-        handle_commands.add_handle(inside(rng), name=f"é {rng.integers(4)}"),
-        handle_commands.add_handle(CENTRE + 2 * RADIUS),
+        handle_commands.add_handle(0, inside(rng), weight=1 + rng.random()),
+        handle_commands.add_handle(0, inside(rng), name=f"é {rng.integers(4)}"),
+        handle_commands.add_handle(0, CENTRE + 2 * RADIUS),
     ]
-    if document.handles:
-        handle = document.handles[rng.integers(len(document.handles))]
+    if document.figures[0].handles:
+        handle = document.figures[0].handles[rng.integers(len(document.figures[0].handles))]
         commands += [
-            handle_commands.move_handle(handle.id, inside(rng)),
-            handle_commands.rename_handle(handle.id, f"name {rng.integers(3)}"),
-            handle_commands.weigh_handle(handle.id, float(rng.integers(1, 3))),
-            handle_commands.remove_handles({handle.id}),
+            handle_commands.move_handle(0, handle.id, inside(rng)),
+            handle_commands.rename_handle(0, handle.id, f"name {rng.integers(3)}"),
+            handle_commands.weigh_handle(0, handle.id, float(rng.integers(1, 3))),
+            handle_commands.remove_handles(0, {handle.id}),
         ]
     return commands[rng.integers(len(commands))]
 
 
 def _random_key_command(rng: np.random.Generator, document: Document) -> Command:
-    count = rng.integers(1, len(document.keys) + 1)
-    frames = [key.frame for key in rng.choice(np.array(document.keys), count, replace=False)]
+    count = rng.integers(1, len(document.figures[0].keys) + 1)
+    frames = [
+        key.frame for key in rng.choice(np.array(document.figures[0].keys), count, replace=False)
+    ]
     by = int(rng.integers(-8, 9))
     easing = [*PRESETS.values(), Easing(tuple(rng.random(4).tolist()))][rng.integers(6)]
     pose = random_pose(rng, document)
     commands = [
-        key_commands.pose_key(frames[0], pose),
-        key_commands.insert_key(int(rng.integers(80)), pose),
-        key_commands.insert_key(int(rng.integers(80)), pose, easing=easing),
-        key_commands.move_keys(frames, by),
-        key_commands.copy_keys(frames, by),
-        key_commands.delete_keys(frames),
-        key_commands.reverse_keys(frames),
-        key_commands.scale_keys(frames, rng.choice([0.5, 1.0, 1.5, 2.0])),
-        key_commands.scale_time(rng.choice([0.5, 1.0, 1.5, 2.0])),
-        key_commands.match_ends(),
-        key_commands.set_easing(frames, easing),
-        key_commands.set_turns(frames, int(rng.integers(-1, 2))),
+        key_commands.pose_key(0, frames[0], pose),
+        key_commands.insert_key(0, int(rng.integers(80)), pose),
+        key_commands.insert_key(0, int(rng.integers(80)), pose, easing=easing),
+        key_commands.move_keys(0, frames, by),
+        key_commands.copy_keys(0, frames, by),
+        key_commands.delete_keys(0, frames),
+        key_commands.reverse_keys(0, frames),
+        key_commands.scale_keys(0, frames, rng.choice([0.5, 1.0, 1.5, 2.0])),
+        scene_commands.scale_time(rng.choice([0.5, 1.0, 1.5, 2.0])),
+        key_commands.match_ends(0),
+        key_commands.set_easing(0, frames, easing),
+        key_commands.set_turns(0, frames, int(rng.integers(-1, 2))),
     ]
     return commands[rng.integers(len(commands))]
 
 
 def _random_settings_command(rng: np.random.Generator, document: Document) -> Command:
     frames = FrameRange(int(rng.integers(4)), int(rng.integers(4, 90)))
-    poses = [random_pose(rng, document) for _ in document.keys]
+    poses = [random_pose(rng, document) for _ in document.figures[0].keys]
     bounds = Bounds(k=0.5 + rng.random() / 3)
     domain = disc_domain(int(rng.integers(10, 16)))
-    again = [random_pose(rng, document, domain) for _ in document.keys]
+    again = [random_pose(rng, document, domain) for _ in document.figures[0].keys]
     commands = [
-        settings_commands.set_fps(float(rng.choice([12, 23.976, 60]))),
-        settings_commands.set_frames(frames),
-        settings_commands.set_work_range(None if rng.random() < 0.5 else frames),
-        settings_commands.set_loop(loop=bool(rng.integers(2))),
-        settings_commands.set_variant(VARIANTS[rng.integers(len(VARIANTS))]),
-        settings_commands.set_anchor(None if rng.random() < 0.3 else inside(rng)),
-        settings_commands.set_export(_random_export(rng)),
-        settings_commands.set_bounds(bounds),
-        settings_commands.set_bounds(bounds, poses),
-        settings_commands.replace_domain(domain, Meshing(detail="fine"), again),
+        scene_commands.set_fps(float(rng.choice([12, 23.976, 60]))),
+        scene_commands.set_frames(frames),
+        scene_commands.set_work_range(None if rng.random() < 0.5 else frames),
+        scene_commands.set_loop(loop=bool(rng.integers(2))),
+        figure_commands.set_variant(0, VARIANTS[rng.integers(len(VARIANTS))]),
+        figure_commands.set_anchor(0, None if rng.random() < 0.3 else inside(rng)),
+        scene_commands.set_export(_random_export(rng)),
+        figure_commands.set_bounds(0, bounds),
+        figure_commands.set_bounds(0, bounds, poses),
+        figure_commands.replace_domain(0, domain, Meshing(detail="fine"), again),
     ]
     return commands[rng.integers(len(commands))]
 
@@ -161,7 +179,7 @@ def full_document() -> Document:
         1: Target(position=1e3 - 0.1j, rotation=-0.25, unknown=more),
         4: Target(position=complex(-0.0, 5e-324)),
     }
-    cage = empty.domain.cage
+    cage = empty.figures[0].domain.cage
     bent = Pose(
         targets=targets,
         phi=cage * np.exp(0.3j) + 1 / 3,
@@ -174,8 +192,9 @@ def full_document() -> Document:
         psi=bent.phi,
         certificate=Certificate(k=inf, sigma_a=2.0, sigma_b=-inf, winding=None, certified=False),
     )
-    return dataclasses.replace(
-        empty,
+    figure = dataclasses.replace(
+        empty.figures[0],
+        id=0,
         meshing=Meshing(detail="coarse", triangles=2_000, tolerance=7),
         handles=handles,
         next_handle=9,
@@ -184,13 +203,18 @@ def full_document() -> Document:
             Keyframe(frame=10, pose=folded, easing=Easing((0.1, 0.2, 1 / 3, 1.0)), turns=-1),
             Keyframe(frame=40, pose=bent, easing=HOLD),
         ),
+        anchor=100.5 + 99j,
+        variant="scaled-eta",
+        bounds=Bounds(k=0.5, sigma_a=3.0, sigma_b=0.4),
+        unknown=MappingProxyType({"visible": False, "bounds": {"tau": 4}}),
+    )
+    return dataclasses.replace(
+        empty,
+        figures=(figure,),
         frames=FrameRange(1, 60),
         work=FrameRange(3, 40),
         fps=23.976,
         loop=True,
-        anchor=100.5 + 99j,
-        variant="scaled-eta",
-        bounds=Bounds(k=0.5, sigma_a=3.0, sigma_b=0.4),
         export=ExportSettings(
             format="mp4",
             size=(1920, 1080),
@@ -198,7 +222,7 @@ def full_document() -> Document:
             framing="fit",
             frames=FrameRange(3, 9),
         ),
-        unknown=MappingProxyType({"extension": [1, 2], "bounds": {"tau": 4}}),
+        unknown=MappingProxyType({"extension": [1, 2], "export": {"quality": 4}}),
     )
 
 

@@ -14,7 +14,7 @@ import numpy as np
 from PIL import Image
 
 from app.cli.bench.table import Row, Table, measure
-from app.document import Document, FrameRange, Keyframe, Meshing, PictureFile, new_document
+from app.document import Document, FrameRange, Keyframe, Meshing, PictureFile, clip_of, new_figure
 from app.export import ExportRequest, Painter, encode_png, export, plan_export
 from app.motion import Animation
 from app.render import Renderer
@@ -35,13 +35,14 @@ def tables() -> Iterator[Table]:
 
 def _speed() -> Table:
     document = _bending_giraffe(FULL_HD, last=23)
-    picture = decode_picture(document.picture.data, "").rgba
+    figure = document.figures[0]
+    pictures = {figure.id: decode_picture(figure.picture.data, "").rgba}
     context = create_context()
-    poses = Animation(document)
+    poses = {figure.id: Animation(clip_of(document, figure.id))}
     with tempfile.TemporaryDirectory() as folder:
         request = ExportRequest(out=Path(folder), settings=document.export)
         plan = plan_export(document, request, poses)
-        painter = Painter(context, document, picture, poses, plan)
+        painter = Painter(context, document, pictures, poses, plan)
         posed = painter.pose(11.0)
         frame = painter.draw(posed)
         whole = _by_the_clock(lambda: list(export(plan, painter.pose, painter.draw)))
@@ -96,15 +97,15 @@ def _bending_giraffe(size: tuple[int, int], *, last: int) -> Document:
     canvas.save(stream, "PNG", compress_level=1)
     file = PictureFile(data=stream.getvalue(), suffix=".png", size=size)
     domain, _ = build_domain(np.asarray(canvas), triangles=TRIANGLES, detail="normal")
-    document = new_document(file, domain, Meshing())
-    first = document.keys[0]
+    figure = new_figure(file, domain, Meshing())
+    first = figure.keys[0]
     z = domain.cage - complex(*size) / 2
     # |f_z| stays within half of 1 around it.
     bent = replace(
         first.pose, phi=first.pose.phi + z * (np.exp(0.3j) - 1) + z**2 / np.abs(z).max() / 8
     )
     keys = (first, Keyframe(frame=last, pose=bent)) if last else (first,)
-    return replace(document, keys=keys, frames=FrameRange(0, last))
+    return Document(figures=(replace(figure, keys=keys),), frames=FrameRange(0, last))
 
 
 def _by_the_clock(function: Callable[[], object]) -> float:

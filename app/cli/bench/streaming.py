@@ -8,7 +8,7 @@ import numpy as np
 
 from app.cli.bench.table import Row, Table, measure
 from app.document import Document, Meshing, Pose, Variant
-from app.motion import Stage
+from app.motion import PoseSampler
 from app.render import Renderer, Scene, fit_view
 from app.render.gpu import (
     GpuMesh,
@@ -37,29 +37,30 @@ TIMES = tuple((i + 0.5) / 24 for i in range(24))
 class Interval:
     """The giraffe's first two keys at the vertices of a mesh."""
 
-    stage: Stage
+    sampler: PoseSampler
     first: Pose
     second: Pose
 
     @classmethod
     def of(cls, document: Document, triangles: int) -> "Interval":
         """Lay the paths of a mesh of so many triangles."""
-        mesh = triangulate(document.domain.outline, triangles)
-        stage = Stage(replace(document.domain, mesh=mesh), anchor=document.anchor)
-        return cls(stage=stage, first=document.keys[0].pose, second=document.keys[1].pose)
+        figure = document.figures[0]
+        mesh = triangulate(figure.domain.outline, triangles)
+        sampler = PoseSampler(replace(figure.domain, mesh=mesh), anchor=figure.anchor)
+        return cls(sampler=sampler, first=figure.keys[0].pose, second=figure.keys[1].pose)
 
     @property
     def mesh(self) -> Mesh:
         """The mesh."""
-        return self.stage.domain.mesh
+        return self.sampler.domain.mesh
 
     def inbetweens(self, variant: Variant) -> Inbetweens:
         """Prepare the direct path, once."""
-        return self.stage.inbetweens(self.first, self.second, variant)
+        return self.sampler.inbetweens(self.first, self.second, variant)
 
     def build(self, variant: Variant) -> Series:
         """Build the series of the positions."""
-        return finish(build_series(Positions.of(self.inbetweens(variant), self.stage.sites)))
+        return finish(build_series(Positions.of(self.inbetweens(variant), self.sampler.sites)))
 
 
 def tables() -> Iterator[Table]:
@@ -149,7 +150,7 @@ def _direct_k(inbetweens: Inbetweens, weights: Floats) -> None:
 
 
 def _building(interval: Interval, series: dict[Variant, Series]) -> Table:
-    diameter, count = interval.stage.sites.diameter, len(interval.mesh.vertices)
+    diameter, count = interval.sampler.sites.diameter, len(interval.mesh.vertices)
     rows = [
         Row(
             name=variant,
@@ -186,7 +187,7 @@ def _growth(intervals: list[Interval]) -> Iterator[Table]:
 
 
 def _drawing(interval: Interval, series: dict[Variant, Series]) -> Table:
-    """Measure the vertex stage: frames so small that hardly a pixel is painted."""
+    """Measure the vertex sampler: frames so small that hardly a pixel is painted."""
     mesh = interval.mesh
     context = create_context()
     renderer = Renderer(context)

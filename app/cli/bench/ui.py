@@ -15,11 +15,11 @@ from imgui_bundle import ImVec2
 import app
 from app.cli.bench.start import MARKS
 from app.cli.bench.table import Row, Table
-from app.document import Meshing, Target
-from app.editor import Jobs, Project, Session, do
+from app.document import Meshing, Target, clip_of
+from app.editor import Jobs, Project, Puppet, Session, do
 from app.editor.actions import files, playback
 from app.errors import LissomError
-from app.motion import Figure, Motion
+from app.motion import Motion, PosableMesh
 from app.render import Renderer
 from app.render.gpu import create_context
 from app.storage import decode_picture, load_project, sample_images
@@ -201,7 +201,7 @@ def _opening(stage: _Stage, extent: Extent) -> Table:
             strict=True,
         )
     )
-    triangles = len(stage.project.document.domain.mesh.triangles)
+    triangles = len(stage.project.figure.domain.mesh.triangles)
     return Table(
         title=f"From a dropped picture ({PICTURE}, {triangles:,} triangles) to a drag",
         rows=(shown, followed),
@@ -215,18 +215,18 @@ def _open_and_drag(stage: _Stage, path: Path) -> tuple[float, float]:
     stage.settle()
     begun = time.perf_counter()
     stage.ask(files.open_file, path)
-    stage.until(lambda: session.project is not None and session.project.shown is not None)
+    stage.until(lambda: session.project is not None and session.project.puppet.shown is not None)
     # What is drawn from now on takes the pointer.
     stage.refresh()
     shown = time.perf_counter() - begun
     project = stage.project
-    vertices = project.document.domain.mesh.vertices
+    vertices = project.figure.domain.mesh.vertices
     inside = complex(vertices[np.argmin(abs(vertices - vertices.mean()))])
     point = stage.point(inside)
     stage.mouse(point)
     stage.refresh()
     stage.mouse(point, down=True)
-    stage.until(lambda: bool(project.document.handles))
+    stage.until(lambda: bool(project.figure.handles))
     stage.mouse(point + REACH)
     stage.until(lambda: abs(_handle_place(project) - inside) > 1.0)
     followed = time.perf_counter() - begun
@@ -237,17 +237,22 @@ def _open_and_drag(stage: _Stage, path: Path) -> tuple[float, float]:
 
 def _handle_place(project: Project) -> complex:
     """Return where the first handle is on the screen's plane."""
-    return complex(project.shown.handle_places[0]) if project.shown else 0j
+    return complex(project.puppet.shown.handle_places[0]) if project.puppet.shown else 0j
 
 
 def _giraffe(triangles: int) -> files.Opened:
     """Return the animated sample on a finer mesh."""
     document = load_project(sample_images() / SAMPLE)
-    mesh = mesh_inside(document.domain.outline, triangles)
-    document = replace(document, domain=replace(document.domain, mesh=mesh))
-    picture = decode_picture(document.picture.data, SAMPLE)
-    sketch = Motion.at_rest(document, Figure.sketch(document.domain))
-    return files.Opened(document, picture, sketch, ())
+    figure = document.figures[0]
+    mesh = mesh_inside(figure.domain.outline, triangles)
+    figure = replace(figure, domain=replace(figure.domain, mesh=mesh))
+    document = document.with_figure(figure)
+    puppet = Puppet(
+        picture=decode_picture(figure.picture.data, SAMPLE),
+        is_opaque=False,
+        coarse=Motion.at_rest(clip_of(document, figure.id), PosableMesh.coarse(figure.domain)),
+    )
+    return files.Opened(document, {figure.id: puppet}, ())
 
 
 def _frames(stage: _Stage, extent: Extent) -> Iterator[Table]:
@@ -259,7 +264,7 @@ def _frames(stage: _Stage, extent: Extent) -> Iterator[Table]:
         "scrubbing": _scrubbing(stage, count),
         "dragging a handle": _dragging(stage, count),
     }
-    triangles = len(stage.project.document.domain.mesh.triangles)
+    triangles = len(stage.project.figure.domain.mesh.triangles)
     what = f"{triangles:,} triangles, {SIZE[0]} × {SIZE[1]} pixels"
     yield Table(
         title=f"A frame by the clock until all of it is drawn: {what}, {stage.device}",
@@ -329,9 +334,9 @@ class _Drag:
     def __init__(self, stage: _Stage) -> None:
         self._stage = stage
         self._project = stage.project
-        stage.ask(playback.scrub, self._project.document.keys[0].frame)
+        stage.ask(playback.scrub, self._project.figure.keys[0].frame)
         stage.settle()
-        self.handle = self._project.document.handles[0].id
+        self.handle = self._project.figure.handles[0].id
         self._start = self._point = stage.point(_handle_place(self._project))
         stage.mouse(self._start)
         stage.refresh()
@@ -355,7 +360,7 @@ class _Drag:
     @property
     def followed(self) -> Target | None:
         """The wish that the pose in the picture was solved for."""
-        shown = self._project.shown
+        shown = self._project.puppet.shown
         return shown.pose.targets[self.handle] if shown and shown.pose else None
 
     def end(self) -> None:

@@ -4,13 +4,16 @@ import argparse
 import json
 import math
 
-from app.reports import Report, certify_document
+from app.document import clip_of
+from app.reports import Report, certify_clip
 from app.storage import load_project
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Print the report of a project."""
-    report = certify_document(load_project(arguments.project), arguments.variant)
+    document = load_project(arguments.project)
+    clip = clip_of(document, document.figures[0].id)
+    report = certify_clip(clip, arguments.variant)
     print(_as_json(report) if arguments.json else _as_table(report))
     return 0 if report.certified else 1
 

@@ -20,7 +20,7 @@ def run(arguments: argparse.Namespace) -> int:
     opened = open_picture(arguments.picture, meshing)
     for message in opened.notices:
         notice(message)
-    picture, domain = opened.picture, opened.document.domain
+    picture, domain = opened.picture, opened.document.figures[0].domain
     mesh = domain.mesh
     if arguments.preview is not None:
         drawn = draw_preview(picture, domain)

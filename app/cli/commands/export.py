@@ -6,7 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from app.cli.console import StatusLine, notice
-from app.document import ExportSettings, FrameRange
+from app.document import ExportSettings, FrameRange, clip_of
 from app.export import (
     ExportPlan,
     ExportRequest,
@@ -29,14 +29,20 @@ def run(arguments: argparse.Namespace) -> int:
         out=arguments.out, settings=_settings(document.export, arguments), fps=arguments.fps
     )
     check_request(document, request)
-    picture = decode_picture(document.picture.data, f"the picture of {arguments.project}")
+    pictures = {
+        figure.id: decode_picture(figure.picture.data, f"the picture of {arguments.project}").rgba
+        for figure in document.figures
+    }
     context = create_context()
     status = StatusLine()
     try:
         status.show("preparing the in-betweens")
-        animation = Animation(document, arguments.variant)
-        plan = plan_export(document, request, animation)
-        painter = Painter(context, document, picture.rgba, animation, plan)
+        poses = {
+            figure.id: Animation(clip_of(document, figure.id), arguments.variant)
+            for figure in document.figures
+        }
+        plan = plan_export(document, request, poses)
+        painter = Painter(context, document, pictures, poses, plan)
         with closing(export(plan, painter.pose, painter.draw)) as steps:
             for done in steps:
                 status.show(f"{done} of {len(plan.times)} frames")

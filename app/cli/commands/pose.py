@@ -22,5 +22,6 @@ def run(arguments: argparse.Namespace) -> int:
     for message in lags:
         notice(message)
     save_project(arguments.out, document)
-    print(f"{arguments.out}: {len(document.keys)} keys, {len(document.handles)} handles")
+    figure = document.figures[-1]
+    print(f"{arguments.out}: {len(figure.keys)} keys, {len(figure.handles)} handles")
     return 0

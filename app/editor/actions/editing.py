@@ -1,10 +1,14 @@
 """Changes of the document: commands, undo, and what is selected."""
 
+from collections.abc import Callable
 from dataclasses import replace
+from typing import Concatenate, ParamSpec
 
 from app.document import Command, key_commands
 from app.editor.actions import posing
 from app.editor.session import Project, Session
+
+Arguments = ParamSpec("Arguments")
 
 
 def edit(session: Session, command: Command) -> None:
@@ -18,6 +22,17 @@ def edit(session: Session, command: Command) -> None:
         # The solver would put back what the command took away.
         posing.drop(session)
     _forget_what_is_gone(project)
+
+
+def edit_figure(
+    session: Session,
+    command: Callable[Concatenate[int, Arguments], Command],
+    *args: Arguments.args,
+    **kwargs: Arguments.kwargs,
+) -> None:
+    """Run a command on the figure that is posed."""
+    if session.project:
+        edit(session, command(session.project.active, *args, **kwargs))
 
 
 def hold(session: Session, held: int) -> None:
@@ -41,9 +56,9 @@ def undo(session: Session) -> None:
     if project is None:
         return
     grab = project.grab or project.settling
-    is_unkept = project.loose is not None or (grab is not None and grab.drag is None)
+    is_unkept = project.unkeyed is not None or (grab is not None and grab.drag is None)
     posing.drop(session)
-    project.loose = None
+    project.unkeyed = None
     if not is_unkept:
         project.history.undo()
         _forget_what_is_gone(project)
@@ -54,7 +69,7 @@ def redo(session: Session) -> None:
     if session.project:
         posing.drop(session)
         session.project.history.redo()
-        session.project.loose = None
+        session.project.unkeyed = None
         _forget_what_is_gone(session.project)
 
 
@@ -69,7 +84,7 @@ def select(session: Session, handles: frozenset[int]) -> None:
 def select_all(session: Session) -> None:
     """Select every handle."""
     if session.project:
-        select(session, frozenset(handle.id for handle in session.project.document.handles))
+        select(session, frozenset(handle.id for handle in session.project.figure.handles))
 
 
 def choose_keys(session: Session, frames: frozenset[int]) -> None:
@@ -84,22 +99,22 @@ def delete(session: Session) -> None:
     """Delete the selected keys, or the selected handles."""
     project = session.project
     if project and project.chosen:
-        edit(session, key_commands.delete_keys(project.chosen))
+        edit_figure(session, key_commands.delete_keys, project.chosen)
     elif project and project.selected:
         posing.remove_handles(session, project.selected)
 
 
 def _posed(project: Project) -> tuple[object, ...]:
     """Return the pose that handles are being pulled in, and what it is solved from."""
-    document, grab = project.document, project.grab or project.settling
-    poses = [key.pose for key in document.keys if grab is not None and key.frame == grab.frame]
-    return (poses, document.handles, document.bounds, document.domain)
+    figure, grab = project.figure, project.grab or project.settling
+    poses = [key.pose for key in figure.keys if grab is not None and key.frame == grab.frame]
+    return (poses, figure.handles, figure.bounds, figure.domain)
 
 
 def _forget_what_is_gone(project: Project) -> None:
     document = project.document
-    project.selected &= {handle.id for handle in document.handles}
-    project.chosen &= {key.frame for key in document.keys}
+    project.selected &= {handle.id for handle in project.figure.handles}
+    project.chosen &= project.figure.key_frames
     if project.playhead.frame not in document.frames:
         frame = document.frames.clamp(project.playhead.frame)
         project.playhead = replace(project.playhead, frame=frame)

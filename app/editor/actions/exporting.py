@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from app.document import ExportSettings, settings_commands
+from app.document import ExportSettings, clip_of, scene_commands
 from app.editor.action import Action, do
 from app.editor.actions import editing, posing
 from app.editor.failures import report, sentence
@@ -16,7 +16,7 @@ from app.editor.session import ExportRun, FileDialog, Project, Question, Session
 from app.errors import LissomError
 from app.export import ExportRequest, check_request, plan_export, replaced_files, suited
 from app.export_formats import EXPORT_FORMATS
-from app.motion import Animation, Box, Reach, measure_reach, source_of
+from app.motion import Animation, Box, Extent, measure_extent, extent_source
 
 PREPARING, MEASURING = "Preparing the export", "Measuring the motion"
 
@@ -77,7 +77,8 @@ def start(session: Session, out: Path) -> None:
     if project is None or session.export is not None:
         return
     posing.drop(session)
-    document, picture = project.document, project.picture.rgba
+    document = project.document
+    pictures = {figure: puppet.picture.rgba for figure, puppet in project.puppets.items()}
     request = ExportRequest(out=out, settings=document.export)
     check_request(document, request)
     there = [] if project.replaceable == out else replaced_files(document, request)
@@ -90,13 +91,16 @@ def start(session: Session, out: Path) -> None:
             answers=(("Replace", do(replace_files, out)),),
         )
         return
-    motion = project.full or project.sketch
-    stage = motion.stage if motion.figure.domain is document.domain else None
+    motions = [puppet.fine or puppet.coarse for puppet in project.puppets.values()]
+    samplers = dict(zip(project.puppets, (motion.sampler for motion in motions), strict=True))
 
     def work() -> ExportRun:
-        animation = Animation(document, stage=stage)
-        plan = plan_export(document, request, animation)
-        return ExportRun(document=document, picture=picture, poses=animation, plan=plan)
+        poses = {
+            figure.id: Animation(clip_of(document, figure.id), sampler=samplers[figure.id])
+            for figure in document.figures
+        }
+        plan = plan_export(document, request, poses)
+        return ExportRun(document=document, pictures=pictures, poses=poses, plan=plan)
 
     def done(run: ExportRun) -> None:
         session.export = run
@@ -167,7 +171,7 @@ def fail(session: Session, error: Exception) -> None:
 
 def set_export(session: Session, export: ExportSettings) -> None:
     """Set what the next export makes."""
-    editing.edit(session, settings_commands.set_export(export))
+    editing.edit(session, scene_commands.set_export(export))
 
 
 def keep_aspect(session: Session, keeps: bool) -> None:  # noqa: FBT001 - the only argument
@@ -185,13 +189,17 @@ def keep_reach(session: Session) -> None:
     project = session.project
     if project is None or project.is_posing or MEASURING in session.jobs.kinds:
         return
-    document, motion = project.document, project.sketch
-    source = source_of(document)
+    document = project.document
+    motions = {figure: puppet.coarse for figure, puppet in project.puppets.items()}
+    source = extent_source(document)
     is_known = project.reach is not None and project.reach.source == source
-    if is_known or not motion.knows(document) or project.unreachable == source:
+    is_prepared = all(
+        motion.knows(clip_of(document, figure)) for figure, motion in motions.items()
+    )
+    if is_known or not is_prepared or project.unreachable == source:
         return
 
-    def done(reach: Reach | None) -> None:
+    def done(reach: Extent | None) -> None:
         project.reach = reach
 
     def failed(error: Exception) -> None:
@@ -201,7 +209,7 @@ def keep_reach(session: Session) -> None:
     session.jobs.put(
         Job(
             kind=MEASURING,
-            work=lambda: measure_reach(document, motion),
+            work=lambda: measure_extent(document, motions),
             done=done,
             failed=failed,
         )

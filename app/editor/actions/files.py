@@ -6,14 +6,14 @@ from functools import cache, lru_cache
 from pathlib import Path
 from typing import NamedTuple
 
-from app.document import Document, History, Meshing
+from app.document import Document, Figure, History, Meshing, clip_of
 from app.editor.action import do
 from app.editor.actions import playback, saving
 from app.editor.actions.saving import PROJECT
 from app.editor.failures import report, sentence
 from app.editor.jobs import Job
-from app.editor.session import FileDialog, Project, Question, Session
-from app.motion import Figure, Motion
+from app.editor.session import FileDialog, Project, Puppet, Question, Session
+from app.motion import Motion, PosableMesh
 from app.storage import (
     Picture,
     decode_picture,
@@ -76,8 +76,7 @@ class Opened(NamedTuple):
     """What reading a file gives."""
 
     document: Document
-    picture: Picture
-    sketch: Motion
+    puppets: dict[int, Puppet]
     notices: tuple[str, ...]
 
 
@@ -132,13 +131,13 @@ def show(session: Session, path: Path, opened: Opened) -> None:
     session.project = Project(
         name=path.stem,
         history=History(opened.document, saved=True),
-        picture=opened.picture,
-        sketch=opened.sketch,
+        puppets=opened.puppets,
+        active=opened.document.figures[-1].id,
         path=path if is_project else None,
     )
     if not is_sample:
         session.preferences = session.preferences.with_recent(path)
-    elif len(opened.document.keys) > 1:
+    elif any(len(figure.keys) > 1 for figure in opened.document.figures):
         playback.toggle_play(session)
     for notice in opened.notices:
         session.tell(sentence(notice))
@@ -151,16 +150,28 @@ def _read(path: Path, meshing: Meshing) -> Opened:
 
 def _read_project(path: Path) -> Opened:
     document = load_project(path)
-    picture = decode_picture(document.picture.data, f"the picture of {path.name}")
-    # Its keys are shown at once; the in-betweens follow.
-    sketch = Motion.at_rest(document, Figure.sketch(document.domain))
-    return Opened(document, picture, sketch, ())
+    puppets = {
+        figure.id: _puppet(
+            document, figure, decode_picture(figure.picture.data, f"the picture of {path.name}")
+        )
+        for figure in document.figures
+    }
+    return Opened(document, puppets, ())
 
 
 def _read_picture(path: Path, meshing: Meshing) -> Opened:
     document, picture, notices = open_picture(path, meshing)
-    sketch = Motion.at_rest(document, Figure.sketch(document.domain))
-    return Opened(document, picture, sketch, notices)
+    figure = document.figures[0]
+    return Opened(document, {figure.id: _puppet(document, figure, picture)}, notices)
+
+
+def _puppet(document: Document, figure: Figure, picture: Picture) -> Puppet:
+    """Return a figure as the window has it at first: its keys are shown; in-betweens follow."""
+    return Puppet(
+        picture=picture,
+        is_opaque=bool((picture.rgba[..., 3] == OPAQUE).all()),
+        coarse=Motion.at_rest(clip_of(document, figure.id), PosableMesh.coarse(figure.domain)),
+    )
 
 
 def offer_recovery(session: Session) -> None:
@@ -199,10 +210,9 @@ def _show_recovered(session: Session, path: Path, opened: Opened) -> None:
     session.project = Project(
         name="recovered",
         history=History(opened.document, saved=False),
-        picture=opened.picture,
+        puppets=opened.puppets,
+        active=opened.document.figures[-1].id,
         path=None,
-        sketch=opened.sketch,
-        is_opaque=bool((opened.picture.rgba[..., 3] == OPAQUE).all()),
     )
     session.autosave.write(opened.document)
     remove_leftover(path)

@@ -1,6 +1,14 @@
 """What is done with keys as a whole, and the settings of time beside them."""
 
-from app.document import Command, Easing, FrameRange, Variant, key_commands, settings_commands
+from app.document import (
+    Command,
+    Easing,
+    FrameRange,
+    Variant,
+    figure_commands,
+    key_commands,
+    scene_commands,
+)
 from app.editor.actions import editing, playback, posing
 from app.editor.session import Session
 
@@ -25,59 +33,61 @@ def insert_at(session: Session, frame: int) -> None:
 
 def set_easing(session: Session, frames: frozenset[int], easing: Easing) -> None:
     """Set how time runs from the keys at these frames on."""
-    editing.edit(session, key_commands.set_easing(frames, easing))
+    editing.edit_figure(session, key_commands.set_easing, frames, easing)
 
 
 def set_turns(session: Session, frames: frozenset[int], turns: int) -> None:
     """Set how often the shape turns round after the keys at these frames."""
-    editing.edit(session, key_commands.set_turns(frames, turns))
+    editing.edit_figure(session, key_commands.set_turns, frames, turns)
 
 
 def reverse(session: Session) -> None:
     """Let the chosen keys run backwards, or all if fewer than two are chosen."""
     if session.project:
-        frames = frozenset(key.frame for key in session.project.document.keys)
-        chosen = session.project.chosen
-        _rearrange(session, key_commands.reverse_keys(chosen if len(chosen) > 1 else frames))
+        project = session.project
+        frames = project.chosen if len(project.chosen) > 1 else project.figure.key_frames
+        _rearrange(session, key_commands.reverse_keys(project.active, frames))
 
 
 def scale(session: Session, factor: float) -> None:
     """Stretch the time of the chosen keys, or of everything if fewer than two are chosen."""
     if session.project:
-        chosen = session.project.chosen
+        active, chosen = session.project.active, session.project.chosen
         several = len(chosen) > 1
         _rearrange(
             session,
-            key_commands.scale_keys(chosen, factor) if several else key_commands.scale_time(factor),
+            key_commands.scale_keys(active, chosen, factor)
+            if several
+            else scene_commands.scale_time(factor),
         )
 
 
 def match_ends(session: Session) -> None:
     """Give the last key the pose of the first one."""
-    editing.edit(session, key_commands.match_ends())
+    editing.edit_figure(session, key_commands.match_ends)
 
 
 def toggle_loop(session: Session) -> None:
     """Let the end lead back to the beginning, or not."""
     if session.project:
-        retime(session, settings_commands.set_loop(loop=not session.project.document.loop))
+        retime(session, scene_commands.set_loop(loop=not session.project.document.loop))
 
 
 def set_fps(session: Session, fps: float) -> None:
     """Set how fast the animation plays; it goes on from where it is."""
-    retime(session, settings_commands.set_fps(fps))
+    retime(session, scene_commands.set_fps(fps))
 
 
 def set_last_frame(session: Session, last: int) -> None:
     """Set where the animation ends."""
     if session.project:
         first = session.project.document.frames.first
-        retime(session, settings_commands.set_frames(FrameRange(first, last)))
+        retime(session, scene_commands.set_frames(FrameRange(first, last)))
 
 
 def play_all(session: Session) -> None:
     """Play all frames, and not a work range."""
-    retime(session, settings_commands.set_work_range(None))
+    retime(session, scene_commands.set_work_range(None))
 
 
 def start_work_here(session: Session) -> None:
@@ -98,14 +108,14 @@ def end_work_here(session: Session) -> None:
 
 def set_variant(session: Session, variant: Variant) -> None:
     """Set how in-betweens are made."""
-    editing.edit(session, settings_commands.set_variant(variant))
+    editing.edit_figure(session, figure_commands.set_variant, variant)
 
 
 def _set_work(session: Session, first: int, last: int) -> None:
     work = FrameRange(first, last)
     if session.project:
         whole = work == session.project.document.frames
-        retime(session, settings_commands.set_work_range(None if whole else work))
+        retime(session, scene_commands.set_work_range(None if whole else work))
 
 
 def _rearrange(session: Session, command: Command) -> None:
@@ -113,8 +123,8 @@ def _rearrange(session: Session, command: Command) -> None:
     project = session.project
     if project is None:
         return
-    others = {key.frame for key in project.document.keys} - project.chosen
+    others = project.figure.key_frames - project.chosen
     everything = len(project.chosen) < 2
     retime(session, command)
-    frames = {key.frame for key in project.document.keys}
+    frames = project.figure.key_frames
     project.chosen = frozenset() if everything else frozenset(frames - others)

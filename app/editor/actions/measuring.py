@@ -19,20 +19,20 @@ def keep_up(session: Session) -> None:
     project = session.project
     if project is None or project.is_posing or MEASURING in session.jobs.kinds:
         return
-    document, motion = project.document, project.sketch
-    is_current = project.curves is not None and project.curves.document is document
-    is_possible = bool(intervals(document)) and motion.knows(document)
-    if is_current or not is_possible or project.unmeasurable is document:
+    clip, motion = project.clip, project.puppet.coarse
+    is_current = project.curves is not None and project.curves.clip == clip
+    is_possible = bool(intervals(clip)) and motion.knows(clip)
+    if is_current or not is_possible or project.unmeasurable == clip:
         return
 
     def failed(error: Exception) -> None:
-        project.unmeasurable = document
+        project.unmeasurable = clip
         report(session, "The distortion could not be measured", error)
 
     session.jobs.put(
         Job(
             kind=MEASURING,
-            work=lambda: measure_curves(document, motion),
+            work=lambda: measure_curves(clip, motion),
             done=partial(_show, project),
             failed=failed,
         )

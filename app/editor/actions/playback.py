@@ -11,7 +11,7 @@ def seek(session: Session, frame: int) -> None:
         project = session.project
         frame = project.document.frames.clamp(frame)
         project.playhead = project.playhead.seek(frame, session.clock())
-        project.loose = None
+        project.unkeyed = None
         if project.grab is not None and project.grab.frame != frame:
             _leave_pose(session, project)
 
@@ -29,7 +29,7 @@ def toggle_play(session: Session) -> None:
         now = session.clock()
         turn = project.playhead.play if project.playhead.since is None else project.playhead.pause
         project.playhead = turn(project.document, now)
-        project.loose = None
+        project.unkeyed = None
         _leave_pose(session, project)
 
 
@@ -66,7 +66,7 @@ def to_key(session: Session, direction: int) -> None:
     halt(session)
     if session.project:
         frame = current_frame(session, session.project)
-        frames = [key.frame for key in session.project.document.keys]
+        frames = [key.frame for key in session.project.figure.keys]
         if direction > 0:
             there = next((key for key in frames if key > frame), None)
         else:

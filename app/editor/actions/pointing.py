@@ -13,7 +13,7 @@ CLICK = 3.0  # pixels of the screen that a click may wander
 def begin(session: Session, gesture: Gesture) -> None:
     """Begin a gesture; a pull takes hold of the selected handles where they are."""
     project = session.project
-    if project is None or project.shown is None:
+    if project is None or project.puppet.shown is None:
         return
     if isinstance(gesture, Pulling):
         gesture = replace(gesture, places=_places(project))
@@ -37,7 +37,7 @@ def move(session: Session, place: complex) -> None:
         return
     session.pointer = gesture = replace(gesture, moved=True)
     if isinstance(gesture, Pulling):
-        known = {handle.id for handle in project.document.handles}
+        known = {handle.id for handle in project.figure.handles}
         offset = place - gesture.start
         turns = _wished_turns(project)
         posing.pull(
@@ -93,12 +93,12 @@ def use_space(session: Session) -> None:
 
 def _places(project: Project) -> tuple[tuple[int, complex], ...]:
     """Return where the selected handles are."""
-    shown = project.shown
+    shown = project.puppet.shown
     if shown is None:
         return ()
     return tuple(
         (handle.id, complex(place))
-        for handle, place in zip(shown.document.handles, shown.handle_places, strict=True)
+        for handle, place in zip(shown.clip.figure.handles, shown.handle_places, strict=True)
         if handle.id in project.selected
     )
 
@@ -106,8 +106,8 @@ def _places(project: Project) -> tuple[tuple[int, complex], ...]:
 def _wished_turns(project: Project) -> dict[int, float | None]:
     if project.grab is not None:
         targets = project.grab.targets
-    elif project.shown is not None and project.shown.pose is not None:
-        targets = project.shown.pose.targets
+    elif project.puppet.shown is not None and project.puppet.shown.pose is not None:
+        targets = project.puppet.shown.pose.targets
     else:
         return {}
     return {identity: target.rotation for identity, target in targets.items()}
@@ -118,14 +118,16 @@ def _is_away(session: Session, project: Project, start: complex, place: complex)
 
 
 def _inside(project: Project, corner: complex, opposite: complex) -> frozenset[int]:
-    if project.shown is None:
+    if project.puppet.shown is None:
         return frozenset()
     low = complex(min(corner.real, opposite.real), min(corner.imag, opposite.imag))
     high = complex(max(corner.real, opposite.real), max(corner.imag, opposite.imag))
     return frozenset(
         handle.id
         for handle, place in zip(
-            project.shown.document.handles, project.shown.handle_places, strict=True
+            project.puppet.shown.clip.figure.handles,
+            project.puppet.shown.handle_places,
+            strict=True,
         )
         if low.real <= place.real <= high.real and low.imag <= place.imag <= high.imag
     )

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from app.document import Document, Pose, Target, handle_commands, key_commands, set_anchor
+from app.document import Clip, Figure, Pose, Target, figure_commands, handle_commands, key_commands
 from app.editor.actions import playback
 from app.editor.failures import report
 from app.editor.jobs import Job
@@ -27,7 +27,7 @@ MUCH_LESS = 0.5
 def pull(session: Session, wishes: Mapping[int, Target]) -> None:
     """Wish handles elsewhere in the pose that is shown; the others keep their wishes."""
     project = session.project
-    if project is None or project.shown is None:
+    if project is None or project.puppet.shown is None:
         return
     if project.grab is None or not project.grab.held:
         project.grab, project.settling = _grab(session, project), None
@@ -63,7 +63,7 @@ def drop(session: Session) -> None:
 def nudge(session: Session, step: complex) -> None:
     """Move the selected handles by a few pixels of the picture."""
     project = session.project
-    if project is None or project.shown is None or not project.selected:
+    if project is None or project.puppet.shown is None or not project.selected:
         return
     targets = project.grab.targets if project.grab else _wishes(project)
     moved = {
@@ -77,14 +77,14 @@ def nudge(session: Session, step: complex) -> None:
 def add_handle(session: Session, place: complex) -> None:
     """Add a handle where the shape is at a place of the screen's plane; nothing moves."""
     project = session.project
-    if project is None or project.shown is None:
+    if project is None or project.puppet.shown is None:
         return
     drop(session)
-    rest = _at_rest(project.shown, place)
-    identity = project.document.next_handle
-    project.history.do(handle_commands.add_handle(rest))
-    if project.loose is not None:
-        project.loose = _retargeted(project.document, project.loose)
+    rest = _at_rest(project.puppet.shown, place)
+    identity = project.figure.next_handle
+    project.history.do(handle_commands.add_handle(project.active, rest))
+    if project.unkeyed is not None:
+        project.unkeyed = _retargeted(project.figure, project.unkeyed)
     project.selected, project.chosen = frozenset({identity}), frozenset()
 
 
@@ -94,10 +94,10 @@ def remove_handles(session: Session, identities: frozenset[int]) -> None:
     if project is None:
         return
     drop(session)
-    project.history.do(handle_commands.remove_handles(identities))
+    project.history.do(handle_commands.remove_handles(project.active, identities))
     project.selected -= identities
-    if project.loose is not None:
-        project.loose = _retargeted(project.document, project.loose)
+    if project.unkeyed is not None:
+        project.unkeyed = _retargeted(project.figure, project.unkeyed)
 
 
 def anchor_at(session: Session, identity: int) -> None:
@@ -105,21 +105,27 @@ def anchor_at(session: Session, identity: int) -> None:
     project = session.project
     if project is None:
         return
-    place = project.document.handle(identity).position
-    project.history.do(set_anchor(None if project.document.anchor == place else place))
+    place = project.figure.handle(identity).position
+    project.history.do(
+        figure_commands.set_anchor(
+            project.active, None if project.figure.anchor == place else place
+        )
+    )
 
 
 def put_anchor(session: Session, place: complex) -> None:
     """Make the shape's point at a place of the screen's plane the anchor."""
     project = session.project
-    if project and project.shown:
-        project.history.do(set_anchor(_at_rest(project.shown, place)))
+    if project and project.puppet.shown:
+        project.history.do(
+            figure_commands.set_anchor(project.active, _at_rest(project.puppet.shown, place))
+        )
 
 
 def _at_rest(shown: Shown, place: complex) -> complex:
     """Return where the point that is shown at a place is in the drawing at rest."""
-    found = shown.figure.locate(np.array([place]), shown.positions)
-    return complex(found.on(shown.figure.domain.mesh.vertices)[0])
+    found = shown.mesh.locate(np.array([place]), shown.positions)
+    return complex(found.on(shown.mesh.domain.mesh.vertices)[0])
 
 
 def wish(session: Session, wishes: Mapping[int, Target]) -> None:
@@ -131,7 +137,7 @@ def wish(session: Session, wishes: Mapping[int, Target]) -> None:
 def free_turn(session: Session, identity: int) -> None:
     """Let the shape turn freely at a handle in the pose that is shown."""
     project = session.project
-    if project is None or project.shown is None:
+    if project is None or project.puppet.shown is None:
         return
     targets = project.grab.targets if project.grab else _wishes(project)
     pull(session, {identity: replace(targets[identity], rotation=None)})
@@ -144,19 +150,19 @@ def insert_key(session: Session) -> None:
     if project is None:
         return
     drop(session)
-    document = project.document
+    clip = project.clip
     frame = playback.current_frame(session, project)
     playback.halt(session)
-    if project.loose is not None:
-        _hold(project, frame, project.loose, gesture=None)
-        project.loose = None
-    elif all(key.frame != frame for key in document.keys):
-        rig, kin = Rig.of(document, project.rig), project.sketch.stage
+    if project.unkeyed is not None:
+        _hold(project, frame, project.unkeyed, gesture=None)
+        project.unkeyed = None
+    elif frame not in clip.figure.key_frames:
+        rig, sibling = Rig.of(clip.figure, project.puppet.rig), project.puppet.coarse.sampler
         session.jobs.put(
             Job(
                 kind=INSERTING,
-                work=lambda: pose_at(rig, frame, kin),
-                done=lambda pose: _insert(session, project, document, frame, pose),
+                work=lambda: pose_at(rig, clip, frame, sibling),
+                done=lambda pose: _insert(session, project, clip, frame, pose),
                 failed=lambda error: report(session, "The key could not be inserted", error),
                 urgent=True,
             )
@@ -165,9 +171,9 @@ def insert_key(session: Session) -> None:
         session.tell(f"Frame {frame} has a key already. Drag a handle to change it.")
 
 
-def _insert(session: Session, project: Project, document: Document, frame: int, pose: Pose) -> None:
-    if project is session.project and project.document is document:
-        project.history.do(key_commands.insert_key(frame, pose))
+def _insert(session: Session, project: Project, clip: Clip, frame: int, pose: Pose) -> None:
+    if project is session.project and project.clip == clip:
+        project.history.do(key_commands.insert_key(project.active, frame, pose))
         project.chosen = frozenset({frame})
 
 
@@ -175,26 +181,26 @@ def _grab(session: Session, project: Project) -> Grab:
     playback.halt(session)
     session.jobs.drop(POSING)
     frame = playback.current_frame(session, project)
-    pose = project.loose or (project.shown.pose if project.shown else None)
+    pose = project.unkeyed or (project.puppet.shown.pose if project.puppet.shown else None)
     return Grab(frame=frame, targets=_wishes(project), pose=pose)
 
 
 def _wishes(project: Project) -> Mapping[int, Target]:
-    """Return what is wished of each handle of the document in the pose that is shown.
+    """Return what is wished of each handle of the figure in the pose that is shown.
 
     What is shown may be a frame behind the document, and not know its newest handles.
     """
-    shown, document = project.shown, project.document
-    pose = project.loose or (shown.pose if shown else None)
+    shown, figure = project.puppet.shown, project.figure
+    pose = project.unkeyed or (shown.pose if shown else None)
     if pose is not None:
-        return _retargeted(document, pose).targets
+        return _retargeted(figure, pose).targets
     if shown is None:
         return {}
-    rest = np.array([handle.position for handle in document.handles], dtype=np.complex128)
-    places = shown.figure.locate(rest, shown.figure.domain.mesh.vertices).on(shown.positions)
+    rest = np.array([handle.position for handle in figure.handles], dtype=np.complex128)
+    places = shown.mesh.locate(rest, shown.mesh.domain.mesh.vertices).on(shown.positions)
     return {
         handle.id: Target(position=complex(place))
-        for handle, place in zip(document.handles, places, strict=True)
+        for handle, place in zip(figure.handles, places, strict=True)
     }
 
 
@@ -202,16 +208,16 @@ def _follow(session: Session, project: Project, grab: Grab) -> None:
     """Let the worker go on, unless it is at it: then it goes on when that is delivered."""
     if POSING in session.jobs.kinds:
         return
-    targets, drag, document = grab.targets, grab.anew or grab.drag, project.document
-    rig, kin = project.rig, project.sketch.stage
+    targets, drag, clip = grab.targets, grab.anew or grab.drag, project.clip
+    rig, sibling = project.puppet.rig, project.puppet.coarse.sampler
     clock = session.clock
 
     def work() -> tuple[Drag, int, float]:
         begun = clock()
         start = drag
         if start is None:
-            mine = Rig.of(document, rig)
-            pose = grab.pose or pose_at(mine, grab.frame, kin)
+            mine = Rig.of(clip.figure, rig)
+            pose = grab.pose or pose_at(mine, clip, grab.frame, sibling)
             start = Drag.begin(mine, pose)
         steps = 0
         while steps == 0 or (steps < STEPS and not start.is_over and clock() - begun < HASTE):
@@ -223,7 +229,7 @@ def _follow(session: Session, project: Project, grab: Grab) -> None:
         if session.project is not project or grab not in (project.grab, project.settling):
             return
         drag, steps, session.solver_seconds = result
-        project.rig = drag.rig
+        project.puppet.rig = drag.rig
         grab.steps += steps
         if grab.anew is None:
             grab.drag = drag
@@ -250,16 +256,16 @@ def _keep(session: Session, project: Project, grab: Grab, targets: Mapping[int, 
     pose = grab.drag.pose(targets)
     if session.preferences.auto_key or grab is project.settling:
         _hold(project, grab.frame, pose, gesture=grab)
-        project.loose = None
+        project.unkeyed = None
     else:
-        project.loose = pose
+        project.unkeyed = pose
 
 
 def _hold(project: Project, frame: int, pose: Pose, gesture: object) -> None:
-    if any(key.frame == frame for key in project.document.keys):
-        project.history.do(key_commands.pose_key(frame, pose), gesture=gesture)
+    if frame in project.figure.key_frames:
+        project.history.do(key_commands.pose_key(project.active, frame, pose), gesture=gesture)
     else:
-        project.history.do(key_commands.insert_key(frame, pose), gesture=gesture)
+        project.history.do(key_commands.insert_key(project.active, frame, pose), gesture=gesture)
 
 
 def _finish(session: Session, project: Project, grab: Grab) -> None:
@@ -282,13 +288,13 @@ def _end(project: Project, grab: Grab) -> None:
         project.settling = None
 
 
-def _retargeted(document: Document, pose: Pose) -> Pose:
-    """Return a pose with a target for each handle of a document: its own, or where it is."""
-    places = document.map_of(pose)(
-        np.array([handle.position for handle in document.handles], dtype=np.complex128)
+def _retargeted(figure: Figure, pose: Pose) -> Pose:
+    """Return a pose with a target for each handle of a figure: its own, or where it is."""
+    places = figure.map_of(pose)(
+        np.array([handle.position for handle in figure.handles], dtype=np.complex128)
     )
     targets = {
         handle.id: pose.targets.get(handle.id, Target(position=complex(place)))
-        for handle, place in zip(document.handles, places, strict=True)
+        for handle, place in zip(figure.handles, places, strict=True)
     }
     return replace(pose, targets=targets)

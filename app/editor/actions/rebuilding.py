@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 
-from app.document import set_bounds
+from app.document import figure_commands
 from app.editor.actions import editing, posing
 from app.editor.failures import report, sentence
 from app.editor.jobs import Job
@@ -25,12 +25,12 @@ def choose_bounds(session: Session, bounds: Bounds) -> None:
     if project is None:
         return
     project.drafted_bounds = None
-    certificates = [key.pose.certificate for key in project.document.keys]
+    certificates = [key.pose.certificate for key in project.figure.keys]
     if all(bounds.allow(k=c.k, sigma_a=c.sigma_a, sigma_b=c.sigma_b) for c in certificates):
         cancel(session)
-        editing.edit(session, set_bounds(bounds))
-    elif bounds != project.document.bounds:
-        _begin(session, Renewal(before=project.document, bounds=bounds, pulls=False))
+        editing.edit_figure(session, figure_commands.set_bounds, bounds)
+    elif bounds != project.figure.bounds:
+        _begin(session, Renewal(before=project.figure, bounds=bounds, pulls=False))
 
 
 def enter_bound(session: Session, bounds: Bounds, name: str, value: float) -> None:
@@ -47,17 +47,17 @@ def enter_bound(session: Session, bounds: Bounds, name: str, value: float) -> No
 def solve_again(session: Session) -> None:
     """Pull every key's handles to their places again, within the bounds of now."""
     if session.project:
-        document = session.project.document
-        _begin(session, Renewal(before=document, bounds=document.bounds))
+        figure = session.project.figure
+        _begin(session, Renewal(before=figure, bounds=figure.bounds))
 
 
 def rebuild(session: Session) -> None:
     """Find the outline and build the mesh again; handles stay, keys are solved again."""
     project = session.project
     if project:
-        document = project.document
-        meshing = project.meshing or document.meshing
-        _begin(session, Renewal(before=document, bounds=document.bounds, meshing=meshing))
+        figure = project.figure
+        meshing = project.meshing or figure.meshing
+        _begin(session, Renewal(before=figure, bounds=figure.bounds, meshing=meshing))
 
 
 def cancel(session: Session) -> None:
@@ -76,7 +76,7 @@ def _begin(session: Session, renewal: Renewal) -> None:
 def _go_on(session: Session, project: Project, renewal: Renewal) -> None:
     if session.project is not project:
         return
-    if project.document is not renewal.before:
+    if renewal.before not in project.document.figures:
         project.renewal = None
         session.tell("The keys were not posed again: the project changed meanwhile. Start again.")
         return
@@ -84,7 +84,7 @@ def _go_on(session: Session, project: Project, renewal: Renewal) -> None:
         _keep(session, project, renewal)
         return
     project.renewal = renewal
-    picture = project.picture.rgba
+    picture = project.puppets[renewal.before.id].picture.rgba
 
     def failed(error: Exception) -> None:
         project.renewal = None
@@ -105,7 +105,7 @@ def _keep(session: Session, project: Project, renewal: Renewal) -> None:
     project.renewal = None
     project.history.do(renewal.command)
     if renewal.domain is not None:
-        project.loose = project.meshing = None
+        project.unkeyed = project.meshing = None
     for notice in renewal.notices:
         session.tell(sentence(notice))
     if renewal.outside:

@@ -3,11 +3,27 @@
 from dataclasses import replace
 from itertools import count
 
-from app.document import LAST_FRAME, Command, Document, FrameRange, key_commands, settings_commands
+from app.document import (
+    LAST_FRAME,
+    Command,
+    Document,
+    Figure,
+    FrameRange,
+    key_commands,
+    scene_commands,
+)
 from app.editor.actions import editing, playback
 from app.editor.actions.keys import retime
 from app.editor.session import Project, Session
-from app.editor.timeline_view import EdgeDrag, KeyBox, KeyDrag, Reach, Scrub, Strip, TimeGesture
+from app.editor.timeline_view import (
+    EdgeDrag,
+    KeyBox,
+    KeyDrag,
+    Scrub,
+    Shortfalls,
+    Strip,
+    TimeGesture,
+)
 
 
 def look_at(session: Session, strip: Strip | None) -> None:
@@ -37,7 +53,7 @@ def measure(session: Session) -> None:
     """Find out in which keys handles fall short of their targets."""
     if session.project:
         timing = session.project.timing
-        timing.reach = Reach.of(session.project.document, timing.reach)
+        timing.shortfalls = Shortfalls.of(session.project.figure, timing.shortfalls)
 
 
 def begin(session: Session, gesture: TimeGesture, strip: Strip) -> None:
@@ -59,7 +75,7 @@ def move(session: Session, frame: float) -> None:
             _drag_edge(session, project, drag, frame)
         case KeyBox() as box:
             low, high = sorted((box.start, frame))
-            inside = {key.frame for key in project.document.keys if low <= key.frame <= high}
+            inside = {key for key in project.figure.key_frames if low <= key <= high}
             editing.choose_keys(session, box.keeps | inside)
         case Scrub(offset=offset):
             playback.scrub(session, round(frame + offset))
@@ -89,19 +105,19 @@ def cancel(session: Session) -> None:
     end(session)
 
 
-def shift_of(document: Document, keys: frozenset[int], wanted: int, *, copies: bool) -> int:
+def shift_of(figure: Figure, keys: frozenset[int], wanted: int, *, copies: bool) -> int:
     """Return the number of frames next to `wanted` by which keys can be moved.
 
     Parameters
     ----------
-    document : Document
+    figure : Figure
     keys : frozenset of int
         Their frames.
     wanted : int
     copies : bool
         Whether they stay as well; then 0 stands for no copies.
     """
-    all_keys = {key.frame for key in document.keys}
+    all_keys = figure.key_frames
     taken = all_keys if copies else all_keys - keys
     low, high = -min(keys), LAST_FRAME - max(keys)
     wanted = min(max(wanted, low), high)
@@ -115,13 +131,15 @@ def shift_of(document: Document, keys: frozenset[int], wanted: int, *, copies: b
 
 def _drag_keys(session: Session, project: Project, drag: KeyDrag, frame: float) -> None:
     wanted = round(frame - drag.start)
-    by = shift_of(drag.before, drag.keys, wanted, copies=drag.copies)
+    figure = drag.before.figure(project.active)
+    by = shift_of(figure, drag.keys, wanted, copies=drag.copies)
     if by == drag.by:
         return
     if project.document is not drag.after:
         end(session)
         return
-    command = (key_commands.copy_keys if drag.copies else key_commands.move_keys)(drag.keys, by)
+    change = key_commands.copy_keys if drag.copies else key_commands.move_keys
+    command = change(project.active, drag.keys, by)
     _become(session, command(drag.before) if by else drag.before, command.label)
     editing.choose_keys(session, frozenset(key + by for key in drag.keys))
     project.timing.gesture = replace(drag, by=by, after=project.document)
@@ -143,9 +161,10 @@ def _trim(drag: EdgeDrag, pointed: float) -> Command:
     frame = frames.clamp(round(pointed))
     match drag.edge:
         case "animation end":
-            least = max(document.keys[-1].frame, frames.first + 1)
+            last_key = max(figure.keys[-1].frame for figure in document.figures)
+            least = max(last_key, frames.first + 1)
             last = min(max(round(pointed), least), LAST_FRAME)
-            return settings_commands.set_frames(FrameRange(frames.first, last))
+            return scene_commands.set_frames(FrameRange(frames.first, last))
         case "work start":
             work = FrameRange(max(min(frame, played.last - 1), frames.first), played.last)
         case "work end":
@@ -154,7 +173,7 @@ def _trim(drag: EdgeDrag, pointed: float) -> Command:
             by = round(pointed - drag.start)
             by = min(max(by, frames.first - played.first), frames.last - played.last)
             work = FrameRange(played.first + by, played.last + by)
-    return settings_commands.set_work_range(None if work == frames else work)
+    return scene_commands.set_work_range(None if work == frames else work)
 
 
 def _become(session: Session, document: Document, label: str) -> None:

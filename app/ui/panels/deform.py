@@ -72,7 +72,7 @@ LEAST = {"k": 0.05, "sigma_a": 1.05, "sigma_b": 0.95}  # the tightest bounds on 
 def draw(session: Session, look: Look) -> list[Action]:
     """Draw the bounds with what the pose makes of them, the solver's state, and all keys."""
     project = session.project
-    if project is None or project.shown is None:
+    if project is None or project.puppet.shown is None:
         return []
     bounds = _wanted_bounds(project)
     reached, what = _reached(project)
@@ -90,16 +90,16 @@ def draw(session: Session, look: Look) -> list[Action]:
 def _wanted_bounds(project: Project) -> Bounds:
     if project.drafted_bounds is not None:
         return project.drafted_bounds
-    return project.document.bounds if project.renewal is None else project.renewal.bounds
+    return project.figure.bounds if project.renewal is None else project.renewal.bounds
 
 
 def _reached(project: Project) -> tuple[tuple[Certificate, ...], str]:
     """Return the certificates of the pose that is shown, or of the two keys around it."""
-    shown, document = project.shown, project.document
+    shown, clip = project.puppet.shown, project.clip
     if shown is not None and shown.pose is not None:
         return (shown.pose.certificate,), "this pose"
-    pair = intervals(document)[time_of(document, shown.frame if shown else 0).interval]
-    return tuple(document.keys[index].pose.certificate for index in pair), "the keys around it"
+    pair = intervals(clip)[time_of(clip, shown.frame if shown else 0).interval]
+    return tuple(clip.keys[index].pose.certificate for index in pair), "the keys around it"
 
 
 def _heading_with_reset(look: Look, bounds: Bounds) -> list[Action]:
@@ -167,7 +167,7 @@ def _colour(look: Look, limit: Limit, used: float, bound: float) -> imgui.ImVec4
 
 
 def _solver(session: Session, look: Look, project: Project) -> None:
-    palette, shown = look.palette, project.shown
+    palette, shown = look.palette, project.puppet.shown
     pose = None if shown is None else shown.pose
     if project.grab is not None and project.grab.drag is not None:
         _status(look, icons.ICON_FA_ARROWS_SPIN, palette.accent, "Following the handles")
@@ -199,7 +199,7 @@ def _status(look: Look, icon: str, colour: imgui.ImVec4, text: str) -> None:
 def _keys(session: Session, look: Look, project: Project) -> list[Action]:
     """List what every key reaches; a click goes there."""
     actions: list[Action] = []
-    document, palette = project.document, look.palette
+    figure, palette = project.figure, look.palette
     flags = imgui.TableFlags_.sizing_stretch_prop | imgui.TableFlags_.pad_outer_x
     if not imgui.begin_table("keys", 1 + len(LIMITS), flags):
         return actions
@@ -209,7 +209,7 @@ def _keys(session: Session, look: Look, project: Project) -> list[Action]:
         imgui.table_next_column()
         imgui.text_colored(palette.dim, title)
     now = playback.current_frame(session, project)
-    for key in document.keys:
+    for key in figure.keys:
         certificate = key.pose.certificate
         imgui.table_next_row()
         imgui.table_next_column()
@@ -224,7 +224,7 @@ def _keys(session: Session, look: Look, project: Project) -> list[Action]:
             imgui.table_next_column()
             value = float(getattr(certificate, limit.field))
             beyond = limit.scale.share(value) > limit.scale.share(
-                getattr(document.bounds, limit.field)
+                getattr(figure.bounds, limit.field)
             )
             imgui.text_colored(palette.danger if beyond else palette.text, f"{value:.2f}")
     imgui.pop_font()
@@ -236,7 +236,7 @@ def _solving(project: Project) -> list[Action]:
     if project.renewal is not None and project.renewal.meshing is None:
         imgui.progress_bar(project.renewal.progress, ImVec2(FILL, 0), project.renewal.now)
         return [do(rebuilding.cancel)] if imgui.button("Cancel###stop", ImVec2(FILL, 0)) else []
-    is_possible = project.renewal is None and bool(project.document.handles)
+    is_possible = project.renewal is None and bool(project.figure.handles)
     imgui.begin_disabled(not is_possible)
     is_pressed = imgui.button("Pose all keys again", ImVec2(FILL, 0))
     imgui.end_disabled()

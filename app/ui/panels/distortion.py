@@ -39,7 +39,7 @@ QUIET = (
 def draw(session: Session, look: Look) -> list[Action]:
     """Draw the choice of the heat map, the histogram, and the curves."""
     project = session.project
-    if project is None or project.shown is None:
+    if project is None or project.puppet.shown is None:
         return []
     _style_plots(look)
     heading(look, "On the drawing")
@@ -48,9 +48,9 @@ def draw(session: Session, look: Look) -> list[Action]:
     match segments(look, "heat map", HEAT_MAPS, heat_map):
         case "none" | "k" | "sigma_a" | "sigma_b" as chosen:
             actions.append(do(viewing.show_heat_map, chosen))
-    _spread(look, project, project.shown, "k" if heat_map == "none" else heat_map)
+    _spread(look, project, project.puppet.shown, "k" if heat_map == "none" else heat_map)
     heading(look, "Over time")
-    if len(project.document.keys) < 2:
+    if len(project.figure.keys) < 2:
         small(look, "Make a second key to see how the in-betweens distort.")
         return actions
     return [*actions, *_over_time(session, look, project)]
@@ -89,7 +89,7 @@ def _histogram(shown: Shown, heat_map: HeatMap, low: float, high: float) -> _His
         values,
         BINS,
         range=(float(ends.min()), float(ends.max())),
-        weights=_areas(shown.figure.domain.mesh),
+        weights=_areas(shown.mesh.domain.mesh),
     )
     worst = values.min() if heat_map == "sigma_b" else values.max()
     return _Histogram(tuple(shares.tolist()), tuple(edges.tolist()), float(worst))
@@ -158,9 +158,9 @@ def _over_time(session: Session, look: Look, project: Project) -> list[Action]:
     if curves is None:
         small(look, "Measuring…")
         return actions
-    is_stale = curves.document is not project.document
+    is_stale = curves.clip != project.clip
     height = _plot_height(look)
-    upper, lower = _plots(session.curves, curves, project.document.bounds)
+    upper, lower = _plots(session.curves, curves, project.figure.bounds)
     actions += _plot(session, look, curves, upper, height)
     actions += _plot(session, look, curves, lower, height + FRAMES * look.em)
     if session.curves == "relative":
@@ -246,10 +246,10 @@ def _plot(session: Session, look: Look, curves: Curves, plot: _Plot, height: flo
     implot.setup_axes_limits(first, last, plot.least, plot.top, implot.Cond_.always)
     keys = implot.Spec()
     keys.line_color = palette.line
-    frames = [float(key.frame) for key in project.document.keys]
+    frames = [float(key.frame) for key in project.figure.keys]
     implot.plot_inf_lines("##keys", np.array(frames), keys)
     line = implot.Spec()
-    alpha = 0.10 if curves.document is not project.document else 0.30
+    alpha = 0.10 if curves.clip != project.clip else 0.30
     line.line_color = ImVec4(palette.accent.x, palette.accent.y, palette.accent.z, alpha)
     implot.plot_line("##points", plot.frames, plot.values, line)
     _limit(look, plot.bound, vertical=False)

@@ -43,8 +43,8 @@ def draw(session: Session, look: Look) -> list[Action]:
     heading(look, "Facts")
     _facts(look, project)
     heading(look, "Rebuild")
-    document = project.document
-    draft = project.meshing or document.meshing
+    figure = project.figure
+    draft = project.meshing or figure.meshing
     chosen = _settings(look, project, draft)
     if chosen != draft:
         actions.append(do(viewing.draft_meshing, chosen))
@@ -55,12 +55,12 @@ def draw(session: Session, look: Look) -> list[Action]:
         if imgui.button("Cancel###stop", ImVec2(FILL, 0)):
             actions.append(do(rebuilding.cancel))
     else:
-        is_new = chosen != document.meshing and renewal is None
+        is_new = chosen != figure.meshing and renewal is None
         text = f"{icons.ICON_FA_ARROWS_ROTATE}  Rebuild###rebuild"
         if main_button(look, text, FILL, enabled=is_new):
             actions.append(do(rebuilding.rebuild))
         if is_new and imgui.button("Revert###forget", ImVec2(FILL, 0)):
-            actions.append(do(viewing.draft_meshing, document.meshing))
+            actions.append(do(viewing.draft_meshing, figure.meshing))
     small(look, "Handles stay, and every key is posed again. Undo brings all of it back.")
     return actions
 
@@ -79,10 +79,10 @@ def _toggles(overlays: Overlays) -> list[Action]:
 
 
 def _facts(look: Look, project: Project) -> None:
-    domain = project.document.domain
+    domain = project.figure.domain
     close = ImVec2(imgui.get_style().item_spacing.x, 0.0)
     imgui.push_style_var(imgui.StyleVar_.item_spacing, close)
-    width, height = project.picture.size
+    width, height = project.document.canvas
     _fact(look, "Picture", f"{width} × {height} pixels")
     _fact(look, "Outline", f"{len(domain.outline):,} points")
     _fact(look, "Cage", f"{len(domain.cage):,} points")
@@ -114,7 +114,7 @@ def _settings(look: Look, project: Project, draft: Meshing) -> Meshing:
     if entered is not None:
         digits = 0 if entered.is_final and entered.value < 10_000 else -3
         draft = replace(draft, triangles=int(round(entered.value, digits)))
-    if project.is_opaque:
+    if project.puppet.is_opaque:
         label(look, "Tolerance")
         hint = "How far the background may vary in colour, 0 to 255"
         entered = slider(look, "tolerance", draft.tolerance, TOLERANCES, text="%.0f", hint=hint)

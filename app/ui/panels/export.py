@@ -37,11 +37,11 @@ PREVIEW, LARGEST_PREVIEW = 3.2, 6.0  # em: at least and at most
 def draw(session: Session, look: Look) -> list[Action]:
     """Draw the settings of the export with a preview of its frame, or its progress."""
     project = session.project
-    if project is None or project.shown is None:
+    if project is None or project.puppet.shown is None:
         return []
     settings = project.document.export
-    reach = project.reach.box if project.reach else box_around(project.shown.positions)
-    view = frame_view(settings, project.picture.size, reach)
+    reach = project.reach.box if project.reach else box_around(project.puppet.shown.positions)
+    view = frame_view(settings, project.document.canvas, reach)
     box = shown_box(view)
     actions = [do(exporting.show_frame, box), do(exporting.keep_reach)]
     heading(look, "Picture")
@@ -228,7 +228,7 @@ def _preview(
     look: Look, project: Project, settings: ExportSettings, frame: Box, reach: Box
 ) -> None:
     """Draw the export's frame around the drawing and all that moves."""
-    canvas = Box(0j, complex(*project.picture.size))
+    canvas = Box(0j, complex(*project.document.canvas))
     around = frame.joined(canvas).joined(reach)
     width, height = imgui.get_content_region_avail().x, _preview_height(look)
     corner = imgui.get_cursor_screen_pos()
@@ -254,9 +254,9 @@ def _preview(
         red, green, blue = bytes.fromhex(settings.background[1:])
         colour = imgui.IM_COL32(red, green, blue, 255)
     draw_list.add_rect_filled(*ends(frame), colour)
-    if project.shown is not None:
-        count = len(project.shown.figure.domain.outline)
-        for point in project.shown.positions[:count]:
+    if project.puppet.shown is not None:
+        count = len(project.puppet.shown.mesh.domain.outline)
+        for point in project.puppet.shown.positions[:count]:
             draw_list.path_line_to(place(complex(point)))
         draw_list.path_stroke(ink(palette.dim), 1.3, imgui.ImDrawFlags_.closed)
     draw_list.add_rect(*ends(canvas), ink(palette.dim, 0.6))

@@ -6,7 +6,7 @@ from dataclasses import replace
 from imgui_bundle import ImVec2, imgui
 from imgui_bundle import icons_fontawesome_6 as icons
 
-from app.document import Handle, Target, handle_commands, settings_commands
+from app.document import Handle, Target, figure_commands, handle_commands
 from app.editor import Action, Project, Session, do
 from app.editor.actions import editing, posing
 from app.ui.style import (
@@ -32,16 +32,16 @@ ARRIVED = 1.0  # pixels of the picture within which a handle is where it should 
 def draw(session: Session, look: Look) -> list[Action]:
     """Draw the list of handles and the one that is selected."""
     project = session.project
-    if project is None or project.shown is None:
+    if project is None or project.puppet.shown is None:
         return []
-    document = project.document
-    if not document.handles:
+    figure = project.figure
+    if not figure.handles:
         heading(look, "Handles")
         small(look, "There are none yet. Click on the drawing to add one, then drag it.")
         return []
     actions = _heading_with_delete(look, project)
     actions += _list(look, project)
-    chosen = [handle for handle in document.handles if handle.id in project.selected]
+    chosen = [handle for handle in figure.handles if handle.id in project.selected]
     if len(chosen) == 1:
         actions += _details(look, project, chosen[0])
     elif chosen:
@@ -70,14 +70,14 @@ def _heading_with_delete(look: Look, project: Project) -> list[Action]:
 
 def _list(look: Look, project: Project) -> list[Action]:
     actions: list[Action] = []
-    document, palette = project.document, look.palette
-    lags = project.shown.lags if project.shown else {}
+    figure, palette = project.figure, look.palette
+    lags = project.puppet.shown.lags if project.puppet.shown else {}
     style = imgui.get_style()
-    rows = min(len(document.handles), MOST_ROWS) * imgui.get_text_line_height_with_spacing()
+    rows = min(len(figure.handles), MOST_ROWS) * imgui.get_text_line_height_with_spacing()
     height = rows - style.item_spacing.y + 2 * style.window_padding.y
     imgui.begin_child("handles", ImVec2(0, height), imgui.ChildFlags_.borders)
-    for handle in document.handles:
-        is_anchor = handle.position == document.anchor
+    for handle in figure.handles:
+        is_anchor = handle.position == figure.anchor
         clicked, _ = imgui.selectable(
             f"###handle {handle.id}",
             handle.id in project.selected,
@@ -108,13 +108,15 @@ def _details(look: Look, project: Project, handle: Handle) -> list[Action]:
     label(look, "Name")
     _, name = imgui.input_text("##name", handle.name)
     if imgui.is_item_deactivated_after_edit() and name.strip() and name != handle.name:
-        actions.append(do(editing.edit, handle_commands.rename_handle(handle.id, name.strip())))
+        actions.append(
+            do(editing.edit_figure, handle_commands.rename_handle, handle.id, name.strip())
+        )
     label(look, "Weight")
     hint = "How strongly it pulls, relative to the others"
     weighed = slider(look, "weight", handle.weight, WEIGHTS, hint=hint)
     if weighed is not None:
-        command = handle_commands.weigh_handle(handle.id, float(f"{weighed.value:.3g}"))
-        actions.append(do(editing.edit, command))
+        weight = float(f"{weighed.value:.3g}")
+        actions.append(do(editing.edit_figure, handle_commands.weigh_handle, handle.id, weight))
     placed = _point(
         look,
         project,
@@ -123,13 +125,13 @@ def _details(look: Look, project: Project, handle: Handle) -> list[Action]:
         "Where it sits on the drawing at rest, in pixels from the upper left corner",
     )
     if placed is not None:
-        actions.append(do(editing.edit, handle_commands.move_handle(handle.id, placed)))
+        actions.append(do(editing.edit_figure, handle_commands.move_handle, handle.id, placed))
     return actions + _wish(look, project, handle)
 
 
 def _wish(look: Look, project: Project, handle: Handle) -> list[Action]:
     actions: list[Action] = []
-    shown = project.shown
+    shown = project.puppet.shown
     if shown is None or shown.pose is None or handle.id not in shown.pose.targets:
         small(look, "Between keys it goes with the shape. Drag it to make a key here.")
         return actions
@@ -162,9 +164,9 @@ def _turn(look: Look, project: Project, handle: Handle, target: Target) -> list[
     tip("Turn the shape at this handle by an angle, or let it turn freely")
     if changed and not turns:
         return [do(posing.free_turn, handle.id)]
-    if changed and project.shown is not None:
-        index = [other.id for other in project.document.handles].index(handle.id)
-        now = project.shown.handle_turns[index]
+    if changed and project.puppet.shown is not None:
+        index = [other.id for other in project.figure.handles].index(handle.id)
+        now = project.puppet.shown.handle_turns[index]
         return [do(posing.wish, {handle.id: replace(target, rotation=now)})]
     imgui.same_line()
     if target.rotation is None:
@@ -198,9 +200,9 @@ def _point(look: Look, project: Project, text: str, place: complex, hint: str) -
 
 def _anchor(look: Look, project: Project, chosen: list[Handle]) -> list[Action]:
     """Tell what the in-betweens' place and turn follow, and let that be chosen."""
-    document = project.document
-    holder = next((h.name for h in document.handles if h.position == document.anchor), None)
-    if document.anchor is None:
+    figure = project.figure
+    holder = next((h.name for h in figure.handles if h.position == figure.anchor), None)
+    if figure.anchor is None:
         small(look, "Automatic: in-betweens follow the middle of the shape.")
     elif holder is not None:
         small(
@@ -208,10 +210,10 @@ def _anchor(look: Look, project: Project, chosen: list[Handle]) -> list[Action]:
             f"In-betweens follow “{shortened(holder, 12 * look.em)}”: it goes the straightest way.",
         )
     else:
-        anchor = document.anchor
-        y = project.picture.size[1] - anchor.imag
+        anchor = figure.anchor
+        y = project.document.canvas[1] - anchor.imag
         small(look, f"In-betweens follow the point {anchor.real:.0f}, {y:.0f}.")
-    is_chosen = len(chosen) == 1 and chosen[0].position != document.anchor
+    is_chosen = len(chosen) == 1 and chosen[0].position != figure.anchor
     gap = imgui.get_style().item_spacing.x
     half = ImVec2((imgui.get_content_region_avail().x - gap) / 2, 0)
     actions: list[Action] = []
@@ -221,8 +223,8 @@ def _anchor(look: Look, project: Project, chosen: list[Handle]) -> list[Action]:
     imgui.end_disabled()
     tip("Let in-betweens follow the selected handle", "Ctrl+click")
     imgui.same_line()
-    imgui.begin_disabled(document.anchor is None)
+    imgui.begin_disabled(figure.anchor is None)
     if imgui.button("Automatic anchor###clear anchor", half):
-        actions.append(do(editing.edit, settings_commands.set_anchor(None)))
+        actions.append(do(editing.edit_figure, figure_commands.set_anchor, None))
     imgui.end_disabled()
     return actions

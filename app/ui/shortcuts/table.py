@@ -27,7 +27,7 @@ def _edits(session: Session) -> bool:
 def _undoable(session: Session) -> bool:
     project = session.project
     return project is not None and (
-        project.history.undo_label is not None or project.loose is not None
+        project.history.undo_label is not None or project.unkeyed is not None
     )
 
 

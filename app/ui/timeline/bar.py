@@ -74,11 +74,11 @@ def _key_buttons(session: Session, look: Look, project: Project) -> list[Action]
     actions += _to_key(look, *previous)
     imgui.same_line(0, TIGHT * look.em)
     frame = playback.current_frame(session, project)
-    is_free = project.loose is not None or all(k.frame != frame for k in project.document.keys)
+    is_free = project.unkeyed is not None or all(k.frame != frame for k in project.figure.keys)
     imgui.begin_disabled(not is_free)
     actions += bound_button(session, look, "insert key")
     imgui.end_disabled()
-    if project.loose is not None:
+    if project.unkeyed is not None:
         high = imgui.get_item_rect_max()
         imgui.get_window_draw_list().add_circle_filled(
             ImVec2(high.x - 0.4 * look.em, high.y - 1.3 * look.em),
@@ -210,7 +210,7 @@ def _onion_skin(session: Session, look: Look) -> list[Action]:
 
 def _variant(project: Project) -> list[Action]:
     actions: list[Action] = []
-    current = project.document.variant
+    current = project.figure.variant
     if imgui.begin_combo("##variant", VARIANTS[current][0].split(" –")[0]):
         for variant, (name, what) in VARIANTS.items():
             if imgui.selectable(name, variant == current)[0]:

@@ -45,8 +45,8 @@ def draw_intervals(track: Track) -> list[Action]:
 
 
 def _bars(track: Track) -> list[_Bar]:
-    document = track.project.document
-    keys = document.keys
+    clip = track.project.clip
+    keys = clip.keys
     bars = [
         _Bar(
             name=f"interval {key.frame}",
@@ -58,9 +58,8 @@ def _bars(track: Track) -> list[_Bar]:
         )
         for key, following in pairwise(keys)
     ]
-    if closes(document):
-        frames, last = document.frames, keys[-1]
-        period = frames.last - frames.first
+    if closes(clip):
+        frames, last, period = clip.frames, keys[-1], clip.period
         end = keys[0].frame + period
         for name, shift, low, high in (
             ("", 0, last.frame, frames.last),
@@ -81,11 +80,11 @@ def _bars(track: Track) -> list[_Bar]:
 
 def _draw_still(track: Track) -> None:
     """Draw a line where a pose stands still: before the first key and after the last one."""
-    document = track.project.document
-    ends = [(document.frames.first, document.frames.last)]
-    if not closes(document):
-        first, last = document.keys[0].frame, document.keys[-1].frame
-        ends = [(document.frames.first, first), (last, document.frames.last)]
+    clip = track.project.clip
+    ends = [(clip.frames.first, clip.frames.last)]
+    if not closes(clip):
+        first, last = clip.keys[0].frame, clip.keys[-1].frame
+        ends = [(clip.frames.first, first), (last, clip.frames.last)]
         colour = ink(track.look.palette.dim, 0.35)
         for low, high in ends:
             imgui.get_window_draw_list().add_line(

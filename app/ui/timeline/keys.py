@@ -88,13 +88,13 @@ def draw_box(track: Track) -> None:
 def draw_keys(track: Track) -> list[Action]:
     """Draw the keys, and take what the pointer does to them."""
     actions: list[Action] = []
-    reach = _reach(track)
-    grip = GRIP * reach
+    shortfalls = _reach(track)
+    grip = GRIP * shortfalls
     gesture = track.project.timing.gesture
     draw_list = imgui.get_window_draw_list()
     low, high = ImVec2(track.left, track.track_top), ImVec2(track.right, track.track_bottom)
     draw_list.push_clip_rect(low, high, intersect_with_current_clip_rect=True)
-    for key in track.project.document.keys:
+    for key in track.project.figure.keys:
         x = track.x(key.frame)
         if not track.shows(x - grip, x + grip):
             continue
@@ -102,7 +102,7 @@ def draw_keys(track: Track) -> list[Action]:
         origin = _origin(gesture, key.frame)
         track.button(f"key {origin}", *box, right=True)
         is_held = isinstance(gesture, KeyDrag) and key.frame == gesture.pressed + gesture.by
-        _draw_key(track, key, 1.15 * reach if in_hand() or is_held else reach)
+        _draw_key(track, key, 1.15 * shortfalls if in_hand() or is_held else shortfalls)
         if is_pressed():
             actions += _press(track, key.frame)
         if imgui.is_item_clicked(imgui.MouseButton_.right):
@@ -118,7 +118,7 @@ def draw_keys(track: Track) -> list[Action]:
 
 def _reach(track: Track) -> float:
     """Return how large keys are, in pixels: smaller where they would cover each other."""
-    pairs = pairwise(track.project.document.keys)
+    pairs = pairwise(track.project.figure.keys)
     gap = min((later.frame - key.frame for key, later in pairs), default=LAST_FRAME)
     return min(max(0.48 * gap * track.strip.scale, SMALLEST), REACH) * track.look.em
 
@@ -146,20 +146,20 @@ def _press(track: Track, frame: int) -> list[Action]:
     return [do(editing.choose_keys, chosen), do(timeline_pointing.begin, drag, track.strip)]
 
 
-def _draw_key(track: Track, key: Keyframe, reach: float) -> None:
+def _draw_key(track: Track, key: Keyframe, shortfalls: float) -> None:
     palette, draw_list, em = track.look.palette, imgui.get_window_draw_list(), track.look.em
     x, y = track.x(key.frame), track.middle
     fill, warns = _colour(track, key)
     chosen = key.frame in track.project.chosen
     if chosen:
-        _diamond(ImVec2(x, y), reach + 0.24 * em, ink(palette.accent, 0.35))
-    _diamond(ImVec2(x, y), reach + 0.12 * em, ink(palette.desk))
-    _diamond(ImVec2(x, y), reach, ink(fill))
+        _diamond(ImVec2(x, y), shortfalls + 0.24 * em, ink(palette.accent, 0.35))
+    _diamond(ImVec2(x, y), shortfalls + 0.12 * em, ink(palette.desk))
+    _diamond(ImVec2(x, y), shortfalls, ink(fill))
     gesture = track.project.timing.gesture
     if isinstance(gesture, KeyDrag) and gesture.by and key.frame == gesture.pressed + gesture.by:
         write_tag(track, x, f"{key.frame}  ({gesture.by:+d})")
     if warns and chosen:
-        _diamond(ImVec2(x, y), 0.45 * reach, ink(warns))
+        _diamond(ImVec2(x, y), 0.45 * shortfalls, ink(warns))
     if warns:
         draw_list.add_circle_filled(ImVec2(x, track.bar_top - 0.1 * em), 0.2 * em, ink(warns))
 
@@ -175,21 +175,21 @@ def _colour(track: Track, key: Keyframe) -> tuple[ImVec4, ImVec4 | None]:
     return (palette.accent if key.frame in track.project.chosen else warns or palette.text), warns
 
 
-def _diamond(centre: ImVec2, reach: float, colour: int) -> None:
+def _diamond(centre: ImVec2, shortfalls: float, colour: int) -> None:
     imgui.get_window_draw_list().add_quad_filled(
-        ImVec2(centre.x, centre.y - reach),
-        ImVec2(centre.x + reach, centre.y),
-        ImVec2(centre.x, centre.y + reach),
-        ImVec2(centre.x - reach, centre.y),
+        ImVec2(centre.x, centre.y - shortfalls),
+        ImVec2(centre.x + shortfalls, centre.y),
+        ImVec2(centre.x, centre.y + shortfalls),
+        ImVec2(centre.x - shortfalls, centre.y),
         colour,
     )
 
 
 def lags(project: Project, key: Keyframe) -> list[str]:
     """Return which handles fall short of their targets in a key, in words."""
-    reach = project.timing.reach
-    short = {} if reach is None else reach.lags.get(key.pose, {})
-    names = {handle.id: handle.name for handle in project.document.handles}
+    shortfalls = project.timing.shortfalls
+    short = {} if shortfalls is None else shortfalls.lags.get(key.pose, {})
+    names = {handle.id: handle.name for handle in project.figure.handles}
     return [
         f"{names[identity]} is {lag:.0f} px short of its target"
         for identity, lag in short.items()

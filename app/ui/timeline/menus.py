@@ -63,7 +63,7 @@ def time_menu(look: Look, project: Project) -> list[Action]:
 
 def _time_items(look: Look, project: Project) -> list[Action]:
     actions: list[Action] = []
-    count = len(project.document.keys)
+    count = len(project.figure.keys)
     chosen = len(project.chosen)
     several = f"{chosen} keys" if chosen > 1 else "all keys"
     if imgui.menu_item_simple(f"Reverse {several}###Reverse", enabled=count > 1):

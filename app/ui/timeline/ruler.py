@@ -90,7 +90,7 @@ def draw_playhead(track: Track, frame: int) -> list[Action]:
         if is_pressed():
             scrub = Scrub(offset=frame - track.pointed)
             actions.append(do(timeline_pointing.begin, scrub, track.strip))
-        colour = palette.warning if track.project.loose is not None else palette.accent
+        colour = palette.warning if track.project.unkeyed is not None else palette.accent
         if in_hand():
             imgui.set_mouse_cursor(imgui.MouseCursor_.resize_ew)
         bounds = ImVec2(track.left, track.top), ImVec2(track.right, track.bottom)
@@ -146,7 +146,7 @@ def draw_overview(track: Track, frame: int) -> list[Action]:
         rounding,
     )
     middle = (top + bottom) / 2
-    for key in track.project.document.keys:
+    for key in track.project.figure.keys:
         x = track.left + (key.frame - low) * per_frame
         draw_list.add_circle_filled(ImVec2(x, middle), 0.11 * em, ink(palette.text, 0.8), 8)
     x = track.left + (frame - low) * per_frame

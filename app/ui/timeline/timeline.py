@@ -32,8 +32,8 @@ def draw(session: Session, look: Look) -> list[Action]:
     if track.is_usable:
         actions += _draw_track(track, playback.current_frame(session, project))
     imgui.end_child()
-    reach = project.timing.reach
-    if reach is None or reach.document is not project.document:
+    shortfalls = project.timing.shortfalls
+    if shortfalls is None or shortfalls.figure is not project.figure:
         actions.append(do(timeline_pointing.measure))
     return actions
 

@@ -1,11 +1,13 @@
 """What the viewport shows: the drawing, its ghosts, and all that marks it."""
 
+from collections.abc import Collection
+
 import numpy as np
 from imgui_bundle import ImVec4, imgui
 
 from app.document import time_of
-from app.editor import HeatMap, Project, Session
-from app.motion import Box, Figure, Shown, Vertices
+from app.editor import HeatMap, Project, Puppet, Session
+from app.motion import Box, PosableMesh, Shown, Vertices
 from app.render import (
     Colour,
     Disc,
@@ -61,7 +63,7 @@ class Canvas:
     def draw(self, session: Session) -> None:
         """Draw the project of a session as it is shown now."""
         project = session.project
-        if project is None or project.shown is None:
+        if project is None or project.puppet.shown is None:
             return
         self._fit_target(session.screen)
         if self._drawing is None or self._drawing.project is not project:
@@ -69,7 +71,7 @@ class Canvas:
             self._drawing = _Drawing(self._renderer, project)
         inputs = _inputs(session, project)
         if self._target is not None and inputs != self._drawn:
-            scene = _scene(session, project, project.shown, self._drawing)
+            scene = _scene(session, project, project.puppet.shown, self._drawing)
             self._renderer.draw(self._target, project.view(session.screen), scene)
             self._drawn = inputs
 
@@ -96,59 +98,70 @@ class Canvas:
 
 
 class _Drawing:
-    """The picture of a project and its figures on the graphics card."""
+    """The pictures and meshes of a project's figures on the graphics card."""
 
     def __init__(self, renderer: Renderer, project: Project) -> None:
         self.project = project
         self._renderer = renderer
-        self._picture = GpuPicture(renderer.programs.context, project.picture.rgba)
-        self.brightness = measure_brightness(project.picture.rgba)
-        self._meshes: dict[Figure, GpuMesh] = {}
-        self._drawn_meshes: dict[tuple[Figure, int], DrawnMesh] = {}
-        self._heated: tuple[PosedMesh, Vertices, HeatMap] | None = None
+        self._pictures: dict[int, GpuPicture] = {}
+        self._meshes: dict[PosableMesh, GpuMesh] = {}
+        self._drawn_meshes: dict[tuple[PosableMesh, int], DrawnMesh] = {}
+        self._heated: dict[PosedMesh, tuple[Vertices, HeatMap]] = {}
+        # Of the picture behind all others: what the backdrop must differ from.
+        (first, *_) = project.document.figures
+        self.brightness = measure_brightness(project.puppets[first.id].picture.rgba)
 
-    def drawn_mesh(self, figure: Figure, number: int = 0) -> DrawnMesh:
-        """Return the poses of a figure with this number, 0 for the drawing itself."""
-        if (figure, number) not in self._drawn_meshes:
+    def drawn_mesh(self, figure: int, mesh: PosableMesh, number: int = 0) -> DrawnMesh:
+        """Return the poses of a figure's mesh with this number, 0 for the drawing itself."""
+        if (mesh, number) not in self._drawn_meshes:
             by_shader = shader_is_faster(self._renderer.programs.context)
-            self._drawn_meshes[figure, number] = DrawnMesh(self._mesh(figure), by_shader=by_shader)
-        return self._drawn_meshes[figure, number]
+            drawn = DrawnMesh(self._mesh(figure, mesh), by_shader=by_shader)
+            self._drawn_meshes[mesh, number] = drawn
+        return self._drawn_meshes[mesh, number]
 
     def heat(self, pose: PosedMesh, shown: Shown, heat_map: HeatMap) -> None:
         """Upload a distortion of what is shown, if it is another than before."""
-        wanted = (pose, shown.vertices, heat_map)
-        if self._heated != wanted:
+        wanted = (shown.vertices, heat_map)
+        if self._heated.get(pose) != wanted:
             pose.write_heat(measure(shown, heat_map).astype(np.float32))
-            self._heated = wanted
+            self._heated[pose] = wanted
 
-    def keep_only(self, figures: tuple[Figure, ...]) -> None:
-        """Let the buffers of other figures go."""
-        for figure, number in [key for key in self._drawn_meshes if key[0] not in figures]:
-            self._drawn_meshes.pop((figure, number)).release()
-        for figure in [figure for figure in self._meshes if figure not in figures]:
-            self._meshes.pop(figure).release()
+    def keep_only(self, meshes: Collection[PosableMesh]) -> None:
+        """Let the buffers of other meshes go."""
+        for mesh, number in [key for key in self._drawn_meshes if key[0] not in meshes]:
+            self._drawn_meshes.pop((mesh, number)).release()
+            self._heated.clear()
+        for mesh in [mesh for mesh in self._meshes if mesh not in meshes]:
+            self._meshes.pop(mesh).release()
 
     def release(self) -> None:
         self.keep_only(())
-        self._picture.release()
+        for picture in self._pictures.values():
+            picture.release()
 
-    def _mesh(self, figure: Figure) -> GpuMesh:
-        if figure not in self._meshes:
-            mesh = figure.domain.mesh
-            self._meshes[figure] = GpuMesh(
+    def _mesh(self, figure: int, mesh: PosableMesh) -> GpuMesh:
+        if mesh not in self._meshes:
+            drawn = mesh.domain.mesh
+            self._meshes[mesh] = GpuMesh(
                 self._renderer.programs,
-                self._picture,
-                rest=mesh.vertices,
-                triangles=mesh.triangles,
+                self._picture(figure),
+                rest=drawn.vertices,
+                triangles=drawn.triangles,
             )
-        return self._meshes[figure]
+        return self._meshes[mesh]
+
+    def _picture(self, figure: int) -> GpuPicture:
+        if figure not in self._pictures:
+            pixels = self.project.puppets[figure].picture.rgba
+            self._pictures[figure] = GpuPicture(self._renderer.programs.context, pixels)
+        return self._pictures[figure]
 
 
 def _inputs(session: Session, project: Project) -> tuple[object, ...]:
     """Return all that the picture depends on: while it stays the same, so does the picture."""
     return (
-        project.shown,
-        project.sketch if session.overlays.onion else project.sketch.stage,
+        *(puppet.shown for puppet in project.puppets.values()),
+        project.puppet.coarse if session.overlays.onion else project.puppet.coarse.sampler,
         project.grab.targets if project.grab else None,
         project.selected,
         project.view(session.screen),
@@ -181,7 +194,7 @@ def measure(shown: Shown, heat_map: HeatMap) -> Floats:
 
 def heat_limits(project: Project, heat_map: HeatMap) -> tuple[float, float]:
     """Return the values at the two ends of the colours: from none to all that the bounds allow."""
-    bounds = project.document.bounds
+    bounds = project.figure.bounds
     match heat_map:
         case "sigma_a":
             return 1.0, bounds.sigma_a
@@ -194,12 +207,19 @@ def heat_limits(project: Project, heat_map: HeatMap) -> tuple[float, float]:
 def _scene(session: Session, project: Project, shown: Shown, drawing: _Drawing) -> Scene:
     palette = PALETTES[session.preferences.theme]
     overlays = session.overlays
-    figures = [motion.figure for motion in (project.sketch, project.full) if motion is not None]
-    drawing.keep_only((*figures, shown.figure))
-    pose = drawing.drawn_mesh(shown.figure).pose(shown.vertices)
+    puppets = project.puppets.values()
+    drawing.keep_only({mesh for puppet in puppets for mesh in _meshes(puppet)})
+    poses = []
+    # In the order of the document: what comes later is in front.
+    for figure in project.document.figures:
+        shows = project.puppets[figure.id].shown
+        if shows is not None:
+            pose = drawing.drawn_mesh(figure.id, shows.mesh).pose(shows.vertices)
+            poses.append(pose)
+            if overlays.heat_map != "none":
+                drawing.heat(pose, shows, overlays.heat_map)
     heat = None
     if overlays.heat_map != "none":
-        drawing.heat(pose, shown, overlays.heat_map)
         low, high = heat_limits(project, overlays.heat_map)
         heat = Heat(low=low, high=high)
     wireframe = Wireframe(colour=_colour(palette.text, 0.35)) if overlays.wireframe else None
@@ -208,7 +228,7 @@ def _scene(session: Session, project: Project, shown: Shown, drawing: _Drawing) 
         background=background(
             session.preferences.backdrop, palette, drawing.brightness, _scale(session)
         ),
-        meshes=(pose,),
+        meshes=tuple(poses),
         heat=heat,
         wireframe=wireframe,
         ghosts=_ghosts(session, project, shown, drawing) if overlays.onion else (),
@@ -217,14 +237,20 @@ def _scene(session: Session, project: Project, shown: Shown, drawing: _Drawing) 
     )
 
 
+def _meshes(puppet: Puppet) -> set[PosableMesh]:
+    """Return the meshes on which a figure is shown, or may be soon."""
+    meshes = {motion.mesh for motion in (puppet.coarse, puppet.fine) if motion is not None}
+    return meshes if puppet.shown is None else meshes | {puppet.shown.mesh}
+
+
 def _ghosts(
     session: Session, project: Project, shown: Shown, drawing: _Drawing
 ) -> tuple[Ghost, ...]:
-    choice, document = session.preferences, project.document
+    choice, motion = session.preferences, project.puppet.coarse
     if project.playhead.since is not None:
         return ()
     # While the hand moves, in-betweens come a moment later: until then the last ones stay.
-    known = document if project.sketch.knows(document, roughly=True) else project.sketch.document
+    known = project.clip if motion.knows(project.clip, roughly=True) else motion.clip
     ghosts = []
     sides = ((-1, choice.ghosts_before, GHOST_BEFORE), (1, choice.ghosts_after, GHOST_AFTER))
     number = 0
@@ -234,10 +260,10 @@ def _ghosts(
             frame = shown.frame + direction * step * choice.ghost_step
             if frame not in known.frames and not known.loop:
                 continue
-            vertices = project.sketch.vertices(known, frame)
+            vertices = motion.vertices(known, frame)
             if vertices is None or time_of(known, frame) == time_of(known, shown.frame):
                 continue
-            pose = drawing.drawn_mesh(project.sketch.figure, number).pose(vertices)
+            pose = drawing.drawn_mesh(project.active, motion.mesh, number).pose(vertices)
             ghosts.append(Ghost(meshes=(pose,), tint=tint, opacity=GHOST_OPACITY / step**0.5))
     return tuple(ghosts)
 
@@ -246,7 +272,7 @@ def _marks(
     session: Session, project: Project, shown: Shown, palette: Palette
 ) -> tuple[tuple[Line, ...], tuple[Disc, ...]]:
     scale = _scale(session)
-    document = shown.document
+    figure = shown.clip.figure
     lines: list[Line] = []
     if session.overlays.outline:
         lines.append(_outline(shown, palette, scale))
@@ -262,14 +288,14 @@ def _marks(
         wishes = shown.pose.targets
     zoom = project.view(session.screen).scale
     marks = []
-    for handle, place in zip(document.handles, shown.handle_places, strict=True):
+    for handle, place in zip(figure.handles, shown.handle_places, strict=True):
         wish = wishes.get(handle.id) if wishes else None
         lags = wish is not None and abs(wish.position - place) * zoom > LAG * scale
         marks.append(
             HandleMark(
                 place=complex(place),
                 wish=wish.position if lags and wish is not None else None,
-                anchor=handle.position == document.anchor,
+                anchor=handle.position == figure.anchor,
                 selected=handle.id in project.selected,
                 hovered=handle.id == session.hovered,
             )
@@ -282,27 +308,26 @@ def _marks(
 
 def _anchor(project: Project, shown: Shown) -> complex | None:
     """Return where the anchor is in what is shown; None where a handle marks it, or none is yet."""
-    document, stage = shown.document, project.sketch.stage
-    rest = document.anchor
-    if rest is None and stage is not None and stage.anchor is None:
-        rest = stage.sites.anchor
-    if rest is None or any(handle.position == rest for handle in document.handles):
+    figure, sampler = shown.clip.figure, project.puppet.coarse.sampler
+    rest = figure.anchor
+    if rest is None and sampler is not None and sampler.anchor is None:
+        rest = sampler.sites.anchor
+    if rest is None or any(handle.position == rest for handle in figure.handles):
         return None
-    figure = shown.figure
-    found = figure.locate(np.array([rest]), figure.domain.mesh.vertices)
+    found = shown.mesh.locate(np.array([rest]), shown.mesh.domain.mesh.vertices)
     return complex(found.on(shown.positions)[0])
 
 
 def _outline(shown: Shown, palette: Palette, scale: float) -> Line:
     """Return the outline, moved with the shape."""
-    points = shown.positions[: len(shown.figure.domain.outline)]
+    points = shown.positions[: len(shown.mesh.domain.outline)]
     return Line(points=points, colour=_colour(palette.accent), width=1.5 * scale, closed=True)
 
 
 def _cage(shown: Shown, palette: Palette, scale: float) -> Line:
     """Return the cage, which stays around the shape at rest."""
     return Line(
-        points=shown.figure.domain.cage,
+        points=shown.mesh.domain.cage,
         colour=_colour(palette.warning, 0.8),
         width=1.5 * scale,
         dash=5.0 * scale,

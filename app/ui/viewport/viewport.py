@@ -33,13 +33,18 @@ def draw(session: Session, look: Look, texture: int | None) -> list[Action]:
     if screen != session.screen:
         actions.append(do(viewing.resize, *screen))
     project = session.project
-    if project is None or project.shown is None or texture is None or min(room.x, room.y) < 1:
+    if (
+        project is None
+        or project.puppet.shown is None
+        or texture is None
+        or min(room.x, room.y) < 1
+    ):
         return actions
     opposite = ImVec2(corner.x + room.x, corner.y + room.y)
     imgui.get_window_draw_list().add_image(
         imgui.ImTextureRef(texture), corner, opposite, ImVec2(0, 1), ImVec2(1, 0)
     )
-    stage = _Stage(project, project.shown, project.view(session.screen), corner, density)
+    stage = _Stage(project, project.puppet.shown, project.view(session.screen), corner, density)
     # Before the canvas: what comes first gets the pointer. Were they laid over it, a press in the
     # frame in which the pointer arrives would be the canvas's, or nobody's.
     hovered, over_handles = _handles(session, look, stage)
@@ -93,7 +98,7 @@ class _Stage:
         return ImVec2(pixel.real, pixel.imag)
 
     def is_on_shape(self, place: complex) -> bool:
-        outline = self.shown.positions[: len(self.shown.figure.domain.outline)]
+        outline = self.shown.positions[: len(self.shown.mesh.domain.outline)]
         return bool(contains(outline, np.array([place]))[0])
 
 
@@ -134,7 +139,7 @@ def _handles(session: Session, look: Look, stage: _Stage) -> tuple[int | None, l
     if not session.overlays.handles or stage.project.playhead.since is not None:
         return hovered, actions
     radius = GRIP * look.em
-    handles = zip(stage.shown.document.handles, stage.shown.handle_places, strict=True)
+    handles = zip(stage.shown.clip.figure.handles, stage.shown.handle_places, strict=True)
     # The one that is drawn last lies on top.
     for handle, place in reversed(list(handles)):
         centre = stage.point(complex(place))
@@ -163,7 +168,7 @@ def _press_handle(stage: _Stage, identity: int, place: complex) -> list[Action]:
         return [do(pointing.select, selected ^ {identity})]
     pointer = stage.pointer
     if io.key_alt:
-        index = [handle.id for handle in stage.shown.document.handles].index(identity)
+        index = [handle.id for handle in stage.shown.clip.figure.handles].index(identity)
         turning = Turning(
             identity=identity,
             centre=place,
@@ -179,12 +184,12 @@ def _menu(stage: _Stage, identity: int) -> list[Action]:
     actions: list[Action] = []
     if not imgui.begin_popup(f"menu of handle {identity}"):
         return actions
-    handle = stage.project.document.handle(identity)
+    handle = stage.project.figure.handle(identity)
     target = stage.shown.pose.targets.get(identity) if stage.shown.pose else None
     item = imgui.internal.menu_item_ex  # as menu_item_simple, with icons in a column
     if item("Delete", icons.ICON_FA_TRASH, "Alt+click"):
         actions.append(do(posing.remove_handles, frozenset({identity})))
-    is_anchor = handle.position == stage.project.document.anchor
+    is_anchor = handle.position == stage.project.figure.anchor
     label = "Automatic anchor" if is_anchor else "Make it the anchor"
     if item(label, icons.ICON_FA_ANCHOR, "Ctrl+click"):
         actions.append(do(posing.anchor_at, identity))
@@ -218,7 +223,7 @@ def _hint(session: Session, stage: _Stage, hovered: int | None) -> str:
     if stage.project.playhead.since is not None:
         return "Space stops"
     if hovered is not None:
-        name = next(h.name for h in stage.shown.document.handles if h.id == hovered)
+        name = next(h.name for h in stage.shown.clip.figure.handles if h.id == hovered)
         return f"{name}: drag to pose, Alt+drag to turn, Ctrl+click for the anchor"
     if not session.overlays.handles:
         return "The handles are hidden: H shows them"
@@ -229,7 +234,7 @@ def _hint(session: Session, stage: _Stage, hovered: int | None) -> str:
 
 def _badges(look: Look, project: Project, corner: ImVec2, room: ImVec2) -> list[Action]:
     """Tell what is special now: a pose that no key holds, or what to do next."""
-    if project.loose is not None:
+    if project.unkeyed is not None:
         return _pill(
             look,
             "Unkeyed pose",
@@ -246,17 +251,17 @@ def _badges(look: Look, project: Project, corner: ImVec2, room: ImVec2) -> list[
 
 def _first_steps(project: Project) -> int | None:
     """Return which hint a new project is at; None where the person has found the way."""
-    document = project.document
-    if not document.handles:
+    figure = project.figure
+    if not figure.handles:
         return 0
-    if len(document.keys) > 1 or project.playhead.since is not None:
+    if len(figure.keys) > 1 or project.playhead.since is not None:
         return None
-    was_posed = any(document.lags(document.keys[0].pose)) and _is_posed(project)
+    was_posed = any(figure.lags(figure.keys[0].pose)) and _is_posed(project)
     return 2 if was_posed else 1
 
 
 def _is_posed(project: Project) -> bool:
-    pose = project.document.keys[0].pose
+    pose = project.figure.keys[0].pose
     return bool(np.abs(pose.psi).max() > 0 or pose.certificate.k > 0)
 
 

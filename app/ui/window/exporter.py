@@ -48,7 +48,7 @@ class Exporter:
 
     def _draw(self, session: Session, run: ExportRun) -> None:
         if self._steps is None or self._painter is None:
-            painter = Painter(self._context, run.document, run.picture, run.poses, run.plan)
+            painter = Painter(self._context, run.document, run.pictures, run.poses, run.plan)
             self._plan, self._painter = run.plan, painter
             self._steps = export(run.plan, painter.pose, painter.draw, waits=False)
         begun = session.clock()

@@ -3,12 +3,12 @@ import pty
 import signal
 import subprocess
 import sys
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 from animations import BLOB, moving_document
+from documents import altered
 from numpy.testing import assert_array_equal
 from PIL import Image, ImageSequence
 
@@ -104,7 +104,7 @@ def test_options_stand_in_for_the_projects_own_settings(document, tmp_path, caps
         format="spritesheet", size=(60, 45), background="#112233", frames=FrameRange(1, 4)
     )
     project = tmp_path / "own.lissom"
-    save_project(project, replace(document, export=own))
+    save_project(project, altered(document, export=own))
     export(project, "--out", tmp_path / "sheet")
     assert "4 frames of 60 × 45 pixels in 2 columns and 2 rows" in capsys.readouterr().out
     sheet = pixels(tmp_path / "sheet")

@@ -6,6 +6,7 @@ from documents import (
     CENTRE,
     PICTURE,
     RADIUS,
+    altered,
     differences,
     disc_document,
     disc_domain,
@@ -14,12 +15,14 @@ from documents import (
 )
 from numpy.testing import assert_allclose
 
+from app.document import figure_commands as figures
 from app.document import handle_commands as handles
 from app.document import key_commands as keys
-from app.document import settings_commands as settings
+from app.document import scene_commands as settings
 from app.document.easing import HOLD, LINEAR, PRESETS
+from app.document.figure import PictureFile
 from app.document.keyframe import MOST_TURNS, Handle, Keyframe, Target
-from app.document.model import Document, PictureFile, new_document
+from app.document.model import Document
 from app.document.settings import VARIANTS, ExportSettings, FrameRange, Meshing
 from app.errors import LissomError
 from engine.errors import EngineError
@@ -32,20 +35,20 @@ def animated(*frames: int, count: int = 2, seed: int = 3) -> Document:
     rng = np.random.default_rng(seed)
     document = disc_document()
     for _ in range(count):
-        document = handles.add_handle(inside(rng))(document)
+        document = handles.add_handle(0, inside(rng))(document)
     made = tuple(Keyframe(frame=frame, pose=random_pose(rng, document)) for frame in frames)
-    return replace(document, keys=made)
+    return altered(document, keys=made)
 
 
 def frames_of(document):
-    return [key.frame for key in document.keys]
+    return [key.frame for key in document.figures[0].keys]
 
 
 def test_a_new_document_shows_the_picture_as_it_is():
     document = disc_document()
     points = np.array([CENTRE, CENTRE + 40j])
-    (key,) = document.keys
-    assert_allclose(document.map_of(key.pose)(points), points, rtol=0, atol=1e-12)
+    (key,) = document.figures[0].keys
+    assert_allclose(document.figures[0].map_of(key.pose)(points), points, rtol=0, atol=1e-12)
     assert key.pose.certificate.certified
     assert document.played == document.frames
 
@@ -53,25 +56,25 @@ def test_a_new_document_shows_the_picture_as_it_is():
 def test_adding_a_handle_changes_no_map_and_takes_the_place_where_it_is_now():
     document = animated(0, 10, 30)
     place = CENTRE + 20 - 35j
-    grown = handles.add_handle(place, name="tail", weight=2.0)(document)
-    handle = grown.handle(document.next_handle)
+    grown = handles.add_handle(0, place, name="tail", weight=2.0)(document)
+    handle = grown.figures[0].handle(document.figures[0].next_handle)
     assert (handle.name, handle.position, handle.weight) == ("tail", place, 2.0)
-    for old, new in zip(document.keys, grown.keys, strict=True):
+    for old, new in zip(document.figures[0].keys, grown.figures[0].keys, strict=True):
         assert new.pose.phi is old.pose.phi
         assert new.pose.psi is old.pose.psi
-        expected = document.map_of(old.pose)(np.array([place]))[0]
+        expected = document.figures[0].map_of(old.pose)(np.array([place]))[0]
         assert_allclose(new.pose.targets[handle.id].position, expected, rtol=0, atol=1e-12)
         assert new.pose.targets[handle.id].rotation is None
         assert {i: new.pose.targets[i] for i in old.pose.targets} == dict(old.pose.targets)
-        assert_allclose(grown.lags(new.pose)[handle.id], 0.0, rtol=0, atol=1e-10)
+        assert_allclose(grown.figures[0].lags(new.pose)[handle.id], 0.0, rtol=0, atol=1e-10)
 
 
 def test_handles_may_sit_on_the_outline_itself():
     document = disc_document()
-    outline = document.domain.outline
+    outline = document.figures[0].domain.outline
     for fraction in (0.0, 0.3, 0.7):
         for place in outline + fraction * (np.roll(outline, -1) - outline):
-            assert handles.add_handle(complex(place))(document).handles
+            assert handles.add_handle(0, complex(place))(document).figures[0].handles
 
 
 def test_the_variants_are_those_of_the_engine():
@@ -79,28 +82,28 @@ def test_the_variants_are_those_of_the_engine():
 
 
 def test_lags_are_the_distances_from_the_targets():
-    document = handles.add_handle(CENTRE)(disc_document())
-    pose = document.keys[0].pose
+    document = handles.add_handle(0, CENTRE)(disc_document())
+    pose = document.figures[0].keys[0].pose
     pulled = replace(pose, targets={0: Target(position=CENTRE + 3 + 4j)})
-    assert_allclose(document.lags(pulled)[0], 5.0, rtol=0, atol=1e-10)
-    assert disc_document().lags(disc_document().keys[0].pose) == {}
+    assert_allclose(document.figures[0].lags(pulled)[0], 5.0, rtol=0, atol=1e-10)
+    assert disc_document().figures[0].lags(disc_document().figures[0].keys[0].pose) == {}
 
 
 def test_names_and_ids_are_never_given_twice():
     document = animated(0)
-    assert [handle.name for handle in document.handles] == ["handle 1", "handle 2"]
-    document = handles.remove_handles({1})(document)
-    document = handles.rename_handle(0, "handle 3")(document)
-    document = handles.add_handle(CENTRE)(document)
-    assert [handle.id for handle in document.handles] == [0, 2]
-    assert document.handle(2).name == "handle 4"
+    assert [handle.name for handle in document.figures[0].handles] == ["handle 1", "handle 2"]
+    document = handles.remove_handles(0, {1})(document)
+    document = handles.rename_handle(0, 0, "handle 3")(document)
+    document = handles.add_handle(0, CENTRE)(document)
+    assert [handle.id for handle in document.figures[0].handles] == [0, 2]
+    assert document.figures[0].handle(2).name == "handle 4"
 
 
 def test_removing_a_handle_keeps_the_poses():
     document = animated(0, 10)
-    fewer = handles.remove_handles({0})(document)
-    assert [handle.id for handle in fewer.handles] == [1]
-    for old, new in zip(document.keys, fewer.keys, strict=True):
+    fewer = handles.remove_handles(0, {0})(document)
+    assert [handle.id for handle in fewer.figures[0].handles] == [1]
+    for old, new in zip(document.figures[0].keys, fewer.figures[0].keys, strict=True):
         assert new.pose.phi is old.pose.phi
         assert dict(new.pose.targets) == {1: old.pose.targets[1]}
 
@@ -108,98 +111,107 @@ def test_removing_a_handle_keeps_the_poses():
 def test_moving_a_handle_moves_its_targets_along_the_maps():
     document = animated(0, 10)
     turned = Target(position=CENTRE, rotation=0.5)
-    targets = {**document.keys[1].pose.targets, 0: turned}
-    document = keys.pose_key(10, replace(document.keys[1].pose, targets=targets))(document)
-    moved = handles.move_handle(0, CENTRE + 5)(document)
-    assert moved.handle(0).position == CENTRE + 5
-    expected = document.map_of(document.keys[1].pose)(np.array([CENTRE + 5]))[0]
-    assert_allclose(moved.keys[1].pose.targets[0].position, expected, rtol=0, atol=1e-12)
-    assert moved.keys[1].pose.targets[0].rotation == 0.5
-    assert moved.keys[1].pose.targets[1] is document.keys[1].pose.targets[1]
+    targets = {**document.figures[0].keys[1].pose.targets, 0: turned}
+    document = keys.pose_key(0, 10, replace(document.figures[0].keys[1].pose, targets=targets))(
+        document
+    )
+    moved = handles.move_handle(0, 0, CENTRE + 5)(document)
+    assert moved.figures[0].handle(0).position == CENTRE + 5
+    expected = document.figures[0].map_of(document.figures[0].keys[1].pose)(np.array([CENTRE + 5]))[
+        0
+    ]
+    assert_allclose(moved.figures[0].keys[1].pose.targets[0].position, expected, rtol=0, atol=1e-12)
+    assert moved.figures[0].keys[1].pose.targets[0].rotation == 0.5
+    assert moved.figures[0].keys[1].pose.targets[1] is document.figures[0].keys[1].pose.targets[1]
 
 
 def test_naming_and_weighing_handles():
     document = animated(0)
-    assert handles.rename_handle(1, "Fuß")(document).handle(1).name == "Fuß"
-    assert handles.weigh_handle(1, 3.0)(document).handle(1).weight == 3.0
+    assert handles.rename_handle(0, 1, "Fuß")(document).figures[0].handle(1).name == "Fuß"
+    assert handles.weigh_handle(0, 1, 3.0)(document).figures[0].handle(1).weight == 3.0
 
 
 def test_posing_and_inserting_keys():
     document = animated(0, 10)
     pose = random_pose(np.random.default_rng(1), document)
-    assert keys.pose_key(10, pose)(document).key(10).pose is pose
-    document = keys.set_easing({0}, HOLD)(document)
-    grown = keys.insert_key(5, pose)(document)
+    assert keys.pose_key(0, 10, pose)(document).figures[0].key(10).pose is pose
+    document = keys.set_easing(0, {0}, HOLD)(document)
+    grown = keys.insert_key(0, 5, pose)(document)
     assert frames_of(grown) == [0, 5, 10]
-    assert grown.key(5).easing == HOLD
-    assert keys.insert_key(15, pose)(document).key(15).easing == LINEAR
-    assert keys.insert_key(5, pose, easing=LINEAR)(document).key(5).easing == LINEAR
-    assert keys.insert_key(70, pose)(document).frames == FrameRange(0, 70)
+    assert grown.figures[0].key(5).easing == HOLD
+    assert keys.insert_key(0, 15, pose)(document).figures[0].key(15).easing == LINEAR
+    assert keys.insert_key(0, 5, pose, easing=LINEAR)(document).figures[0].key(5).easing == LINEAR
+    assert keys.insert_key(0, 70, pose)(document).frames == FrameRange(0, 70)
 
 
 def test_moving_and_copying_keys():
     document = animated(0, 10, 20)
-    assert frames_of(keys.move_keys({10, 20}, 5)(document)) == [0, 15, 25]
-    assert frames_of(keys.move_keys({10}, 40)(document)) == [0, 20, 50]
-    assert keys.move_keys({10}, 40)(document).frames == FrameRange(0, 50)
-    copied = keys.copy_keys({0, 10}, 25)(document)
+    assert frames_of(keys.move_keys(0, {10, 20}, 5)(document)) == [0, 15, 25]
+    assert frames_of(keys.move_keys(0, {10}, 40)(document)) == [0, 20, 50]
+    assert keys.move_keys(0, {10}, 40)(document).frames == FrameRange(0, 50)
+    copied = keys.copy_keys(0, {0, 10}, 25)(document)
     assert frames_of(copied) == [0, 10, 20, 25, 35]
-    assert copied.key(35).pose is document.key(10).pose
+    assert copied.figures[0].key(35).pose is document.figures[0].key(10).pose
     # Into each other's places, as they move together.
-    assert frames_of(keys.move_keys({0, 10, 20}, 10)(document)) == [10, 20, 30]
+    assert frames_of(keys.move_keys(0, {0, 10, 20}, 10)(document)) == [10, 20, 30]
 
 
 def test_deleting_keys():
     document = animated(0, 10, 20)
-    assert frames_of(keys.delete_keys({0, 20})(document)) == [10]
+    assert frames_of(keys.delete_keys(0, {0, 20})(document)) == [10]
 
 
 def test_reversing_keys_turns_the_motion_round():
     document = animated(0, 10, 30)
-    document = keys.set_easing({0}, PRESETS["in"])(document)
-    document = keys.set_easing({10}, HOLD)(document)
-    document = keys.set_easing({30}, PRESETS["out"])(document)
-    document = keys.set_turns({10, 30}, 1)(document)
-    turned = keys.reverse_keys({0, 10, 30})(document)
-    assert [key.turns for key in turned.keys] == [-1, 0, 1]
+    document = keys.set_easing(0, {0}, PRESETS["in"])(document)
+    document = keys.set_easing(0, {10}, HOLD)(document)
+    document = keys.set_easing(0, {30}, PRESETS["out"])(document)
+    document = keys.set_turns(0, {10, 30}, 1)(document)
+    turned = keys.reverse_keys(0, {0, 10, 30})(document)
+    assert [key.turns for key in turned.figures[0].keys] == [-1, 0, 1]
     assert frames_of(turned) == [0, 20, 30]
-    assert [key.pose for key in turned.keys] == [key.pose for key in reversed(document.keys)]
-    assert [key.easing for key in turned.keys] == [
+    assert [key.pose for key in turned.figures[0].keys] == [
+        key.pose for key in reversed(document.figures[0].keys)
+    ]
+    assert [key.easing for key in turned.figures[0].keys] == [
         HOLD,
         PRESETS["in"].reversed(),
         PRESETS["out"],
     ]
-    twice = keys.reverse_keys({0, 20, 30})(turned)
-    assert [(key.frame, key.pose) for key in twice.keys] == [
-        (key.frame, key.pose) for key in document.keys
+    twice = keys.reverse_keys(0, {0, 20, 30})(turned)
+    assert [(key.frame, key.pose) for key in twice.figures[0].keys] == [
+        (key.frame, key.pose) for key in document.figures[0].keys
     ]
 
 
 def test_scaling_time():
     document = settings.set_work_range(FrameRange(2, 30))(animated(4, 10, 20))
-    assert frames_of(keys.scale_keys({10, 20}, 1.5)(document)) == [4, 10, 25]
-    double = keys.scale_time(2.0)(document)
+    assert frames_of(keys.scale_keys(0, {10, 20}, 1.5)(document)) == [4, 10, 25]
+    double = settings.scale_time(2.0)(document)
     assert frames_of(double) == [8, 20, 40]
     assert (double.frames, double.work) == (FrameRange(0, 96), FrameRange(4, 60))
 
 
 def test_the_last_key_becomes_the_first():
     document = animated(0, 10, 20)
-    closed = keys.match_ends()(document)
-    assert closed.key(20).pose is document.key(0).pose
-    assert keys.match_ends()(closed) is closed
+    closed = keys.match_ends(0)(document)
+    assert closed.figures[0].key(20).pose is document.figures[0].key(0).pose
+    assert keys.match_ends(0)(closed) is closed
 
 
 def test_settings():
     document = animated(0, 10)
     assert settings.set_fps(12)(document).fps == 12.0
     assert settings.set_loop(loop=True)(document).loop
-    assert settings.set_variant("nu")(document).variant == "nu"
-    assert settings.set_anchor(CENTRE)(document).anchor == CENTRE
-    assert settings.set_anchor(None)(settings.set_anchor(CENTRE)(document)).anchor is None
+    assert figures.set_variant(0, "nu")(document).figures[0].variant == "nu"
+    assert figures.set_anchor(0, CENTRE)(document).figures[0].anchor == CENTRE
+    assert (
+        figures.set_anchor(0, None)(figures.set_anchor(0, CENTRE)(document)).figures[0].anchor
+        is None
+    )
     export = ExportSettings(format="gif", size=(64, 32), background="#ffFF00")
     assert settings.set_export(export)(document).export == export
-    assert settings.set_bounds(Bounds(k=0.5))(document).bounds.k == 0.5
+    assert figures.set_bounds(0, Bounds(k=0.5))(document).figures[0].bounds.k == 0.5
 
 
 def test_a_shorter_animation_cuts_its_work_range():
@@ -213,43 +225,46 @@ def test_bounds_and_a_new_domain_come_with_solved_poses():
     document = animated(0, 10)
     rng = np.random.default_rng(4)
     poses = [random_pose(rng, document) for _ in range(2)]
-    assert [k.pose for k in settings.set_bounds(Bounds(), poses)(document).keys] == poses
+    assert [
+        k.pose for k in figures.set_bounds(0, Bounds(), poses)(document).figures[0].keys
+    ] == poses
     domain = disc_domain(15)
     again = [random_pose(rng, document, domain) for _ in range(2)]
-    document = replace(document, unknown={"domain": {"brush": 1}, "kept": 2})
-    rebuilt = settings.replace_domain(domain, Meshing(detail="fine"), again)(document)
-    assert rebuilt.domain is domain
-    assert rebuilt.meshing.detail == "fine"
-    assert rebuilt.handles == document.handles
-    assert [key.pose for key in rebuilt.keys] == again
-    assert rebuilt.unknown == {"kept": 2}
+    figure = replace(document.figures[0], unknown={"domain": {"brush": 1}, "kept": 2})
+    document = document.with_figure(figure)
+    rebuilt = figures.replace_domain(0, domain, Meshing(detail="fine"), again)(document)
+    assert rebuilt.figures[0].domain is domain
+    assert rebuilt.figures[0].meshing.detail == "fine"
+    assert rebuilt.figures[0].handles == document.figures[0].handles
+    assert [key.pose for key in rebuilt.figures[0].keys] == again
+    assert rebuilt.figures[0].unknown == {"kept": 2}
 
 
 @pytest.mark.parametrize(
     "command",
     [
-        handles.move_handle(0, animated(0).handle(0).position),
-        handles.remove_handles(()),
-        handles.rename_handle(0, "handle 1"),
-        handles.weigh_handle(0, 1.0),
-        keys.move_keys({0}, 0),
-        keys.move_keys((), 4),
-        keys.copy_keys((), 4),
-        keys.delete_keys(()),
-        keys.reverse_keys({10}),
-        keys.scale_keys({0, 10}, 1.0),
-        keys.scale_keys({10}, 2.0),
-        keys.scale_time(1.0),
-        keys.set_easing({0, 10}, LINEAR),
-        keys.set_turns({0, 10}, 0),
+        handles.move_handle(0, 0, animated(0).figures[0].handle(0).position),
+        handles.remove_handles(0, ()),
+        handles.rename_handle(0, 0, "handle 1"),
+        handles.weigh_handle(0, 0, 1.0),
+        keys.move_keys(0, {0}, 0),
+        keys.move_keys(0, (), 4),
+        keys.copy_keys(0, (), 4),
+        keys.delete_keys(0, ()),
+        keys.reverse_keys(0, {10}),
+        keys.scale_keys(0, {0, 10}, 1.0),
+        keys.scale_keys(0, {10}, 2.0),
+        settings.scale_time(1.0),
+        keys.set_easing(0, {0, 10}, LINEAR),
+        keys.set_turns(0, {0, 10}, 0),
         settings.set_fps(24.0),
         settings.set_frames(FrameRange(0, 48)),
         settings.set_work_range(None),
         settings.set_loop(loop=False),
-        settings.set_variant("metric"),
-        settings.set_anchor(None),
+        figures.set_variant(0, "metric"),
+        figures.set_anchor(0, None),
         settings.set_export(ExportSettings()),
-        settings.set_bounds(Bounds()),
+        figures.set_bounds(0, Bounds()),
     ],
 )
 def test_what_changes_nothing_gives_the_same_document(command):
@@ -259,74 +274,77 @@ def test_what_changes_nothing_gives_the_same_document(command):
 
 
 DOCUMENT = animated(0, 10, 20)
-POSE = DOCUMENT.keys[0].pose
+POSE = DOCUMENT.figures[0].keys[0].pose
 OTHER_CAGE = random_pose(np.random.default_rng(0), DOCUMENT, disc_domain(13))
 
 
 @pytest.mark.parametrize(
     ("command", "message"),
     [
-        (handles.add_handle(CENTRE + 2 * RADIUS), "outside the shape"),
-        (handles.add_handle(complex("nan")), "finite"),
-        (handles.add_handle(CENTRE, name="handle 1"), "name 'handle 1'"),
-        (handles.add_handle(CENTRE, name="  "), "needs a name"),
-        (handles.add_handle(CENTRE, weight=0.0), "weight"),
-        (handles.add_handle(DOCUMENT.handles[0].position), "Two handles have the place"),
-        (handles.move_handle(0, CENTRE - 2 * RADIUS), "outside the shape"),
-        (handles.move_handle(7, CENTRE), "no handle with the id 7"),
-        (handles.remove_handles({0, 7}), "no handle with the id 7"),
-        (handles.rename_handle(7, "x"), "no handle with the id 7"),
-        (handles.rename_handle(0, "handle 2"), "name 'handle 2'"),
-        (handles.rename_handle(0, ""), "needs a name"),
-        (handles.weigh_handle(0, float("inf")), "weight"),
-        (handles.weigh_handle(0, float("nan")), "weight"),
-        (keys.pose_key(5, POSE), "no key at frame 5"),
-        (keys.pose_key(0, replace(POSE, targets={})), "one target for each handle"),
-        (keys.pose_key(0, OTHER_CAGE), "cage of 13 vertices, not of 12"),
-        (keys.insert_key(10, POSE), "Two keys would be at frame 10"),
-        (keys.insert_key(-1, POSE), "no range"),
-        (keys.insert_key(1_000_000, POSE), "no range"),
-        (keys.move_keys({0, 10}, 10), "Two keys would be at frame 20"),
-        (keys.move_keys({0}, -1), "no range"),
-        (keys.move_keys({3}, 1), "no key at frame 3"),
-        (keys.copy_keys({0}, 0), "Two keys would be at frame 0"),
-        (keys.copy_keys({0}, 20), "Two keys would be at frame 20"),
-        (keys.delete_keys({0, 10, 20}), "at least one key"),
-        (keys.delete_keys({0, 11}), "no key at frame 11"),
-        (keys.reverse_keys({0, 11}), "no key at frame 11"),
-        (keys.scale_keys({0, 10}, 2.0), "Two keys would be at frame 20"),
-        (keys.scale_keys({0, 10}, 0.0), "scaled by more than 0"),
-        (keys.scale_keys({0, 10}, float("nan")), "scaled by more than 0"),
-        (keys.scale_time(0.01), "Two keys would be at frame 0"),
-        (keys.scale_time(-1.0), "scaled by more than 0"),
-        (keys.match_ends(), None),
-        (keys.set_easing({5}, LINEAR), "no key at frame 5"),
+        (handles.add_handle(0, CENTRE + 2 * RADIUS), "outside the shape"),
+        (handles.add_handle(0, complex("nan")), "finite"),
+        (handles.add_handle(0, CENTRE, name="handle 1"), "name 'handle 1'"),
+        (handles.add_handle(0, CENTRE, name="  "), "needs a name"),
+        (handles.add_handle(0, CENTRE, weight=0.0), "weight"),
+        (
+            handles.add_handle(0, DOCUMENT.figures[0].handles[0].position),
+            "Two handles have the place",
+        ),
+        (handles.move_handle(0, 0, CENTRE - 2 * RADIUS), "outside the shape"),
+        (handles.move_handle(0, 7, CENTRE), "no handle with the id 7"),
+        (handles.remove_handles(0, {0, 7}), "no handle with the id 7"),
+        (handles.rename_handle(0, 7, "x"), "no handle with the id 7"),
+        (handles.rename_handle(0, 0, "handle 2"), "name 'handle 2'"),
+        (handles.rename_handle(0, 0, ""), "needs a name"),
+        (handles.weigh_handle(0, 0, float("inf")), "weight"),
+        (handles.weigh_handle(0, 0, float("nan")), "weight"),
+        (keys.pose_key(0, 5, POSE), "no key at frame 5"),
+        (keys.pose_key(0, 0, replace(POSE, targets={})), "one target for each handle"),
+        (keys.pose_key(0, 0, OTHER_CAGE), "cage of 13 vertices, not of 12"),
+        (keys.insert_key(0, 10, POSE), "Two keys would be at frame 10"),
+        (keys.insert_key(0, -1, POSE), "no range"),
+        (keys.insert_key(0, 1_000_000, POSE), "no range"),
+        (keys.move_keys(0, {0, 10}, 10), "Two keys would be at frame 20"),
+        (keys.move_keys(0, {0}, -1), "no range"),
+        (keys.move_keys(0, {3}, 1), "no key at frame 3"),
+        (keys.copy_keys(0, {0}, 0), "Two keys would be at frame 0"),
+        (keys.copy_keys(0, {0}, 20), "Two keys would be at frame 20"),
+        (keys.delete_keys(0, {0, 10, 20}), "at least one key"),
+        (keys.delete_keys(0, {0, 11}), "no key at frame 11"),
+        (keys.reverse_keys(0, {0, 11}), "no key at frame 11"),
+        (keys.scale_keys(0, {0, 10}, 2.0), "Two keys would be at frame 20"),
+        (keys.scale_keys(0, {0, 10}, 0.0), "scaled by more than 0"),
+        (keys.scale_keys(0, {0, 10}, float("nan")), "scaled by more than 0"),
+        (settings.scale_time(0.01), "Two keys would be at frame 0"),
+        (settings.scale_time(-1.0), "scaled by more than 0"),
+        (keys.match_ends(0), None),
+        (keys.set_easing(0, {5}, LINEAR), "no key at frame 5"),
         (settings.set_fps(0.0), "frames per second"),
         (settings.set_fps(float("nan")), "frames per second"),
         (settings.set_frames(FrameRange(0, 15)), "key at frame 20 would lie outside"),
         (settings.set_work_range(FrameRange(3, 49)), "work range"),
-        (settings.set_variant("arap"), "variant"),
-        (settings.set_anchor(CENTRE + 2 * RADIUS), "The anchor"),
-        (settings.set_anchor(complex("inf")), "anchor must be finite"),
-        (settings.set_bounds(Bounds(), [POSE]), "3 keys, but 1 poses"),
-        (settings.replace_domain(disc_domain(13), Meshing(), [POSE] * 3), "cage of 12"),
-        (settings.replace_domain(disc_domain(13), Meshing(), [OTHER_CAGE]), "3 keys, but 1"),
+        (figures.set_variant(0, "arap"), "variant"),
+        (figures.set_anchor(0, CENTRE + 2 * RADIUS), "The anchor"),
+        (figures.set_anchor(0, complex("inf")), "anchor must be finite"),
+        (figures.set_bounds(0, Bounds(), [POSE]), "3 keys, but 1 poses"),
+        (figures.replace_domain(0, disc_domain(13), Meshing(), [POSE] * 3), "cage of 12"),
+        (figures.replace_domain(0, disc_domain(13), Meshing(), [OTHER_CAGE]), "3 keys, but 1"),
     ],
 )
 def test_what_is_not_possible_says_why(command, message):
-    document = keys.match_ends()(DOCUMENT) if message is None else DOCUMENT
+    document = keys.match_ends(0)(DOCUMENT) if message is None else DOCUMENT
     if message is None:
-        document, message = keys.delete_keys({0, 10})(document), "needs two keys"
+        document, message = keys.delete_keys(0, {0, 10})(document), "needs two keys"
     with pytest.raises(LissomError, match=message):
         command(document)
 
 
 def test_a_domain_that_loses_a_handle_is_refused_by_the_handle_s_name():
-    document = handles.add_handle(CENTRE + 0.95 * RADIUS, name="ear")(disc_document())
+    document = handles.add_handle(0, CENTRE + 0.95 * RADIUS, name="ear")(disc_document())
     small = disc_domain()
     half = replace(small, outline=CENTRE + (small.outline - CENTRE) / 2)
     with pytest.raises(LissomError, match="handle 'ear'"):
-        settings.replace_domain(half, Meshing(), [document.keys[0].pose])(document)
+        figures.replace_domain(0, half, Meshing(), [document.figures[0].keys[0].pose])(document)
 
 
 @pytest.mark.parametrize(
@@ -356,15 +374,21 @@ def test_a_domain_that_loses_a_handle_is_refused_by_the_handle_s_name():
         (lambda: Target(position=complex(1e300, 0)), "within 10,000,000 pixels"),
         (lambda: Target(position=complex(float("nan"), 0)), "within 10,000,000 pixels"),
         (lambda: Target(position=complex(0, float("nan"))), "within 10,000,000 pixels"),
-        (lambda: replace(DOCUMENT.keys[0], turns=MOST_TURNS + 1), "whole turns"),
-        (lambda: replace(DOCUMENT.keys[0], turns=-(10**30)), "whole turns"),
+        (lambda: replace(DOCUMENT.figures[0].keys[0], turns=MOST_TURNS + 1), "whole turns"),
+        (lambda: replace(DOCUMENT.figures[0].keys[0], turns=-(10**30)), "whole turns"),
         (lambda: Target(position=0j, rotation=float("nan")), "rotation"),
-        (lambda: replace(DOCUMENT, keys=()), "at least one key"),
-        (lambda: replace(DOCUMENT, keys=DOCUMENT.keys[::-1]), "mixed up"),
-        (lambda: replace(DOCUMENT, keys=DOCUMENT.keys[:1] * 2), "Two keys are at frame 0"),
-        (lambda: replace(DOCUMENT, next_handle=1), "is taken"),
-        (lambda: replace(DOCUMENT, frames=FrameRange(0, 19)), "outside the animation"),
-        (lambda: replace(DOCUMENT, handles=DOCUMENT.handles * 2), "Two handles have the id"),
+        (lambda: altered(DOCUMENT, keys=()), "at least one key"),
+        (lambda: altered(DOCUMENT, keys=DOCUMENT.figures[0].keys[::-1]), "mixed up"),
+        (
+            lambda: altered(DOCUMENT, keys=DOCUMENT.figures[0].keys[:1] * 2),
+            "Two keys are at frame 0",
+        ),
+        (lambda: altered(DOCUMENT, next_handle=1), "is taken"),
+        (lambda: altered(DOCUMENT, frames=FrameRange(0, 19)), "outside the animation"),
+        (
+            lambda: altered(DOCUMENT, handles=DOCUMENT.figures[0].handles * 2),
+            "Two handles have the id",
+        ),
     ],
 )
 def test_values_that_make_no_sense_are_refused(make, message):
@@ -380,8 +404,8 @@ def test_coefficients_must_be_finite():
 
 
 def test_nothing_in_a_document_can_be_written_to():
-    pose = DOCUMENT.keys[0].pose
-    for array in (pose.phi, pose.psi, DOCUMENT.domain.mesh.triangles):
+    pose = DOCUMENT.figures[0].keys[0].pose
+    for array in (pose.phi, pose.psi, DOCUMENT.figures[0].domain.mesh.triangles):
         with pytest.raises(ValueError, match="read-only"):
             array[0] = 0
     with pytest.raises(TypeError):
@@ -398,8 +422,6 @@ def test_targets_do_not_follow_the_caller_s_mapping():
 
 
 def test_two_pictures_of_one_content_have_one_hash():
-    again = new_document(
-        PictureFile(data=PICTURE.data, suffix=".png", size=(200, 200)), disc_domain(), Meshing()
-    )
-    assert again.picture.sha256 == PICTURE.sha256
+    again = PictureFile(data=PICTURE.data, suffix=".png", size=(200, 200))
+    assert again.sha256 == PICTURE.sha256
     assert len(PICTURE.sha256) == 64

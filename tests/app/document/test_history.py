@@ -4,8 +4,7 @@ from documents import CENTRE, differences, disc_document, full_document, random_
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from app.document import handle_commands, settings_commands
-from app.document.commands import Command
+from app.document.commands import Command, figure_commands, handle_commands, scene_commands
 from app.document.history import History
 from app.errors import LissomError
 
@@ -13,7 +12,7 @@ seeds = st.lists(st.integers(0, 2**32 - 1), max_size=25)
 
 
 def set_fps(fps):
-    return settings_commands.set_fps(fps)
+    return scene_commands.set_fps(fps)
 
 
 def do_at_random(history, seed):
@@ -50,9 +49,9 @@ def test_commands_leave_the_document_before_them_as_it_was(seeds):
     history = History(disc_document(), saved=True)
     for seed in seeds:
         before = history.document
-        copies = [key.pose.phi.tobytes() for key in before.keys]
+        copies = [key.pose.phi.tobytes() for key in before.figures[0].keys]
         do_at_random(history, seed)
-        assert [key.pose.phi.tobytes() for key in before.keys] == copies
+        assert [key.pose.phi.tobytes() for key in before.figures[0].keys] == copies
     while history.undo_label:
         history.undo()
     assert not differences(history.document, disc_document())
@@ -65,7 +64,7 @@ def test_a_command_after_undo_forgets_what_was_undone():
     history.undo()
     history.undo()
     assert (history.undo_label, history.redo_label) == ("Set frames per second",) * 2
-    history.do(handle_commands.add_handle(CENTRE))
+    history.do(handle_commands.add_handle(0, CENTRE))
     assert (history.undo_label, history.redo_label) == ("Add handle", None)
     assert history.document.fps == 10
     history.undo()
@@ -183,7 +182,7 @@ def test_one_step_is_kept_however_large():
 
 def test_arrays_that_are_shared_are_counted_once():
     history = History(full_document(), saved=False, memory=4_000_000)
-    domain = history.document.domain
+    domain = history.document.figures[0].domain
     large = type(domain)(
         outline=domain.outline,
         cage=domain.cage,
@@ -191,17 +190,17 @@ def test_arrays_that_are_shared_are_counted_once():
             vertices=np.resize(domain.mesh.vertices, 100_000), triangles=domain.mesh.triangles
         ),
     )
-    poses = [key.pose for key in history.document.keys]
-    meshing = history.document.meshing
-    history.do(settings_commands.replace_domain(large, meshing, poses))
+    poses = [key.pose for key in history.document.figures[0].keys]
+    meshing = history.document.figures[0].meshing
+    history.do(figure_commands.replace_domain(0, large, meshing, poses))
     for fps in range(30, 430):
         history.do(set_fps(fps))
-    history.do(settings_commands.replace_domain(domain, meshing, poses))
+    history.do(figure_commands.replace_domain(0, domain, meshing, poses))
     # 1.6 MB of one mesh, and 400 times next to nothing.
     for _ in range(402):
         history.undo()
     assert history.undo_label is None
-    assert history.document.domain is domain
+    assert history.document.figures[0].domain is domain
 
 
 def test_ten_thousand_steps_can_be_undone():

@@ -4,27 +4,35 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from documents import disc_document
+from documents import altered, disc_document
 from hypothesis import given
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
+from app.document.commands.handle_commands import add_handle
+from app.document.commands.key_commands import pose_key
 from app.document.easing import HOLD, PRESETS
-from app.document.handle_commands import add_handle
-from app.document.key_commands import pose_key
 from app.document.keyframe import Keyframe
 from app.document.playhead import Playhead
 from app.document.settings import FrameRange
-from app.document.timeline import Moment, closes, exported_frames, frame_times, intervals, time_of
+from app.document.timeline import (
+    Moment,
+    clip_of,
+    closes,
+    exported_frames,
+    frame_times,
+    intervals,
+    time_of,
+)
 from app.errors import LissomError
 
 EMPTY = disc_document()
 
 
 def keyed(*frames, last=48, first=0, easing=PRESETS["linear"], **settings):
-    pose = EMPTY.keys[0].pose
+    pose = EMPTY.figures[0].keys[0].pose
     keys = tuple(Keyframe(frame=frame, pose=pose, easing=easing) for frame in frames)
-    return replace(EMPTY, keys=keys, frames=FrameRange(first, last), **settings)
+    return altered(EMPTY, keys=keys, frames=FrameRange(first, last), **settings)
 
 
 @pytest.mark.parametrize(
@@ -42,7 +50,7 @@ def keyed(*frames, last=48, first=0, easing=PRESETS["linear"], **settings):
     ],
 )
 def test_poses_stand_still_before_the_first_key_and_after_the_last(frame, moment):
-    assert time_of(keyed(10, 20, 30), frame) == Moment(*moment)
+    assert time_of(clip_of(keyed(10, 20, 30), 0), frame) == Moment(*moment)
 
 
 @pytest.mark.parametrize(
@@ -58,16 +66,16 @@ def test_poses_stand_still_before_the_first_key_and_after_the_last(frame, moment
 )
 def test_a_loop_leads_from_the_last_key_to_the_first(frame, moment):
     # The gap leads from 30 over 48, which is 0 again, to 10: 28 frames.
-    shown = time_of(keyed(10, 20, 30, loop=True), frame)
+    shown = time_of(clip_of(keyed(10, 20, 30, loop=True), 0), frame)
     assert_allclose(shown, moment, rtol=0, atol=1e-15)
 
 
 def test_a_loop_comes_round_beyond_its_ends_but_shows_both_of_them():
     document = keyed(0, 24, 48, loop=True)
-    assert time_of(document, 48) == (1, 1.0)
-    assert time_of(document, 49) == time_of(document, 1)
-    assert time_of(document, -1) == time_of(document, 47)
-    assert not closes(document)
+    assert time_of(clip_of(document, 0), 48) == (1, 1.0)
+    assert time_of(clip_of(document, 0), 49) == time_of(clip_of(document, 0), 1)
+    assert time_of(clip_of(document, 0), -1) == time_of(clip_of(document, 0), 47)
+    assert not closes(clip_of(document, 0))
 
 
 @given(
@@ -79,11 +87,11 @@ def test_moments_are_the_linear_interpolation_of_the_keys(frames, loop, frame):
     frames = sorted(frames)
     document = keyed(*frames, first=2, last=70, loop=loop)
     values = np.sin(np.arange(len(frames)) * 2.3)
-    interval, weight = time_of(document, frame)
+    interval, weight = time_of(clip_of(document, 0), frame)
     assert interval in range(len(frames))
     assert 0 <= weight <= 1
     if weight:
-        assert (interval, (interval + 1) % len(frames)) in intervals(document)
+        assert (interval, (interval + 1) % len(frames)) in intervals(clip_of(document, 0))
     shown = (1 - weight) * values[interval] + weight * values[(interval + 1) % len(values)]
     period = 68 if loop else None
     assert_allclose(shown, np.interp(frame, frames, values, period=period), rtol=0, atol=1e-9)
@@ -91,31 +99,36 @@ def test_moments_are_the_linear_interpolation_of_the_keys(frames, loop, frame):
 
 def test_hold_and_easing():
     document = keyed(0, 10, 20, easing=HOLD)
-    assert [time_of(document, f) for f in (9.99, 10, 19, 20)] == [(0, 0), (1, 0), (1, 0), (1, 1)]
+    assert [time_of(clip_of(document, 0), f) for f in (9.99, 10, 19, 20)] == [
+        (0, 0),
+        (1, 0),
+        (1, 0),
+        (1, 1),
+    ]
     eased = keyed(0, 10, easing=PRESETS["in"])
-    assert time_of(eased, 5) == (0, PRESETS["in"](0.5))
+    assert time_of(clip_of(eased, 0), 5) == (0, PRESETS["in"](0.5))
 
 
 def test_one_key_is_a_still_picture():
     for loop in (False, True):
         document = keyed(7, loop=loop)
-        assert {time_of(document, frame) for frame in range(-3, 60)} == {Moment(0, 0.0)}
-        assert intervals(document) == ()
-    assert time_of(keyed(7, first=7, last=7, loop=True), 9) == (0, 0.0)
+        assert {time_of(clip_of(document, 0), frame) for frame in range(-3, 60)} == {Moment(0, 0.0)}
+        assert intervals(clip_of(document, 0)) == ()
+    assert time_of(clip_of(keyed(7, first=7, last=7, loop=True), 0), 9) == (0, 0.0)
 
 
 def test_intervals():
-    assert intervals(keyed(0, 9, 20)) == ((0, 1), (1, 2))
-    assert intervals(keyed(0, 9, 20, loop=True)) == ((0, 1), (1, 2), (2, 0))
-    assert intervals(keyed(0, 9, 48, loop=True)) == ((0, 1), (1, 2))
+    assert intervals(clip_of(keyed(0, 9, 20), 0)) == ((0, 1), (1, 2))
+    assert intervals(clip_of(keyed(0, 9, 20, loop=True), 0)) == ((0, 1), (1, 2), (2, 0))
+    assert intervals(clip_of(keyed(0, 9, 48, loop=True), 0)) == ((0, 1), (1, 2))
 
 
 def test_exports_keep_the_last_frame_of_a_loop_that_ends_elsewhere():
-    document = add_handle(EMPTY.domain.mesh.vertices[0])(keyed(0, 48, loop=True))
+    document = add_handle(0, EMPTY.figures[0].domain.mesh.vertices[0])(keyed(0, 48, loop=True))
     assert exported_frames(document) == FrameRange(0, 47)
-    pose = document.keys[1].pose
+    pose = document.figures[0].keys[1].pose
     moved = {i: replace(target, position=0j) for i, target in pose.targets.items()}
-    posed = pose_key(48, replace(pose, targets=moved))(document)
+    posed = pose_key(0, 48, replace(pose, targets=moved))(document)
     assert exported_frames(posed) == FrameRange(0, 48)
 
 

@@ -27,20 +27,20 @@ def document() -> Document:
 
 def plan_of(document: Document, poses: Poses, **settings: object) -> ExportPlan:
     settings_ = replace(document.export, **settings)
-    return plan_export(document, ExportRequest(out=Path("out"), settings=settings_), poses)
+    return plan_export(document, ExportRequest(out=Path("out"), settings=settings_), {0: poses})
 
 
 @contextmanager
 def drawing(
     gl: moderngl.Context, document: Document, poses: Poses, **settings: object
 ) -> Iterator[Callable[[float], Bytes]]:
-    painter = Painter(gl, document, BLOB, poses, plan_of(document, poses, **settings))
+    painter = Painter(gl, document, {0: BLOB}, {0: poses}, plan_of(document, poses, **settings))
     yield lambda frame: painter.draw(painter.pose(frame))
     painter.release()
 
 
 def notices(gl: moderngl.Context, document: Document, poses: Poses, **settings: object):
-    painter = Painter(gl, document, BLOB, poses, plan_of(document, poses, **settings))
+    painter = Painter(gl, document, {0: BLOB}, {0: poses}, plan_of(document, poses, **settings))
     for frame in range(11):
         painter.pose(frame)
     painter.release()

@@ -30,7 +30,7 @@ def plan_of(
 ) -> ExportPlan:
     request = ExportRequest(out=out, settings=replace(document.export, **settings), fps=fps)
     check_request(document, request)
-    return plan_export(document, request, poses or Sliding(document, 0))
+    return plan_export(document, request, {0: poses or Sliding(document, 0)})
 
 
 def test_by_default_every_frame_shows_the_pictures_own_canvas(document, tmp_path):

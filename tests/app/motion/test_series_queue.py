@@ -5,18 +5,21 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from animations import moving_document
+from documents import altered
 from numpy.testing import assert_allclose
+from projects import project_of
 
 from app.document.history import History
 from app.document.keyframe import Keyframe
 from app.document.settings import FrameRange
+from app.document.timeline import clip_of
 from app.editor.actions.upkeep import _ask, keep_up
 from app.editor.jobs import Jobs
-from app.editor.session import Grab, Project, Session
-from app.motion.prepared import Figure, Motion, pair_of, prepare_motion
+from app.editor.session import Grab, Session
+from app.motion.posable_mesh import PosableMesh
+from app.motion.prepared import Motion, pair_of, prepare_motion
 from app.motion.series_queue import Build, memory, next_build, with_series
 from app.motion.vertices import Placed, Streamed
-from app.storage.picture import Picture
 from engine import streaming
 
 FRAME = 13  # in the second of three intervals
@@ -24,13 +27,13 @@ FRAME = 13  # in the second of three intervals
 
 def three_intervals():
     document = moving_document(10)
-    last = document.keys[-1]
+    last = document.figures[0].keys[-1]
     turns = (1.0, np.exp(0.3j), np.exp(-0.4j), np.exp(0.2j))
     keys = tuple(
         Keyframe(frame=10 * i, pose=replace(last.pose, phi=turn * last.pose.phi))
         for i, turn in enumerate(turns)
     )
-    return replace(document, keys=keys, frames=FrameRange(0, 30), variant="nu")
+    return altered(document, keys=keys, frames=FrameRange(0, 30), variant="nu")
 
 
 @pytest.fixture(scope="module")
@@ -39,8 +42,13 @@ def document():
 
 
 @pytest.fixture(scope="module")
-def prepared(document):
-    return prepare_motion(document, Motion.at_rest(document, Figure.full(document.domain)))
+def clip(document):
+    return clip_of(document, 0)
+
+
+@pytest.fixture(scope="module")
+def prepared(clip):
+    return prepare_motion(clip, Motion.at_rest(clip, PosableMesh.fine(clip.figure.domain)))
 
 
 def finished(build: Build) -> Build:
@@ -49,84 +57,76 @@ def finished(build: Build) -> Build:
     return build
 
 
-def stream(motion, document, frame, **options):
+def stream(motion, clip, frame, **options):
     """Build all that is wanted, and return the motion and the order of the intervals."""
-    numbers = {pair_of(document, interval): interval for interval in range(3)}
+    numbers = {pair_of(clip, interval): interval for interval in range(3)}
     order = []
     budget = {key: value for key, value in options.items() if key == "budget"}
-    while build := next_build(motion, document, frame, **options):
+    while build := next_build(motion, clip, frame, **options):
         order.append((numbers[build.pair], build.distortions))
-        motion = with_series(motion, finished(build), document, frame, **budget)
+        motion = with_series(motion, finished(build), clip, frame, **budget)
         assert len(order) < 20
     return motion, order
 
 
-def streamed(motion, document):
-    return [motion.pieces[pair_of(document, i)].series is not None for i in range(3)]
+def streamed(motion, clip):
+    return [motion.ready[pair_of(clip, i)].series is not None for i in range(3)]
 
 
-def test_the_nearest_interval_is_built_first(document, prepared):
-    motion, order = stream(prepared, document, FRAME, heat=False)
+def test_the_nearest_interval_is_built_first(clip, prepared):
+    motion, order = stream(prepared, clip, FRAME, heat=False)
     assert order == [(1, False), (2, False), (0, False)]
-    assert isinstance(prepared.vertices(document, FRAME), Placed)
-    size = np.ptp(document.domain.mesh.vertices.real)
+    assert isinstance(prepared.vertices(clip, FRAME), Placed)
+    size = np.ptp(clip.figure.domain.mesh.vertices.real)
     for frame in (3, 13, 13.5, 29):
-        vertices = motion.vertices(document, frame)
+        vertices = motion.vertices(clip, frame)
         assert isinstance(vertices, Streamed)
-        expected = prepared.vertices(document, frame).positions
+        expected = prepared.vertices(clip, frame).positions
         assert_allclose(vertices.positions, expected, rtol=0, atol=2e-6 * size)
         assert vertices.derivatives is None
-    assert isinstance(motion.vertices(document, 20), Placed)  # a key itself
+    assert isinstance(motion.vertices(clip, 20), Placed)  # a key itself
 
 
-def test_distortions_are_built_while_they_are_shown(document, prepared):
-    motion, order = stream(prepared, document, 0, heat=True)
+def test_distortions_are_built_while_they_are_shown(clip, prepared):
+    motion, order = stream(prepared, clip, 0, heat=True)
     assert order == [(i, distortions) for i in range(3) for distortions in (False, True)]
-    fz, fzbar = motion.vertices(document, 4).derivatives
-    exact = prepared.inbetweens(document, 0).frame(np.array([0.6, 0.4]))
+    fz, fzbar = motion.vertices(clip, 4).derivatives
+    exact = prepared.inbetweens(clip, 0).frame(np.array([0.6, 0.4]))
     assert_allclose(fz, exact.fz, rtol=0, atol=1e-4)
     assert_allclose(fzbar, exact.fzbar, rtol=0, atol=1e-4)
 
 
-def test_memory_is_bounded_and_the_farthest_interval_makes_room(document, prepared, monkeypatch):
+def test_memory_is_bounded_and_the_farthest_interval_makes_room(clip, prepared, monkeypatch):
     monkeypatch.setattr("app.motion.series_queue.EXPECTED", 1)
-    everything, _ = stream(prepared, document, 0, heat=False)
-    total = memory(everything.pieces.values())
+    everything, _ = stream(prepared, clip, 0, heat=False)
+    total = memory(everything.ready.values())
     budget = int(0.75 * total)
-    motion, order = stream(prepared, document, 0, heat=False, budget=budget)
+    motion, order = stream(prepared, clip, 0, heat=False, budget=budget)
     assert [interval for interval, _ in order] == [0, 1]
-    assert memory(motion.pieces.values()) <= budget
-    assert streamed(motion, document) == [True, True, False]
+    assert memory(motion.ready.values()) <= budget
+    assert streamed(motion, clip) == [True, True, False]
     # The playhead moves on to the last interval.
-    moved, _ = stream(motion, document, 25, heat=False, budget=budget)
-    assert streamed(moved, document) == [False, True, True]
-    assert memory(moved.pieces.values()) <= budget
+    moved, _ = stream(motion, clip, 25, heat=False, budget=budget)
+    assert streamed(moved, clip) == [False, True, True]
+    assert memory(moved.ready.values()) <= budget
 
 
-def test_a_series_of_other_keys_is_not_kept(document, prepared):
-    build = finished(next_build(prepared, document, 0, heat=False))
-    other = prepare_motion(replace(document, variant="eta"), prepared)
-    assert with_series(other, build, document, 0) is other
+def test_a_series_of_other_keys_is_not_kept(document, clip, prepared):
+    build = finished(next_build(prepared, clip, 0, heat=False))
+    other = prepare_motion(clip_of(altered(document, variant="eta"), 0), prepared)
+    assert with_series(other, build, clip, 0) is other
     assert not build.is_of(other)
     assert not build.is_of(None)
-    sketch = replace(prepared, figure=Figure.full(document.domain))
-    assert with_series(sketch, build, document, 0) is sketch
-    # Nothing is built for a document that the motion does not know yet.
-    assert next_build(prepared, replace(document, variant="eta"), 0, heat=False) is None
-    still = Motion.at_rest(document, prepared.figure)
-    assert next_build(still, document, 0, heat=False) is None
+    sketch = replace(prepared, mesh=PosableMesh.fine(clip.figure.domain))
+    assert with_series(sketch, build, clip, 0) is sketch
+    # Nothing is built for a clip that the motion does not know yet.
+    assert next_build(prepared, clip_of(altered(document, variant="eta"), 0), 0, heat=False) is None
+    still = Motion.at_rest(clip, prepared.mesh)
+    assert next_build(still, clip, 0, heat=False) is None
 
 
-def test_a_session_streams_what_it_plays_and_stops_while_a_hand_pulls(document, tmp_path):
-    picture = Picture(rgba=np.zeros((90, 120, 4), np.uint8), notices=())
-    at_rest = Motion.at_rest(document, Figure.sketch(document.domain))
-    project = Project(
-        name="blob",
-        history=History(document, saved=True),
-        picture=picture,
-        path=None,
-        sketch=at_rest,
-    )
+def test_a_session_streams_what_it_plays_and_stops_while_a_hand_pulls(document, clip, tmp_path):
+    project = project_of(document, np.zeros((90, 120, 4), np.uint8), "blob")
     session = Session(clock=lambda: 0.0, jobs=Jobs(), folder=tmp_path, project=project)
 
     def settle():
@@ -138,28 +138,28 @@ def test_a_session_streams_what_it_plays_and_stops_while_a_hand_pulls(document, 
             session.jobs.deliver()
 
     settle()
-    assert streamed(project.sketch, document) == [True] * 3
+    assert streamed(project.puppet.coarse, clip) == [True] * 3
     project.playhead = project.playhead.seek(13, 0.0)
     settle()
-    assert isinstance(project.shown.vertices, Streamed)
-    assert project.build is None
+    assert isinstance(project.puppet.shown.vertices, Streamed)
+    assert project.puppet.build is None
     # Another key's pose: its two intervals are built anew, but not while it is being pulled.
-    key = document.keys[1]
+    key = clip.figure.keys[1]
     moved = replace(key, pose=replace(key.pose, phi=key.pose.phi + 1))
-    edited = replace(document, keys=(document.keys[0], moved, *document.keys[2:]))
+    edited = altered(document, keys=(clip.figure.keys[0], moved, *clip.figure.keys[2:]))
     project.history = History(edited, saved=True)
     settle()
-    assert streamed(project.sketch, edited) == [True] * 3
-    project.sketch = prepare_motion(document, Motion.at_rest(document, project.sketch.figure))
+    assert streamed(project.puppet.coarse, clip_of(edited, 0)) == [True] * 3
+    project.puppet.coarse = prepare_motion(clip, Motion.at_rest(clip, project.puppet.coarse.mesh))
     project.history = History(document, saved=True)
     project.grab = object.__new__(Grab)
-    _ask(session, project, document)
+    _ask(session, project)
     assert not session.jobs.kinds
 
 
-def test_the_worker_takes_few_steps_at_once(document, prepared, monkeypatch):
-    monkeypatch.setattr("app.motion.series_queue.BATCH", 3 * len(document.domain.mesh.vertices))
-    build = next_build(prepared, document, 0, heat=False)
+def test_the_worker_takes_few_steps_at_once(clip, prepared, monkeypatch):
+    monkeypatch.setattr("app.motion.series_queue.BATCH", 3 * len(clip.figure.domain.mesh.vertices))
+    build = next_build(prepared, clip, 0, heat=False)
     batches = 0
     while build.series is None:
         build.advance()
@@ -167,7 +167,7 @@ def test_the_worker_takes_few_steps_at_once(document, prepared, monkeypatch):
     assert batches > 3
     whole = streaming.finish(
         streaming.build_series(
-            streaming.Positions.of(prepared.inbetweens(document, 0), prepared.stage.sites)
+            streaming.Positions.of(prepared.inbetweens(clip, 0), prepared.sampler.sites)
         )
     )
     assert_allclose(build.series.values(0.3), whole.values(0.3), rtol=0, atol=0)

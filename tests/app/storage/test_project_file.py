@@ -11,7 +11,7 @@ from documents import differences, disc_document, full_document, random_command
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from app.document import handle_commands
+from app.document.commands import handle_commands
 from app.errors import LissomError
 from app.storage.archive import MIMETYPE
 from app.storage.project_file import load_project, load_thumbnail, save_project
@@ -78,7 +78,11 @@ def test_any_document_comes_back_to_the_last_bit(tmp_path_factory, seeds, is_ful
     save_project(path, document)
     loaded = load_project(path)
     assert not differences(loaded, document)
-    for array in (loaded.domain.cage, loaded.domain.mesh.triangles, loaded.keys[0].pose.phi):
+    for array in (
+        loaded.figures[0].domain.cage,
+        loaded.figures[0].domain.mesh.triangles,
+        loaded.figures[0].keys[0].pose.phi,
+    ):
         assert not array.flags.writeable
         assert array.dtype.isnative
 
@@ -109,30 +113,33 @@ def test_the_layout_of_the_file(tmp_path, members):
     # The mimetype can be read at a fixed place, as `file` and desktops do.
     assert path.read_bytes()[30:].startswith(b"mimetype" + MIMETYPE)
     assert list(read_members(path)) == [name for name in members if name != "thumbnail.png"]
-    assert list(members)[:3] == ["mimetype", "project.json", "image/source.png"]
-    assert members["image/source.png"] == full_document().picture.data
-    phi = np.load(io.BytesIO(members["keys/00001.phi.npy"]), allow_pickle=False)
-    assert phi.tobytes() == full_document().keys[1].pose.phi.tobytes()
+    assert list(members)[:3] == ["mimetype", "project.json", "figures/0/source.png"]
+    assert members["figures/0/source.png"] == full_document().figures[0].picture.data
+    phi = np.load(io.BytesIO(members["figures/0/keys/00001.phi.npy"]), allow_pickle=False)
+    assert phi.tobytes() == full_document().figures[0].keys[1].pose.phi.tobytes()
     content = json.loads(members["project.json"])
     assert content["schema"] == 1
     assert content["app_version"].count(".") >= 1
     assert list(content) == sorted(content)
-    assert content["keys"][0]["easing"] == "in-out"
-    assert content["keys"][1]["certificate"]["k"] is None
+    keys = content["figures"][0]["keys"]
+    assert keys[0]["easing"] == "in-out"
+    assert keys[1]["certificate"]["k"] is None
 
 
 def test_unknown_fields_are_kept_everywhere(tmp_path, members):
     content = json.loads(members["project.json"])
-    places = [content, content["picture"], content["domain"], content["bounds"], content["export"]]
-    places += [content["handles"][0], content["keys"][1], content["keys"][1]["certificate"]]
-    places += [content["keys"][2]["targets"][1]]
+    figure = content["figures"][0]
+    places = [content, content["export"], figure]
+    places += [figure["picture"], figure["domain"], figure["bounds"], figure["handles"][0]]
+    places += [figure["keys"][1], figure["keys"][1]["certificate"]]
+    places += [figure["keys"][2]["targets"][1]]
     for index, place in enumerate(places):
         place["from the future"] = {"list": [index, None, {"x": 1.5}]}
     text = json.dumps(content).encode()
     document = load_project(pack(tmp_path / "a", members | {"project.json": text}))
-    changed = handle_commands.rename_handle(4, "other")(document)
+    changed = handle_commands.rename_handle(0, 4, "other")(document)
     save_project(tmp_path / "b", changed)
-    content["handles"][1]["name"] = "other"
+    figure["handles"][1]["name"] = "other"
     assert json.loads(read_members(tmp_path / "b")["project.json"]) == content
 
 
@@ -179,36 +186,40 @@ def test_a_newer_schema_need_have_nothing_else_in_common(tmp_path):
         (["frames"], [0, 5], "outside the animation"),
         (["frames"], [0, 1.5], "frames must be a whole number"),
         (["work"], [0, 900], "work range"),
-        (["anchor"], [0], "anchor must be a point"),
-        (["anchor"], [0, 0], "anchor at"),
-        (["variant"], "arap", "variant"),
-        (["bounds", "k"], 1.5, "bound on k"),
-        (["bounds"], [], "bounds must be an object"),
+        (["figures", 0, "anchor"], [0], "anchor must be a point"),
+        (["figures", 0, "anchor"], [0, 0], "anchor at"),
+        (["figures", 0, "variant"], "arap", "variant"),
+        (["figures", 0, "bounds", "k"], 1.5, "bound on k"),
+        (["figures", 0, "bounds"], [], "bounds must be an object"),
         (["export", "format"], "bmp", "export format"),
         (["export", "size"], [1, 2, 3], "export.size must be two whole numbers"),
-        (["domain", "detail"], "best", "detail"),
-        (["domain", "triangles"], 1.5, "domain.triangles must be a whole number"),
-        (["picture", "sha256"], "0" * 64, "checksums differ"),
-        (["picture", "suffix"], ".jpg", "lacks image/source.jpg"),
-        (["picture", "suffix"], "/../../x", "lacks image"),
-        (["picture", "size"], [0, 5], "size of the picture"),
-        (["handles"], {}, "handles must be a list"),
-        (["handles", 0, "name"], 5, r"handles\[0\].name must be a text"),
-        (["handles", 0, "id"], 4, "Two handles have the id 4"),
-        (["handles", 0, "position"], [0, 0], "outside the shape"),
-        (["handles", 0, "weight"], 10**400, "finite"),
-        (["next_handle"], 2, "is taken"),
-        (["keys"], [], "at least one key"),
-        (["keys", 1, "frame"], 3, "Two keys are at frame 3"),
-        (["keys", 1, "frame"], 2, "mixed up"),
-        (["keys", 1, "turns"], 0.5, "turns must be a whole number"),
-        (["keys", 1, "easing"], "bounce", "no easing 'bounce'"),
-        (["keys", 1, "easing"], [0, 0, 2, 0], "easing curve"),
-        (["keys", 1, "targets"], [], "one target for each handle"),
-        (["keys", 1, "targets", 0, "handle"], 4, "two targets for one handle"),
-        (["keys", 1, "targets", 0, "rotation"], "x", "rotation must be a number"),
-        (["keys", 1, "certificate", "certified"], None, "certified must be true or false"),
-        (["keys", 1], 7, r"keys\[1\] must be an object"),
+        (["figures", 0, "domain", "detail"], "best", "detail"),
+        (["figures", 0, "domain", "triangles"], 1.5, "domain.triangles must be a whole number"),
+        (["figures", 0, "picture", "sha256"], "0" * 64, "checksums differ"),
+        (["figures", 0, "picture", "suffix"], ".jpg", "lacks figures/0/source.jpg"),
+        (["figures", 0, "picture", "suffix"], "/../../x", "lacks figures/0/source"),
+        (["figures", 0, "picture", "size"], [0, 5], "size of the picture"),
+        (["figures", 0, "handles"], {}, "handles must be a list"),
+        (["figures", 0, "handles", 0, "name"], 5, r"handles\[0\].name must be a text"),
+        (["figures", 0, "handles", 0, "id"], 4, "Two handles have the id 4"),
+        (["figures", 0, "handles", 0, "position"], [0, 0], "outside the shape"),
+        (["figures", 0, "handles", 0, "weight"], 10**400, "finite"),
+        (["figures", 0, "next_handle"], 2, "is taken"),
+        (["figures", 0, "keys"], [], "at least one key"),
+        (["figures", 0, "keys", 1, "frame"], 3, "Two keys are at frame 3"),
+        (["figures", 0, "keys", 1, "frame"], 2, "mixed up"),
+        (["figures", 0, "keys", 1, "turns"], 0.5, "turns must be a whole number"),
+        (["figures", 0, "keys", 1, "easing"], "bounce", "no easing 'bounce'"),
+        (["figures", 0, "keys", 1, "easing"], [0, 0, 2, 0], "easing curve"),
+        (["figures", 0, "keys", 1, "targets"], [], "one target for each handle"),
+        (["figures", 0, "keys", 1, "targets", 0, "handle"], 4, "two targets for one handle"),
+        (["figures", 0, "keys", 1, "targets", 0, "rotation"], "x", "rotation must be a number"),
+        (
+            ["figures", 0, "keys", 1, "certificate", "certified"],
+            None,
+            "certified must be true or false",
+        ),
+        (["figures", 0, "keys", 1], 7, r"keys\[1\] must be an object"),
     ],
 )
 def test_fields_that_make_no_sense_are_named(tmp_path, members, way, value, message):
@@ -228,7 +239,7 @@ def test_every_field_is_needed(tmp_path, members):
 
     whole = json.loads(members["project.json"])
     known = json.loads(members["project.json"].replace(b'"nested"', b'"colour"'))
-    kept = {"colour", "nested", "list", "tau", "extension", "app_version"}
+    kept = {"colour", "nested", "list", "tau", "extension", "quality", "visible", "app_version"}
     missing = [way for way in ways(known) if way[-1] not in kept]
     assert len(missing) > 70
     for way in missing:
@@ -269,27 +280,39 @@ def test_what_could_not_be_written_again_is_refused(tmp_path, members, field, me
 @pytest.mark.parametrize(
     ("name", "content", "message"),
     [
-        ("image/source.png", b"other", "checksums differ"),
-        ("domain/cage.npy", b"", "not an array"),
-        ("domain/cage.npy", npy(np.zeros(12)), r"not an array complex128 \(n,\)"),
-        ("domain/cage.npy", npy(np.zeros((12, 1), complex)), "not an array"),
-        ("domain/cage.npy", npy(np.zeros(12, ">c16")), "not an array"),
-        ("domain/cage.npy", npy(np.zeros(12, complex))[:-1], "cut short"),
-        ("domain/cage.npy", npy(np.zeros(12, complex)) + b"x", "cut short"),
-        ("domain/cage.npy", npy(np.ones(2, complex)), "at least 3"),
-        ("domain/cage.npy", npy(np.ones(11, complex)), "cage of 12 vertices, not of 11"),
-        ("domain/cage.npy", npy(np.full(12, complex("nan"))), "cage must be finite"),
-        ("domain/outline.npy", npy(np.ones(12, complex)), "outline repeats a vertex"),
-        ("domain/outline.npy", npy(np.array([0, 2, 2j, 1 + 2j, 0.5])), "crosses"),
-        ("domain/vertices.npy", npy(np.full(12, complex("inf"))), "vertices must be finite"),
-        ("domain/triangles.npy", npy(np.zeros((1, 2), np.int32)), r"not an array int32 \(m, 3\)"),
-        ("domain/triangles.npy", npy(np.zeros((1, 3), np.int64)), "not an array"),
-        ("domain/triangles.npy", npy(np.zeros((0, 3), np.int32)), "triangles do not belong"),
-        ("domain/triangles.npy", npy(np.array([[0, 1, 12]], np.int32)), "triangles do not belong"),
-        ("domain/triangles.npy", npy(np.array([[0, 1, -1]], np.int32)), "triangles do not belong"),
-        ("keys/00002.psi.npy", npy(np.ones(11, complex)), "as many coefficients|cage of"),
-        ("keys/00002.psi.npy", npy(np.full(12, complex("nan"))), "psi must be finite"),
-        ("keys/00002.phi.npy", npy(np.array([{}], dtype=object)), "not an array"),
+        ("figures/0/source.png", b"other", "checksums differ"),
+        ("figures/0/cage.npy", b"", "not an array"),
+        ("figures/0/cage.npy", npy(np.zeros(12)), r"not an array complex128 \(n,\)"),
+        ("figures/0/cage.npy", npy(np.zeros((12, 1), complex)), "not an array"),
+        ("figures/0/cage.npy", npy(np.zeros(12, ">c16")), "not an array"),
+        ("figures/0/cage.npy", npy(np.zeros(12, complex))[:-1], "cut short"),
+        ("figures/0/cage.npy", npy(np.zeros(12, complex)) + b"x", "cut short"),
+        ("figures/0/cage.npy", npy(np.ones(2, complex)), "at least 3"),
+        ("figures/0/cage.npy", npy(np.ones(11, complex)), "cage of 12 vertices, not of 11"),
+        ("figures/0/cage.npy", npy(np.full(12, complex("nan"))), "cage must be finite"),
+        ("figures/0/outline.npy", npy(np.ones(12, complex)), "outline repeats a vertex"),
+        ("figures/0/outline.npy", npy(np.array([0, 2, 2j, 1 + 2j, 0.5])), "crosses"),
+        ("figures/0/vertices.npy", npy(np.full(12, complex("inf"))), "vertices must be finite"),
+        (
+            "figures/0/triangles.npy",
+            npy(np.zeros((1, 2), np.int32)),
+            r"not an array int32 \(m, 3\)",
+        ),
+        ("figures/0/triangles.npy", npy(np.zeros((1, 3), np.int64)), "not an array"),
+        ("figures/0/triangles.npy", npy(np.zeros((0, 3), np.int32)), "triangles do not belong"),
+        (
+            "figures/0/triangles.npy",
+            npy(np.array([[0, 1, 12]], np.int32)),
+            "triangles do not belong",
+        ),
+        (
+            "figures/0/triangles.npy",
+            npy(np.array([[0, 1, -1]], np.int32)),
+            "triangles do not belong",
+        ),
+        ("figures/0/keys/00002.psi.npy", npy(np.ones(11, complex)), "as many coefficients|cage of"),
+        ("figures/0/keys/00002.psi.npy", npy(np.full(12, complex("nan"))), "psi must be finite"),
+        ("figures/0/keys/00002.phi.npy", npy(np.array([{}], dtype=object)), "not an array"),
         ("mimetype", b"application/zip", "not a Lissom project"),
         ("mimetype", b"application/epub+zip and more", "too large"),
     ],
@@ -316,7 +339,7 @@ def test_a_header_that_claims_a_huge_array_allocates_nothing(tmp_path, members):
     assert b"(9000000000000,)" in header
     tracemalloc.start()
     with pytest.raises(LissomError, match="cut short"):
-        load_project(pack(tmp_path / "a", members | {"domain/cage.npy": header}))
+        load_project(pack(tmp_path / "a", members | {"figures/0/cage.npy": header}))
     assert tracemalloc.get_traced_memory()[1] < 10_000_000
     tracemalloc.stop()
 

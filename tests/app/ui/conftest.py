@@ -28,7 +28,7 @@ def window(_only_window: Harness) -> Iterator[Harness]:
 def bar(window: Harness) -> Project:
     """The sample of a bar, with a handle near each end, the second one selected."""
     project = window.open(sample_images() / "bar.png")
-    width, height = project.picture.size
+    width, height = project.document.canvas
     for share in (0.1, 0.9):
         posing.add_handle(window.session, complex(share * width, height / 2))
         window.frames(2)

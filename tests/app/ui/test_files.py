@@ -38,8 +38,8 @@ def texts(window):
 
 def change(window, project):
     """Make a change that is not saved."""
-    place = complex(*project.picture.size) / 2
-    shift = 0.1 * len(project.document.handles) * project.picture.size[0]
+    place = complex(*project.document.canvas) / 2
+    shift = 0.1 * len(project.figure.handles) * project.document.canvas[0]
     window.act(posing.add_handle, place + shift)
     window.settle()
     assert not project.history.is_saved
@@ -145,7 +145,7 @@ def test_more_changes_are_kept_in_its_place(window, project, kept):
 def test_the_autosave_does_not_come_while_the_hand_drags(window, project, kept):
     project.kept_at = window.clock.now
     change(window, project)
-    place = complex(*project.picture.size) / 2
+    place = complex(*project.document.canvas) / 2
     posing.pull(window.session, {0: Target(position=place)})
     pass_time(window, 2 * SECONDS)
     assert kept() is None
@@ -159,7 +159,7 @@ def test_the_autosave_does_not_come_while_the_hand_drags(window, project, kept):
 def test_what_is_saved_stays_so_though_a_pose_had_not_settled(window, project, tmp_path):
     change(window, project)
     change(window, project)
-    place = complex(*project.picture.size)
+    place = complex(*project.document.canvas)
     posing.wish(window.session, {0: Target(position=place), 1: Target(position=1.2 * place)})
     window.frames(2)
     assert project.grab is not None
@@ -168,7 +168,7 @@ def test_what_is_saved_stays_so_though_a_pose_had_not_settled(window, project, t
     window.settle()
     assert project.grab is None
     assert project.history.is_saved
-    (saved,), (now,) = load_project(path).keys, project.document.keys
+    (saved,), (now,) = load_project(path).keys, project.figure.keys
     assert saved.pose.targets == now.pose.targets
     assert (saved.pose.psi == now.pose.psi).all()
     window.act(saving.quit_lissom)

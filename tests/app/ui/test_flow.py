@@ -4,11 +4,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from app.document.commands.scene_commands import set_anchor
 from PIL import Image
 
 from app.document.keyframe import Target
 from app.document.settings import Meshing
-from app.document.settings_commands import set_anchor
 from app.editor.action import do
 from app.editor.actions import editing, exporting, keys, playback, posing, saving
 from app.solving.drag import Drag
@@ -36,7 +36,9 @@ def handle_places(project):
     return {
         handle.id: complex(place)
         for handle, place in zip(
-            project.shown.document.handles, project.shown.handle_places, strict=True
+            project.puppet.shown.clip.figure.handles,
+            project.puppet.shown.handle_places,
+            strict=True,
         )
     }
 
@@ -53,7 +55,7 @@ def test_a_person_makes_an_animation_and_takes_it_back(window, tmp_path):
     window.settle()
     project = session.project
     first = project.document
-    width, height = project.picture.size
+    width, height = project.document.canvas
     left, right = complex(0.1 * width, height / 2), complex(0.9 * width, height / 2)
 
     def add_handles(robot):
@@ -62,7 +64,7 @@ def test_a_person_makes_an_animation_and_takes_it_back(window, tmp_path):
             robot.mouse_click(0)
 
     window.run(add_handles)
-    assert len(project.document.handles) == 2
+    assert len(project.figure.handles) == 2
     places = list(handle_places(project).values())
     np.testing.assert_allclose(places, [left, right], rtol=0, atol=2)
 
@@ -70,19 +72,19 @@ def test_a_person_makes_an_animation_and_takes_it_back(window, tmp_path):
     window.settle()
     window.run(lambda robot: drag(robot, window, right, right + 0.5j * width))
     window.settle()
-    assert [key.frame for key in project.document.keys] == [0, 24]
+    assert [key.frame for key in project.figure.keys] == [0, 24]
     assert handle_places(project)[1].imag > height
-    assert all(key.pose.certificate.certified for key in project.document.keys)
+    assert all(key.pose.certificate.certified for key in project.figure.keys)
     assert project.history.undo_label == "Pose"
 
     playback.seek(session, 0)
     window.run(lambda robot: robot.key_press(int(window.Key.space)))
     assert project.playhead.since is not None
     window.frames(10)
-    shown = {project.shown.frame}
+    shown = {project.puppet.shown.frame}
     window.frames(10)
-    assert project.shown.frame not in shown
-    assert project.shown.is_current
+    assert project.puppet.shown.frame not in shown
+    assert project.puppet.shown.is_current
     window.run(lambda robot: robot.key_press(int(window.Key.space)))
     assert project.playhead.since is None
 
@@ -214,12 +216,12 @@ def test_the_coarse_mesh_is_shown_while_the_playhead_moves(window):
     project = window.open(BAR)
     session.full_detail = False
     window.frames(30)
-    assert project.shown.figure is project.full.figure
+    assert project.puppet.shown.mesh is project.puppet.fine.figure
     playback.seek(session, 3)
     window.frames()
-    assert project.shown.figure is project.sketch.figure
+    assert project.puppet.shown.mesh is project.puppet.coarse.figure
     window.frames(20)
-    assert project.shown.figure is project.full.figure
+    assert project.puppet.shown.mesh is project.puppet.fine.figure
 
 
 def test_a_shape_is_left_alone_where_another_start_gains_little(window, bar):
@@ -446,7 +448,7 @@ def test_ctrl_click_on_the_shape_puts_the_anchor_there(window, bent):
 def test_an_anchor_that_was_chosen_for_the_person_is_shown(window, bent):
     assert bent.document.anchor is None
     place = canvas._anchor(bent, bent.shown)
-    rest = bent.sketch.stage.sites.anchor
+    rest = bent.sketch.sampler.sites.anchor
     moved = bent.document.map_of(bent.document.keys[1].pose)(np.array([rest]))
     assert abs(place - moved[0]) < 3
     shown = window.picture()

@@ -236,7 +236,7 @@ def test_the_window_can_cancel_a_dialog_that_hangs(window, program, ask, chosen,
 
 def test_a_question_that_comes_up_takes_the_dialog_away(window, program, ask):
     project = window.open(sample_images() / "bar.png")
-    window.act(posing.add_handle, complex(*project.picture.size) / 2)
+    window.act(posing.add_handle, complex(*project.document.canvas) / 2)
     ask()
     program.asked()
     window.act(saving.quit_lissom)

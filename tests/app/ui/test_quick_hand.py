@@ -19,7 +19,7 @@ def project(window):
 
 
 def place_of(project, share):
-    width, height = project.picture.size
+    width, height = project.document.canvas
     return complex(share * width, height / 2)
 
 
@@ -41,7 +41,7 @@ def press(window, project, share):
 
 def test_it_leaves_a_handle_for_the_canvas(window, project):
     press(window, project, 0.9)
-    assert len(project.document.handles) == 2
+    assert len(project.figure.handles) == 2
 
 
 def test_it_leaves_the_canvas_for_a_handle(window, project):
@@ -50,7 +50,7 @@ def test_it_leaves_the_canvas_for_a_handle(window, project):
     window.frames(3)
     press(window, project, 0.1)
     assert project.selected == {0}
-    assert len(project.document.handles) == 2
+    assert len(project.figure.handles) == 2
 
 
 def test_it_takes_the_upper_one_of_two_handles(window, project):
@@ -70,5 +70,5 @@ def test_a_drag_goes_to_where_the_button_is_let_go(window, project):
         point(window, project, share)
     hold(is_down=False)
     window.settle()
-    target = project.document.keys[0].pose.targets[1]
+    target = project.figure.keys[0].pose.targets[1]
     assert abs(target.position - place_of(project, 0.85)) < 2

@@ -11,7 +11,7 @@ from documents import differences
 from imgui_bundle import imgui
 from PIL import Image, ImageDraw
 
-from app.document import handle_commands, key_commands, settings_commands
+from app.document.commands import figure_commands, handle_commands, key_commands
 from app.document.easing import PRESETS, Easing
 from app.document.keyframe import Target
 from app.document.settings import VARIANTS, ExportSettings, FrameRange, Meshing
@@ -155,7 +155,7 @@ class Walk:
         self.workers.allow(math.inf)
         for _ in range(MOST_FRAMES):
             self.window.frames()
-            if self.project.shown.is_current:
+            if self.project.puppet.shown.is_current:
                 return
             self.session.jobs.settle()
         raise AssertionError(f"still busy: {self.session.jobs.kinds}")
@@ -225,7 +225,7 @@ class Walk:
     def point(self) -> None:
         """Move the pointer to a handle, to a widget, or anywhere."""
         io = imgui.get_io()
-        shown = self.project.shown
+        shown = self.project.puppet.shown
         if self.chance(0.35) and shown is not None and len(shown.handle_places):
             place = self.window.point(complex(self.choice(shown.handle_places)))
             at = (place.x, place.y)
@@ -297,14 +297,14 @@ class Walk:
         self.window.show_tab(title)
 
     def add_handle(self) -> None:
-        shown = self.project.shown
+        shown = self.project.puppet.shown
         if len(self.document.handles) < MOST_HANDLES:
             self.act(posing.add_handle, complex(self.choice(shown.positions)))
 
     def pull(self) -> None:
-        shown = self.project.shown
+        shown = self.project.puppet.shown
         wishes = {}
-        for handle, place in zip(shown.document.handles, shown.handle_places, strict=True):
+        for handle, place in zip(shown.clip.figure.handles, shown.handle_places, strict=True):
             if handle in self.document.handles and self.chance(0.4):
                 far = 1.0 if self.chance(0.05) else 0.05
                 offset = complex(*self.rng.normal(0, far * self.size, 2))
@@ -321,13 +321,13 @@ class Walk:
         match self.rng.integers(5):
             case 0:
                 name = self.choice(("paw", "tail", "x", f"{self.rng.integers(99)}"))
-                self.edit(handle_commands.rename_handle(handle.id, name))
+                self.edit(handle_commands.rename_handle(0, handle.id, name))
             case 1:
                 weight = float(10 ** self.rng.uniform(-2, 2))
-                self.edit(handle_commands.weigh_handle(handle.id, weight))
+                self.edit(handle_commands.weigh_handle(0, handle.id, weight))
             case 2:
                 outline = self.document.domain.mesh.vertices
-                self.edit(handle_commands.move_handle(handle.id, complex(self.choice(outline))))
+                self.edit(handle_commands.move_handle(0, handle.id, complex(self.choice(outline))))
             case 3:
                 self.act(posing.free_turn, handle.id)
             case 4:
@@ -335,7 +335,7 @@ class Walk:
 
     def set_anchor(self) -> None:
         inside = complex(self.choice(self.document.domain.mesh.vertices))
-        self.edit(settings_commands.set_anchor(None if self.chance(0.5) else inside))
+        self.edit(figure_commands.set_anchor(0, None if self.chance(0.5) else inside))
 
     def select(self) -> None:
         chosen = [handle.id for handle in self.document.handles if self.chance(0.5)]
@@ -472,7 +472,7 @@ class Walk:
 
     @property
     def size(self) -> float:
-        return float(abs(complex(*self.project.picture.size)))
+        return float(abs(complex(*self.project.document.canvas)))
 
     # What must hold.
 
@@ -481,15 +481,17 @@ class Walk:
         surprises = [toast.details for toast in session.toasts if toast.details]
         assert not surprises, surprises[0]
         assert session.project is project
-        assert project.selected <= {handle.id for handle in document.handles}
-        assert project.chosen <= {key.frame for key in document.keys}
+        assert project.selected <= {handle.id for handle in document.figures[0].handles}
+        assert project.chosen <= {key.frame for key in document.figures[0].keys}
         assert playback.current_frame(session, project) in document.frames
-        frames = [key.frame for key in document.keys]
+        frames = [key.frame for key in document.figures[0].keys]
         assert frames == sorted(set(frames))
         if not thorough:
             return
-        boundary = Boundary.sample(document.domain.outline, document.domain.cage)
-        for key in document.keys:
+        boundary = Boundary.sample(
+            document.figures[0].domain.outline, document.figures[0].domain.cage
+        )
+        for key in document.figures[0].keys:
             told = key.pose.certificate
             if told.certified:
                 allowed = Bounds(
@@ -497,12 +499,12 @@ class Walk:
                     sigma_a=max(told.sigma_a, 1.0) + SLACK,
                     sigma_b=min(told.sigma_b, 1.0) - SLACK,
                 )
-                assert certify(document.map_of(key.pose), boundary, allowed).certified
+                assert certify(document.figures[0].map_of(key.pose), boundary, allowed).certified
         if not saves:
             return
         self.catch_up()
-        assert project.shown.is_current
-        assert project.shown.document is self.document
+        assert project.puppet.shown.is_current
+        assert project.puppet.shown.document is self.document
         save_project(self.path, self.document)
         assert not differences(self.document, load_project(self.path))
 

@@ -22,7 +22,7 @@ def dragon(window):
     session = window.session
     session.meshing = Meshing(triangles=12_000)
     project = window.open(sample_images() / "dragon.png")
-    size = complex(*project.picture.size)
+    size = complex(*project.document.canvas)
 
     def scaled(share):
         return complex(share.real * size.real, share.imag * size.imag)
@@ -30,7 +30,7 @@ def dragon(window):
     for share in HANDLES:
         posing.add_handle(session, scaled(share))
         window.frames(2)
-    rest = project.shown.pose.targets
+    rest = project.puppet.shown.pose.targets
     for frame, (head, tail) in MOVES.items():
         playback.seek(session, frame)
         window.settle()

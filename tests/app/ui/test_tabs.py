@@ -2,19 +2,16 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from app.document.commands.scene_commands import set_export
 from documents import CENTRE, RADIUS, disc_document
 from imgui_bundle import ImVec2
 from PIL import Image
+from projects import project_of
 
-from app.document import key_commands
-from app.document.history import History
+from app.document.commands import key_commands
 from app.document.keyframe import Handle, Keyframe, Pose, Target
 from app.document.settings import Meshing
-from app.document.settings_commands import set_export
 from app.editor.actions import editing, exporting, measuring, playback, posing
-from app.editor.session import Project
-from app.motion.prepared import Figure, Motion
-from app.storage.picture import Picture
 from engine.maps.boundary import Boundary
 from engine.maps.bounds import Bounds
 from engine.maps.certificate import certify
@@ -57,13 +54,7 @@ def project(window, _stretched):
     y, x = np.mgrid[200:0:-1, 0:200] - 0.5
     inside = np.abs(x + 1j * y - CENTRE) < RADIUS
     rgba = np.where(inside, 255, 0).astype(np.uint8)[..., None].repeat(4, axis=2)
-    window.session.project = Project(
-        name="disc",
-        history=History(_stretched, saved=True),
-        picture=Picture(rgba=rgba, notices=()),
-        path=None,
-        sketch=Motion.at_rest(_stretched, Figure.sketch(_stretched.domain)),
-    )
+    window.session.project = project_of(_stretched, rgba, "disc")
     playback.seek(window.session, 24)
     window.settle()
     return window.session.project
@@ -86,7 +77,7 @@ def tab(window):
 
 
 def largest(project, field):
-    return max(getattr(key.pose.certificate, field) for key in project.document.keys)
+    return max(getattr(key.pose.certificate, field) for key in project.figure.keys)
 
 
 def test_handle_is_chosen_renamed_weighed_and_deleted(project, tab):
@@ -101,7 +92,7 @@ def test_handle_is_chosen_renamed_weighed_and_deleted(project, tab):
     handle = project.document.handle(0)
     assert (handle.name, handle.weight) == ("paw", 2.5)
     tab("Handle", lambda robot: robot.item_click("**/###delete handles"))
-    assert [handle.id for handle in project.document.handles] == [1]
+    assert [handle.id for handle in project.figure.handles] == [1]
     assert project.history.undo_label == "Delete handle"
 
 
@@ -117,13 +108,13 @@ def test_target_typed_in_poses_the_shape(window, project, tab):
     )
     after = project.document.key(24).pose
     assert after.targets[1].position == pytest.approx(wish - 20j, abs=0.01)
-    place = project.document.map_of(after)(np.array([project.document.handle(1).position]))
+    place = project.figure.map_of(after)(np.array([project.document.handle(1).position]))
     np.testing.assert_allclose(place, wish - 20j, rtol=0, atol=2)
 
 
 def test_turn_is_taken_from_the_shape_then_typed_then_freed(window, project, tab):
     editing.select(window.session, frozenset({1}))
-    turn = project.shown.handle_turns[1]
+    turn = project.puppet.shown.handle_turns[1]
     tab("Handle", lambda robot: robot.item_click("**/##turns"))
     assert project.document.key(24).pose.targets[1].rotation == pytest.approx(turn, abs=1e-6)
     tab("Handle", lambda robot: robot.item_input_value("**/##angle", 10.0))
@@ -136,9 +127,9 @@ def test_turn_is_taken_from_the_shape_then_typed_then_freed(window, project, tab
 def test_anchor_goes_to_the_handle_and_back(window, project, tab):
     editing.select(window.session, frozenset({0}))
     tab("Handle", lambda robot: robot.item_click("**/###anchor here"))
-    assert project.document.anchor == project.document.handle(0).position
+    assert project.figure.anchor == project.document.handle(0).position
     tab("Handle", lambda robot: robot.item_click("**/###clear anchor"))
-    assert project.document.anchor is None
+    assert project.figure.anchor is None
 
 
 def test_tighter_bounds_bring_keys_in_as_one_step(window, project, tab):
@@ -146,9 +137,9 @@ def test_tighter_bounds_bring_keys_in_as_one_step(window, project, tab):
     reached = largest(project, "k")
     bound = round(0.6 * reached, 2)
     tab("Deform", lambda robot: robot.item_input_value("**/##bound k", bound))
-    assert project.document.bounds.k == pytest.approx(bound, abs=1e-6)
+    assert project.figure.bounds.k == pytest.approx(bound, abs=1e-6)
     assert largest(project, "k") <= bound
-    assert all(key.pose.certificate.certified for key in project.document.keys)
+    assert all(key.pose.certificate.certified for key in project.figure.keys)
     assert project.document.key(0).pose is before.key(0).pose
     assert project.history.undo_label == "Set bounds"
     editing.undo(window.session)
@@ -169,13 +160,13 @@ def test_knob_that_is_dragged_sets_the_bound_once(window, project, tab):
         robot.mouse_up(0)
 
     tab("Deform", drag)
-    assert project.document.bounds.sigma_a > Bounds().sigma_a
+    assert project.figure.bounds.sigma_a > Bounds().sigma_a
     assert project.drafted_bounds is None
     editing.undo(window.session)
     assert project.document is before
     editing.redo(window.session)
     tab("Deform", lambda robot: robot.item_click("**/###reset bounds"))
-    assert project.document.bounds == Bounds()
+    assert project.figure.bounds == Bounds()
 
 
 def test_pose_that_finds_no_way_in_stays_and_is_told(window, project, tab):
@@ -212,7 +203,7 @@ def test_heat_map_and_curves_follow_the_document(window, project, tab):
     assert curves.document is project.document
     assert curves.k_share.max() <= 1 + 1e-3
     assert curves.k.max() == pytest.approx(largest(project, "k"), rel=0.1)
-    editing.edit(window.session, key_commands.move_keys(frozenset({24}), 4))
+    editing.edit(window.session, key_commands.move_keys(0, frozenset({24}), 4))
     window.settle()
     assert project.curves.document is project.document
     assert project.curves.frames[-1] == 28
@@ -220,10 +211,10 @@ def test_heat_map_and_curves_follow_the_document(window, project, tab):
 
 def test_curves_of_an_older_document_are_not_kept(window, project, tab):
     tab("Distortion", lambda _: None)
-    editing.edit(window.session, key_commands.move_keys(frozenset({24}), 4))
+    editing.edit(window.session, key_commands.move_keys(0, frozenset({24}), 4))
     older = project.document
     measuring.keep_up(window.session)
-    editing.edit(window.session, key_commands.move_keys(frozenset({28}), 4))
+    editing.edit(window.session, key_commands.move_keys(0, frozenset({28}), 4))
     window.settle()
     assert project.curves.document is project.document is not older
 
@@ -294,14 +285,16 @@ def test_rebuilt_domain_keeps_a_pose_that_no_handle_holds(window, project, tab):
         robot.item_click("**/###rebuild")
 
     tab("Mesh", act)
-    assert project.document.meshing.triangles == 4_000
+    assert project.figure.meshing.triangles == 4_000
     certificate = project.document.key(24).pose.certificate
     assert certificate.k == pytest.approx(STRETCH, rel=0.01)
 
 
 def test_domain_that_cannot_be_built_is_told(window, project, tab):
     before = project.document
-    project.picture = replace(project.picture, rgba=np.zeros_like(project.picture.rgba))
+    project.puppet.picture = replace(
+        project.puppet.picture, rgba=np.zeros_like(project.puppet.picture.rgba)
+    )
 
     def act(robot):
         robot.item_click("**/detail/###fine")
@@ -315,7 +308,7 @@ def test_domain_that_cannot_be_built_is_told(window, project, tab):
 
 def test_export_settings_are_entered_and_undone(window, project, tab):
     before = project.document
-    width, height = project.picture.size
+    width, height = project.document.canvas
 
     def act(robot):
         robot.item_click("**/framing/###fit")

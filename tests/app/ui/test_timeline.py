@@ -2,20 +2,17 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from documents import CENTRE, RADIUS, disc_document
+from documents import CENTRE, RADIUS, altered, disc_document
 from hypothesis import given
 from hypothesis import strategies as st
 from imgui_bundle import ImVec2, imgui
+from projects import project_of
 
 from app.document.easing import HOLD, LINEAR, PRESETS
-from app.document.history import History
 from app.document.keyframe import Handle, Keyframe, Target
 from app.document.settings import FrameRange
 from app.editor.actions import editing, keys, playback, timeline_pointing
-from app.editor.session import Project
 from app.editor.timeline_view import Strip
-from app.motion.prepared import Figure, Motion
-from app.storage.picture import Picture
 
 FRAMES = (0, 12, 24, 48)
 
@@ -44,13 +41,8 @@ def waving_document():
 @pytest.fixture
 def project(window):
     document = waving_document()
-    window.session.project = Project(
-        name="disc",
-        history=History(document, saved=True),
-        picture=Picture(rgba=np.full((200, 200, 4), 160, np.uint8), notices=()),
-        path=None,
-        sketch=Motion.at_rest(document, Figure.sketch(document.domain)),
-    )
+    pixels = np.full((200, 200, 4), 160, np.uint8)
+    window.session.project = project_of(document, pixels, "disc")
     window.settle()
     return window.session.project
 
@@ -96,7 +88,7 @@ def play(window, project):
     """Let the robot play with the timeline."""
 
     def play(what):
-        window.run(lambda robot: what(Hand(robot, project.document.keys)))
+        window.run(lambda robot: what(Hand(robot, project.figure.keys)))
         window.settle()
         return project.document
 
@@ -104,7 +96,7 @@ def play(window, project):
 
 
 def frames_of(document):
-    return tuple(key.frame for key in document.keys)
+    return tuple(key.frame for key in document.figures[0].keys)
 
 
 def undo_all(window):
@@ -265,7 +257,7 @@ def test_easing_is_chosen_and_drawn_by_hand(window, project, play):
     def choose(hand):
         hand.click("interval 12")
         hand.robot.item_click("//$FOCUSED/in-out")
-        seen.append([key.easing for key in project.document.keys])
+        seen.append([key.easing for key in project.figure.keys])
         hand.robot.item_drag_with_delta("//$FOCUSED/control 1", ImVec2(30, -400))
 
     curve = play(choose).keys[1].easing.curve
@@ -426,8 +418,8 @@ def test_speed_is_changed_while_playing(window, project):
 )
 def test_keys_go_to_the_nearest_place_that_is_free(frames, subset, wanted, copies):
     document = disc_document()
-    poses = [replace(document.keys[0], frame=frame) for frame in sorted(frames)]
-    document = replace(document, keys=tuple(poses), frames=FrameRange(0, 100))
+    poses = [replace(document.figures[0].keys[0], frame=frame) for frame in sorted(frames)]
+    document = altered(document, keys=tuple(poses), frames=FrameRange(0, 100))
     dragged = frozenset(f for i, f in enumerate(sorted(frames)) if subset >> i & 1) or frozenset(
         {min(frames)}
     )
@@ -443,7 +435,7 @@ def test_keys_go_to_the_nearest_place_that_is_free(frames, subset, wanted, copie
 
 
 def test_keys_that_fall_short_are_known(project):
-    lags = [project.timing.reach.lags[key.pose] for key in project.document.keys]
+    lags = [project.timing.reach.lags[key.pose] for key in project.figure.keys]
     assert [set(lag) for lag in lags] == [set(), set(), {1}, set()]
 
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from imgui_bundle import ImVec2, imgui
 
-from app.document import handle_commands, key_commands
+from app.document.commands import handle_commands, key_commands
 from app.document.keyframe import Target
 from app.document.settings import FrameRange, Meshing
 from app.editor.actions import (
@@ -52,8 +52,8 @@ def held_up(monkeypatch, where):
 
 
 def place_of(project, identity):
-    shown = project.shown
-    index = [handle.id for handle in shown.document.handles].index(identity)
+    shown = project.puppet.shown
+    index = [handle.id for handle in shown.clip.figure.handles].index(identity)
     return complex(shown.handle_places[index])
 
 
@@ -67,7 +67,7 @@ def details(window):
 
 
 def frames_of(project):
-    return [key.frame for key in project.document.keys]
+    return [key.frame for key in project.figure.keys]
 
 
 def press(robot, *chord):
@@ -166,7 +166,7 @@ def test_deleting_a_key_while_it_is_dragged(window, bent):
     ("change", "frames"),
     [
         (editing.delete, [0]),
-        (lambda session: editing.edit(session, key_commands.move_keys({24}, 6)), [0, 30]),
+        (lambda session: editing.edit(session, key_commands.move_keys(0, {24}, 6)), [0, 30]),
         (lambda session: keys.scale(session, 0.5), [0, 12]),
     ],
 )
@@ -191,8 +191,8 @@ def test_other_changes_leave_the_solver_at_work(window, bent):
 
 def test_bounds_and_places_that_change_end_the_pull(window, bent):
     for command in (
-        handle_commands.weigh_handle(1, 3.0),
-        handle_commands.move_handle(1, bent.document.handle(1).position - 30),
+        handle_commands.weigh_handle(0, 1, 3.0),
+        handle_commands.move_handle(0, 1, bent.document.handle(1).position - 30),
     ):
         posing.wish(window.session, {1: Target(position=place_of(bent, 1) - 20j)})
         editing.edit(window.session, command)
@@ -363,7 +363,7 @@ def test_scrubbing_while_the_worker_builds(window, bent, monkeypatch):
 
 def test_poses_that_follow_each_other_twice_are_prepared_once(window, bent):
     keys.set_variant(window.session, "nu")
-    editing.edit(window.session, key_commands.copy_keys({0, 24}, 48))
+    editing.edit(window.session, key_commands.copy_keys(0, {0, 24}, 48))
     window.settle()
     assert frames_of(bent) == [0, 24, 48, 72]
     # None of it is known of this one, and at first only roughly.

@@ -24,7 +24,7 @@ FRAMES = 9
 def project(window):
     """A bar with a handle and nine frames; each takes more than half of an export's share."""
     project = window.open(BAR)
-    posing.add_handle(window.session, complex(*project.picture.size) / 2)
+    posing.add_handle(window.session, complex(*project.document.canvas) / 2)
     keys.set_last_frame(window.session, FRAMES - 1)
     exporting.set_export(window.session, ExportSettings(size=SIZE))
     window.settle()

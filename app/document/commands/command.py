@@ -3,7 +3,12 @@
 A command is defined as a pure function of a document and arguments; called with the arguments
 alone it gives a `Command` that waits for its document:
 
-    history.do(rename_handle(3, "nose"))
+    history.do(set_fps(12.0))
+
+Most commands change one figure. They are defined as pure functions of a figure, and are told by its
+id which one they are for:
+
+    history.do(rename_handle(figure.id, 3, "nose"))
 
 A command raises a `LissomError` where it is not possible, and returns the very same document where
 it changes nothing.
@@ -14,6 +19,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Concatenate, ParamSpec
 
+from app.document.figure import Figure
 from app.document.model import Document
 
 Arguments = ParamSpec("Arguments")
@@ -42,6 +48,34 @@ def command(
         @functools.wraps(change)
         def bind(*args: Arguments.args, **kwargs: Arguments.kwargs) -> Command:
             return Command(label, lambda document: change(document, *args, **kwargs))
+
+        return bind
+
+    return make
+
+
+def figure_command(
+    label: str,
+) -> Callable[
+    [Callable[Concatenate[Figure, Arguments], Figure]],
+    Callable[Concatenate[int, Arguments], Command],
+]:
+    """Make a function `(figure, *arguments) → figure` one `(figure_id, *arguments) → Command`.
+
+    The animation grows where keys of the figure would lie beyond its ends.
+    """
+
+    def make(
+        change: Callable[Concatenate[Figure, Arguments], Figure],
+    ) -> Callable[Concatenate[int, Arguments], Command]:
+        @functools.wraps(change)
+        def bind(figure: int, /, *args: Arguments.args, **kwargs: Arguments.kwargs) -> Command:
+            return Command(
+                label,
+                lambda document: document.with_figure(
+                    change(document.figure(figure), *args, **kwargs)
+                ),
+            )
 
         return bind
 

@@ -1,0 +1,11 @@
+"""Commands: changes of a document as values, with the words that undo and redo show.
+
+In: a document, or a figure of it, and arguments.
+Out: the changed document.
+Imports: the values of `app.document`.
+"""
+
+from app.document.commands import figure_commands, handle_commands, key_commands, scene_commands
+from app.document.commands.command import Command
+
+__all__ = ["Command", "figure_commands", "handle_commands", "key_commands", "scene_commands"]

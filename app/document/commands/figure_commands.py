@@ -1,0 +1,69 @@
+"""Commands on a figure's solver and in-betweens, and on the domain under its keys."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from app.document.commands.command import figure_command
+from app.document.figure import Figure
+from app.document.keyframe import Keyframe, Pose
+from app.document.settings import Meshing, Variant
+from app.errors import LissomError
+from engine.domain import Domain
+from engine.maps import Bounds
+
+
+@figure_command("Set interpolation")
+def set_variant(figure: Figure, variant: Variant) -> Figure:
+    """Set how the in-betweens are made."""
+    return figure if variant == figure.variant else replace(figure, variant=variant)
+
+
+@figure_command("Set anchor")
+def set_anchor(figure: Figure, anchor: complex | None) -> Figure:
+    """Set the point whose place and turn are blended directly; None lets the engine choose."""
+    return figure if anchor == figure.anchor else replace(figure, anchor=anchor)
+
+
+@figure_command("Set bounds")
+def set_bounds(figure: Figure, bounds: Bounds, poses: Sequence[Pose] | None = None) -> Figure:
+    """Set the distortion that is allowed.
+
+    Parameters
+    ----------
+    figure : Figure
+    bounds : Bounds
+    poses : sequence of Pose, optional
+        One for each key, solved within the new bounds; without them the keys stay as they are.
+    """
+    keys = figure.keys if poses is None else _posed(figure, poses)
+    if bounds == figure.bounds and keys is figure.keys:
+        return figure
+    return replace(figure, bounds=bounds, keys=keys)
+
+
+@figure_command("Rebuild domain")
+def replace_domain(
+    figure: Figure, domain: Domain, meshing: Meshing, poses: Sequence[Pose]
+) -> Figure:
+    """Put another domain under the same handles and keys.
+
+    Parameters
+    ----------
+    figure : Figure
+    domain : Domain
+        It must contain every handle and the anchor.
+    meshing : Meshing
+        What it was built with.
+    poses : sequence of Pose
+        One for each key, solved again over the new cage.
+    """
+    unknown = {name: value for name, value in figure.unknown.items() if name != "domain"}
+    return replace(
+        figure, domain=domain, meshing=meshing, keys=_posed(figure, poses), unknown=unknown
+    )
+
+
+def _posed(figure: Figure, poses: Sequence[Pose]) -> tuple[Keyframe, ...]:
+    if len(poses) != len(figure.keys):
+        raise LissomError(f"There are {len(figure.keys)} keys, but {len(poses)} poses for them.")
+    return tuple(replace(key, pose=pose) for key, pose in zip(figure.keys, poses, strict=True))

@@ -1,0 +1,185 @@
+"""A figure: a picture that is deformed, its domain, and the keys that pose it."""
+
+import hashlib
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from itertools import pairwise
+
+import numpy as np
+
+from app.document.checks import NOTHING, Unknown, require, require_finite, require_size
+from app.document.keyframe import Handle, Keyframe, Pose
+from app.document.settings import VARIANTS, Meshing, Variant
+from app.errors import LissomError
+from engine.domain import Domain
+from engine.geometry import box_diagonal, contains
+from engine.maps import Bounds, Certificate, HarmonicMap
+
+# Handles may sit on the outline itself, where rounding decides on which side they are.
+ON_OUTLINE = 1e-9
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class PictureFile:
+    """The picture as it was opened, byte for byte.
+
+    Parameters
+    ----------
+    data : bytes
+        Contents of the picture file.
+    suffix : str
+        Of its name, such as ".png".
+    size : tuple of int
+        Width and height in pixels as shown (after rotation by EXIF data).
+    """
+
+    data: bytes = field(repr=False)
+    suffix: str
+    size: tuple[int, int]
+    sha256: str = field(init=False)
+
+    def __post_init__(self) -> None:
+        require(len(self.data) > 0, "The picture is empty.")
+        require(
+            re.fullmatch(r"\.[a-z0-9]{1,8}", self.suffix) is not None,
+            f"A picture's file name ends as in '.png', not {self.suffix!r}.",
+        )
+        require_size(self.size, "picture")
+        object.__setattr__(self, "sha256", hashlib.sha256(self.data).hexdigest())
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Figure:
+    """A picture that is deformed, with all that is its own; time and export are the scene's.
+
+    Parameters
+    ----------
+    id : int
+        Never given twice in one document.
+    picture : PictureFile
+    domain : Domain
+    meshing : Meshing
+        What the domain was built with.
+    handles : tuple of Handle
+    next_handle : int
+        The id that the next handle will get.
+    keys : tuple of Keyframe
+        In the order of their frames; there is always one.
+    anchor : complex, optional
+        The point of the picture whose place and turn are blended directly; None lets the engine
+        choose it.
+    variant : str
+        One of `VARIANTS`.
+    bounds : Bounds
+        Distortion that the solver allows in new poses.
+    """
+
+    id: int = 0
+    picture: PictureFile
+    domain: Domain
+    meshing: Meshing
+    handles: tuple[Handle, ...] = ()
+    next_handle: int = 0
+    keys: tuple[Keyframe, ...]
+    anchor: complex | None = None
+    variant: Variant = "metric"
+    bounds: Bounds = Bounds()
+    unknown: Unknown = field(default_factory=lambda: NOTHING, repr=False, hash=False)
+
+    def __post_init__(self) -> None:
+        require(self.id >= 0, f"A figure's id is not negative, unlike {self.id}.")
+        self._check_handles()
+        self._check_keys()
+        require(
+            self.variant in VARIANTS,
+            f"The variant is one of {', '.join(VARIANTS)}, not {self.variant!r}.",
+        )
+
+    @property
+    def key_frames(self) -> frozenset[int]:
+        """The frames that have a key."""
+        return frozenset(key.frame for key in self.keys)
+
+    def handle(self, identity: int) -> Handle:
+        """Return the handle with this id."""
+        for handle in self.handles:
+            if handle.id == identity:
+                return handle
+        raise LissomError(f"There is no handle with the id {identity}.")
+
+    def key(self, frame: int) -> Keyframe:
+        """Return the key at this frame."""
+        for key in self.keys:
+            if key.frame == frame:
+                return key
+        raise LissomError(f"There is no key at frame {frame}.")
+
+    def map_of(self, pose: Pose) -> HarmonicMap:
+        """Return the map of a pose."""
+        return HarmonicMap(cage=self.domain.cage, phi=pose.phi, psi=pose.psi)
+
+    def lags(self, pose: Pose) -> Mapping[int, float]:
+        """Return by how many pixels each handle, by its id, falls short of its target."""
+        reached = self.map_of(pose)(np.array([handle.position for handle in self.handles], complex))
+        return {
+            handle.id: abs(pose.targets[handle.id].position - complex(place))
+            for handle, place in zip(self.handles, reached, strict=True)
+        }
+
+    def _check_handles(self) -> None:
+        for what, values in (
+            ("id", [handle.id for handle in self.handles]),
+            ("name", [handle.name for handle in self.handles]),
+            ("place", [handle.position for handle in self.handles]),
+        ):
+            seen = set()
+            for value in values:
+                require(value not in seen, f"Two handles have the {what} {value!r}.")
+                seen.add(value)
+        require(
+            all(handle.id < self.next_handle for handle in self.handles),
+            f"The next handle's id {self.next_handle} is taken.",
+        )
+        places = {f"handle {handle.name!r}": handle.position for handle in self.handles}
+        if self.anchor is not None:
+            require_finite(self.anchor, "The anchor")
+            places["anchor"] = self.anchor
+        if places:
+            outline = self.domain.outline
+            points = np.array(list(places.values()), dtype=np.complex128)
+            inside = contains(outline, points, tolerance=ON_OUTLINE * box_diagonal(outline))
+            for (name, place), is_inside in zip(places.items(), inside, strict=True):
+                require(
+                    bool(is_inside),
+                    f"The {name} at ({place.real:g}, {place.imag:g}) lies outside the shape; "
+                    "move it onto the shape or remove it.",
+                )
+
+    def _check_keys(self) -> None:
+        require(len(self.keys) > 0, "An animation has at least one key.")
+        identities = {handle.id for handle in self.handles}
+        for before, after in pairwise(key.frame for key in self.keys):
+            require(after != before, f"Two keys are at frame {before}.")
+            require(after > before, f"The keys at frames {before} and {after} are mixed up.")
+        for key in self.keys:
+            frame = key.frame
+            require(
+                key.pose.targets.keys() == identities,
+                f"The key at frame {frame} does not have one target for each handle.",
+            )
+            require(
+                len(key.pose.phi) == len(key.pose.psi) == len(self.domain.cage),
+                f"The key at frame {frame} has coefficients for a cage of {len(key.pose.phi)} "
+                f"vertices, not of {len(self.domain.cage)}.",
+            )
+
+
+def new_figure(picture: PictureFile, domain: Domain, meshing: Meshing) -> Figure:
+    """Return the figure of a picture just opened: one key at frame 0, as it was drawn."""
+    identity = HarmonicMap.identity(domain.cage)
+    undistorted = Certificate(k=0.0, sigma_a=1.0, sigma_b=1.0, winding=0, certified=True)
+    pose = Pose(targets={}, phi=identity.phi, psi=identity.psi, certificate=undistorted)
+    return Figure(
+        picture=picture, domain=domain, meshing=meshing, keys=(Keyframe(frame=0, pose=pose),)
+    )
