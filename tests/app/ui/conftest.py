@@ -40,7 +40,7 @@ def bent(window: Harness, bar: Project) -> Project:
     """The bar, bent at its right end: keys at frames 0 and 24, the second one is shown."""
     playback.seek(window.session, 24)
     window.settle()
-    width, height = bar.picture.size
+    width, height = bar.puppet.picture.size
     posing.wish(window.session, {1: Target(position=complex(0.85 * width, 0.9 * height))})
     window.settle()
     return bar

@@ -4,9 +4,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from app.document.commands.scene_commands import set_anchor
 from PIL import Image
 
+from app.document.commands.figure_commands import set_anchor
 from app.document.keyframe import Target
 from app.document.settings import Meshing
 from app.editor.action import do
@@ -108,8 +108,8 @@ def test_a_person_makes_an_animation_and_takes_it_back(window, tmp_path):
         window.run(lambda robot: robot.key_press(int(window.Key.mod_ctrl) | int(window.Key.z)))
     assert project.document is first
     reopened = window.open(path)
-    assert [key.frame for key in reopened.document.keys] == [0, 24]
-    assert len(reopened.document.handles) == 2
+    assert [key.frame for key in reopened.document.figures[0].keys] == [0, 24]
+    assert len(reopened.document.figures[0].handles) == 2
 
 
 def test_dragging_follows_and_is_one_step(window, bar):
@@ -119,7 +119,7 @@ def test_dragging_follows_and_is_one_step(window, bar):
     window.run(lambda robot: drag(robot, window, start, start + 150j, steps=12))
     window.settle()
     assert bar.grab is None
-    lag = bar.document.lags(bar.document.keys[0].pose)[1]
+    lag = bar.document.figures[0].lags(bar.document.figures[0].keys[0].pose)[1]
     assert lag < 0.05 * abs(150j)
     assert session.solver_seconds >= 0
     editing.undo(session)
@@ -152,7 +152,7 @@ def test_a_shape_that_is_caught_comes_free_when_the_hand_lets_go(window, bar, mo
     window.settle()
     assert bar.grab is None
     assert abs(handle_places(bar)[1] - wanted) < 5
-    assert bar.document.keys[0].pose.certificate.certified
+    assert bar.document.figures[0].keys[0].pose.certificate.certified
     editing.undo(session)
     assert bar.document is first
 
@@ -168,9 +168,9 @@ def test_a_pose_that_the_playhead_leaves_comes_to_rest(window, bar, leave):
     assert bar.is_posing
     window.settle()
     assert not bar.is_posing
-    (key,) = bar.document.keys
+    (key,) = bar.document.figures[0].keys
     assert key.frame == 0
-    assert bar.document.lags(key.pose)[1] < 5
+    assert bar.document.figures[0].lags(key.pose)[1] < 5
     assert bar.history.undo_label == "Pose"
 
 
@@ -203,11 +203,11 @@ def test_a_pose_that_is_held_is_of_the_frame_that_the_playhead_is_on(window, bar
     posing.insert_key(window.session)
     playback.seek(window.session, 20)
     window.frames(2)
-    shown = bar.shown
+    shown = bar.puppet.shown
     playback.seek(window.session, 21)
     window.frames(2)
-    assert bar.shown.frame == 21
-    assert bar.shown.vertices is shown.vertices
+    assert bar.puppet.shown.frame == 21
+    assert bar.puppet.shown.vertices is shown.vertices
 
 
 def test_the_coarse_mesh_is_shown_while_the_playhead_moves(window):
@@ -216,24 +216,24 @@ def test_the_coarse_mesh_is_shown_while_the_playhead_moves(window):
     project = window.open(BAR)
     session.full_detail = False
     window.frames(30)
-    assert project.puppet.shown.mesh is project.puppet.fine.figure
+    assert project.puppet.shown.mesh is project.puppet.fine.mesh
     playback.seek(session, 3)
     window.frames()
-    assert project.puppet.shown.mesh is project.puppet.coarse.figure
+    assert project.puppet.shown.mesh is project.puppet.coarse.mesh
     window.frames(20)
-    assert project.puppet.shown.mesh is project.puppet.fine.figure
+    assert project.puppet.shown.mesh is project.puppet.fine.mesh
 
 
 def test_a_shape_is_left_alone_where_another_start_gains_little(window, bar):
     session = window.session
     posing.pull(session, {1: Target(position=handle_places(bar)[1] + 9000)})
     window.settle()
-    held = bar.shown.positions
+    held = bar.puppet.shown.positions
     assert bar.grab.drag.at_bounds
     posing.let_go(session)
     window.settle()
     assert bar.grab is None
-    np.testing.assert_array_equal(bar.shown.positions, held)
+    np.testing.assert_array_equal(bar.puppet.shown.positions, held)
 
 
 def test_inbetweens_follow_a_drag_before_the_hand_lets_go(window, bar):
@@ -243,7 +243,7 @@ def test_inbetweens_follow_a_drag_before_the_hand_lets_go(window, bar):
     window.settle()
     posing.wish(session, {1: Target(position=handle_places(bar)[1] + 120j)})
     window.settle()
-    before = bar.sketch.positions(bar.document, 12)
+    before = bar.puppet.coarse.positions(bar.clip, 12)
     start = handle_places(bar)[1]
     ghosts, halfway = [], {}
 
@@ -252,14 +252,14 @@ def test_inbetweens_follow_a_drag_before_the_hand_lets_go(window, bar):
         robot.mouse_down(0)
         for step in range(1, 7):
             robot.mouse_move_to_pos(window.point(start + 25j * step))
-            ghosts.append(bar.sketch.vertices(bar.sketch.document, 12))
+            ghosts.append(bar.puppet.coarse.vertices(bar.puppet.coarse.clip, 12))
         while session.jobs.kinds:
             robot.yield_()
         halfway.update(
             grab=bar.grab,
-            rough=bar.sketch.is_rough(bar.document, 12),
-            known=bar.sketch.knows(bar.document, roughly=True),
-            positions=bar.sketch.positions(bar.document, 12),
+            rough=bar.puppet.coarse.is_rough(bar.clip, 12),
+            known=bar.puppet.coarse.knows(bar.clip, roughly=True),
+            positions=bar.puppet.coarse.positions(bar.clip, 12),
         )
         robot.mouse_up(0)
 
@@ -270,39 +270,41 @@ def test_inbetweens_follow_a_drag_before_the_hand_lets_go(window, bar):
     assert halfway["rough"]
     assert np.abs(halfway["positions"] - before).max() > 40
     window.settle()
-    assert bar.sketch.knows(bar.document)
-    assert not bar.sketch.is_rough(bar.document, 12)
-    exact = bar.sketch.positions(bar.document, 12)
-    np.testing.assert_allclose(halfway["positions"], exact, rtol=0, atol=0.01 * bar.picture.size[0])
+    assert bar.puppet.coarse.knows(bar.clip)
+    assert not bar.puppet.coarse.is_rough(bar.clip, 12)
+    exact = bar.puppet.coarse.positions(bar.clip, 12)
+    np.testing.assert_allclose(
+        halfway["positions"], exact, rtol=0, atol=0.01 * bar.puppet.picture.size[0]
+    )
 
 
 def test_a_new_handle_moves_nothing(window, bar):
     start = handle_places(bar)[1]
     window.run(lambda robot: drag(robot, window, start, start + 120j))
     window.settle()
-    before = bar.shown.positions
+    before = bar.puppet.shown.positions
     posing.add_handle(window.session, handle_places(bar)[0] + 200)
     window.settle()
-    np.testing.assert_allclose(bar.shown.positions, before, rtol=0, atol=1e-9)
+    np.testing.assert_allclose(bar.puppet.shown.positions, before, rtol=0, atol=1e-9)
     posing.remove_handles(window.session, frozenset({0}))
     window.settle()
-    np.testing.assert_allclose(bar.shown.positions, before, rtol=0, atol=1e-9)
+    np.testing.assert_allclose(bar.puppet.shown.positions, before, rtol=0, atol=1e-9)
 
 
 def test_a_key_between_keys_starts_from_what_is_shown(window, bar):
     session = window.session
     playback.seek(session, 20)
     window.settle()
-    target = bar.shown.pose.targets[1]
+    target = bar.puppet.shown.pose.targets[1]
     posing.wish(session, {1: Target(position=target.position + 150j)})
     window.settle()
     playback.seek(session, 10)
     window.settle()
-    between = bar.shown.positions
+    between = bar.puppet.shown.positions
     posing.insert_key(session)
     window.settle()
-    assert [key.frame for key in bar.document.keys] == [0, 10, 20]
-    np.testing.assert_allclose(bar.shown.positions, between, rtol=0, atol=1.0)
+    assert [key.frame for key in bar.document.figures[0].keys] == [0, 10, 20]
+    np.testing.assert_allclose(bar.puppet.shown.positions, between, rtol=0, atol=1.0)
 
 
 def test_without_auto_key_a_pose_is_loose_until_it_is_inserted(window, bar):
@@ -313,12 +315,12 @@ def test_without_auto_key_a_pose_is_loose_until_it_is_inserted(window, bar):
     start = handle_places(bar)[1]
     window.run(lambda robot: drag(robot, window, start, start + 100j))
     window.settle()
-    assert [key.frame for key in bar.document.keys] == [0]
-    assert bar.loose is not None
+    assert [key.frame for key in bar.document.figures[0].keys] == [0]
+    assert bar.unkeyed is not None
     window.run(lambda robot: robot.key_press(int(window.Key.i)))
     window.settle()
-    assert bar.loose is None
-    assert [key.frame for key in bar.document.keys] == [0, 12]
+    assert bar.unkeyed is None
+    assert [key.frame for key in bar.document.figures[0].keys] == [0, 12]
 
 
 def test_inserting_a_key_where_there_is_one_says_so(window, bar):
@@ -340,7 +342,7 @@ def test_keys_of_the_pointer(window, bar):
         robot.key_up(int(window.Key.mod_ctrl))
 
     window.run(play)
-    assert bar.document.anchor == bar.document.handle(0).position
+    assert bar.document.figures[0].anchor == bar.document.figures[0].handle(0).position
 
     def select_both(robot):
         robot.mouse_move_to_pos(window.point(places[0]))
@@ -354,7 +356,7 @@ def test_keys_of_the_pointer(window, bar):
     assert bar.selected == {0, 1}
     window.run(lambda robot: robot.key_press(int(window.Key.up_arrow)))
     window.settle()
-    assert bar.document.keys[0].pose.targets[0].position.imag > places[0].imag
+    assert bar.document.figures[0].keys[0].pose.targets[0].position.imag > places[0].imag
 
     def alt_click(robot):
         robot.mouse_move_to_pos(window.point(handle_places(bar)[1]))
@@ -363,16 +365,16 @@ def test_keys_of_the_pointer(window, bar):
         robot.key_up(int(window.Key.mod_alt))
 
     window.run(alt_click)
-    assert [handle.id for handle in bar.document.handles] == [0]
+    assert [handle.id for handle in bar.document.figures[0].handles] == [0]
 
-    low, high = complex(-20, -20), complex(*bar.picture.size) * 0.5 + 300j
+    low, high = complex(-20, -20), complex(*bar.puppet.picture.size) * 0.5 + 300j
     window.run(lambda robot: drag(robot, window, low + 600j, high - 900j))
     assert session.pointer is None
 
 
 def test_alt_drag_turns_the_shape(window, bar):
     start = handle_places(bar)[1]
-    reach = 0.03 * bar.picture.size[0]
+    reach = 0.03 * bar.puppet.picture.size[0]
 
     def turn(robot):
         robot.mouse_move_to_pos(window.point(start))
@@ -385,7 +387,7 @@ def test_alt_drag_turns_the_shape(window, bar):
 
     window.run(turn)
     window.settle()
-    assert bar.document.keys[0].pose.targets[1].rotation is not None
+    assert bar.document.figures[0].keys[0].pose.targets[1].rotation is not None
 
 
 def test_wheel_zooms_at_the_pointer_and_home_fits(window, bar):
@@ -425,7 +427,10 @@ def test_unsaved_changes_are_asked_about(window, bar, tmp_path):
 
 
 def test_ctrl_click_on_the_shape_puts_the_anchor_there(window, bent):
-    before, wanted = len(bent.document.handles), complex(bent.shown.positions.mean())
+    before, wanted = (
+        len(bent.document.figures[0].handles),
+        complex(bent.puppet.shown.positions.mean()),
+    )
 
     def play(robot):
         robot.mouse_move_to_pos(window.point(wanted))
@@ -435,23 +440,27 @@ def test_ctrl_click_on_the_shape_puts_the_anchor_there(window, bent):
 
     window.run(play)
     window.settle()
-    assert len(bent.document.handles) == before
-    assert bent.document.anchor is not None
-    moved = bent.document.map_of(bent.document.keys[1].pose)(np.array([bent.document.anchor]))
+    assert len(bent.document.figures[0].handles) == before
+    assert bent.document.figures[0].anchor is not None
+    moved = bent.document.figures[0].map_of(bent.document.figures[0].keys[1].pose)(
+        np.array([bent.document.figures[0].anchor])
+    )
     assert abs(moved[0] - wanted) < 3
-    assert abs(canvas._anchor(bent, bent.shown) - wanted) < 3
+    assert abs(canvas._anchor(bent, bent.puppet.shown) - wanted) < 3
     posing.anchor_at(window.session, 0)
     window.settle()
-    assert canvas._anchor(bent, bent.shown) is None  # the handle itself shows it
+    assert canvas._anchor(bent, bent.puppet.shown) is None  # the handle itself shows it
 
 
 def test_an_anchor_that_was_chosen_for_the_person_is_shown(window, bent):
-    assert bent.document.anchor is None
-    place = canvas._anchor(bent, bent.shown)
-    rest = bent.sketch.sampler.sites.anchor
-    moved = bent.document.map_of(bent.document.keys[1].pose)(np.array([rest]))
+    assert bent.document.figures[0].anchor is None
+    place = canvas._anchor(bent, bent.puppet.shown)
+    rest = bent.puppet.coarse.sampler.sites.anchor
+    moved = bent.document.figures[0].map_of(bent.document.figures[0].keys[1].pose)(np.array([rest]))
     assert abs(place - moved[0]) < 3
     shown = window.picture()
-    editing.edit(window.session, set_anchor(complex(bent.document.handle(0).position)))
+    editing.edit(
+        window.session, set_anchor(0, complex(bent.document.figures[0].handle(0).position))
+    )
     window.settle()
     assert window.picture() != shown

@@ -8,7 +8,7 @@ from app.editor.actions import posing
 
 def pull(window, bar, by):
     """Pull a handle, and let the solver be as quick as can be."""
-    wish = Target(position=bar.document.handle(1).position + by)
+    wish = Target(position=bar.document.figures[0].handle(1).position + by)
     assert window.session.jobs.settle()
     window.act(posing.pull, {1: wish})
     assert window.session.jobs.settle()
@@ -19,7 +19,7 @@ def pull(window, bar, by):
 def test_the_picture_follows_a_pull_in_the_next_frame(window, bar):
     for step in range(1, 6):
         wish = pull(window, bar, 40j * step)
-        assert bar.shown.pose.targets[1] == wish
+        assert bar.puppet.shown.pose.targets[1] == wish
 
 
 def test_a_slow_solver_shows_every_step(window, bar):

@@ -298,14 +298,14 @@ class Walk:
 
     def add_handle(self) -> None:
         shown = self.project.puppet.shown
-        if len(self.document.handles) < MOST_HANDLES:
+        if len(self.document.figures[0].handles) < MOST_HANDLES:
             self.act(posing.add_handle, complex(self.choice(shown.positions)))
 
     def pull(self) -> None:
         shown = self.project.puppet.shown
         wishes = {}
         for handle, place in zip(shown.clip.figure.handles, shown.handle_places, strict=True):
-            if handle in self.document.handles and self.chance(0.4):
+            if handle in self.document.figures[0].handles and self.chance(0.4):
                 far = 1.0 if self.chance(0.05) else 0.05
                 offset = complex(*self.rng.normal(0, far * self.size, 2))
                 turn = float(self.rng.normal()) if self.chance(0.2) else None
@@ -314,7 +314,7 @@ class Walk:
             self.act(posing.wish, wishes)
 
     def change_handle(self) -> None:
-        handles = self.document.handles
+        handles = self.document.figures[0].handles
         if not handles:
             return
         handle = self.choice(handles)
@@ -326,7 +326,7 @@ class Walk:
                 weight = float(10 ** self.rng.uniform(-2, 2))
                 self.edit(handle_commands.weigh_handle(0, handle.id, weight))
             case 2:
-                outline = self.document.domain.mesh.vertices
+                outline = self.document.figures[0].domain.mesh.vertices
                 self.edit(handle_commands.move_handle(0, handle.id, complex(self.choice(outline))))
             case 3:
                 self.act(posing.free_turn, handle.id)
@@ -334,11 +334,11 @@ class Walk:
                 self.act(posing.anchor_at, handle.id)
 
     def set_anchor(self) -> None:
-        inside = complex(self.choice(self.document.domain.mesh.vertices))
+        inside = complex(self.choice(self.document.figures[0].domain.mesh.vertices))
         self.edit(figure_commands.set_anchor(0, None if self.chance(0.5) else inside))
 
     def select(self) -> None:
-        chosen = [handle.id for handle in self.document.handles if self.chance(0.5)]
+        chosen = [handle.id for handle in self.document.figures[0].handles if self.chance(0.5)]
         self.act(editing.select, frozenset(chosen))
 
     def choose_keys(self) -> None:
@@ -348,7 +348,7 @@ class Walk:
         self.act(editing.delete)
 
     def insert_key(self) -> None:
-        if len(self.document.keys) < MOST_KEYS:
+        if len(self.document.figures[0].keys) < MOST_KEYS:
             self.act(keys.insert_at, int(self.rng.integers(LAST)))
 
     def seek(self) -> None:
@@ -358,7 +358,9 @@ class Walk:
         frames = self.some_keys()
         by = int(self.rng.integers(-9, 10))
         if frames and max(frames) + by < LAST:
-            copies = self.chance(0.3) and len(self.document.keys) + len(frames) <= MOST_KEYS
+            copies = (
+                self.chance(0.3) and len(self.document.figures[0].keys) + len(frames) <= MOST_KEYS
+            )
             verb = key_commands.copy_keys if copies else key_commands.move_keys
             self.edit(verb(frames, by))
 
@@ -464,7 +466,7 @@ class Walk:
             self.act(editing.redo)
 
     def some_keys(self) -> frozenset[int]:
-        return frozenset(key.frame for key in self.document.keys if self.chance(0.5))
+        return frozenset(key.frame for key in self.document.figures[0].keys if self.chance(0.5))
 
     @property
     def document(self):

@@ -5,8 +5,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from documents import altered
 
 from app.document.keyframe import Target
+from app.document.timeline import clip_of
 from app.editor.actions import playback, posing
 from app.errors import LissomError
 from app.motion.prepared import Motion, prepare_motion
@@ -28,8 +30,8 @@ def test_without_a_project_it_shows_the_frames_per_second_only(window):
 def test_a_pose_shows_its_distortion_the_handles_and_the_solver(window, bent):
     window.session.solver_seconds = 0.0064  # the clock of the tests stands still in a job
     shown, handles, solver, _ = facts(window)
-    proven = bent.document.keys[1].pose.certificate
-    uses = Extremes(proven.k, proven.sigma_a, proven.sigma_b).uses(bent.document.bounds)
+    proven = bent.document.figures[0].keys[1].pose.certificate
+    uses = Extremes(proven.k, proven.sigma_a, proven.sigma_b).uses(bent.document.figures[0].bounds)
     most = max(uses, key=lambda use: use.share)
     word = {"k": "Shear", "σa": "Stretch", "σb": "Squeeze"}[most.name]
     assert shown == f"{word} {most.value:.2f}, limit {most.bound:.2f}"
@@ -43,7 +45,7 @@ def test_inbetweens_show_what_was_measured(window, bent):
     window.settle()
     window.frames(2)
     shown, *_ = facts(window)
-    halfway = bent.sketch.inbetweens(bent.document, 0).frame(np.array([0.5, 0.5]))
+    halfway = bent.puppet.coarse.inbetweens(bent.clip, 0).frame(np.array([0.5, 0.5]))
     fz, fzbar = halfway.fz, halfway.fzbar
     values = {
         "Shear": distortion.k(fz, fzbar).max(),
@@ -64,7 +66,7 @@ def test_a_bound_that_is_reached_warns(window):
 
 
 def test_extremes_between_the_times_that_were_measured(bent):
-    curves = measure_curves(bent.document, bent.sketch)
+    curves = measure_curves(bent.clip, bent.puppet.coarse)
     assert curves.extremes.shape == (TIMES, 3)
     np.testing.assert_array_equal(curves.extremes_at(0), curves.extremes[0])
     np.testing.assert_allclose(curves.extremes_at(24), curves.extremes[-1], rtol=1e-12, atol=0)
@@ -73,14 +75,15 @@ def test_extremes_between_the_times_that_were_measured(bent):
     assert (low <= middle).all()
     assert (middle <= high).all()
     # In a loop the way back follows the last key, and leads up to the first.
-    last = bent.document.keys[-1]
-    looped = replace(
+    last = bent.document.figures[0].keys[-1]
+    looped = altered(
         bent.document,
         loop=True,
-        keys=(replace(bent.document.keys[0], frame=10), last),
+        keys=(replace(bent.document.figures[0].keys[0], frame=10), last),
         frames=replace(bent.document.frames, last=48),
     )
-    motion = prepare_motion(looped, Motion.at_rest(looped, bent.sketch.figure))
+    looped = clip_of(looped, 0)
+    motion = prepare_motion(looped, Motion.at_rest(looped, bent.puppet.coarse.mesh))
     again = measure_curves(looped, motion)
     assert again.extremes_at(5) == again.extremes_at(53)
     assert again.extremes_at(5) != again.extremes_at(20)

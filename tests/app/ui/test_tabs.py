@@ -2,13 +2,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from app.document.commands.scene_commands import set_export
-from documents import CENTRE, RADIUS, disc_document
+from documents import CENTRE, RADIUS, altered, disc_document
 from imgui_bundle import ImVec2
 from PIL import Image
 from projects import project_of
 
 from app.document.commands import key_commands
+from app.document.commands.scene_commands import set_export
 from app.document.keyframe import Handle, Keyframe, Pose, Target
 from app.document.settings import Meshing
 from app.editor.actions import editing, exporting, measuring, playback, posing
@@ -23,7 +23,7 @@ STRETCH = 0.3
 @pytest.fixture(scope="module")
 def _stretched():
     """A disc with two handles: at rest at frame 0, stretched sideways at frame 24."""
-    empty = disc_document()
+    (empty,) = disc_document().figures
     domain, rest = empty.domain, empty.keys[0].pose
     boundary = Boundary.sample(domain.outline, domain.cage)
     handles = (
@@ -46,7 +46,7 @@ def _stretched():
             certificate=certify(shape, boundary, empty.bounds),
         )
         keys.append(Keyframe(frame=frame, pose=pose))
-    return replace(empty, handles=handles, next_handle=2, keys=tuple(keys))
+    return altered(disc_document(), handles=handles, next_handle=2, keys=tuple(keys))
 
 
 @pytest.fixture
@@ -89,7 +89,7 @@ def test_handle_is_chosen_renamed_weighed_and_deleted(project, tab):
         robot.item_input_value("**/##weight", 2.5)
 
     tab("Handle", change)
-    handle = project.document.handle(0)
+    handle = project.figure.handle(0)
     assert (handle.name, handle.weight) == ("paw", 2.5)
     tab("Handle", lambda robot: robot.item_click("**/###delete handles"))
     assert [handle.id for handle in project.figure.handles] == [1]
@@ -98,17 +98,17 @@ def test_handle_is_chosen_renamed_weighed_and_deleted(project, tab):
 
 def test_target_typed_in_poses_the_shape(window, project, tab):
     editing.select(window.session, frozenset({1}))
-    before = project.document.key(24).pose
+    before = project.figure.key(24).pose
     wish = before.targets[1].position
     tab(
         "Handle",
         lambda robot: robot.item_input_value(
-            "**/##target y", project.picture.size[1] - wish.imag + 20.0
+            "**/##target y", project.document.canvas[1] - wish.imag + 20.0
         ),
     )
-    after = project.document.key(24).pose
+    after = project.figure.key(24).pose
     assert after.targets[1].position == pytest.approx(wish - 20j, abs=0.01)
-    place = project.figure.map_of(after)(np.array([project.document.handle(1).position]))
+    place = project.figure.map_of(after)(np.array([project.figure.handle(1).position]))
     np.testing.assert_allclose(place, wish - 20j, rtol=0, atol=2)
 
 
@@ -116,18 +116,18 @@ def test_turn_is_taken_from_the_shape_then_typed_then_freed(window, project, tab
     editing.select(window.session, frozenset({1}))
     turn = project.puppet.shown.handle_turns[1]
     tab("Handle", lambda robot: robot.item_click("**/##turns"))
-    assert project.document.key(24).pose.targets[1].rotation == pytest.approx(turn, abs=1e-6)
+    assert project.figure.key(24).pose.targets[1].rotation == pytest.approx(turn, abs=1e-6)
     tab("Handle", lambda robot: robot.item_input_value("**/##angle", 10.0))
-    rotation = project.document.key(24).pose.targets[1].rotation
+    rotation = project.figure.key(24).pose.targets[1].rotation
     assert rotation == pytest.approx(np.radians(10.0), abs=1e-4)
     tab("Handle", lambda robot: robot.item_click("**/##turns"))
-    assert project.document.key(24).pose.targets[1].rotation is None
+    assert project.figure.key(24).pose.targets[1].rotation is None
 
 
 def test_anchor_goes_to_the_handle_and_back(window, project, tab):
     editing.select(window.session, frozenset({0}))
     tab("Handle", lambda robot: robot.item_click("**/###anchor here"))
-    assert project.figure.anchor == project.document.handle(0).position
+    assert project.figure.anchor == project.figure.handle(0).position
     tab("Handle", lambda robot: robot.item_click("**/###clear anchor"))
     assert project.figure.anchor is None
 
@@ -140,7 +140,7 @@ def test_tighter_bounds_bring_keys_in_as_one_step(window, project, tab):
     assert project.figure.bounds.k == pytest.approx(bound, abs=1e-6)
     assert largest(project, "k") <= bound
     assert all(key.pose.certificate.certified for key in project.figure.keys)
-    assert project.document.key(0).pose is before.key(0).pose
+    assert project.figure.key(0).pose is before.key(0).pose
     assert project.history.undo_label == "Set bounds"
     editing.undo(window.session)
     assert project.document is before
@@ -171,10 +171,10 @@ def test_knob_that_is_dragged_sets_the_bound_once(window, project, tab):
 
 def test_pose_that_finds_no_way_in_stays_and_is_told(window, project, tab):
     posing.remove_handles(window.session, frozenset({0, 1}))
-    pose = project.document.key(24).pose
+    pose = project.figure.key(24).pose
     bound = round(0.5 * largest(project, "k"), 2)
     tab("Deform", lambda robot: robot.item_input_value("**/##bound k", bound))
-    kept = project.document.key(24).pose
+    kept = project.figure.key(24).pose
     assert kept.phi is pose.phi
     assert not kept.certificate.certified
     assert any("frame 24" in toast.text for toast in window.session.toasts)
@@ -200,12 +200,12 @@ def test_heat_map_and_curves_follow_the_document(window, project, tab):
     tab("Distortion", act)
     assert window.session.overlays.heat_map == "sigma_a"
     curves = project.curves
-    assert curves.document is project.document
+    assert curves.clip is project.document
     assert curves.k_share.max() <= 1 + 1e-3
     assert curves.k.max() == pytest.approx(largest(project, "k"), rel=0.1)
     editing.edit(window.session, key_commands.move_keys(0, frozenset({24}), 4))
     window.settle()
-    assert project.curves.document is project.document
+    assert project.curves.clip is project.document
     assert project.curves.frames[-1] == 28
 
 
@@ -216,7 +216,7 @@ def test_curves_of_an_older_document_are_not_kept(window, project, tab):
     measuring.keep_up(window.session)
     editing.edit(window.session, key_commands.move_keys(0, frozenset({28}), 4))
     window.settle()
-    assert project.curves.document is project.document is not older
+    assert project.curves.clip is project.document is not older
 
 
 @pytest.mark.usefixtures("project")
@@ -286,7 +286,7 @@ def test_rebuilt_domain_keeps_a_pose_that_no_handle_holds(window, project, tab):
 
     tab("Mesh", act)
     assert project.figure.meshing.triangles == 4_000
-    certificate = project.document.key(24).pose.certificate
+    certificate = project.figure.key(24).pose.certificate
     assert certificate.k == pytest.approx(STRETCH, rel=0.01)
 
 

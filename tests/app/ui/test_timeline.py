@@ -19,7 +19,7 @@ FRAMES = (0, 12, 24, 48)
 
 def waving_document():
     """A disc that turns to and fro: four keys, two handles, of which one lags at frame 24."""
-    empty = disc_document()
+    (empty,) = disc_document().figures
     rest = empty.keys[0].pose
     handles = (
         Handle(id=0, name="left", position=CENTRE - RADIUS / 2),
@@ -33,8 +33,8 @@ def waving_document():
             targets[1] = Target(position=CENTRE + RADIUS)
         phi = CENTRE + (empty.domain.cage - CENTRE) * turn
         keys.append(Keyframe(frame=frame, pose=replace(rest, targets=targets, phi=phi)))
-    return replace(
-        empty, handles=handles, next_handle=2, keys=tuple(keys), frames=FrameRange(0, 60)
+    return altered(
+        disc_document(), handles=handles, next_handle=2, keys=tuple(keys), frames=FrameRange(0, 60)
     )
 
 

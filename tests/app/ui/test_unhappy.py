@@ -119,9 +119,9 @@ def test_undo_takes_a_loose_pose_back_first(window, bent):
     before = bent.document
     posing.wish(window.session, {1: Target(position=place_of(bent, 1) - 80j)})
     window.settle()
-    assert bent.loose is not None
+    assert bent.unkeyed is not None
     window.run(lambda robot: press(robot, window.Key.mod_ctrl, window.Key.z))
-    assert bent.loose is None
+    assert bent.unkeyed is None
     assert bent.document is before
 
 
@@ -138,7 +138,7 @@ def test_deleting_a_handle_while_it_is_dragged(window, bent):
 
     window.run(play)
     window.settle()
-    assert [handle.id for handle in bent.document.handles] == [0]
+    assert [handle.id for handle in bent.document.figures[0].handles] == [0]
     assert bent.selected == frozenset()
     assert bent.grab is None
 
@@ -186,13 +186,13 @@ def test_other_changes_leave_the_solver_at_work(window, bent):
     keys.set_fps(window.session, 12.0)
     assert bent.grab is not None
     window.settle()
-    assert bent.document.lags(bent.document.key(24).pose)[1] < 10
+    assert bent.document.figures[0].lags(bent.document.figures[0].key(24).pose)[1] < 10
 
 
 def test_bounds_and_places_that_change_end_the_pull(window, bent):
     for command in (
         handle_commands.weigh_handle(0, 1, 3.0),
-        handle_commands.move_handle(0, 1, bent.document.handle(1).position - 30),
+        handle_commands.move_handle(0, 1, bent.document.figures[0].handle(1).position - 30),
     ):
         posing.wish(window.session, {1: Target(position=place_of(bent, 1) - 20j)})
         editing.edit(window.session, command)
@@ -243,13 +243,13 @@ def test_loose_pose_stays_when_a_handle_is_deleted_by_its_key(window, bent):
     window.act(viewing.toggle_auto_key)
     posing.wish(window.session, {1: Target(position=place_of(bent, 1) - 80j)})
     window.settle()
-    before = bent.shown.positions
+    before = bent.puppet.shown.positions
     editing.select(window.session, frozenset({0}))
     window.run(lambda robot: press(robot, window.Key.delete))
     window.settle()
-    assert [handle.id for handle in bent.document.handles] == [1]
-    assert bent.loose is not None
-    np.testing.assert_allclose(bent.shown.positions, before, rtol=0, atol=1e-9)
+    assert [handle.id for handle in bent.document.figures[0].handles] == [1]
+    assert bent.unkeyed is not None
+    np.testing.assert_allclose(bent.puppet.shown.positions, before, rtol=0, atol=1e-9)
 
 
 def test_loose_pose_over_a_cage_that_is_rebuilt_is_given_up(window, bent):
@@ -257,14 +257,14 @@ def test_loose_pose_over_a_cage_that_is_rebuilt_is_given_up(window, bent):
     window.act(viewing.toggle_auto_key)
     posing.wish(session, {1: Target(position=place_of(bent, 1) - 80j)})
     window.settle()
-    cage = bent.document.domain.cage
+    cage = bent.document.figures[0].domain.cage
     viewing.draft_meshing(session, Meshing(triangles=1_500, detail="fine"))
     rebuilding.rebuild(session)
     window.settle()
-    assert len(bent.document.domain.cage) != len(cage)
-    assert bent.loose is None
+    assert len(bent.document.figures[0].domain.cage) != len(cage)
+    assert bent.unkeyed is None
     assert bent.meshing is None
-    assert bent.shown.is_current
+    assert bent.puppet.shown.is_current
 
 
 # The solver at its bounds.
@@ -279,7 +279,7 @@ def test_handle_out_of_reach_is_told_and_freed_again(window, bent, monkeypatch):
     rebuilding.choose_bounds(session, Bounds(k=0.3, sigma_a=1.3, sigma_b=0.8))
     window.settle()
     start = place_of(bent, 1)
-    far = start + 0.5 * bent.picture.size[0]
+    far = start + 0.5 * bent.puppet.picture.size[0]
 
     def pull(robot, end, steps=4):
         robot.mouse_move_to_pos(window.point(place_of(bent, 1)))
@@ -292,13 +292,13 @@ def test_handle_out_of_reach_is_told_and_freed_again(window, bent, monkeypatch):
     window.frames(2)
     window.run(lambda robot: pull(robot, far))
     window.settle()
-    pose = bent.document.key(0).pose
+    pose = bent.document.figures[0].key(0).pose
     assert pose.certificate.certified
-    assert bent.document.bounds.allow(
+    assert bent.document.figures[0].bounds.allow(
         k=pose.certificate.k, sigma_a=pose.certificate.sigma_a, sigma_b=pose.certificate.sigma_b
     )
     np.testing.assert_allclose(pose.targets[1].position, far, rtol=0, atol=10)
-    assert bent.shown.lags[1] > 100
+    assert bent.puppet.shown.lags[1] > 100
 
     wishes, written = [], []
     mark, text = canvas.mark_handles, imgui.text_colored
@@ -324,8 +324,8 @@ def test_handle_out_of_reach_is_told_and_freed_again(window, bent, monkeypatch):
 
     window.run(lambda robot: pull(robot, start))
     window.settle()
-    assert bent.shown.lags[1] < 5
-    assert bent.document.key(0).pose.certificate.certified
+    assert bent.puppet.shown.lags[1] < 5
+    assert bent.document.figures[0].key(0).pose.certificate.certified
 
 
 def test_bound_that_bounds_nothing_is_refused_in_words(window, bent):
@@ -354,11 +354,11 @@ def test_scrubbing_while_the_worker_builds(window, bent, monkeypatch):
             window.act(playback.scrub, frame)
             window.frames(2)
             assert playback.current_frame(window.session, bent) == frame
-            assert bent.shown is not None
-        assert not bent.shown.is_current
+            assert bent.puppet.shown is not None
+        assert not bent.puppet.shown.is_current
     window.settle()
-    assert bent.shown.is_current
-    assert bent.shown.frame == 12
+    assert bent.puppet.shown.is_current
+    assert bent.puppet.shown.frame == 12
 
 
 def test_poses_that_follow_each_other_twice_are_prepared_once(window, bent):
@@ -371,8 +371,8 @@ def test_poses_that_follow_each_other_twice_are_prepared_once(window, bent):
     for _ in range(20):
         window.frames()
         window.session.jobs.settle()
-    assert bent.sketch.knows(bent.document)
-    assert len(bent.sketch.pieces) == 2
+    assert bent.puppet.coarse.knows(bent.clip)
+    assert len(bent.puppet.coarse.ready) == 2
 
 
 FAILURES = {
@@ -439,11 +439,11 @@ def test_job_that_raises_is_told_once_and_the_window_lives_on(
     window.session.toasts = []
     undo_all(window)
     assert frames_of(bent) == [0]
-    assert bent.document.handles == ()
+    assert bent.document.figures[0].handles == ()
     playback.seek(window.session, 5)
-    posing.add_handle(window.session, complex(*bent.picture.size) / 2)
+    posing.add_handle(window.session, complex(*bent.puppet.picture.size) / 2)
     window.settle()
-    assert bent.shown.is_current
+    assert bent.puppet.shown.is_current
     assert bent.renewal is None
 
 
@@ -483,11 +483,11 @@ def test_results_for_a_closed_project_go_nowhere(window, bent, monkeypatch, kind
     window.settle()
     other = window.session.project
     assert other.name == "s"
-    assert len(other.document.keys) == 1
+    assert len(other.document.figures[0].keys) == 1
     assert other.history.undo_label is None
-    assert other.reach is None or other.reach.source[0] is other.document.domain
-    assert (other.grab, other.renewal, other.loose) == (None, None, None)
-    assert other.shown.is_current
+    assert other.reach is None or other.reach.source[0] is other.document.figures[0].domain
+    assert (other.grab, other.renewal, other.unkeyed) == (None, None, None)
+    assert other.puppet.shown.is_current
     assert bent.document is closed
     assert closed.handles == before.handles
     assert [toast for toast in window.session.toasts if toast.tone == "error"] == []

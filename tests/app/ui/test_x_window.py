@@ -195,7 +195,7 @@ def bar(window):
 
 
 def place_of(window, bar, share):
-    width, height = bar.picture.size
+    width, height = bar.puppet.picture.size
     point = window.point(complex(share.real * width, (0.5 + share.imag) * height))
     return int(point.x), int(point.y)
 
