@@ -16,7 +16,7 @@ from app.editor.session import ExportRun, FileDialog, Project, Question, Session
 from app.errors import LissomError
 from app.export import ExportRequest, check_request, plan_export, replaced_files, suited
 from app.export_formats import EXPORT_FORMATS
-from app.motion import Animation, Box, Extent, measure_extent, extent_source
+from app.motion import Animation, Box, Extent, extent_source, measure_extent
 
 PREPARING, MEASURING = "Preparing the export", "Measuring the motion"
 
@@ -193,9 +193,7 @@ def keep_reach(session: Session) -> None:
     motions = {figure: puppet.coarse for figure, puppet in project.puppets.items()}
     source = extent_source(document)
     is_known = project.reach is not None and project.reach.source == source
-    is_prepared = all(
-        motion.knows(clip_of(document, figure)) for figure, motion in motions.items()
-    )
+    is_prepared = all(motion.knows(clip_of(document, figure)) for figure, motion in motions.items())
     if is_known or not is_prepared or project.unreachable == source:
         return
 
