@@ -56,7 +56,7 @@ def test_a_motion_that_leaves_the_frame_is_told_once_it_is_posed(gl, document):
 
 def test_a_drawing_that_fills_its_canvas_does_not_leave_it(gl):
     full = still_document(np.full((600, 800, 4), 255, dtype=np.uint8))
-    assert full.domain.mesh.vertices.real.min() < -2
+    assert full.figures[0].domain.mesh.vertices.real.min() < -2
     assert notices(gl, full, Sliding(full, 0), framing="canvas") == ()
 
 
