@@ -48,7 +48,7 @@ def facts(session: Session) -> list[Fact]:
     if project is not None:
         distortion = _distortion(project)
         facts += [distortion] if distortion else []
-        count = len(project.document.handles)
+        count = len(project.figure.handles)
         facts.append(Fact(f"{count} handle{'' if count == 1 else 's'}", "Handles of this drawing"))
     if session.solver_seconds:
         milliseconds = 1e3 * session.solver_seconds
@@ -58,17 +58,17 @@ def facts(session: Session) -> list[Fact]:
 
 def _distortion(project: Project) -> Fact | None:
     """Return the largest distortion that is shown, of the kind that is nearest to its bound."""
-    shown, curves, document = project.shown, project.curves, project.document
+    shown, curves = project.puppet.shown, project.curves
     if shown is None:
         return None
     if shown.pose is not None:
         proven = shown.pose.certificate
         extremes = Extremes(proven.k, proven.sigma_a, proven.sigma_b)
-    elif curves is not None and curves.document is document:
+    elif curves is not None and curves.clip == project.clip:
         extremes = curves.extremes_at(shown.frame)
     else:
         return None
-    uses = extremes.uses(document.bounds)
+    uses = extremes.uses(project.figure.bounds)
     most = max(uses, key=lambda use: use.share)
     return Fact(
         f"{WORDS[most.name]} {most.value:.2f}, limit {most.bound:.2f}",

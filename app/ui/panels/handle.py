@@ -182,7 +182,7 @@ def _turn(look: Look, project: Project, handle: Handle, target: Target) -> list[
 
 def _point(look: Look, project: Project, text: str, place: complex, hint: str) -> complex | None:
     """Draw two fields for a place, as people count pixels: y down; return it if one was entered."""
-    height = project.picture.size[1]
+    height = project.document.canvas[1]
     label(look, text)
     gap = imgui.get_style().item_inner_spacing.x
     each = (imgui.get_content_region_avail().x - gap) / 2

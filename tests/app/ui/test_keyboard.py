@@ -63,12 +63,12 @@ def test_after_a_question_arrows_nudge_again(window, asked):
     del asked
     press(window, imgui.Key.escape)
     project = window.open(sample_images() / "bar.png")
-    place = complex(*project.picture.size) / 2
+    place = complex(*project.puppet.picture.size) / 2
     posing.add_handle(window.session, place)
     window.settle()
     press(window, imgui.Key.up_arrow)
     window.settle()
-    assert project.document.keys[0].pose.targets[0].position == place + 1j
+    assert project.figure.keys[0].pose.targets[0].position == place + 1j
 
 
 def count_menus():
@@ -85,11 +85,11 @@ def test_escape_closes_a_menu_and_the_next_click_counts(window):
         robot.key_press(int(imgui.Key.escape))
         robot.yield_()
         assert count_menus() == 0
-        robot.mouse_move_to_pos(window.point(complex(*project.picture.size) / 2))
+        robot.mouse_move_to_pos(window.point(complex(*project.puppet.picture.size) / 2))
         robot.mouse_click(0)
 
     window.run(play)
-    assert len(project.document.handles) == 1
+    assert len(project.figure.handles) == 1
 
 
 def test_escape_closes_a_menu_with_those_that_lead_to_it(window):

@@ -159,7 +159,7 @@ def _blue(picture):
 
 def test_a_gesture_is_as_far_on_a_finer_screen(window, fine_screen, bar):
     fine_screen(density=2.0)
-    start = complex(bar.shown.handle_places[1])
+    start = complex(bar.puppet.shown.handle_places[1])
 
     def drag(robot):
         robot.mouse_move_to_pos(window.point(start))
@@ -169,7 +169,7 @@ def test_a_gesture_is_as_far_on_a_finer_screen(window, fine_screen, bar):
 
     window.run(drag)
     window.settle()
-    target = bar.document.keys[0].pose.targets[1]
+    target = bar.document.figures[0].keys[0].pose.targets[1]
     assert abs(target.position - (start + 100j)) < 2
 
 
@@ -199,7 +199,7 @@ def test_the_title_names_the_file_and_marks_changes(window, tmp_path):
     assert window_title(session) == "Lissom"
     window.open(sample_images() / "bar.png")
     assert window_title(session) == "bar – Lissom"
-    posing.add_handle(session, complex(*session.project.picture.size) / 2)
+    posing.add_handle(session, complex(*session.project.puppet.picture.size) / 2)
     assert window_title(session) == "bar* – Lissom"
     saving.write(session, tmp_path / "posed.lissom", None)
     window.settle()
@@ -236,7 +236,7 @@ def test_a_drawing_stands_out_from_the_backdrop(window, tmp_path, theme, level, 
     window.frames(3)
     picture = window.picture()
     assert seen(10 + 100j) == 128
-    assert project.picture.size == (200, 200)
+    assert project.puppet.picture.size == (200, 200)
 
 
 def _level(theme):

@@ -396,8 +396,8 @@ def test_each_widget_makes_a_step_of_its_own(window, project, tab):
 
     before = project.document
     tab("Handle", change)
-    assert project.document.handle(0).name == "paw"
-    assert project.document.handle(0).weight > 10
+    assert project.figure.handle(0).name == "paw"
+    assert project.figure.handle(0).weight > 10
     while project.history.undo_label is not None and project.document is not before:
         steps.append(project.history.undo_label)
         editing.undo(window.session)
