@@ -49,11 +49,11 @@ class ExportSettings:
     format : str
         One of `EXPORT_FORMATS`.
     size : tuple of int, optional
-        Width and height in pixels; None takes the picture's.
+        Width and height in pixels; None takes what the framing needs at the drawing's own size.
     background : str
         "transparent" or "#rrggbb".
     framing : str
-        "canvas" shows the picture's own frame, "fit" all of the motion.
+        "fit" shows all of the motion, "canvas" the picture's own frame.
     frames : FrameRange, optional
         None exports the work range, or everything where there is none.
     """
@@ -61,7 +61,7 @@ class ExportSettings:
     format: str = "png"
     size: tuple[int, int] | None = None
     background: str = "transparent"
-    framing: Framing = "canvas"
+    framing: Framing = "fit"
     frames: FrameRange | None = None
 
     def __post_init__(self) -> None:

@@ -140,6 +140,15 @@ def exported_frames(document: Document) -> FrameRange:
     return played
 
 
+def framed_frames(document: Document, exported: FrameRange) -> FrameRange:
+    """Return the frames whose motion an export shows whole where it is fitted into the frame.
+
+    All that play are among them, so that some frames exported anew match those of before.
+    """
+    played = document.played
+    return FrameRange(min(played.first, exported.first), max(played.last, exported.last))
+
+
 def _is_same(document: Document, first: int, second: int) -> bool:
     """Tell whether two frames show the same pose, or two that were solved for the same wishes."""
     return all(

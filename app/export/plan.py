@@ -14,6 +14,7 @@ from app.document import (
     FrameRange,
     exported_frames,
     frame_times,
+    framed_frames,
 )
 from app.errors import LissomError
 from app.export.destination import check_destination, frame_names, left_frames, replaced
@@ -158,7 +159,7 @@ def plan_export(
     times = tuple(frame_times(document, frames, request.fps))
     is_fitted = settings.framing == "fit"
     rest = np.concatenate([figure.domain.mesh.vertices for figure in document.figures])
-    reach = _reach(poses, times) if is_fitted else box_around(rest)
+    reach = _reach(poses, framed_frames(document, frames)) if is_fitted else box_around(rest)
     plan = ExportPlan(
         out=request.out,
         format=settings.format,
@@ -176,14 +177,14 @@ def _frames(document: Document, settings: ExportSettings) -> FrameRange:
     return settings.frames or exported_frames(document)
 
 
-def _reach(poses: Mapping[int, Poses], times: tuple[float, ...]) -> Box:
-    """Return the box around all vertices at all times."""
+def _reach(poses: Mapping[int, Poses], frames: FrameRange) -> Box:
+    """Return the box around all vertices in all frames."""
     corners: list[complex] = []
-    for time in times:
+    for time in range(frames.first, frames.last + 1):
         positions = [figure.positions(time) for figure in poses.values()]
         corners += box_around(np.concatenate(positions))
         if not np.isfinite(corners[-2:]).all():
-            raise LissomError(f"frame {time:g} cannot be drawn: its points are not all finite")
+            raise LissomError(f"frame {time} cannot be drawn: its points are not all finite")
     return box_around(np.array(corners))
 
 

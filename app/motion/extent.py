@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from app.document import Document, clip_of, exported_frames
+from app.document import Document, clip_of, exported_frames, framed_frames
 from app.motion.prepared import Motion
 from engine.arrays import Complexes
 
@@ -44,7 +44,8 @@ def extent_source(document: Document) -> tuple[object, ...]:
     motions = [
         (figure.domain, figure.keys, figure.anchor, figure.variant) for figure in document.figures
     ]
-    return (*motions, document.frames, document.loop, exported_frames(document))
+    frames = framed_frames(document, exported_frames(document))
+    return (*motions, document.frames, document.loop, frames)
 
 
 def measure_extent(document: Document, motions: Mapping[int, Motion]) -> Extent | None:
@@ -56,7 +57,7 @@ def measure_extent(document: Document, motions: Mapping[int, Motion]) -> Extent 
     motions : mapping of int to Motion
         One for each figure, by its id.
     """
-    frames = exported_frames(document)
+    frames = framed_frames(document, exported_frames(document))
     corners: list[complex] = []
     for figure in document.figures:
         clip = clip_of(document, figure.id)

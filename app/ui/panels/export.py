@@ -27,7 +27,7 @@ from app.ui.style import (
 )
 
 BACKGROUNDS = (("transparent", "Transparent"), ("colour", "Colour"))
-FRAMINGS = (("canvas", "Canvas"), ("fit", "All motion"))
+FRAMINGS = (("fit", "All motion"), ("canvas", "Canvas"))
 RANGES = (("played", "What plays"), ("own", "From – to"))
 WHITE = "#ffffff"
 LARGEST = 65_535

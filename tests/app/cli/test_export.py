@@ -20,7 +20,7 @@ from engine.arrays import Bytes
 
 @pytest.fixture(scope="module")
 def document():
-    return moving_document()
+    return changed(moving_document(), export=ExportSettings(framing="canvas"))
 
 
 @pytest.fixture
@@ -67,6 +67,22 @@ def test_the_first_key_comes_out_as_the_picture_and_the_shape_moves(project, tmp
     assert (np.diff(away) > 0).all()
     with Image.open(out / "frame_0000.png") as image:
         assert image.mode == "RGBA"
+
+
+def test_a_new_project_is_exported_whole_whatever_its_motion(tmp_path, capsys):
+    project = tmp_path / "whole.lissom"
+    save_project(project, moving_document())
+    export(project, "--out", tmp_path / "frames")
+    assert "120 × 90" not in capsys.readouterr().out
+    for path in (tmp_path / "frames").iterdir():
+        alpha = pixels(path)[..., 3]
+        assert alpha.any()
+        assert not alpha[[0, -1]].any()
+        assert not alpha[:, [0, -1]].any()
+    part = tmp_path / "part"
+    export(project, "--out", part, "--frames", "2:4")
+    whole = contents(tmp_path / "frames")
+    assert contents(part) == {name: whole[name] for name in contents(part)}
 
 
 def test_two_exports_are_the_same_bytes(project, tmp_path):
@@ -182,7 +198,9 @@ def test_bad_projects_are_refused(tmp_path, capsys):
 
 def test_an_interrupted_export_leaves_whole_frames_only(tmp_path):
     project, out = tmp_path / "long.lissom", tmp_path / "frames"
-    save_project(project, moving_document(last=3000))
+    save_project(
+        project, changed(moving_document(last=3000), export=ExportSettings(framing="canvas"))
+    )
     terminal, its_end = pty.openpty()
     words = [sys.executable, "-m", "app", "export", str(project), "--out", str(out)]
     with subprocess.Popen(words, stderr=its_end, stdout=subprocess.PIPE) as process:

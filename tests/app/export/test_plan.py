@@ -33,8 +33,25 @@ def plan_of(
     return plan_export(document, request, {0: poses or Sliding(document, 0)})
 
 
-def test_by_default_every_frame_shows_the_pictures_own_canvas(document, tmp_path):
-    plan = plan_of(document, tmp_path / "frames")
+def test_by_default_the_frames_show_all_of_the_motion(document, tmp_path):
+    poses = Sliding(document, 12)
+    plan = plan_of(document, tmp_path / "frames", poses)
+    assert plan.view == plan_of(document, tmp_path / "frames", poses, framing="fit").view
+    pixels = plan.view.to_pixels(np.concatenate([poses.positions(time) for time in plan.times]))
+    assert 0 < pixels.real.min() < pixels.real.max() < plan.view.size[0]
+
+
+def test_frames_of_a_part_are_framed_as_those_of_the_whole(document, tmp_path):
+    poses = Sliding(document, 12)
+    whole = plan_of(document, tmp_path / "frames", poses).view
+    assert plan_of(document, tmp_path / "frames", poses, frames=FrameRange(3, 3)).view == whole
+    assert plan_of(document, tmp_path / "frames", poses, fps=10.0).view == whole
+    beyond = replace(document, work=FrameRange(2, 4))
+    assert plan_of(beyond, tmp_path / "frames", poses, frames=FrameRange(0, 10)).view == whole
+
+
+def test_frames_may_show_the_pictures_own_canvas(document, tmp_path):
+    plan = plan_of(document, tmp_path / "frames", framing="canvas")
     assert plan.view.size == SIZE
     assert plan.view.scale == 1
     assert plan.view.centre == complex(*SIZE) / 2

@@ -8,7 +8,7 @@ from PIL import Image
 
 from app.document.commands.figure_commands import set_anchor
 from app.document.keyframe import Target
-from app.document.settings import Meshing
+from app.document.settings import ExportSettings, Meshing
 from app.editor.action import do
 from app.editor.actions import editing, exporting, keys, playback, posing, saving
 from app.solving.drag import Drag
@@ -93,6 +93,7 @@ def test_a_person_makes_an_animation_and_takes_it_back(window, tmp_path):
     window.settle()
     assert project.history.is_saved
     out = tmp_path / "frames"
+    exporting.set_export(session, ExportSettings(framing="canvas"))
     exporting.start(session, out)
     while session.export is not None or session.jobs.kinds:
         window.settle()
@@ -104,7 +105,7 @@ def test_a_person_makes_an_animation_and_takes_it_back(window, tmp_path):
     np.testing.assert_array_equal(last[opaque], source[opaque])
     assert "Open folder" in [toast.label for toast in session.toasts]
 
-    for _ in range(3):
+    for _ in range(4):
         window.run(lambda robot: robot.key_press(int(window.Key.mod_ctrl) | int(window.Key.z)))
     assert project.document is first
     reopened = window.open(path)
