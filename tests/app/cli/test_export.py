@@ -20,7 +20,7 @@ from engine.arrays import Bytes
 
 @pytest.fixture(scope="module")
 def document():
-    return changed(moving_document(), export=ExportSettings(framing="canvas"))
+    return altered(moving_document(), export=ExportSettings(framing="canvas"))
 
 
 @pytest.fixture
@@ -199,7 +199,7 @@ def test_bad_projects_are_refused(tmp_path, capsys):
 def test_an_interrupted_export_leaves_whole_frames_only(tmp_path):
     project, out = tmp_path / "long.lissom", tmp_path / "frames"
     save_project(
-        project, changed(moving_document(last=3000), export=ExportSettings(framing="canvas"))
+        project, altered(moving_document(last=3000), export=ExportSettings(framing="canvas"))
     )
     terminal, its_end = pty.openpty()
     words = [sys.executable, "-m", "app", "export", str(project), "--out", str(out)]
