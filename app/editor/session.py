@@ -131,12 +131,16 @@ class Pulling:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Turning:
-    """The pointer turns the shape around a handle, from an angle of `turn` radians on."""
+    """The pointer turns the shape around a handle, from an angle of `turn` radians on.
+
+    A click, which turns nothing, may delete the handle.
+    """
 
     identity: int
     centre: complex
     start: complex
     turn: float
+    deletes: bool
     moved: bool = False
 
 

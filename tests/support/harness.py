@@ -16,6 +16,9 @@ from app.editor.session import Project, Session
 from app.render.gpu.context import create_context
 from app.render.renderer import Renderer
 from app.storage.preferences import Preferences
+from app.ui.style import FONT_SIZE
+from app.ui.viewport.ring import RADIUS
+from app.ui.viewport.viewport import GRIP
 from app.ui.window.offscreen import Offscreen
 from app.ui.window.window import Window
 
@@ -86,6 +89,18 @@ class Harness:
     def point(self, place: complex) -> ImVec2:
         """Return where a place of the drawing's plane is on the screen."""
         return self._screen.point(place)
+
+    def ring(self, project: Project) -> float:
+        """Return the radius of the ring around the selected handle, in pixels of the picture."""
+        return RADIUS * self._em / project.view(self.session.screen).scale
+
+    def grip(self, project: Project) -> float:
+        """Return the radius within which a handle is grabbed, in pixels of the picture."""
+        return GRIP * self._em / project.view(self.session.screen).scale
+
+    @property
+    def _em(self) -> float:
+        return FONT_SIZE * self.session.preferences.scale
 
     def show_tab(self, title: str) -> None:
         """Bring a panel to the front."""

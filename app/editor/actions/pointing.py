@@ -7,6 +7,7 @@ from app.document import Target
 from app.editor.actions import editing, posing
 from app.editor.session import Boxing, Gesture, Project, Pulling, Session, Turning
 
+LEAST_ARM = 12.0  # pixels of the screen from a handle, within which a press has no direction
 CLICK = 3.0  # pixels of the screen that a click may wander
 
 
@@ -35,6 +36,11 @@ def move(session: Session, place: complex) -> None:
         return
     if not gesture.moved and not _is_away(session, project, gesture.start, place):
         return
+    if isinstance(gesture, Turning) and not gesture.moved:
+        arm = abs(gesture.start - gesture.centre) * project.view(session.screen).scale
+        if arm < LEAST_ARM:
+            # From so near, the direction in which it leaves is where the turn begins.
+            gesture = replace(gesture, start=place)
     session.pointer = gesture = replace(gesture, moved=True)
     if isinstance(gesture, Pulling):
         known = {handle.id for handle in project.figure.handles}
@@ -65,7 +71,7 @@ def end(session: Session, place: complex) -> None:
         case Boxing():
             inside = _inside(project, gesture.start, place)
             select(session, inside | project.selected if gesture.keeps else inside)
-        case Turning(moved=False):
+        case Turning(moved=False, deletes=True):
             posing.remove_handles(session, frozenset({gesture.identity}))
         case Turning() | Pulling():
             posing.let_go(session)

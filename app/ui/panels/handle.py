@@ -9,6 +9,7 @@ from imgui_bundle import icons_fontawesome_6 as icons
 from app.document import Handle, Target, figure_commands, handle_commands
 from app.editor import Action, Project, Session, do
 from app.editor.actions import editing, posing
+from app.ui.shortcuts import with_key
 from app.ui.style import (
     FILL,
     Look,
@@ -24,6 +25,7 @@ from app.ui.style import (
     tip,
 )
 
+CTRL = int(imgui.Key.mod_ctrl)
 MOST_ROWS = 5.5
 WEIGHTS = Scale(left=0.01, right=100.0, logarithmic=True)
 ARRIVED = 1.0  # pixels of the picture within which a handle is where it should be
@@ -221,7 +223,7 @@ def _anchor(look: Look, project: Project, chosen: list[Handle]) -> list[Action]:
     if imgui.button(f"{icons.ICON_FA_ANCHOR}  Follow this handle###anchor here", half):
         actions.append(do(posing.anchor_at, chosen[0].id))
     imgui.end_disabled()
-    tip("Let in-betweens follow the selected handle", "Ctrl+click")
+    tip("Let in-betweens follow the selected handle", with_key(CTRL, "click"))
     imgui.same_line()
     imgui.begin_disabled(figure.anchor is None)
     if imgui.button("Automatic anchor###clear anchor", half):

@@ -32,7 +32,7 @@ GESTURES = (
     Gesture("Arrows, with Shift ×10", "Nudge the selection"),
     Gesture("Middle drag, or Space and drag", "Move the view"),
     Gesture("Wheel", "Zoom at the pointer"),
-    Gesture("Esc", "Take back what is being dragged"),
+    Gesture("Esc", "Cancel a drag"),
     Gesture("Drag a key", "Move it in time"),
     Gesture(with_key(CTRL, "drag a key"), "Copy it"),
     Gesture("Click between keys", "Change the easing"),

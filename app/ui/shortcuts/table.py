@@ -276,7 +276,7 @@ BINDINGS: dict[str, Binding] = {
         repeats=True,
     ),
     "previous key": Binding(
-        label="Previous keyframe",
+        label="Previous key",
         action=do(playback.to_key, -1),
         menu="Time",
         keys=(Key.down_arrow,),
@@ -284,7 +284,7 @@ BINDINGS: dict[str, Binding] = {
         repeats=True,
     ),
     "next key": Binding(
-        label="Next keyframe",
+        label="Next key",
         action=do(playback.to_key, 1),
         menu="Time",
         keys=(Key.up_arrow,),

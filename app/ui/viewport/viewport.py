@@ -8,10 +8,12 @@ from app.editor import Action, Boxing, Project, Pulling, Session, Turning, do
 from app.editor.actions import pointing, posing, viewing
 from app.motion import Shown
 from app.render import View
-from app.ui.shortcuts import BINDINGS
+from app.ui.shortcuts import BINDINGS, with_key
 from app.ui.style import Look, ink, tip
+from app.ui.viewport.ring import Ring, draw_ring
 from engine.geometry import contains
 
+CTRL, ALT = int(imgui.Key.mod_ctrl), int(imgui.Key.mod_alt)
 ZOOM_STEP = 1.15  # a notch of the wheel
 GRIP = 0.75  # em: radius within which a handle is grabbed
 SMALLEST_ZOOM, LARGEST_ZOOM = 0.02, 64.0
@@ -52,13 +54,18 @@ def draw(session: Session, look: Look, texture: int | None) -> list[Action]:
     imgui.invisible_button("canvas", room, _ANY_BUTTON)
     on_canvas = imgui.is_item_hovered()
     over = imgui.is_window_hovered() or imgui.is_item_active()
-    actions += _press_canvas(session, stage)
+    ring = _ring(session, stage)
+    on_ring = ring is not None and on_canvas and hovered is None and ring.is_pointed(look)
+    actions += _press_canvas(session, stage, on_ring=on_ring)
     actions += _navigate(stage, over=over)
     actions += over_handles
     actions += _go_on(session, stage)
     if hovered != session.hovered:
         actions.append(do(pointing.hover, hovered))
+    if ring is not None:
+        draw_ring(look, ring, is_pointed=on_ring and session.pointer is None)
     hint = _hint(session, stage, hovered) if on_canvas or hovered is not None else ""
+    hint = "Drag to turn the shape around the handle" if on_ring else hint
     if hint != session.hint:
         actions.append(do(pointing.explain, hint))
     actions += _badges(look, project, corner, room)
@@ -102,12 +109,36 @@ class _Stage:
         return bool(contains(outline, np.array([place]))[0])
 
 
-def _press_canvas(session: Session, stage: _Stage) -> list[Action]:
+def _ring(session: Session, stage: _Stage) -> Ring | None:
+    """Return the ring around the one handle that is selected, where it can be turned."""
+    project, gesture = stage.project, session.pointer
+    is_held = isinstance(gesture, Turning)
+    if not session.overlays.handles or project.playhead.since is not None:
+        return None
+    if len(project.selected) != 1 or not (gesture is None or is_held):
+        return None
+    handles = stage.shown.clip.figure.handles
+    found = zip(handles, stage.shown.handle_places, stage.shown.handle_turns, strict=True)
+    for handle, place, turn in found:
+        if handle.id in project.selected:
+            swept = 0.0
+            if isinstance(gesture, Turning):
+                wish = project.grab.targets[handle.id].rotation if project.grab else None
+                turn = gesture.turn if wish is None else wish  # noqa: PLW2901 - what is wished
+                swept = turn - gesture.turn
+            return Ring(stage.point(complex(place)), turn, is_held, swept)
+    return None
+
+
+def _press_canvas(session: Session, stage: _Stage, *, on_ring: bool) -> list[Action]:
     if not imgui.is_item_activated() or not imgui.is_mouse_clicked(imgui.MouseButton_.left):
         return []
     if imgui.is_key_down(imgui.Key.space):
         return []
     place = stage.pointer
+    if on_ring:
+        (identity,) = stage.project.selected
+        return [do(pointing.begin, _turning(stage, identity, deletes=False))]
     is_on_shape = stage.is_on_shape(place)
     if is_on_shape and imgui.get_io().key_ctrl:
         return [do(posing.put_anchor, place)]
@@ -152,14 +183,14 @@ def _handles(session: Session, look: Look, stage: _Stage) -> tuple[int | None, l
         if imgui.is_item_hovered() or imgui.is_item_active():
             hovered = handle.id
         if imgui.is_item_activated() and imgui.is_mouse_clicked(imgui.MouseButton_.left):
-            actions += _press_handle(stage, handle.id, complex(place))
+            actions += _press_handle(stage, handle.id)
         if imgui.is_item_clicked(imgui.MouseButton_.right):
             imgui.open_popup(f"menu of handle {handle.id}")
         actions += _menu(stage, handle.id)
     return hovered, actions
 
 
-def _press_handle(stage: _Stage, identity: int, place: complex) -> list[Action]:
+def _press_handle(stage: _Stage, identity: int) -> list[Action]:
     io = imgui.get_io()
     selected = stage.project.selected
     if io.key_ctrl:
@@ -168,16 +199,22 @@ def _press_handle(stage: _Stage, identity: int, place: complex) -> list[Action]:
         return [do(pointing.select, selected ^ {identity})]
     pointer = stage.pointer
     if io.key_alt:
-        index = [handle.id for handle in stage.shown.clip.figure.handles].index(identity)
-        turning = Turning(
-            identity=identity,
-            centre=place,
-            start=pointer,
-            turn=stage.shown.handle_turns[index],
-        )
+        turning = _turning(stage, identity, deletes=True)
         return [do(pointing.select, frozenset({identity})), do(pointing.begin, turning)]
     chosen = selected if identity in selected else frozenset({identity})
     return [do(pointing.select, chosen), do(pointing.begin, Pulling(start=pointer))]
+
+
+def _turning(stage: _Stage, identity: int, *, deletes: bool) -> Turning:
+    shown = stage.shown
+    index = [handle.id for handle in shown.clip.figure.handles].index(identity)
+    return Turning(
+        identity=identity,
+        centre=complex(shown.handle_places[index]),
+        start=stage.pointer,
+        turn=shown.handle_turns[index],
+        deletes=deletes,
+    )
 
 
 def _menu(stage: _Stage, identity: int) -> list[Action]:
@@ -187,11 +224,11 @@ def _menu(stage: _Stage, identity: int) -> list[Action]:
     handle = stage.project.figure.handle(identity)
     target = stage.shown.pose.targets.get(identity) if stage.shown.pose else None
     item = imgui.internal.menu_item_ex  # as menu_item_simple, with icons in a column
-    if item("Delete", icons.ICON_FA_TRASH, "Alt+click"):
+    if item("Delete", icons.ICON_FA_TRASH, with_key(ALT, "click")):
         actions.append(do(posing.remove_handles, frozenset({identity})))
     is_anchor = handle.position == stage.project.figure.anchor
     label = "Automatic anchor" if is_anchor else "Make it the anchor"
-    if item(label, icons.ICON_FA_ANCHOR, "Ctrl+click"):
+    if item(label, icons.ICON_FA_ANCHOR, with_key(CTRL, "click")):
         actions.append(do(posing.anchor_at, identity))
     is_turned = target is not None and target.rotation is not None
     if item("Let it turn freely", icons.ICON_FA_ROTATE, enabled=is_turned):
@@ -224,11 +261,12 @@ def _hint(session: Session, stage: _Stage, hovered: int | None) -> str:
         return "Space stops"
     if hovered is not None:
         name = next(h.name for h in stage.shown.clip.figure.handles if h.id == hovered)
-        return f"{name}: drag to pose, Alt+drag to turn, Ctrl+click for the anchor"
+        turn, anchor = with_key(ALT, "drag"), with_key(CTRL, "click")
+        return f"{name}: drag to pose, {turn} to turn, {anchor} for the anchor"
     if not session.overlays.handles:
         return "The handles are hidden: H shows them"
     if stage.is_on_shape(stage.pointer):
-        return "Click to add a handle, Ctrl+click to put the anchor here"
+        return f"Click to add a handle, {with_key(CTRL, 'click')} to put the anchor here"
     return "Drag to select, wheel to zoom, middle drag to move the view"
 
 

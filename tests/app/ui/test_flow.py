@@ -333,7 +333,6 @@ def test_inserting_a_key_where_there_is_one_says_so(window, bar):
 
 
 def test_keys_of_the_pointer(window, bar):
-    session = window.session
     places = handle_places(bar)
 
     def play(robot):
@@ -368,27 +367,91 @@ def test_keys_of_the_pointer(window, bar):
     window.run(alt_click)
     assert [handle.id for handle in bar.document.figures[0].handles] == [0]
 
-    low, high = complex(-20, -20), complex(*bar.puppet.picture.size) * 0.5 + 300j
-    window.run(lambda robot: drag(robot, window, low + 600j, high - 900j))
+
+def test_a_box_selects_the_handles_in_it(window, bar):
+    session = window.session
+    left, right = handle_places(bar).values()
+    editing.select(session, frozenset())
+    side, above = 0.05 * bar.puppet.picture.size[0], 1j * bar.puppet.picture.size[1]
+
+    def span(start, end, key=None):
+        window.run(lambda robot: drag(robot, window, start, end, key=key))
+
+    span(left - 2 * side + above, left - side - above)
+    assert bar.selected == set()
+    span(left - side + above, left + side - above)
+    assert bar.selected == {0}
+    span(right + side - above, right - side + above, window.Key.mod_shift)
+    assert bar.selected == {0, 1}
+    span(right + side - above, right - side + above)
+    assert bar.selected == {1}
+    span(left - side + above, right + side - above)
+    assert bar.selected == {0, 1}
     assert session.pointer is None
+    assert len(bar.figure.handles) == 2
 
 
-def test_alt_drag_turns_the_shape(window, bar):
+def turned(bar, identity=1):
+    """Return the turn that the pose wishes at a handle, in degrees."""
+    return np.degrees(bar.figure.keys[0].pose.targets[identity].rotation)
+
+
+@pytest.mark.parametrize("press", [0.0, 0.5, -0.5j], ids=["centre", "right", "below"])
+@pytest.mark.parametrize("angle", [40.0, -25.0])
+def test_alt_drag_turns_the_shape_as_far_as_the_pointer(window, bar, press, angle):
+    """It turns from where the pointer leaves the handle, wherever on it that was pressed."""
     start = handle_places(bar)[1]
-    reach = 0.03 * bar.puppet.picture.size[0]
+    arm = 0.12 * bar.puppet.picture.size[0]
+    grip = window.grip(bar)
 
     def turn(robot):
-        robot.mouse_move_to_pos(window.point(start))
+        robot.mouse_move_to_pos(window.point(start + press * grip))
         robot.key_down(int(window.Key.mod_alt))
         robot.mouse_down(0)
-        for angle in (0.0, 0.3, 0.6):
-            robot.mouse_move_to_pos(window.point(start + reach * 4 * np.exp(1j * angle)))
+        for share in (0.0, 0.5, 1.0):
+            swept = np.exp(1j * np.radians(share * angle))
+            robot.mouse_move_to_pos(window.point(start + arm * swept))
         robot.mouse_up(0)
         robot.key_up(int(window.Key.mod_alt))
 
     window.run(turn)
     window.settle()
-    assert bar.document.figures[0].keys[0].pose.targets[1].rotation is not None
+    assert turned(bar) == pytest.approx(angle, abs=2)
+    assert np.degrees(bar.puppet.shown.handle_turns[1]) == pytest.approx(angle, abs=6)
+    assert bar.history.undo_label == "Pose"
+
+
+def test_the_ring_turns_the_shape_around_the_selected_handle(window, bar):
+    start = handle_places(bar)[1]
+    radius = window.ring(bar)
+
+    def turn(robot):
+        robot.mouse_move_to_pos(window.point(start + radius))
+        robot.mouse_down(0)
+        for share in (0.5, 1.0):
+            swept = np.exp(1j * np.radians(share * 30))
+            robot.mouse_move_to_pos(window.point(start + 1.5 * radius * swept))
+        robot.mouse_up(0)
+
+    assert bar.selected == {1}
+    window.run(turn)
+    window.settle()
+    assert turned(bar) == pytest.approx(30, abs=2)
+    assert len(bar.figure.handles) == 2
+
+
+def test_a_click_on_the_ring_changes_nothing(window, bar):
+    before = bar.document
+    place = handle_places(bar)[1] + 1j * window.ring(bar)
+
+    def click(robot):
+        robot.mouse_move_to_pos(window.point(place))
+        robot.mouse_click(0)
+
+    window.run(click)
+    window.settle()
+    assert bar.document is before
+    assert bar.selected == {1}
 
 
 def test_wheel_zooms_at_the_pointer_and_home_fits(window, bar):
