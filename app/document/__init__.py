@@ -29,6 +29,7 @@ from app.document.settings import (
     Meshing,
     Variant,
 )
+from app.document.shortfall import Extremes, Shortfall, falls_short, find_shortfall
 from app.document.timeline import (
     Clip,
     Moment,
@@ -55,6 +56,7 @@ __all__ = [
     "Document",
     "Easing",
     "ExportSettings",
+    "Extremes",
     "Figure",
     "FrameRange",
     "Framing",
@@ -66,13 +68,16 @@ __all__ = [
     "PictureFile",
     "Playhead",
     "Pose",
+    "Shortfall",
     "Target",
     "Unknown",
     "Variant",
     "clip_of",
     "closes",
     "exported_frames",
+    "falls_short",
     "figure_commands",
+    "find_shortfall",
     "frame_times",
     "framed_frames",
     "handle_commands",

@@ -4,9 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Literal, Self
 
-from app.document import Document, Figure, FrameRange, Pose
-from app.solving import LAG
-from engine.geometry import box_diagonal
+from app.document import Document, Figure, FrameRange, Pose, find_shortfall
 
 SMALLEST, LARGEST = 0.002, 4.0  # em that a frame takes
 MARGIN = 1.4  # em left and right of frames that are fitted
@@ -153,14 +151,12 @@ class Shortfalls:
         known: Mapping[Pose, Mapping[int, float]] = {}
         if earlier is not None and _has_same_shape(figure, earlier.figure):
             known = earlier.lags
-        least = LAG * box_diagonal(figure.domain.outline)
         lags = {}
         for pose in (key.pose for key in figure.keys):
             if pose in known:
                 lags[pose] = known[pose]
             elif figure.handles:
-                measured = figure.lags(pose).items()
-                lags[pose] = {handle: lag for handle, lag in measured if lag > least}
+                lags[pose] = find_shortfall(figure, pose).lags
             else:
                 lags[pose] = {}
         return cls(figure=figure, lags=lags)

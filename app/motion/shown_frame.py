@@ -1,6 +1,5 @@
 """What is on the screen: which pose of a figure, on which mesh."""
 
-from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -55,16 +54,6 @@ class Shown:
     def handle_places(self) -> Complexes:
         """Where the handles are, (h,)."""
         return self.handles.on(self.positions)
-
-    @property
-    def lags(self) -> Mapping[int, float]:
-        """By how many pixels handles, by their ids, fall short of what the pose wants of them."""
-        targets = {} if self.pose is None else self.pose.targets
-        return {
-            handle.id: abs(targets[handle.id].position - complex(place))
-            for handle, place in zip(self.clip.figure.handles, self.handle_places, strict=True)
-            if handle.id in targets
-        }
 
     @property
     def handle_turns(self) -> list[float]:

@@ -7,13 +7,12 @@ Imports: `app.motion`, `app.storage`.
 
 from app.reports.certification import Report, certify_clip
 from app.reports.curve_picture import draw_curves
-from app.reports.curves import TIMES, Curves, Extremes, broken_lines, measure_curves, write_curves
+from app.reports.curves import TIMES, Curves, broken_lines, measure_curves, write_curves
 from app.reports.domain_preview import draw_preview
 
 __all__ = [
     "TIMES",
     "Curves",
-    "Extremes",
     "Report",
     "broken_lines",
     "certify_clip",

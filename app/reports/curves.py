@@ -1,48 +1,18 @@
 """Distortion over time at the worst points of a drawing, as the paper plots it (Section 8)."""
 
 from dataclasses import dataclass
-from math import log
 from pathlib import Path
-from typing import NamedTuple
 
 import numpy as np
 
-from app.document import Clip, intervals
+from app.document import Clip, Extremes, intervals
 from app.motion import Motion
 from app.storage import write_atomically
 from engine.arrays import Floats
-from engine.maps import Bounds, distortion
+from engine.maps import distortion
 
 POINTS = 100
 TIMES = 24  # in each interval
-TINY = 1e-300  # in place of a stretch that is not proven to be above 0
-
-
-class Use(NamedTuple):
-    """How much of a bound is used; 1 where it is reached, 0 where nothing is distorted."""
-
-    name: str
-    value: float
-    bound: float
-    share: float
-
-
-class Extremes(NamedTuple):
-    """The largest k and σ_a of the whole drawing at one moment, and its smallest σ_b."""
-
-    k: float
-    sigma_a: float
-    sigma_b: float
-
-    def uses(self, bounds: Bounds) -> tuple[Use, ...]:
-        """Return how much of each bound is used; stretches count by their logarithms."""
-        share_a = log(self.sigma_a) / log(bounds.sigma_a)
-        share_b = log(max(self.sigma_b, TINY)) / log(bounds.sigma_b)
-        return (
-            Use("k", self.k, bounds.k, self.k / bounds.k),
-            Use("σa", self.sigma_a, bounds.sigma_a, share_a),
-            Use("σb", self.sigma_b, bounds.sigma_b, share_b),
-        )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

@@ -8,6 +8,6 @@ Imports: `app.motion`, `app.storage`.
 from app.solving.drag import Drag, Rig, pose_at
 from app.solving.renewal import Renewal, go_on
 from app.solving.script import load_pose_script
-from app.solving.script_solver import LAG, pose_document
+from app.solving.script_solver import pose_document
 
-__all__ = ["LAG", "Drag", "Renewal", "Rig", "go_on", "load_pose_script", "pose_at", "pose_document"]
+__all__ = ["Drag", "Renewal", "Rig", "go_on", "load_pose_script", "pose_at", "pose_document"]

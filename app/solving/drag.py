@@ -117,11 +117,6 @@ class Drag:
         return self.state.status is not Status.LAGGING
 
     @property
-    def at_bounds(self) -> bool:
-        """Whether the handles are held back by the bounds."""
-        return self.state.status is Status.BOUNDS_REACHED
-
-    @property
     def has_arrived(self) -> bool:
         """Whether the drag came to rest with nothing in its way."""
         return self.state.status is Status.CONVERGED

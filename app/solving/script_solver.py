@@ -3,17 +3,21 @@
 from collections.abc import Callable
 from dataclasses import replace
 
-from app.document import Document, FrameRange, Keyframe, Pose, Target, handle_commands
+from app.document import (
+    Document,
+    FrameRange,
+    Keyframe,
+    Pose,
+    Target,
+    find_shortfall,
+    handle_commands,
+)
 from app.solving.drag import Drag, Rig
 from app.solving.script import PoseKey, PoseScript
-from engine.geometry import box_diagonal
 
 # A drag that is not at rest by then creeps along a bound.
 MOST_STEPS = 1500
 STEPS_AT_ONCE = 25
-# Of the diagonal of the outline's box: a handle this far from its target lags. A free handle always
-# gives in a little, since it pulls against the stiffness of the shape.
-LAG = 0.005
 
 
 def pose_document(
@@ -84,12 +88,10 @@ def _solve(rig: Rig, start: Pose, key: PoseKey) -> tuple[Pose, list[str]]:
         if drag.is_over:
             break
     pose = drag.pose(targets)
-    size = box_diagonal(figure.domain.outline)
-    reason = "held back by the bounds" if drag.at_bounds else "held back by the others"
+    shortfall = find_shortfall(figure, pose)
     notices = [
-        f"frame {key.frame}: {figure.handle(identity).name!r} stays {lag:.1f} pixels short of "
-        f"its target, {reason}"
-        for identity, lag in figure.lags(pose).items()
-        if lag > LAG * size
+        f"frame {key.frame}: {figure.handle(identity).name!r} is {lag:.1f} px short of "
+        f"its target, {shortfall.reason}"
+        for identity, lag in shortfall.lags.items()
     ]
     return pose, notices

@@ -4,13 +4,12 @@ from typing import NamedTuple
 
 from imgui_bundle import ImColor, imgui, imspinner
 
+from app.document import Extremes
 from app.editor import Action, Project, Session
-from app.reports import Extremes
 from app.ui.style import Look, tip
 
 WORDS = {"k": "Shear", "σa": "Stretch", "σb": "Squeeze"}
 SLOW = 0.3  # seconds after which a job is told of; shorter ones would only flicker
-AT_BOUND = 0.97  # of a bound: so much of it is used where a pose cannot go on
 
 
 class Fact(NamedTuple):
@@ -62,8 +61,7 @@ def _distortion(project: Project) -> Fact | None:
     if shown is None:
         return None
     if shown.pose is not None:
-        proven = shown.pose.certificate
-        extremes = Extremes(proven.k, proven.sigma_a, proven.sigma_b)
+        extremes = Extremes.of(shown.pose)
     elif curves is not None and curves.clip == project.clip:
         extremes = curves.extremes_at(shown.frame)
     else:
@@ -79,7 +77,7 @@ def _distortion(project: Project) -> Fact | None:
                 for use in uses
             ]
         ),
-        warns=most.share > AT_BOUND,
+        warns=most.is_all,
     )
 
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 from imgui_bundle import ImVec2, imgui
 from imgui_bundle import icons_fontawesome_6 as icons
 
-from app.document import intervals, time_of
+from app.document import Shortfall, find_shortfall, intervals, time_of
 from app.editor import Action, Project, Session, do
 from app.editor.actions import playback, rebuilding
 from app.ui.style import (
@@ -25,7 +25,6 @@ from app.ui.style import (
 from engine.maps import Bounds, Certificate
 
 NEAR = 0.85  # of a bound: from here on a bar warns
-ARRIVED = 1.0  # pixels of the picture within which a handle is where it should be
 
 
 @dataclass(frozen=True, slots=True)
@@ -177,17 +176,24 @@ def _solver(session: Session, look: Look, project: Project) -> None:
         _status(look, icons.ICON_FA_FILM, palette.dim, "An in-between")
         small(look, "It stays within the distortion of its two keys.")
         return
-    lags = [lag for lag in shown.lags.values() if lag > ARRIVED]
+    shortfall = find_shortfall(shown.clip.figure, pose)
     if not pose.certificate.certified:
         _status(look, icons.ICON_FA_TRIANGLE_EXCLAMATION, palette.danger, "Beyond the limits")
-    elif lags:
-        count = "1 handle is" if len(lags) == 1 else f"{len(lags)} handles are"
-        _status(look, icons.ICON_FA_HAND, palette.warning, "Held back by the bounds")
-        small(look, f"{count} out of reach, by up to {max(lags):.0f} px")
+    elif shortfall.lags:
+        _status(look, icons.ICON_FA_HAND, palette.warning, _lag_in_words(shortfall))
+        remedy = "Wider limits let" if shortfall.at_limits else "More weight lets"
+        small(look, f"{shortfall.reason.capitalize()}. {remedy} a handle come nearer.")
     else:
         _status(look, icons.ICON_FA_CIRCLE_CHECK, palette.good, "Every handle is in its place")
     if pose.certificate.certified:
         small(look, "Proven: nothing folds, and no point exceeds the limits.")
+
+
+def _lag_in_words(shortfall: Shortfall) -> str:
+    count, most = len(shortfall.lags), max(shortfall.lags.values())
+    if count == 1:
+        return f"1 handle is {most:.0f} px short of its target"
+    return f"{count} handles are up to {most:.0f} px short"
 
 
 def _status(look: Look, icon: str, colour: imgui.ImVec4, text: str) -> None:

@@ -6,7 +6,14 @@ from dataclasses import replace
 from imgui_bundle import ImVec2, imgui
 from imgui_bundle import icons_fontawesome_6 as icons
 
-from app.document import Handle, Target, figure_commands, handle_commands
+from app.document import (
+    Handle,
+    Shortfall,
+    Target,
+    figure_commands,
+    find_shortfall,
+    handle_commands,
+)
 from app.editor import Action, Project, Session, do
 from app.editor.actions import editing, posing
 from app.ui.shortcuts import with_key
@@ -28,7 +35,6 @@ from app.ui.style import (
 CTRL = int(imgui.Key.mod_ctrl)
 MOST_ROWS = 5.5
 WEIGHTS = Scale(left=0.01, right=100.0, logarithmic=True)
-ARRIVED = 1.0  # pixels of the picture within which a handle is where it should be
 
 
 def draw(session: Session, look: Look) -> list[Action]:
@@ -73,7 +79,7 @@ def _heading_with_delete(look: Look, project: Project) -> list[Action]:
 def _list(look: Look, project: Project) -> list[Action]:
     actions: list[Action] = []
     figure, palette = project.figure, look.palette
-    lags = project.puppet.shown.lags if project.puppet.shown else {}
+    lags = _shortfall(project).lags
     style = imgui.get_style()
     rows = min(len(figure.handles), MOST_ROWS) * imgui.get_text_line_height_with_spacing()
     height = rows - style.item_spacing.y + 2 * style.window_padding.y
@@ -93,7 +99,7 @@ def _list(look: Look, project: Project) -> list[Action]:
         icon = icons.ICON_FA_ANCHOR if is_anchor else icons.ICON_FA_CIRCLE_DOT
         imgui.text_colored(palette.anchor if is_anchor else palette.dim, icon)
         imgui.same_line(2.6 * look.em)
-        text = f"{lags[handle.id]:.0f} px" if lags.get(handle.id, 0.0) > ARRIVED else ""
+        text = f"{lags[handle.id]:.0f} px" if handle.id in lags else ""
         beside = imgui.calc_text_size(text).x + 0.6 * look.em
         room = imgui.get_content_region_avail().x - beside
         imgui.text_unformatted(shortened(handle.name, room))
@@ -102,6 +108,14 @@ def _list(look: Look, project: Project) -> list[Action]:
             imgui.text_colored(palette.warning, text)
     imgui.end_child()
     return actions
+
+
+def _shortfall(project: Project) -> Shortfall:
+    """Return which handles fall short in the pose that is shown; of an in-between none."""
+    shown = project.puppet.shown
+    if shown is None or shown.pose is None:
+        return Shortfall(lags={}, at_limits=False)
+    return find_shortfall(shown.clip.figure, shown.pose)
 
 
 def _details(look: Look, project: Project, handle: Handle) -> list[Action]:
@@ -148,12 +162,12 @@ def _wish(look: Look, project: Project, handle: Handle) -> list[Action]:
     if wished is not None:
         actions.append(do(posing.wish, {handle.id: replace(target, position=wished)}))
     actions += _turn(look, project, handle, target)
-    lag = shown.lags.get(handle.id, 0.0)
-    if lag > ARRIVED:
-        is_coming = project.grab is not None
-        why = "on its way" if is_coming else "held back by the bounds"
+    shortfall = _shortfall(project)
+    lag = shortfall.lags.get(handle.id)
+    if lag is not None:
+        why = "on its way" if project.grab is not None else shortfall.reason
         imgui.push_text_wrap_pos(0.0)
-        imgui.text_colored(look.palette.warning, f"Out of reach by {lag:.0f} px, {why}")
+        imgui.text_colored(look.palette.warning, f"{lag:.0f} px short of its target, {why}")
         imgui.pop_text_wrap_pos()
     return actions
 

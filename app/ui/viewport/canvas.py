@@ -5,7 +5,7 @@ from collections.abc import Collection
 import numpy as np
 from imgui_bundle import ImVec4, imgui
 
-from app.document import time_of
+from app.document import falls_short, time_of
 from app.editor import HeatMap, Project, Puppet, Session
 from app.motion import Box, PosableMesh, Shown, Vertices
 from app.render import (
@@ -32,7 +32,6 @@ from engine.maps import distortion
 
 GHOST_BEFORE, GHOST_AFTER = (0.93, 0.36, 0.36), (0.30, 0.62, 0.98)
 GHOST_OPACITY = 0.38
-LAG = 4.0  # pixels of the screen that a handle may lack before its wish is shown
 
 
 class Canvas:
@@ -286,11 +285,10 @@ def _marks(
     wishes = project.grab.targets if project.grab else None
     if wishes is None and shown.pose is not None:
         wishes = shown.pose.targets
-    zoom = project.view(session.screen).scale
     marks = []
     for handle, place in zip(figure.handles, shown.handle_places, strict=True):
         wish = wishes.get(handle.id) if wishes else None
-        lags = wish is not None and abs(wish.position - place) * zoom > LAG * scale
+        lags = wish is not None and falls_short(figure, abs(wish.position - place))
         marks.append(
             HandleMark(
                 place=complex(place),

@@ -230,7 +230,7 @@ def test_a_shape_is_left_alone_where_another_start_gains_little(window, bar):
     posing.pull(session, {1: Target(position=handle_places(bar)[1] + 9000)})
     window.settle()
     held = bar.puppet.shown.positions
-    assert bar.grab.drag.at_bounds
+    assert bar.grab.drag.state.status is Status.BOUNDS_REACHED
     posing.let_go(session)
     window.settle()
     assert bar.grab is None

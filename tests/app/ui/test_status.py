@@ -7,15 +7,15 @@ import numpy as np
 import pytest
 from documents import altered
 
+from app.document import Extremes
 from app.document.keyframe import Target
 from app.document.timeline import clip_of
 from app.editor.actions import playback, posing
 from app.errors import LissomError
 from app.motion.prepared import Motion, prepare_motion
-from app.reports.curves import TIMES, Extremes, measure_curves
+from app.reports.curves import TIMES, measure_curves
 from app.ui import bars
 from engine.maps import distortion
-from engine.maps.bounds import Bounds
 
 
 def facts(window):
@@ -87,23 +87,6 @@ def test_extremes_between_the_times_that_were_measured(bent):
     again = measure_curves(looped, motion)
     assert again.extremes_at(5) == again.extremes_at(53)
     assert again.extremes_at(5) != again.extremes_at(20)
-
-
-def test_shares_count_from_no_distortion_to_the_bound():
-    bounds = Bounds(k=0.5, sigma_a=4.0, sigma_b=0.25)
-    none, half, full, folded = (
-        [use.share for use in extremes.uses(bounds)]
-        for extremes in (
-            Extremes(0.0, 1.0, 1.0),
-            Extremes(0.25, 2.0, 0.5),
-            Extremes(0.5, 4.0, 0.25),
-            Extremes(np.inf, np.inf, -1.0),
-        )
-    )
-    np.testing.assert_allclose(
-        [none, half, full], [[0] * 3, [0.5] * 3, [1] * 3], rtol=0, atol=1e-12
-    )
-    assert min(folded) > 100
 
 
 @pytest.mark.parametrize(

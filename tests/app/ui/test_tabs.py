@@ -3,7 +3,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from documents import CENTRE, RADIUS, altered, disc_document
-from imgui_bundle import ImVec2
+from imgui_bundle import ImVec2, imgui
 from PIL import Image
 from projects import project_of
 
@@ -402,3 +402,30 @@ def test_each_widget_makes_a_step_of_its_own(window, project, tab):
         steps.append(project.history.undo_label)
         editing.undo(window.session)
     assert steps == ["Set handle weight", "Rename handle"]
+
+
+def test_a_handle_that_is_outweighed_is_not_said_to_be_held_back_by_limits(
+    window, project, monkeypatch
+):
+    """Pulled weakly, far from every limit: all places that tell of it say so, and the same."""
+    figure = project.figure
+    key = figure.key(24)
+    wish = Target(position=key.pose.targets[1].position + 12j)
+    pose = replace(key.pose, targets={**key.pose.targets, 1: wish})
+    editing.edit(window.session, key_commands.pose_key(project.active, 24, pose))
+    editing.select(window.session, frozenset({1}))
+    written = []
+    for name in ("text_unformatted", "text_colored"):
+        draw = getattr(imgui, name)
+        monkeypatch.setattr(
+            imgui, name, lambda *words, draw=draw: (written.append(words[-1]), draw(*words))[-1]
+        )
+    reason = "held back by the other handles and the shape's stiffness"
+    for title in ("Handle", "Deform"):
+        written.clear()
+        window.show_tab(title)
+        told = " ".join(written).lower()
+        assert "12 px short of its target" in told, title
+        assert reason in told, title
+        assert "by the limits" not in told
+    assert project.timing.shortfalls.lags[pose] == {1: pytest.approx(12, abs=1e-6)}

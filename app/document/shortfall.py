@@ -1,0 +1,92 @@
+"""Which handles a pose does not bring to their targets, and what holds them back."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import lru_cache
+from math import log
+from typing import NamedTuple
+
+from app.document.figure import Figure
+from app.document.keyframe import Pose
+from engine.geometry import box_diagonal
+from engine.maps import Bounds
+
+# Of the diagonal of the outline's box: a handle this far from its target falls short. A free handle
+# always gives in a little, since it pulls against the stiffness of the shape.
+LAG = 0.005
+AT_LIMIT = 0.97  # of a limit: so much of it is used where a pose cannot go on
+TINY = 1e-300  # in place of a stretch that is not proven to be above 0
+
+
+class Use(NamedTuple):
+    """How much of a limit is used; 1 where it is reached, 0 where nothing is distorted."""
+
+    name: str
+    value: float
+    bound: float
+    share: float
+
+    @property
+    def is_all(self) -> bool:
+        """Whether nothing is left of it that a pose could use."""
+        return self.share > AT_LIMIT
+
+
+class Extremes(NamedTuple):
+    """The largest k and σ_a of the whole drawing at one moment, and its smallest σ_b."""
+
+    k: float
+    sigma_a: float
+    sigma_b: float
+
+    @classmethod
+    def of(cls, pose: Pose) -> "Extremes":
+        """Return what is proven of a pose."""
+        certificate = pose.certificate
+        return cls(certificate.k, certificate.sigma_a, certificate.sigma_b)
+
+    def uses(self, bounds: Bounds) -> tuple[Use, ...]:
+        """Return how much of each limit is used; stretches count by their logarithms."""
+        share_a = log(self.sigma_a) / log(bounds.sigma_a)
+        share_b = log(max(self.sigma_b, TINY)) / log(bounds.sigma_b)
+        return (
+            Use("k", self.k, bounds.k, self.k / bounds.k),
+            Use("σa", self.sigma_a, bounds.sigma_a, share_a),
+            Use("σb", self.sigma_b, bounds.sigma_b, share_b),
+        )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Shortfall:
+    """The handles that fall short of their targets in a pose.
+
+    Parameters
+    ----------
+    lags : mapping of int to float
+        By how many pixels, by their ids; those that arrived are not in it.
+    at_limits : bool
+        Whether the limits hold them back. Else the other handles and the shape's stiffness do.
+    """
+
+    lags: Mapping[int, float]
+    at_limits: bool
+
+    @property
+    def reason(self) -> str:
+        """What holds them back, in words."""
+        if self.at_limits:
+            return "held back by the limits"
+        return "held back by the other handles and the shape's stiffness"
+
+
+def falls_short(figure: Figure, lag: float) -> bool:
+    """Tell whether a handle so many pixels from its target has not arrived there."""
+    return lag > LAG * box_diagonal(figure.domain.outline)
+
+
+@lru_cache(maxsize=16)
+def find_shortfall(figure: Figure, pose: Pose) -> Shortfall:
+    """Return which handles of a figure fall short in a pose, and why."""
+    lags = {i: lag for i, lag in figure.lags(pose).items() if falls_short(figure, lag)}
+    at_limits = any(use.is_all for use in Extremes.of(pose).uses(figure.bounds))
+    return Shortfall(lags=lags, at_limits=at_limits)

@@ -1,0 +1,60 @@
+"""When a handle falls short, and what is said to hold it back."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from documents import CENTRE, RADIUS, altered, disc_document
+from numpy.testing import assert_allclose
+
+from app.document.commands.handle_commands import add_handle
+from app.document.keyframe import Target
+from app.document.shortfall import LAG, Extremes, find_shortfall
+from engine.maps import Bounds
+
+
+def figure_and_pose(*, lag, share):
+    """A handle so many pixels from its target, in a pose that uses this share of the shear."""
+    document = altered(disc_document(), bounds=Bounds(k=0.5))
+    figure = add_handle(0, CENTRE)(document).figures[0]
+    rest = figure.keys[0].pose
+    certificate = replace(rest.certificate, k=share * figure.bounds.k)
+    target = Target(position=CENTRE + lag)
+    return figure, replace(rest, targets={0: target}, certificate=certificate)
+
+
+def least(figure):
+    low, high = figure.domain.outline.real.min(), figure.domain.outline.real.max()
+    assert high - low == pytest.approx(2 * RADIUS, rel=0.05)
+    return LAG * np.sqrt(2) * (high - low)
+
+
+@pytest.mark.parametrize("share", [0.02, 0.9, 0.99])
+def test_a_handle_falls_short_where_it_lags_by_enough_to_be_seen(share):
+    figure, _ = figure_and_pose(lag=0, share=share)
+    for lag, is_short in ((0.9 * least(figure), False), (1.1 * least(figure), True)):
+        short = find_shortfall(*figure_and_pose(lag=lag, share=share))
+        assert set(short.lags) == ({0} if is_short else set())
+    assert_allclose(short.lags[0], lag, rtol=0, atol=1e-9)
+
+
+@pytest.mark.parametrize(("share", "at_limits"), [(0.02, False), (0.9, False), (0.99, True)])
+def test_only_limits_that_are_reached_hold_a_handle_back(share, at_limits):
+    short = find_shortfall(*figure_and_pose(lag=30, share=share))
+    assert short.at_limits == at_limits
+    assert ("limits" in short.reason) == at_limits
+
+
+def test_shares_count_from_no_distortion_to_the_limit():
+    bounds = Bounds(k=0.5, sigma_a=4.0, sigma_b=0.25)
+    none, half, full, folded = (
+        [use.share for use in extremes.uses(bounds)]
+        for extremes in (
+            Extremes(0.0, 1.0, 1.0),
+            Extremes(0.25, 2.0, 0.5),
+            Extremes(0.5, 4.0, 0.25),
+            Extremes(np.inf, np.inf, -1.0),
+        )
+    )
+    assert_allclose([none, half, full], [[0] * 3, [0.5] * 3, [1] * 3], rtol=0, atol=1e-12)
+    assert min(folded) > 100
