@@ -105,7 +105,7 @@ def kept(window):
         window.settle()
         found = list(window.folder.glob("unsaved-*.lissom"))
         assert len(found) <= 1
-        return len(load_project(found[0]).handles) if found else None
+        return len(load_project(found[0]).figures[0].handles) if found else None
 
     return read
 

@@ -129,7 +129,7 @@ def test_drag_moves_keys_by_whole_frames_in_one_step(window, project, play):
     moved = play(lambda hand: hand.drag("key 24", 26.4, 29.7))
     assert frames_of(moved) == (0, 12, 30, 48)
     assert project.chosen == {30}
-    assert moved.keys[2].pose is first.keys[2].pose
+    assert moved.figures[0].keys[2].pose is first.figures[0].keys[2].pose
     editing.undo(window.session)
     assert project.document is first
 
@@ -218,7 +218,7 @@ def test_ctrl_drag_copies_and_del_deletes(window, project, play):
 
     copied = play(copy)
     assert frames_of(copied) == (0, 12, 24, 36, 48)
-    assert copied.keys[3].pose is first.keys[1].pose
+    assert copied.figures[0].keys[3].pose is first.figures[0].keys[1].pose
     assert project.chosen == {36}
     deleted = play(lambda hand: hand.robot.key_press(int(window.Key.delete)))
     assert frames_of(deleted) == FRAMES
@@ -260,7 +260,7 @@ def test_easing_is_chosen_and_drawn_by_hand(window, project, play):
         seen.append([key.easing for key in project.figure.keys])
         hand.robot.item_drag_with_delta("//$FOCUSED/control 1", ImVec2(30, -400))
 
-    curve = play(choose).keys[1].easing.curve
+    curve = play(choose).figures[0].keys[1].easing.curve
     assert seen == [[LINEAR, PRESETS["in-out"], LINEAR, LINEAR]]
     assert curve[0] == pytest.approx(0.42 + 30 / 150, abs=0.05)
     assert curve[1:] == (1.0, *PRESETS["in-out"].curve[2:])
@@ -275,7 +275,7 @@ def test_easing_of_all_chosen_keys_is_changed_together(window, play):
         hand.click("interval 24")
         hand.robot.item_click("//$FOCUSED/hold")
 
-    easings = [key.easing for key in play(choose).keys]
+    easings = [key.easing for key in play(choose).figures[0].keys]
     assert easings == [HOLD, LINEAR, HOLD, LINEAR]
     assert undo_all(window) == 1
 
@@ -314,7 +314,7 @@ def test_work_range_and_end_are_dragged(window, project, play):
 
 def test_menu_reverses_and_scales(window, project, play):
     first = project.document
-    poses = [key.pose for key in first.keys]
+    poses = [key.pose for key in first.figures[0].keys]
 
     def choose(path):
         def through(hand):
@@ -326,8 +326,8 @@ def test_menu_reverses_and_scales(window, project, play):
 
     backwards = choose("###Reverse")
     assert frames_of(backwards) == (0, 24, 36, 48)
-    assert [key.pose for key in backwards.keys] == poses[::-1]
-    assert choose("Copy first pose to last key").keys[-1].pose is poses[-1]
+    assert [key.pose for key in backwards.figures[0].keys] == poses[::-1]
+    assert choose("Copy first pose to last key").figures[0].keys[-1].pose is poses[-1]
     assert frames_of(choose("###Scale time/Half as long")) == (0, 12, 18, 24)
     editing.choose_keys(window.session, frozenset({18, 24}))
     assert frames_of(choose("###Scale time/Twice as long")) == (0, 12, 18, 30)
@@ -428,7 +428,7 @@ def test_keys_go_to_the_nearest_place_that_is_free(frames, subset, wanted, copie
         there = {frame + by for frame in dragged}
         return by == 0 or (min(there) >= 0 and not there & (frames if copies else frames - dragged))
 
-    by = timeline_pointing.shift_of(document, dragged, wanted, copies=copies)
+    by = timeline_pointing.shift_of(document.figures[0], dragged, wanted, copies=copies)
     assert is_possible(by)
     nearest = max(wanted, -min(dragged))
     assert not any(is_possible(o) for o in range(-40, 120) if abs(o - nearest) < abs(by - nearest))

@@ -386,7 +386,7 @@ FAILURES = {
         lambda session: keys.set_variant(session, "nu"),
     ),
     "Measuring the motion": (
-        "app.editor.actions.exporting.measure_reach",
+        "app.editor.actions.exporting.measure_extent",
         lambda session: keys.set_variant(session, "nu"),
     ),
     "Solving the keys": ("app.editor.actions.rebuilding.go_on", rebuilding.solve_again),
@@ -454,7 +454,7 @@ WAITING = {
         lambda session: keys.set_variant(session, "nu"),
     ),
     "Measuring the motion": (
-        "app.editor.actions.exporting.measure_reach",
+        "app.editor.actions.exporting.measure_extent",
         exporting.keep_reach,
     ),
     "Solving the keys": ("app.editor.actions.rebuilding.go_on", rebuilding.solve_again),
@@ -490,7 +490,7 @@ def test_results_for_a_closed_project_go_nowhere(window, bent, monkeypatch, kind
     assert (other.grab, other.renewal, other.unkeyed) == (None, None, None)
     assert other.puppet.shown.is_current
     assert bent.document is closed
-    assert closed.handles == before.handles
+    assert closed.figures[0].handles == before.figures[0].handles
     assert [toast for toast in window.session.toasts if toast.tone == "error"] == []
 
 

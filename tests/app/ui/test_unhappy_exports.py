@@ -310,4 +310,4 @@ def test_picture_may_go_once_it_is_open(window, tmp_path):
     finish(window)
     assert len(list((tmp_path / "frames").iterdir())) == 3
     reopened = window.open(path)
-    assert reopened.document.picture.data == BAR.read_bytes()
+    assert reopened.document.figures[0].picture.data == BAR.read_bytes()
