@@ -168,7 +168,7 @@ def test_what_is_saved_stays_so_though_a_pose_had_not_settled(window, project, t
     window.settle()
     assert project.grab is None
     assert project.history.is_saved
-    (saved,), (now,) = load_project(path).keys, project.figure.keys
+    (saved,), (now,) = load_project(path).figures[0].keys, project.figure.keys
     assert saved.pose.targets == now.pose.targets
     assert (saved.pose.psi == now.pose.psi).all()
     window.act(saving.quit_lissom)
