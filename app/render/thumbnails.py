@@ -4,9 +4,8 @@ from pathlib import Path
 from typing import NamedTuple
 
 import moderngl
-from PIL import Image
 
-SIDE = 320  # pixels
+from app.storage import read_thumbnail
 
 
 class Thumbnail(NamedTuple):
@@ -17,7 +16,7 @@ class Thumbnail(NamedTuple):
 
 
 class Thumbnails:
-    """Owner of one small texture for each picture file that was asked for.
+    """Owner of one small texture for each picture or project that was asked for.
 
     Parameters
     ----------
@@ -34,7 +33,7 @@ class Thumbnails:
         self._fresh = True
 
     def get(self, path: Path) -> Thumbnail | None:
-        """Return a picture's thumbnail; None while it is not read, or where it cannot be."""
+        """Return a file's thumbnail; None while it is not read, or where it has none."""
         if path not in self._textures and self._fresh:
             self._textures[path] = self._read(path)
             self._fresh = False
@@ -46,19 +45,16 @@ class Thumbnails:
         return [texture for texture in self._textures.values() if texture is not None]
 
     def release(self) -> None:
-        """Let the textures go."""
+        """Let the textures go; files that are asked for again are read again."""
         for texture in self.textures():
             texture.release()
         self._textures.clear()
 
     def _read(self, path: Path) -> moderngl.Texture | None:
-        try:
-            with Image.open(path) as image:
-                small = image.convert("RGBA")
-                small.thumbnail((SIDE, SIDE))
-        except (OSError, ValueError, SyntaxError):
+        small = read_thumbnail(path)
+        if small is None:
             return None
-        texture = self._context.texture(small.size, 4, small.tobytes())
+        texture = self._context.texture((small.shape[1], small.shape[0]), 4, small.tobytes())
         texture.repeat_x = texture.repeat_y = False
         texture.build_mipmaps()
         return texture

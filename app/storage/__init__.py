@@ -37,6 +37,7 @@ from app.storage.preferences import (
     settings_folder,
 )
 from app.storage.project_file import load_project, save_project
+from app.storage.thumbnail import draw_thumbnail, read_thumbnail
 
 __all__ = [
     "CHECKER",
@@ -57,11 +58,13 @@ __all__ = [
     "atomic_file",
     "check_writable",
     "decode_picture",
+    "draw_thumbnail",
     "find_leftovers",
     "load_preferences",
     "load_project",
     "open_picture",
     "read_arrays",
+    "read_thumbnail",
     "remove_leftover",
     "sample_images",
     "save_preferences",

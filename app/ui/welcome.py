@@ -10,12 +10,12 @@ from app.editor import Action, Session, do
 from app.editor.actions import files
 from app.render import Thumbnail
 from app.ui.shortcuts import BINDINGS
-from app.ui.style import LARGE, TITLE, Look, ink, main_button, small
+from app.ui.style import LARGE, SMALL, TITLE, Look, ink, main_button
 
 Look_up = Callable[[Path], Thumbnail | None]
-CARD, GAP = 11.5, 1.0  # em
+CARD, GAP, ROW = 11.5, 1.0, 2.5  # em
 WIDTH = 4 * CARD + 3 * GAP
-MOST_RECENT = 5
+MOST_RECENT = 6
 FLAGS = (
     imgui.WindowFlags_.no_title_bar
     | imgui.WindowFlags_.no_resize
@@ -39,11 +39,11 @@ def draw(session: Session, look: Look, thumbnail: Look_up) -> list[Action]:
     imgui.pop_style_color()
     imgui.pop_style_var()
     left = max(GAP * look.em, (viewport.work_size.x - WIDTH * look.em) / 2)
-    imgui.set_cursor_pos(ImVec2(left, max(1.5 * look.em, 0.1 * viewport.work_size.y)))
+    imgui.set_cursor_pos(ImVec2(left, max(1.5 * look.em, 0.07 * viewport.work_size.y)))
     imgui.begin_group()
     actions = _greeting(session, look)
     actions += _samples(look, thumbnail)
-    actions += _recent(session, look)
+    actions += _recent(session, look, thumbnail)
     imgui.end_group()
     imgui.end()
     return actions
@@ -109,14 +109,8 @@ def _card(look: Look, sample: files.Sample, image: Thumbnail | None) -> bool:
     )
     foot = 2.3 * look.em
     if image is not None:
-        room = ImVec2(size.x - 1.4 * look.em, size.y - foot - 0.8 * look.em)
-        scale = min(room.x / image.size[0], room.y / image.size[1])
-        width, height = scale * image.size[0], scale * image.size[1]
-        x = corner.x + (size.x - width) / 2
-        y = corner.y + 0.7 * look.em + (room.y - height) / 2
-        draw_list.add_image(
-            imgui.ImTextureRef(image.texture), ImVec2(x, y), ImVec2(x + width, y + height)
-        )
+        place = ImVec2(corner.x + 0.7 * look.em, corner.y + 0.7 * look.em)
+        _show(image, place, ImVec2(size.x - 1.4 * look.em, size.y - foot - 0.8 * look.em))
     text = ImVec2(corner.x + 0.9 * look.em, opposite.y - foot + 0.45 * look.em)
     draw_list.add_text(text, ink(palette.text), sample.name)
     end = ImVec2(opposite.x - 0.9 * look.em - imgui.calc_text_size(sample.what).x, text.y)
@@ -124,7 +118,18 @@ def _card(look: Look, sample: files.Sample, image: Thumbnail | None) -> bool:
     return pressed
 
 
-def _recent(session: Session, look: Look) -> list[Action]:
+def _show(image: Thumbnail, corner: ImVec2, room: ImVec2) -> None:
+    """Draw a picture as large as there is room for it, in the middle."""
+    scale = min(room.x / image.size[0], room.y / image.size[1])
+    width, height = scale * image.size[0], scale * image.size[1]
+    x = corner.x + (room.x - width) / 2
+    y = corner.y + (room.y - height) / 2
+    imgui.get_window_draw_list().add_image(
+        imgui.ImTextureRef(image.texture), ImVec2(x, y), ImVec2(x + width, y + height)
+    )
+
+
+def _recent(session: Session, look: Look, thumbnail: Look_up) -> list[Action]:
     actions: list[Action] = []
     recent = files.recent_files(session)[:MOST_RECENT]
     if not recent:
@@ -134,16 +139,38 @@ def _recent(session: Session, look: Look) -> list[Action]:
     imgui.text("Recent")
     imgui.pop_font()
     for index, (path, is_there) in enumerate(recent):
+        if index % 2:
+            imgui.same_line(0, GAP * look.em)
         imgui.begin_disabled(not is_there)
-        clicked, _ = imgui.selectable(
-            f"{icons.ICON_FA_CLOCK_ROTATE_LEFT}  {path.name}###recent {index}",
-            False,  # noqa: FBT003
-            0,
-            ImVec2(WIDTH * look.em, 0),
-        )
-        imgui.same_line(16 * look.em)
-        small(look, str(path.parent) if is_there else f"not found in {path.parent}")
-        imgui.end_disabled()
-        if clicked:
+        if _row(look, path, index, thumbnail(path) if is_there else None, is_there=is_there):
             actions.append(do(files.open_file, path))
+        imgui.end_disabled()
     return actions
+
+
+def _row(look: Look, path: Path, index: int, image: Thumbnail | None, *, is_there: bool) -> bool:
+    """Show a recent file: its picture, its name, and its folder below."""
+    em, corner = look.em, imgui.get_cursor_screen_pos()
+    size = ImVec2((WIDTH - GAP) / 2 * em, ROW * em)
+    end = ImVec2(corner.x + size.x, corner.y + size.y)
+    clicked, _ = imgui.selectable(f"###recent {index}", False, 0, size)  # noqa: FBT003
+    imgui.push_clip_rect(corner, end, True)  # noqa: FBT003 - within the window's own
+    if image is None:
+        _write(icons.ICON_FA_CLOCK_ROTATE_LEFT, corner.x + em, corner.y + 0.5 * size.y)
+    else:
+        _show(image, corner, ImVec2(3 * em, size.y))
+    _write(path.name, corner.x + 3.6 * em, corner.y + 0.3 * size.y)
+    imgui.push_font(None, SMALL * imgui.get_style().font_size_base)
+    imgui.push_style_color(imgui.Col_.text, look.palette.dim)
+    where = str(path.parent) if is_there else f"not found in {path.parent}"
+    _write(where, corner.x + 3.6 * em, corner.y + 0.72 * size.y)
+    imgui.pop_style_color()
+    imgui.pop_font()
+    imgui.pop_clip_rect()
+    return clicked
+
+
+def _write(text: str, left: float, middle: float) -> None:
+    """Draw a line of text over what was drawn last, with its middle at a height."""
+    place = ImVec2(left, middle - imgui.get_text_line_height() / 2)
+    imgui.get_window_draw_list().add_text(place, imgui.get_color_u32(imgui.Col_.text), text)

@@ -172,8 +172,12 @@ class Window:
                 owner.release()
 
     def _begin_frame(self) -> None:
-        if self._thumbnails is not None:
-            self._thumbnails.begin_frame()
+        if self._thumbnails is None:
+            return
+        self._thumbnails.begin_frame()
+        if self.session.project is not None:
+            # Only the welcome view shows them, and by its return files may have been saved anew.
+            self._thumbnails.release()
 
     def _thumbnail(self, path: Path) -> Thumbnail | None:
         return self._thumbnails.get(path) if self._thumbnails else None

@@ -1,0 +1,47 @@
+"""Small pictures of files, by which a person knows them again."""
+
+import io
+from pathlib import Path
+
+import numpy as np
+from PIL import Image
+
+from app.storage.picture import DECODER_ERRORS, FORMATS
+from app.storage.project_file import load_thumbnail
+from engine.arrays import Bytes
+
+SIDE = 320  # pixels
+# Larger pictures take so long to read that the window would stand still.
+MOST_PIXELS = 20_000_000
+PROJECT = ".lissom"
+
+
+def draw_thumbnail(rgba: Bytes) -> bytes:
+    """Return a small PNG file of a picture, uint8 (h, w, 4), for `save_project`."""
+    small = Image.fromarray(rgba)
+    small.thumbnail((SIDE, SIDE))
+    file = io.BytesIO()
+    small.save(file, "PNG")
+    return file.getvalue()
+
+
+def read_thumbnail(path: Path) -> Bytes | None:
+    """Return a picture or project made small, uint8 (h, w, 4) with sides of at most `SIDE`.
+
+    None where it cannot be read or takes long to read, and where a project holds no small picture.
+    """
+    is_project = path.suffix.lower() == PROJECT
+    content = load_thumbnail(path) if is_project else None
+    if is_project and content is None:
+        return None
+    formats = ("PNG",) if is_project else tuple(FORMATS)
+    try:
+        with Image.open(path if content is None else io.BytesIO(content), formats=formats) as image:
+            if image.width * image.height > MOST_PIXELS:
+                return None
+            image.draft("RGB", (SIDE, SIDE))
+            small = image.convert("RGBA")
+    except (*DECODER_ERRORS, Image.DecompressionBombError, Image.DecompressionBombWarning):
+        return None
+    small.thumbnail((SIDE, SIDE))
+    return np.asarray(small)
