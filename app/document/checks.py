@@ -1,6 +1,5 @@
 """Conditions of the document's values, and numbers that they share."""
 
-import math
 from collections.abc import Mapping
 from types import MappingProxyType
 from typing import Any
@@ -8,6 +7,8 @@ from typing import Any
 from app.errors import LissomError
 
 WIDEST = 65_535
+# Pixels. There is nothing to be seen so far out, and squares would run out of digits.
+FARTHEST = 1e7
 # Fields of a project file that this version does not know and hands on.
 Unknown = Mapping[str, Any]
 NOTHING: Unknown = MappingProxyType({})
@@ -19,10 +20,11 @@ def require(condition: bool, message: str) -> None:  # noqa: FBT001 - reads as a
         raise LissomError(message)
 
 
-def require_finite(value: complex, name: str) -> None:
-    """Raise a `LissomError` unless the number is finite."""
+def require_place(place: complex, name: str) -> None:
+    """Raise a `LissomError` unless the place, in pixels, is no farther than one can go."""
     require(
-        math.isfinite(value.real) and math.isfinite(value.imag), f"{name} must be finite: {value}."
+        abs(place.real) <= FARTHEST and abs(place.imag) <= FARTHEST,
+        f"{name} must be within {FARTHEST:,.0f} pixels, not at {place:g}.",
     )
 
 

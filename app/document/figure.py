@@ -8,7 +8,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from app.document.checks import NOTHING, Unknown, require, require_finite, require_size
+from app.document.checks import NOTHING, Unknown, require, require_place, require_size
 from app.document.keyframe import Handle, Keyframe, Pose
 from app.document.settings import VARIANTS, Meshing, Variant
 from app.errors import LissomError
@@ -143,7 +143,7 @@ class Figure:
         )
         places = {f"handle {handle.name!r}": handle.position for handle in self.handles}
         if self.anchor is not None:
-            require_finite(self.anchor, "The anchor")
+            require_place(self.anchor, "The anchor")
             places["anchor"] = self.anchor
         if places:
             outline = self.domain.outline

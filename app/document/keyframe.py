@@ -5,14 +5,12 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from types import MappingProxyType
 
-from app.document.checks import NOTHING, Unknown, require, require_finite
+from app.document.checks import NOTHING, Unknown, require, require_place
 from app.document.easing import LINEAR, Easing
 from engine.arrays import Complexes, as_points
 from engine.maps import Certificate
 
-# Beyond these nothing is to be seen, and squares would run out of digits.
 HEAVIEST = 1e6
-FARTHEST = 1e7  # pixels
 MOST_TURNS = 20
 
 
@@ -41,7 +39,7 @@ class Handle:
     def __post_init__(self) -> None:
         require(self.id >= 0, f"A handle's id is not negative, unlike {self.id}.")
         require(bool(self.name.strip()), "A handle needs a name.")
-        require_finite(self.position, f"The position of handle {self.name!r}")
+        require_place(self.position, f"The position of handle {self.name!r}")
         require(
             0 < self.weight <= HEAVIEST,
             f"The weight of handle {self.name!r} must be above 0 and at most {HEAVIEST:,.0f}, "
@@ -66,11 +64,7 @@ class Target:
     unknown: Unknown = field(default_factory=lambda: NOTHING, repr=False, hash=False)
 
     def __post_init__(self) -> None:
-        require(
-            abs(self.position.real) <= FARTHEST and abs(self.position.imag) <= FARTHEST,
-            f"The target of a handle must be within {FARTHEST:,.0f} pixels, not at "
-            f"{self.position:g}.",
-        )
+        require_place(self.position, "The target of a handle")
         require(
             self.rotation is None or math.isfinite(self.rotation),
             f"The rotation of a handle must be finite, not {self.rotation}.",

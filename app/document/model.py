@@ -1,9 +1,12 @@
 """The document: a scene of figures on one timeline, and how it plays and exports.
 
-Every value is frozen, and every document that exists is valid: the constructors refuse anything
-else, so that commands, history and the project file need no checks of their own.
+Every value is frozen, and every document that exists is valid. Commands make new ones all the time,
+so that the constructors refuse what they can tell at once, and what takes longer is made sure of
+where it comes in: a domain is built by the engine or tested by it, a picture is told from its file,
+and a certificate is proven of its map, never read.
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
 from app.document.checks import NOTHING, Unknown, require
@@ -29,6 +32,10 @@ class Document:
     loop : bool
         Whether the last frame leads back to the first one: both are the same moment.
     export : ExportSettings
+    unknown : mapping
+        Fields of the project file that this version does not know and hands on.
+    attachments : mapping of str to bytes
+        Likewise its members, by their names.
     """
 
     figures: tuple[Figure, ...]
@@ -38,6 +45,9 @@ class Document:
     loop: bool = False
     export: ExportSettings = ExportSettings()
     unknown: Unknown = field(default_factory=lambda: NOTHING, repr=False, hash=False)
+    attachments: Mapping[str, bytes] = field(
+        default_factory=lambda: NOTHING, repr=False, hash=False
+    )
 
     def __post_init__(self) -> None:
         self._check_figures()

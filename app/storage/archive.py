@@ -15,12 +15,17 @@ from engine.arrays import Complexes, Integers, readonly
 MIMETYPE = b"application/x-lissom"
 MOST_MEMBERS = 65_535
 MEBIBYTE = 1024 * 1024
-LARGEST_ARRAY = 256 * MEBIBYTE
+# By which all members together may outgrow the file. Pictures are never packed, so that this is for
+# arrays and JSON; the largest meshes take 60.
+MOST_UNPACKED = 256 * MEBIBYTE
+# Others are not needed, and unpack more than they are asked for.
+METHODS = {zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED}
 # Members that deflating makes smaller; pictures are packed already, and the mimetype stays legible.
 PACKED = (".json", ".npy")
 # The same document gives the same bytes, whenever it is saved.
 DATE = (1980, 1, 1, 0, 0, 0)
 NPY_MAGIC = b"\x93NUMPY\x01\x00"
+LARGEST_NPY_HEADER = 1024
 
 
 def write_archive(file: IO[bytes], members: Mapping[str, bytes]) -> None:
@@ -48,41 +53,56 @@ class Archive:
     ----------
     file : ZipFile
         Open for reading.
+    size : int
+        Of the file on the disk, in bytes. However much of it is read, no more is ever unpacked than
+        this and `MOST_UNPACKED` together.
 
     Raises
     ------
     LissomError
-        If it is another kind of zip file, or not laid out as `write_archive` does.
+        If it is another kind of zip file, or not laid out as `write_archive` does, or would unpack
+        to too much. Nothing but its table of contents is read to tell.
     """
 
-    def __init__(self, file: zipfile.ZipFile) -> None:
+    def __init__(self, file: zipfile.ZipFile, size: int) -> None:
+        self._file = file
+        self._read: set[str] = set()
         members = file.infolist()
         if len(members) > MOST_MEMBERS:
             raise LissomError(f"it has {len(members):,} members, more than any project")
         if not members or members[0].filename != "mimetype":
             raise LissomError("it is not a Lissom project")
-        self._file = file
         self._members = {member.filename: member for member in members}
         if len(self._members) < len(members):
             raise LissomError("it has two members of one name")
+        if not {member.compress_type for member in members} <= METHODS:
+            raise LissomError("it is packed in a way that Lissom does not know")
+        if sum(member.compress_size for member in members) > size:
+            raise LissomError("it is damaged: its members overlap")
+        unpacked = sum(member.file_size for member in members)
+        if unpacked > size + MOST_UNPACKED:
+            raise LissomError(f"it would unpack to {unpacked:,} bytes, more than any project")
         if self.read("mimetype", largest=len(MIMETYPE)) != MIMETYPE:
             raise LissomError("it is not a Lissom project")
 
-    def __contains__(self, name: str) -> bool:
-        return name in self._members
+    @property
+    def unread(self) -> list[str]:
+        """The names of the members that were not asked for, folders left out."""
+        return [n for n in self._members if n not in self._read and not n.endswith("/")]
 
-    def read(self, name: str, *, largest: int) -> bytes:
-        """Return the contents of a member, of at most `largest` bytes.
+    def read(self, name: str, *, largest: int | None = None) -> bytes:
+        """Return the contents of a member, of at most `largest` bytes where that is given.
 
         Raises
         ------
         LissomError
             If it is missing or larger, before anything is unpacked.
         """
-        if name not in self:
+        if name not in self._members:
             raise LissomError(f"it lacks {name}")
+        self._read.add(name)
         member = self._members[name]
-        if member.file_size > largest:
+        if largest is not None and member.file_size > largest:
             raise LissomError(f"its {name} is too large: {member.file_size:,} bytes")
         # With the size given, no more than that is ever unpacked, whatever the data would grow to;
         # a checksum that differs is an error.
@@ -92,30 +112,30 @@ class Archive:
             raise LissomError(f"its {name} is cut short")
         return content
 
-    def points(self, name: str) -> Complexes:
-        """Return an array of points, complex128 (n,)."""
-        return self._array(name, np.dtype("<c16"), "complex128 (n,)", r"(\d+),").astype(
-            np.complex128, copy=False
-        )
+    def points(self, name: str, *, most: int) -> Complexes:
+        """Return an array of points, complex128 (n,), of which there are at most `most`."""
+        array = self._array(name, np.dtype("<c16"), columns=1, most=most)
+        return readonly(array.astype(np.complex128, copy=False))
 
-    def triangles(self, name: str) -> Integers:
-        """Return an array of triangles, int32 (m, 3)."""
-        return self._array(name, np.dtype("<i4"), "int32 (m, 3)", r"(\d+), 3").astype(
-            np.int32, copy=False
-        )
+    def triangles(self, name: str, *, most: int) -> Integers:
+        """Return an array of triangles, int32 (m, 3), of which there are at most `most`."""
+        array = self._array(name, np.dtype("<i4"), columns=3, most=most)
+        return readonly(array.astype(np.int32, copy=False).reshape(-1, 3))
 
-    def _array(self, name: str, dtype: np.dtype[Any], what: str, shape: str) -> npt.NDArray[Any]:
+    def _array(
+        self, name: str, dtype: np.dtype[Any], *, columns: int, most: int
+    ) -> npt.NDArray[Any]:
         # Read by hand: NumPy's reader would believe any shape and allocate it.
-        content = self.read(name, largest=LARGEST_ARRAY)
-        length = int.from_bytes(content[8:10], "little")
-        header = content[10 : 10 + length]
-        pattern = rf"{{'descr': '{dtype.str}', 'fortran_order': False, 'shape': \({shape}\), }} *\n"
-        match = re.fullmatch(pattern.encode(), header)
-        data = content[10 + length :]
+        row = columns * dtype.itemsize
+        content = self.read(name, largest=LARGEST_NPY_HEADER + most * row)
+        start = 10 + int.from_bytes(content[8:10], "little")
+        shape = "," if columns == 1 else f", {columns}"
+        pattern = (
+            rf"{{'descr': '{dtype.str}', 'fortran_order': False, 'shape': \((\d+){shape}\), }} *\n"
+        )
+        match = re.fullmatch(pattern.encode(), content[10:start])
         if not content.startswith(NPY_MAGIC) or match is None:
-            raise LissomError(f"its {name} is not an array {what}")
-        row = dtype.itemsize * (3 if dtype.kind == "i" else 1)
-        if len(data) != int(match[1]) * row:
+            raise LissomError(f"its {name} is not an array {dtype.name} (n{shape})")
+        if len(content) - start != int(match[1]) * row:
             raise LissomError(f"its {name} is cut short")
-        array = np.frombuffer(data, dtype)
-        return readonly(array.reshape(-1, 3) if dtype.kind == "i" else array)
+        return np.frombuffer(content, dtype, offset=start)

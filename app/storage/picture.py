@@ -4,6 +4,8 @@ import io
 import struct
 import warnings
 import zlib
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -93,12 +95,31 @@ def decode_picture(data: bytes, name: str) -> Picture:
     """
     if not data:
         raise LissomError(f"{name} is empty")
+    with _told(name):
+        return _decode(data)
+
+
+def stored_size(data: bytes, name: str) -> tuple[int, int]:
+    """Return the width and height in pixels that a picture file tells, without decoding it.
+
+    Raises
+    ------
+    LissomError
+        If it is no picture, or says to be unreasonably large.
+    """
+    with _told(name), Image.open(io.BytesIO(data), formats=tuple(FORMATS)) as image:
+        return image.size
+
+
+@contextmanager
+def _told(name: str) -> Iterator[None]:
+    """Turn what Pillow raises into a `LissomError` that calls the file by its name."""
     try:
         with warnings.catch_warnings():
             # The warning comes at half the size of the error; we draw the line there.
             warnings.simplefilter("ignore")
             warnings.simplefilter("error", Image.DecompressionBombWarning)
-            return _decode(data)
+            yield
     except (Image.DecompressionBombWarning, Image.DecompressionBombError) as error:
         raise LissomError(
             f"{name} has more than {Image.MAX_IMAGE_PIXELS or 0:,} pixels; scale it down first"

@@ -1,32 +1,43 @@
 """Saving and opening projects.
 
-A project is a zip file: `mimetype` (first, not packed), `project.json`, and for each figure, under
-`figures/` and its id, the picture byte for byte as `source.*`, the arrays of the domain, and phi
-and psi of each key under `keys/`. The maps are stored, not solved again, so that another solver
-never changes an animation.
+A project is a zip file: `mimetype` (first, not packed), `project.json`, `thumbnail.png`, and for
+each figure, under `figures/` and its id, the picture byte for byte as `source.*`, the arrays of the
+domain, and phi and psi of each key under `keys/`. The maps are stored, not solved again, so that
+another solver never changes an animation. Fields and members that this version does not know are
+handed on.
+
+A file is input like any other, whoever wrote it. What it would unpack to is known, and limited,
+before anything is; pictures and domains are checked; and what holds of a map is not written but
+proven anew. However damaged it is, reading takes no more memory than half a gigabyte and some ten
+times its size.
 """
 
 import json
 import struct
 import zipfile
 import zlib
+from dataclasses import replace
 from math import isfinite
 from pathlib import Path
+from types import MappingProxyType
 
 from app.document import Document, Figure, PictureFile
 from app.errors import EXPECTED_ERRORS, LissomError
 from app.storage.archive import MEBIBYTE, Archive, array_member, write_archive
 from app.storage.files import write_atomically
 from app.storage.json_values import JsonObject, as_object, as_text, as_whole, without_repeats
+from app.storage.picture import stored_size
 from app.storage.project_json import SCHEMA, read_document, read_size, write_document
 from engine.arrays import Complexes, as_points
-from engine.domain import Domain
+from engine.domain import MOST_MESH_TRIANGLES, Domain, require_domain
 from engine.domain.meshing import Mesh
-from engine.geometry import require_simple
+from engine.domain.outline import LARGEST_OUTLINE
 
-LARGEST_JSON = 64 * MEBIBYTE
-LARGEST_PICTURE = 1024 * MEBIBYTE
-LARGEST_THUMBNAIL = 16 * MEBIBYTE
+LARGEST_JSON = 32 * MEBIBYTE
+# In project.json; a thousand keys of a hundred handles have as many.
+MOST_VALUES = 1_000_000
+LARGEST_THUMBNAIL = 2 * MEBIBYTE
+THUMBNAIL = "thumbnail.png"
 # Of lists and objects in each other; fields that are not known are kept, and must be writable.
 DEEPEST = 40
 # What zipfile and json raise on damaged files; the first two of them are encryption and a zip
@@ -66,7 +77,9 @@ def save_project(path: Path, document: Document, *, thumbnail: bytes | None = No
     for figure in document.figures:
         members |= _figure_members(figure)
     if thumbnail is not None:
-        members["thumbnail.png"] = thumbnail
+        members[THUMBNAIL] = thumbnail
+    # Later versions may know better, but never what this one writes.
+    members = {**document.attachments, **members}
     write_atomically(path, lambda file: write_archive(file, members))
 
 
@@ -81,7 +94,7 @@ def load_project(path: Path) -> Document:
     """
     try:
         with zipfile.ZipFile(path) as file:
-            return _read(Archive(file))
+            return _read(Archive(file, path.stat().st_size))
     except OSError as error:
         raise LissomError(f"cannot read {path}: {error.strerror or error}") from error
     except EXPECTED_ERRORS as error:
@@ -94,7 +107,7 @@ def load_thumbnail(path: Path) -> bytes | None:
     """Read only the small PNG picture of a project; None where it has none, or is no project."""
     try:
         with zipfile.ZipFile(path) as file:
-            return Archive(file).read("thumbnail.png", largest=LARGEST_THUMBNAIL)
+            return Archive(file, path.stat().st_size).read(THUMBNAIL, largest=LARGEST_THUMBNAIL)
     except (OSError, *EXPECTED_ERRORS, *DAMAGE):
         return None
 
@@ -110,8 +123,9 @@ def _read(archive: Archive) -> Document:
         )
     if schema < 1:
         raise LissomError(f"its schema {schema} is none")
-
-    return read_document(content, _Parts(archive))
+    document = read_document(content, _Parts(archive))
+    attachments = {name: archive.read(name) for name in archive.unread if name != THUMBNAIL}
+    return replace(document, attachments=MappingProxyType(attachments))
 
 
 def _figure_members(figure: Figure) -> dict[str, bytes]:
@@ -148,34 +162,52 @@ class _Parts:
     def picture(self, figure: int, content: JsonObject) -> PictureFile:
         suffix = as_text(content["suffix"], f"{content.where}.suffix")
         picture = PictureFile(
-            data=self._archive.read(f"{_folder(figure)}/source{suffix}", largest=LARGEST_PICTURE),
+            data=self._archive.read(f"{_folder(figure)}/source{suffix}"),
             suffix=suffix,
             size=read_size(content["size"], f"{content.where}.size"),
         )
         if picture.sha256 != as_text(content["sha256"], f"{content.where}.sha256"):
             raise LissomError("its picture is not the one that was saved: the checksums differ")
+        # A camera's note on its orientation may have turned it by a quarter.
+        size = stored_size(picture.data, "its picture")
+        if picture.size not in {size, size[::-1]}:
+            raise LissomError(
+                f"its picture has {size[0]} × {size[1]} pixels, not {picture.size[0]} × "
+                f"{picture.size[1]} as it says"
+            )
         return picture
 
     def domain(self, figure: int) -> Domain:
+        folder, read = _folder(figure), self._archive
         outline, cage, vertices = (
-            as_points(self._archive.points(f"{_folder(figure)}/{name}.npy"), name, at_least=3)
-            for name in ("outline", "cage", "vertices")
+            as_points(read.points(f"{folder}/{name}.npy", most=most), name, at_least=3)
+            for name, most in (
+                ("outline", LARGEST_OUTLINE),
+                ("cage", LARGEST_OUTLINE),
+                ("vertices", MOST_MESH_TRIANGLES),
+            )
         )
-        require_simple(outline, "outline")
-        triangles = self._archive.triangles(f"{_folder(figure)}/triangles.npy")
-        if len(triangles) == 0 or triangles.min() < 0 or triangles.max() >= len(vertices):
-            raise LissomError("its triangles do not belong to its vertices")
-        return Domain(outline=outline, cage=cage, mesh=Mesh(vertices=vertices, triangles=triangles))
+        triangles = read.triangles(f"{folder}/triangles.npy", most=MOST_MESH_TRIANGLES)
+        domain = Domain(
+            outline=outline, cage=cage, mesh=Mesh(vertices=vertices, triangles=triangles)
+        )
+        require_domain(domain)
+        return domain
 
     def coefficients(self, figure: int, key: int) -> tuple[Complexes, Complexes]:
         phi, psi = _coefficient_members(figure, key)
-        return self._archive.points(phi), self._archive.points(psi)
+        most = LARGEST_OUTLINE
+        return self._archive.points(phi, most=most), self._archive.points(psi, most=most)
 
 
 def _read_json(archive: Archive) -> JsonObject:
+    text = archive.read("project.json", largest=LARGEST_JSON)
+    # Each value but the first stands behind one of these; decoded, it takes some hundred bytes.
+    if sum(text.count(mark) for mark in (b",", b"[", b"{")) > MOST_VALUES:
+        raise LissomError("its project.json holds more values than any project")
     try:
         content = json.loads(
-            archive.read("project.json", largest=LARGEST_JSON),
+            text,
             object_pairs_hook=without_repeats,
             parse_float=_finite,
             parse_constant=_finite,

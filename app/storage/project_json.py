@@ -2,8 +2,8 @@
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
+from functools import partial
 from importlib.metadata import version
-from math import inf, isfinite
 from types import MappingProxyType
 from typing import Any, Protocol, TypeVar, cast
 
@@ -38,7 +38,7 @@ from app.storage.json_values import (
 from engine.arrays import Complexes
 from engine.domain import Domain
 from engine.domain.outline import Detail
-from engine.maps import Bounds, Certificate
+from engine.maps import Boundary, Bounds, HarmonicMap, certify
 
 SCHEMA = 1
 Json = dict[str, Any]
@@ -95,11 +95,16 @@ def read_document(content: JsonObject, parts: FigureParts) -> Document:
     LissomError, EngineError
         If a field is missing or of another kind, or the document would not be valid.
     """
-    figures = as_list(content["figures"], "figures")
+    figures = [
+        as_object(figure, f"figures[{i}]")
+        for i, figure in enumerate(as_list(content["figures"], "figures"))
+    ]
+    identities = [as_whole(figure["id"], f"{figure.where}.id") for figure in figures]
+    if len(set(identities)) < len(identities):
+        # Told before their parts are read, once for each.
+        raise LissomError("two of its figures have the same id")
     document = Document(
-        figures=tuple(
-            _read_figure(figure, f"figures[{i}]", parts) for i, figure in enumerate(figures)
-        ),
+        figures=tuple(_read_figure(figure, parts) for figure in figures),
         frames=_read_range(content["frames"], "frames"),
         work=_read_optional(content["work"], "work", _read_range),
         fps=as_number(content["fps"], "fps"),
@@ -136,35 +141,43 @@ def _write_figure(figure: Figure) -> Json:
     return _with_unknown(known, figure.unknown)
 
 
-def _read_figure(content: object, where: str, parts: FigureParts) -> Figure:
-    fields = as_object(content, where)
+def _read_figure(fields: JsonObject, parts: FigureParts) -> Figure:
+    where = fields.where
     identity = as_whole(fields["id"], f"{where}.id")
     handles = as_list(fields["handles"], f"{where}.handles")
     keys = as_list(fields["keys"], f"{where}.keys")
-    bounds = as_object(fields["bounds"], f"{where}.bounds")
+    bounds = _read_bounds(as_object(fields["bounds"], f"{where}.bounds"))
+    picture = parts.picture(identity, as_object(fields["picture"], f"{where}.picture"))
+    domain = parts.domain(identity)
+    boundary = Boundary.sample(domain.outline, domain.cage)
+
+    def pose(phi: Complexes, psi: Complexes, targets: Mapping[int, Target]) -> Pose:
+        proven = certify(HarmonicMap(cage=domain.cage, phi=phi, psi=psi), boundary, bounds)
+        return Pose(targets=targets, phi=phi, psi=psi, certificate=proven)
+
     figure = Figure(
         id=identity,
-        picture=parts.picture(identity, as_object(fields["picture"], f"{where}.picture")),
-        domain=parts.domain(identity),
+        picture=picture,
+        domain=domain,
         meshing=_read_meshing(as_object(fields["domain"], f"{where}.domain")),
         handles=tuple(
             _read_handle(handle, f"{where}.handles[{i}]") for i, handle in enumerate(handles)
         ),
         next_handle=as_whole(fields["next_handle"], f"{where}.next_handle"),
         keys=tuple(
-            _read_key(key, f"{where}.keys[{i}]", *parts.coefficients(identity, i))
+            _read_key(key, f"{where}.keys[{i}]", partial(pose, *parts.coefficients(identity, i)))
             for i, key in enumerate(keys)
         ),
         anchor=_read_optional(fields["anchor"], f"{where}.anchor", as_point),
         variant=cast(Variant, as_text(fields["variant"], f"{where}.variant")),
-        bounds=Bounds(
-            **{
-                name: as_number(bounds[name], f"{where}.bounds.{name}")
-                for name in ("k", "sigma_a", "sigma_b")
-            }
-        ),
+        bounds=bounds,
     )
     return replace(figure, unknown=_unknown_of(fields, _write_figure(figure)))
+
+
+def _read_bounds(content: JsonObject) -> Bounds:
+    names = ("k", "sigma_a", "sigma_b")
+    return Bounds(**{name: as_number(content[name], f"{content.where}.{name}") for name in names})
 
 
 def read_size(content: object, where: str) -> tuple[int, int]:
@@ -212,34 +225,26 @@ def _read_handle(content: object, where: str) -> Handle:
 
 
 def _write_key(key: Keyframe) -> Json:
-    certificate = key.pose.certificate
     known = {
         "frame": key.frame,
         "easing": key.easing.written(),
         "turns": key.turns,
         "targets": [_write_target(i, target) for i, target in key.pose.targets.items()],
-        "certificate": {
-            "k": _write_number(certificate.k),
-            "sigma_a": _write_number(certificate.sigma_a),
-            "sigma_b": _write_number(certificate.sigma_b),
-            "winding": certificate.winding,
-            "certified": certificate.certified,
-        },
     }
     return _with_unknown(known, key.unknown)
 
 
-def _read_key(content: object, where: str, phi: Complexes, psi: Complexes) -> Keyframe:
+def _read_key(
+    content: object, where: str, pose: Callable[[Mapping[int, Target]], Pose]
+) -> Keyframe:
     fields = as_object(content, where)
-    certificate = as_object(fields["certificate"], f"{where}.certificate")
     targets = as_list(fields["targets"], f"{where}.targets")
     read = dict(_read_target(target, f"{where}.targets[{i}]") for i, target in enumerate(targets))
     if len(read) < len(targets):
         raise LissomError(f"{where} has two targets for one handle")
-    pose = Pose(targets=read, phi=phi, psi=psi, certificate=_read_certificate(certificate))
     key = Keyframe(
         frame=as_whole(fields["frame"], f"{where}.frame"),
-        pose=pose,
+        pose=pose(read),
         easing=Easing.parse(fields["easing"]),
         turns=as_whole(fields["turns"], f"{where}.turns"),
     )
@@ -263,27 +268,6 @@ def _read_target(content: object, where: str) -> tuple[int, Target]:
         rotation=_read_optional(fields["rotation"], f"{where}.rotation", as_number),
     )
     return identity, replace(target, unknown=_unknown_of(fields, _write_target(identity, target)))
-
-
-def _read_certificate(content: JsonObject) -> Certificate:
-    where = content.where
-
-    def number(name: str, infinite: float) -> float:
-        read = _read_optional(content[name], f"{where}.{name}", as_number)
-        return infinite if read is None else read
-
-    return Certificate(
-        k=number("k", inf),
-        sigma_a=number("sigma_a", inf),
-        sigma_b=number("sigma_b", -inf),
-        winding=_read_optional(content["winding"], f"{where}.winding", as_whole),
-        certified=as_flag(content["certified"], f"{where}.certified"),
-    )
-
-
-def _write_number(value: float) -> float | None:
-    """Return null for what is unbounded: JSON has no infinities."""
-    return value if isfinite(value) else None
 
 
 def _write_point(point: complex) -> list[float]:

@@ -12,9 +12,10 @@ from engine.domain.build import (
     mesh_inside,
     texture_coordinates,
 )
-from engine.domain.validity import require_domain
+from engine.domain.validity import MOST_MESH_TRIANGLES, require_domain
 
 __all__ = [
+    "MOST_MESH_TRIANGLES",
     "MOST_TRIANGLES",
     "Domain",
     "build_domain",

@@ -1,5 +1,7 @@
 """Pictures (h, w, 4) uint8, drawn for the tests of masks, outlines and everything after them."""
 
+import struct
+import zlib
 from collections.abc import Callable, Sequence
 
 import numpy as np
@@ -9,6 +11,22 @@ from engine.arrays import Booleans, Bytes, Floats
 
 INK = (40, 90, 160)
 Drawing = Callable[[ImageDraw.ImageDraw], None]
+
+
+def blank_png(width: int, height: int) -> bytes:
+    """A black PNG file, the same to the last byte whatever compresses it elsewhere."""
+
+    def chunk(name: bytes, content: bytes) -> bytes:
+        checksum = struct.pack(">I", zlib.crc32(name + content))
+        return struct.pack(">I", len(content)) + name + content + checksum
+
+    rows = bytes((1 + (width + 7) // 8) * height)
+    block = b"\x01" + struct.pack("<HH", len(rows), len(rows) ^ 0xFFFF) + rows
+    packed = b"\x78\x01" + block + struct.pack(">I", zlib.adler32(rows))
+    header = struct.pack(">IIBBBBB", width, height, 1, 0, 0, 0, 0)
+    return (
+        b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header) + chunk(b"IDAT", packed) + chunk(b"IEND", b"")
+    )
 
 
 def painted(mask: Booleans, colour: tuple[int, int, int] = INK) -> Bytes:

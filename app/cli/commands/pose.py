@@ -5,7 +5,7 @@ import argparse
 from app.cli.console import StatusLine, notice
 from app.document import Meshing
 from app.solving import load_pose_script, pose_document
-from app.storage import check_writable, open_picture, save_project
+from app.storage import check_writable, draw_thumbnail, open_picture, save_project
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -21,7 +21,7 @@ def run(arguments: argparse.Namespace) -> int:
     status.clear()
     for message in lags:
         notice(message)
-    save_project(arguments.out, document)
+    save_project(arguments.out, document, thumbnail=draw_thumbnail(opened.picture.rgba))
     figure = document.figures[-1]
     print(f"{arguments.out}: {len(figure.keys)} keys, {len(figure.handles)} handles")
     return 0

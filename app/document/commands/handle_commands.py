@@ -91,7 +91,7 @@ def _follow(figure: Figure, handle: Handle) -> tuple[Keyframe, ...]:
     for key in figure.keys:
         old = key.pose.targets.get(handle.id)
         position = complex(figure.map_of(key.pose)(place)[0])
-        target = Target(position=position, rotation=None if old is None else old.rotation)
+        target = Target(position=position) if old is None else replace(old, position=position)
         targets = {**key.pose.targets, handle.id: target}
         keys.append(replace(key, pose=replace(key.pose, targets=targets)))
     return tuple(keys)

@@ -32,7 +32,8 @@ def pull(session: Session, wishes: Mapping[int, Target]) -> None:
     if project.grab is None or not project.grab.held:
         project.grab, project.settling = _grab(session, project), None
     grab = project.grab
-    grab.targets = {**grab.targets, **wishes}
+    targets = grab.targets
+    grab.targets = {**targets, **{i: _instead_of(targets.get(i), wishes[i]) for i in wishes}}
     grab.steps = 0
     _follow(session, project, grab)
 
@@ -286,6 +287,11 @@ def _end(project: Project, grab: Grab) -> None:
         project.grab = None
     if project.settling is grab:
         project.settling = None
+
+
+def _instead_of(target: Target | None, wish: Target) -> Target:
+    """Return a wish with what a later version wrote about the target that it replaces."""
+    return wish if target is None else replace(wish, unknown=target.unknown)
 
 
 def _retargeted(figure: Figure, pose: Pose) -> Pose:

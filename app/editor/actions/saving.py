@@ -7,7 +7,7 @@ from app.editor.actions import exporting
 from app.editor.failures import report
 from app.editor.jobs import Job
 from app.editor.session import FileDialog, Project, Question, Session
-from app.storage import SECONDS, save_preferences, save_project
+from app.storage import SECONDS, draw_thumbnail, save_preferences, save_project
 
 PROJECT = ".lissom"
 SAVING, AUTOSAVING, KEEPING = "Saving", "Autosaving", "Keeping preferences"
@@ -44,6 +44,10 @@ def write(session: Session, path: Path, then: Action | None) -> None:
         project.to_save = (path, then)
         return
     document = project.document
+    picture = project.puppets[document.figures[0].id].picture
+
+    def work() -> None:
+        save_project(path, document, thumbnail=draw_thumbnail(picture.rgba))
 
     def done(_: None) -> None:
         project.history.mark_saved(document)
@@ -56,7 +60,7 @@ def write(session: Session, path: Path, then: Action | None) -> None:
     session.jobs.put(
         Job(
             kind=SAVING,
-            work=lambda: save_project(path, document),
+            work=work,
             done=done,
             failed=lambda error: report(session, "The project was not saved", error),
             urgent=True,

@@ -185,7 +185,7 @@ def _solver(session: Session, look: Look, project: Project) -> None:
         small(look, f"{shortfall.reason.capitalize()}. {remedy} a handle come nearer.")
     else:
         _status(look, icons.ICON_FA_CIRCLE_CHECK, palette.good, "Every handle is in its place")
-    if pose.certificate.certified:
+    if _is_proven(pose.certificate, project.figure.bounds):
         small(look, "Proven: nothing folds, and no point exceeds the limits.")
 
 
@@ -194,6 +194,13 @@ def _lag_in_words(shortfall: Shortfall) -> str:
     if count == 1:
         return f"1 handle is {most:.0f} px short of its target"
     return f"{count} handles are up to {most:.0f} px short"
+
+
+def _is_proven(certificate: Certificate, bounds: Bounds) -> bool:
+    """Tell whether what is proven of a pose, for the bounds of its time, is enough for these."""
+    return certificate.certified and bounds.allow(
+        k=certificate.k, sigma_a=certificate.sigma_a, sigma_b=certificate.sigma_b
+    )
 
 
 def _status(look: Look, icon: str, colour: imgui.ImVec4, text: str) -> None:

@@ -4,6 +4,7 @@ import numpy as np
 from imgui_bundle import ImVec2, imgui
 from imgui_bundle import icons_fontawesome_6 as icons
 
+from app.document import Figure
 from app.editor import Action, Boxing, Project, Pulling, Session, Turning, do
 from app.editor.actions import pointing, posing, viewing
 from app.motion import Shown
@@ -294,13 +295,14 @@ def _first_steps(project: Project) -> int | None:
         return 0
     if len(figure.keys) > 1 or project.playhead.since is not None:
         return None
-    was_posed = any(figure.lags(figure.keys[0].pose)) and _is_posed(project)
+    was_posed = any(figure.lags(figure.keys[0].pose)) and _is_posed(figure)
     return 2 if was_posed else 1
 
 
-def _is_posed(project: Project) -> bool:
-    pose = project.figure.keys[0].pose
-    return bool(np.abs(pose.psi).max() > 0 or pose.certificate.k > 0)
+def _is_posed(figure: Figure) -> bool:
+    """Tell whether the first pose is another than the one in which the picture was drawn."""
+    pose = figure.keys[0].pose
+    return bool(pose.psi.any()) or not np.array_equal(pose.phi, figure.domain.cage)
 
 
 def _pill(
