@@ -282,7 +282,7 @@ OTHER_CAGE = random_pose(np.random.default_rng(0), DOCUMENT, disc_domain(13))
     ("command", "message"),
     [
         (handles.add_handle(0, CENTRE + 2 * RADIUS), "outside the shape"),
-        (handles.add_handle(0, complex("nan")), "finite"),
+        (handles.add_handle(0, complex("nan")), "within 10,000,000 pixels"),
         (handles.add_handle(0, CENTRE, name="handle 1"), "name 'handle 1'"),
         (handles.add_handle(0, CENTRE, name="  "), "needs a name"),
         (handles.add_handle(0, CENTRE, weight=0.0), "weight"),
@@ -325,7 +325,7 @@ OTHER_CAGE = random_pose(np.random.default_rng(0), DOCUMENT, disc_domain(13))
         (settings.set_work_range(FrameRange(3, 49)), "work range"),
         (figures.set_variant(0, "arap"), "variant"),
         (figures.set_anchor(0, CENTRE + 2 * RADIUS), "The anchor"),
-        (figures.set_anchor(0, complex("inf")), "anchor must be finite"),
+        (figures.set_anchor(0, complex("inf")), "anchor must be within"),
         (figures.set_bounds(0, Bounds(), [POSE]), "3 keys, but 1 poses"),
         (figures.replace_domain(0, disc_domain(13), Meshing(), [POSE] * 3), "cage of 12"),
         (figures.replace_domain(0, disc_domain(13), Meshing(), [OTHER_CAGE]), "3 keys, but 1"),

@@ -1,9 +1,12 @@
 """Files that are dropped, work that is kept by itself, and preferences that outlive a crash."""
 
 import threading
+from dataclasses import replace
+from types import MappingProxyType
 
 import pytest
 
+from app.document.commands import handle_commands
 from app.document.keyframe import Target
 from app.editor.actions import editing, posing, saving, viewing
 from app.editor.session import Question
@@ -11,6 +14,7 @@ from app.storage.assets import sample_images
 from app.storage.autosave import SECONDS
 from app.storage.preferences import CHECKER, Preferences, load_preferences
 from app.storage.project_file import load_project, save_project
+from app.storage.thumbnail import read_thumbnail
 
 BAR, RING = sample_images() / "bar.png", sample_images() / "ring.png"
 
@@ -220,6 +224,45 @@ def test_nothing_stays_of_work_that_is_given_up_meanwhile(window, project, monke
     may_write.set()
     window.settle()
     assert list(window.folder.glob("unsaved-*")) == []
+
+
+def test_a_saved_project_is_known_by_its_picture_in_the_welcome_view(window, project, tmp_path):
+    path = tmp_path / "bar.lissom"
+    saving.write(window.session, path, None)
+    window.settle()
+    small = read_thumbnail(path)
+    assert small.shape[1] / small.shape[0] == pytest.approx(
+        project.document.canvas[0] / project.document.canvas[1], rel=0.05
+    )
+    textures = window._window._thumbnails
+    assert textures.textures() == []
+    window.act(saving.close)
+    window.frames(30)
+    shown = textures.get(path)
+    assert shown.size == small.shape[1::-1]
+    window.open(BAR)
+    assert textures.textures() == []
+
+
+def test_a_drag_keeps_what_a_later_version_wrote_about_its_target(window, project, tmp_path):
+    change(window, project)
+    path = tmp_path / "bar.lissom"
+    (key,) = project.figure.keys
+    told = MappingProxyType({"from the future": 1})
+    targets = {i: replace(target, unknown=told) for i, target in key.pose.targets.items()}
+    key = replace(key, pose=replace(key.pose, targets=targets))
+    figure = replace(project.figure, keys=(key,))
+    save_project(path, replace(project.document, figures=(figure,)))
+    opened = window.open(path)
+    place = opened.figure.handles[0].position
+    posing.pull(window.session, {0: Target(position=place + 20j)})
+    window.act(posing.let_go)
+    window.settle()
+    target = opened.figure.keys[0].pose.targets[0]
+    assert target.position == place + 20j
+    assert target.unknown == told
+    window.act(editing.edit, handle_commands.move_handle(opened.active, 0, place - 5))
+    assert opened.figure.keys[0].pose.targets[0].unknown == told
 
 
 def test_preferences_are_kept_as_soon_as_they_change(window):
