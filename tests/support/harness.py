@@ -6,6 +6,7 @@ from dataclasses import fields
 from pathlib import Path
 
 from imgui_bundle import ImVec2, hello_imgui, imgui
+from invariants import check_invariants
 from PIL import Image
 
 from app.document.settings import Meshing
@@ -159,6 +160,7 @@ class Harness:
         assert test.output.status == imgui.test_engine.TestStatus.success, (
             test.output.log.get_text()
         )
+        check_invariants(self.session)
 
     def picture(self) -> Image.Image:
         """Return what is on the screen."""

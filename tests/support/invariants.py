@@ -1,0 +1,67 @@
+"""What holds of a session whatever a person did; asked after every gesture of a test."""
+
+from functools import lru_cache
+
+import numpy as np
+
+from app.document.figure import Figure
+from app.document.keyframe import Pose
+from app.editor.actions import playback
+from app.editor.session import Session
+from engine.domain.build import Domain
+from engine.domain.validity import require_domain
+from engine.maps.boundary import Boundary
+from engine.maps.bounds import Bounds
+from engine.maps.certificate import Certificate, certify
+from engine.maps.harmonic_map import HarmonicMap
+
+SLACK = 1e-6  # of a certificate's numbers, by which rounding may differ
+
+
+def check_invariants(session: Session) -> None:
+    """Fail where the document, or how it is looked at, contradicts itself."""
+    project = session.project
+    if project is None:
+        return
+    document, figure = project.document, project.figure
+    assert set(project.puppets) == {each.id for each in document.figures}
+    assert project.selected <= {handle.id for handle in figure.handles}
+    assert project.chosen <= figure.key_frames
+    assert playback.current_frame(session, project) in document.frames
+    for each in document.figures:
+        frames = [key.frame for key in each.keys]
+        assert frames
+        assert frames == sorted(set(frames))
+        assert all(frame in document.frames for frame in frames)
+        for key in each.keys:
+            check_pose(each, key.pose)
+    if project.unkeyed is not None:
+        check_pose(figure, project.unkeyed)
+
+
+def check_pose(figure: Figure, pose: Pose) -> None:
+    """Fail unless a pose is of a figure, and its certificate is true."""
+    assert set(pose.targets) == {handle.id for handle in figure.handles}
+    assert len(pose.phi) == len(pose.psi) == len(figure.domain.cage)
+    assert np.isfinite(pose.phi).all()
+    assert np.isfinite(pose.psi).all()
+    if pose.certificate.certified:
+        assert _is_true(figure.domain, pose)
+
+
+@lru_cache(maxsize=512)
+def _is_true(domain: Domain, pose: Pose) -> bool:
+    told: Certificate = pose.certificate
+    allowed = Bounds(
+        k=told.k + SLACK,
+        sigma_a=max(told.sigma_a, 1.0) + SLACK,
+        sigma_b=min(told.sigma_b, 1.0) - SLACK,
+    )
+    shape = HarmonicMap(cage=domain.cage, phi=pose.phi, psi=pose.psi)
+    return certify(shape, _boundary(domain), allowed).certified
+
+
+@lru_cache(maxsize=8)
+def _boundary(domain: Domain) -> Boundary:
+    require_domain(domain)
+    return Boundary.sample(domain.outline, domain.cage)
