@@ -120,11 +120,15 @@ class Figure:
         return HarmonicMap(cage=self.domain.cage, phi=pose.phi, psi=pose.psi)
 
     def lags(self, pose: Pose) -> Mapping[int, float]:
-        """Return by how many pixels each handle, by its id, falls short of its target."""
+        """Return by how many pixels each handle, by its id, falls short of its target.
+
+        A pose that is shown may be older than the newest handles: those are left out.
+        """
         reached = self.map_of(pose)(np.array([handle.position for handle in self.handles], complex))
         return {
             handle.id: abs(pose.targets[handle.id].position - complex(place))
             for handle, place in zip(self.handles, reached, strict=True)
+            if handle.id in pose.targets
         }
 
     def _check_handles(self) -> None:

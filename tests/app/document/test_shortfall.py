@@ -58,3 +58,8 @@ def test_shares_count_from_no_distortion_to_the_limit():
     )
     assert_allclose([none, half, full], [[0] * 3, [0.5] * 3, [1] * 3], rtol=0, atol=1e-12)
     assert min(folded) > 100
+
+
+def test_a_pose_older_than_a_handle_says_nothing_of_it():
+    figure, pose = figure_and_pose(lag=30, share=0.5)
+    assert find_shortfall(figure, replace(pose, targets={})).lags == {}
