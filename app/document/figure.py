@@ -119,6 +119,14 @@ class Figure:
         """Return the map of a pose."""
         return HarmonicMap(cage=self.domain.cage, phi=pose.phi, psi=pose.psi)
 
+    def is_proven(self, pose: Pose) -> bool:
+        """Tell whether a pose is proven to keep the bounds of now."""
+        proven = pose.certificate
+        # The solver proves a pose for the limits of its time, which it may have had to widen.
+        return proven.certified and self.bounds.allow(
+            k=proven.k, sigma_a=proven.sigma_a, sigma_b=proven.sigma_b
+        )
+
     def lags(self, pose: Pose) -> Mapping[int, float]:
         """Return by how many pixels each handle, by its id, falls short of its target.
 

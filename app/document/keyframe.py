@@ -82,7 +82,7 @@ class Pose:
     phi, psi : complex128, shape (n,)
         Coefficients of the map over the domain's cage.
     certificate : Certificate
-        What the solver vouches for. It is a record: whoever relies on it certifies again.
+        What is proven of the map, by the solver or when it was read; it is never written.
     """
 
     targets: Mapping[int, Target]

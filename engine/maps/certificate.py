@@ -54,7 +54,7 @@ class Certificate:
     certified : bool
         The map is locally injective and keeps to the limits that it was tested for.
     limits : Limits or None
-        Those limits; None where they are not told, as in a file.
+        Those limits; None of the identity, which keeps all bounds.
     """
 
     k: float

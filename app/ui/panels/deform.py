@@ -177,7 +177,8 @@ def _solver(session: Session, look: Look, project: Project) -> None:
         small(look, "It stays within the distortion of its two keys.")
         return
     shortfall = find_shortfall(shown.clip.figure, pose)
-    if not pose.certificate.certified:
+    is_proven = shown.clip.figure.is_proven(pose)
+    if not is_proven:
         _status(look, icons.ICON_FA_TRIANGLE_EXCLAMATION, palette.danger, "Beyond the limits")
     elif shortfall.lags:
         _status(look, icons.ICON_FA_HAND, palette.warning, _lag_in_words(shortfall))
@@ -185,7 +186,7 @@ def _solver(session: Session, look: Look, project: Project) -> None:
         small(look, f"{shortfall.reason.capitalize()}. {remedy} a handle come nearer.")
     else:
         _status(look, icons.ICON_FA_CIRCLE_CHECK, palette.good, "Every handle is in its place")
-    if _is_proven(pose.certificate, project.figure.bounds):
+    if is_proven:
         small(look, "Proven: nothing folds, and no point exceeds the limits.")
 
 
@@ -194,13 +195,6 @@ def _lag_in_words(shortfall: Shortfall) -> str:
     if count == 1:
         return f"1 handle is {most:.0f} px short of its target"
     return f"{count} handles are up to {most:.0f} px short"
-
-
-def _is_proven(certificate: Certificate, bounds: Bounds) -> bool:
-    """Tell whether what is proven of a pose, for the bounds of its time, is enough for these."""
-    return certificate.certified and bounds.allow(
-        k=certificate.k, sigma_a=certificate.sigma_a, sigma_b=certificate.sigma_b
-    )
 
 
 def _status(look: Look, icon: str, colour: imgui.ImVec4, text: str) -> None:

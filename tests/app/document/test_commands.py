@@ -28,6 +28,7 @@ from app.errors import LissomError
 from engine.errors import EngineError
 from engine.interpolation import Variant as EngineVariant
 from engine.maps.bounds import Bounds
+from engine.maps.certificate import Certificate
 
 
 def animated(*frames: int, count: int = 2, seed: int = 3) -> Document:
@@ -79,6 +80,23 @@ def test_handles_may_sit_on_the_outline_itself():
 
 def test_the_variants_are_those_of_the_engine():
     assert set(VARIANTS) == {variant.value for variant in EngineVariant}
+
+
+def test_a_pose_is_proven_for_bounds_that_its_certificate_keeps():
+    (figure,) = disc_document().figures
+    pose = figure.keys[0].pose
+    stretched = Certificate(k=0.3, sigma_a=2.0, sigma_b=0.5, winding=0, certified=True)
+    for bounds, is_proven in (
+        (Bounds(), True),
+        (Bounds(k=0.3, sigma_a=2.0, sigma_b=0.5), True),
+        (Bounds(k=0.29), False),
+        (Bounds(sigma_a=1.9), False),
+        (Bounds(sigma_b=0.51), False),
+    ):
+        bounded = replace(figure, bounds=bounds)
+        assert bounded.is_proven(replace(pose, certificate=stretched)) == is_proven
+        folded = replace(stretched, certified=False)
+        assert not bounded.is_proven(replace(pose, certificate=folded))
 
 
 def test_lags_are_the_distances_from_the_targets():

@@ -212,5 +212,5 @@ def test_members_that_overlap_are_refused(tmp_path):
             again = copy.copy(first)
             again.filename = name
             archive.filelist.append(again)
-    with pytest.raises(LissomError, match="overlap"):
+    with pytest.raises(LissomError, match="its members overlap"):
         load_project(path)
