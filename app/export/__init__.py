@@ -11,18 +11,19 @@ from app.export.painting import Painter
 from app.export.plan import (
     ExportPlan,
     ExportRequest,
-    Poses,
     check_request,
     missing,
     plan_export,
     replaced_files,
 )
+from app.export.poses import KeptPoses, Poses
 from app.export.run import export
 from app.export.writers import encode_png, sheet_grid
 
 __all__ = [
     "ExportPlan",
     "ExportRequest",
+    "KeptPoses",
     "Painter",
     "Poses",
     "check_request",

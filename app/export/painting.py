@@ -9,7 +9,8 @@ import numpy as np
 from app.document import Document
 from app.errors import EXPECTED_ERRORS, LissomError
 from app.export.framing import shown_box
-from app.export.plan import ExportPlan, Poses
+from app.export.plan import ExportPlan
+from app.export.poses import Poses
 from app.motion import box_around
 from app.render import TRANSPARENT, Background, Colour, Renderer, Scene
 from app.render.gpu import (

@@ -4,7 +4,6 @@ import importlib.util
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Protocol
 
 import numpy as np
 
@@ -19,17 +18,10 @@ from app.document import (
 from app.errors import LissomError
 from app.export.destination import check_destination, frame_names, left_frames, replaced
 from app.export.framing import frame_view
+from app.export.poses import KeptPoses
 from app.export_formats import EXPORT_FORMATS
-from app.motion import Box, box_around
+from app.motion import Box, box_around, motion_box
 from app.render import View
-from engine.arrays import Complexes
-
-
-class Poses(Protocol):
-    """Where the vertices of a figure's mesh are at any time."""
-
-    def positions(self, frame: float) -> Complexes:
-        """Return the vertices, complex128 (v,), at a frame, whole or between two."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -138,7 +130,10 @@ def missing(name: str) -> str:
 
 
 def plan_export(
-    document: Document, request: ExportRequest, poses: Mapping[int, Poses]
+    document: Document,
+    request: ExportRequest,
+    poses: Mapping[int, KeptPoses],
+    extent: Box | None = None,
 ) -> ExportPlan:
     """Settle an export whose request has passed `check_request`.
 
@@ -148,6 +143,8 @@ def plan_export(
     request : ExportRequest
     poses : mapping of int to Poses
         One for each figure, by its id; looked at only where the framing depends on the motion.
+    extent : Box, optional
+        Around all of the motion, where that is known already.
 
     Raises
     ------
@@ -157,13 +154,17 @@ def plan_export(
     settings = request.settings
     frames = _frames(document, settings)
     times = tuple(frame_times(document, frames, request.fps))
-    is_fitted = settings.framing == "fit"
     rest = np.concatenate([figure.domain.mesh.vertices for figure in document.figures])
-    reach = _reach(poses, framed_frames(document, frames)) if is_fitted else box_around(rest)
+    if settings.framing == "fit" and extent is None:
+        extent = motion_box(
+            document,
+            framed_frames(document, frames),
+            lambda figure, frame: poses[figure].keep(frame),
+        )
     plan = ExportPlan(
         out=request.out,
         format=settings.format,
-        view=frame_view(settings, document.canvas, reach),
+        view=frame_view(settings, document.canvas, extent or box_around(rest)),
         background=_colour(settings.background),
         times=times,
         first=frames.first,
@@ -175,17 +176,6 @@ def plan_export(
 
 def _frames(document: Document, settings: ExportSettings) -> FrameRange:
     return settings.frames or exported_frames(document)
-
-
-def _reach(poses: Mapping[int, Poses], frames: FrameRange) -> Box:
-    """Return the box around all vertices in all frames."""
-    corners: list[complex] = []
-    for time in range(frames.first, frames.last + 1):
-        positions = [figure.positions(time) for figure in poses.values()]
-        corners += box_around(np.concatenate(positions))
-        if not np.isfinite(corners[-2:]).all():
-            raise LissomError(f"frame {time} cannot be drawn: its points are not all finite")
-    return box_around(np.array(corners))
 
 
 def _colour(background: str) -> tuple[int, int, int] | None:

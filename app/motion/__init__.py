@@ -5,7 +5,7 @@ Out: where the vertices are, and how far they reach.
 Imports: `app.document`.
 """
 
-from app.motion.extent import Box, Extent, box_around, extent_source, measure_extent
+from app.motion.extent import Box, Extent, box_around, extent_source, measure_extent, motion_box
 from app.motion.inbetweens import Animation, PoseSampler
 from app.motion.posable_mesh import PosableMesh
 from app.motion.prepared import Motion, prepare_motion
@@ -27,6 +27,7 @@ __all__ = [
     "box_around",
     "extent_source",
     "measure_extent",
+    "motion_box",
     "next_build",
     "prepare_motion",
     "show",

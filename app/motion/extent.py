@@ -1,11 +1,12 @@
 """How far an animation moves over the plane."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import NamedTuple
 
 import numpy as np
 
-from app.document import Document, clip_of, exported_frames, framed_frames
+from app.document import Document, FrameRange, clip_of, exported_frames, framed_frames
+from app.errors import LissomError
 from app.motion.prepared import Motion
 from engine.arrays import Complexes
 
@@ -57,13 +58,38 @@ def measure_extent(document: Document, motions: Mapping[int, Motion]) -> Extent 
     motions : mapping of int to Motion
         One for each figure, by its id.
     """
+    clips = {figure: clip_of(document, figure) for figure in motions}
     frames = framed_frames(document, exported_frames(document))
+    box = motion_box(
+        document, frames, lambda figure, frame: motions[figure].positions(clips[figure], frame)
+    )
+    return None if box is None else Extent(extent_source(document), box)
+
+
+def motion_box(
+    document: Document, frames: FrameRange, place: Callable[[int, int], Complexes | None]
+) -> Box | None:
+    """Return the box around all figures in all of these frames.
+
+    Parameters
+    ----------
+    document : Document
+    frames : FrameRange
+    place : callable
+        Returns where the vertices of a figure, by its id, are in a frame; None ends the search.
+
+    Raises
+    ------
+    LissomError
+        If a vertex is nowhere.
+    """
     corners: list[complex] = []
-    for figure in document.figures:
-        clip = clip_of(document, figure.id)
-        for frame in range(frames.first, frames.last + 1):
-            positions = motions[figure.id].positions(clip, frame)
+    for frame in range(frames.first, frames.last + 1):
+        for figure in document.figures:
+            positions = place(figure.id, frame)
             if positions is None:
                 return None
             corners += box_around(positions)
-    return Extent(extent_source(document), box_around(np.array(corners)))
+        if not np.isfinite(corners[-2 * len(document.figures) :]).all():
+            raise LissomError(f"frame {frame} cannot be drawn: its points are not all finite")
+    return box_around(np.array(corners))

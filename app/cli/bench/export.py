@@ -14,8 +14,17 @@ import numpy as np
 from PIL import Image
 
 from app.cli.bench.table import Row, Table, measure
-from app.document import Document, FrameRange, Keyframe, Meshing, PictureFile, clip_of, new_figure
-from app.export import ExportRequest, Painter, encode_png, export, plan_export
+from app.document import (
+    Document,
+    ExportSettings,
+    FrameRange,
+    Keyframe,
+    Meshing,
+    PictureFile,
+    clip_of,
+    new_figure,
+)
+from app.export import ExportRequest, KeptPoses, Painter, encode_png, export, plan_export
 from app.motion import Animation
 from app.render import Renderer
 from app.render.gpu import Target, create_context
@@ -38,7 +47,7 @@ def _speed() -> Table:
     figure = document.figures[0]
     pictures = {figure.id: decode_picture(figure.picture.data, "").rgba}
     context = create_context()
-    poses = {figure.id: Animation(clip_of(document, figure.id))}
+    poses = {figure.id: KeptPoses(Animation(clip_of(document, figure.id)))}
     with tempfile.TemporaryDirectory() as folder:
         request = ExportRequest(out=Path(folder), settings=document.export)
         plan = plan_export(document, request, poses)
@@ -105,7 +114,11 @@ def _bending_giraffe(size: tuple[int, int], *, last: int) -> Document:
         first.pose, phi=first.pose.phi + z * (np.exp(0.3j) - 1) + z**2 / np.abs(z).max() / 8
     )
     keys = (first, Keyframe(frame=last, pose=bent)) if last else (first,)
-    return Document(figures=(replace(figure, keys=keys),), frames=FrameRange(0, last))
+    return Document(
+        figures=(replace(figure, keys=keys),),
+        frames=FrameRange(0, last),
+        export=ExportSettings(framing="canvas"),
+    )
 
 
 def _by_the_clock(function: Callable[[], object]) -> float:

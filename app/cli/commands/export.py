@@ -10,6 +10,7 @@ from app.document import ExportSettings, FrameRange, clip_of
 from app.export import (
     ExportPlan,
     ExportRequest,
+    KeptPoses,
     Painter,
     check_request,
     export,
@@ -38,7 +39,7 @@ def run(arguments: argparse.Namespace) -> int:
     try:
         status.show("preparing the in-betweens")
         poses = {
-            figure.id: Animation(clip_of(document, figure.id), arguments.variant)
+            figure.id: KeptPoses(Animation(clip_of(document, figure.id), arguments.variant))
             for figure in document.figures
         }
         plan = plan_export(document, request, poses)

@@ -7,16 +7,24 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from app.document import ExportSettings, clip_of, scene_commands
+from app.document import Clip, ExportSettings, clip_of, scene_commands
 from app.editor.action import Action, do
 from app.editor.actions import editing, posing
 from app.editor.failures import report, sentence
 from app.editor.jobs import Job
 from app.editor.session import ExportRun, FileDialog, Project, Question, Session
 from app.errors import LissomError
-from app.export import ExportRequest, check_request, plan_export, replaced_files, suited
+from app.export import ExportRequest, KeptPoses, check_request, plan_export, replaced_files, suited
 from app.export_formats import EXPORT_FORMATS
-from app.motion import Animation, Box, Extent, extent_source, measure_extent
+from app.motion import (
+    Animation,
+    Box,
+    Extent,
+    Motion,
+    PoseSampler,
+    extent_source,
+    measure_extent,
+)
 
 PREPARING, MEASURING = "Preparing the export", "Measuring the motion"
 
@@ -91,15 +99,16 @@ def start(session: Session, out: Path) -> None:
             answers=(("Replace", do(replace_files, out)),),
         )
         return
-    motions = [puppet.fine or puppet.coarse for puppet in project.puppets.values()]
-    samplers = dict(zip(project.puppets, (motion.sampler for motion in motions), strict=True))
+    motions = {figure: (puppet.fine or puppet.coarse) for figure, puppet in project.puppets.items()}
+    extent = project.reach
+    box = extent.box if extent is not None and extent.source == extent_source(document) else None
 
     def work() -> ExportRun:
         poses = {
-            figure.id: Animation(clip_of(document, figure.id), sampler=samplers[figure.id])
+            figure.id: KeptPoses(_animation(clip_of(document, figure.id), motions[figure.id]))
             for figure in document.figures
         }
-        plan = plan_export(document, request, poses)
+        plan = plan_export(document, request, poses, box)
         return ExportRun(document=document, pictures=pictures, poses=poses, plan=plan)
 
     def done(run: ExportRun) -> None:
@@ -114,6 +123,16 @@ def start(session: Session, out: Path) -> None:
             failed=lambda error: report(session, "The export could not begin", error),
         )
     )
+
+
+def _animation(clip: Clip, motion: Motion) -> Animation:
+    """Return the motion for an export, which neither waits for the window's own nor disturbs it."""
+    figure, sibling = clip.figure, motion.sampler
+    is_sibling = sibling is not None and sibling.domain.cage is figure.domain.cage
+    sampler = PoseSampler(
+        figure.domain, anchor=figure.anchor, sibling=sibling if is_sibling else None
+    )
+    return Animation(clip, sampler=sampler)
 
 
 def cancel(session: Session) -> None:

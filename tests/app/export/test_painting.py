@@ -14,7 +14,8 @@ from numpy.testing import assert_array_equal
 from app.document.model import Document
 from app.errors import LissomError
 from app.export.painting import Painter
-from app.export.plan import ExportPlan, ExportRequest, Poses, plan_export
+from app.export.plan import ExportPlan, ExportRequest, plan_export
+from app.export.poses import KeptPoses, Poses
 from engine.arrays import Bytes
 
 SEEN = BLOB[..., 3] >= 8
@@ -27,7 +28,9 @@ def document() -> Document:
 
 def plan_of(document: Document, poses: Poses, **settings: object) -> ExportPlan:
     settings_ = replace(document.export, **({"framing": "canvas"} | settings))
-    return plan_export(document, ExportRequest(out=Path("out"), settings=settings_), {0: poses})
+    return plan_export(
+        document, ExportRequest(out=Path("out"), settings=settings_), {0: KeptPoses(poses)}
+    )
 
 
 @contextmanager

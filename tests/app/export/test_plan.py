@@ -10,7 +10,8 @@ from numpy.testing import assert_allclose
 from app.document.model import Document
 from app.document.settings import ExportSettings, FrameRange
 from app.errors import LissomError
-from app.export.plan import ExportPlan, ExportRequest, Poses, check_request, plan_export
+from app.export.plan import ExportPlan, ExportRequest, check_request, plan_export
+from app.export.poses import KeptPoses, Poses
 
 SIZE = (BLOB.shape[1], BLOB.shape[0])
 
@@ -30,7 +31,7 @@ def plan_of(
 ) -> ExportPlan:
     request = ExportRequest(out=out, settings=replace(document.export, **settings), fps=fps)
     check_request(document, request)
-    return plan_export(document, request, {0: poses or Sliding(document, 0)})
+    return plan_export(document, request, {0: KeptPoses(poses or Sliding(document, 0))})
 
 
 def test_by_default_the_frames_show_all_of_the_motion(document, tmp_path):

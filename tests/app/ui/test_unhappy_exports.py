@@ -297,6 +297,24 @@ def test_second_export_waits_for_the_first(window, tmp_path):
     assert [path.name for path in tmp_path.iterdir()] == ["first"]
 
 
+def test_export_and_in_betweens_of_the_window_do_not_wait_for_each_other(window, project, tmp_path):
+    keys.set_variant(window.session, "nu")
+    keys.insert_at(window.session, FRAMES - 1)
+    window.settle()
+    sampler = project.puppet.coarse.sampler
+    known = dict(sampler._samples)
+    assert known
+    with sampler._lock:  # as a worker has it while it prepares an interval
+        window.act(exporting.start, tmp_path / "frames")
+        window.settle()
+        finish(window)
+    assert len(list((tmp_path / "frames").iterdir())) == FRAMES
+    posing.remove_handles(window.session, frozenset({0}))
+    window.act(exporting.start, tmp_path / "more frames")
+    window.session.jobs.settle()
+    assert sampler._samples == known
+
+
 def test_picture_may_go_once_it_is_open(window, tmp_path):
     picture = tmp_path / "gone.png"
     picture.write_bytes(BAR.read_bytes())

@@ -1,0 +1,49 @@
+"""Where the vertices of a figure are in the frames of an export."""
+
+from typing import Final, Protocol
+
+import numpy as np
+import numpy.typing as npt
+
+from engine.arrays import Complexes
+
+KEPT: Final = 2**28  # bytes of positions that are kept from the framing for the drawing
+
+
+class Poses(Protocol):
+    """Where the vertices of a figure's mesh are at any time."""
+
+    def positions(self, frame: float) -> Complexes:
+        """Return the vertices, complex128 (v,), at a frame, whole or between two."""
+
+
+class KeptPoses:
+    """Poses each of which is worked out once though it is asked for twice, within a budget.
+
+    The first time is for the framing, the second for the drawing. What is kept in between has the
+    single precision that is drawn.
+
+    Parameters
+    ----------
+    poses : Poses
+    budget : int
+        In bytes; what does not fit is worked out again.
+    """
+
+    def __init__(self, poses: Poses, budget: int = KEPT) -> None:
+        self._poses = poses
+        self._room = budget
+        self._kept: dict[float, npt.NDArray[np.complex64]] = {}
+
+    def keep(self, frame: float) -> Complexes:
+        """Return the positions, and keep them for when they are asked for again."""
+        positions = self._poses.positions(frame)
+        if frame not in self._kept and 8 * len(positions) <= self._room:
+            self._room -= 8 * len(positions)
+            self._kept[frame] = positions.astype(np.complex64)
+        return positions
+
+    def positions(self, frame: float) -> Complexes:
+        """Return the positions, and keep them no longer."""
+        kept = self._kept.pop(frame, None)
+        return self._poses.positions(frame) if kept is None else kept.astype(np.complex128)

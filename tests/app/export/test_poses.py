@@ -1,0 +1,72 @@
+import numpy as np
+from animations import BLOB, moving_document, still_document
+from documents import altered
+from numpy.testing import assert_array_equal
+
+from app.document.settings import FrameRange
+from app.document.timeline import clip_of
+from app.export.painting import Painter
+from app.export.plan import ExportRequest, plan_export
+from app.export.poses import KeptPoses
+from app.motion.extent import box_around
+from app.motion.inbetweens import Animation
+
+
+class Counted:
+    """Poses that note when they are worked out."""
+
+    def __init__(self, poses) -> None:
+        self._poses = poses
+        self.asked: list[float] = []
+
+    def positions(self, frame: float):
+        self.asked.append(frame)
+        return self._poses.positions(frame)
+
+
+def test_a_fitted_export_works_every_frame_out_once(gl, tmp_path):
+    document = moving_document()
+    (figure,) = document.figures
+    animation = Animation(clip_of(document, figure.id))
+    counted = Counted(animation)
+    poses = {figure.id: KeptPoses(counted)}
+    request = ExportRequest(out=tmp_path, settings=document.export)
+    assert request.settings.framing == "fit"
+    plan = plan_export(document, request, poses)
+    painter = Painter(gl, document, {figure.id: BLOB}, poses, plan)
+    posed = [painter.pose(time) for time in plan.times]
+    assert counted.asked == list(plan.times)
+    # What is kept is as fine as what is uploaded.
+    direct = [animation.positions(time) for time in plan.times]
+    for frame, positions in zip(posed, direct, strict=True):
+        assert_array_equal(frame.positions[0], positions.astype(np.complex64))
+    painter.release()
+
+
+def test_an_extent_that_is_known_is_not_measured_again(tmp_path):
+    document = altered(still_document(), frames=FrameRange(0, 10))
+    (figure,) = document.figures
+    counted = Counted(Animation(clip_of(document, figure.id)))
+    poses = {figure.id: KeptPoses(counted)}
+    request = ExportRequest(out=tmp_path, settings=document.export)
+    box = box_around(figure.domain.mesh.vertices)
+    known = plan_export(document, request, poses, box)
+    assert counted.asked == []
+    assert plan_export(document, request, poses).view == known.view
+
+
+def test_what_is_kept_has_its_budget():
+    document = still_document()
+    (figure,) = document.figures
+    size = 8 * len(figure.domain.mesh.vertices)
+    counted = Counted(Animation(clip_of(document, figure.id)))
+    poses = KeptPoses(counted, budget=2 * size)
+    for _ in range(2):
+        for frame in range(4):
+            poses.keep(frame)
+    counted.asked.clear()
+    for frame in range(4):
+        poses.positions(frame)
+    assert counted.asked == [2, 3]
+    poses.positions(0)
+    assert counted.asked == [2, 3, 0]
