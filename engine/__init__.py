@@ -18,11 +18,14 @@ Equation map of *Bounded Distortion Harmonic Shape Interpolation* (Chien, Chen, 
     Section 8       τ, isometric distortion          engine.maps.distortion.tau
     (2), (15)       continuous logarithm             engine.paths.complex_log.continue_logarithm
     Section 7.2     branch at the anchor             engine.paths.complex_log.root_sheets
+    Section 4.1     harmonic in-betweens             engine.interpolation.IntegratedInbetweens
     (3)             logarithmic blend of f_z         engine.interpolation.derivatives.blended_log_fz
     (4), (5)        ν variant                        engine.interpolation.nu.NuBlend
     (6), (7)        η variant                        engine.interpolation.eta.EtaBlend
-    (8), (16)-(18)  scaled η, ρ(t)                   engine.interpolation.scaling.Scaling
-    (9)-(13)        metric variant                   engine.interpolation.metric.MetricBlend
+    (8), (16)-(18)  scaled η, largest ρ(t)           engine.interpolation.scaling.SharpScaling
+    Property 4      ρ(t) without kinks               engine.interpolation.smooth_scaling.Scaling
+    (9)-(13)        metric on the outline, Lemma 7   engine.interpolation.metric.OutlineMetric
+    Section 6       metric variant                   engine.interpolation.metric.MetricBlend
     Section 7.4     Hilbert transform                engine.dirichlet.hilbert.HilbertTransform
     Section 7.4     its fit in the cage's own space  engine.dirichlet.projected.ProjectedTransform
     Section 7       spanning tree from the anchor    engine.paths.spanning_tree.SpanningTree

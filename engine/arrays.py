@@ -16,17 +16,25 @@ Booleans = npt.NDArray[np.bool_]
 Bytes = npt.NDArray[np.uint8]
 
 
-def readonly(array: npt.NDArray[type_]) -> npt.NDArray[type_]:
-    """Return a C-contiguous array with the values of `array` that nobody can write to.
+def freeze(array: npt.NDArray[type_]) -> npt.NDArray[type_]:
+    """Forbid writing to an array, in place, and return it.
 
-    An array that is already read-only and contiguous is returned as it is; any other is copied, so
-    that the caller's own array stays writable and changes to it do not reach the frozen value.
+    For arrays that nobody else holds: neither the memory nor its order changes. A view is frozen
+    only as far as nobody holds what it looks at.
+    """
+    array.setflags(write=False)
+    return array
+
+
+def readonly(array: npt.NDArray[type_]) -> npt.NDArray[type_]:
+    """Return a C-contiguous copy of an array that nobody can write to.
+
+    For arrays that come from a caller: the caller's own stays writable, and changes to it do not
+    reach the frozen value. An array that is read-only, contiguous and no view is returned as it is.
     """
     if not array.flags.writeable and array.flags.c_contiguous and array.base is None:
         return array
-    frozen = np.array(array, order="C")
-    frozen.setflags(write=False)
-    return frozen
+    return freeze(np.array(array, order="C"))
 
 
 def as_points(values: npt.ArrayLike, name: str, *, at_least: int = 0) -> Complexes:

@@ -8,11 +8,12 @@ import argparse
 from pathlib import Path
 
 from app.errors import LissomError
+from engine.variant import Variant
 
 DETAILS = ("coarse", "normal", "fine")
 DEFAULT_DETAIL = "normal"
 DEFAULT_TRIANGLES = 100_000
-VARIANTS = ("metric", "nu", "scaled-eta", "eta", "linear")
+VARIANTS = tuple(Variant)
 FRAMINGS = ("canvas", "fit")
 
 

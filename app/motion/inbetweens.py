@@ -104,9 +104,7 @@ class PoseSampler:
         with self._lock:
             if pose not in self._samples:
                 f = HarmonicMap(cage=self.domain.cage, phi=pose.phi, psi=pose.psi)
-                (self._samples[pose],) = sample_keyframes(
-                    [f], self.sites.paths, self.sites.outline_samples
-                )
+                (self._samples[pose],) = sample_keyframes([f], self.sites)
             return self._samples[pose]
 
     def inbetweens(

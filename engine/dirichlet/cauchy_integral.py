@@ -13,9 +13,9 @@ from functools import cache
 import numpy as np
 from scipy.special import comb
 
-from engine.arrays import Complexes, Floats, Indices, readonly
+from engine.arrays import Complexes, Floats, Indices, freeze
 from engine.dirichlet.panels import Panels
-from engine.dirichlet.product_integration import panel_weights, reach
+from engine.dirichlet.product_integration import near_distance, panel_weights
 from engine.geometry import distance_to_segments
 
 TERMS = 32
@@ -64,7 +64,7 @@ def cauchy_integrals(
 
     Returns
     -------
-    values, slopes : complex128, shape (t, j)
+    values, derivatives : complex128, shape (t, j)
 
     Notes
     -----
@@ -83,27 +83,27 @@ def cauchy_integrals(
         results[leaf.points] = np.vander(offsets, TERMS, increasing=True) @ leaf.taylor
         for panel in leaf.panels:
             near[panel].append(leaf.points)
-    values, slopes = results[:, :columns], results[:, columns:]
+    values, derivatives = results[:, :columns], results[:, columns:]
     for panel, groups in enumerate(near):
         for points_near in _blocks(groups):
             w = (points[points_near] - panels.origin[panel]) / panels.span[panel]
-            weights, slope_weights = panel_weights(w, int(panels.power[panel]))
+            weights, derivative_weights = panel_weights(w, int(panels.power[panel]))
             own = by_panel[panel] * (1.0 if panels.forward[panel] else -1.0)
             values[points_near] += weights @ own
-            slopes[points_near] += slope_weights @ own / panels.span[panel]
-    return values, slopes
+            derivatives[points_near] += derivative_weights @ own / panels.span[panel]
+    return values, derivatives
 
 
 def _leaves(panels: Panels, masses: Complexes, points: Complexes) -> Iterator[Square]:
     """Divide the points until each square has few panels near it."""
     lengths = np.abs(panels.span)
-    reaches = reach(panels.power) * lengths
+    near = near_distance(panels.power) * lengths
     everything = np.zeros((TERMS, masses.shape[2]), dtype=np.complex128)
     stack = [_square(np.arange(len(points)), points, np.arange(len(panels)), everything)]
     while stack:
-        square = _absorb(panels, reaches, masses, stack.pop())
-        near = square.panels
-        if len(near) * len(square.points) <= FEW_PAIRS or square.radius <= lengths[near].min() / 4:
+        square = _absorb(panels, near, masses, stack.pop())
+        left = square.panels
+        if len(left) * len(square.points) <= FEW_PAIRS or square.radius <= lengths[left].min() / 4:
             yield square
         else:
             stack.extend(_quarters(square, points))
@@ -120,13 +120,13 @@ def _square(points: Indices, z: Complexes, panels: Indices, taylor: Complexes) -
     )
 
 
-def _absorb(panels: Panels, reaches: Floats, masses: Complexes, square: Square) -> Square:
+def _absorb(panels: Panels, near: Floats, masses: Complexes, square: Square) -> Square:
     """Move the panels that are far from a square into its polynomial."""
     own = square.panels
     starts = panels.origin[own]
     centre = np.array([square.centre])
     distance = distance_to_segments(centre, starts, starts + panels.span[own])[0]
-    far = distance >= np.maximum(FAR * square.radius, square.radius + reaches[own])
+    far = distance >= np.maximum(FAR * square.radius, square.radius + near[own])
     nodes = panels.nodes[own[far]].ravel()
     inverse = square.radius / (nodes - square.centre)
     powers = np.vander(inverse, TERMS, increasing=True) * (inverse / square.radius)[:, None]
@@ -164,4 +164,4 @@ def _blocks(groups: list[Indices]) -> Iterator[Indices]:
 def _binomials() -> Floats:
     """Return [j, k]: what ((z − c) + d)^k gives to (z − c)^j."""
     ranks = np.arange(TERMS)
-    return readonly(comb(ranks, ranks[:, None]).astype(np.float64))
+    return freeze(comb(ranks, ranks[:, None]).astype(np.float64))

@@ -19,7 +19,7 @@ from typing import Self
 import numpy as np
 import scipy.linalg
 
-from engine.arrays import Complexes, Floats, Integers, readonly
+from engine.arrays import Complexes, Floats, Integers, freeze
 from engine.dirichlet.cauchy_integral import cauchy_integrals
 from engine.dirichlet.panels import NODES, Panels
 from engine.dirichlet.product_integration import is_near, panel_weights
@@ -41,15 +41,19 @@ class HilbertTransform:
     ----------
     outline : complex128, shape (p,)
     panels : Panels
-    factors : float64, shape (N, N)
+    factors : float64, shape (N, N), in Fortran's order
         LU factors of the matrix of the N = NODES · len(panels) nodes.
     pivots : int32, shape (N,)
+    coarseness : float
+        Factor by which panels are longer than the shape asks for, 1 at best; at 4 some shapes are
+        off by 1e-4 of their size.
     """
 
     outline: Complexes
     panels: Panels
     factors: Floats
     pivots: Integers
+    coarseness: float
 
     @classmethod
     def on(cls, outline: Complexes, cage: Complexes) -> Self:
@@ -57,7 +61,7 @@ class HilbertTransform:
 
         The number of nodes follows from the shape: it grows with the number of corners, and where
         the outline comes near itself or near the cage. Time grows with its third power, memory with
-        its square; beyond `MOST_NODES` accuracy is given up instead.
+        its square; beyond `MOST_NODES` accuracy is given up instead, as `coarseness` tells.
         """
         coarseness = 1.0
         while len(panels := Panels.on(outline, cage, coarseness=coarseness)) * NODES > MOST_NODES:
@@ -67,16 +71,20 @@ class HilbertTransform:
                     f"The outline needs {len(panels) * NODES} nodes for the metric variant, above "
                     f"{MOST_NODES}; smooth it, widen its narrow gaps, or use scaled-eta."
                 )
-        return cls.of(outline, panels)
+        return cls.of(outline, panels, coarseness=coarseness)
 
     @classmethod
-    def of(cls, outline: Complexes, panels: Panels) -> Self:
+    def of(cls, outline: Complexes, panels: Panels, *, coarseness: float = 1.0) -> Self:
         """Factorise the integral equation on given panels of an outline."""
         factors, pivots = scipy.linalg.lu_factor(
             _matrix(panels), overwrite_a=True, check_finite=False
         )
         return cls(
-            outline=outline, panels=panels, factors=readonly(factors), pivots=readonly(pivots)
+            outline=outline,
+            panels=panels,
+            factors=freeze(factors),
+            pivots=freeze(pivots),
+            coarseness=coarseness,
         )
 
     @property
@@ -101,7 +109,7 @@ class HilbertTransform:
 
         Returns
         -------
-        values, slopes : complex128, shape (t, j)
+        values, derivatives : complex128, shape (t, j)
             Of each function, up to an imaginary constant. At a corner that turns inwards a
             derivative is unbounded, and the value there means nothing.
         """
@@ -144,11 +152,11 @@ def _matrix(panels: Panels) -> Floats:
     nodes = panels.nodes.ravel()
     differentials = panels.differentials().ravel()
     size = len(nodes)
-    matrix = np.empty((size, size))
+    matrix = np.empty((size, size), order="F")  # as the factorisation wants it
     for panel in range(len(panels)):
-        rows = slice(panel * NODES, (panel + 1) * NODES)
+        own = slice(panel * NODES, (panel + 1) * NODES)
         with np.errstate(divide="ignore", invalid="ignore"):
-            matrix[rows] = (differentials / (nodes - nodes[rows, None])).imag
+            matrix[:, own] = (differentials[own] / (nodes[own] - nodes[:, None])).imag
     for panel in range(len(panels)):
         _integrate_exactly(panels, panel, nodes, matrix)
     matrix /= 2 * np.pi
@@ -170,11 +178,10 @@ def _integrate_exactly(panels: Panels, panel: int, nodes: Complexes, matrix: Flo
         w[across] = panels.arcs()[across] * (panels.span[across] / panels.span[panel])
     w = w.ravel()
     near = is_near(w, power)
-    columns = slice(panel * NODES, (panel + 1) * NODES)
     own = slice(panel * NODES, (panel + 1) * NODES)
     near[own] = False
     rows = np.flatnonzero(near)
     sign = 1.0 if panels.forward[panel] else -1.0
-    matrix[rows, columns] = sign * panel_weights(w[rows], power)[0].imag
+    matrix[rows, own] = sign * panel_weights(w[rows], power)[0].imag
     # On a straight panel the kernel of a node of the same edge vanishes.
-    matrix[own, columns] = 0.0
+    matrix[own, own] = 0.0

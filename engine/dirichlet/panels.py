@@ -6,15 +6,15 @@ from typing import Self
 
 import numpy as np
 
-from engine.arrays import Booleans, Complexes, Floats, Indices, readonly
-from engine.geometry import distance_to_segments, edges
+from engine.arrays import Booleans, Complexes, Floats, Indices, freeze
+from engine.geometry import Pieces, bisect, distance_to_segments
 
 NODES = 12  # Gauss-Legendre nodes of a panel
 POWER = 3  # grading at corners: arc length is the third power of the parameter
 # A panel is no longer than its distance to the nearest cage vertex (where the keyframes vary fast)
 # times the first, and to the nearest edge that is no neighbour times the second.
-CAGE_RATIO = 2.0
-GAP_RATIO = 8.0
+PANEL_PER_CAGE = 2.0
+PANEL_PER_GAP = 8.0
 FINEST = 2.0**-20  # of an edge: panels are not cut below this
 
 
@@ -49,35 +49,25 @@ class Panels:
         coarseness : float
             Factor on how long the panels may be.
         """
-        sides = edges(outline)
-        count = len(outline)
+        sides = Pieces.whole(outline, np.roll(outline, -1))
         # Every edge is first halved, so that a panel touches one corner at most.
-        edge = np.repeat(np.arange(count), 2)
-        place = np.tile([0.0, 0.5], count)
-        width = np.full(2 * count, 0.5)
-        done = []
-        while len(edge):
-            starts = outline[edge] + place * sides[edge]
-            ends = outline[edge] + (place + width) * sides[edge]
-            room = coarseness * _room(starts, ends, edge, outline, cage)
-            fine = (np.abs(ends - starts) <= room) | (width <= FINEST)
-            done.append(np.column_stack([edge, place, width])[fine])
-            coarse = ~fine
-            half = width[coarse] / 2
-            edge, width = np.tile(edge[coarse], 2), np.tile(half, 2)
-            place = np.concatenate([place[coarse], place[coarse] + half])
-        table = np.concatenate(done)
-        table = table[np.lexsort((table[:, 1], table[:, 0]))]
-        edge, place, width = table[:, 0].astype(np.intp), table[:, 1], table[:, 2]
-        forward = place + width < 1.0
-        corner = (place == 0.0) | ~forward
-        following = np.roll(outline, -1)[edge]
-        span = width * sides[edge]
+        halves = sides.halved(np.ones(len(outline), dtype=np.bool_))
+
+        def is_fine(pieces: Pieces) -> Booleans:
+            room = coarseness * _room(pieces, outline, cage)
+            fine: Booleans = (pieces.lengths <= room) | (pieces.width <= FINEST)
+            return fine
+
+        pieces = bisect(halves, is_fine)
+        forward = pieces.place + pieces.width < 1.0
+        corner = (pieces.place == 0.0) | ~forward
+        following = np.roll(outline, -1)[pieces.segment]
+        span = pieces.width * pieces.span[pieces.segment]
         return cls(
-            origin=readonly(np.where(forward, outline[edge] + place * sides[edge], following)),
-            span=readonly(np.where(forward, span, -span)),
-            power=readonly(np.where(corner, POWER, 1)),
-            forward=readonly(forward),
+            origin=freeze(np.where(forward, pieces.starts, following)),
+            span=freeze(np.where(forward, span, -span)),
+            power=freeze(np.where(corner, POWER, 1)),
+            forward=freeze(forward),
         )
 
     def __len__(self) -> int:
@@ -109,8 +99,8 @@ class Panels:
         sign = np.where(self.forward, 1.0, -1.0)
         _, weights = gauss_legendre()
         _, differentiation = legendre_matrices()
-        slopes = np.einsum("ik,pkj->pij", differentiation, values)
-        result: Complexes = sign[:, None, None] * weights[:, None] * slopes
+        by_tau = np.einsum("ik,pkj->pij", differentiation, values)
+        result: Complexes = sign[:, None, None] * weights[:, None] * by_tau
         return result
 
 
@@ -118,7 +108,7 @@ class Panels:
 def gauss_legendre() -> tuple[Floats, Floats]:
     """Return the Gauss-Legendre nodes of [0, 1] and their weights, (NODES,) each."""
     x, weights = np.polynomial.legendre.leggauss(NODES)
-    return readonly((1 + x) / 2), readonly(weights / 2)
+    return freeze((1 + x) / 2), freeze(weights / 2)
 
 
 @cache
@@ -129,15 +119,13 @@ def legendre_matrices() -> tuple[Floats, Floats]:
     values = np.polynomial.legendre.legvander(2 * tau - 1, NODES - 1)
     to_legendre = (2 * degrees + 1)[:, None] * values.T * weights
     by_degree = np.polynomial.legendre.legder(np.eye(NODES), scl=2.0)
-    slopes = np.polynomial.legendre.legval(2 * tau - 1, by_degree).T
-    return readonly(to_legendre), readonly(slopes @ to_legendre)
+    derivatives = np.polynomial.legendre.legval(2 * tau - 1, by_degree).T
+    return freeze(to_legendre), freeze(derivatives @ to_legendre)
 
 
-def _room(
-    starts: Complexes, ends: Complexes, edge: Indices, outline: Complexes, cage: Complexes
-) -> Floats:
-    """Return how long a panel on each of the segments may be."""
-    count = len(outline)
+def _room(pieces: Pieces, outline: Complexes, cage: Complexes) -> Floats:
+    """Return how long a panel on each of the pieces of edges may be."""
+    count, starts, ends = len(outline), pieces.starts, pieces.ends
     following = np.roll(outline, -1)
     to_cage = distance_to_segments(cage, starts, ends).min(axis=0)
     # Two segments that do not cross are nearest at an end of one of them.
@@ -145,8 +133,8 @@ def _room(
     to_edges = np.minimum(from_vertices, np.roll(from_vertices, -1, axis=1))
     for end in (starts, ends):
         np.minimum(to_edges, distance_to_segments(end, outline, following), out=to_edges)
-    own = np.arange(len(edge))
+    own = np.arange(len(pieces))
     for neighbour in (-1, 0, 1):
-        to_edges[own, (edge + neighbour) % count] = np.inf
-    room: Floats = np.minimum(CAGE_RATIO * to_cage, GAP_RATIO * to_edges.min(axis=1))
+        to_edges[own, (pieces.segment + neighbour) % count] = np.inf
+    room: Floats = np.minimum(PANEL_PER_CAGE * to_cage, PANEL_PER_GAP * to_edges.min(axis=1))
     return room

@@ -35,19 +35,19 @@ def panel_weights(w: Complexes, power: int) -> tuple[Complexes, Complexes]:
 
     Returns
     -------
-    weights, slope_weights : complex128, shape (t, NODES)
+    weights, derivative_weights : complex128, shape (t, NODES)
         For values of μ at the panel's nodes: of ∫ μ dζ / (ζ − z), and of ∫ (dμ/dζ) dζ / (ζ − z)
         times the span.
     """
     weights = np.zeros((len(w), NODES), dtype=np.complex128)
-    slope_weights = np.zeros_like(weights)
+    derivative_weights = np.zeros_like(weights)
     for root in _roots(w, power):
         each = _root_weights(root)
         weights += each
         # dτ / (τ^q − w) is Σ dτ / (q r^(q−1) (τ − r)).
-        slope_weights += each / (power * root ** (power - 1))[:, None]
+        derivative_weights += each / (power * root ** (power - 1))[:, None]
     _, differentiation = legendre_matrices()
-    return weights, slope_weights @ differentiation
+    return weights, derivative_weights @ differentiation
 
 
 def _roots(w: Complexes, power: int) -> list[Complexes]:
@@ -86,7 +86,7 @@ def _legendre_integrals(x: Complexes) -> Complexes:
     return q
 
 
-def reach(power: Indices) -> Floats:
+def near_distance(power: Indices) -> Floats:
     """Return how far from a panel, over its length, plain quadrature is accurate; like `power`."""
     angle = np.linspace(0.0, np.pi, 200)
     x = (SEPARATION * np.exp(1j * angle) + np.exp(-1j * angle) / SEPARATION) / 2

@@ -1,11 +1,11 @@
-"""The Hilbert transform in a hurry: fitted among the holomorphic functions of the cage.
+"""A rough Hilbert transform: the best fit among the holomorphic functions of the cage.
 
 The Cauchy coordinates of the cage span n holomorphic functions; the one whose real part is nearest
-to the given one along the outline stands in for the solution of the Dirichlet problem. This is the
-way of Section 7.4 (after Weber and Gotsman 2010). It costs a small matrix product where the
-integral equation of `engine.dirichlet.hilbert` costs a factorisation. In-betweens are right only to
-some thousandths of the diameter, a hundredth in hard cases, and their bounds hold only as far: they
-are for following a hand.
+to the given one along the outline, in the least-squares sense, stands in for the solution of the
+Dirichlet problem. This is the way of Section 7.4 (after Weber and Gotsman 2010). It costs a small
+matrix product where the integral equation of `engine.dirichlet.hilbert` costs a factorisation.
+In-betweens are right to some thousandths of the diameter, a hundredth in hard cases, and keep their
+bounds only as far.
 """
 
 from dataclasses import dataclass
@@ -13,13 +13,13 @@ from typing import Self
 
 import numpy as np
 
-from engine.arrays import Complexes, Floats, readonly
+from engine.arrays import Complexes, Floats, freeze
 from engine.geometry import box_diagonal, sample_graded
 from engine.maps import cauchy_coordinates, evaluate
 
 # Segments between nodes, over the distance to the nearest cage vertex and over the box diagonal.
-RATIO = 0.5
-LONGEST = 1 / 200
+SEGMENT_PER_DISTANCE = 0.5
+SEGMENT_PER_SIZE = 1 / 200
 # Singular values left out, over the largest: the functions are nearly dependent far from the cage.
 CUTOFF = 1e-10
 
@@ -32,13 +32,14 @@ class ProjectedTransform:
 
     Parameters
     ----------
-    cage : complex128, shape (n,)
+    outline, cage : complex128, shapes (p,) and (n,)
     nodes : complex128, shape (N,)
         Points of the outline at which real parts are given.
     fit : float64, shape (2n, N)
         From real parts to the coefficients: their real parts, then their imaginary ones.
     """
 
+    outline: Complexes
     cage: Complexes
     nodes: Complexes
     fit: Floats
@@ -46,13 +47,14 @@ class ProjectedTransform:
     @classmethod
     def on(cls, outline: Complexes, cage: Complexes) -> Self:
         """Prepare the fit for an outline (p,) inside a cage (n,)."""
-        nodes = sample_graded(outline, cage, ratio=RATIO, longest=LONGEST * box_diagonal(outline))
+        longest = SEGMENT_PER_SIZE * box_diagonal(outline)
+        nodes = sample_graded(outline, cage, ratio=SEGMENT_PER_DISTANCE, longest=longest)
         lengths = np.abs(np.roll(nodes, -1) - nodes)
         root = np.sqrt(lengths + np.roll(lengths, 1))
         coordinates = cauchy_coordinates(cage, nodes)
         matrix = root[:, None] * np.hstack([coordinates.real, -coordinates.imag])
         fit = np.linalg.pinv(matrix, rcond=CUTOFF) * root
-        return cls(cage=cage, nodes=readonly(nodes), fit=readonly(fit))
+        return cls(outline=outline, cage=cage, nodes=freeze(nodes), fit=freeze(fit))
 
     @property
     def nbytes(self) -> int:
@@ -71,9 +73,9 @@ class ProjectedTransform:
 
         Returns
         -------
-        values, slopes : complex128, shape (t, j)
+        values, derivatives : complex128, shape (t, j)
             Of each function.
         """
         real, imaginary = np.split(self.fit @ real_parts, 2)
-        values, slopes = evaluate(self.cage, real + 1j * imaginary, points, orders=(0, 1))
-        return values, slopes
+        values, derivatives = evaluate(self.cage, real + 1j * imaginary, points, orders=(0, 1))
+        return values, derivatives

@@ -7,8 +7,10 @@ Imports: `engine.paths`, `engine.dirichlet`, `engine.maps`.
 
 from engine.interpolation.inbetweens import Frame, Inbetweens, IntegratedInbetweens
 from engine.interpolation.keyframe_samples import KeyframeSamples, sample_keyframes
-from engine.interpolation.preparation import Prepared, Variant, prepare, prepare_inbetweens
+from engine.interpolation.preparation import Prepared, prepare, prepare_inbetweens
 from engine.interpolation.sites import Sites, prepare_sites
+from engine.interpolation.smooth_scaling import Scaling
+from engine.variant import Variant
 
 __all__ = [
     "Frame",
@@ -16,6 +18,7 @@ __all__ = [
     "IntegratedInbetweens",
     "KeyframeSamples",
     "Prepared",
+    "Scaling",
     "Sites",
     "Variant",
     "prepare",

@@ -11,12 +11,15 @@ from engine.interpolation.keyframe_samples import KeyframeSamples
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Derivatives:
-    """Φ', Φ'', Ψ' and Ψ'' of an in-between, each complex128 (s,); f_z = Φ', f_z̄ = conj(Ψ')."""
+    """Φ', Φ'', Ψ' and Ψ'' of an in-between, each complex128 (s,).
+
+    Section 4.1: f_z = Φ' and f_z̄ = conj(Ψ').
+    """
 
     fz: Complexes
-    fz_slope: Complexes
+    fzz: Complexes
     g: Complexes
-    g_slope: Complexes
+    gz: Complexes
 
 
 def weighted(arrays: Sequence[Complexes], weights: Floats) -> Complexes:
@@ -34,4 +37,4 @@ def blended_log_fz(
     """Return Σ w_i log f_z of the keyframes and its derivative, each (s,); Equation (3)."""
     logarithm = weighted([key.log_fz for key in keyframes], weights)
     logarithm.imag += 2 * np.pi * float(weights @ sheets)
-    return logarithm, weighted([key.log_fz_slope for key in keyframes], weights)
+    return logarithm, weighted([key.log_fz_z for key in keyframes], weights)

@@ -6,7 +6,7 @@ from typing import Self
 
 import numpy as np
 
-from engine.arrays import Complexes, Floats, Integers, readonly
+from engine.arrays import Complexes, Floats, Integers, freeze
 from engine.interpolation.derivatives import Derivatives, blended_log_fz, weighted
 from engine.interpolation.keyframe_samples import KeyframeSamples
 
@@ -15,48 +15,48 @@ from engine.interpolation.keyframe_samples import KeyframeSamples
 class EtaBlend:
     """log f_z and η linear in the weights, Equations (3) and (6): Properties 1, 2 and 8.
 
-    Scaled by ρ (`engine.interpolation.scaling`) it has Properties 3 and 5 to 7 as well.
+    Scaled by ρ (`engine.interpolation.smooth_scaling`) it has Properties 3 to 7 as well.
 
     Parameters
     ----------
     keyframes : tuple of KeyframeSamples
     sheets : int32, shape (q,)
         Branch of each logarithm, from `root_sheets`; another branch only turns the in-betweens.
-    conj_eta, conj_eta_slope : tuple of complex128, shape (s,)
+    conj_eta, conj_eta_z : tuple of complex128, shape (s,)
         conj(η) = Φ' Ψ' of each keyframe, holomorphic, and its derivative.
     """
 
     keyframes: tuple[KeyframeSamples, ...]
     sheets: Integers
     conj_eta: tuple[Complexes, ...]
-    conj_eta_slope: tuple[Complexes, ...]
+    conj_eta_z: tuple[Complexes, ...]
 
     @classmethod
     def of(cls, keyframes: Sequence[KeyframeSamples], sheets: Integers) -> Self:
         """Work out η of the keyframes."""
-        values, slopes = [], []
+        values, derivatives = [], []
         for key in keyframes:
             squared = np.exp(2 * key.log_fz)
-            values.append(readonly(key.nu * squared))
-            slopes.append(readonly((key.nu_slope + 2 * key.nu * key.log_fz_slope) * squared))
+            values.append(freeze(key.nu * squared))
+            derivatives.append(freeze((key.nu_z + 2 * key.nu * key.log_fz_z) * squared))
         return cls(
             keyframes=tuple(keyframes),
             sheets=sheets,
             conj_eta=tuple(values),
-            conj_eta_slope=tuple(slopes),
+            conj_eta_z=tuple(derivatives),
         )
 
     @property
     def nbytes(self) -> int:
         """Memory beyond the keyframes' own, in bytes."""
-        return sum(array.nbytes for array in (*self.conj_eta, *self.conj_eta_slope))
+        return sum(array.nbytes for array in (*self.conj_eta, *self.conj_eta_z))
 
     def derivatives(self, weights: Floats) -> Derivatives:
         """Blend f_z logarithmically and η linearly."""
         return self.with_log_fz(*blended_log_fz(self.keyframes, self.sheets, weights), weights)
 
     def with_log_fz(
-        self, logarithm: Complexes, log_slope: Complexes, weights: Floats
+        self, logarithm: Complexes, logarithm_z: Complexes, weights: Floats
     ) -> Derivatives:
         """Blend η linearly, with log f_z and its derivative (s,) given.
 
@@ -66,8 +66,8 @@ class EtaBlend:
         fz = np.exp(logarithm)
         inverse = 1.0 / fz
         g = weighted(self.conj_eta, weights)
-        g_slope = weighted(self.conj_eta_slope, weights)
-        g_slope -= g * log_slope
-        g_slope *= inverse
+        gz = weighted(self.conj_eta_z, weights)
+        gz -= g * logarithm_z
+        gz *= inverse
         g *= inverse
-        return Derivatives(fz=fz, fz_slope=log_slope * fz, g=g, g_slope=g_slope)
+        return Derivatives(fz=fz, fzz=logarithm_z * fz, g=g, gz=gz)

@@ -1,4 +1,4 @@
-"""In-betweens of some keyframes by one variant, as functions of the weights."""
+"""In-betweens of two keyframes by one variant, as functions of the weights."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -6,10 +6,11 @@ from typing import Protocol, Self
 
 import numpy as np
 
-from engine.arrays import Complexes, Floats, readonly
+from engine.arrays import Complexes, Floats, freeze
 from engine.interpolation.derivatives import Derivatives, weighted
 from engine.interpolation.keyframe_samples import KeyframeSamples
 from engine.interpolation.sites import Sites
+from engine.interpolation.smooth_scaling import Scaling
 
 
 class Blend(Protocol):
@@ -21,17 +22,6 @@ class Blend(Protocol):
 
     def derivatives(self, weights: Floats) -> Derivatives:
         """Return the in-between's derivatives at the nodes of the paths."""
-
-
-class Scale(Protocol):
-    """A scaling ρ of Ψ."""
-
-    @property
-    def nbytes(self) -> int:
-        """Memory beyond the keyframes' own, in bytes."""
-
-    def __call__(self, weights: Floats) -> float:
-        """Return ρ, between 0 and 1."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -54,23 +44,26 @@ class Frame:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class IntegratedInbetweens:
-    """In-betweens by blended derivatives, integrated along the paths (Sections 4.1 and 7).
+    """In-betweens by blended derivatives, integrated along the paths.
+
+    Section 4.1: f^t = Φ^t + conj(Ψ^t) is harmonic, whatever holomorphic Φ'^t = f_z^t and
+    Ψ'^t = conj(f_z̄^t) are blended; Section 7 integrates both from the anchor.
 
     All of it is frozen: calls are pure, and may run on several threads at once.
 
     Parameters
     ----------
     sites : Sites
-    keyframes : tuple of KeyframeSamples, length q
+    keyframes : tuple of KeyframeSamples, length 2
     blend : Blend
-    scale : Scale or None
+    scale : Scaling or None
         None where Ψ is not scaled.
     """
 
     sites: Sites
     keyframes: tuple[KeyframeSamples, ...]
     blend: Blend
-    scale: Scale | None
+    scale: Scaling | None
 
     @property
     def nbytes(self) -> int:
@@ -78,22 +71,22 @@ class IntegratedInbetweens:
         return self.blend.nbytes + (0 if self.scale is None else self.scale.nbytes)
 
     def rho(self, weights: Floats) -> float:
-        """Return ρ for the weights (q,); 1 where Ψ is not scaled."""
-        return 1.0 if self.scale is None else self.scale(weights)
+        """Return ρ for the weights (2,); 1 where Ψ is not scaled."""
+        return 1.0 if self.scale is None else self.scale(float(weights[1]))
 
     def parts(self, weights: Floats) -> tuple[Complexes, Complexes]:
         """Return Φ and conj(Ψ), each (m,), both 0 at the anchor and Ψ before its scaling.
 
         f is the anchor's position + Φ + ρ conj(Ψ). Without ρ both parts are analytic in the
-        weights, which f is not where ρ has a kink.
+        weights; ρ is smooth, but bends within a small part of the interval.
         """
         # What the quadrature lacks of the keyframes is known, and blended like them: the keyframes
         # come out exactly, without a jump in time.
         blended = self.blend.derivatives(weights)
         paths = self.sites.paths
-        phi = paths.integrals(paths.step_integrals(blended.fz, blended.fz_slope))
+        phi = paths.integrals(paths.step_integrals(blended.fz, blended.fzz))
         phi += weighted([key.phi_error for key in self.keyframes], weights)
-        psi = paths.integrals(paths.step_integrals(blended.g, blended.g_slope))
+        psi = paths.integrals(paths.step_integrals(blended.g, blended.gz))
         psi += weighted([key.psi_error for key in self.keyframes], weights)
         return phi, psi.conj()
 
@@ -105,15 +98,13 @@ class IntegratedInbetweens:
         """Return the blended position of the anchor."""
         return complex(weights @ [key.anchor_position for key in self.keyframes])
 
-    def frame(self, weights: Floats, *, anchor_position: complex | None = None) -> Frame:
-        """Return the in-between for the weights (q,), by default with the anchor's own blended."""
+    def frame(self, weights: Floats) -> Frame:
+        """Return the in-between for the weights (2,) of the keyframes."""
         blended = self.blend.derivatives(weights)
         rho = self.rho(weights)
-        if anchor_position is None:
-            anchor_position = self.anchor_position(weights)
         places = self.sites.paths.places
         return Frame(
-            positions=anchor_position + self._offsets(blended, weights, rho),
+            positions=self.anchor_position(weights) + self._offsets(blended, weights, rho),
             fz=blended.fz[places],
             fzbar=rho * blended.g[places].conj(),
             rho=None if self.scale is None else rho,
@@ -122,8 +113,8 @@ class IntegratedInbetweens:
     def _offsets(self, blended: Derivatives, weights: Floats, rho: float) -> Complexes:
         """Return what `parts` gives, added up; one sum along the paths serves both."""
         paths = self.sites.paths
-        steps = paths.step_integrals(blended.fz, blended.fz_slope)
-        conj_psi = paths.step_integrals(blended.g, blended.g_slope)
+        steps = paths.step_integrals(blended.fz, blended.fzz)
+        conj_psi = paths.step_integrals(blended.g, blended.gz)
         np.conj(conj_psi, out=conj_psi)
         conj_psi *= rho
         steps += conj_psi
@@ -141,7 +132,7 @@ class LinearInbetweens:
 
     Parameters
     ----------
-    keyframes : tuple of KeyframeSamples, length q
+    keyframes : tuple of KeyframeSamples, length 2
     fz, fzbar : tuple of complex128, shape (m,)
         Derivatives of each keyframe at the points.
     """
@@ -158,8 +149,8 @@ class LinearInbetweens:
         g = [key.nu[places] * a for key, a in zip(keyframes, fz, strict=True)]
         return cls(
             keyframes=tuple(keyframes),
-            fz=tuple(map(readonly, fz)),
-            fzbar=tuple(readonly(b.conj()) for b in g),
+            fz=tuple(map(freeze, fz)),
+            fzbar=tuple(freeze(b.conj()) for b in g),
         )
 
     @property
@@ -176,13 +167,10 @@ class LinearInbetweens:
         """Return the blended position of the anchor."""
         return complex(weights @ [key.anchor_position for key in self.keyframes])
 
-    def frame(self, weights: Floats, *, anchor_position: complex | None = None) -> Frame:
-        """Return the in-between for the weights (q,), by default with the anchor's own blended."""
-        positions = weighted([key.positions for key in self.keyframes], weights)
-        if anchor_position is not None:
-            positions += anchor_position - self.anchor_position(weights)
+    def frame(self, weights: Floats) -> Frame:
+        """Return the in-between for the weights (2,) of the keyframes."""
         return Frame(
-            positions=positions,
+            positions=weighted([key.positions for key in self.keyframes], weights),
             fz=weighted(self.fz, weights),
             fzbar=weighted(self.fzbar, weights),
             rho=None,

@@ -1,13 +1,14 @@
-"""Keyframes: harmonic maps of one domain, checked, and sampled where the in-betweens need them."""
+"""Keyframes where in-betweens need them: proven free of folds, and sampled along the paths."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from engine.arrays import Complexes, readonly
+from engine.arrays import Complexes, freeze
 from engine.errors import EngineError
-from engine.maps import HarmonicMap, evaluate
+from engine.interpolation.sites import Sites
+from engine.maps import HarmonicMap, Limits, certify, distortion, evaluate
 from engine.paths import IntegrationPaths, continue_logarithm
 
 
@@ -15,15 +16,15 @@ from engine.paths import IntegrationPaths, continue_logarithm
 class KeyframeSamples:
     """One keyframe at the nodes of the integration paths (s,) and at the points (m,).
 
-    It depends on the map and the paths only, so that each keyframe is sampled once, whatever its
+    It depends on the map and the sites only, so that each keyframe is sampled once, whatever its
     neighbours are. ν = conj(f_z̄) / f_z is holomorphic, and conj(η) = ν f_z² with it.
 
     Parameters
     ----------
     map : HarmonicMap
-    log_fz, log_fz_slope : complex128, shape (s,)
+    log_fz, log_fz_z : complex128, shape (s,)
         log f_z, the principal value at the anchor, and its derivative f_zz / f_z.
-    nu, nu_slope : complex128, shape (s,)
+    nu, nu_z : complex128, shape (s,)
         The second dilatation and its derivative.
     anchor_position : complex
         f at the anchor.
@@ -31,21 +32,17 @@ class KeyframeSamples:
         f at the points.
     phi_error, psi_error : complex128, shape (m,)
         What the quadrature along the paths lacks of Φ and Ψ, which a keyframe has in closed form.
-    outline_fz, outline_g : complex128, shape (r,)
-        f_z and conj(f_z̄) at the samples of the outline.
     """
 
     map: HarmonicMap
     log_fz: Complexes
-    log_fz_slope: Complexes
+    log_fz_z: Complexes
     nu: Complexes
-    nu_slope: Complexes
+    nu_z: Complexes
     anchor_position: complex
     positions: Complexes
     phi_error: Complexes
     psi_error: Complexes
-    outline_fz: Complexes
-    outline_g: Complexes
 
     @property
     def anchor_fz(self) -> complex:
@@ -55,47 +52,40 @@ class KeyframeSamples:
     @property
     def nbytes(self) -> int:
         """Memory that the arrays take, in bytes."""
-        at_nodes = (self.log_fz, self.log_fz_slope, self.nu, self.nu_slope)
+        at_nodes = (self.log_fz, self.log_fz_z, self.nu, self.nu_z)
         at_points = (self.positions, self.phi_error, self.psi_error)
-        return sum(a.nbytes for a in (*at_nodes, *at_points, self.outline_fz, self.outline_g))
+        return sum(array.nbytes for array in (*at_nodes, *at_points))
 
 
 def sample_keyframes(
-    maps: Sequence[HarmonicMap],
-    paths: IntegrationPaths,
-    outline: Complexes,
-    *,
-    first: int = 0,
+    maps: Sequence[HarmonicMap], sites: Sites, *, first: int = 0
 ) -> tuple[KeyframeSamples, ...]:
     """Sample maps over one cage; one pass over the nodes' logarithms serves all of them.
 
     Parameters
     ----------
     maps : sequence of HarmonicMap
-        Maps over the same cage.
-    paths : IntegrationPaths
-    outline : complex128, shape (r,)
-        Samples in order along the outline.
+        Maps over the sites' cage.
+    sites : Sites
     first : int
         Number of the first map among the keyframes, for the errors.
 
     Raises
     ------
     EngineError
-        If a map folds anywhere on the outline or at a node, or f_z has a zero inside.
+        If a map folds anywhere in the domain, or cannot be proven not to.
     """
-    cage = maps[0].cage
+    paths = sites.paths
+    for i, f in enumerate(maps):
+        _require_unfolded(f, sites, first + i)
     coefficients = np.column_stack([c for f in maps for c in (f.phi, f.psi)])
-    (on_outline,) = evaluate(cage, coefficients, outline, orders=(1,))
-    slopes, bends = evaluate(cage, coefficients, paths.nodes, orders=(1, 2))
-    ends = np.concatenate([paths.nodes[:1], paths.nodes[paths.places]])
-    (values,) = evaluate(cage, coefficients, ends, orders=(0,))
-    _require_unfolded(on_outline, outline, first)
-    _require_unfolded(slopes, paths.nodes, first)
-    _require_no_winding(on_outline[:, 0::2], slopes[:, 0::2], paths.nodes, first)
+    values, first_order, second_order = evaluate(
+        sites.cage, coefficients, paths.nodes, orders=(0, 1, 2)
+    )
+    ends = np.concatenate([[0], paths.places])
     columns = [slice(2 * i, 2 * i + 2) for i in range(len(maps))]
     return tuple(
-        _samples(f, paths, slopes[:, c], bends[:, c], values=values[:, c], outline=on_outline[:, c])
+        _samples(f, paths, values[ends, c], first_order[:, c], second_order[:, c])
         for f, c in zip(maps, columns, strict=True)
     )
 
@@ -103,59 +93,52 @@ def sample_keyframes(
 def _samples(
     f: HarmonicMap,
     paths: IntegrationPaths,
-    slopes: Complexes,
-    bends: Complexes,
-    *,
     values: Complexes,
-    outline: Complexes,
+    first_order: Complexes,
+    second_order: Complexes,
 ) -> KeyframeSamples:
     """Pack what was evaluated of one keyframe; the two columns of each array are of Φ and Ψ."""
-    (fz, g), (fz_slope, g_slope) = slopes.T, bends.T
-    log_fz_slope = fz_slope / fz
+    (fz, g), (fzz, gz) = first_order.T, second_order.T
+    log_fz_z = fzz / fz
     nu = g / fz
     phi_error, psi_error = (
-        exact[1:] - exact[0] - paths.integrals(paths.step_integrals(slope, bend))
-        for exact, slope, bend in zip(values.T, slopes.T, bends.T, strict=True)
+        exact[1:] - exact[0] - paths.integrals(paths.step_integrals(values_along, derivatives))
+        for exact, values_along, derivatives in zip(
+            values.T, first_order.T, second_order.T, strict=True
+        )
     )
     positions = values[:, 0] + values[:, 1].conj()
     return KeyframeSamples(
         map=f,
-        log_fz=readonly(continue_logarithm(fz, paths, lambda z: f.derivatives(z)[0])),
-        log_fz_slope=readonly(log_fz_slope),
-        nu=readonly(nu),
-        nu_slope=readonly(g_slope / fz - nu * log_fz_slope),
+        log_fz=freeze(continue_logarithm(fz, log_fz_z, paths, lambda z: f.derivatives(z)[0])),
+        log_fz_z=freeze(log_fz_z),
+        nu=freeze(nu),
+        nu_z=freeze(gz / fz - nu * log_fz_z),
         anchor_position=complex(positions[0]),
-        positions=readonly(positions[1:]),
-        phi_error=readonly(phi_error),
-        psi_error=readonly(psi_error),
-        outline_fz=readonly(outline[:, 0]),
-        outline_g=readonly(outline[:, 1]),
+        positions=freeze(positions[1:]),
+        phi_error=freeze(phi_error),
+        psi_error=freeze(psi_error),
     )
 
 
-def _require_unfolded(slopes: Complexes, points: Complexes, first: int) -> None:
-    """Refuse keyframes that fold at one of the points; columns are Φ' and Ψ' of each in turn."""
-    sigma_b = np.abs(slopes[:, 0::2]) - np.abs(slopes[:, 1::2])
-    for i, at in enumerate(sigma_b.argmin(axis=0)):
-        if sigma_b[at, i] <= 0:
-            z = points[at]
-            raise EngineError(
-                f"Keyframe {first + i} folds: at ({z.real:.6g}, {z.imag:.6g}) its smaller stretch "
-                f"sigma_b is {sigma_b[at, i]:.3g}, and must be above 0. Pose it again within "
-                "bounds."
-            )
-
-
-def _require_no_winding(
-    on_outline: Complexes, inside: Complexes, nodes: Complexes, first: int
-) -> None:
-    """Refuse keyframes whose f_z has zeros inside: by the argument principle, it winds around 0."""
-    turns = np.angle(np.roll(on_outline, -1, axis=0) / on_outline).sum(axis=0) / (2 * np.pi)
-    for i, zeros in enumerate(np.round(turns).astype(int)):
-        if zeros:
-            z = nodes[np.abs(inside[:, i]).argmin()]
-            raise EngineError(
-                f"Keyframe {first + i} folds inside: f_z winds {zeros} times around 0 along the "
-                f"outline and vanishes near ({z.real:.6g}, {z.imag:.6g}). Pose it again within "
-                "bounds."
-            )
+def _require_unfolded(f: HarmonicMap, sites: Sites, number: int) -> None:
+    """Refuse a keyframe that is not proven to be locally injective in the whole domain."""
+    certificate = certify(f, sites.boundary, Limits(k=1.0, sigma_a=np.inf, sigma_b=0.0))
+    if certificate.certified:
+        return
+    fz, fzbar = f.derivatives(sites.boundary.points)
+    sigma_b = distortion.sigma_b(fz, fzbar)
+    worst = int(sigma_b.argmin())
+    if sigma_b[worst] <= 0 or not certificate.winding:
+        z = sites.boundary.points[worst]
+        raise EngineError(
+            f"Keyframe {number} folds: at ({z.real:.6g}, {z.imag:.6g}) its smaller stretch sigma_b "
+            f"is {sigma_b[worst]:.3g}, and must be clearly above 0. Pose it again within bounds."
+        )
+    # By the argument principle, f_z has as many zeros inside as it winds around 0.
+    nodes = sites.paths.nodes
+    z = nodes[np.abs(f.derivatives(nodes)[0]).argmin()]
+    raise EngineError(
+        f"Keyframe {number} folds inside: f_z winds {certificate.winding} times around 0 along the "
+        f"outline and vanishes near ({z.real:.6g}, {z.imag:.6g}). Pose it again within bounds."
+    )

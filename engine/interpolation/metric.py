@@ -1,4 +1,11 @@
-"""The metric variant (Sections 6 and 7.4)."""
+"""The metric variant (Sections 6 and 7.4).
+
+The pullback metric of a map h has the matrix M_h = 𝒜 I + 2 [[Re η, Im η], [Im η, −Re η]], Equation
+(9), with 𝒜 = |h_z|² + |h_z̄|², so that blending it linearly means to blend 𝒜 and η. On the outline
+that gives |f_z^t|. It differs from the logarithmic blend by a residual that vanishes at both
+keyframes, is analytic in time, and takes few forms across the outline: as Σ_j c_j(t) U_j(ζ), a
+handful of Dirichlet problems serve every time.
+"""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -7,13 +14,18 @@ from typing import Self
 import numpy as np
 import numpy.typing as npt
 
-from engine.arrays import Complexes, Floats, Integers, readonly
+from engine.arrays import Complexes, Floats, Integers, freeze
+from engine.chebyshev import PiecewiseSeries, nodes, to_coefficients
 from engine.dirichlet import HilbertTransform, ProjectedTransform
 from engine.interpolation.derivatives import Derivatives, blended_log_fz
 from engine.interpolation.eta import EtaBlend
 from engine.interpolation.keyframe_samples import KeyframeSamples
-from engine.interpolation.metric_residual import OutlineMetric, TimeSeries, separate
 from engine.paths import IntegrationPaths
+
+DEGREE = 24  # of the series of a piece of time
+TOLERANCE = 1e-10  # of the series' last terms, and of the modes left out, in ln |f_z|
+LAST_TERMS = 3
+SHORTEST = 2.0**-30  # pieces of time are not halved below this
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -24,8 +36,8 @@ class MetricBlend:
 
         log f_z^t = (1 − t) log f_z⁰ + t log f_z¹ + Σ c_j(t) H_j,
 
-    H_j the Hilbert transforms of the shapes that the residual takes on the outline. It vanishes at
-    both keyframes, which come out exactly however coarsely the integral equation was solved.
+    where the real part of H_j on the outline is the mode U_j of the residual. It vanishes at both
+    keyframes, which come out exactly however coarsely the integral equation was solved.
 
     Departs from the paper: Section 7.4 transforms ln |f_z^t| as a whole, with an integration
     constant for the whole shape. Here the constant is tied to the anchor: arg f_z is linear there.
@@ -34,18 +46,18 @@ class MetricBlend:
     ----------
     eta : EtaBlend
         Of the two keyframes.
-    series : TimeSeries
+    series : PiecewiseSeries
         c_j.
-    shapes : complex128, shape (j, s)
-        H_j at the nodes.
-    shape_slopes : complex64, shape (j, s)
-        H_j' at the nodes: the square of a step multiplies it, and single precision is plenty.
+    modes : complex128, shape (j, s)
+        H_j at the nodes of the paths.
+    modes_z : complex64, shape (j, s)
+        H_j' there: the square of a step multiplies it, and single precision is plenty.
     """
 
     eta: EtaBlend
-    series: TimeSeries
-    shapes: Complexes
-    shape_slopes: npt.NDArray[np.complex64]
+    series: PiecewiseSeries
+    modes: Complexes
+    modes_z: npt.NDArray[np.complex64]
 
     @classmethod
     def of(
@@ -59,29 +71,116 @@ class MetricBlend:
         derivatives = [key.map.derivatives(transform.nodes) for key in keyframes]
         fz, fzbar = (np.array(column) for column in zip(*derivatives, strict=True))
         real_parts, series = separate(OutlineMetric.of(fz, fzbar))
-        values, slopes = transform.extend(real_parts, paths.nodes)
-        values.imag -= values[0].imag
+        modes, modes_z = transform.extend(real_parts, paths.nodes)
+        modes.imag -= modes[0].imag
         # Unbounded there; the steps beside these nodes are so short that it is not missed.
-        slopes[paths.cornered] = 0.0
+        modes_z[paths.cornered] = 0.0
         return cls(
             eta=EtaBlend.of(keyframes, sheets),
             series=series,
-            shapes=readonly(values.T),
-            shape_slopes=readonly(slopes.T.astype(np.complex64)),
+            modes=freeze(np.ascontiguousarray(modes.T)),
+            modes_z=freeze(modes_z.T.astype(np.complex64, order="C")),
         )
 
     @property
     def nbytes(self) -> int:
         """Memory beyond the keyframes' own, in bytes."""
-        arrays = (self.shapes, self.shape_slopes, self.series.coefficients)
+        arrays = (self.modes, self.modes_z, self.series.coefficients)
         return self.eta.nbytes + sum(array.nbytes for array in arrays)
 
     def derivatives(self, weights: Floats) -> Derivatives:
         """Blend the metric on the outline and η everywhere."""
-        logarithm, log_slope = blended_log_fz(self.eta.keyframes, self.eta.sheets, weights)
+        logarithm, logarithm_z = blended_log_fz(self.eta.keyframes, self.eta.sheets, weights)
         coefficients = self.series(float(weights[1]))
         # As reals: a complex product with real coefficients would do half its work on zeros.
-        logarithm.view(np.float64)[:] += coefficients @ self.shapes.view(np.float64)
+        logarithm.view(np.float64)[:] += coefficients @ self.modes.view(np.float64)
         single = coefficients.astype(np.float32)
-        log_slope.view(np.float64)[:] += single @ self.shape_slopes.view(np.float32)
-        return self.eta.with_log_fz(logarithm, log_slope, weights)
+        logarithm_z.view(np.float64)[:] += single @ self.modes_z.view(np.float32)
+        return self.eta.with_log_fz(logarithm, logarithm_z, weights)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class OutlineMetric:
+    """The metrics of two keyframes at points of the outline.
+
+    Parameters
+    ----------
+    log_modulus, trace : float64, shape (2, N)
+        ln |f_z|, and 𝒜 = |f_z|² + |f_z̄|², half the trace of the metric tensor.
+    eta : complex128, shape (2, N)
+        η up to conjugation, which |f_z| does not see.
+    """
+
+    log_modulus: Floats
+    trace: Floats
+    eta: Complexes
+
+    @classmethod
+    def of(cls, fz: Complexes, fzbar: Complexes) -> "OutlineMetric":
+        """Work the metrics out from the derivatives (2, N)."""
+        return cls(
+            log_modulus=np.log(np.abs(fz)),
+            trace=np.abs(fz) ** 2 + np.abs(fzbar) ** 2,
+            eta=fz * fzbar.conj(),
+        )
+
+    def residuals(self, times: Floats) -> Floats:
+        """Return ln |f_z| of the blended metric less the blend of the ln |f_z|, (N, times).
+
+        Departs from the paper: the bars of Equation (13) and the lines before it were lost; the
+        product of its roots is |η|².
+        """
+        weights = np.stack([1 - times, times])
+        trace = self.trace.T @ weights
+        twice_eta = 2 * np.abs(self.eta.T @ weights)
+        # σ_a² = 𝒜 + 2|η| and σ_b² = 𝒜 − 2|η|, Equations (10) and (11); K² is their quotient,
+        # Equation (12). The first is convex in time and the second concave: Properties 5' to 7'.
+        # Their product is the discriminant of (13), above 0 by Lemma 7; as a product it keeps its
+        # digits where the map is nearly singular.
+        discriminant = (trace + twice_eta) * (trace - twice_eta)
+        squared = (trace + np.sqrt(discriminant)) / 2  # Equation (13), the larger root
+        residuals: Floats = 0.5 * np.log(squared) - self.log_modulus.T @ weights
+        return residuals
+
+
+def separate(metric: OutlineMetric) -> tuple[Floats, PiecewiseSeries]:
+    """Write the residuals as a sum of products of functions on the outline and of time.
+
+    Returns
+    -------
+    modes : float64, shape (N, j)
+    series : PiecewiseSeries
+        Of the j coefficients; the residuals are `modes @ series(t)` to about 1e-10.
+    """
+    x = nodes(DEGREE)
+    pending = [(0.0, 1.0)]
+    breaks, pieces = [0.0], []
+    while pending:
+        start, end = pending.pop()
+        times = start + (end - start) * (1 + x) / 2
+        coefficients = metric.residuals(times) @ to_coefficients(DEGREE).T
+        rest = np.abs(coefficients[:, -LAST_TERMS:]).max()
+        if rest <= TOLERANCE or end - start <= SHORTEST:
+            breaks.append(end)
+            pieces.append(coefficients)
+        else:
+            middle = (start + end) / 2
+            pending += [(middle, end), (start, middle)]
+    modes, sizes, functions = np.linalg.svd(np.hstack(pieces), full_matrices=False)
+    kept = max(1, int(np.count_nonzero(sizes > TOLERANCE)))
+    series = (sizes[:kept, None] * functions[:kept]).reshape(kept, len(pieces), DEGREE + 1)
+    times, coefficients = np.array(breaks), series.transpose(1, 2, 0)
+    return modes[:, :kept], PiecewiseSeries(
+        breaks=freeze(times), coefficients=freeze(_vanishing_at_ends(times, coefficients))
+    )
+
+
+def _vanishing_at_ends(breaks: Floats, coefficients: Floats) -> Floats:
+    """Take off the rounding that is left at the keyframes, so that they come out exactly."""
+    signs = (-1.0) ** np.arange(DEGREE + 1)
+    first, last = signs @ coefficients[0], coefficients[-1].sum(axis=0)
+    at_breaks = first + np.multiply.outer(breaks, last - first)
+    corrected = coefficients.copy()
+    corrected[:, 0] -= (at_breaks[1:] + at_breaks[:-1]) / 2
+    corrected[:, 1] -= (at_breaks[1:] - at_breaks[:-1]) / 2
+    return corrected

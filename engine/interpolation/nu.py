@@ -35,12 +35,12 @@ class NuBlend:
         Departs from the paper: Equation (5) lost its second bar; it reads
         f_z̄ = conj(ν) conj(f_z), that is Ψ' = ν Φ'.
         """
-        logarithm, log_slope = blended_log_fz(self.keyframes, self.sheets, weights)
+        logarithm, logarithm_z = blended_log_fz(self.keyframes, self.sheets, weights)
         fz = np.exp(logarithm)
         nu = weighted([key.nu for key in self.keyframes], weights)
-        nu_slope = weighted([key.nu_slope for key in self.keyframes], weights)
-        nu_slope += nu * log_slope
-        nu_slope *= fz
-        log_slope *= fz
+        nu_z = weighted([key.nu_z for key in self.keyframes], weights)
+        nu_z += nu * logarithm_z
+        nu_z *= fz
+        logarithm_z *= fz
         nu *= fz
-        return Derivatives(fz=fz, fz_slope=log_slope, g=nu, g_slope=nu_slope)
+        return Derivatives(fz=fz, fzz=logarithm_z, g=nu, gz=nu_z)

@@ -1,13 +1,12 @@
 """From keyframes and points to in-betweens at any time."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from enum import StrEnum
 
 import numpy as np
 import numpy.typing as npt
 
-from engine.arrays import Integers, readonly
+from engine.arrays import Integers
 from engine.dirichlet import HilbertTransform, ProjectedTransform
 from engine.errors import EngineError
 from engine.interpolation.eta import EtaBlend
@@ -17,29 +16,16 @@ from engine.interpolation.inbetweens import (
     Inbetweens,
     IntegratedInbetweens,
     LinearInbetweens,
-    Scale,
 )
 from engine.interpolation.keyframe_samples import KeyframeSamples, sample_keyframes
 from engine.interpolation.metric import MetricBlend
 from engine.interpolation.nu import NuBlend
-from engine.interpolation.scaling import Scaling
+from engine.interpolation.scaling import SharpScaling
 from engine.interpolation.sites import Sites, prepare_sites
-from engine.interpolation.smooth_scaling import SmoothScaling
-from engine.interpolation.timing import Easing, Moment, eased_moment, linear, spline_moment
+from engine.interpolation.smooth_scaling import Scaling
 from engine.maps import HarmonicMap
 from engine.paths import root_sheets
-
-AnchorCurve = Callable[[float], complex]
-
-
-class Variant(StrEnum):
-    """How the derivatives of the keyframes are blended."""
-
-    NU = "nu"
-    ETA = "eta"
-    SCALED_ETA = "scaled-eta"
-    METRIC = "metric"
-    LINEAR = "linear"
+from engine.variant import Variant
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -54,25 +40,19 @@ class Prepared:
     variant : Variant
     sites : Sites
     keyframes : tuple of KeyframeSamples, length q
-    pieces : tuple of Inbetweens
-        One for each pair of neighbouring keyframes, or one for all of them with spline weights.
-    easing : callable or None
-        From the fraction of an interval's time to the fraction of its way; None for spline weights.
-    anchor_curve : callable or None
-        The anchor's position at each time; None where it is blended like the rest.
+    intervals : tuple of Inbetweens, length q − 1
+        One for each pair of neighbouring keyframes.
     """
 
     variant: Variant
     sites: Sites
     keyframes: tuple[KeyframeSamples, ...]
-    pieces: tuple[Inbetweens, ...]
-    easing: Easing | None
-    anchor_curve: AnchorCurve | None
+    intervals: tuple[Inbetweens, ...]
 
     @property
     def nbytes(self) -> int:
         """Memory that all of it takes, in bytes."""
-        parts = (self.sites, *self.keyframes, *self.pieces)
+        parts = (self.sites, *self.keyframes, *self.intervals)
         return sum(part.nbytes for part in parts)
 
     def frame(self, time: float) -> Frame:
@@ -83,15 +63,15 @@ class Prepared:
         EngineError
             If the time is out of range.
         """
-        moment = self._moment(float(time))
-        piece = self.pieces[moment.first]
-        position = None if self.anchor_curve is None else complex(self.anchor_curve(float(time)))
-        return piece.frame(moment.weights, anchor_position=position)
-
-    def _moment(self, time: float) -> Moment:
-        if self.easing is None:
-            return spline_moment(time, len(self.keyframes))
-        return eased_moment(time, len(self.keyframes), self.easing)
+        last = len(self.intervals)
+        if not 0.0 <= time <= last:
+            raise EngineError(
+                f"Time {time:g} is out of range: {last + 1} keyframes span the times from 0 to "
+                f"{last}."
+            )
+        interval = min(int(time), last - 1)
+        part = float(time) - interval
+        return self.intervals[interval].frame(np.array([1.0 - part, part]))
 
 
 def prepare(
@@ -103,10 +83,6 @@ def prepare(
     triangles: npt.ArrayLike | None = None,
     anchor: npt.ArrayLike | None = None,
     turns: npt.ArrayLike | None = None,
-    easing: Easing | None = linear,
-    anchor_curve: AnchorCurve | None = None,
-    pointwise: bool = False,
-    smooth_rho: bool = False,
     transform: HilbertTransform | None = None,
 ) -> Prepared:
     """Prepare the in-betweens of keyframes at points.
@@ -124,20 +100,8 @@ def prepare(
         As in `prepare_sites`.
     turns : int, shape (q − 1,), optional
         Full turns between neighbouring keyframes beyond the shorter way.
-    easing : callable or None
-        Pace within each interval, from [0, 1] onto [0, 1]; `linear` by default. None stands for the
-        weights of the natural cubic spline across all keyframes, which are C² in time but can leave
-        the bounds.
-    anchor_curve : callable, optional
-        Position of the anchor at each time; by default it is blended linearly. It has to pass the
-        anchor's position in each keyframe.
-    pointwise : bool
-        For scaled η: hold the bounds at every point of the paths by its own keyframes' distortion,
-        not only the worst of the whole domain.
-    smooth_rho : bool
-        For scaled η: a ρ that is C^∞ in time between keyframes, nowhere above the sharp one.
     transform : HilbertTransform, optional
-        For the metric variant: of this outline and cage, where the caller has it already.
+        For the metric variant: of this outline, where the caller has it already.
 
     Raises
     ------
@@ -146,42 +110,19 @@ def prepare(
     """
     maps = tuple(keyframes)
     variant = _known(variant)
-    if easing is None and variant is Variant.METRIC:
-        raise EngineError(
-            "Spline weights across keyframes are sometimes negative, and the metric blended with "
-            "them need not be positive; use the metric variant with an easing, or nu or scaled-eta."
-        )
-    if easing is None and smooth_rho:
-        raise EngineError("A smooth rho is made for each interval; it needs an easing, no spline.")
     _require_keyframes(maps)
     sites = prepare_sites(outline, maps[0].cage, points, triangles=triangles, anchor=anchor)
-    samples = sample_keyframes(maps, sites.paths, sites.outline_samples)
+    samples = sample_keyframes(maps, sites)
     sheets = root_sheets(np.array([key.anchor_fz for key in samples]), turns)
-    if transform is None and variant is Variant.METRIC:
+    if transform is None and variant.needs_transform:
         transform = HilbertTransform.on(sites.outline, sites.cage)
-    groups = [slice(0, len(maps))] if easing is None else _pairs(len(maps))
-    pieces = tuple(
+    intervals = tuple(
         prepare_inbetweens(
-            variant,
-            sites,
-            samples[group],
-            sheets[group],
-            transform=transform,
-            pointwise=pointwise,
-            smooth_rho=smooth_rho,
+            variant, sites, samples[i : i + 2], sheets[i : i + 2], transform=transform
         )
-        for group in groups
+        for i in range(len(maps) - 1)
     )
-    if anchor_curve is not None:
-        _require_through(anchor_curve, samples, sites.diameter)
-    return Prepared(
-        variant=variant,
-        sites=sites,
-        keyframes=samples,
-        pieces=pieces,
-        easing=easing,
-        anchor_curve=anchor_curve,
-    )
+    return Prepared(variant=variant, sites=sites, keyframes=samples, intervals=intervals)
 
 
 def prepare_inbetweens(
@@ -191,10 +132,8 @@ def prepare_inbetweens(
     sheets: Integers,
     *,
     transform: HilbertTransform | ProjectedTransform | None = None,
-    pointwise: bool = False,
-    smooth_rho: bool = False,
 ) -> Inbetweens:
-    """Prepare the in-betweens of a few keyframes, usually of two neighbours.
+    """Prepare the in-betweens of two neighbouring keyframes.
 
     What it is given is shared, not copied: sites by all keyframes, keyframes by the intervals on
     both sides.
@@ -203,33 +142,34 @@ def prepare_inbetweens(
     ----------
     variant : Variant
     sites : Sites
-    keyframes : sequence of KeyframeSamples, length q
-    sheets : int32, shape (q,)
+    keyframes : sequence of KeyframeSamples, length 2
+    sheets : int32, shape (2,)
         From `root_sheets`.
     transform : HilbertTransform or ProjectedTransform, optional
-        Of the sites' outline; the metric variant needs it, and exactly two keyframes. The second
-        kind is for in-betweens in a hurry.
-    pointwise, smooth_rho : bool
-        As in `prepare`.
+        Of the sites' outline; variants that `needs_transform` says so of need it. The second kind
+        makes rough in-betweens.
+
+    Raises
+    ------
+    EngineError
+        If there are not two keyframes, or the transform is missing or of another outline.
     """
-    keys = tuple(keyframes)
-    scale: Scale | None = None
+    first, second = _two(keyframes)
+    keys = (first, second)
+    scale: Scaling | None = None
     blend: Blend
     match variant:
         case Variant.LINEAR:
             return LinearInbetweens.of(keys, sites)
         case Variant.NU:
-            blend = NuBlend(keyframes=keys, sheets=readonly(sheets))
+            blend = NuBlend(keyframes=keys, sheets=sheets)
         case Variant.ETA:
             blend = EtaBlend.of(keys, sheets)
         case Variant.SCALED_ETA:
             blend = EtaBlend.of(keys, sheets)
-            sharp = Scaling.of(keys, sites.outline_samples, pointwise=pointwise)
-            scale = SmoothScaling.of(sharp) if smooth_rho else sharp
+            scale = Scaling.of(SharpScaling.of([key.map for key in keys], sites.outline))
         case Variant.METRIC:
-            if transform is None or len(keys) != 2:
-                raise EngineError("The metric variant needs a Hilbert transform and two keyframes.")
-            blend = MetricBlend.of(keys, sheets, sites.paths, transform)
+            blend = MetricBlend.of(keys, sheets, sites.paths, _matching(transform, sites))
     return IntegratedInbetweens(sites=sites, keyframes=keys, blend=blend, scale=scale)
 
 
@@ -241,10 +181,6 @@ def _known(variant: Variant | str) -> Variant:
         raise EngineError(f"There is no variant {variant!r}; there are {names}.") from None
 
 
-def _pairs(count: int) -> list[slice]:
-    return [slice(i, i + 2) for i in range(count - 1)]
-
-
 def _require_keyframes(maps: Sequence[HarmonicMap]) -> None:
     if len(maps) < 2:
         raise EngineError(f"In-betweens need at least two keyframes, not {len(maps)}.")
@@ -253,13 +189,22 @@ def _require_keyframes(maps: Sequence[HarmonicMap]) -> None:
             raise EngineError(f"Keyframe {i} has another cage than keyframe 0; they must share it.")
 
 
-def _require_through(
-    curve: AnchorCurve, keyframes: Sequence[KeyframeSamples], diameter: float
-) -> None:
-    for i, key in enumerate(keyframes):
-        position = complex(curve(float(i)))
-        if not abs(position - key.anchor_position) <= 1e-9 * diameter:
-            raise EngineError(
-                f"The anchor's curve is at {position:.6g} at time {i}, but keyframe {i} has the "
-                f"anchor at {key.anchor_position:.6g}; the curve must pass there."
-            )
+def _two(keyframes: Sequence[KeyframeSamples]) -> tuple[KeyframeSamples, KeyframeSamples]:
+    if len(keyframes) != 2:
+        raise EngineError(f"An interval has two keyframes, not {len(keyframes)}.")
+    first, second = keyframes
+    return first, second
+
+
+def _matching(
+    transform: HilbertTransform | ProjectedTransform | None, sites: Sites
+) -> HilbertTransform | ProjectedTransform:
+    """Refuse a transform of another domain, whose in-betweens would be wrong without a word."""
+    if transform is None:
+        raise EngineError("The metric variant needs a Hilbert transform of the outline.")
+    if not np.array_equal(transform.outline, sites.outline):
+        raise EngineError(
+            f"The Hilbert transform is of another outline, of {len(transform.outline)} vertices, "
+            f"than the points', of {len(sites.outline)}; build it anew for this one."
+        )
+    return transform

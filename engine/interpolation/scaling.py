@@ -1,33 +1,51 @@
-"""The scaling ρ that brings η back within the keyframes' bounds (Section 7.3, Appendix A)."""
+"""The largest ρ that brings η back within the keyframes' bounds (Section 7.3, Appendix A)."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Self
 
 import numpy as np
 
-from engine.arrays import Complexes, Floats, readonly
-from engine.interpolation.keyframe_samples import KeyframeSamples
+from engine.arrays import Complexes, Floats, Indices, freeze
+from engine.geometry import box_diagonal, sample_graded
 from engine.maps import HarmonicMap, evaluate
 
+# Segments between the samples of the outline, over the distance to the nearest cage vertex and over
+# the box diagonal. Interpolation between them is then right to 1e-7.
+SEGMENT_PER_DISTANCE = 0.2
+SEGMENT_PER_SIZE = 1 / 400
+STENCIL = (
+    0,
+    1,
+    -1,
+    2,
+)  # samples, counted from the start of a segment, that it is interpolated from
 NEGLIGIBLE = 1e-9  # f_z̄ / f_z below which no scaling is needed, whatever the bounds
-NO_SCALING = 1.1  # lowest sampled ratio from which on none between the samples is below 1
-CANDIDATES = 6  # lowest local minima that are looked at more closely
-REFINEMENTS = 6
-PIECES = 16  # of a refined stretch of the outline; each round makes it PIECES / 2 times shorter
+CEILING = 2.0  # ratios are cut off there: only those below 1 matter
+PARTS = (
+    8  # into which a stretch around a minimum is cut; each round makes it PARTS / 2 times shorter
+)
+ROUNDS = 8
+TOO_HIGH = 2e-7  # by which a minimum that is found may be too high; taken off
+GAIN = 1e-7  # by which a stretch must promise to lower ρ to be looked at
+RUN = 16  # times at whose ends all samples are looked at
+MARGIN = 0.05  # by which a sample may be lower in between than both ends of a run tell
+# Part of the interval beside each key in which the bounds tighten, from the worst of the outline to
+# each point's own.
+BESIDE_KEY = 0.24
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class PointSamples:
-    """What ρ depends on at some points (p,), for each of q keyframes.
+    """What ρ depends on at some points, for both keyframes; `...` is any shape.
 
     Parameters
     ----------
-    log_modulus : float64, shape (q, p)
+    log_modulus : float64, shape (2, ...)
         ln |f_z|.
-    conj_eta : complex128, shape (q, p)
-    k, sigma_a, sigma_b : float64, shape (p,)
-        The largest k and sigma_a and the smallest sigma_b of the keyframes: Properties 5 to 7.
+    conj_eta : complex128, shape (2, ...)
+    k, sigma_a, sigma_b : float64, shape (...)
+        The larger k and sigma_a and the smaller sigma_b of the keyframes: Properties 5 to 7.
     """
 
     log_modulus: Floats
@@ -38,124 +56,245 @@ class PointSamples:
 
     @classmethod
     def of(cls, fz: Complexes, g: Complexes) -> Self:
-        """Build the samples from f_z and conj(f_z̄), each (q, p)."""
+        """Build the samples from f_z and conj(f_z̄), each (2, ...)."""
         a, b = np.abs(fz), np.abs(g)
         return cls(
-            log_modulus=readonly(np.log(a)),
-            conj_eta=readonly(fz * g),
-            k=readonly((b / a).max(axis=0)),
-            sigma_a=readonly((a + b).max(axis=0)),
-            sigma_b=readonly((a - b).min(axis=0)),
+            log_modulus=freeze(np.log(a)),
+            conj_eta=freeze(fz * g),
+            k=freeze((b / a).max(axis=0)),
+            sigma_a=freeze((a + b).max(axis=0)),
+            sigma_b=freeze((a - b).min(axis=0)),
         )
 
-    @property
-    def nbytes(self) -> int:
-        """Memory that the arrays take, in bytes."""
-        arrays = (self.log_modulus, self.conj_eta, self.k, self.sigma_a, self.sigma_b)
-        return sum(array.nbytes for array in arrays)
+    def at(self, chosen: Indices) -> Self:
+        """Return some of the points (p,)."""
+        return type(self)(
+            log_modulus=self.log_modulus[:, chosen],
+            conj_eta=self.conj_eta[:, chosen],
+            k=self.k[chosen],
+            sigma_a=self.sigma_a[chosen],
+            sigma_b=self.sigma_b[chosen],
+        )
 
-    def ratios(self, weights: Floats) -> Floats:
-        """Return the largest scaling (p,) that each point allows, which may be above 1.
+    def bounded(self, worst: "Worst | None") -> Self:
+        """Return the same points with the worst bounds of the outline, or with their own."""
+        if worst is None:
+            return self
+        k, sigma_a, sigma_b = (np.array([x]) for x in (worst.k, worst.sigma_a, worst.sigma_b))
+        return replace(self, k=k, sigma_a=sigma_a, sigma_b=sigma_b)
 
-        Departs from the paper: in Equations (16) to (18) and in the denominators of Section 7.3 the
-        bars were lost; the factor of ρ is |f_z̄|.
+    def ratios(self, times: Floats) -> Floats:
+        """Return the largest scaling that each point allows at a time, Equations (16) to (18).
+
+        Departs from the paper: in these equations and in the denominators of Section 7.3 the bars
+        were lost; the factor of ρ is |f_z̄|.
+
+        Parameters
+        ----------
+        times : float64
+            In (0, 1), to be broadcast with the points' shape.
+
+        Returns
+        -------
+        float64
+            Of the common shape, at most `CEILING`.
         """
-        a = np.exp(weights @ self.log_modulus)
-        b = np.abs(weights @ self.conj_eta) / a
-        negligible = b <= NEGLIGIBLE * a
-        divisor = np.where(negligible, 1.0, b)
-        lowest = np.minimum(self.k * a, np.minimum(self.sigma_a - a, a - self.sigma_b)) / divisor
-        return np.where(negligible, np.inf, lowest)
+        a = np.exp((1 - times) * self.log_modulus[0] + times * self.log_modulus[1])
+        b = np.abs((1 - times) * self.conj_eta[0] + times * self.conj_eta[1]) / a
+        # ρ_k, ρ_a and ρ_b of Section 7.3 have the denominator |f_z̄| in common.
+        room = np.minimum(self.k * a, np.minimum(self.sigma_a - a, a - self.sigma_b))
+        ratios = np.full(room.shape, CEILING)
+        np.divide(room, b, out=ratios, where=b > np.maximum(NEGLIGIBLE * a, room / CEILING))
+        return ratios
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Worst:
+    """The largest k and sigma_a and the smallest sigma_b of the keyframes on the whole outline."""
+
+    k: float
+    sigma_a: float
+    sigma_b: float
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Scaling:
-    """ρ as a function of the weights: the minimum of the pointwise ratios over the outline.
+class SharpScaling:
+    """The largest ρ at each time: the minimum of the pointwise ratios over the outline.
 
-    Bounds on the outline hold inside as well, globally (Properties 5' to 7'); with `interior`
-    samples they hold at those points pointwise (Properties 5 to 7).
+    Being a minimum, it has a kink in time wherever another point or another bound takes over;
+    in-betweens use `engine.interpolation.smooth_scaling.Scaling`.
+
+    Departs from the paper: next to a keyframe a point's own bounds leave no room where f_z̄ nearly
+    vanishes. ρ would fall within a moment, and the shape jump. Beside a key (`BESIDE_KEY`) this ρ
+    therefore comes by and by from the one for which the bounds are the worst of the outline. On the
+    outline Properties 5 to 7 hold point by point away from the keys; Properties 5' to 7' always do.
 
     Parameters
     ----------
-    maps : tuple of HarmonicMap
-    outline : complex128, shape (r,)
-        Samples in order along the outline, its vertices among them.
+    curves : OutlineCurves
+        f_z and conj(f_z̄) of the keyframes.
     samples : PointSamples
-        At `outline`.
-    interior : PointSamples or None
-        At the nodes of the paths, or None for the global bounds only.
+        At the outline's samples (p,), in order along it, its vertices among them.
+    worst : Worst
     """
 
-    maps: tuple[HarmonicMap, ...]
-    outline: Complexes
+    curves: "OutlineCurves"
     samples: PointSamples
-    interior: PointSamples | None
+    worst: Worst
 
     @classmethod
-    def of(
-        cls, keyframes: Sequence[KeyframeSamples], outline: Complexes, *, pointwise: bool
-    ) -> Self:
-        """Compare keyframes at their outline samples (r,) and, if `pointwise`, at the nodes too."""
-        interior = None
-        if pointwise:
-            fz = np.exp([key.log_fz for key in keyframes])
-            interior = PointSamples.of(fz, fz * np.array([key.nu for key in keyframes]))
-        samples = PointSamples.of(
-            np.array([key.outline_fz for key in keyframes]),
-            np.array([key.outline_g for key in keyframes]),
-        )
-        maps = tuple(key.map for key in keyframes)
-        return cls(maps=maps, outline=outline, samples=samples, interior=interior)
+    def of(cls, maps: Sequence[HarmonicMap], outline: Complexes) -> Self:
+        """Sample two keyframes along the outline (p,)."""
+        cage = maps[0].cage
+        longest = SEGMENT_PER_SIZE * box_diagonal(outline)
+        points = sample_graded(outline, cage, ratio=SEGMENT_PER_DISTANCE, longest=longest)
+        coefficients = np.array([*(f.phi for f in maps), *(f.psi for f in maps)]).T
+        first, second = evaluate(cage, coefficients, points, orders=(1, 2))
+        curves = OutlineCurves.through(points, first.T, second.T)
+        samples = PointSamples.of(*np.split(first.T, 2))
+        return cls(curves=curves, samples=samples, worst=_worst(curves, samples))
 
-    @property
-    def nbytes(self) -> int:
-        """Memory beyond the keyframes' and the outline's own, in bytes."""
-        interior = 0 if self.interior is None else self.interior.nbytes
-        return self.samples.nbytes + interior
+    def __call__(self, times: Floats) -> Floats:
+        """Return ρ in (0, 1] at times (s,) in (0, 1), in ascending order.
 
-    def __call__(self, weights: Floats) -> float:
-        """Return ρ in [0, 1], exactly 1 where one keyframe has all the weight.
-
-        It is above 0 for weights that are convex. Others can blend f_z beyond the bounds; no
-        scaling brings it back, and 0 is returned.
+        Times are taken in runs: of the samples, only those that are low at the ends of a run, or
+        on the way to become so, are looked at in between.
         """
-        if np.count_nonzero(weights) == 1:
-            return 1.0
-        rho = self._lowest_on_outline(weights)
-        if self.interior is not None:
-            rho = min(rho, float(self.interior.ratios(weights).min()))
-        return min(max(rho, 0.0), 1.0)
+        rho = self._minima(times, None)
+        share = looseness(times)
+        loose = share > 0
+        rho[loose] **= 1.0 - share[loose]
+        rho[loose] *= self._minima(times[loose], self.worst) ** share[loose]
+        return rho
 
-    def _lowest_on_outline(self, weights: Floats) -> float:
-        """Return the minimum of the ratios, refined where the samples are lowest.
+    def _minima(self, times: Floats, worst: Worst | None) -> Floats:
+        lowest = np.empty(len(times))
+        for start in range(0, len(times), RUN):
+            block = slice(start, start + RUN)
+            lowest[block] = self._lowest(times[block], worst)
+        return np.minimum((1.0 - TOO_HIGH) * lowest, 1.0)
 
-        The ratios have kinks where the worse keyframe changes, so that the stretch around each
-        lowest sample is only cut finer: no parabola is fitted.
+    def _lowest(self, times: Floats, worst: Worst | None) -> Floats:
+        """Return the minimum of the ratios at each time of a run, within the given bounds.
+
+        The ratios have kinks where the worse keyframe changes, so that the stretches around low
+        samples are only cut finer, round after round: no parabola is fitted.
         """
-        ratios = self.samples.ratios(weights)
-        lowest = float(ratios.min())
-        if lowest > NO_SCALING:
-            return lowest
-        valley = (ratios <= np.roll(ratios, 1)) & (ratios <= np.roll(ratios, -1))
-        valleys = np.flatnonzero(valley)
-        centres = valleys[np.argsort(ratios[valleys], kind="stable")[:CANDIDATES]]
-        corners = self.outline[centres]
-        before, after = np.roll(self.outline, 1)[centres], np.roll(self.outline, -1)[centres]
-        along = np.linspace(-1.0, 1.0, PIECES + 1)
-        rows = np.arange(len(centres))
-        middle = np.zeros(len(centres))
-        for level in range(REFINEMENTS):
-            place = np.clip(middle[:, None] + along * (2.0 / PIECES) ** level, -1.0, 1.0)
-            ends = np.where(place < 0, before[:, None], after[:, None])
-            points = corners[:, None] + np.abs(place) * (ends - corners[:, None])
-            found = _samples_at(self.maps, points.ravel()).ratios(weights).reshape(place.shape)
-            best = found.argmin(axis=1)
-            middle = place[rows, best]
-            lowest = min(lowest, float(found.min()))
+        samples = self.samples.bounded(worst)
+        chosen = _low_samples(samples.ratios(times[[0, -1], None]))
+        if not len(chosen):
+            return np.full(len(times), CEILING)
+        sampled = self.samples.at(chosen).bounded(worst).ratios(times[:, None])
+        lowest: Floats = sampled.min(axis=1)
+        after = np.roll(sampled, -1, axis=1)
+        drop = np.abs(after - sampled)
+        drop = np.maximum(drop, np.maximum(np.roll(drop, 1, axis=1), np.roll(drop, -1, axis=1)))
+        goal = np.minimum(lowest, 1.0) - GAIN
+        low = np.minimum(sampled, after) - drop < goal[:, None]
+        low &= np.roll(chosen, -1) == (chosen + 1) % len(self.samples.k)
+        when, which = np.nonzero(low)
+        segment, place, width = chosen[which], np.full(len(when), 0.5), 0.5
+        for _ in range(ROUNDS):
+            places = _around(place, width)
+            found = self.curves.at(segment, places).bounded(worst).ratios(times[when, None])
+            best, rows = found.argmin(axis=1), np.arange(len(when))
+            variation = np.abs(np.diff(found, axis=1)).max(axis=1, initial=0.0)
+            np.minimum.at(lowest, when, found[rows, best])
+            kept = found[rows, best] - variation <= lowest[when]
+            when, segment, place = when[kept], segment[kept], places[rows, best][kept]
+            width *= 2.0 / PARTS
         return lowest
 
 
-def _samples_at(maps: Sequence[HarmonicMap], points: Complexes) -> PointSamples:
-    coefficients = np.column_stack([c for f in maps for c in (f.phi, f.psi)])
-    (slopes,) = evaluate(maps[0].cage, coefficients, points, orders=(1,))
-    return PointSamples.of(slopes[:, 0::2].T, slopes[:, 1::2].T)
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class OutlineCurves:
+    """Holomorphic functions between the samples of an outline, by Hermite interpolation.
+
+    Each segment has its own polynomial of degree 7 in w = (z − start) / span, in Newton's form: the
+    functions and their derivatives agree at four samples around it.
+
+    Parameters
+    ----------
+    places : complex128, shape (8, p)
+        w of the four samples of each segment, each twice.
+    coefficients : complex128, shape (8, 4, p)
+        f_z of both keyframes and conj(f_z̄) of both.
+    """
+
+    places: Complexes
+    coefficients: Complexes
+
+    @classmethod
+    def through(cls, points: Complexes, values: Complexes, derivatives: Complexes) -> Self:
+        """Interpolate functions (4, p) with their derivatives at points (p,)."""
+        stencil = [np.roll(np.arange(len(points)), -step) for step in STENCIL]
+        span = points[stencil[1]] - points
+        places = np.repeat([(points[at] - points) / span for at in stencil], 2, axis=0)
+        column = np.repeat([values[:, at] for at in stencil], 2, axis=0)
+        coefficients = [column[0]]
+        for order in range(1, len(places)):
+            rise = column[1:] - column[:-1]
+            gap = (places[order:] - places[:-order])[:, None]
+            if order == 1:
+                # Between a sample and itself the divided difference is the derivative.
+                gap[::2] = 1.0
+                rise[::2] = [derivatives[:, at] * span for at in stencil]
+            column = rise / gap
+            coefficients.append(column[0])
+        return cls(places=freeze(places), coefficients=freeze(np.array(coefficients)))
+
+    def at(self, segment: Indices, places: Floats) -> PointSamples:
+        """Return the samples at places (c, s), each from 0 to 1, along segments (c,)."""
+        nodes, coefficients = self.places[:, segment], self.coefficients[:, :, segment]
+        values = np.repeat(coefficients[-1][:, :, None], places.shape[1], axis=2)
+        for node, coefficient in zip(nodes[-2::-1], coefficients[-2::-1], strict=True):
+            values *= places - node[:, None]
+            values += coefficient[:, :, None]
+        fz, g = np.split(values, 2)
+        return PointSamples.of(fz, g)
+
+
+def looseness(times: Floats) -> Floats:
+    """Return how far the bounds are those of the whole outline: a C^∞ step, 1 at both keys."""
+    beside = np.minimum(times, 1 - times) / BESIDE_KEY
+    inside = np.clip(beside, 1e-3, 1 - 1e-3)
+    steps = 0.5 + 0.5 * np.tanh(0.5 / inside - 0.5 / (1.0 - inside))
+    return np.where(beside >= 1.0, 0.0, steps)
+
+
+def _low_samples(at_ends: Floats) -> Indices:
+    """Return the samples that may be lowest at some time of a run, with their neighbours.
+
+    Parameters
+    ----------
+    at_ends : float64, shape (2, p)
+        The ratios at its first and its last time.
+    """
+    change = np.abs(at_ends[1] - at_ends[0])
+    goal = min(1.0, float(at_ends.min(axis=1).max()))
+    low = (1.0 - MARGIN) * at_ends.min(axis=0) - change <= goal
+    low |= np.roll(low, 1) | np.roll(low, -1)
+    return np.flatnonzero(low | np.roll(low, 1) | np.roll(low, -1))
+
+
+def _worst(curves: OutlineCurves, samples: PointSamples) -> Worst:
+    """Return the extremes of the keyframes along the outline, between the samples too."""
+    count = len(samples.k)
+    segment, place, width = np.arange(count), np.full(count, 0.5), 0.5
+    for _ in range(ROUNDS):
+        places = _around(place, width)
+        found = curves.at(segment, places)
+        worst = [value.argmax() for value in (found.k, found.sigma_a, -found.sigma_b)]
+        rows, columns = np.unravel_index(worst, places.shape)
+        segment, place = segment[rows], places[rows, columns]
+        width *= 2.0 / PARTS
+    return Worst(
+        k=max(float(found.k.max()), float(samples.k.max())),
+        sigma_a=max(float(found.sigma_a.max()), float(samples.sigma_a.max())),
+        sigma_b=min(float(found.sigma_b.min()), float(samples.sigma_b.min())),
+    )
+
+
+def _around(place: Floats, width: float) -> Floats:
+    """Return places (c, PARTS + 1) around some (c,) within their segments."""
+    return np.clip(place[:, None] + width * np.linspace(-1.0, 1.0, PARTS + 1), 0.0, 1.0)

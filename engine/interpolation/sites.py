@@ -5,23 +5,11 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from engine.arrays import Complexes, as_points, readonly
+from engine.arrays import Complexes, as_points
 from engine.errors import EngineError
-from engine.geometry import (
-    box_diagonal,
-    deepest_point,
-    diameter,
-    require_around,
-    require_inside,
-    require_simple,
-    sample_graded,
-)
+from engine.geometry import deepest_point, diameter, require_inside
+from engine.maps import Boundary
 from engine.paths import ON_OUTLINE, IntegrationPaths, lay_paths, mesh_network, scattered_network
-
-# Segments between the samples of the outline, over the distance to the nearest cage vertex and over
-# the box diagonal: some 200 samples an edge, graded.
-RATIO = 0.1
-LONGEST = 1 / 1000
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -32,22 +20,29 @@ class Sites:
 
     Parameters
     ----------
-    outline, cage : complex128, shapes (p,) and (n,)
     diameter : float
         Largest distance between two vertices of the outline.
     points : complex128, shape (m,)
     paths : IntegrationPaths
         From the anchor to the points.
-    outline_samples : complex128, shape (r,)
-        In order along the outline, its vertices among them.
+    boundary : Boundary
+        On which keyframes are proven free of folds.
     """
 
-    outline: Complexes
-    cage: Complexes
     diameter: float
     points: Complexes
     paths: IntegrationPaths
-    outline_samples: Complexes
+    boundary: Boundary
+
+    @property
+    def outline(self) -> Complexes:
+        """The domain's boundary, complex128 (p,)."""
+        return self.boundary.outline
+
+    @property
+    def cage(self) -> Complexes:
+        """The polygon of the Cauchy coordinates, complex128 (n,)."""
+        return self.boundary.cage
 
     @property
     def anchor(self) -> complex:
@@ -57,7 +52,7 @@ class Sites:
     @property
     def nbytes(self) -> int:
         """Memory that the arrays take, in bytes."""
-        return self.points.nbytes + self.outline_samples.nbytes + self.paths.nbytes
+        return self.points.nbytes + self.boundary.nbytes + self.paths.nbytes
 
 
 def prepare_sites(
@@ -90,11 +85,11 @@ def prepare_sites(
     EngineError
         If a polygon, a point, a triangle or the anchor is not as said.
     """
-    outline = as_points(outline, "outline", at_least=3)
-    cage = as_points(cage, "cage", at_least=3)
     points = as_points(points, "points", at_least=1)
-    require_simple(outline, "outline")
-    require_around(cage, outline)
+    boundary = Boundary.sample(
+        as_points(outline, "outline", at_least=3), as_points(cage, "cage", at_least=3)
+    )
+    outline = boundary.outline
     tolerance = ON_OUTLINE * diameter(outline)
     root = np.array([deepest_point(outline)]) if anchor is None else _single(anchor)
     require_inside(outline, root, "anchor", tolerance=tolerance)
@@ -103,14 +98,11 @@ def prepare_sites(
         network = scattered_network(outline, points, root)
     else:
         network = mesh_network(outline, points, _as_triangles(triangles), root)
-    samples = sample_graded(outline, cage, ratio=RATIO, longest=LONGEST * box_diagonal(outline))
     return Sites(
-        outline=outline,
-        cage=cage,
         diameter=diameter(outline),
         points=points,
-        paths=lay_paths(network, outline, cage),
-        outline_samples=readonly(samples),
+        paths=lay_paths(network, outline, boundary.cage),
+        boundary=boundary,
     )
 
 

@@ -1,85 +1,112 @@
-"""A scaling ρ that is C^∞ in time (Section 5.5 leaves that to others)."""
+"""A ρ that is C^∞ in time: Property 4 for scaled η (Section 5.5 leaves that to others)."""
 
+import math
 from dataclasses import dataclass
 from typing import Self
 
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
-from scipy.optimize import minimize_scalar
 
-from engine.arrays import Floats, readonly
-from engine.interpolation.scaling import Scaling
+from engine.arrays import Floats, freeze
+from engine.interpolation.scaling import SharpScaling
 
-# Time is stretched to x = log(t / (1 − t)), so that a window of constant width in x narrows towards
-# both keyframes, where ρ has to stay 1.
-SPACING = 1 / 16
-RESOLVED = 15.0  # |x| up to which ρ is sampled at every SPACING, and beyond it at every 1
-FARTHEST = 34.0  # |x| from which on time is a keyframe's, to rounding
-HALF_WINDOW = 4  # samples on each side over which the mean is taken
+# Time is stretched to u, t = 1 / (1 + exp(−STRETCH sinh(u / STRETCH))), so that a window of
+# constant width in u narrows towards both keyframes, where ρ has to be 1.
+STRETCH = 2.0
+SPACING = 1 / 192
+FARTHEST = 7.125  # |u| from which on time is a keyframe's, to rounding
+HALF_WINDOW = 3  # samples on each side from which the value at a time is taken
+# What the difference from the sharp ρ is enlarged by, since it is seen at the samples only.
+CAUTION = 1.25
+ROUNDING = 2e-7
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class SmoothScaling:
+class Scaling:
     """A C^∞ function of time between two keyframes, nowhere above the sharp ρ, and 1 at both.
 
-    The minimum of the sharp ρ over a window is averaged over a slightly smaller one with C^∞
-    weights. What scales η less than a sharp ρ would break the bounds; what scales it more does not.
+    ln ρ is fitted at each time by the parabola through the samples of a window, weighted by a C^∞
+    bump. Where the sharp ρ is smooth the fit returns it to some 1e-6; around a kink it cuts the
+    corner. What it would be too high by near a time is taken off, likewise smoothed.
 
     Parameters
     ----------
-    minima : float64, shape (2 FARTHEST / SPACING + 1,)
-        Of the sharp ρ over a window around each sample of x.
+    logarithms : float64, shape (s,)
+        ln ρ of the sharp scaling at the samples of u, and some beyond both ends.
+    excess : float64, shape (s,)
+        The most by which the fit is above them within a window around each.
     """
 
-    minima: Floats
+    logarithms: Floats
+    excess: Floats
 
     @classmethod
-    def of(cls, sharp: Scaling) -> Self:
-        """Sample a sharp ρ, some 500 times, and take its minima."""
-
-        def rho(x: float) -> float:
-            return sharp(_weights(x))
-
-        fine = np.linspace(-RESOLVED, RESOLVED, round(2 * RESOLVED / SPACING) + 1)
-        inner = np.array([rho(x) for x in fine])
-        # Next to each lowest sample the curve may go lower still.
-        for k in np.flatnonzero((inner[1:-1] <= inner[:-2]) & (inner[1:-1] <= inner[2:])) + 1:
-            if inner[k] < 1.0:
-                bounds = (fine[k - 1], fine[k + 1])
-                inner[k] = min(inner[k], minimize_scalar(rho, bounds=bounds, method="bounded").fun)
-        coarse = np.arange(RESOLVED, FARTHEST + 1)
-        before, after = (
-            np.repeat(np.minimum(values[1:], values[:-1]), round(1 / SPACING))
-            for values in ([np.array([rho(sign * x) for x in coarse]) for sign in (-1.0, 1.0)])
+    def of(cls, sharp: SharpScaling) -> Self:
+        """Sample a sharp ρ, some 2,700 times, and fit it."""
+        count = round(2 * FARTHEST / SPACING) + 1
+        u = np.linspace(-FARTHEST, FARTHEST, count)
+        logarithms = np.log(sharp(time_of(u)))
+        fitted = _fits(logarithms, 0.0), _fits(logarithms, 0.5)
+        padded = np.pad(logarithms, (1, 2))
+        between = (9 * (padded[1:-2] + padded[2:-1]) - padded[:-3] - padded[3:]) / 16
+        above = np.maximum(fitted[0] - logarithms, fitted[1] - between)
+        above = np.where(above > 0.0, CAUTION * above + ROUNDING, 0.0)
+        around = HALF_WINDOW + 1
+        windows = sliding_window_view(np.pad(above, around), 2 * around + 1)
+        # Beyond the ends time is a keyframe's and ln ρ is 0.
+        beyond = HALF_WINDOW + 1
+        return cls(
+            logarithms=freeze(np.pad(logarithms, beyond)),
+            excess=freeze(np.pad(windows.max(axis=1), beyond)),
         )
-        samples = np.concatenate([before[::-1], inner, after])
-        reach = HALF_WINDOW + 1
-        padded = np.pad(samples, reach, constant_values=1.0)
-        return cls(minima=readonly(sliding_window_view(padded, 2 * reach + 1).min(axis=1)))
+
+    @property
+    def least(self) -> float:
+        """The smallest ρ that it may have."""
+        return math.exp(float((self.logarithms - self.excess).min()))
 
     @property
     def nbytes(self) -> int:
         """Memory that the arrays take, in bytes."""
-        return self.minima.nbytes
+        return self.logarithms.nbytes + self.excess.nbytes
 
-    def __call__(self, weights: Floats) -> float:
-        """Return the smooth ρ for the weights (2,) of the two keyframes."""
-        if weights[0] <= 0.0 or weights[1] <= 0.0:
+    def __call__(self, time: float) -> float:
+        """Return ρ in (0, 1] at a time in [0, 1]."""
+        if not 0.0 < time < 1.0:
             return 1.0
-        place = (np.log(weights[1] / weights[0]) + FARTHEST) / SPACING
-        window = np.arange(
-            int(np.floor(place)) - HALF_WINDOW, int(np.floor(place)) + HALF_WINDOW + 2
-        )
-        distance = (window - place) / HALF_WINDOW
-        inside = np.abs(distance) < 1.0
-        bump = np.exp(-1.0 / (1.0 - distance[inside] ** 2))
-        values = np.array([self._minimum(k) for k in window[inside]])
-        return float(bump @ values / bump.sum())
-
-    def _minimum(self, k: int) -> float:
-        return float(self.minima[k]) if 0 <= k < len(self.minima) else 1.0
+        u = STRETCH * np.arcsinh(np.log(time / (1.0 - time)) / STRETCH)
+        place = min(max((u + FARTHEST) / SPACING, -1.0), round(2 * FARTHEST / SPACING) + 1.0)
+        nearest = int(np.round(place))
+        fit, mean = _weights(place - nearest)
+        window = slice(nearest + 1, nearest + 1 + 2 * HALF_WINDOW + 1)
+        logarithm = float(fit @ self.logarithms[window] - mean @ self.excess[window])
+        return math.exp(min(logarithm, 0.0))
 
 
-def _weights(x: float) -> Floats:
-    """Return 1 − t and t, each to all its digits."""
-    return np.array([1.0 / (1.0 + np.exp(x)), 1.0 / (1.0 + np.exp(-x))])
+def time_of(u: Floats) -> Floats:
+    """Return the times in (0, 1) of stretched ones."""
+    times: Floats = 1.0 / (1.0 + np.exp(-STRETCH * np.sinh(u / STRETCH)))
+    return times
+
+
+def _weights(offset: float) -> tuple[Floats, Floats]:
+    """Return by how much each sample of a window counts at an offset from its middle.
+
+    Returns
+    -------
+    fit, mean : float64, shape (2 HALF_WINDOW + 1,)
+        Of the value of the fitted parabola, and of the mean; both sum to 1.
+    """
+    place = (np.arange(-HALF_WINDOW, HALF_WINDOW + 1) - offset) / (HALF_WINDOW + 0.5)
+    bump = np.exp(-1.0 / np.maximum(1.0 - place**2, 1e-3))
+    powers = np.vander(place, 3, increasing=True)
+    weighted = powers.T * bump
+    fit: Floats = np.linalg.solve(weighted @ powers, weighted)[0]
+    return fit, bump / bump.sum()
+
+
+def _fits(values: Floats, offset: float) -> Floats:
+    """Return the fit at an offset from each sample, like `values`; they are 0 beyond the ends."""
+    windows = sliding_window_view(np.pad(values, HALF_WINDOW), 2 * HALF_WINDOW + 1)
+    fits: Floats = windows @ _weights(offset)[0]
+    return fits

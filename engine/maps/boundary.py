@@ -97,6 +97,12 @@ class Boundary:
             vertex_coordinates=readonly(cauchy_coordinates(cage, outline)),
         )
 
+    @property
+    def nbytes(self) -> int:
+        """Memory that the arrays take, in bytes."""
+        arrays = (self.points, self.derivatives, self.curvature_kernel, self.vertex_coordinates)
+        return sum(array.nbytes for array in arrays)
+
     def refined(self, segments: Indices) -> Self:
         """Return the same outline with one more sample in the middle of each given segment.
 

@@ -5,7 +5,7 @@ from collections.abc import Callable
 import numpy as np
 import numpy.typing as npt
 
-from engine.arrays import Complexes, Floats, Indices, Integers, readonly
+from engine.arrays import Complexes, Floats, Indices, Integers, freeze
 from engine.errors import EngineError
 from engine.paths.integration_paths import IntegrationPaths
 
@@ -14,7 +14,10 @@ MOST_BISECTIONS = 12
 
 
 def continue_logarithm(
-    fz: Complexes, paths: IntegrationPaths, evaluate: Callable[[Complexes], Complexes]
+    fz: Complexes,
+    log_fz_z: Complexes,
+    paths: IntegrationPaths,
+    evaluate: Callable[[Complexes], Complexes],
 ) -> Complexes:
     """Return log f_z at the nodes, continuous along the paths, Equation (15).
 
@@ -22,6 +25,8 @@ def continue_logarithm(
     ----------
     fz : complex128, shape (s,)
         A holomorphic function without zeros, at the nodes.
+    log_fz_z : complex128, shape (s,)
+        Its derivative over itself there, Φ'' / Φ'.
     paths : IntegrationPaths
     evaluate : callable
         Returns the function at points (p,); asked only where a step turns it far.
@@ -33,10 +38,13 @@ def continue_logarithm(
     """
     parent = paths.tree.parent
     turns = np.angle(fz / fz[parent])
-    far = np.flatnonzero(np.abs(turns) > LARGEST_TURN)
+    # How fast f_z turns at both ends: whole turns within a step do not show in its ratio.
+    pace = np.abs((log_fz_z * paths.steps).imag)
+    pace = np.maximum(pace, np.abs((log_fz_z[parent] * paths.steps).imag))
+    far = np.flatnonzero(np.maximum(np.abs(turns), pace) > LARGEST_TURN)
     if len(far):
         starts = paths.nodes[parent[far]]
-        turns[far] = _turns_along(starts, paths.nodes[far], evaluate)
+        turns[far] = _turns_along(starts, paths.nodes[far], float(pace[far].max()), evaluate)
     principal = np.angle(fz)
     turns[0] = principal[0]
     arguments = paths.tree.sums(turns)
@@ -77,16 +85,19 @@ def root_sheets(anchor_fz: Complexes, turns: npt.ArrayLike | None = None) -> Int
     principal = np.angle(anchor_fz)
     shorter = np.angle(anchor_fz[1:] / anchor_fz[:-1])
     sheets = np.round((shorter - np.diff(principal)) / (2 * np.pi)) + extra
-    return readonly(np.concatenate([[0], np.cumsum(sheets)]).astype(np.int32))
+    return freeze(np.concatenate([[0], np.cumsum(sheets)]).astype(np.int32))
 
 
 def _turns_along(
-    starts: Complexes, ends: Complexes, evaluate: Callable[[Complexes], Complexes]
+    starts: Complexes, ends: Complexes, pace: float, evaluate: Callable[[Complexes], Complexes]
 ) -> Floats:
-    """Follow the argument along segments (p,), cut ever finer until it turns little at a time."""
+    """Follow the argument along segments (p,), cut ever finer until it turns little at a time.
+
+    `pace` is the largest turn along a segment that is expected.
+    """
     todo: Indices = np.arange(len(starts))
     turns = np.zeros(len(starts))
-    pieces = 8
+    pieces = max(8, int(np.ceil(2 * pace)))
     for _ in range(MOST_BISECTIONS):
         along = np.linspace(0.0, 1.0, pieces + 1)
         samples = starts[todo, None] + (ends - starts)[todo, None] * along

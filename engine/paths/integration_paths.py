@@ -5,16 +5,16 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial import cKDTree
 
-from engine.arrays import Booleans, Complexes, Floats, Indices, readonly
-from engine.geometry import as_xy, box_diagonal
+from engine.arrays import Booleans, Complexes, Indices, freeze
+from engine.geometry import Pieces, as_xy, bisect, box_diagonal
 from engine.paths.path_network import Network
 from engine.paths.spanning_tree import SpanningTree, depth_first_numbering
 
-LONGEST = 1 / 125  # longest step, over the box diagonal of the outline
+STEP_PER_SIZE = 1 / 125  # longest step, over the box diagonal of the outline
 # Longest step over its distance to the nearest singularity of the integrand. The error of a step of
 # length h at the distance d from a logarithmic singularity of strength c is c h (h/d)^4 / 120.
-RATIO = 0.3
-SHORTEST = 2e-5  # steps are not cut below this, over the box diagonal
+STEP_PER_DISTANCE = 0.3
+SHORTEST_PER_SIZE = 2e-5  # steps are not cut below this, over the box diagonal
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -56,7 +56,7 @@ class IntegrationPaths:
         )
         return sum(array.nbytes for array in arrays)
 
-    def step_integrals(self, values: Complexes, slopes: Complexes) -> Complexes:
+    def step_integrals(self, values: Complexes, derivatives: Complexes) -> Complexes:
         """Integrate along each step by the Hermite rule.
 
         Departs from the paper: Section 7 uses the trapezoidal rule; with the derivatives, which are
@@ -64,7 +64,7 @@ class IntegrationPaths:
 
         Parameters
         ----------
-        values, slopes : complex128, shape (s,)
+        values, derivatives : complex128, shape (s,)
             The integrand and its derivative at the nodes.
 
         Returns
@@ -75,7 +75,7 @@ class IntegrationPaths:
         parent = self.tree.parent
         mean = values + values[parent]
         mean *= 0.5
-        bend = slopes[parent] - slopes
+        bend = derivatives[parent] - derivatives
         bend *= self.steps / 12
         mean += bend
         mean *= self.steps
@@ -97,67 +97,39 @@ def lay_paths(network: Network, outline: Complexes, cage: Complexes) -> Integrat
     scale = box_diagonal(outline)
     singular = cKDTree(as_xy(np.concatenate([cage, outline])))
     children = np.flatnonzero(network.parents >= 0)[1:]
-    legs, places = _cut(
-        network.nodes[network.parents[children]], network.nodes[children], singular, scale
-    )
-    nodes, parents = _chain(network, children, legs, places)
+    legs = Pieces.whole(network.nodes[network.parents[children]], network.nodes[children])
+
+    def is_fine(steps: Pieces) -> Booleans:
+        distance, _ = singular.query(as_xy((steps.starts + steps.ends) / 2))
+        near = STEP_PER_DISTANCE * (distance - steps.lengths / 2)
+        longest = np.clip(near, SHORTEST_PER_SIZE * scale, STEP_PER_SIZE * scale)
+        fine: Booleans = steps.lengths <= longest
+        return fine
+
+    nodes, parents = _chain(network, children, bisect(legs, is_fine))
     numbering = depth_first_numbering(parents, 0)
     new = np.empty(len(nodes), dtype=np.intp)
     new[numbering] = np.arange(len(numbering))
     nodes, parents = nodes[numbering], new[parents[numbering]]
     to_corner, _ = cKDTree(as_xy(outline)).query(as_xy(nodes))
-    cornered = np.asarray(to_corner < SHORTEST / 4 * scale)
+    cornered = np.asarray(to_corner < SHORTEST_PER_SIZE / 4 * scale)
     return IntegrationPaths(
-        nodes=readonly(nodes),
-        steps=readonly(nodes - nodes[parents]),
+        nodes=freeze(nodes),
+        steps=freeze(nodes - nodes[parents]),
         tree=SpanningTree.of_parents(parents),
-        places=readonly(new[network.places]),
-        cornered=readonly(cornered),
+        places=freeze(new[network.places]),
+        cornered=freeze(cornered),
     )
 
 
-def _cut(
-    starts: Complexes, ends: Complexes, singular: cKDTree, scale: float
-) -> tuple[Indices, Floats]:
-    """Bisect segments until they are short enough.
-
-    Returns
-    -------
-    segment, place : intp and float64, shape (c,)
-        The start of every piece: its segment and its place along it in [0, 1), in this order.
-    """
-    segment, place, width = np.arange(len(starts)), np.zeros(len(starts)), np.ones(len(starts))
-    segments, places = [], []
-    while len(segment):
-        span = ends[segment] - starts[segment]
-        length = np.abs(span) * width
-        distance, _ = singular.query(as_xy(starts[segment] + span * (place + width / 2)))
-        near = np.maximum(SHORTEST * scale, RATIO * (distance - length / 2))
-        fine = length <= np.minimum(LONGEST * scale, near)
-        segments.append(segment[fine])
-        places.append(place[fine])
-        coarse = ~fine
-        half = width[coarse] / 2
-        segment = np.tile(segment[coarse], 2)
-        place = np.concatenate([place[coarse], place[coarse] + half])
-        width = np.tile(half, 2)
-    segment, place = np.concatenate(segments), np.concatenate(places)
-    order = np.lexsort((place, segment))
-    return segment[order], place[order]
-
-
-def _chain(
-    network: Network, children: Indices, segment: Indices, place: Floats
-) -> tuple[Complexes, Indices]:
-    """Insert the pieces' starts between each of the `children` and its parent."""
+def _chain(network: Network, children: Indices, steps: Pieces) -> tuple[Complexes, Indices]:
+    """Insert the starts of the pieces between each of the `children` and its parent."""
     count = len(network.nodes)
-    start = network.parents[children][segment]
-    inner = place > 0
+    start = network.parents[children][steps.segment]
+    inner = steps.place > 0
     node = start.copy()
     node[inner] = count + np.arange(inner.sum())
     parents = np.concatenate([network.parents, np.roll(node, 1)[inner]])
-    last = np.append(np.flatnonzero(np.diff(segment)), len(segment) - 1)
+    last = np.append(np.flatnonzero(np.diff(steps.segment)), len(steps) - 1)
     parents[children] = node[last]
-    span = network.nodes[children][segment] - network.nodes[start]
-    cuts = (network.nodes[start] + place * span)[inner]
-    return np.concatenate([network.nodes, cuts]), parents
+    return np.concatenate([network.nodes, steps.starts[inner]]), parents

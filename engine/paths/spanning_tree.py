@@ -12,7 +12,7 @@ import numpy as np
 from scipy.sparse import csr_array
 from scipy.sparse.csgraph import breadth_first_order, depth_first_order
 
-from engine.arrays import Complexes, Floats, Indices, readonly
+from engine.arrays import Complexes, Floats, Indices, freeze
 
 type_ = TypeVar("type_", Complexes, Floats)
 
@@ -39,7 +39,7 @@ class SpanningTree:
         depth = _depths(parent)
         down = 2 * np.arange(len(parent)) - depth
         up = down + 2 * _subtree_sizes(parent, depth) - 1
-        return cls(parent=readonly(parent), down=readonly(down), up=readonly(up))
+        return cls(parent=freeze(parent), down=freeze(down), up=freeze(up))
 
     def sums(self, steps: type_) -> type_:
         """Return for each node the sum of `steps` (s,) over its path from the root.

@@ -7,15 +7,15 @@ Imports: `engine.interpolation`, `engine.chebyshev`.
 
 from engine.streaming.build import MOST_ROWS, build_series, finish
 from engine.streaming.channels import Channels, Distortions, Positions
-from engine.streaming.series import Piece, Series, Singles
+from engine.streaming.series import Series, SeriesPiece, Singles
 
 __all__ = [
     "MOST_ROWS",
     "Channels",
     "Distortions",
-    "Piece",
     "Positions",
     "Series",
+    "SeriesPiece",
     "Singles",
     "build_series",
     "finish",

@@ -6,21 +6,21 @@ from typing import TypeVar
 
 import numpy as np
 
-from engine.arrays import Floats, readonly
+from engine.arrays import Floats, freeze
 from engine.chebyshev import nodes, to_coefficients
+from engine.interpolation import Scaling
 from engine.streaming.channels import Channels, Sample, scales, weights_at
-from engine.streaming.compression import leading_functions
-from engine.streaming.scaling_series import approximate_rho
-from engine.streaming.series import Piece, ScalarSeries, Series, Singles
+from engine.streaming.series import Series, SeriesPiece, Singles
 
 Result = TypeVar("Result")
 
+SAMPLED = 8192  # columns that the rank of a motion is found from
 DEGREES = (8, 16, 32)  # the nodes of each are among those of the next
 LAST_TERMS = 2
 MOST_ROWS = 12  # of a piece: a frame costs as many multiply-adds, a linear blend two
-SHORTEST = 1 / 32  # pieces are not halved below this; `Series.error` tells what is left then
+SHORTEST = 2.0**-14  # pieces are not halved below this; `Series.error` tells what is left then
 # Shares of the tolerance. The rest is for rounding to float32.
-OF_POLYNOMIALS, OF_RANK, OF_RHO = 0.1, 0.4, 0.1
+OF_POLYNOMIALS, OF_RANK, OF_RHO = 0.1, 0.4, 0.2
 CHECKED = 0.7  # of the tolerance, at the times that are looked at; between them it may be more
 
 
@@ -66,11 +66,14 @@ def finish(steps: Generator[None, None, Result]) -> Result:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class _Source:
-    """The direct path, and a series for its ρ; `reach` is the largest 1 − ρ."""
+    """The direct path, and its ρ unless nothing shows of it.
+
+    `largest_loss` is the largest 1 − ρ, by which the scaled part is multiplied under work.
+    """
 
     channels: Channels
-    rho: ScalarSeries | None
-    reach: float
+    rho: Scaling | None
+    largest_loss: float
 
     @property
     def tolerance(self) -> float:
@@ -86,9 +89,10 @@ class _Source:
 
 
 def _prepare(channels: Channels) -> Generator[None, None, _Source]:
-    plain = _Source(channels=channels, rho=None, reach=0.0)
+    plain = _Source(channels=channels, rho=None, largest_loss=0.0)
     inbetweens = channels.inbetweens
-    if not scales(inbetweens):
+    scale = inbetweens.scale if scales(inbetweens) else None
+    if scale is None:
         return plain
     largest = 0.0
     for time in (0.0, 0.5, 1.0):
@@ -96,17 +100,15 @@ def _prepare(channels: Channels) -> Generator[None, None, _Source]:
         yield
         if scaled is not None:
             largest = max(largest, float(np.abs(scaled).max()))
-    share = OF_RHO * channels.tolerance
-    if largest <= share:
+    loss = 1.0 - scale.least
+    if loss * largest <= OF_RHO * channels.tolerance:
         return plain
-    rho = yield from approximate_rho(inbetweens, share / largest)
-    reach = 1.0 - min(rho(float(time)) for time in np.linspace(0.0, 1.0, 513))
-    return plain if reach * largest <= share else replace(plain, rho=rho, reach=reach)
+    return replace(plain, rho=scale, largest_loss=loss)
 
 
 def _attempt(
     source: _Source, start: float, end: float
-) -> Generator[None, None, tuple[Piece, float] | None]:
+) -> Generator[None, None, tuple[SeriesPiece, float] | None]:
     """Return the piece from `start` to `end` and its error, or None where it must be halved."""
     shortest = end - start <= SHORTEST
     first = source.channels.sample(start)
@@ -160,7 +162,7 @@ class _Window:
         Returns
         -------
         float32, shape (p, degree + 1, c)
-            p is 2 where there is a ρ; the second part is what it scales, times `reach`.
+            p is 2 where there is a ρ; the second part is what it scales, times `largest_loss`.
         """
         parts = 1 if self.source.rho is None else 2
         found = np.empty((parts, degree + 1, len(self.first.values)), dtype=np.float32)
@@ -176,11 +178,11 @@ class _Window:
             blend = (1.0 - x) / 2 * self.first.values + (1.0 + x) / 2 * self.last.values
             found[0, index] = values - blend
             if parts == 2 and scaled is not None:
-                found[1, index] = self.source.reach * scaled
+                found[1, index] = self.source.largest_loss * scaled
             yield
         return found
 
-    def compressed(self, snapshots: Singles) -> Piece:
+    def compressed(self, snapshots: Singles) -> SeriesPiece:
         """Write snapshots (p, n, c) in few functions of time."""
         parts, count, size = snapshots.shape
         flat = snapshots.reshape(parts * count, size)
@@ -193,15 +195,17 @@ class _Window:
         rows[0], rows[1] = self.first.values, self.last.values
         np.matmul(times.T.astype(np.float32), flat, out=rows[2:])
         rows.setflags(write=False)
-        return Piece(
+        return SeriesPiece(
             start=self.start,
             end=self.end,
-            functions=readonly(functions[0]),
-            scaled_functions=readonly(functions[1] / self.source.reach) if parts == 2 else None,
+            functions=freeze(functions[0]),
+            scaled_functions=freeze(functions[1] / self.source.largest_loss)
+            if parts == 2
+            else None,
             rows=rows,
         )
 
-    def error(self, piece: Piece, degree: int) -> Generator[None, None, float]:
+    def error(self, piece: SeriesPiece, degree: int) -> Generator[None, None, float]:
         """Return the largest error at times where a polynomial of the degree errs most."""
         worst = 0.0
         for gap in (0, degree // 2, degree - 1):
@@ -217,3 +221,27 @@ def _last_terms(snapshots: Singles) -> float:
     """Return the largest of the last coefficients of the polynomials through snapshots."""
     last = to_coefficients(snapshots.shape[1] - 1)[-LAST_TERMS:].astype(np.float32)
     return max(float(np.abs(last @ part).max()) for part in snapshots)
+
+
+def leading_functions(snapshots: Singles, tolerance: float) -> Floats:
+    """Return an orthonormal basis (m, r) in which all columns of `snapshots` are written.
+
+    A column is what one coordinate of one point does in time. As points move alike, far fewer
+    functions of time occur among them than a polynomial basis has.
+
+    Parameters
+    ----------
+    snapshots : float32, shape (m, c)
+    tolerance : float
+        The largest entry that `snapshots` may lose; sampled at some columns, which is enough where
+        neighbouring points move alike.
+    """
+    # An odd stride takes x and y in turn.
+    stride = (snapshots.shape[1] // SAMPLED) | 1
+    rest = snapshots[:, ::stride].astype(np.float64)
+    left, sizes, right = np.linalg.svd(rest, full_matrices=False)
+    rank = 0
+    while rank < len(sizes) and np.abs(rest).max() > tolerance:
+        rest -= np.outer(left[:, rank], sizes[rank] * right[rank])
+        rank += 1
+    return np.ascontiguousarray(left[:, :rank])

@@ -9,44 +9,13 @@ import numpy.typing as npt
 from engine.arrays import Floats
 from engine.chebyshev import basis
 from engine.errors import EngineError
+from engine.interpolation import Scaling
 
 Singles = npt.NDArray[np.float32]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class ScalarSeries:
-    """A function of time as Chebyshev series on pieces of (0, 1), and 1 at both ends.
-
-    ρ jumps at a keyframe where f_z̄ has a zero.
-
-    Parameters
-    ----------
-    breaks : tuple of float
-        Ends of the b pieces, from 0 to 1.
-    coefficients : float64, shape (b, n)
-    """
-
-    breaks: tuple[float, ...]
-    coefficients: Floats
-
-    @property
-    def nbytes(self) -> int:
-        """Memory that the arrays take, in bytes."""
-        return self.coefficients.nbytes
-
-    def __call__(self, time: float) -> float:
-        """Return the value at a time in [0, 1]."""
-        if not 0.0 < time < 1.0:
-            return 1.0
-        piece = bisect_right(self.breaks, time) - 1
-        start, end = self.breaks[piece : piece + 2]
-        coefficients = self.coefficients[piece]
-        x = (2 * time - start - end) / (end - start)
-        return float(basis(x, len(coefficients)) @ coefficients)
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Piece:
+class SeriesPiece:
     """The motion from one time to another: Σ_j w_j(t) rows_j.
 
     The first two rows are the values at both ends, with the weights of a linear blend. The other
@@ -94,17 +63,17 @@ class Series:
 
     Parameters
     ----------
-    pieces : tuple of Piece
+    pieces : tuple of SeriesPiece
         One after the other, from time 0 to time 1.
-    rho : ScalarSeries or None
+    rho : Scaling or None
         None where Ψ is not scaled.
     error : float
         The largest difference from the direct path that was found between the nodes, in units of
         the values.
     """
 
-    pieces: tuple[Piece, ...]
-    rho: ScalarSeries | None
+    pieces: tuple[SeriesPiece, ...]
+    rho: Scaling | None
     error: float
 
     @property
@@ -118,7 +87,7 @@ class Series:
         own = sum(piece.nbytes for piece in self.pieces)
         return own + (0 if self.rho is None else self.rho.nbytes)
 
-    def blend(self, time: float) -> tuple[Piece, Singles]:
+    def blend(self, time: float) -> tuple[SeriesPiece, Singles]:
         """Return the piece at a time in [0, 1], and the weights (r,) of its rows.
 
         Raises

@@ -47,7 +47,7 @@ class Pair:
         maps = (HarmonicMap.identity(domain.cage), bent(domain.cage))
         mesh = triangulate(domain.outline, 2 * vertices)
         sites = sites_of(domain, mesh)
-        keyframes = sample_keyframes(maps, sites.paths, sites.outline_samples)
+        keyframes = sample_keyframes(maps, sites)
         sheets = root_sheets(np.array([key.anchor_fz for key in keyframes]))
         return cls(
             maps=maps,
@@ -60,7 +60,7 @@ class Pair:
 
     def first_keyframe(self) -> tuple[KeyframeSamples, ...]:
         """Sample the first keyframe."""
-        return sample_keyframes(self.maps[:1], self.sites.paths, self.sites.outline_samples)
+        return sample_keyframes(self.maps[:1], self.sites)
 
     def inbetweens(self, variant: Variant) -> Inbetweens:
         """Prepare the interval."""

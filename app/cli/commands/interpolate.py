@@ -16,7 +16,7 @@ def run(arguments: argparse.Namespace) -> int:
     data = read_arrays(
         arguments.maps,
         required=("outline", "cage", "phi", "psi", "points"),
-        optional=("anchor", "triangles"),
+        optional=("anchor", "triangles", "turns"),
     )
     phi, psi = data["phi"], data["psi"]
     if phi.ndim != 2 or phi.shape != psi.shape or phi.shape[1:] != data["cage"].shape:
@@ -32,6 +32,7 @@ def run(arguments: argparse.Namespace) -> int:
         variant=arguments.variant,
         triangles=data.get("triangles"),
         anchor=data.get("anchor"),
+        turns=data.get("turns"),
     )
     frames = [prepared.frame(time) for time in arguments.times]
     results = {
@@ -41,7 +42,7 @@ def run(arguments: argparse.Namespace) -> int:
         "fz": np.array([frame.fz for frame in frames]),
         "fzbar": np.array([frame.fzbar for frame in frames]),
     }
-    if arguments.variant == "scaled-eta":
+    if prepared.variant.is_scaled:
         results["rho"] = np.array([frame.rho for frame in frames])
     write_arrays(arguments.out, results)
     return 0

@@ -14,6 +14,9 @@ MAPS.npz holds
   anchor     ()      complex  optional: the point whose position and arg f_z are linear in time;
                               by default the centre of the largest disc in the domain
   triangles  (t, 3)  int      optional: triangles of the points; integration follows their edges
+  turns      (q-1,)  int      optional: whole turns that the shape makes between keyframes i and
+                              i + 1 beyond the shorter way, counter-clockwise; by default 0. From
+                              no turn to one of 200 degrees the shorter way is -160: 1 makes it 200
 
 Keyframe i is at time i. OUT.npz gets times (s,), anchor, and one row for each time of
   positions, fz, fzbar  (s, m)  complex128  f, f_z and the derivative of f by conj(z) at the points

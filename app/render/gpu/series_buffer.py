@@ -8,7 +8,7 @@ import numpy as np
 
 from app.errors import LissomError
 from app.render.gpu.mesh import Attribute
-from engine.streaming import Piece, Series
+from engine.streaming import Series, SeriesPiece
 
 _RESERVED: Final = 2  # attributes of a mesh that are not the series'
 
@@ -43,7 +43,7 @@ class SeriesBuffer:
         self._pairs = (rows + 1) // 2
         self._weights = np.zeros((self._pairs, 2), dtype=np.float32)
         self._buffer = context.buffer(reserve=16 * self._pairs * count, dynamic=True)
-        self._piece: Piece | None = None
+        self._piece: SeriesPiece | None = None
 
     @property
     def constants(self) -> tuple[tuple[str, int], ...]:
@@ -72,7 +72,7 @@ class SeriesBuffer:
         """Let the buffer go."""
         self._buffer.release()
 
-    def _upload(self, piece: Piece) -> None:
+    def _upload(self, piece: SeriesPiece) -> None:
         count, rows = self._count, len(piece.rows)
         if piece.rows.shape[1] != 2 * count or rows > 2 * self._pairs:
             raise LissomError(

@@ -96,6 +96,24 @@ def test_the_anchor_moves_straight_and_turns_evenly(write, tmp_path):
     assert_allclose(turn[0], 0.25 * turn[1], rtol=1e-9, atol=0)
 
 
+def test_a_turn_of_200_degrees_can_go_the_long_way(write, tmp_path):
+    anchor = 0.5 + 0.5j
+    turn = np.exp(1j * np.deg2rad(200.0))
+    changes = {
+        "phi": np.array([CAGE, anchor + turn * (CAGE - anchor)]),
+        "psi": np.zeros((2, len(CAGE))),
+        "anchor": anchor,
+    }
+    for turns, degrees in ((None, -160.0), ([0], -160.0), ([1], 200.0)):
+        out = tmp_path / "frames"
+        interpolate(write(turns=turns, **changes), out, times="0.25,0.5")
+        with np.load(out) as file:
+            positions = file["positions"]
+        for row, part in zip(positions, (0.25, 0.5), strict=True):
+            expected = anchor + np.exp(1j * np.deg2rad(part * degrees)) * (POINTS - anchor)
+            assert_allclose(row, expected, rtol=0, atol=1e-9)
+
+
 FOLDED = MAPS["psi"].copy()
 FOLDED[1] = MAPS["phi"][1].conj() * 2
 
@@ -121,6 +139,8 @@ FOLDED[1] = MAPS["phi"][1].conj() * 2
         ({"triangles": np.array([[0.0, 1, 2]])}, "integers"),
         ({"triangles": np.array([[0, 1, 2]])}, "not joined|leaves the outline"),
         ({"psi": None}, "'psi'"),
+        ({"turns": np.array([1])}, "turns between 3 keyframes are 2 integers"),
+        ({"turns": np.array([0.5, 1])}, "2 integers, not float64"),
     ],
 )
 def test_bad_files_are_refused(write, tmp_path, capsys, changes, message):

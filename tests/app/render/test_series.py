@@ -16,7 +16,7 @@ from app.render.scene import Background, Ghost, Heat, Scene, Wireframe
 from app.render.view import View
 from app.storage.assets import shader_source
 from engine.arrays import Complexes
-from engine.streaming import MOST_ROWS, Piece, Series
+from engine.streaming import MOST_ROWS, Series, SeriesPiece
 
 WIDTH, HEIGHT = 120, 90
 SIZE = abs(complex(WIDTH, HEIGHT))
@@ -35,7 +35,7 @@ def bending(rest: Complexes, rows: int = 7) -> Series:
         functions[:, :2] = 0.5 * np.array([[1, 1], [-1, 1], [0, 0], [0, 0], [0, 0]])
         values = np.array([*ends, *waves]).astype(np.complex64).view(np.float32)
         pieces.append(
-            Piece(
+            SeriesPiece(
                 start=start,
                 end=start + 0.5,
                 functions=functions,

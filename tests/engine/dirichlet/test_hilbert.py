@@ -13,7 +13,7 @@ from engine.dirichlet.panels import NODES, Panels
 from engine.dirichlet.product_integration import is_near, panel_weights
 from engine.errors import EngineError
 from engine.geometry.polygon import box_diagonal, edges
-from engine.interpolation.metric_residual import OutlineMetric
+from engine.interpolation.metric import OutlineMetric
 
 
 def far_cage(outline):

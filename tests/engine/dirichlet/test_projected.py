@@ -36,7 +36,7 @@ def test_rough_metric_inbetweens_are_near_the_exact_ones_and_meet_the_keyframes(
     worst = 0.0
     for seed in range(6):
         maps = [random_map(SHAPES[name], 2 * seed + i) for i in range(2)]
-        keyframes = sample_keyframes(maps, sites.paths, sites.outline_samples)
+        keyframes = sample_keyframes(maps, sites)
         sheets = root_sheets(np.array([key.anchor_fz for key in keyframes]))
         rough, exact = (
             prepare_inbetweens(Variant.METRIC, sites, keyframes, sheets, transform=transform)

@@ -1,4 +1,4 @@
-"""What `prepare` accepts and refuses, timing, turns and the anchor's pose."""
+"""What `prepare` accepts and refuses, and whole turns."""
 
 import numpy as np
 import pytest
@@ -11,7 +11,6 @@ from engine.errors import EngineError
 from engine.geometry import polygon
 from engine.interpolation import Variant, prepare, prepare_inbetweens, prepare_sites
 from engine.interpolation.keyframe_samples import sample_keyframes
-from engine.interpolation.timing import smooth
 from engine.maps.harmonic_map import HarmonicMap
 from engine.paths.complex_log import root_sheets
 
@@ -41,8 +40,8 @@ def test_frames_are_pure_and_their_inputs_frozen():
 def test_intervals_are_prepared_one_at_a_time_and_keyframes_shared(variant):
     whole = between(variant=variant)
     sites = prepare_sites(OUTLINE, CAGE, POINTS)
-    keys = sample_keyframes(MAPS[:2], sites.paths, sites.outline_samples)
-    keys += sample_keyframes(MAPS[2:], sites.paths, sites.outline_samples, first=2)
+    keys = sample_keyframes(MAPS[:2], sites)
+    keys += sample_keyframes(MAPS[2:], sites, first=2)
     sheets = root_sheets(np.array([key.anchor_fz for key in keys]))
     transform = HilbertTransform.on(OUTLINE, CAGE)
     for i, pair in enumerate((keys[:2], keys[1:])):
@@ -53,13 +52,15 @@ def test_intervals_are_prepared_one_at_a_time_and_keyframes_shared(variant):
         weights = np.array([0.6, 0.4])
         position = interval.anchor_position(weights)
         assert_allclose(position + interval.offsets(weights), frame.positions, rtol=0, atol=1e-13)
-        assert interval.nbytes >= 0
-    assert whole.nbytes > 0
+        held = interval.nbytes
+        # The keyframes' own arrays are not counted again.
+        assert (held == 0) == (variant == Variant.NU)
+        assert whole.nbytes >= sites.nbytes + sum(key.nbytes for key in keys) + held
 
 
 @pytest.mark.parametrize("variant", ["nu", "eta", "scaled-eta", "metric"])
 def test_parts_add_up_to_the_positions(variant):
-    piece = between(variant=variant).pieces[0]
+    piece = between(variant=variant).intervals[0]
     weights = np.array([0.25, 0.75])
     phi, conj_psi = piece.parts(weights)
     positions = piece.anchor_position(weights) + phi + piece.rho(weights) * conj_psi
@@ -83,62 +84,6 @@ def test_the_default_anchor_is_the_centre_of_the_largest_disc():
     prepared = prepare([bent(bar()), bent(bar(), turn=1)], [0j], outline=outline, variant="nu")
     assert abs(prepared.sites.anchor.imag) < 1e-3
     assert polygon.distance_to_boundary(outline, np.array([prepared.sites.anchor]))[0] > 0.499
-
-
-def test_easing_changes_the_pace_only():
-    prepared, eased = between(), between(easing=smooth)
-    assert_allclose(
-        eased.frame(1.25).positions, prepared.frame(1 + smooth(0.25)).positions, rtol=0, atol=1e-13
-    )
-    for time in (0, 1, 2):
-        assert_allclose(eased.frame(time).positions, MAPS[time](POINTS), rtol=0, atol=1e-11)
-
-
-@pytest.mark.parametrize(
-    ("easing", "time"),
-    [(lambda s: 1.5 * s, 0.9), (lambda s: s - 0.1, 0.05), (lambda s: s / 2, 2.0)],
-)
-def test_an_easing_that_leaves_the_interval_is_refused(easing, time):
-    prepared = between(easing=easing)
-    with pytest.raises(EngineError, match="easing"):
-        prepared.frame(time)
-
-
-@pytest.mark.parametrize("variant", ["nu", "eta", "scaled-eta", "linear"])
-def test_splines_pass_all_keyframes_smoothly(variant):
-    prepared = between(variant=variant, easing=None)
-    for time, f in enumerate(MAPS):
-        assert_allclose(prepared.frame(time).positions, f(POINTS), rtol=0, atol=1e-10)
-    if variant != "scaled-eta":
-        h = 1e-4
-        before, at, after = (prepared.frame(1 + k * h).positions for k in (-1, 0, 1))
-        speed = np.abs(after - before).max() / h
-        assert np.abs(after - 2 * at + before).max() < 100 * h * h * speed
-
-
-def test_splines_are_refused_for_metric():
-    with pytest.raises(EngineError, match="negative"):
-        between(variant="metric", easing=None)
-    with pytest.raises(EngineError, match="smooth rho"):
-        between(variant="scaled-eta", easing=None, smooth_rho=True)
-
-
-def test_the_anchor_follows_a_curve():
-    keys = [complex(f(np.array([0.5 + 0.5j]))[0]) for f in MAPS]
-
-    def curve(time):
-        first = min(int(time), 1)
-        s = time - first
-        return (1 - s) * keys[first] + s * keys[first + 1] + 2j * s * (1 - s)
-
-    straight, curved = (
-        between(anchor=0.5 + 0.5j, anchor_curve=anchor_curve).frame(0.5)
-        for anchor_curve in (None, curve)
-    )
-    assert_allclose(curved.positions - straight.positions, 0.5j, rtol=0, atol=1e-12)
-    assert_allclose(curved.fz, straight.fz, rtol=0, atol=0)
-    with pytest.raises(EngineError, match="curve must pass"):
-        between(anchor=0.5 + 0.5j, anchor_curve=lambda _: 0j)
 
 
 def test_a_full_turn_is_kept_and_flipped_by_its_integer():
@@ -189,7 +134,7 @@ def test_folds_are_found_wherever_they_are():
         ({"maps": MAPS[:1]}, "at least two keyframes, not 1"),
         ({"maps": []}, "at least two keyframes, not 0"),
         ({"maps": [MAPS[0], HarmonicMap.identity(1.01 * CAGE)]}, "another cage"),
-        ({"variant": "wobbly"}, "no variant 'wobbly'; there are nu, eta"),
+        ({"variant": "wobbly"}, "no variant 'wobbly'; there are metric, nu"),
         ({"anchor": [0.5, 0.6]}, "One anchor is needed, not 2"),
         ({"anchor": []}, "One anchor is needed, not 0"),
         ({"anchor": 2 + 2j}, "anchor at .* is outside"),
@@ -215,3 +160,47 @@ def test_points_on_the_outline_within_a_billionth_are_taken():
         on, off = (between(points=z, variant=variant).frame(0.5) for z in (middles, outside))
         assert_allclose(on.positions, off.positions, rtol=0, atol=1e-7)
         assert np.isfinite(off.fzbar).all()
+
+
+def test_a_fold_between_the_samples_of_the_outline_is_found():
+    boundary = prepare_sites(OUTLINE, CAGE, POINTS).boundary
+    following = np.roll(boundary.points, -1)
+    dense = (
+        boundary.points[:, None] + (following - boundary.points)[:, None] * np.linspace(0, 1, 32)
+    ).ravel()
+    f = random_map(SHAPE, 3)
+    at_samples, between_them = (
+        np.abs(b / a).max() for a, b in (f.derivatives(z) for z in (boundary.points, dense))
+    )
+    assert between_them > at_samples
+    # k grows in proportion: below 1 at all samples, above 1 between two of them.
+    strength = 2 / (at_samples + between_them)
+    folded = HarmonicMap(cage=CAGE, phi=f.phi, psi=strength * f.psi)
+    with pytest.raises(EngineError, match="Keyframe 1 folds: at"):
+        between([MAPS[0], folded])
+
+
+def test_a_transform_of_another_outline_is_refused():
+    other = HilbertTransform.on(*bar())
+    with pytest.raises(EngineError, match="of another outline"):
+        between(variant="metric", transform=other)
+    # As many vertices, but elsewhere.
+    moved = HilbertTransform.on(OUTLINE * 1.01, CAGE * 1.01)
+    with pytest.raises(EngineError, match="of another outline"):
+        between(variant="metric", transform=moved)
+
+
+def test_what_a_variant_needs_is_asked_for():
+    sites = prepare_sites(OUTLINE, CAGE, POINTS)
+    keys = sample_keyframes(MAPS, sites)
+    sheets = root_sheets(np.array([key.anchor_fz for key in keys]))
+    with pytest.raises(EngineError, match="two keyframes, not 3"):
+        prepare_inbetweens(Variant.NU, sites, keys, sheets)
+    for variant in Variant:
+        if variant.needs_transform:
+            with pytest.raises(EngineError, match="needs a Hilbert transform"):
+                prepare_inbetweens(variant, sites, keys[:2], sheets[:2])
+        else:
+            interval = prepare_inbetweens(variant, sites, keys[:2], sheets[:2])
+            frame = interval.frame(np.array([0.5, 0.5]))
+            assert (frame.rho is not None) == variant.is_scaled

@@ -6,7 +6,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 from engine.errors import EngineError
 from engine.paths.complex_log import continue_logarithm, root_sheets
 from engine.paths.integration_paths import lay_paths
-from engine.paths.path_network import scattered_network
+from engine.paths.path_network import Network, scattered_network
 
 
 def paths_of(shape, seed=0):
@@ -24,16 +24,33 @@ def test_the_logarithm_is_continuous_however_far_it_turns(rate):
         return np.exp(1j * rate * z / 10 + 0.3)
 
     fz = function(paths.nodes)
-    logarithm = continue_logarithm(fz, paths, function)
+    logarithm = continue_logarithm(fz, np.full(len(fz), 1j * rate / 10), paths, function)
     exact = 1j * rate * paths.nodes / 10
     assert_allclose(logarithm - logarithm[0], exact - exact[0], rtol=0, atol=1e-10)
     assert logarithm[0] == pytest.approx(np.log(fz[0]))
 
 
+@pytest.mark.parametrize("turns", [1, 2, 12])
+def test_whole_turns_within_a_step_are_counted(turns):
+    # Along a step f_z turns by whole turns and half a radian: its ratio shows the latter only.
+    nodes = np.array([0.5 + 0.5j, 0.52 + 0.5j])
+    network = Network(nodes=nodes, parents=np.array([0, 0]), places=np.array([1]))
+    paths = lay_paths(network, *letter_l())
+    (step,) = paths.steps[1:]
+    rate = 1j * (2 * np.pi * turns + 0.5) / step
+
+    def function(z):
+        return np.exp(rate * (z - nodes[0]))
+
+    fz = function(paths.nodes)
+    logarithm = continue_logarithm(fz, np.full(len(fz), rate), paths, function)
+    assert_allclose(logarithm[1] - logarithm[0], rate * step, rtol=0, atol=1e-10)
+
+
 def test_in_a_spiral_the_argument_follows_the_arm():
     # z winds around 0 with the arm, where the principal value would jump.
     paths = paths_of(spiral(), seed=3)
-    logarithm = continue_logarithm(paths.nodes, paths, lambda z: z)
+    logarithm = continue_logarithm(paths.nodes, 1 / paths.nodes, paths, lambda z: z)
     assert np.ptp(logarithm.imag) > 1.5 * np.pi
     assert_allclose(np.exp(logarithm), paths.nodes, rtol=1e-13, atol=0)
     steps = (logarithm - logarithm[paths.tree.parent]).imag
@@ -44,7 +61,7 @@ def test_a_zero_on_a_path_is_refused():
     paths = paths_of(letter_l())
     at = (paths.nodes[5] + paths.nodes[paths.tree.parent[5]]) / 2
     with pytest.raises(EngineError, match="vanishes"):
-        continue_logarithm(paths.nodes - at, paths, lambda z: z - at)
+        continue_logarithm(paths.nodes - at, 1 / (paths.nodes - at), paths, lambda z: z - at)
 
 
 def test_neighbouring_keyframes_take_the_shorter_way():

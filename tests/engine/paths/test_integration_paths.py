@@ -104,8 +104,8 @@ def test_steps_are_short_near_singularities():
         lengths = np.abs(paths.steps)
         scale = box_diagonal(outline)
         to_cage = np.abs(middles[:, None] - cage).min(axis=1)
-        assert lengths.max() <= integration_paths.LONGEST * scale
-        assert np.all(lengths <= integration_paths.RATIO * to_cage)
+        assert lengths.max() <= integration_paths.STEP_PER_SIZE * scale
+        assert np.all(lengths <= integration_paths.STEP_PER_DISTANCE * to_cage)
 
 
 def test_the_quadrature_is_of_fourth_order(monkeypatch):
@@ -119,10 +119,10 @@ def test_the_quadrature_is_of_fourth_order(monkeypatch):
         places=np.arange(1, 51),
     )
     (phi,) = evaluate(cage, f.phi[:, None], network.nodes, orders=(0,))
-    monkeypatch.setattr(integration_paths, "RATIO", 100.0)
+    monkeypatch.setattr(integration_paths, "STEP_PER_DISTANCE", 100.0)
     errors = []
     for longest in (1 / 16, 1 / 32, 1 / 64, 1 / 128):
-        monkeypatch.setattr(integration_paths, "LONGEST", longest)
+        monkeypatch.setattr(integration_paths, "STEP_PER_SIZE", longest)
         paths = lay_paths(network, outline, cage)
         fz, _ = f.derivatives(paths.nodes)
         fzz, _ = f.second_derivatives(paths.nodes)

@@ -52,7 +52,7 @@ def as_complex(values):
 @settings(max_examples=2)
 def test_positions_are_those_of_the_direct_path(variant, case, seed):
     motion = prepared(case[0], variant, random_pair(*case))
-    between, diameter = motion.pieces[0], motion.sites.diameter
+    between, diameter = motion.intervals[0], motion.sites.diameter
     series = finish(build_series(Positions.of(between, motion.sites)))
     for time in np.random.default_rng(seed).random(12):
         found = as_complex(series.values(time))
@@ -64,19 +64,18 @@ def test_positions_are_those_of_the_direct_path(variant, case, seed):
 @pytest.mark.parametrize("variant", Variant)
 def test_keyframes_are_exact_to_float32(variant):
     motion = prepared("letter L", variant, random_pair("letter L", 5))
-    series = finish(build_series(Positions.of(motion.pieces[0], motion.sites)))
+    series = finish(build_series(Positions.of(motion.intervals[0], motion.sites)))
     for time, key in enumerate(motion.keyframes):
         expected = key.positions.astype(np.complex64)
         assert_array_equal(series.values(float(time)).view(np.complex64), expected)
         beside = series.values(abs(time - 1e-9)).view(np.complex64)
-        jump = 0.3 if variant == Variant.SCALED_ETA else 1e-6  # the direct path's ρ jumps
-        assert_allclose(beside, expected, rtol=0, atol=jump)
+        assert_allclose(beside, expected, rtol=0, atol=1e-6)
 
 
 @pytest.mark.parametrize("variant", Variant)
 def test_distortions_are_those_of_the_direct_path(variant):
     motion = prepared("letter L", variant, random_pair("letter L", 8))
-    between = motion.pieces[0]
+    between = motion.intervals[0]
     series = finish(build_series(Distortions.of(between)))
     for time in np.random.default_rng(0).random(12):
         fz, fzbar = as_complex(series.values(time)).reshape(2, -1)
@@ -96,7 +95,7 @@ def test_a_scaled_map_far_from_its_bounds_has_its_rho_in_the_series():
     maps = [bent(SHAPES["bar"]), bent(SHAPES["bar"])]
     maps[1] = type(maps[0])(cage=cage, phi=grown, psi=0.4 * grown)
     motion = prepared("bar", "scaled-eta", maps)
-    between = motion.pieces[0]
+    between = motion.intervals[0]
     series = finish(build_series(Positions.of(between, motion.sites)))
     assert series.rho is not None
     for time in np.random.default_rng(3).random(60):
@@ -116,7 +115,7 @@ def test_a_scaled_map_far_from_its_bounds_has_its_rho_in_the_series():
 def test_a_rho_that_changes_nothing_is_left_out(options):
     maps = [bent(SHAPES["bar"], **option) for option in options]
     motion = prepared("bar", "scaled-eta", maps)
-    assert finish(build_series(Positions.of(motion.pieces[0], motion.sites))).rho is None
+    assert finish(build_series(Positions.of(motion.intervals[0], motion.sites))).rho is None
 
 
 @dataclass(frozen=True)
@@ -176,15 +175,15 @@ def test_what_is_not_smooth_ends_and_tells_its_error():
 def test_far_from_the_origin_the_tolerance_is_what_float32_holds():
     maps = [bent(SHAPES["bar"], shift=9000j), bent(SHAPES["bar"], bend=0.7, shift=9000j)]
     motion = prepared("bar", "nu", maps)
-    series = finish(build_series(Positions.of(motion.pieces[0], motion.sites)))
+    series = finish(build_series(Positions.of(motion.intervals[0], motion.sites)))
     assert len(series.pieces) == 1
     found = as_complex(series.values(0.4))
-    assert_allclose(found, direct(motion.pieces[0], 0.4).positions, rtol=0, atol=9000 * 2**-21)
+    assert_allclose(found, direct(motion.intervals[0], 0.4).positions, rtol=0, atol=9000 * 2**-21)
 
 
 def test_building_goes_in_small_steps_that_may_take_turns():
     motions = [prepared("bar", variant, random_pair("bar", 2)) for variant in ("nu", "metric")]
-    channels = [Positions.of(motion.pieces[0], motion.sites) for motion in motions]
+    channels = [Positions.of(motion.intervals[0], motion.sites) for motion in motions]
     calls = []
 
     @dataclass(frozen=True)

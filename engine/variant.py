@@ -1,0 +1,29 @@
+"""The variants of interpolation by name, and what each of them needs."""
+
+from enum import StrEnum
+
+
+class Variant(StrEnum):
+    """How the derivatives of two keyframes are blended; the values are the names in files.
+
+    `engine.interpolation.prepare_inbetweens` builds them.
+    """
+
+    METRIC = "metric"
+    NU = "nu"
+    SCALED_ETA = "scaled-eta"
+    ETA = "eta"
+    LINEAR = "linear"
+
+    @property
+    def needs_transform(self) -> bool:
+        """Whether it needs the Hilbert transform of the outline.
+
+        Its in-betweens have a rough form, by a transform that is ready at once.
+        """
+        return self is Variant.METRIC
+
+    @property
+    def is_scaled(self) -> bool:
+        """Whether its Ψ is scaled by a ρ."""
+        return self is Variant.SCALED_ETA
