@@ -27,7 +27,6 @@ from app.document.settings import (
     FrameRange,
     Framing,
     Meshing,
-    Variant,
 )
 from app.document.shortfall import Extremes, Shortfall, falls_short, find_shortfall
 from app.document.timeline import (
@@ -42,6 +41,7 @@ from app.document.timeline import (
     resting_pose,
     time_of,
 )
+from engine.variant import Variant
 
 __all__ = [
     "FRAMINGS",

@@ -10,11 +10,12 @@ import numpy as np
 
 from app.document.checks import NOTHING, Unknown, require, require_place, require_size
 from app.document.keyframe import Handle, Keyframe, Pose
-from app.document.settings import VARIANTS, Meshing, Variant
+from app.document.settings import VARIANTS, Meshing
 from app.errors import LissomError
 from engine.domain import Domain
 from engine.geometry import box_diagonal, contains
 from engine.maps import Bounds, Certificate, HarmonicMap
+from engine.variant import Variant
 
 # Handles may sit on the outline itself, where rounding decides on which side they are.
 ON_OUTLINE = 1e-9
@@ -69,8 +70,8 @@ class Figure:
     anchor : complex, optional
         The point of the picture whose place and turn are blended directly; None lets the engine
         choose it.
-    variant : str
-        One of `VARIANTS`.
+    variant : Variant
+        Or its name.
     bounds : Bounds
         Distortion that the solver allows in new poses.
     """
@@ -83,7 +84,7 @@ class Figure:
     next_handle: int = 0
     keys: tuple[Keyframe, ...]
     anchor: complex | None = None
-    variant: Variant = "metric"
+    variant: Variant = Variant.METRIC
     bounds: Bounds = Bounds()
     unknown: Unknown = field(default_factory=lambda: NOTHING, repr=False, hash=False)
 
@@ -93,8 +94,10 @@ class Figure:
         self._check_keys()
         require(
             self.variant in VARIANTS,
-            f"The variant is one of {', '.join(VARIANTS)}, not {self.variant!r}.",
+            f"The variant is one of {', '.join(VARIANTS)}, not {str(self.variant)!r}.",
         )
+        # A word from a file is as good as the variant itself.
+        object.__setattr__(self, "variant", Variant(self.variant))
 
     @property
     def key_frames(self) -> frozenset[int]:

@@ -8,10 +8,10 @@ from app.document.checks import require, require_size
 from app.export_formats import EXPORT_FORMATS
 from engine.domain import MOST_TRIANGLES
 from engine.domain.outline import Detail
+from engine.variant import Variant
 
-Variant = Literal["metric", "nu", "scaled-eta", "eta", "linear"]
 Framing = Literal["canvas", "fit"]
-VARIANTS: tuple[Variant, ...] = get_args(Variant)
+VARIANTS = tuple(Variant)
 FRAMINGS: tuple[Framing, ...] = get_args(Framing)
 
 LAST_FRAME = 999_999

@@ -6,7 +6,6 @@ from collections.abc import Sequence
 import numpy as np
 
 from app.document import Clip, Pose, Variant, intervals, resting_pose, time_of
-from engine import interpolation
 from engine.arrays import Complexes
 from engine.dirichlet import HilbertTransform, ProjectedTransform
 from engine.domain import Domain
@@ -112,15 +111,15 @@ class PoseSampler:
     ) -> Inbetweens:
         """Return the in-betweens of two poses, with whole turns beyond the shorter way.
 
-        Rough ones are ready much sooner where the variant is metric, and are right to some
-        thousandths of the drawing's size; other variants have no rough ones.
+        Rough ones are ready much sooner where the variant needs the transform, and are right to
+        some thousandths of the drawing's size; of other variants they are the exact ones.
         """
         with self._lock:
             key = (first, second, turns, variant, rough)
             if key not in self._inbetweens:
                 pair = [self.samples(first), self.samples(second)]
                 self._inbetweens[key] = prepare_inbetweens(
-                    interpolation.Variant(variant),
+                    variant,
                     self.sites,
                     pair,
                     root_sheets(np.array([sample.anchor_fz for sample in pair]), [turns]),
@@ -131,14 +130,9 @@ class PoseSampler:
     def _transform_for(
         self, variant: Variant, *, rough: bool
     ) -> HilbertTransform | ProjectedTransform | None:
-        if variant != "metric":
+        if not variant.needs_transform:
             return None
         return self.quick_transform if rough else self.transform
-
-
-def has_rough(variant: Variant) -> bool:
-    """Tell whether rough in-betweens of a variant differ from its exact ones."""
-    return variant == "metric"
 
 
 class Animation:
@@ -165,7 +159,7 @@ class Animation:
         sampler: PoseSampler | None = None,
     ) -> None:
         self.clip = clip
-        self.variant: Variant = clip.figure.variant if variant is None else variant
+        self.variant: Variant = clip.figure.variant if variant is None else Variant(variant)
         if (
             sampler is None
             or sampler.domain is not clip.figure.domain

@@ -11,7 +11,7 @@ from types import MappingProxyType
 from typing import NamedTuple
 
 from app.document import Clip, Pose, Variant, intervals, resting_pose, time_of
-from app.motion.inbetweens import PoseSampler, has_rough
+from app.motion.inbetweens import PoseSampler
 from app.motion.posable_mesh import PosableMesh
 from app.motion.vertices import Placed, Streamed, Vertices
 from engine.arrays import Complexes
@@ -136,7 +136,7 @@ def prepare_motion(
         sampler, sibling, known = None, earlier.sampler or sibling, {}
     ready: dict[Pair, PreparedInterval] = {}
     made = 0
-    rough = roughly and has_rough(clip.figure.variant)
+    rough = roughly and clip.figure.variant.needs_transform
     for interval, (first, last) in enumerate(intervals(clip)):
         pair = pair_of(clip, interval)
         if pair in ready:

@@ -5,7 +5,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path
-from typing import Any, cast
+from typing import Any
 
 from app.document import LAST_FRAME, LINEAR, VARIANTS, Easing, Variant
 from app.errors import LissomError
@@ -38,7 +38,7 @@ class PoseScript:
     keys: tuple[PoseKey, ...]
     fps: float = 24.0
     loop: bool = False
-    variant: Variant = "metric"
+    variant: Variant = Variant.METRIC
     bounds: Bounds = Bounds()
     anchor: complex | None = None
 
@@ -111,7 +111,7 @@ def _options(script: Mapping[str, Any]) -> dict[str, Any]:
             raise LissomError(
                 f"variant must be one of {', '.join(VARIANTS)}, not {json.dumps(script['variant'])}"
             )
-        options["variant"] = cast(Variant, script["variant"])
+        options["variant"] = Variant(script["variant"])
     if "bounds" in script:
         bounds = _object(script["bounds"], "bounds", BOUND_FIELDS)
         options["bounds"] = Bounds(**{k: as_number(v, f"bounds.{k}") for k, v in bounds.items()})

@@ -28,7 +28,7 @@ from engine.maps import distortion
 from engine.streaming import Distortions, Positions, Series, Singles, build_series, finish
 
 SIZES = (10_000, 100_000, 1_000_000)
-VARIANTS: tuple[Variant, ...] = ("linear", "nu", "eta", "scaled-eta", "metric")
+VARIANTS = (Variant.LINEAR, Variant.NU, Variant.ETA, Variant.SCALED_ETA, Variant.METRIC)
 # A second of playing: what a frame costs on the way, through all the pieces of a series.
 TIMES = tuple((i + 0.5) / 24 for i in range(24))
 
@@ -87,7 +87,7 @@ def _giraffe() -> Document:
 
 def _frames(interval: Interval, series: dict[Variant, Series]) -> Table:
     count = len(interval.mesh.vertices)
-    linear, ends = _linear_blend(series["linear"])
+    linear, ends = _linear_blend(series[Variant.LINEAR])
     rows = [
         Row(name="linear blend, float32", seconds=linear, note="both keyframes in one product"),
         Row(
@@ -170,10 +170,10 @@ def _extent(series: Series, count: int) -> str:
 def _growth(intervals: list[Interval]) -> Iterator[Table]:
     frames, builds = [], []
     for interval in intervals:
-        series = interval.build("metric")
+        series = interval.build(Variant.METRIC)
         out = np.empty(series.size, dtype=np.float32)
         frames.append(_played(partial(_write, series, out)))
-        builds.append(measure(partial(interval.build, "metric"), repeats=1))
+        builds.append(measure(partial(interval.build, Variant.METRIC), repeats=1))
     for title, times in (("A frame", frames), ("Building the series", builds)):
         rows = [
             Row(

@@ -6,10 +6,11 @@ from dataclasses import replace
 from app.document.commands.command import figure_command
 from app.document.figure import Figure
 from app.document.keyframe import Keyframe, Pose
-from app.document.settings import Meshing, Variant
+from app.document.settings import Meshing
 from app.errors import LissomError
 from engine.domain import Domain
 from engine.maps import Bounds
+from engine.variant import Variant
 
 
 @figure_command("Set interpolation")

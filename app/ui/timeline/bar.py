@@ -16,11 +16,11 @@ from app.ui.timeline.track import in_seconds
 
 # Names and what they mean.
 VARIANTS: dict[Variant, tuple[str, str]] = {
-    "metric": ("Metric – smooth, bounded", "Stretch and shear stay within those of the keys"),
-    "nu": ("Nu (ν) – even shear", "Shear stays within that of the keys, stretch nearly so"),
-    "scaled-eta": ("Scaled eta (η) – bounded", "As eta, held within the limits of the keys"),
-    "eta": ("Eta (η) – may overshoot", "May leave the limits of the keys; for comparison"),
-    "linear": ("Linear – may fold", "Every point goes straight; for comparison"),
+    Variant.METRIC: ("Metric – smooth, bounded", "Stretch and shear stay within those of the keys"),
+    Variant.NU: ("Nu (ν) – even shear", "Shear stays within that of the keys, stretch nearly so"),
+    Variant.SCALED_ETA: ("Scaled eta (η) – bounded", "As eta, held within the limits of the keys"),
+    Variant.ETA: ("Eta (η) – may overshoot", "May leave the limits of the keys; for comparison"),
+    Variant.LINEAR: ("Linear – may fold", "Every point goes straight; for comparison"),
 }
 GAP, TIGHT, WIDE = 0.35, 0.1, 1.1  # em between what belongs together closely, and less so
 FRAMES = 13.0  # em: room that the numbers of frames need

@@ -26,7 +26,6 @@ from app.document.model import Document
 from app.document.settings import VARIANTS, ExportSettings, FrameRange, Meshing
 from app.errors import LissomError
 from engine.errors import EngineError
-from engine.interpolation import Variant as EngineVariant
 from engine.maps.bounds import Bounds
 from engine.maps.certificate import Certificate
 
@@ -78,8 +77,13 @@ def test_handles_may_sit_on_the_outline_itself():
             assert handles.add_handle(0, complex(place))(document).figures[0].handles
 
 
-def test_the_variants_are_those_of_the_engine():
-    assert set(VARIANTS) == {variant.value for variant in EngineVariant}
+def test_a_variant_may_be_given_by_its_name_in_files():
+    document = disc_document()
+    for variant in VARIANTS:
+        (figure,) = figures.set_variant(0, variant.value)(document).figures
+        assert figure.variant is variant
+    with pytest.raises(LissomError, match=r"variant is one of metric, nu, .*not 'wobbly'"):
+        figures.set_variant(0, "wobbly")(document)
 
 
 def test_a_pose_is_proven_for_bounds_that_its_certificate_keeps():
