@@ -11,19 +11,16 @@ from app.errors import EXPECTED_ERRORS, LissomError
 from app.export.framing import shown_box
 from app.export.plan import ExportPlan
 from app.export.poses import Poses
-from app.motion import box_around
-from app.render import TRANSPARENT, Background, Colour, Renderer, Scene
+from app.motion import Placed, box_around
+from app.render import TRANSPARENT, Background, Colour, DrawnMesh, Renderer, Scene
 from app.render.gpu import (
     Context,
     GlError,
     GpuMesh,
     GpuPicture,
-    PosedMesh,
-    PositionBuffer,
     Target,
-    singles,
 )
-from engine.arrays import Bytes, Complexes
+from engine.arrays import Bytes
 
 _SMALL: Final = 0.75  # pixels of the frame per pixel of the picture
 _NO_ERROR: Final = "GL_NO_ERROR"
@@ -31,10 +28,10 @@ _OUTSIDE: Final = 1.0  # pixels; less than this is seen by nobody
 
 
 class PosedFrame(NamedTuple):
-    """A frame of the timeline, and where the vertices (v,) of each figure are in it."""
+    """A frame of the timeline, and where the vertices of each figure are in it."""
 
     frame: float
-    positions: tuple[Complexes, ...]
+    vertices: tuple[Placed, ...]
 
 
 class Painter:
@@ -68,8 +65,9 @@ class Painter:
         self._context = context
         self._poses = [poses[figure.id] for figure in document.figures]
         self._view = plan.view
-        meshes = [figure.domain.mesh for figure in document.figures]
-        self._reach = box_around(np.concatenate([mesh.vertices for mesh in meshes]))
+        self._background = Background(colour=_colour(plan))
+        self._meshes = [figure.domain.mesh for figure in document.figures]
+        self._reach = box_around(np.concatenate([mesh.vertices for mesh in self._meshes]))
         # The mesh has a margin around the drawing, which may lie off the canvas from the start.
         self._room = shown_box(plan.view).joined(self._reach)
         with ExitStack() as owned:
@@ -84,16 +82,14 @@ class Painter:
             # before again though it may be gone. A target without memory has raised by itself.
             while context.error != _NO_ERROR:
                 pass
-            self._positions, drawn = [], []
-            for figure, mesh in zip(document.figures, meshes, strict=True):
+            self._drawn = []
+            for figure, mesh in zip(document.figures, self._meshes, strict=True):
                 texture = GpuPicture(context, pictures[figure.id])
                 owned.callback(texture.release)
                 gpu_mesh = GpuMesh(programs, texture, rest=mesh.vertices, triangles=mesh.triangles)
                 owned.callback(gpu_mesh.release)
-                self._positions.append(PositionBuffer(context, len(mesh.vertices)))
-                drawn.append(PosedMesh(gpu_mesh, self._positions[-1]))
-                owned.callback(drawn[-1].release)
-            self._scene = Scene(background=Background(colour=_colour(plan)), meshes=tuple(drawn))
+                self._drawn.append(DrawnMesh(gpu_mesh, by_shader=False))
+                owned.callback(self._drawn[-1].release)
             self._owned = owned.pop_all()
 
     def pose(self, frame: float) -> PosedFrame:
@@ -105,14 +101,17 @@ class Painter:
             If the motion fails there.
         """
         try:
-            positions = tuple(poses.positions(frame) for poses in self._poses)
+            vertices = tuple(
+                Placed(positions=poses.positions(frame), triangles=mesh.triangles)
+                for poses, mesh in zip(self._poses, self._meshes, strict=True)
+            )
         except EXPECTED_ERRORS as error:
             raise LissomError(f"frame {frame:g} cannot be drawn: {error}") from error
-        box = box_around(np.concatenate(positions))
+        box = box_around(np.concatenate([placed.positions for placed in vertices]))
         if not np.isfinite(box).all():
             raise LissomError(f"frame {frame:g} cannot be drawn: its points are not all finite")
         self._reach = self._reach.joined(box)
-        return PosedFrame(frame, positions)
+        return PosedFrame(frame, vertices)
 
     def draw(self, posed: PosedFrame) -> Bytes:
         """Return the picture of a posed frame, uint8 (h, w, 4) with straight alpha.
@@ -123,9 +122,10 @@ class Painter:
             If the frame cannot be drawn.
         """
         try:
-            for buffer, positions in zip(self._positions, posed.positions, strict=True):
-                buffer.write(singles(positions))
-            self._renderer.draw(self._target, self._view, self._scene)
+            drawn = zip(self._drawn, posed.vertices, strict=True)
+            meshes = tuple(mesh.pose(vertices) for mesh, vertices in drawn)
+            scene = Scene(background=self._background, meshes=meshes)
+            self._renderer.draw(self._target, self._view, scene)
             pixels = self._target.read_straight_rgba()
         except (*EXPECTED_ERRORS, GlError) as error:
             raise LissomError(f"frame {posed.frame:g} cannot be drawn: {error}") from error

@@ -11,7 +11,7 @@ from app.motion.posable_mesh import PosableMesh
 from app.motion.prepared import Motion, prepare_motion
 from app.motion.series_queue import Build, next_build, with_series
 from app.motion.shown_frame import Shown, show
-from app.motion.vertices import Streamed, Vertices
+from app.motion.vertices import Placed, Streamed, Vertices
 
 __all__ = [
     "Animation",
@@ -19,6 +19,7 @@ __all__ = [
     "Build",
     "Extent",
     "Motion",
+    "Placed",
     "PosableMesh",
     "PoseSampler",
     "Shown",

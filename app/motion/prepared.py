@@ -64,15 +64,16 @@ class Motion:
     def vertices(self, clip: Clip, frame: float) -> Vertices | None:
         """Return where the vertices are at a frame; None where that is not prepared."""
         moment = time_of(clip, frame)
-        resting = resting_pose(clip, moment)
+        resting, triangles = resting_pose(clip, moment), self.mesh.domain.mesh.triangles
         if resting is not None:
-            return Placed(positions=self.mesh.posed(resting))
+            return Placed(positions=self.mesh.posed(resting), triangles=triangles)
         prepared = self._prepared(clip, moment.interval)
         if prepared is None:
             return None
         if prepared.series is not None:
-            return Streamed(prepared.series, prepared.distortions, moment.weight)
-        return Placed(positions=prepared.inbetweens.frame(moment.weights).positions)
+            return Streamed(prepared.series, prepared.distortions, moment.weight, triangles)
+        positions = prepared.inbetweens.frame(moment.weights).positions
+        return Placed(positions=positions, triangles=triangles)
 
     def positions(self, clip: Clip, frame: float) -> Complexes | None:
         """Return where the vertices are at a frame, worked out; None where that is not prepared."""

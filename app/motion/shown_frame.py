@@ -91,7 +91,9 @@ def show(
         if earlier is not None and _is_same(earlier, clip, frame, pose, mesh):
             return earlier if earlier.frame == frame else replace(earlier, frame=frame)
         if pose is not None:
-            vertices: Vertices | None = Placed(positions=mesh.posed(pose))
+            vertices: Vertices | None = Placed(
+                positions=mesh.posed(pose), triangles=mesh.domain.mesh.triangles
+            )
         else:
             vertices = motion.vertices(clip, frame)
         if vertices is not None:

@@ -1,19 +1,27 @@
-"""Where the vertices of a figure are in a frame: known, or as a series in time tells."""
+"""Where the vertices of a figure are in a frame, known or by a series, and what lies over what."""
 
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
-from engine.arrays import Complexes
+from engine.arrays import Complexes, Integers
 from engine.streaming import Series
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Placed:
-    """Vertices whose positions, complex128 (v,), are worked out already."""
+    """Vertices whose positions are worked out already.
+
+    Parameters
+    ----------
+    positions : complex128, shape (v,)
+    triangles : int32, shape (m, 3)
+        Of the mesh, in the order in which they are painted: where they overlap, the last is seen.
+    """
 
     positions: Complexes
+    triangles: Integers
 
 
 class Streamed:
@@ -27,12 +35,17 @@ class Streamed:
         Of f_z and f_z̄, where they are wanted.
     time : float
         In [0, 1].
+    triangles : int32, shape (m, 3)
+        In the order in which they are painted.
     """
 
-    def __init__(self, series: Series, distortions: Series | None, time: float) -> None:
+    def __init__(
+        self, series: Series, distortions: Series | None, time: float, triangles: Integers
+    ) -> None:
         self.series = series
         self.distortions = distortions
         self.time = time
+        self.triangles = triangles
 
     @cached_property
     def positions(self) -> Complexes:

@@ -29,7 +29,7 @@ class DrawnMesh:
         self._current: tuple[Vertices, PosedMesh] | None = None
 
     def pose(self, vertices: Vertices) -> PosedMesh:
-        """Return the mesh with its vertices there; they are uploaded if they are others now."""
+        """Return the mesh with its vertices there and painted in their order; new ones go up."""
         if self._current is None or self._current[0] is not vertices:
             self._current = vertices, self._placed(vertices)
         return self._current[1]
@@ -41,6 +41,11 @@ class DrawnMesh:
             self._series_pose.release()
 
     def _placed(self, vertices: Vertices) -> PosedMesh:
+        posed = self._positioned(vertices)
+        posed.paint_in_order(vertices.triangles)
+        return posed
+
+    def _positioned(self, vertices: Vertices) -> PosedMesh:
         if isinstance(vertices, Streamed) and self._by_shader and _fits(vertices.series):
             if self._series is None or self._series_pose is None:
                 self._series = SeriesBuffer(self._context, self._mesh.count, MOST_ROWS)

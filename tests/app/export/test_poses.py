@@ -39,7 +39,7 @@ def test_a_fitted_export_works_every_frame_out_once(gl, tmp_path):
     # What is kept is as fine as what is uploaded.
     direct = [animation.positions(time) for time in plan.times]
     for frame, positions in zip(posed, direct, strict=True):
-        assert_array_equal(frame.positions[0], positions.astype(np.complex64))
+        assert_array_equal(frame.vertices[0].positions, positions.astype(np.complex64))
     painter.release()
 
 

@@ -143,18 +143,24 @@ def test_a_mesh_shows_what_it_was_given_last(easel, by_shader):
     mesh, rest = blob_mesh(easel)
     series, long = bending(rest), bending(rest * 0.8, rows=MOST_ROWS + 3)
     drawn = DrawnMesh(mesh, by_shader=by_shader)
+    order, back = mesh.triangles, mesh.triangles[::-1].copy()
+    folded = 2 * np.abs(rest.real - WIDTH / 2) + 1j * rest.imag
     for vertices in (
-        Placed(positions=rest),
-        Streamed(series, None, 0.3),
-        Streamed(series, None, 0.9),
-        Placed(positions=0.5 * rest),
-        Streamed(long, None, 0.2),
-        Streamed(series, None, 0.1),
+        Placed(positions=folded, triangles=order),
+        Placed(positions=folded, triangles=back),
+        Placed(positions=rest, triangles=order),
+        Streamed(series, None, 0.3, order),
+        Streamed(series, None, 0.9, order),
+        Placed(positions=0.5 * rest, triangles=order),
+        Streamed(long, None, 0.2, order),
+        Streamed(series, None, 0.1, order),
     ):
         pose = drawn.pose(vertices)
         assert drawn.pose(vertices) is pose
         frame = easel.frame(VIEW, Scene(meshes=(pose,))).astype(int)
-        expected = easel.frame(VIEW, Scene(meshes=(easel.pose(mesh, vertices.positions),)))
+        wanted = easel.pose(mesh, vertices.positions)
+        wanted.paint_in_order(vertices.triangles)
+        expected = easel.frame(VIEW, Scene(meshes=(wanted,)))
         assert (np.abs(frame - expected).max(axis=2) > 2).mean() < 2e-3
     drawn.release()
 
