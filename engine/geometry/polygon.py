@@ -1,4 +1,10 @@
-"""Geometry of closed polygons given by their vertices (n,), the last one joined to the first."""
+"""Geometry of closed polygons given by their vertices (n,), the last one joined to the first.
+
+The holes of a region are polygons within its outline that run clockwise, so that the region lies on
+the left of all its loops.
+"""
+
+from collections.abc import Sequence
 
 import numpy as np
 import shapely
@@ -11,6 +17,11 @@ from engine.geometry.segments import Pieces, bisect, distance_to_segments
 def edges(polygon: Complexes) -> Complexes:
     """Return the edge vectors (n,): entry j leads from vertex j to vertex j + 1."""
     return np.roll(polygon, -1) - polygon
+
+
+def loop_ends(loops: Sequence[Complexes]) -> Complexes:
+    """Return where the edges of several polygons end (n,), one polygon after the other."""
+    return np.concatenate([np.roll(loop, -1) for loop in loops])
 
 
 def signed_area(polygon: Complexes) -> float:
@@ -42,42 +53,70 @@ def is_simple(polygon: Complexes) -> bool:
     return len(polygon) >= 3 and bool(shapely.LinearRing(as_xy(polygon)).is_simple)
 
 
-def require_simple(polygon: Complexes, name: str) -> None:
-    """Raise `EngineError` unless the polygon is simple, has an area and runs counter-clockwise."""
+def require_simple(polygon: Complexes, name: str, *, clockwise: bool = False) -> None:
+    """Raise `EngineError` unless the polygon is simple, has an area and runs the right way."""
     if len(polygon) < 3:
         raise EngineError(f"The {name} needs at least 3 vertices, not {len(polygon)}.")
     if np.any(edges(polygon) == 0):
         raise EngineError(f"The {name} repeats a vertex; give each vertex once.")
     if not is_simple(polygon):
         raise EngineError(f"The {name} crosses or touches itself; it must be a simple polygon.")
-    if signed_area(polygon) <= 0:
-        raise EngineError(f"The {name} runs clockwise; give its vertices counter-clockwise.")
+    ways = ("counter-clockwise", "clockwise")
+    if clockwise == (signed_area(polygon) > 0):
+        raise EngineError(
+            f"The {name} runs {ways[not clockwise]}; give its vertices {ways[clockwise]}."
+        )
 
 
-def distance_to_boundary(polygon: Complexes, points: Complexes) -> Floats:
-    """Return the distance (p,) of each point from the closed polyline."""
-    ring = shapely.LinearRing(as_xy(polygon))
-    shapely.prepare(ring)
-    distances: Floats = shapely.distance(ring, shapely.points(as_xy(points)))
+def require_holes(holes: Sequence[Complexes], outline: Complexes) -> None:
+    """Raise `EngineError` unless the holes are simple, clockwise, inside the outline and apart."""
+    for number, hole in enumerate(holes):
+        require_simple(hole, f"outline of hole {number}", clockwise=True)
+        room = _area(outline, holes[:number])
+        if not shapely.contains_properly(room, _area(hole)):
+            raise EngineError(
+                f"Hole {number} leaves the outline, or meets another hole; holes lie apart inside."
+            )
+
+
+def _area(polygon: Complexes, holes: Sequence[Complexes] = ()) -> shapely.Polygon:
+    return shapely.Polygon(as_xy(polygon), [as_xy(hole) for hole in holes])
+
+
+def distance_to_boundary(
+    polygon: Complexes, points: Complexes, holes: Sequence[Complexes] = ()
+) -> Floats:
+    """Return the distance (p,) of each point from the closed polyline, or from that of a hole."""
+    rings = shapely.MultiLineString([shapely.LinearRing(as_xy(loop)) for loop in (polygon, *holes)])
+    shapely.prepare(rings)
+    distances: Floats = shapely.distance(rings, shapely.points(as_xy(points)))
     return distances
 
 
-def deepest_point(polygon: Complexes) -> complex:
-    """Return the point inside the polygon that is farthest from it, to 1e-4 of its box diagonal."""
+def deepest_point(polygon: Complexes, holes: Sequence[Complexes] = ()) -> complex:
+    """Return the point inside that is farthest from the boundary, to 1e-4 of the box diagonal."""
     radius = shapely.maximum_inscribed_circle(
-        shapely.Polygon(as_xy(polygon)), tolerance=1e-4 * box_diagonal(polygon)
+        _area(polygon, holes), tolerance=1e-4 * box_diagonal(polygon)
     )
     x, y = shapely.get_coordinates(radius)[0]
     return complex(x, y)
 
 
-def contains(polygon: Complexes, points: Complexes, *, tolerance: float = 0.0) -> Booleans:
-    """Tell for each point whether it lies in the closed polygon or within `tolerance` of it.
+def contains(
+    polygon: Complexes,
+    points: Complexes,
+    *,
+    holes: Sequence[Complexes] = (),
+    tolerance: float = 0.0,
+) -> Booleans:
+    """Tell for each point whether it lies in the closed region or within `tolerance` of it.
 
     Parameters
     ----------
     polygon : complex128, shape (n,)
     points : complex128, shape (p,)
+    holes : sequence of complex128
+        Polygons whose inside does not belong to the region.
     tolerance : float
         Distance, in the units of the points, by which a point may lie outside.
 
@@ -85,19 +124,24 @@ def contains(polygon: Complexes, points: Complexes, *, tolerance: float = 0.0) -
     -------
     bool, shape (p,)
     """
-    area = shapely.Polygon(as_xy(polygon))
+    area = _area(polygon, holes)
     shapely.prepare(area)
     inside = np.asarray(shapely.intersects_xy(area, points.real, points.imag), dtype=np.bool_)
     if tolerance > 0 and not inside.all():
         outside = np.flatnonzero(~inside)
-        inside[outside] = distance_to_boundary(polygon, points[outside]) <= tolerance
+        inside[outside] = distance_to_boundary(polygon, points[outside], holes) <= tolerance
     return inside
 
 
 def require_inside(
-    outline: Complexes, points: Complexes, name: str, *, tolerance: float = 0.0
+    outline: Complexes,
+    points: Complexes,
+    name: str,
+    *,
+    holes: Sequence[Complexes] = (),
+    tolerance: float = 0.0,
 ) -> None:
-    """Raise `EngineError` unless all points lie in the closed polygon, or that near to it.
+    """Raise `EngineError` unless all points lie in the closed region, or that near to it.
 
     Parameters
     ----------
@@ -105,10 +149,10 @@ def require_inside(
     points : complex128, shape (p,)
     name : str
         What one of the points is called in the error.
-    tolerance : float
+    holes, tolerance : sequence of complex128, float
         As in `contains`.
     """
-    outside = np.flatnonzero(~contains(outline, points, tolerance=tolerance))
+    outside = np.flatnonzero(~contains(outline, points, holes=holes, tolerance=tolerance))
     if len(outside):
         number = f" {outside[0]}" if len(points) > 1 else ""
         count = f" ({len(outside)} of {len(points)} are)" if len(outside) > 1 else ""
@@ -144,20 +188,27 @@ def winding(polygon: Complexes, point: complex) -> int:
     return round(float(np.angle(np.roll(spokes, -1) / spokes).sum() / (2 * np.pi)))
 
 
-def constrained_delaunay(polygon: Complexes) -> Indices:
+def constrained_delaunay(polygon: Complexes, holes: Sequence[Complexes] = ()) -> Indices:
     """Cut the inside of a simple polygon into triangles without further points.
+
+    Parameters
+    ----------
+    polygon : complex128, shape (n,)
+    holes : sequence of complex128
+        Simple polygons inside and apart, with h vertices in all, which are left out.
 
     Returns
     -------
-    intp, shape (n - 2, 3)
-        The vertices of each triangle, counter-clockwise: the constrained Delaunay triangulation.
+    intp, shape (n + h + 2 len(holes) - 2, 3)
+        The vertices of each triangle, counter-clockwise, those of the holes numbered after the
+        polygon's: the constrained Delaunay triangulation.
     """
-    inside = shapely.Polygon(as_xy(polygon))
-    parts = shapely.get_parts(shapely.constrained_delaunay_triangles(inside))
+    parts = shapely.get_parts(shapely.constrained_delaunay_triangles(_area(polygon, holes)))
     corners = shapely.get_coordinates(parts).reshape(-1, 4, 2)[:, :3] @ [1, 1j]
-    by_place = np.argsort(polygon)
-    triangles: Indices = by_place[np.searchsorted(polygon[by_place], corners)]
-    a, b, c = polygon[triangles].T
+    vertices = np.concatenate([polygon, *holes])
+    by_place = np.argsort(vertices)
+    triangles: Indices = by_place[np.searchsorted(vertices[by_place], corners)]
+    a, b, c = vertices[triangles].T
     clockwise = ((b - a).conj() * (c - a)).imag < 0
     triangles[clockwise] = triangles[clockwise][:, ::-1]
     return triangles

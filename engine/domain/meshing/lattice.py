@@ -1,11 +1,12 @@
-"""The lattice of equilateral triangles inside a polygon."""
+"""The lattice of equilateral triangles inside polygons."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from engine.arrays import Booleans, Complexes, Floats, Indices
-from engine.geometry import edges
+from engine.geometry import loop_ends
 
 ROW_HEIGHT = 3.0**0.5 / 2
 """Distance between neighbouring rows over the spacing of the points in a row."""
@@ -36,19 +37,21 @@ class Lattice:
         )
 
 
-def lattice_inside(polygon: Complexes, spacing: float) -> Lattice:
-    """Fill a simple polygon with the points of a lattice, row by row (scan conversion).
+def lattice_inside(loops: Sequence[Complexes], spacing: float) -> Lattice:
+    """Fill a region with the points of a lattice, row by row (scan conversion).
 
     Points within rounding of the boundary may fall on either side.
 
     Parameters
     ----------
-    polygon : complex128, shape (n,)
+    loops : sequence of complex128
+        A simple polygon, and those of its holes.
     spacing : float
         Distance between neighbouring points.
     """
-    origin = complex(polygon.real.min(), polygon.imag.min())
-    row, x = _crossings(polygon, origin.imag, spacing)
+    starts, ends = np.concatenate(loops), loop_ends(loops)
+    origin = complex(starts.real.min(), starts.imag.min())
+    row, x = _crossings(starts, ends, origin.imag, spacing)
     row, left, right = row[0::2], x[0::2], x[1::2]
     shift = origin.real + 0.5 * spacing * (row % 2)
     first = np.ceil((left - shift) / spacing).astype(np.intp)
@@ -83,22 +86,24 @@ def lattice_triangles(lattice: Lattice) -> Indices:
     )
 
 
-def _crossings(polygon: Complexes, bottom: float, spacing: float) -> tuple[Indices, Floats]:
-    """Return row and x of each crossing of the boundary with a row, in order.
+def _crossings(
+    starts: Complexes, ends: Complexes, bottom: float, spacing: float
+) -> tuple[Indices, Floats]:
+    """Return row and x of each crossing of the boundary's edges with a row, in order.
 
     An edge owns its lower end and not its upper one, so that every row is crossed an even number
     of times.
     """
     height = ROW_HEIGHT * spacing
-    along = edges(polygon)
-    level = (polygon.imag - bottom) / height - 0.5
-    next_level = np.roll(level, -1)
+    along = ends - starts
+    level = (starts.imag - bottom) / height - 0.5
+    next_level = (ends.imag - bottom) / height - 0.5
     lowest = np.ceil(np.minimum(level, next_level)).astype(np.intp)
     highest = np.ceil(np.maximum(level, next_level)).astype(np.intp)
     edge, place = _runs(highest - lowest)
     row = lowest[edge] + place
     fraction = (row - level[edge]) / (next_level[edge] - level[edge])
-    x = polygon.real[edge] + fraction * along.real[edge]
+    x = starts.real[edge] + fraction * along.real[edge]
     order = np.lexsort((x, row))
     return row[order], x[order]
 

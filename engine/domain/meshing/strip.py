@@ -1,5 +1,6 @@
-"""The strip between the outline and a lattice inside it: constrained Delaunay triangulation."""
+"""The strip between the boundary and a lattice inside it: constrained Delaunay triangulation."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -9,52 +10,61 @@ from scipy.sparse.csgraph import connected_components
 
 from engine.arrays import Booleans, Complexes, Indices
 from engine.domain.meshing.half_edges import OUTLINE, HalfEdgeMesh, disjoint
-from engine.geometry import as_xy, constrained_delaunay, edges
+from engine.geometry import as_xy, constrained_delaunay, loop_ends
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Ring:
-    """The outline with the points that cut its edges into pieces.
+class Rings:
+    """The loops of a boundary with the points that cut their edges into pieces.
 
     Parameters
     ----------
     points : complex128, shape (r,)
-        First the p vertices of the outline, then the cuts.
+        First the vertices of all loops, then the cuts.
     order : intp, shape (r,)
-        The points' indices in the order along the outline.
+        The points' indices in the order along the loops, one loop after the other.
+    size : intp, shape (r,)
+        For each place in that order, how many points its loop has.
     """
 
     points: Complexes
     order: Indices
+    size: Indices
 
 
-def cut_edges(outline: Complexes, spacing: float) -> Ring:
-    """Cut each edge of a polygon into equal pieces about as long as the spacing."""
-    along = edges(outline)
+def cut_edges(loops: Sequence[Complexes], spacing: float) -> Rings:
+    """Cut each edge of some polygons into equal pieces about as long as the spacing."""
+    starts = np.concatenate(loops)
+    along = loop_ends(loops) - starts
     pieces = np.maximum(np.round(np.abs(along) / spacing), 1).astype(np.intp)
-    edge = np.repeat(np.arange(len(outline)), pieces)
+    edge = np.repeat(np.arange(len(starts)), pieces)
     place = np.arange(len(edge)) - (np.cumsum(pieces) - pieces)[edge]
-    points = outline[edge] + place / pieces[edge] * along[edge]
-    # Vertices of the outline go first.
+    points = starts[edge] + place / pieces[edge] * along[edge]
+    # Vertices of the loops go first.
     rank = np.argsort(place > 0, kind="stable")
-    return Ring(points=points[rank], order=np.argsort(rank))
+    sizes = np.add.reduceat(pieces, np.cumsum([0, *map(len, loops[:-1])]))
+    return Rings(
+        points=points[rank],
+        order=np.argsort(rank),
+        size=np.repeat(sizes, sizes),
+    )
 
 
 def triangulate_strip(
-    outline: Complexes, ring: Ring, lattice: HalfEdgeMesh, loose: Indices
+    loops: Sequence[Complexes], rings: Rings, lattice: HalfEdgeMesh, loose: Indices
 ) -> Indices:
-    """Triangulate the region between the ring and a part of a lattice inside.
+    """Triangulate the region between the rings and a part of a lattice inside.
 
     Parameters
     ----------
-    outline : complex128, shape (p,)
-        Simple, counter-clockwise.
-    ring : Ring
-        Of that outline.
+    loops : sequence of complex128
+        A simple polygon, counter-clockwise, and those of its holes, clockwise.
+    rings : Rings
+        Of those loops.
     lattice : HalfEdgeMesh
         Unit triangles, among them all that have an edge to the strip; the edges that have not, but
-        no neighbour either, are marked as `SEAM`. Its points begin with the ring's, and no point
-        of the outline is within the circumcircle of a triangle.
+        no neighbour either, are marked as `SEAM`. Its points begin with the rings', and no
+        point of a loop is within the circumcircle of a triangle.
     loose : intp, shape (s,)
         Points of the lattice that no unit triangle uses.
 
@@ -63,27 +73,26 @@ def triangulate_strip(
     intp, shape (m, 3)
         Counter-clockwise triangles on the points of the lattice.
     """
-    mesh = HalfEdgeMesh(lattice.points, constrained_delaunay(outline))
-    _cut_border(mesh, ring)
+    mesh = HalfEdgeMesh(lattice.points, constrained_delaunay(loops[0], loops[1:]))
+    _cut_border(mesh, rings)
     rim = np.flatnonzero(lattice.twins == OUTLINE)
     _insert_all(mesh, np.concatenate([np.unique(lattice.origins[rim]), loose]))
     return mesh.triangles[~_enclosed(mesh, *lattice.ends(rim))]
 
 
-def _cut_border(mesh: HalfEdgeMesh, ring: Ring) -> None:
-    """Split the border of a Delaunay mesh of the outline at all cuts of the ring."""
-    size = len(ring.order)
-    position = np.argsort(ring.order)
+def _cut_border(mesh: HalfEdgeMesh, rings: Rings) -> None:
+    """Split the border of a Delaunay mesh of the loops at all cuts of the rings."""
+    position = np.argsort(rings.order)
     while True:
         border = np.flatnonzero(mesh.twins < 0)
         start, end = mesh.ends(border)
-        first = position[start]
-        steps = (position[end] - first) % size
-        border, middle = border[steps > 1], (first + steps // 2)[steps > 1]
+        place = position[start]
+        steps = (position[end] - place) % rings.size[place]
+        border, middle = border[steps > 1], (place + steps // 2)[steps > 1]
         if not len(border):
             return
         chosen = disjoint(border // 3, among=mesh.count)
-        around = mesh.split_border(ring.order[middle[chosen]], border[chosen])
+        around = mesh.split_border(rings.order[middle[chosen]], border[chosen])
         mesh.restore_delaunay(around)
 
 

@@ -1,9 +1,11 @@
-"""Near-equilateral triangulation of a simple polygon (Section 7: the domain of the maps).
+"""Near-equilateral triangulation of a polygon with holes (Section 7: the domain of the maps).
 
 Almost all of the inside is covered by the lattice of equilateral triangles, which needs no search.
 Only the band between lattice and outline is triangulated (constrained Delaunay), refined where the
 outline asks for smaller triangles, and smoothed.
 """
+
+from collections.abc import Sequence
 
 import numpy as np
 from scipy.spatial import cKDTree
@@ -16,7 +18,7 @@ from engine.domain.meshing.refinement import SHORTEST_EDGE, refine
 from engine.domain.meshing.smoothing import smooth_mesh
 from engine.domain.meshing.strip import cut_edges, triangulate_strip
 from engine.errors import EngineError
-from engine.geometry import as_xy, box_diagonal, edges, require_simple, signed_area
+from engine.geometry import as_xy, box_diagonal, edges, require_holes, require_simple, signed_area
 
 CLEARANCE = 0.6
 """Least distance of a lattice point from the outline, in spacings.
@@ -43,7 +45,7 @@ MOST_TRIALS = 10
 """Spacings that are tried for the right number of triangles."""
 
 
-def triangulate(outline: Complexes, count: int) -> Mesh:
+def triangulate(outline: Complexes, count: int, *, holes: Sequence[Complexes] = ()) -> Mesh:
     """Triangulate the inside of a polygon with triangles as equilateral as its shape allows.
 
     Parameters
@@ -53,6 +55,9 @@ def triangulate(outline: Complexes, count: int) -> Mesh:
     count : int
         How many triangles to aim at. They are met within a few percent unless the outline's own
         detail enforces more.
+    holes : sequence of complex128
+        Simple polygons inside the outline, clockwise and apart, that are left out. Their vertices
+        follow the outline's.
 
     Returns
     -------
@@ -63,7 +68,8 @@ def triangulate(outline: Complexes, count: int) -> Mesh:
     Raises
     ------
     EngineError
-        If the outline is not simple, runs clockwise, or has an edge below 1e-6 of its size.
+        If the outline is not simple, runs clockwise, or has an edge below 1e-6 of its size; if a
+        hole is not as said.
 
     Notes
     -----
@@ -72,7 +78,9 @@ def triangulate(outline: Complexes, count: int) -> Mesh:
     in an ordinary drawing's outline, 52° to 57° for 1,000.
     """
     require_simple(outline, "outline")
-    shortest = float(np.abs(edges(outline)).min())
+    require_holes(holes, outline)
+    loops = (outline, *holes)
+    shortest = min(float(np.abs(edges(loop)).min()) for loop in loops)
     if shortest < SHORTEST_EDGE * box_diagonal(outline):
         raise EngineError(
             f"The outline has an edge of length {shortest:.3g}, which is too short for its size of "
@@ -81,17 +89,18 @@ def triangulate(outline: Complexes, count: int) -> Mesh:
     centre = outline[0]
     # A power of two, so that scaling rounds nothing.
     scale = float(np.exp2(np.ceil(np.log2(box_diagonal(outline)))))
-    mesh = _fill_to_count((outline - centre) / scale, count)
+    mesh = _fill_to_count([(loop - centre) / scale for loop in loops], count)
     vertices = mesh.vertices * scale + centre
-    vertices[: len(outline)] = outline
+    corners = np.concatenate(loops)
+    vertices[: len(corners)] = corners
     return Mesh(vertices=vertices, triangles=mesh.triangles)
 
 
-def _fill_to_count(outline: Complexes, count: int) -> Mesh:
+def _fill_to_count(loops: Sequence[Complexes], count: int) -> Mesh:
     """Triangulate with about so many triangles, if need be with somewhat smaller angles."""
-    best = _search_spacing(outline, count, SMALLEST_ANGLE)
+    best = _search_spacing(loops, count, SMALLEST_ANGLE)
     if not _is_close(best, count):
-        relaxed = _search_spacing(outline, count, RELAXED_ANGLE)
+        relaxed = _search_spacing(loops, count, RELAXED_ANGLE)
         if _is_close(relaxed, count):
             return relaxed
     return best
@@ -102,17 +111,17 @@ def _is_close(mesh: Mesh, count: int) -> bool:
     return abs(len(mesh.triangles) - count) <= CLOSE_ENOUGH * count
 
 
-def _search_spacing(outline: Complexes, count: int, smallest: float) -> Mesh:
+def _search_spacing(loops: Sequence[Complexes], count: int, smallest: float) -> Mesh:
     """Triangulate with the spacing that brings the number of triangles nearest to what is wanted.
 
     The number is about linear in x = 1/spacing²: the area over that of a unit triangle, plus what
     the outline's detail costs. It jumps where a limb gets room for another row, so that steps are
     kept between the x that gave too few and those that gave too many.
     """
-    slope = signed_area(outline) * 4 / np.sqrt(3)
+    slope = sum(map(signed_area, loops)) * 4 / np.sqrt(3)
     x = count / slope
     too_small, too_large = 0.0, np.inf
-    best = mesh = _fill(outline, x**-0.5, smallest)
+    best = mesh = _fill(loops, x**-0.5, smallest)
     for _ in range(MOST_TRIALS - 1):
         if _is_close(best, count):
             break
@@ -121,42 +130,42 @@ def _search_spacing(outline: Complexes, count: int, smallest: float) -> Mesh:
         x -= excess / slope
         if not too_small < x < too_large:
             x = too_large / 3 if too_small == 0 else float(np.sqrt(too_small * too_large))
-        mesh = _fill(outline, x**-0.5, smallest)
+        mesh = _fill(loops, x**-0.5, smallest)
         if abs(len(mesh.triangles) - count) < abs(len(best.triangles) - count):
             best = mesh
     return best
 
 
-def _fill(outline: Complexes, spacing: float, smallest: float) -> Mesh:
-    """Triangulate the inside of a polygon of size 1 with edges about as long as the spacing."""
-    ring = cut_edges(outline, spacing)
-    lattice = lattice_inside(outline, spacing)
-    depth = _depth(outline, lattice.points, spacing)
+def _fill(loops: Sequence[Complexes], spacing: float, smallest: float) -> Mesh:
+    """Triangulate a region of size 1 with edges about as long as the spacing."""
+    rings = cut_edges(loops, spacing)
+    lattice = lattice_inside(loops, spacing)
+    depth = _depth(loops, lattice.points, spacing)
     lattice, depth = lattice.select(depth > CLEARANCE), depth[depth > CLEARANCE]
 
-    # Vertices are numbered: ring, lattice, points inserted later.
-    points = np.concatenate([ring.points, lattice.points])
-    deep = np.concatenate([np.zeros(len(ring.points), dtype=np.bool_), depth > BAND])
-    units = lattice_triangles(lattice) + len(ring.points)
+    # Vertices are numbered: rings, lattice, points inserted later.
+    points = np.concatenate([rings.points, lattice.points])
+    deep = np.concatenate([np.zeros(len(rings.points), dtype=np.bool_), depth > BAND])
+    units = lattice_triangles(lattice) + len(rings.points)
     core = deep[units].all(axis=1)
     loose = np.ones(len(points), dtype=np.bool_)
-    loose[: len(ring.points)] = False
+    loose[: len(rings.points)] = False
     loose[units] = False
 
     shallow = HalfEdgeMesh(points, units[~core])
     _mark_seam(shallow, deep)
-    strip = triangulate_strip(outline, ring, shallow, np.flatnonzero(loose))
+    strip = triangulate_strip(loops, rings, shallow, np.flatnonzero(loose))
     band = HalfEdgeMesh(points, np.concatenate([strip, units[~core]]))
     _mark_seam(band, deep)
     refine(band, smallest)
-    smooth_mesh(band, len(outline), SWEEPS)
+    smooth_mesh(band, sum(map(len, loops)), SWEEPS)
     return _compact(band.points, np.concatenate([band.triangles, units[core]]))
 
 
-def _depth(outline: Complexes, points: Complexes, spacing: float) -> Floats:
-    """Return the distance of points from the outline in spacings, infinite below the band."""
+def _depth(loops: Sequence[Complexes], points: Complexes, spacing: float) -> Floats:
+    """Return the distance of points from the loops in spacings, infinite below the band."""
     # So dense that the distance from the samples is at most 2 % too large at the clearance.
-    samples = cut_edges(outline, spacing / 6).points
+    samples = cut_edges(loops, spacing / 6).points
     tree = cKDTree(as_xy(samples))
     distance, _ = tree.query(as_xy(points), distance_upper_bound=(BAND + 0.1) * spacing)
     return np.asarray(distance / spacing)

@@ -8,6 +8,8 @@ from engine.arrays import Complexes
 from engine.errors import EngineError
 from engine.geometry import (
     constrained_delaunay,
+    contains,
+    deepest_point,
     distance_to_boundary,
     distance_to_segments,
     require_around,
@@ -103,3 +105,31 @@ def test_the_first_point_outside_is_named() -> None:
     with pytest.raises(EngineError, match=r"The anchor at \(2, -2\) is outside the outline; place"):
         require_inside(outline, points[3:], "anchor")
     require_inside(outline, points, "point", tolerance=2.0)
+
+
+RING = regular_polygon(80)
+HOLES = (0.5 * RING[::-1],)
+
+
+def test_a_hole_is_outside_and_its_edge_is_boundary() -> None:
+    points = np.array([0, 0.45, 0.5, 0.75, 1.2])
+    assert contains(RING, points, holes=HOLES).tolist() == [False, False, True, True, False]
+    assert contains(RING, points, holes=HOLES, tolerance=0.06).tolist()[:2] == [False, True]
+    assert_allclose(
+        distance_to_boundary(RING, points, HOLES), [0.4996, 0.05, 0, 0.25, 0.2], rtol=0, atol=1e-3
+    )
+    with pytest.raises(EngineError, match=r"point 0 at \(0, 0\) is outside"):
+        require_inside(RING, points[:4], "point", holes=HOLES)
+
+
+def test_the_deepest_point_of_a_ring_is_between_its_edges() -> None:
+    assert_allclose(abs(deepest_point(RING, HOLES)), 0.75, rtol=0, atol=2e-3)
+
+
+def test_constrained_delaunay_leaves_holes_out() -> None:
+    triangles = constrained_delaunay(RING, HOLES)
+    assert triangles.shape == (160, 3)
+    a, b, c = np.concatenate([RING, *HOLES])[triangles].T
+    areas = ((b - a).conj() * (c - a)).imag / 2
+    assert areas.min() > 0
+    assert_allclose(areas.sum(), signed_area(RING) + signed_area(HOLES[0]), rtol=1e-12, atol=0)

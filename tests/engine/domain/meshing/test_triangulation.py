@@ -9,7 +9,7 @@ from engine.arrays import Complexes, Floats
 from engine.domain.meshing.mesh import Mesh
 from engine.domain.meshing.triangulation import triangulate
 from engine.errors import EngineError
-from engine.geometry.polygon import as_xy, box_diagonal, edges, is_simple, signed_area
+from engine.geometry.polygon import as_xy, box_diagonal, contains, edges, is_simple, signed_area
 
 
 def subdivided(corners: list[complex], pieces: int) -> Complexes:
@@ -123,13 +123,14 @@ def interior_angles(outline: Complexes) -> Floats:
     return np.degrees(np.angle(-np.roll(along, 1) / along)) % 360
 
 
-def assert_conforming(outline: Complexes, mesh: Mesh) -> None:
-    """Check everything that is promised of any mesh: a valid one, of this outline."""
+def assert_conforming(outline: Complexes, mesh: Mesh, holes: tuple[Complexes, ...] = ()) -> None:
+    """Check everything that is promised of any mesh: a valid one, of this outline and holes."""
+    loops = (outline, *holes)
     vertices, triangles = mesh.vertices, mesh.triangles.astype(np.int64)
     assert mesh.triangles.dtype == np.int32
     areas = mesh.areas()
     assert areas.min() > 0
-    np.testing.assert_allclose(areas.sum(), signed_area(outline), rtol=1e-9)
+    np.testing.assert_allclose(areas.sum(), sum(map(signed_area, loops)), rtol=1e-9)
     np.testing.assert_array_equal(np.unique(triangles), np.arange(len(vertices)))
     assert len(np.unique(vertices)) == len(vertices)
     # Each directed edge once: two triangles at an inner edge, one at a boundary edge.
@@ -139,21 +140,25 @@ def assert_conforming(outline: Complexes, mesh: Mesh) -> None:
     border = ~np.isin(start * size + end, end * size + start)
     inner = (len(start) - border.sum()) // 2
     assert len(mesh.edges()) == inner + border.sum()
-    assert size - len(mesh.edges()) + len(triangles) == 1
-    # The border is one loop through all vertices of the outline, in order and on its edges.
+    assert size - len(mesh.edges()) + len(triangles) == 1 - len(holes)
+    # The border has a loop through all vertices of each polygon, in order and on its edges.
     after = np.full(size, -1)
     after[start[border]] = end[border]
-    loop = [0]
-    while (following := int(after[loop[-1]])) != 0:
-        loop.append(following)
-    assert len(loop) == border.sum()
-    np.testing.assert_array_equal(vertices[: len(outline)], outline)
-    corner = np.flatnonzero(np.array(loop) < len(outline))
-    np.testing.assert_array_equal(np.array(loop)[corner], np.arange(len(outline)))
-    edge = np.searchsorted(corner, np.arange(len(loop)), side="right") - 1
-    offset = (vertices[loop] - outline[edge]) * edges(outline)[edge].conj()
-    height = np.abs(offset.imag / np.abs(edges(outline)[edge]))
-    assert height.max() < 1e-12 * (box_diagonal(outline) + np.abs(outline).max())
+    first, walked = 0, 0
+    for polygon in loops:
+        corners = np.arange(first, first + len(polygon))
+        np.testing.assert_array_equal(vertices[corners], polygon)
+        loop = [first]
+        while (following := int(after[loop[-1]])) != first:
+            loop.append(following)
+        corner = np.flatnonzero(np.isin(loop, corners))
+        np.testing.assert_array_equal(np.array(loop)[corner], corners)
+        edge = np.searchsorted(corner, np.arange(len(loop)), side="right") - 1
+        offset = (vertices[loop] - polygon[edge]) * edges(polygon)[edge].conj()
+        height = np.abs(offset.imag / np.abs(edges(polygon)[edge]))
+        assert height.max() < 1e-12 * (box_diagonal(outline) + np.abs(outline).max())
+        first, walked = first + len(polygon), walked + len(loop)
+    assert walked == border.sum()
 
 
 def assert_well_shaped(outline: Complexes, mesh: Mesh) -> None:
@@ -217,6 +222,60 @@ def test_place_and_scale_do_not_matter(move: complex, scale: float) -> None:
     assert_conforming(outline, mesh)
     assert_well_shaped(outline, mesh)
     assert abs(len(mesh.triangles) - 5_000) <= 250
+
+
+def hole(centre: complex, radius: float, sides: int) -> Complexes:
+    """A regular polygon, clockwise."""
+    return centre + radius * regular_polygon(sides)[::-1]
+
+
+HOLED = {
+    "ring": (regular_polygon(60), (hole(0, 0.5, 40),)),
+    "thin ring": (regular_polygon(60), (hole(0, 0.97, 50),)),
+    "off the centre": (regular_polygon(60), (hole(0.55 + 0.1j, 0.35, 24),)),
+    "pin holes": (
+        subdivided([-3 - 1j, 3 - 1j, 3 + 1j, -3 + 1j], 12),
+        (hole(-1.1, 0.28, 26), hole(0, 0.003, 12), hole(0.02, 0.004, 12), hole(1.1, 0.5, 5)),
+    ),
+    "squares": (regular_polygon(4), (0.5 * regular_polygon(4)[::-1],)),
+}
+
+
+@pytest.mark.parametrize("count", [1_000, 20_000])
+@pytest.mark.parametrize("name", HOLED)
+def test_holes_are_left_out(name: str, count: int) -> None:
+    outline, holes = HOLED[name]
+    mesh = triangulate(outline, count, holes=holes)
+    assert_conforming(outline, mesh, holes)
+    assert mesh.smallest_angles().min() > 20
+    assert abs(len(mesh.triangles) - count) <= 0.05 * count
+
+
+@settings(max_examples=15, deadline=None)
+@given(outline=star_polygons(), size=st.floats(0.01, 0.9), turn=st.floats(0, 6.3))
+def test_holes_of_any_size_in_star_shaped_polygons(
+    outline: Complexes, size: float, turn: float
+) -> None:
+    holes = (size * 0.5 * np.cos(np.pi / 5) * hole(0, 1, 9) * np.exp(1j * turn),)
+    assume(contains(outline, 1.05 * holes[0]).all())
+    mesh = triangulate(outline, 2_000, holes=holes)
+    assert_conforming(outline, mesh, holes)
+    assert mesh.smallest_angles().min() > 14
+
+
+@pytest.mark.parametrize(
+    ("holes", "message"),
+    [
+        ([0.3 * regular_polygon(5)], "runs counter-clockwise; give its vertices clockwise"),
+        ([hole(0.9, 0.3, 9)], "Hole 0 leaves the outline"),
+        ([hole(0, 0.3, 9), hole(0.3, 0.3, 9)], "Hole 1 leaves the outline, or meets another"),
+        ([hole(0, 0.3, 9), hole(0, 0.1, 9)], "meets another"),
+        ([hole(0, 0.3, 5)[[0, 2, 4, 1, 3]]], "outline of hole 0 crosses"),
+    ],
+)
+def test_holes_that_are_none_are_refused(holes: list[Complexes], message: str) -> None:
+    with pytest.raises(EngineError, match=message):
+        triangulate(regular_polygon(30), 1_000, holes=holes)
 
 
 def test_triangles_grow_away_from_short_edges() -> None:
