@@ -1,12 +1,13 @@
 """From pixels to a domain: outline, cage and triangulation (Section 7; Chen and Weber 2015)."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from engine.arrays import Bytes, Complexes, Floats
 from engine.domain.meshing import Mesh, triangulate, with_limbs_on_top
-from engine.domain.outline import Detail, enclose
+from engine.domain.outline import Detail, Hole, Holes, enclose
 from engine.domain.picture import subject_mask
 from engine.errors import EngineError
 from engine.geometry import deepest_point
@@ -26,16 +27,20 @@ class Domain:
     cage : complex128, shape (n,)
         The polygon of the Cauchy coordinates: simple, counter-clockwise, around the outline.
     mesh : Mesh
-        A triangulation of the inside of the outline.
+        A triangulation of the inside of the outline, less the holes.
+    holes : tuple of Hole
+        Whose outlines are the rest of the domain's boundary, and whose cages carry coordinates of
+        their own.
     """
 
     outline: Complexes
     cage: Complexes
     mesh: Mesh
+    holes: tuple[Hole, ...] = ()
 
 
 def build_domain(
-    rgba: Bytes, *, triangles: int, detail: Detail, tolerance: int = 18
+    rgba: Bytes, *, triangles: int, detail: Detail, tolerance: int = 18, holes: Holes = "fill"
 ) -> tuple[Domain, tuple[str, ...]]:
     """Find the subject of a picture and build its domain.
 
@@ -49,6 +54,8 @@ def build_domain(
         How closely the outline follows the subject.
     tolerance : int
         Levels by which the background of an opaque picture may vary.
+    holes : {"fill", "keep"}
+        Whether large holes of the subject stay holes.
 
     Returns
     -------
@@ -67,15 +74,21 @@ def build_domain(
             f"{MOST_TRIANGLES:,}, not {triangles:,}."
         )
     subject = subject_mask(rgba, tolerance=tolerance)
-    enclosure = enclose(subject.mask, detail=detail)
-    mesh = mesh_inside(enclosure.outline, triangles)
-    domain = Domain(outline=enclosure.outline, cage=enclosure.cage, mesh=mesh)
+    enclosure = enclose(subject.mask, detail=detail, holes=holes)
+    loops = [hole.outline for hole in enclosure.holes]
+    domain = Domain(
+        outline=enclosure.outline,
+        cage=enclosure.cage,
+        mesh=mesh_inside(enclosure.outline, triangles, holes=loops),
+        holes=enclosure.holes,
+    )
     return domain, subject.notices + enclosure.notices
 
 
-def mesh_inside(outline: Complexes, triangles: int) -> Mesh:
+def mesh_inside(outline: Complexes, triangles: int, *, holes: Sequence[Complexes] = ()) -> Mesh:
     """Triangulate the inside of an outline, in an order that paints limbs over the body."""
-    return with_limbs_on_top(triangulate(outline, triangles), deepest_point(outline))
+    mesh = triangulate(outline, triangles, holes=holes)
+    return with_limbs_on_top(mesh, deepest_point(outline, holes))
 
 
 def texture_coordinates(points: Complexes, image_size: tuple[int, int]) -> Floats:

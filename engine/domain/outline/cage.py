@@ -18,8 +18,8 @@ SHRINKING = 0.8
 MOST_ROUNDS = 60
 
 
-def offset_cage(outline: Complexes, offset: float) -> Complexes:
-    """Return the cage around an outline.
+def offset_cage(outline: Complexes, offset: float, *, hole: bool = False) -> Complexes:
+    """Return the cage around an outline, or inside that of a hole.
 
     Each vertex of the outline is moved outwards, so that the adjacent edges move by `offset`;
     less at very sharp corners, and less where the cage would meet itself.
@@ -27,15 +27,17 @@ def offset_cage(outline: Complexes, offset: float) -> Complexes:
     Parameters
     ----------
     outline : complex128, shape (n,)
-        Simple, counter-clockwise.
+        Simple, counter-clockwise, or clockwise around a hole.
     offset : float
         In the units of the outline.
+    hole : bool
+        Whether the domain lies around the outline, and the cage inside.
 
     Returns
     -------
     complex128, shape (n,)
-        Simple, counter-clockwise, strictly around the outline, nowhere closer to it than 0.03 %
-        of the diagonal of its box.
+        Simple, in the direction of the outline, strictly on its other side than the domain, nowhere
+        closer to it than 0.03 % of the diagonal of its box.
 
     Raises
     ------
@@ -43,7 +45,7 @@ def offset_cage(outline: Complexes, offset: float) -> Complexes:
         If the outline is not simple and counter-clockwise, the offset is not positive, or the
         outline comes too close to itself to leave room for a cage.
     """
-    require_simple(outline, "outline")
+    require_simple(outline, "outline", clockwise=hole)
     if not offset > 0:
         raise EngineError(f"The cage's offset must be positive, not {offset}.")
     least = LEAST_DISTANCE * box_diagonal(outline)

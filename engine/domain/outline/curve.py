@@ -25,7 +25,7 @@ def at_arc_lengths(curve: Complexes, wanted: Floats) -> Complexes:
 
 
 def outward_normals(curve: Complexes, reach: int) -> Complexes:
-    """Return the outward unit normals of a counter-clockwise curve.
+    """Return the unit normals to the right of a curve: outwards if it runs counter-clockwise.
 
     Parameters
     ----------

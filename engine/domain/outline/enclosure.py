@@ -8,11 +8,14 @@ import numpy as np
 from engine.arrays import Booleans, Complexes, readonly
 from engine.domain.outline.cage import offset_cage
 from engine.domain.outline.fitting import Candidates, fit_polygon
+from engine.domain.outline.holes import Hole, trace_hole
 from engine.domain.outline.margin import DistanceField, MarginCurve, curve_at_margin, distance_field
-from engine.domain.picture import join_parts, working_grid
+from engine.domain.picture import WholePiece, join_parts, working_grid
 from engine.errors import EngineError
+from engine.geometry import require_holes
 
 Detail = Literal["coarse", "normal", "fine"]
+Holes = Literal["fill", "keep"]
 MARGINS: dict[Detail, float] = {"coarse": 0.012, "normal": 0.006, "fine": 0.003}  # of the diagonal
 LEAST_MARGIN = 0.8  # pixels of an enlarged subject: enough to straighten staircases
 # Of the diagonal: a cage that is closer makes boundary spikes, a farther one bad conditioning.
@@ -32,7 +35,7 @@ LEAST_FUSED = 0.03  # of the subject's outline: what is told
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Enclosure:
-    """The outline of a subject, and the cage around it.
+    """The outline of a subject and the cage around it, and those of its holes.
 
     Parameters
     ----------
@@ -41,12 +44,15 @@ class Enclosure:
         the picture, y up.
     cage : complex128, shape (n,)
         Simple, counter-clockwise, strictly around the outline, one vertex for each of its own.
+    holes : tuple of Hole
+        Inside the outline and apart, the largest first.
     notices : tuple of str
         What had to be done to the subject, in words.
     """
 
     outline: Complexes
     cage: Complexes
+    holes: tuple[Hole, ...]
     notices: tuple[str, ...]
 
 
@@ -70,7 +76,7 @@ class _Fit:
     draft: _Draft
 
 
-def enclose(mask: Booleans, *, detail: Detail) -> Enclosure:
+def enclose(mask: Booleans, *, detail: Detail, holes: Holes = "fill") -> Enclosure:
     """Find the outline of a subject, and the cage around it.
 
     Parameters
@@ -80,6 +86,9 @@ def enclose(mask: Booleans, *, detail: Detail) -> Enclosure:
     detail : {"coarse", "normal", "fine"}
         How closely the outline follows: its margin is 1.2, 0.6 or 0.3 % of the diagonal of the
         subject's box, wider where it would take too many vertices, narrower between limbs.
+    holes : {"fill", "keep"}
+        Whether holes stay holes into which a disc fits that is 2.4 % of the diagonal wide: the
+        largest first, as long as all loops together have few vertices.
 
     Returns
     -------
@@ -96,11 +105,62 @@ def enclose(mask: Booleans, *, detail: Detail) -> Enclosure:
     piece = join_parts(grid.mask, grid.diagonal)
     margin = max(MARGINS[detail] * grid.diagonal, LEAST_MARGIN * max(1.0, 1 / grid.cell))
     fit = _best_fit(distance_field(piece.mask), margin, grid.diagonal)
+    kept: dict[int, Hole] = {}
+    crowded: list[int] = []
+    if holes == "keep":
+        kept, crowded = _kept_holes(piece, fit, margin, grid.diagonal)
+    filled = np.setdiff1d(np.arange(1, len(piece.hole_areas) + 1), [*kept, *crowded])
     return Enclosure(
         outline=readonly(grid.to_picture(fit.outline)),
         cage=readonly(grid.to_picture(fit.cage)),
-        notices=piece.notices + _told(fit.draft, int(np.count_nonzero(piece.mask))),
+        holes=tuple(
+            Hole(
+                outline=readonly(grid.to_picture(hole.outline)),
+                cage=readonly(grid.to_picture(hole.cage)),
+                centre=complex(grid.to_picture(np.array([hole.centre]))[0]),
+            )
+            for hole in kept.values()
+        ),
+        notices=(
+            *piece.notices,
+            *piece.told_filled(filled),
+            *piece.told_filled(crowded, "for an outline of few vertices"),
+            *_told(fit.draft, int(np.count_nonzero(piece.mask))),
+        ),
     )
+
+
+def _kept_holes(
+    piece: WholePiece, fit: _Fit, margin: float, diagonal: float
+) -> tuple[dict[int, Hole], list[int]]:
+    """Trace the holes that are large enough, as many as there are vertices for.
+
+    Return them by their numbers, and the numbers of those for which there are none left.
+    """
+    kept: dict[int, Hole] = {}
+    room = MOST_VERTICES - len(fit.outline)
+    crowded: list[int] = []
+    for number in range(1, len(piece.hole_areas) + 1):
+        hole = trace_hole(
+            piece.holes,
+            number,
+            margin=margin * fit.draft.widening,
+            offset=fit.draft.offset,
+            closing=NARROWEST_GAP * diagonal,
+            diagonal=diagonal,
+        )
+        if hole is None:
+            continue
+        if len(hole.outline) > room:
+            crowded.append(number)
+            continue
+        try:
+            require_holes([*(other.outline for other in kept.values()), hole.outline], fit.outline)
+        except EngineError:
+            continue
+        kept[number] = hole
+        room -= len(hole.outline)
+    return kept, crowded
 
 
 def _best_fit(field: DistanceField, margin: float, diagonal: float) -> _Fit:

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from typing import Self
 
 import numpy as np
+import shapely
 from scipy.spatial import cKDTree
 
 from engine.arrays import Complexes, Floats
@@ -11,7 +12,7 @@ from engine.domain.outline.crossings import edges_that_cross
 from engine.domain.outline.curve import arc_lengths, at_arc_lengths, smooth_curve
 from engine.domain.outline.margin import MarginCurve
 from engine.domain.outline.simplify import FARTHEST, choose_vertices
-from engine.geometry import as_xy, contains, edges
+from engine.geometry import as_xy, contains, edges, signed_area
 
 FEWEST_EDGES = 40
 SHORTEST_EDGE, LONGEST_EDGE = 0.0012, 0.07  # of the diagonal
@@ -42,11 +43,11 @@ class Candidates:
     longest: float
 
     @classmethod
-    def on(cls, curve: MarginCurve, diagonal: float) -> Self:
-        """Choose points on a curve around a subject whose box has this diagonal."""
+    def on(cls, curve: MarginCurve, diagonal: float, *, fewest_edges: int = FEWEST_EDGES) -> Self:
+        """Choose points on a curve along a subject whose box has this diagonal."""
         shortest = SHORTEST_EDGE * diagonal
         points, margins = _graded(curve, shortest)
-        longest = min(LONGEST_EDGE * diagonal, float(np.abs(edges(points)).sum()) / FEWEST_EDGES)
+        longest = min(LONGEST_EDGE * diagonal, float(np.abs(edges(points)).sum()) / fewest_edges)
         return cls(points=points, margins=margins, shortest=shortest, longest=longest)
 
     @property
@@ -56,7 +57,7 @@ class Candidates:
 
 
 def fit_polygon(candidates: Candidates, corners: Complexes) -> Complexes | None:
-    """Fit a simple polygon of few edges to a curve around `corners`.
+    """Fit a simple polygon of few edges to a curve that has `corners` on its left.
 
     Where it crosses itself, turns back or leaves out a corner, it is fitted again, closer to the
     curve.
@@ -65,12 +66,12 @@ def fit_polygon(candidates: Candidates, corners: Complexes) -> Complexes | None:
     ----------
     candidates : Candidates
     corners : complex128, shape (c,)
-        Points that must lie inside.
+        Points that must lie inside, or outside a hole.
 
     Returns
     -------
     complex128, shape (p,), or None
-        Counter-clockwise; None if that does not help.
+        In the direction of the curve; None if that does not help.
     """
     points, margins = candidates.points, candidates.margins
     slack = np.ones(len(points))
@@ -113,4 +114,8 @@ def _faults(polygon: Complexes, corners: Complexes) -> Complexes:
     crossing |= np.roll(crossing, 1)  # the vertices at both ends of such an edge
     if crossing.any() or sharp.any():
         return np.asarray(polygon[crossing | sharp])
-    return corners[~contains(polygon, corners)]
+    if signed_area(polygon) > 0:
+        return corners[~contains(polygon, corners)]
+    hole = shapely.Polygon(as_xy(polygon))
+    shapely.prepare(hole)
+    return np.asarray(corners[shapely.contains_xy(hole, corners.real, corners.imag)])

@@ -17,7 +17,7 @@ def half_gaps(curve: Complexes, normals: Complexes, *, reach: float, separation:
     Parameters
     ----------
     curve : complex128, shape (n,)
-        Counter-clockwise, points nearly equally spaced.
+        With its inside on the left, points nearly equally spaced.
     normals : complex128, shape (n,)
         Outward unit normals.
     reach : float

@@ -54,16 +54,18 @@ class DistanceField:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class MarginCurve:
-    """A simple closed curve around a mask.
+    """A simple closed curve along a mask, which lies on its left.
 
     Parameters
     ----------
     points : complex128, shape (n,)
-        Counter-clockwise, in cells, about one cell apart.
+        In cells, at most about one cell apart where it bends: counter-clockwise around the mask,
+        clockwise in a hole of it.
     margins : float64, shape (n,)
         Distance from the mask, nearly.
     enclosed : float
-        Area that the curve encloses because it closes on itself, in cells.
+        Area that the curve encloses, or leaves out of a hole, because it closes on itself, in
+        cells.
     fused : float
         Share of the mask's own outline that the curve leaves far inside, because what lies opposite
         is too close.
@@ -85,9 +87,15 @@ def distance_field(mask: Booleans) -> DistanceField:
 
 
 def curve_at_margin(
-    field: DistanceField, *, margin: float, offset: float, closing: float, diagonal: float
+    field: DistanceField,
+    *,
+    margin: float,
+    offset: float,
+    closing: float,
+    diagonal: float,
+    hole: bool = False,
 ) -> MarginCurve:
-    """Trace the curve at `margin` around a mask in one piece without holes.
+    """Trace the curve at `margin` around a mask in one piece without holes, or inside a hole.
 
     Where two limbs leave too little room for the margins and cage offsets of both, the margin
     shrinks, so that the limbs stay apart. Gaps narrower than `closing` are closed.
@@ -100,9 +108,11 @@ def curve_at_margin(
     closing : float
         Width, in cells, below which a gap is closed.
     diagonal : float
-        Of the subject's box, in cells.
+        Of the box of the subject or of the hole, in cells.
+    hole : bool
+        Whether the curve runs in the one hole of a mask that fills its frame.
     """
-    skin, _ = _outer_ring(field.distance - SKIN)
+    skin, _ = _largest_ring(field.distance - SKIN, hole=hole)
     spacing = max(1.0, SAMPLING * diagonal, SKETCH * margin, arc_lengths(skin)[-1] / MOST_SAMPLES)
     skin = resample(skin, spacing)
     margins = _local_margins(
@@ -111,7 +121,7 @@ def curve_at_margin(
     tree = cKDTree(as_xy(skin))
     everywhere = np.allclose(margins, margin)
     level = margin if everywhere else _spread(field, tree, margins, margin)
-    ring, enclosed = _outer_ring(field.distance - level)
+    ring, enclosed = _largest_ring(field.distance - level, hole=hole)
     ring, pockets = _without_slits(ring, SLIT * closing)
     _, nearest = tree.query(as_xy(ring))
     shell = shapely.LinearRing(as_xy(ring))
@@ -142,17 +152,20 @@ def _local_margins(
 
 
 def _without_slits(ring: Complexes, width: float) -> tuple[Complexes, float]:
-    """Close the slits outside a ring that are narrower than `width`: no edges fit into them.
+    """Close the slits on the right of a ring that are narrower than `width`: no edges fit in there.
 
-    Return the ring and the area of the pockets that this encloses.
+    Return the ring and the area of the pockets that this encloses, or cuts off from a hole.
     """
+    clockwise = signed_area(ring) < 0
+    grow = -width / 2 if clockwise else width / 2
     area = shapely.Polygon(as_xy(ring))
-    area = area.buffer(width / 2, quad_segs=2).buffer(-width / 2, quad_segs=2)
+    area = area.buffer(grow, quad_segs=2).buffer(-grow, quad_segs=2)
     parts = shapely.get_parts(area)
     largest = parts[shapely.area(parts).argmax()]
-    filled = shapely.orient_polygons(shapely.Polygon(largest.exterior))
+    filled = shapely.orient_polygons(shapely.Polygon(largest.exterior), exterior_cw=clockwise)
     xy = shapely.get_coordinates(filled)
-    return xy[:-1, 0] + 1j * xy[:-1, 1], float(filled.area - largest.area)
+    pockets = float(shapely.area(parts).sum() if clockwise else filled.area) - float(largest.area)
+    return xy[:-1, 0] + 1j * xy[:-1, 1], pockets
 
 
 def _spread(field: DistanceField, tree: cKDTree, margins: Floats, margin: float) -> Floats:
@@ -169,16 +182,22 @@ def _spread(field: DistanceField, tree: cKDTree, margins: Floats, margin: float)
     return spread
 
 
-def _outer_ring(values: Floats) -> tuple[Complexes, float]:
-    """Trace the zero level; return its largest ring, counter-clockwise, and the area of holes."""
+def _largest_ring(values: Floats, *, hole: bool) -> tuple[Complexes, float]:
+    """Trace the zero level; return its largest ring, and the area in rings that it leaves out.
+
+    These are the pockets within an outer ring, and whatever is cut off from a hole.
+    """
     # Separate polylines (the generator's default), each with its first point again at the end.
     lines = contourpy.contour_generator(z=values, name="serial").lines(0.0)
     rings = [
         line[:-1, 0] + 1j * line[:-1, 1] for line in cast("list[Floats]", lines) if len(line) > 3
     ]
     areas = np.array([signed_area(ring) for ring in rings])
-    outer = int(np.abs(areas).argmax())
-    # Rings within the outer one run the other way round.
-    enclosed = float(np.abs(areas[areas * areas[outer] < 0]).sum())
-    ring = rings[outer]
-    return (ring if areas[outer] > 0 else ring[::-1]), enclosed
+    largest = int(np.abs(areas).argmax())
+    ring = rings[largest]
+    # Rings within the outer one run the other way round, the other parts of a hole the same way.
+    same = areas * areas[largest] > 0
+    left_out = float(np.abs(areas[same == hole]).sum())
+    if hole:
+        left_out -= abs(float(areas[largest]))
+    return (ring if (areas[largest] < 0) == hole else ring[::-1]), left_out

@@ -21,7 +21,7 @@ def choose_vertices(
     Parameters
     ----------
     curve : complex128, shape (n,)
-        Counter-clockwise.
+        With its inner side on the left.
     inner, outer : float64, shape (n,)
         Tolerances at each point.
     shortest, longest : float

@@ -7,6 +7,6 @@ Imports: nothing above `engine.arrays`.
 
 from engine.domain.picture.grid import WorkingGrid, working_grid
 from engine.domain.picture.mask import subject_mask
-from engine.domain.picture.parts import join_parts
+from engine.domain.picture.parts import WholePiece, join_parts
 
-__all__ = ["WorkingGrid", "join_parts", "subject_mask", "working_grid"]
+__all__ = ["WholePiece", "WorkingGrid", "join_parts", "subject_mask", "working_grid"]

@@ -1,5 +1,6 @@
-"""One piece without holes: specks dropped, parts joined by bridges, holes filled."""
+"""One piece of a subject: specks dropped, parts joined by bridges, holes found."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -20,17 +21,34 @@ BRIDGE_WIDTHS = (0.012, 0.05)  # of the diagonal
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class WholePiece:
-    """A subject in one piece without holes.
+    """A subject in one piece, and its holes.
 
     Parameters
     ----------
     mask : bool, shape (h, w)
+        The subject with its holes filled.
+    holes : int32, shape (h, w)
+        The number of the hole that a pixel belongs to, from 1, the largest hole first; 0 elsewhere.
+    hole_areas : float64, shape (m,)
+        Of the holes, in pixels.
     notices : tuple of str
-        What was joined, filled and dropped.
+        What was joined and dropped.
     """
 
     mask: Booleans
+    holes: Integers
+    hole_areas: Floats
     notices: tuple[str, ...]
+
+    def told_filled(self, numbers: Sequence[int] | Indices, reason: str = "") -> tuple[str, ...]:
+        """Return a notice, in words, that holes with these numbers are filled, if there are any."""
+        if not len(numbers):
+            return ()
+        largest = self.hole_areas[np.asarray(numbers) - 1].max() / np.count_nonzero(self.mask)
+        size = f"{largest:.1%}" if largest >= 0.001 else "under 0.1%"
+        which = "" if len(numbers) == 1 else "the largest "
+        told = f"{_counted(len(numbers), 'hole')} filled, {which}{size} of the subject"
+        return (f"{told}, {reason}" if reason else told,)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -43,7 +61,7 @@ class _Bridges:
 
 
 def join_parts(mask: Booleans, diagonal: float) -> WholePiece:
-    """Make one piece without holes of a mask.
+    """Make one piece of a mask.
 
     Parameters
     ----------
@@ -74,8 +92,10 @@ def join_parts(mask: Booleans, diagonal: float) -> WholePiece:
     if count > 1:
         mask = _bridged(mask, labels.astype(np.int32), areas, diagonal)
         notices.append(f"{count} parts joined by invisible bridges")
-    mask, filled = _without_holes(mask)
-    return WholePiece(mask=mask, notices=(*notices, *filled))
+    holes, hole_areas = _holes(mask)
+    return WholePiece(
+        mask=mask | (holes > 0), holes=holes, hole_areas=hole_areas, notices=tuple(notices)
+    )
 
 
 def _counted(number: int, noun: str) -> str:
@@ -185,17 +205,16 @@ def _closed(mask: Booleans, radius: float) -> Booleans:
     return mask | kept[inner, inner]
 
 
-def _without_holes(mask: Booleans) -> tuple[Booleans, tuple[str, ...]]:
-    """Fill everything that the outside, found at pixel (0, 0), does not reach."""
+def _holes(mask: Booleans) -> tuple[Integers, Floats]:
+    """Number everything that the outside, found at pixel (0, 0), does not reach, the largest first.
+
+    Return the number (h, w) of each pixel's hole, 0 elsewhere, and the area of each hole.
+    """
     labels, count = ndimage.label(~mask)
     areas = np.bincount(labels.ravel(), minlength=count + 1).astype(np.float64)
-    outside = labels[0, 0]
-    areas[[0, outside]] = 0
-    if count == 1:
-        return mask, ()
-    filled = labels != outside
+    areas[[0, labels[0, 0]]] = 0
+    by_size = np.argsort(-areas, kind="stable")
+    numbers = np.zeros(count + 1, dtype=np.int32)
     holes = int(np.count_nonzero(areas))
-    largest = areas.max() / np.count_nonzero(filled)
-    size = f"{largest:.1%}" if largest >= 0.001 else "under 0.1%"
-    told = f"{_counted(holes, 'hole')} filled, the largest {size} of the subject"
-    return filled, (told.replace(", the largest", ",") if holes == 1 else told,)
+    numbers[by_size[:holes]] = np.arange(1, holes + 1)
+    return numbers[labels], areas[by_size[:holes]]
