@@ -79,7 +79,7 @@ class PosableMesh:
         """Return a coarse mesh of the same domain, or the figure's own if that is as coarse."""
         if len(source.mesh.triangles) <= COARSE_TRIANGLES:
             return cls.fine(source)
-        coarse = replace(source, mesh=mesh_inside(source.outline, COARSE_TRIANGLES))
+        coarse = replace(source, mesh=mesh_inside(*source.loops, triangles=COARSE_TRIANGLES))
         return cls(domain=coarse, source=source, coordinates=_coordinates(coarse))
 
     def locate(self, points: Complexes, positions: Complexes) -> "AttachedPoints":

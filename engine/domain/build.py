@@ -1,6 +1,5 @@
 """From pixels to a domain: outline, cage and triangulation (Section 7; Chen and Weber 2015)."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -37,6 +36,16 @@ class Domain:
     cage: Complexes
     mesh: Mesh
     holes: tuple[Hole, ...] = ()
+
+    @property
+    def loops(self) -> tuple[Complexes, ...]:
+        """The polygons of the boundary: the outline, then those of the holes."""
+        return (self.outline, *(hole.outline for hole in self.holes))
+
+    @property
+    def cages(self) -> tuple[Complexes, ...]:
+        """The polygons of the Cauchy coordinates: the outline's cage, then those in the holes."""
+        return (self.cage, *(hole.cage for hole in self.holes))
 
 
 def build_domain(
@@ -79,13 +88,13 @@ def build_domain(
     domain = Domain(
         outline=enclosure.outline,
         cage=enclosure.cage,
-        mesh=mesh_inside(enclosure.outline, triangles, holes=loops),
+        mesh=mesh_inside(enclosure.outline, *loops, triangles=triangles),
         holes=enclosure.holes,
     )
     return domain, subject.notices + enclosure.notices
 
 
-def mesh_inside(outline: Complexes, triangles: int, *, holes: Sequence[Complexes] = ()) -> Mesh:
+def mesh_inside(outline: Complexes, *holes: Complexes, triangles: int) -> Mesh:
     """Triangulate the inside of an outline, in an order that paints limbs over the body."""
     mesh = triangulate(outline, triangles, holes=holes)
     return with_limbs_on_top(mesh, deepest_point(outline, holes))

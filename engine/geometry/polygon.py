@@ -72,11 +72,15 @@ def require_holes(holes: Sequence[Complexes], outline: Complexes) -> None:
     """Raise `EngineError` unless the holes are simple, clockwise, inside the outline and apart."""
     for number, hole in enumerate(holes):
         require_simple(hole, f"outline of hole {number}", clockwise=True)
-        room = _area(outline, holes[:number])
-        if not shapely.contains_properly(room, _area(hole)):
+        if not lies_within(hole, outline, holes[:number]):
             raise EngineError(
                 f"Hole {number} leaves the outline, or meets another hole; holes lie apart inside."
             )
+
+
+def lies_within(inner: Complexes, polygon: Complexes, holes: Sequence[Complexes] = ()) -> bool:
+    """Tell whether the inside of one polygon lies in that of another, clear of its boundary."""
+    return bool(shapely.contains_properly(_area(polygon, holes), _area(inner)))
 
 
 def _area(polygon: Complexes, holes: Sequence[Complexes] = ()) -> shapely.Polygon:

@@ -1,10 +1,11 @@
-"""Graphs inside a polygon along which every point can be reached from the anchor (Section 7).
+"""Graphs inside a region along which every point can be reached from the anchor (Section 7).
 
 The vertices of a mesh are reached along its edges. Scattered points have no edges; for them the
-polygon is cut into triangles, and paths lead through the middles of the triangles' common edges. A
+region is cut into triangles, and paths lead through the middles of the triangles' common edges. A
 triangle is convex, so that each leg of such a path stays inside, however narrow the domain is.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,7 +14,7 @@ import shapely
 from engine.arrays import Booleans, Complexes, Indices, Integers
 from engine.domain.meshing import Mesh
 from engine.errors import EngineError
-from engine.geometry import as_xy, box_diagonal, constrained_delaunay
+from engine.geometry import as_xy, box_diagonal, constrained_delaunay, loop_ends
 from engine.paths.spanning_tree import breadth_first_parents
 
 CELL = 1 / 50  # longest edge of the triangles between scattered points, over the box diagonal
@@ -53,9 +54,16 @@ class Network:
 
 
 def mesh_network(
-    outline: Complexes, vertices: Complexes, triangles: Integers, anchor: Complexes
+    outline: Complexes,
+    vertices: Complexes,
+    triangles: Integers,
+    anchor: Complexes,
+    *,
+    holes: Sequence[Complexes] = (),
 ) -> Network:
     """Join the anchor (1,) to the vertices (m,) of a mesh along the mesh's edges.
+
+    Around a hole the paths go one way or the other, as fewer edges do; none crosses it.
 
     Raises
     ------
@@ -69,7 +77,8 @@ def mesh_network(
             f"only points 0 to {len(vertices) - 1}."
         )
     ends = Mesh(vertices=vertices, triangles=triangles).edges().astype(np.intp)
-    crossing = _crosses(outline, vertices[ends[:, 0]], vertices[ends[:, 1]])
+    loops = (outline, *holes)
+    crossing = _crosses(loops, vertices[ends[:, 0]], vertices[ends[:, 1]])
     if crossing.any():
         first, second = ends[np.flatnonzero(crossing)[0]]
         raise EngineError(
@@ -77,7 +86,7 @@ def mesh_network(
             "triangles of the inside only, or none."
         )
     nearest = np.argsort(np.abs(vertices - anchor), kind="stable")[:NEIGHBOURS]
-    seen = nearest[~_crosses(outline, np.repeat(anchor, len(nearest)), vertices[nearest])]
+    seen = nearest[~_crosses(loops, np.repeat(anchor, len(nearest)), vertices[nearest])]
     if not len(seen):
         raise EngineError(
             f"No point of the mesh near the anchor {anchor[0]:.6g} can be reached straight; choose "
@@ -94,10 +103,18 @@ def mesh_network(
     return Network(nodes=nodes, parents=parents, places=np.arange(1, len(nodes)))
 
 
-def scattered_network(outline: Complexes, points: Complexes, anchor: Complexes) -> Network:
-    """Join the anchor (1,) to scattered points (m,) inside a simple polygon, or on it."""
+def scattered_network(
+    outline: Complexes,
+    points: Complexes,
+    anchor: Complexes,
+    *,
+    holes: Sequence[Complexes] = (),
+) -> Network:
+    """Join the anchor (1,) to scattered points (m,) of a closed region."""
     corners, triangles = _refine(
-        outline, constrained_delaunay(outline), CELL * box_diagonal(outline)
+        np.concatenate([outline, *holes]),
+        constrained_delaunay(outline, holes),
+        CELL * box_diagonal(outline),
     )
     portals, sides = _portals(corners, triangles)
     ends = np.concatenate([anchor, points])
@@ -116,15 +133,17 @@ def scattered_network(outline: Complexes, points: Complexes, anchor: Complexes) 
     return Network(nodes=nodes, parents=_prune(parents, len(ends)), places=np.arange(1, len(ends)))
 
 
-def _crosses(outline: Complexes, starts: Complexes, ends: Complexes) -> Booleans:
-    """Tell for each segment whether it leaves the polygon by more than rounding."""
-    tolerance = 2 * ON_OUTLINE * box_diagonal(outline)
+def _crosses(loops: Sequence[Complexes], starts: Complexes, ends: Complexes) -> Booleans:
+    """Tell for each segment whether it leaves the region by more than rounding."""
+    tolerance = 2 * ON_OUTLINE * box_diagonal(loops[0])
     segments = shapely.linestrings(np.stack([as_xy(starts), as_xy(ends)], axis=1))
-    sides = shapely.linestrings(np.stack([as_xy(outline), as_xy(np.roll(outline, -1))], axis=1))
+    corners = np.concatenate(loops)
+    sides = shapely.linestrings(np.stack([as_xy(corners), as_xy(loop_ends(loops))], axis=1))
     touching, _ = shapely.STRtree(sides).query(segments, predicate="dwithin", distance=tolerance)
     touching = np.unique(touching)
-    # Nearly all segments stay away from the outline; only the others need the exact test.
-    room = shapely.Polygon(as_xy(outline)).buffer(tolerance, join_style="mitre")
+    # Nearly all segments stay away from the boundary; only the others need the exact test.
+    area = shapely.Polygon(as_xy(loops[0]), [as_xy(hole) for hole in loops[1:]])
+    room = area.buffer(tolerance, join_style="mitre")
     shapely.prepare(room)
     crosses = np.zeros(len(starts), dtype=np.bool_)
     crosses[touching] = ~shapely.covers(room, segments[touching])

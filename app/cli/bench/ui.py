@@ -244,7 +244,7 @@ def _giraffe(triangles: int) -> files.Opened:
     """Return the animated sample on a finer mesh."""
     document = load_project(sample_images() / SAMPLE)
     figure = document.figures[0]
-    mesh = mesh_inside(figure.domain.outline, triangles)
+    mesh = mesh_inside(*figure.domain.loops, triangles=triangles)
     figure = replace(figure, domain=replace(figure.domain, mesh=mesh))
     document = document.with_figure(figure)
     puppet = Puppet(

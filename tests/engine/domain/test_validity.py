@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from pictures import blob, limbs, star
+from pictures import blob, limbs, ring, star
 from shapes import regular_polygon
 
 from engine.domain import Domain, build_domain, require_domain
@@ -78,3 +78,38 @@ def test_a_mesh_that_goes_twice_around_fills_nothing():
     )
     with pytest.raises(EngineError, match="does not fill"):
         require_domain(replace(domain(), mesh=turned))
+
+
+@pytest.fixture(scope="module")
+def holed() -> Domain:
+    built, _ = build_domain(ring(), triangles=1_000, detail="coarse", holes="keep")
+    assert len(built.holes) == 1
+    return built
+
+
+def test_a_domain_with_a_hole_is_one(holed):
+    require_domain(holed)
+
+
+def altered(domain: Domain, **changes) -> Domain:
+    return replace(domain, holes=(replace(domain.holes[0], **changes),))
+
+
+def test_what_is_wrong_with_a_hole_is_told(holed):
+    (hole,) = holed.holes
+    middle = hole.centre
+    filled = build_domain(ring(), triangles=1_000, detail="coarse")[0].mesh
+    for broken, message in (
+        (altered(holed, outline=hole.outline[::-1]), "outline of hole 0 runs counter-clockwise"),
+        (altered(holed, outline=hole.outline + 100), "Hole 0 leaves the outline"),
+        (replace(holed, holes=(hole, hole)), "Hole 1 leaves the outline, or meets another hole"),
+        (altered(holed, cage=hole.cage[::-1]), "cage of hole 0 runs counter-clockwise"),
+        (altered(holed, cage=middle + 1.2 * (hole.cage - middle)), "cage of hole 0 is not inside"),
+        (altered(holed, cage=hole.cage[:2]), "cage must have 3 to"),
+        (altered(holed, centre=middle + 100), "centre of hole 0 is not inside"),
+        (altered(holed, outline=middle + 1.05 * (hole.outline - middle)), "does not fill"),
+        (replace(holed, holes=()), "does not fill"),
+        (replace(holed, mesh=filled), "does not fill"),
+    ):
+        with pytest.raises(EngineError, match=message):
+            require_domain(broken)
