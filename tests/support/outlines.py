@@ -6,6 +6,7 @@ from scipy import ndimage
 
 from engine.arrays import Booleans, Complexes, Floats
 from engine.domain.outline.enclosure import Enclosure
+from engine.domain.outline.holes import Hole
 from engine.geometry.polygon import (
     as_xy,
     box_diagonal,
@@ -29,6 +30,27 @@ def check_cage(outline: Complexes, cage: Complexes) -> None:
         distance_to_boundary(outline, cage).min(), distance_to_boundary(cage, outline).min()
     )
     assert nearest >= 0.0003 * box_diagonal(outline)
+
+
+def check_hole(hole: Hole, size: float) -> None:
+    """Hold a hole's outline and cage against what is promised of them."""
+    outline, cage = hole.outline, hole.cage
+    assert len(cage) == len(outline)
+    for loop in (outline, cage):
+        assert is_simple(loop)
+        assert signed_area(loop) < 0
+    assert shapely.Polygon(as_xy(outline)).contains_properly(shapely.Polygon(as_xy(cage)))
+    nearest = min(
+        distance_to_boundary(outline, cage).min(), distance_to_boundary(cage, outline).min()
+    )
+    assert nearest >= 0.0003 * box_diagonal(outline)
+    assert np.abs(edges(outline)).min() >= 0.001 * size
+    # As of every outline, seen from the domain; there are no angles for the mesh to fail at.
+    angles = interior_angles(outline) % 360
+    assert angles.min() >= 20
+    assert angles.max() <= 345
+    assert contains(cage, np.array([hole.centre])).all()
+    assert distance_to_boundary(cage, np.array([hole.centre]))[0] > 0
 
 
 def diagonal(mask: Booleans) -> float:

@@ -5,11 +5,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from interpolation_shapes import bar, inner_points, letter_l, narrow_u, random_map, spiral
 from numpy.testing import assert_allclose, assert_array_equal
-from shapes import star_polygons
+from shapes import regular_polygon, star_polygons
 
 from engine.domain.meshing.triangulation import triangulate
 from engine.errors import EngineError
-from engine.geometry.polygon import as_xy, box_diagonal, edges
+from engine.geometry.polygon import as_xy, box_diagonal, contains, edges
 from engine.maps.cauchy import evaluate
 from engine.paths import integration_paths
 from engine.paths.integration_paths import lay_paths
@@ -163,3 +163,44 @@ def test_an_anchor_far_from_a_partial_mesh_is_refused():
     vertices = np.array([-0.8 + 1.5j, -0.5 + 1.5j, -0.5 + 1.8j])
     with pytest.raises(EngineError, match="anchor"):
         mesh_network(outline, vertices, np.array([[0, 1, 2]], np.int32), np.array([0.5 + 1.5j]))
+
+
+HOLES = (
+    -1.2 + 0.3 * regular_polygon(24)[::-1],
+    0.02j + 0.45 * regular_polygon(30)[::-1],
+    1.3 + 0.1 * regular_polygon(12)[::-1],
+)
+
+
+@pytest.mark.parametrize("holes", [HOLES[:1], HOLES])
+def test_paths_go_around_holes_and_reach_every_point(holes):
+    outline, cage = bar()
+    room = shapely.Polygon(as_xy(outline), [as_xy(hole) for hole in holes]).buffer(1e-8)
+    shapely.prepare(room)
+    mesh = triangulate(outline, 600, holes=holes)
+    anchor = np.array([-1.7 + 0j])
+    rng = np.random.default_rng(0)
+    points = rng.uniform(-2, 2, 400) + 1j * rng.uniform(-0.5, 0.5, 400)
+    points = np.concatenate([points[contains(outline, points, holes=holes)], *holes])
+    for network in (
+        mesh_network(outline, mesh.vertices, mesh.triangles, anchor, holes=holes),
+        scattered_network(outline, points, anchor, holes=holes),
+    ):
+        paths = lay_paths(network, np.concatenate([outline, *holes]), cage)
+        ends = np.stack([as_xy(paths.nodes[paths.tree.parent]), as_xy(paths.nodes)], axis=1)
+        assert shapely.covers(room, shapely.linestrings(ends[1:])).all()
+        # 1/(z - c) is integrated to a logarithm, but for the ways that pass on the other side.
+        centre = holes[0].mean()
+        slopes = -1 / (paths.nodes - centre) ** 2
+        steps = paths.step_integrals(1 / (paths.nodes - centre), slopes)
+        logarithms = paths.integrals(steps)
+        ends_at = paths.nodes[paths.places]
+        turns = (logarithms - np.log((ends_at - centre) / (anchor - centre))) / (2j * np.pi)
+        assert_allclose(turns, np.round(turns.real), rtol=0, atol=1e-6)
+
+
+def test_triangles_across_a_hole_are_refused():
+    outline, _ = bar()
+    mesh = triangulate(outline, 600)
+    with pytest.raises(EngineError, match="leaves the outline"):
+        mesh_network(outline, mesh.vertices, mesh.triangles, np.array([-1.7 + 0j]), holes=HOLES)

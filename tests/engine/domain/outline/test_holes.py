@@ -1,0 +1,162 @@
+"""Holes of the subject that are kept: outlines, cages, and which of them."""
+
+import numpy as np
+import pictures
+import pytest
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+from numpy.testing import assert_allclose, assert_array_equal
+from outlines import check_hole, check_outline, corners_of, diagonal
+from scipy import ndimage
+
+from engine.arrays import Booleans, Bytes, Complexes
+from engine.domain import build_domain, require_domain
+from engine.domain.outline import Detail, Enclosure, Hole, enclose
+from engine.domain.picture import subject_mask
+from engine.geometry import contains, signed_area
+
+DETAILS: tuple[Detail, ...] = ("coarse", "normal", "fine")
+
+
+def plate(*holes: tuple[float, float, float], width: int = 600, height: int = 300) -> Booleans:
+    """A plate with round holes: x, y up, and radius."""
+    x, y = pictures.plane(width, height)
+    mask = np.zeros((height, width), dtype=np.bool_)
+    mask[20:-20, 20:-20] = True
+    for cx, cy, radius in holes:
+        mask &= np.hypot(x - cx, height - y - cy) >= radius
+    return mask
+
+
+def keyhole() -> Booleans:
+    """A ring, with an island on a bridge in its hole: the hole winds around the island."""
+    x, y = pictures.plane(400, 400)
+    radius = np.hypot(x - 200, y - 200)
+    bridge = (np.abs(y - 200) < 8) & (x > 200)
+    return (radius < 180) & ((radius > 120) | (radius < 90) | bridge)
+
+
+def kept(mask: Booleans, detail: Detail = "normal") -> Enclosure:
+    return enclose(mask, detail=detail, holes="keep")
+
+
+def check_holes(mask: Booleans, enclosure: Enclosure, *, most: int = 200) -> None:
+    """Hold what is kept against all that is promised of outlines and cages."""
+    check_outline(ndimage.binary_fill_holes(mask), enclosure, most=most)
+    total = sum(len(hole.outline) for hole in enclosure.holes) + len(enclosure.outline)
+    assert total <= max(most, len(enclosure.outline))
+    for hole in enclosure.holes:
+        check_hole(hole, diagonal(mask))
+        # Every pixel of the subject lies outside, with its corners.
+        inside = contains(hole.outline, corners_of(mask))
+        assert not inside.any()
+    sizes = [-signed_area(hole.outline) for hole in enclosure.holes]
+    assert all(size > 0 for size in sizes)
+
+
+@pytest.mark.parametrize("detail", DETAILS)
+@pytest.mark.parametrize(
+    ("mask", "count"),
+    [
+        (pictures.ring()[..., 3] > 0, 1),
+        (plate((120, 150, 60), (300, 150, 80), (480, 150, 50)), 3),
+        (keyhole(), 1),
+        (pictures.letter("8", 200)[..., 3] > 0, 2),
+        (pictures.stick_figure(line=3)[..., 3] > 0, 1),
+        (pictures.letter("e", 40)[..., 3] > 0, 1),
+    ],
+    ids=["ring", "plate", "keyhole", "letter", "stick figure", "small letter"],
+)
+def test_large_holes_are_kept(mask: Booleans, count: int, detail: Detail) -> None:
+    enclosure = kept(mask, detail)
+    assert len(enclosure.holes) == count
+    check_holes(mask, enclosure)
+    assert not any("filled" in notice for notice in enclosure.notices)
+
+
+@pytest.mark.parametrize("name", ["ring", "plate"])
+def test_what_lies_around_the_holes_is_the_same_whether_they_are_kept_or_filled(name) -> None:
+    mask = {"ring": pictures.ring()[..., 3] > 0, "plate": plate((120, 150, 60))}[name]
+    keeping, filling = kept(mask), enclose(mask, detail="normal")
+    assert_array_equal(keeping.outline, filling.outline)
+    assert_array_equal(keeping.cage, filling.cage)
+    assert filling.holes == ()
+    assert any("1 hole filled" in notice for notice in filling.notices)
+
+
+@pytest.mark.parametrize(("radius", "count"), [(5, 0), (12, 1)])
+def test_small_holes_are_filled_and_told(radius: float, count: int) -> None:
+    # The diagonal is 617 pixels, of which 1.2 % are 7.4.
+    mask = plate((150, 150, 70), (400, 150, radius))
+    enclosure = kept(mask)
+    assert len(enclosure.holes) == 1 + count
+    check_holes(mask, enclosure)
+    told = () if count else ("1 hole filled, under 0.1% of the subject",)
+    assert enclosure.notices == told
+
+
+def test_the_margin_and_the_cage_leave_the_middle_of_a_small_hole_free() -> None:
+    (hole,) = kept(plate((300, 150, 12)), "coarse").holes
+    assert_allclose(np.abs(hole.outline - (300 + 150j)), 9, rtol=0, atol=1)
+    assert_allclose(np.abs(hole.cage - (300 + 150j)), 6, rtol=0, atol=1.5)
+    assert abs(hole.centre - (300 + 150j)) < 0.5
+
+
+def test_the_largest_holes_are_kept_while_there_are_few_vertices() -> None:
+    places = [(60 + 80 * i, 60 + 90 * j, 20 + i + j) for i in range(7) for j in range(3)]
+    mask = plate(*places)
+    enclosure = kept(mask)
+    check_holes(mask, enclosure)
+    assert 5 <= len(enclosure.holes) < len(places)
+    sizes = sorted((radius for *_, radius in places), reverse=True)
+    smallest = min(np.sqrt(-signed_area(hole.outline) / np.pi) for hole in enclosure.holes)
+    assert smallest >= 0.6 * sizes[len(enclosure.holes)]
+    (told,) = enclosure.notices
+    assert told.startswith(f"{len(places) - len(enclosure.holes)} holes filled, the largest")
+    assert told.endswith("of the subject, for an outline of few vertices")
+
+
+def test_holes_are_where_they_are_in_the_picture() -> None:
+    for size in (60, 600, 2400):
+        scale = size / 600
+        mask = plate((150, 180, 70), width=600, height=300)
+        mask = mask[:: int(1 / scale), :: int(1 / scale)] if scale < 1 else mask
+        if scale > 1:
+            mask = np.kron(mask, np.ones((int(scale), int(scale)))) > 0
+        (hole,) = kept(mask).holes
+        assert abs(hole.centre - scale * (150 + 180j)) < max(1.0, 4 * scale)
+
+
+@settings(max_examples=20)
+@given(
+    places=st.lists(
+        st.tuples(st.floats(40, 560), st.floats(40, 260), st.floats(4, 60)), min_size=1, max_size=5
+    ),
+    detail=st.sampled_from(DETAILS),
+)
+def test_random_holes(places: list[tuple[float, float, float]], detail: Detail) -> None:
+    mask = plate(*places)
+    assume(ndimage.label(mask, np.ones((3, 3)))[1] == 1)
+    check_holes(mask, kept(mask, detail))
+
+
+@pytest.mark.parametrize("picture", [pictures.ring(), pictures.painted(keyhole())])
+def test_a_built_domain_with_holes_is_one(picture: Bytes) -> None:
+    domain, _ = build_domain(picture, triangles=3_000, detail="normal", holes="keep")
+    require_domain(domain)
+    assert len(domain.loops) == len(domain.cages) == 2
+    loops: Complexes = np.concatenate(domain.loops)
+    assert_array_equal(domain.mesh.vertices[: len(loops)], loops)
+    assert 1 - len(domain.holes) == (
+        len(domain.mesh.vertices) - len(domain.mesh.edges()) + len(domain.mesh.triangles)
+    )
+    without, _ = build_domain(picture, triangles=3_000, detail="normal")
+    assert without.holes == ()
+
+
+def test_a_hole_holds_frozen_arrays() -> None:
+    subject = subject_mask(pictures.ring())
+    for hole in kept(subject.mask).holes:
+        assert isinstance(hole, Hole)
+        assert not hole.outline.flags.writeable
+        assert not hole.cage.flags.writeable
