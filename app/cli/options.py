@@ -11,6 +11,7 @@ from app.errors import LissomError
 from engine.variant import Variant
 
 DETAILS = ("coarse", "normal", "fine")
+HOLES = ("fill", "keep")
 DEFAULT_DETAIL = "normal"
 DEFAULT_TRIANGLES = 100_000
 VARIANTS = tuple(Variant)

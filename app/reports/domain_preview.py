@@ -1,4 +1,4 @@
-"""A picture of a domain: the drawing with its mesh, outline and cage."""
+"""A picture of a domain: the drawing with its mesh, outlines and cages."""
 
 import io
 
@@ -16,7 +16,7 @@ MESH_COLOUR, OUTLINE_COLOUR, CAGE_COLOUR = (30, 40, 60, 70), (0, 120, 215, 255),
 
 
 def draw_preview(picture: Picture, domain: Domain) -> bytes:
-    """Return a PNG of the picture on a checkerboard, its mesh, outline (blue) and cage (orange).
+    """Return a PNG of the picture on a checkerboard, its mesh, outlines (blue) and cages (orange).
 
     Parameters
     ----------
@@ -54,7 +54,9 @@ def draw_preview(picture: Picture, domain: Domain) -> bytes:
         pen.line((*ends[start], *ends[end]), fill=MESH_COLOUR)
     canvas.alpha_composite(lines)
     pen = ImageDraw.Draw(canvas)
-    for polygon, colour in ((domain.cage, CAGE_COLOUR), (domain.outline, OUTLINE_COLOUR)):
+    coloured = [(cage, CAGE_COLOUR) for cage in domain.cages]
+    coloured += [(loop, OUTLINE_COLOUR) for loop in domain.loops]
+    for polygon, colour in coloured:
         corners = place(polygon)
         pen.line([*corners, corners[0]], fill=colour, width=2 * SUPERSAMPLING)
         for x, y in corners:

@@ -23,7 +23,7 @@ from app.storage.json_values import (
     without_repeats,
 )
 from app.storage.opening import open_picture
-from app.storage.picture import Picture, decode_picture
+from app.storage.picture import Picture, decode_picture, read_picture_file
 from app.storage.preferences import (
     CHECKER,
     LARGEST_GHOST_STEP,
@@ -64,6 +64,7 @@ __all__ = [
     "load_project",
     "open_picture",
     "read_arrays",
+    "read_picture_file",
     "read_thumbnail",
     "remove_leftover",
     "sample_images",

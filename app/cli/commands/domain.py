@@ -5,10 +5,16 @@ import argparse
 import numpy as np
 
 from app.cli.console import notice
-from app.document import Meshing
 from app.reports import draw_preview
-from app.storage import check_writable, open_picture, write_arrays, write_atomically
-from engine.domain import texture_coordinates
+from app.storage import (
+    check_writable,
+    decode_picture,
+    read_picture_file,
+    write_arrays,
+    write_atomically,
+)
+from engine.arrays import Complexes
+from engine.domain import build_domain, texture_coordinates
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -16,12 +22,16 @@ def run(arguments: argparse.Namespace) -> int:
     for path in (arguments.out, arguments.preview):
         if path is not None:
             check_writable(path)
-    meshing = Meshing(triangles=arguments.triangles, detail=arguments.detail)
-    opened = open_picture(arguments.picture, meshing)
-    for message in opened.notices:
+    picture = decode_picture(read_picture_file(arguments.picture), str(arguments.picture))
+    domain, remedies = build_domain(
+        picture.rgba,
+        triangles=arguments.triangles,
+        detail=arguments.detail,
+        holes=arguments.holes,
+    )
+    for message in (*picture.notices, *remedies):
         notice(message)
-    picture, domain = opened.picture, opened.document.figures[0].domain
-    mesh = domain.mesh
+    mesh, holes = domain.mesh, domain.holes
     if arguments.preview is not None:
         drawn = draw_preview(picture, domain)
         write_atomically(arguments.preview, lambda file: file.write(drawn))
@@ -32,12 +42,23 @@ def run(arguments: argparse.Namespace) -> int:
             "cage": domain.cage,
             "vertices": mesh.vertices,
             "triangles": mesh.triangles,
+            "hole_outlines": _joined([hole.outline for hole in holes]),
+            "hole_outline_sizes": np.array([len(hole.outline) for hole in holes], dtype=np.int64),
+            "hole_cages": _joined([hole.cage for hole in holes]),
+            "hole_cage_sizes": np.array([len(hole.cage) for hole in holes], dtype=np.int64),
+            "hole_centres": np.array([hole.centre for hole in holes], dtype=np.complex128),
             "uv": texture_coordinates(mesh.vertices, picture.size),
             "image_size": np.array(picture.size),
         },
     )
+    kept = f", {len(holes)} {'hole' if len(holes) == 1 else 'holes'}" if holes else ""
     print(
         f"{arguments.out}: {picture.size[0]} × {picture.size[1]} pixels, outline and cage of "
-        f"{len(domain.cage)} vertices, {len(mesh.triangles):,} triangles"
+        f"{sum(map(len, domain.cages))} vertices{kept}, {len(mesh.triangles):,} triangles"
     )
     return 0
+
+
+def _joined(polygons: list[Complexes]) -> Complexes:
+    """Return the vertices of all polygons, one polygon after the other."""
+    return np.concatenate([np.empty(0, dtype=np.complex128), *polygons])

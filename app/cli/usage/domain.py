@@ -3,12 +3,13 @@
 import argparse
 from pathlib import Path
 
-from app.cli.options import add_meshing_options, input_file
+from app.cli.options import HOLES, add_meshing_options, input_file
 
 EPILOG = """\
 The picture may be a PNG, JPEG, GIF, WebP, AVIF, TIFF, BMP, TGA, PPM or ICO. Transparent pixels are
 outside; from an opaque picture a plain background is removed. Whatever else had to be done (parts
-bridged, holes filled, specks dropped) is told on standard error.
+bridged, holes filled, specks dropped) is told on standard error. With --holes keep, holes stay
+holes into which a disc fits that is as wide as 2.4 % of the drawing's diagonal.
 
 DOMAIN.npz holds, in pixels of the picture with the origin at its lower left corner and y up:
   outline     (p,)    complex128  the domain's boundary, counter-clockwise
@@ -17,11 +18,17 @@ DOMAIN.npz holds, in pixels of the picture with the origin at its lower left cor
   triangles   (m, 3)  int32       counter-clockwise
   uv          (v, 2)  float64     u right, v up; [0, 1] spans the picture
   image_size  (2,)    int64       width, height
+and of the holes that are kept, all empty where there are none:
+  hole_outlines       (a,)  complex128  clockwise, one hole after the other
+  hole_cages          (b,)  complex128  the cage in each hole, clockwise
+  hole_outline_sizes, hole_cage_sizes  (holes,)  int64  how many vertices belong to each hole
+  hole_centres        (holes,)  complex128  a point in the cage of each hole
 
 examples:
   lissom domain giraffe.png --out giraffe.npz
   lissom domain giraffe.png --out giraffe.npz --detail fine --preview preview.png
   lissom domain icon.png --out icon.npz --triangles 5000
+  lissom domain cup.png --out cup.npz --holes keep
 """
 
 
@@ -33,6 +40,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--out", metavar="DOMAIN.npz", type=Path, required=True, help="where to write"
     )
     add_meshing_options(parser)
+    parser.add_argument(
+        "--holes",
+        choices=HOLES,
+        default=HOLES[0],
+        help="whether large holes stay holes in the mesh (default: %(default)s)",
+    )
     parser.add_argument(
         "--preview",
         metavar="PREVIEW.png",

@@ -15,7 +15,7 @@ from app.document import FRAMINGS, VARIANTS, Meshing
 from app.editor.actions import saving
 from app.editor.jobs import Job
 from app.storage.assets import sample_images
-from engine.domain.outline import Detail
+from engine.domain.outline import Detail, Holes
 
 SAMPLE = sample_images() / "giraffe.lissom"
 
@@ -107,6 +107,7 @@ def test_what_is_answered_from_the_words_alone_loads_nothing_heavy(words, status
 
 def test_the_words_to_choose_from_are_those_that_the_program_knows():
     assert set(options.DETAILS) == set(get_args(Detail))
+    assert get_args(Holes) == options.HOLES
     assert set(options.VARIANTS) == set(VARIANTS)
     assert set(options.FRAMINGS) == set(FRAMINGS)
     defaults = Meshing()

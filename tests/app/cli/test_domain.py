@@ -40,7 +40,12 @@ def test_the_file_is_as_documented(drawing, tmp_path, capsys):
     assert "300 × 200" in said.out
     with np.load(out) as file:
         domain = dict(file)
-    assert set(domain) == {"outline", "cage", "vertices", "triangles", "uv", "image_size"}
+    of_holes = {"outlines", "outline_sizes", "cages", "cage_sizes", "centres"}
+    assert set(domain) == {
+        *("outline", "cage", "vertices", "triangles", "uv", "image_size"),
+        *(f"hole_{name}" for name in of_holes),
+    }
+    assert all(len(domain[f"hole_{name}"]) == 0 for name in of_holes)
     assert_array_equal(domain["image_size"], [300, 200])
     assert np.issubdtype(domain["image_size"].dtype, np.integer)
     outline, cage, vertices = domain["outline"], domain["cage"], domain["vertices"]
@@ -59,6 +64,33 @@ def test_the_file_is_as_documented(drawing, tmp_path, capsys):
     assert areas.min() > 0
     assert_allclose(areas.sum(), polygon.signed_area(outline), rtol=1e-9, atol=0)
     assert abs(len(areas) - 3000) <= 150
+
+
+def test_holes_are_kept_where_they_are_wanted(drawing, tmp_path, capsys):
+    out, preview = tmp_path / "d.npz", tmp_path / "p.png"
+    words = ["domain", drawing, "--out", out, "--holes", "keep", "--preview", preview]
+    assert main([*map(str, words), "--triangles", "3000"]) == 0
+    said = capsys.readouterr()
+    assert "hole" not in said.err
+    assert "1 hole, " in said.out
+    with np.load(out) as file:
+        domain = dict(file)
+    (size,), (cage_size,), (centre,) = (
+        domain[f"hole_{name}"] for name in ("outline_sizes", "cage_sizes", "centres")
+    )
+    hole, cage = domain["hole_outlines"], domain["hole_cages"]
+    assert (len(hole), len(cage)) == (size, cage_size)
+    polygon.require_holes([hole], domain["outline"])
+    polygon.require_simple(cage, "cage", clockwise=True)
+    assert polygon.lies_within(cage, hole)
+    assert polygon.contains(cage, np.array([centre])).all()
+    assert abs(centre - (80 + 130j)) < 1.5
+    corners = domain["vertices"][domain["triangles"]]
+    areas = ((corners[:, 1] - corners[:, 0]).conj() * (corners[:, 2] - corners[:, 0])).imag / 2
+    assert areas.min() > 0
+    whole = polygon.signed_area(domain["outline"]) + polygon.signed_area(hole)
+    assert_allclose(areas.sum(), whole, rtol=1e-9, atol=0)
+    assert preview.stat().st_size > 0
 
 
 def test_the_preview_shows_picture_outline_cage_and_mesh(drawing, tmp_path):
