@@ -137,6 +137,8 @@ class Shell:
         io = imgui.get_io()
         io.config_flags |= imgui.ConfigFlags_.docking_enable
         io.config_windows_move_from_title_bar_only = True
+        # One click on a number edits it: what is typed next is meant for it, and not for shortcuts.
+        io.config_drag_click_to_input_text = True
         allow_recovery()
         implot.create_context()
 

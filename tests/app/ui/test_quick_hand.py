@@ -3,7 +3,7 @@
 import pytest
 from imgui_bundle import imgui
 
-from app.editor.actions import posing
+from app.editor.actions import editing, posing
 from app.storage.assets import sample_images
 
 
@@ -59,6 +59,30 @@ def test_it_takes_the_upper_one_of_two_handles(window, project):
     window.frames(3)
     press(window, project, 0.9)
     assert project.selected == {2}
+
+
+def test_two_drags_in_adjacent_frames_are_two_steps(window, project):
+    before = project.document
+    at = 0.1
+    for share in (0.15, 0.12):
+        point(window, project, at)
+        window.frames(1)
+        hold(is_down=True)
+        window.frames(1)
+        point(window, project, share)
+        window.frames(1)
+        hold(is_down=False)
+        window.frames(1)
+        at = share
+        window.session.jobs.settle()
+    window.settle()
+    places = []
+    while project.document is not before:
+        places.append(project.figure.keys[0].pose.targets[0].position.real)
+        editing.undo(window.session)
+        window.settle()
+    assert len(places) == 2
+    assert places[0] < places[1]
 
 
 def test_a_drag_goes_to_where_the_button_is_let_go(window, project):

@@ -445,3 +445,27 @@ def test_last_frame_and_speed_are_typed(window, project, play):
     play(lambda hand: hand.robot.item_input_value("##fps", 12))
     assert project.document.fps == 12
     assert undo_all(window) == 2
+
+
+@pytest.mark.parametrize("field", ["frame", "fps"])
+def test_one_click_on_a_number_takes_what_is_typed(window, project, field):
+    """The keys 1, b and n would zoom and set the playback range."""
+    before, camera = project.document, project.camera
+
+    def type_into(robot):
+        robot.set_ref("Timeline")
+        robot.mouse_move_to_pos(robot.item_info(f"**/##{field}").rect_full.get_center())
+        robot.mouse_click(0)
+        robot.yield_(2)
+        assert imgui.get_io().want_text_input
+        robot.key_chars_replace_enter("12")
+
+    window.run(type_into)
+    window.settle()
+    assert project.camera is camera
+    assert project.document.work == before.work
+    told = {
+        "frame": playback.current_frame(window.session, project),
+        "fps": project.document.fps,
+    }
+    assert told[field] == 12
