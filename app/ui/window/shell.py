@@ -7,7 +7,7 @@ from pathlib import Path
 
 from imgui_bundle import ImVec2, hello_imgui, imgui, implot
 
-from app.editor import Action, Session, do, sentence
+from app.editor import Action, FileDialog, Session, do, sentence
 from app.editor.actions import editing, playback, saving, upkeep
 from app.errors import EXPECTED_ERRORS
 from app.render import Thumbnail
@@ -21,7 +21,9 @@ from app.ui.window.guard import allow_recovery, guard
 
 # Saved layouts of another number are forgotten: they name other panels.
 LAYOUT = 1
-IDLE_FPS = 10.0
+# Input wakes the window at once, and so does all that goes on by itself.
+IDLE_FPS = 0.2
+AWAKE = 0.5  # seconds for which it goes on after that, for what it leads to
 LEFT = imgui.MouseButton_.left
 
 
@@ -50,6 +52,7 @@ class Shell:
         self._themed: tuple[str, float] | None = None
         self._dialogs = Dialogs()
         self._actions: list[Action] = []
+        self._awake_until = 0.0
 
     def runner_params(self) -> hello_imgui.RunnerParams:
         """Return what Hello ImGui needs to know; platform and renderer are left to the caller."""
@@ -78,6 +81,7 @@ class Shell:
             hello_imgui.EdgeToolbarType.left, self._part("The icon bar", bars.draw_icons), options
         )
         params.fps_idling.fps_idle = IDLE_FPS
+        params.fps_idling.time_active_after_last_event = AWAKE
         return params
 
     def ask(self, action: Action) -> None:
@@ -165,8 +169,9 @@ class Shell:
         playback.halt_at_end(session)
         # Panels are to see the frame that it is by now.
         self._attempt(partial(upkeep.keep_up, session))
-        moving = session.project is not None and session.project.playhead.since is not None
-        if moving or session.jobs.kinds or session.toasts or session.export is not None:
+        if _is_busy(session):
+            self._awake_until = session.clock() + AWAKE
+        if session.clock() < self._awake_until:
             hello_imgui.request_refresh()
 
     def _draw_over_panels(self) -> None:
@@ -204,3 +209,13 @@ class Shell:
             self.session.tell(sentence(str(error)), tone="error")
         except Exception as error:  # noqa: BLE001 - part of the frame guard
             self._report(f"That did not work: {error}", traceback.format_exc())
+
+
+def _is_busy(session: Session) -> bool:
+    """Tell whether something changes without the person doing anything."""
+    project = session.project
+    is_moving = project is not None and project.playhead.since is not None
+    # The system's own dialog has its own input, and is asked for its answer.
+    asks_system = session.system_dialogs and isinstance(session.dialog, FileDialog)
+    is_working = bool(session.jobs.kinds) or session.export is not None
+    return is_moving or is_working or asks_system or bool(session.toasts)

@@ -1,9 +1,10 @@
 import numpy as np
 import pytest
-from imgui_bundle import ImVec2, imgui
+from imgui_bundle import ImVec2, hello_imgui, imgui
 from PIL import Image
 
-from app.editor.actions import editing, posing, saving, viewing
+from app.editor.actions import editing, playback, posing, saving, viewing
+from app.editor.jobs import Job
 from app.storage.assets import sample_images
 from app.ui.style import PALETTES
 from app.ui.style.widgets import shortened
@@ -171,6 +172,48 @@ def test_a_gesture_is_as_far_on_a_finer_screen(window, fine_screen, bar):
     window.settle()
     target = bar.document.figures[0].keys[0].pose.targets[1]
     assert abs(target.position - (start + 100j)) < 2
+
+
+@pytest.fixture
+def refreshes(monkeypatch):
+    """How often the window asked for its next frame at once."""
+    asked = []
+    monkeypatch.setattr(hello_imgui, "request_refresh", lambda: asked.append(True))
+    return asked
+
+
+def test_nothing_is_drawn_anew_where_nothing_changes(window, refreshes, tmp_path):
+    project = window.open(sample_images() / "bar.png")
+    saving.write(window.session, tmp_path / "bar.lissom", None)
+    window.settle()
+    window.session.toasts = []
+    window.frames(60)
+    refreshes.clear()
+    window.frames(60)
+    assert refreshes == []
+    playback.toggle_play(window.session)
+    window.frames(10)
+    assert len(refreshes) == 10
+    playback.toggle_play(window.session)
+    window.frames(60)
+    refreshes.clear()
+    window.frames(10)
+    assert refreshes == []
+    assert project.playhead.since is None
+
+
+def test_what_a_job_leads_to_is_drawn_at_once(window, refreshes):
+    window.open(sample_images() / "bar.png")
+    window.frames(120)
+    done = []
+    job = Job(kind="A job", work=lambda: 0, done=done.append, failed=done.append)
+    window.session.jobs.put(job)
+    window.session.jobs.settle()
+    window.frames(1)
+    assert done == [0]
+    refreshes.clear()
+    window.frames(3)
+    assert len(refreshes) == 3
 
 
 def test_a_tooltip_covers_no_message(window, bar):

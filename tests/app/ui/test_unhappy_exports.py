@@ -87,6 +87,7 @@ def test_window_gives_an_export_a_share_of_each_frame_and_never_idles_meanwhile(
     assert steps[-1] == FRAMES
     assert max(np.diff([0, *steps])) <= 2  # of them use the share up
     session.toasts = []
+    window.frames(40)  # what it leads to is drawn yet
     awake.clear()
     window.frames(2)
     assert not awake
