@@ -36,6 +36,16 @@ def test_small_pictures_stay_as_they_are(tmp_path):
     assert (read_thumbnail(path) == RGBA[:20, :30]).all()
 
 
+def test_large_photographs_are_read_at_a_fraction_and_turned_upright(tmp_path):
+    exif = Image.Exif()
+    exif[0x0112] = 6
+    path = tmp_path / "a.jpg"
+    Image.new("RGB", (4000, 3000), (200, 30, 90)).save(path, exif=exif)
+    small = read_thumbnail(path)
+    assert small.shape[:2] == (SIDE, SIDE * 3 // 4)
+    assert np.abs(small[9, 9, :3].astype(int) - (200, 30, 90)).max() <= 4
+
+
 def test_what_has_no_picture_has_no_thumbnail(tmp_path):
     assert read_thumbnail(tmp_path / "missing.png") is None
     assert read_thumbnail(tmp_path / "missing.lissom") is None
