@@ -138,9 +138,10 @@ def _animation(clip: Clip, motion: Motion) -> Animation:
 def cancel(session: Session) -> None:
     """Give the export up; frames that are written stay."""
     session.jobs.drop(PREPARING)
-    if session.export is not None:
-        session.export = None
-        session.tell("The export was cancelled. Frames that were written stay.")
+    run, session.export = session.export, None
+    if run is not None:
+        left = "Nothing was written" if _is_one_file(run) else "Frames that were written stay"
+        session.tell(f"The export was cancelled. {left}.")
 
 
 def unless_running(session: Session, then: Action) -> None:
@@ -151,13 +152,17 @@ def unless_running(session: Session, then: Action) -> None:
         return
     done, total = (run.done, len(run.plan.times)) if run is not None else (0, 0)
     how_far = f"{done} of {total} frames are drawn." if total else "It is being prepared."
-    is_one_file = run is not None and EXPORT_FORMATS[run.plan.format].suffixes
-    left = "No file is left" if is_one_file else "Frames that are written stay"
+    is_lost = run is not None and _is_one_file(run)
+    left = "Nothing is written" if is_lost else "Frames that are written stay"
     session.dialog = Question(
         title="An export is running",
         text=f"{how_far} {left} if it ends now.",
         answers=(("Quit", then),),
     )
+
+
+def _is_one_file(run: ExportRun) -> bool:
+    return bool(EXPORT_FORMATS[run.plan.format].suffixes)
 
 
 def advance(session: Session, run: ExportRun, done: int) -> None:

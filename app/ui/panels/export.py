@@ -206,7 +206,8 @@ def _output(session: Session, look: Look, project: Project) -> list[Action]:
             imgui.progress_bar(-0.5 * imgui.get_time(), ImVec2(FILL, 0), "Preparing…")
         else:
             total = len(run.plan.times)
-            imgui.progress_bar(run.done / total, ImVec2(FILL, 0), f"{run.done} of {total}")
+            text = f"{run.done} of {total}" if run.done < total else "Finishing…"
+            imgui.progress_bar(run.done / total, ImVec2(FILL, 0), text)
         if imgui.button("Cancel###stop", ImVec2(FILL, 0)):
             actions.append(do(exporting.cancel))
         return actions

@@ -208,6 +208,7 @@ def test_cancelled_file_is_not_there(window, tmp_path, name):
     window.act(exporting.cancel)
     window.settle()
     assert list(tmp_path.iterdir()) == []
+    assert "The export was cancelled. Nothing was written." in texts(window)
     window.act(exporting.start, tmp_path / name)
     window.settle()
     finish(window)
