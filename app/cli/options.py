@@ -1,10 +1,11 @@
 """Options that several subcommands share, and the words that they choose from.
 
-Every word stands here once more, so that usage is checked without loading what the words choose; a
-test compares them with it.
+Words and defaults stand here once more where what they choose takes long to load, so that usage is
+told at once; a test compares them with it.
 """
 
 import argparse
+import re
 from pathlib import Path
 
 from app.errors import LissomError
@@ -14,6 +15,7 @@ DETAILS = ("coarse", "normal", "fine")
 HOLES = ("fill", "keep")
 DEFAULT_DETAIL = "normal"
 DEFAULT_TRIANGLES = 100_000
+DEFAULT_TOLERANCE = 18
 VARIANTS = tuple(Variant)
 FRAMINGS = ("canvas", "fit")
 
@@ -49,6 +51,43 @@ def add_meshing_options(parser: argparse.ArgumentParser) -> None:
         default=DEFAULT_DETAIL,
         help="how closely the outline follows the subject (default: %(default)s)",
     )
+
+
+def add_background_options(parser: argparse.ArgumentParser) -> None:
+    """Declare what of a picture is its subject: `background`, `tolerance` and `mask`."""
+    either = parser.add_mutually_exclusive_group()
+    either.add_argument(
+        "--background",
+        metavar="WHICH",
+        type=_background,
+        default="auto",
+        help="what is removed from an opaque picture: auto, none, or a colour such as #ffffff that "
+        "reaches its border (default: %(default)s)",
+    )
+    either.add_argument(
+        "--mask",
+        metavar="MASK.png",
+        type=input_file,
+        help="a picture of the same size: white is kept, black is removed",
+    )
+    parser.add_argument(
+        "--tolerance",
+        metavar="N",
+        type=int,
+        default=DEFAULT_TOLERANCE,
+        help="levels by which the background may vary, 0 to 255 (default: %(default)s)",
+    )
+
+
+def _background(text: str) -> str | tuple[int, int, int]:
+    if text in {"auto", "none"}:
+        return text
+    if re.fullmatch("#[0-9a-fA-F]{6}", text) is None:
+        raise argparse.ArgumentTypeError(
+            f"expected auto, none, or a colour such as #ffffff, not {text!r}"
+        )
+    red, green, blue = bytes.fromhex(text[1:])
+    return red, green, blue
 
 
 def add_variant_option(parser: argparse.ArgumentParser) -> None:

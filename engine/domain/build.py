@@ -1,13 +1,14 @@
 """From pixels to a domain: outline, cage and triangulation (Section 7; Chen and Weber 2015)."""
 
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 
-from engine.arrays import Bytes, Complexes, Floats
+from engine.arrays import Booleans, Bytes, Complexes, Floats
 from engine.domain.meshing import Mesh, triangulate, with_limbs_on_top
 from engine.domain.outline import Detail, Hole, Holes, enclose
-from engine.domain.picture import subject_mask
+from engine.domain.picture import Colour, subject_mask
 from engine.errors import EngineError
 from engine.geometry import deepest_point
 
@@ -49,7 +50,14 @@ class Domain:
 
 
 def build_domain(
-    rgba: Bytes, *, triangles: int, detail: Detail, tolerance: int = 18, holes: Holes = "fill"
+    rgba: Bytes,
+    *,
+    triangles: int,
+    detail: Detail,
+    tolerance: int = 18,
+    background: Literal["auto", "none"] | Colour = "auto",
+    mask: Booleans | None = None,
+    holes: Holes = "fill",
 ) -> tuple[Domain, tuple[str, ...]]:
     """Find the subject of a picture and build its domain.
 
@@ -61,8 +69,8 @@ def build_domain(
         How many triangles to aim at, 1,000 to 2,000,000.
     detail : Detail
         How closely the outline follows the subject.
-    tolerance : int
-        Levels by which the background of an opaque picture may vary.
+    tolerance, background, mask
+        How the subject is told from what is around it, as `subject_mask` has it.
     holes : {"fill", "keep"}
         Whether large holes of the subject stay holes.
 
@@ -82,7 +90,7 @@ def build_domain(
             f"The number of triangles must be between {FEWEST_TRIANGLES:,} and "
             f"{MOST_TRIANGLES:,}, not {triangles:,}."
         )
-    subject = subject_mask(rgba, tolerance=tolerance)
+    subject = subject_mask(rgba, tolerance=tolerance, background=background, mask=mask)
     enclosure = enclose(subject.mask, detail=detail, holes=holes)
     loops = [hole.outline for hole in enclosure.holes]
     domain = Domain(

@@ -3,7 +3,12 @@
 import argparse
 from pathlib import Path
 
-from app.cli.options import HOLES, add_meshing_options, input_file
+from app.cli.options import (
+    HOLES,
+    add_background_options,
+    add_meshing_options,
+    input_file,
+)
 
 EPILOG = """\
 The picture may be a PNG, JPEG, GIF, WebP, AVIF, TIFF, BMP, TGA, PPM or ICO. Transparent pixels are
@@ -29,6 +34,7 @@ examples:
   lissom domain giraffe.png --out giraffe.npz --detail fine --preview preview.png
   lissom domain icon.png --out icon.npz --triangles 5000
   lissom domain cup.png --out cup.npz --holes keep
+  lissom domain photo.jpg --out photo.npz --background "#8fb0d0" --tolerance 40
 """
 
 
@@ -40,6 +46,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--out", metavar="DOMAIN.npz", type=Path, required=True, help="where to write"
     )
     add_meshing_options(parser)
+    add_background_options(parser)
     parser.add_argument(
         "--holes",
         choices=HOLES,

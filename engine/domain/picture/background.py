@@ -8,6 +8,8 @@ from scipy import ndimage
 from engine.arrays import Booleans, Bytes
 from engine.domain.picture.grid import block_factor, reduce_blocks, repeat_blocks
 
+Colour = tuple[int, int, int]  # red, green, blue, each 0 to 255
+
 WORKING_SIDE = 1400  # pixels: larger pictures are flooded in blocks
 COLOUR_BIN = 16  # levels: how finely colours are told apart when the border votes
 CHANNEL_WIDTH = 0.006  # of the diagonal: the flood passes no channel that is narrower
@@ -29,7 +31,7 @@ class Background:
     agreement: float
 
 
-def flood_background(rgb: Bytes, tolerance: int) -> Background:
+def flood_background(rgb: Bytes, tolerance: int, colour: Colour | None = None) -> Background:
     """Find the background of an opaque picture as what its border's colour floods.
 
     Parameters
@@ -37,6 +39,8 @@ def flood_background(rgb: Bytes, tolerance: int) -> Background:
     rgb : uint8, shape (h, w, 3)
     tolerance : int
         Levels by which each channel of a background pixel may differ from the border's colour.
+    colour : tuple of int, optional
+        Red, green and blue of the background where it is not the colour of most of the border.
 
     Notes
     -----
@@ -45,7 +49,8 @@ def flood_background(rgb: Bytes, tolerance: int) -> Background:
     morphological opening); then the thin remains that touch it are added, without what lies
     behind them. Pictures above 1,400 pixels are flooded in blocks and refined to pixels after.
     """
-    alike = _alike(rgb, _border_colour(rgb), tolerance)
+    wanted = _border_colour(rgb) if colour is None else np.array(colour, dtype=np.uint8)
+    alike = _alike(rgb, wanted, tolerance)
     agreement = float(_border(alike).mean())
     factor = block_factor(alike.shape, WORKING_SIDE)
     flooded = _flood(reduce_blocks(alike, factor, np.logical_and))

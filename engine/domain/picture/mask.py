@@ -1,11 +1,12 @@
 """From a picture to the mask of its subject."""
 
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 
 from engine.arrays import Booleans, Bytes, readonly
-from engine.domain.picture.background import flood_background
+from engine.domain.picture.background import Colour, flood_background
 from engine.errors import EngineError
 
 VISIBLE_ALPHA = 8  # of 255: what is fainter may be left out, what is not must be kept
@@ -32,7 +33,13 @@ class Subject:
     notices: tuple[str, ...]
 
 
-def subject_mask(rgba: Bytes, *, tolerance: int = 18) -> Subject:
+def subject_mask(
+    rgba: Bytes,
+    *,
+    tolerance: int = 18,
+    background: Literal["auto", "none"] | Colour = "auto",
+    mask: Booleans | None = None,
+) -> Subject:
     """Find the subject of a picture: what is not transparent, or stands on a plain background.
 
     Parameters
@@ -41,6 +48,11 @@ def subject_mask(rgba: Bytes, *, tolerance: int = 18) -> Subject:
         Straight alpha, first row on top.
     tolerance : int
         Levels, 0 to 255, by which the background of an opaque picture may vary.
+    background : {"auto", "none"} or tuple of int
+        Whether a background is removed from an opaque picture: where most of its border has one
+        colour, never, or what has this colour, be it opaque or not.
+    mask : bool, shape (h, w), optional
+        True where the picture shows the subject; then nothing is looked for.
 
     Returns
     -------
@@ -50,7 +62,8 @@ def subject_mask(rgba: Bytes, *, tolerance: int = 18) -> Subject:
     Raises
     ------
     EngineError
-        If the picture is empty, fully transparent, or its subject is under 8 pixels across.
+        If the picture is empty, fully transparent, or its subject is under 8 pixels across; if a
+        mask has another size, or a colour levels that are none.
     """
     if rgba.ndim != 3 or rgba.shape[2] != 4 or rgba.dtype != np.uint8:
         raise EngineError(f"A picture must be uint8 (h, w, 4), not {rgba.dtype} {rgba.shape}.")
@@ -62,13 +75,54 @@ def subject_mask(rgba: Bytes, *, tolerance: int = 18) -> Subject:
     count = np.count_nonzero(visible)
     if count == 0:
         raise EngineError("The picture is fully transparent; give one with a visible drawing.")
-    if count >= OPAQUE_SHARE * visible.size:
-        mask, notices = _without_background(rgba[..., :3], tolerance)
-        mask &= visible
+    notices: tuple[str, ...] = ()
+    if mask is not None:
+        subject = _masked(rgba[..., 3] > 0, mask)
+    elif isinstance(background, tuple):
+        subject, notices = _without_colour(rgba, tolerance, background)
+    elif count >= OPAQUE_SHARE * visible.size:
+        if background == "none":
+            subject = visible
+        else:
+            subject, notices = _without_background(rgba[..., :3], tolerance)
+            subject &= visible
     else:
-        mask, notices = _without_transparency(rgba[..., 3], visible)
-    _require_size(mask)
-    return Subject(mask=readonly(mask), notices=notices)
+        subject, notices = _without_transparency(rgba[..., 3], visible)
+    _require_size(subject)
+    return Subject(mask=readonly(subject), notices=notices)
+
+
+def _masked(visible: Booleans, mask: Booleans) -> Booleans:
+    """Return what a mask keeps of a picture."""
+    if mask.shape != visible.shape:
+        height, width = visible.shape
+        raise EngineError(
+            f"The mask has {mask.shape[1]} × {mask.shape[0]} pixels and the picture "
+            f"{width} × {height}; give a mask of the picture's size."
+        )
+    subject: Booleans = visible & mask
+    if not subject.any():
+        raise EngineError("The mask keeps nothing of the picture; make white what is to be kept.")
+    return subject
+
+
+def _without_colour(
+    rgba: Bytes, tolerance: int, colour: Colour
+) -> tuple[Booleans, tuple[str, ...]]:
+    """Return what is left where a colour has flooded the picture from its border."""
+    if not all(0 <= level <= 255 for level in colour):
+        raise EngineError(f"The levels of a background's colour are 0 to 255, not {colour}.")
+    visible = rgba[..., 3] > 0
+    rgb = np.where(visible[..., None], rgba[..., :3], np.array(colour, dtype=np.uint8))
+    flooded = flood_background(rgb, tolerance, colour).mask & visible
+    name = "#{:02x}{:02x}{:02x}".format(*colour)
+    if not flooded.any():
+        return visible, (f"no background of the colour {name} at the picture's border",)
+    if not (visible & ~flooded).any():
+        raise EngineError(
+            f"Nothing is left without the background of the colour {name}; lower the tolerance."
+        )
+    return visible & ~flooded, (f"background removed ({flooded.mean():.0%} of the picture)",)
 
 
 def _without_transparency(alpha: Bytes, visible: Booleans) -> tuple[Booleans, tuple[str, ...]]:

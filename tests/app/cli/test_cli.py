@@ -83,6 +83,8 @@ except SystemExit as leaving:
         ("domain", 2),
         ("domain {here} --out x.npz --detail finest", 2),
         ("domain no.png --out x.npz", 2),
+        ("domain {here} --out x.npz --background blue", 2),
+        ("domain {here} --out x.npz --background none --mask {here}", 2),
         ("pose no.png no.json --out x.lissom", 2),
         ("certify no.lissom", 2),
         ("certify {here} --variant mu", 2),
@@ -113,6 +115,7 @@ def test_the_words_to_choose_from_are_those_that_the_program_knows():
     defaults = Meshing()
     assert defaults.detail == options.DEFAULT_DETAIL
     assert defaults.triangles == options.DEFAULT_TRIANGLES
+    assert defaults.tolerance == options.DEFAULT_TOLERANCE
 
 
 def test_every_command_says_what_it_understands_and_does_it():

@@ -93,6 +93,58 @@ def test_holes_are_kept_where_they_are_wanted(drawing, tmp_path, capsys):
     assert preview.stat().st_size > 0
 
 
+@pytest.fixture
+def photo(tmp_path):
+    """A disc before a background of two colours: most of the border is none of them."""
+    pixels = np.full((120, 160, 3), (40, 160, 70), np.uint8)
+    pixels[:, 90:] = (90, 120, 210)
+    y, x = np.mgrid[:120, :160]
+    pixels[np.hypot(x - 50, y - 60) < 30] = (230, 200, 40)
+    path = tmp_path / "photo.png"
+    Image.fromarray(pixels).save(path)
+    return path
+
+
+def built(photo, tmp_path, *words):
+    out = tmp_path / "d.npz"
+    assert main(["domain", str(photo), "--out", str(out), "--triangles", "1000", *words]) == 0
+    with np.load(out) as file:
+        return file["outline"]
+
+
+def test_a_background_is_told_by_its_colour(photo, tmp_path, capsys):
+    inside = np.array([50 + 60j, 20 + 20j, 130 + 60j])
+    for words, expected, said in (
+        ([], [True, True, True], "kept as a whole rectangle"),
+        (["--background", "none"], [True, True, True], ""),
+        (["--background", "#28a046"], [True, False, True], "background removed"),
+        (["--background", "#ff00ff"], [True, True, True], "no background of the colour #ff00ff"),
+        (["--background", "#28a046", "--tolerance", "145"], [True, False, False], "removed"),
+    ):
+        outline = built(photo, tmp_path, *words)
+        assert polygon.contains(outline, inside).tolist() == expected, words
+        assert said in capsys.readouterr().err
+
+
+def test_a_mask_says_what_is_kept(photo, tmp_path, capsys):
+    mask = np.zeros((120, 160), np.uint8)
+    mask[30:90, 20:80] = 255
+    path = tmp_path / "mask.png"
+    Image.fromarray(mask).save(path)
+    outline = built(photo, tmp_path, "--mask", str(path))
+    assert_allclose(outline.real.min(), 20, rtol=0, atol=1.5)
+    assert_allclose(outline.imag.max(), 90, rtol=0, atol=1.5)
+    for bad, reason in (
+        (mask[1:], "160 × 119 pixels and the picture 160 × 120"),
+        (0 * mask, "keeps nothing"),
+    ):
+        Image.fromarray(bad).save(path)
+        words = ["domain", photo, "--out", tmp_path / "e.npz", "--mask", path]
+        assert reason in error_of(words, capsys)
+    missing = ["domain", photo, "--out", tmp_path / "e.npz", "--mask", tmp_path / "none.png"]
+    assert "No such file" in error_of(missing, capsys)
+
+
 def test_the_preview_shows_picture_outline_cage_and_mesh(drawing, tmp_path):
     words = ["domain", drawing, "--out", tmp_path / "d.npz", "--triangles", 2000]
     assert main([str(w) for w in (*words, "--preview", tmp_path / "p.png")]) == 0
