@@ -52,7 +52,9 @@ def facts(session: Session) -> list[Fact]:
     if session.solver_seconds:
         milliseconds = 1e3 * session.solver_seconds
         facts.append(Fact(f"pose {milliseconds:.0f} ms", "What the last step of a pose took"))
-    return [*facts, Fact(f"{imgui.get_io().framerate:.0f} fps", "Frames per second")]
+    if project is not None and project.playhead.since is not None:
+        facts.append(Fact(f"{imgui.get_io().framerate:.0f} fps", "Frames drawn in a second"))
+    return facts
 
 
 def _distortion(project: Project) -> Fact | None:

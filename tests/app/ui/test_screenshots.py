@@ -1,4 +1,4 @@
-"""The main states as pictures: `pytest tests/ui/test_ui_screenshots.py --screenshots DIR`."""
+"""The main states as pictures: `pytest tests/app/ui/test_screenshots.py --screenshots DIR`."""
 
 from pathlib import Path
 
@@ -8,7 +8,9 @@ import pytest
 from app.document.keyframe import Target
 from app.document.settings import Meshing
 from app.editor.actions import editing, playback, posing, viewing
+from app.render import heat_ramp
 from app.storage.assets import sample_images
+from app.ui.style import PALETTES
 
 SIZES = {"1280": ((1280, 800), 1.0), "2560": ((2560, 1440), 2.0)}
 # Where the handles go, as shares of the picture, and by how much two of them move in two keys.
@@ -46,15 +48,15 @@ def dragon(window):
 
 @pytest.fixture
 def save(window, request, tmp_path):
-    """Takes a picture of a state, which must show something; asked for, in all themes and sizes."""
+    """Takes a picture of a state and returns it; asked for, in all themes and sizes."""
     wanted = request.config.getoption("--screenshots", default=None)
     folder = Path(wanted or tmp_path)
     sizes = SIZES if wanted else {"1280": SIZES["1280"]}
-    themes = ("dark", "light") if wanted else ("dark",)
+    themes = ("light", "dark") if wanted else ("dark",)
     folder.mkdir(parents=True, exist_ok=True)
 
     def take(state):
-        for size, (pixels, scale) in sizes.items():
+        for size, (pixels, scale) in reversed(sizes.items()):
             window.resize(pixels, scale)
             for theme in themes:
                 if window.session.preferences.theme != theme:
@@ -63,37 +65,99 @@ def save(window, request, tmp_path):
                 window.frames(10)
                 picture = window.picture()
                 picture.save(folder / f"{state}-{theme}-{size}.png")
-                assert len(np.unique(np.asarray(picture).reshape(-1, 3), axis=0)) > 50
-        window.resize(SIZES["1280"][0])
+        return np.asarray(picture).astype(int)  # the dark one at 1280 pixels
 
     return take
 
 
-def test_screenshots_of_the_main_states(window, dragon, save):  # noqa: ARG001
-    session = window.session
+def near(picture, colour, tolerance=6):
+    """Return where a picture has a colour of the theme."""
+    level = [round(255 * channel) for channel in (colour.x, colour.y, colour.z)]
+    return np.abs(picture - level).max(axis=2) <= tolerance
+
+
+def around(window, picture, place, reach=9):
+    """Return what a picture shows around a place of the drawing."""
+    point = window.point(place)
+    x, y = round(point.x), round(point.y)
+    return picture[y - reach : y + reach + 1, x - reach : x + reach + 1]
+
+
+def in_viewport(picture):
+    return picture[40:570, 60:890]
+
+
+def differs(picture, other):
+    """Return which share of a picture is not as another."""
+    return float((np.abs(picture - other).max(axis=2) > 12).mean())
+
+
+def test_screenshots_of_the_main_states(window, dragon, save):
+    session, palette = window.session, PALETTES["dark"]
     playback.seek(session, 16)
     editing.select(session, frozenset({0}))
-    save("posing")
-    viewing.toggle(session, "onion")
+    posing_ = save("posing")
+    for number, place in enumerate(dragon.puppet.shown.handle_places):
+        mark = around(window, posing_, complex(place))
+        assert (mark.min(axis=2) > 225).sum() > 8, number
+        is_blue = (mark[..., 2] > 200) & (mark[..., 0] < 90)
+        assert (is_blue.sum() > 20) == (number != 0), number  # the selected one is yellow
+    assert near(posing_, palette.accent).sum() > 300  # playhead, switches, slider
+
     playback.seek(session, 10)
-    save("onion-skin")
+    plain = in_viewport(save("plain"))
+    viewing.toggle(session, "onion")
+    ghosts = in_viewport(save("onion-skin"))
+    tint = (ghosts - plain)[..., 0] - (ghosts - plain)[..., 2]
+    assert (tint > 20).sum() > 1000  # red before
+    assert (tint < -20).sum() > 1000  # blue after
+    assert differs(ghosts, plain) < 0.2
+
     viewing.toggle(session, "onion")
     playback.seek(session, 16)
     viewing.show_heat_map(session, "sigma_b")
     window.show_tab("Distortion")
-    save("heat-map")
+    heat = save("heat-map")
+    is_drawn = np.abs(in_viewport(posing_) - in_viewport(heat)).max(axis=2) > 12
+    assert is_drawn.mean() > 0.1  # all of the dragon, and nothing around it
+    assert is_drawn.mean() < 0.5
+    ramp = heat_ramp()[::16].astype(int)
+    panel = heat[60:200, 915:1270]
+    missing = [tone for tone in ramp if (np.abs(panel - tone).max(axis=2) < 10).sum() < 3]
+    assert len(missing) <= 2
+    assert near(heat[280:480, 915:1270], palette.danger).sum() > 300  # two limits
+
     viewing.show_heat_map(session, "none")
     window.show_tab("Export")
-    save("export")
+    export = save("export")
+    low, high = session.export_frame
+    for share in (0.2, 0.5, 0.8):
+        for edge in (
+            complex(low.real + share * (high - low).real, low.imag),
+            complex(low.real, low.imag + share * (high - low).imag),
+        ):
+            assert near(around(window, export, edge, 3), palette.accent, 30).any()
+
     window.show_tab("Handle")
     session.tell(
         "cow.png cannot be opened: it is damaged or cut short. Save it again, or take another.",
         tone="error",
     )
-    save("error")
+    error = save("error")
+    assert near(error[600:, 900:], palette.danger).sum() > 100
+    assert near(error[600:, 900:], palette.raised).mean() > 0.05
+    assert not near(posing_[600:, 900:], palette.danger).any()
+
     session.toasts = []
     viewing.show_shortcuts(session)
-    save("shortcuts")
+    sheet = save("shortcuts")
+    assert near(sheet[150:650, 150:1130], palette.text, 40).mean() > 0.005
+    assert in_viewport(sheet)[:30].mean() < 0.75 * in_viewport(posing_)[:30].mean()  # dimmed
+
     viewing.close_dialog(session)
     session.project = None
-    save("welcome")
+    welcome = save("welcome")
+    colours = welcome.max(axis=2) - welcome.min(axis=2)
+    columns = (colours[220:360] > 60).any(axis=0)
+    assert (np.diff(columns.astype(int)) == 1).sum() >= 4  # a row of pictures with gaps
+    assert near(welcome[200:280], palette.accent).sum() > 3000  # the button

@@ -22,14 +22,23 @@ def facts(window):
     return [fact.text for fact in bars.facts(window.session)]
 
 
-def test_without_a_project_it_shows_the_frames_per_second_only(window):
-    (fps,) = facts(window)
-    assert re.fullmatch(r"\d+ fps", fps)
+def test_frames_per_second_are_told_while_it_plays(window, bent):
+    """Else nothing is drawn, and their number says nothing of the machine."""
+    del bent
+    assert not any("fps" in fact for fact in facts(window))
+    playback.toggle_play(window.session)
+    window.frames(3)
+    assert re.fullmatch(r"\d+ fps", facts(window)[-1])
+    playback.toggle_play(window.session)
+
+
+def test_without_a_project_there_is_nothing_to_tell(window):
+    assert facts(window) == []
 
 
 def test_a_pose_shows_its_distortion_the_handles_and_the_solver(window, bent):
     window.session.solver_seconds = 0.0064  # the clock of the tests stands still in a job
-    shown, handles, solver, _ = facts(window)
+    shown, handles, solver = facts(window)
     proven = bent.document.figures[0].keys[1].pose.certificate
     uses = Extremes(proven.k, proven.sigma_a, proven.sigma_b).uses(bent.document.figures[0].bounds)
     most = max(uses, key=lambda use: use.share)
