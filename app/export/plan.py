@@ -141,7 +141,7 @@ def plan_export(
     ----------
     document : Document
     request : ExportRequest
-    poses : mapping of int to Poses
+    poses : mapping of int to KeptPoses
         One for each figure, by its id; looked at only where the framing depends on the motion.
     extent : Box, optional
         Around all of the motion, where that is known already.

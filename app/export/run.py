@@ -59,6 +59,7 @@ def export(
         _threads("poses", 1) as poses,
         _threads("encoder", ENCODERS) as encoders,
         _threads("writer", 1) as writers,
+        _stopped_early(writer),
     ):
         times = iter(plan.times)
         posed: deque[Future[T]] = deque()
@@ -90,6 +91,16 @@ def _come(due: Future[Any], count: int, *, waits: bool) -> Iterator[int]:
 
 def _add(writer: FrameWriter, encoded: Future[bytes]) -> None:
     writer.add(encoded.result())
+
+
+@contextmanager
+def _stopped_early(writer: FrameWriter) -> Iterator[None]:
+    """Let a writer stop where the block ends with an exception, before its threads are awaited."""
+    try:
+        yield
+    except BaseException:
+        writer.stop()
+        raise
 
 
 @contextmanager

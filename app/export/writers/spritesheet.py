@@ -1,7 +1,9 @@
 """All frames side by side in one PNG, row by row."""
 
+import io
 import math
-from typing import IO, Final
+import threading
+from typing import IO, Any, Final, cast
 
 import numpy as np
 
@@ -30,6 +32,7 @@ class SpritesheetWriter(FrameWriter):
 
     def __init__(self, file: IO[bytes], plan: ExportPlan) -> None:
         self._file = file
+        self._stopped = threading.Event()
         self._width, self._height = plan.view.size
         self._columns, rows = sheet_grid(plan)
         self._sheet = np.zeros((rows * self._height, self._columns * self._width, 4), np.uint8)
@@ -43,7 +46,24 @@ class SpritesheetWriter(FrameWriter):
 
     def finish(self) -> None:
         """Write the sheet."""
-        save_png(self._sheet, self._file)
+        save_png(self._sheet, cast(IO[bytes], _Stoppable(self._file, self._stopped)))
+
+    def stop(self) -> None:
+        """End the writing of the sheet, which may take seconds."""
+        self._stopped.set()
+
+
+class _Stoppable(io.BufferedIOBase):
+    """A file for writing that refuses to go on once it was stopped."""
+
+    def __init__(self, file: IO[bytes], stopped: threading.Event) -> None:
+        self._file = file
+        self._stopped = stopped
+
+    def write(self, buffer: Any) -> int:
+        if self._stopped.is_set():
+            raise LissomError("the export was stopped")
+        return self._file.write(buffer)
 
 
 def sheet_grid(plan: ExportPlan) -> tuple[int, int]:

@@ -311,6 +311,24 @@ def test_an_export_that_ends_early_leaves_whole_frames_only(tmp_path, format_, e
         assert list(tmp_path.iterdir()) == []
 
 
+def test_a_sheet_that_is_being_written_stops_at_once(tmp_path, monkeypatch):
+    begun, pieces = threading.Event(), []
+
+    def endless(_frame: Bytes, file) -> None:
+        begun.set()
+        while len(pieces) < 10**6:
+            pieces.append(file.write(b"piece"))
+
+    monkeypatch.setattr("app.export.writers.spritesheet.save_png", endless)
+    steps = export(plan_for(tmp_path / "sheet.png", "spritesheet"), at_once, draw, waits=False)
+    for _ in steps:
+        if begun.is_set():
+            break
+    steps.close()
+    assert len(pieces) < 10**6
+    assert list(tmp_path.iterdir()) == []
+
+
 def test_a_file_of_before_survives_an_export_that_fails(tmp_path):
     plan = plan_for(tmp_path / "animation.gif", "gif")
     plan.out.write_bytes(b"before")
