@@ -15,7 +15,7 @@ from app.document.commands import (
 )
 from app.document.easing import HOLD, LINEAR, PRESETS, Easing
 from app.document.figure import Figure, PictureFile, new_figure
-from app.document.history import History
+from app.document.history import History, UnkeyedPose
 from app.document.keyframe import MOST_TURNS, Handle, Keyframe, Pose, Target
 from app.document.model import Document
 from app.document.playhead import Playhead
@@ -70,6 +70,7 @@ __all__ = [
     "Pose",
     "Shortfall",
     "Target",
+    "UnkeyedPose",
     "Unknown",
     "Variant",
     "clip_of",

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 from app.document.commands import Command
 from app.document.figure import Figure
+from app.document.keyframe import Pose
 from app.document.model import Document
 
 MEMORY = 512 * 1024 * 1024
@@ -12,11 +13,21 @@ SNAPSHOT_BYTES = 2_000
 POSE_BYTES = 1_000
 
 
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class UnkeyedPose:
+    """A pose of a figure at a frame that no key holds: undone like all else, but not saved."""
+
+    figure: int
+    frame: int
+    pose: Pose
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Step:
     """What one action led to."""
 
     document: Document
+    unkeyed: UnkeyedPose | None
     label: str
 
 
@@ -34,11 +45,13 @@ class History:
     """
 
     def __init__(self, document: Document, *, saved: bool, memory: int = MEMORY) -> None:
-        self._steps = [Step(document, "")]
+        self._steps = [Step(document, None, "")]
         # _held[i]: bytes that only steps up to i keep alive, freed by forgetting step i.
         self._held = [0]
         self._now = 0
         self._gesture: object = None
+        # What the gesture's first command took the place of.
+        self._undone: list[Step] = []
         self._saved = document if saved else None
         self._memory = memory
 
@@ -46,6 +59,11 @@ class History:
     def document(self) -> Document:
         """The document as it is now."""
         return self._steps[self._now].document
+
+    @property
+    def unkeyed(self) -> UnkeyedPose | None:
+        """The pose that no key holds, if there is one."""
+        return self._steps[self._now].unkeyed
 
     @property
     def undo_label(self) -> str | None:
@@ -81,35 +99,55 @@ class History:
         LissomError
             If the command is not possible; then nothing has changed.
         """
-        document = command(self.document)
-        if document is self.document:
+        self._go_on(Step(command(self.document), self.unkeyed, command.label), gesture)
+
+    def pose(self, unkeyed: UnkeyedPose | None, *, gesture: object = None) -> None:
+        """Hold a pose outside of all keys in place of the one that is held so, or none any more."""
+        self._go_on(Step(self.document, unkeyed, "Pose"), gesture)
+
+    def take_back(self, gesture: object) -> None:
+        """Undo what a gesture did last, as if it had never begun; if it did nothing, stay."""
+        if gesture is None or gesture is not self._gesture:
             return
-        del self._steps[self._now + 1 :], self._held[self._now + 1 :]
-        if gesture is not None and gesture is self._gesture:
-            del self._steps[-1], self._held[-1]
-            if document is self._steps[-1].document:
-                self._now -= 1
-                self._held[-1] = 0
-                self._gesture = None
-                return
-        else:
-            self._now += 1
-            self._gesture = gesture
-        self._held[-1] = _held_only_by(self._steps[-1].document, document)
-        self._steps.append(Step(document, command.label))
-        self._held.append(0)
-        self._forget()
+        del self._steps[-1], self._held[-1]
+        self._now -= 1
+        self._held[-1] = 0
+        for step in self._undone:
+            self._append(step)
+        self._gesture, self._undone = None, []
 
     def undo(self) -> None:
         """Go back by one step, to the very document that was; without one, stay."""
         if self._now:
             self._now -= 1
-            self._gesture = None
+            self._gesture, self._undone = None, []
 
     def redo(self) -> None:
         """Go forward again by one step; without one, stay."""
         if self._now + 1 < len(self._steps):
             self._now += 1
+
+    def _go_on(self, step: Step, gesture: object) -> None:
+        if _is_same(step, self._steps[self._now]):
+            return
+        if gesture is not None and gesture is self._gesture:
+            if _is_same(step, self._steps[self._now - 1]):
+                self.take_back(gesture)
+                return
+            del self._steps[-1], self._held[-1]
+            self._now -= 1
+        else:
+            self._undone = [] if gesture is None else self._steps[self._now + 1 :]
+            del self._steps[self._now + 1 :], self._held[self._now + 1 :]
+            self._gesture = gesture
+        self._append(step)
+        self._now += 1
+        self._forget()
+
+    def _append(self, step: Step) -> None:
+        self._held[-1] = _held_only_by(self._steps[-1], step)
+        self._steps.append(step)
+        self._held.append(0)
 
     def _forget(self) -> None:
         excess = sum(self._held) - self._memory
@@ -121,12 +159,19 @@ class History:
         self._now -= count
 
 
-def _held_only_by(old: Document, new: Document) -> int:
+def _is_same(step: Step, other: Step) -> bool:
+    return step.document is other.document and step.unkeyed is other.unkeyed
+
+
+def _held_only_by(old: Step, new: Step) -> int:
     """Return the bytes of `old` that `new` does not share."""
-    figures = {figure.id: figure for figure in new.figures}
-    return SNAPSHOT_BYTES + sum(
-        _figure_held_only_by(figure, figures.get(figure.id)) for figure in old.figures
+    figures = {figure.id: figure for figure in new.document.figures}
+    held = SNAPSHOT_BYTES + sum(
+        _figure_held_only_by(figure, figures.get(figure.id)) for figure in old.document.figures
     )
+    if old.unkeyed is not None and old.unkeyed is not new.unkeyed:
+        held += POSE_BYTES + old.unkeyed.pose.phi.nbytes + old.unkeyed.pose.psi.nbytes
+    return held
 
 
 def _figure_held_only_by(old: Figure, new: Figure | None) -> int:

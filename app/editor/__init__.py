@@ -6,30 +6,26 @@ Imports: every room below but the command line and the panels.
 """
 
 from app.editor.action import Action, do
+from app.editor.dialogs import Dialog, FileDialog, Question, ShortcutSheet
 from app.editor.failures import sentence
 from app.editor.jobs import Jobs
+from app.editor.project import PoseInProgress, Project, Puppet
 from app.editor.session import (
-    Boxing,
+    BoxMark,
     CurveKind,
-    Dialog,
     ExportRun,
-    FileDialog,
     HeatMap,
     Overlays,
-    Project,
-    Pulling,
-    Puppet,
-    Question,
     Session,
-    ShortcutSheet,
+    SweepMark,
     Toast,
-    Turning,
+    ToolInHand,
 )
 from app.editor.timeline_view import Edge, EdgeDrag, KeyBox, KeyDrag, Scrub, Strip, TimeGesture
 
 __all__ = [
     "Action",
-    "Boxing",
+    "BoxMark",
     "CurveKind",
     "Dialog",
     "Edge",
@@ -41,17 +37,18 @@ __all__ = [
     "KeyBox",
     "KeyDrag",
     "Overlays",
+    "PoseInProgress",
     "Project",
-    "Pulling",
     "Puppet",
     "Question",
     "Scrub",
     "Session",
     "ShortcutSheet",
     "Strip",
+    "SweepMark",
     "TimeGesture",
     "Toast",
-    "Turning",
+    "ToolInHand",
     "do",
     "sentence",
 ]

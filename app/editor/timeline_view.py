@@ -1,10 +1,11 @@
 """How the person looks at the timeline, and what the pointer does there."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Literal, Self
 
 from app.document import Document, Figure, FrameRange, Pose, find_shortfall
+from app.editor.derived import Derived
 
 SMALLEST, LARGEST = 0.002, 4.0  # em that a frame takes
 MARGIN = 1.4  # em left and right of frames that are fitted
@@ -131,35 +132,24 @@ class Scrub:
 TimeGesture = KeyDrag | EdgeDrag | KeyBox | Scrub
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Shortfalls:
-    """By how many pixels handles fall short of their targets in each key's pose.
+# By how many pixels handles, by their ids, fall short of their targets in each key's pose.
+Shortfalls = Mapping[Pose, Mapping[int, float]]
 
-    Parameters
-    ----------
-    figure : Figure
-    lags : mapping of Pose to mapping of int to float
-        Those that matter, by the handle's id.
-    """
 
-    figure: Figure
-    lags: Mapping[Pose, Mapping[int, float]]
-
-    @classmethod
-    def of(cls, figure: Figure, earlier: "Shortfalls | None") -> "Shortfalls":
-        """Measure the poses of a figure; those that were measured before are not again."""
-        known: Mapping[Pose, Mapping[int, float]] = {}
-        if earlier is not None and _has_same_shape(figure, earlier.figure):
-            known = earlier.lags
-        lags = {}
-        for pose in (key.pose for key in figure.keys):
-            if pose in known:
-                lags[pose] = known[pose]
-            elif figure.handles:
-                lags[pose] = find_shortfall(figure, pose).lags
-            else:
-                lags[pose] = {}
-        return cls(figure=figure, lags=lags)
+def measure_shortfalls(figure: Figure, earlier: Derived[Figure, Shortfalls]) -> Shortfalls:
+    """Measure the poses of a figure; those that were measured before are not again."""
+    known: Shortfalls = {}
+    if earlier.source is not None and _has_same_shape(figure, earlier.source):
+        known = earlier.value
+    lags: dict[Pose, Mapping[int, float]] = {}
+    for pose in (key.pose for key in figure.keys):
+        if pose in known:
+            lags[pose] = known[pose]
+        elif figure.handles:
+            lags[pose] = find_shortfall(figure, pose).lags
+        else:
+            lags[pose] = {}
+    return lags
 
 
 def _has_same_shape(figure: Figure, other: Figure) -> bool:
@@ -179,11 +169,11 @@ class Timing:
         What it shows while the gesture lasts: nothing may move under the pointer.
     seen : int
         The frame that was shown last, so that the strip follows the playhead only when it moves.
-    shortfalls : Shortfalls, optional
+    shortfalls : Derived
     """
 
     strip: Strip | None = None
     gesture: TimeGesture | None = None
     held: Strip | None = None
     seen: int = 0
-    shortfalls: Shortfalls | None = None
+    shortfalls: Derived[Figure, Shortfalls] = field(default_factory=lambda: Derived({}))

@@ -5,7 +5,7 @@ Out: where the vertices are, and how far they reach.
 Imports: `app.document`.
 """
 
-from app.motion.extent import Box, Extent, box_around, extent_source, measure_extent, motion_box
+from app.motion.extent import Box, box_around, extent_source, measure_extent, motion_box
 from app.motion.inbetweens import Animation, PoseSampler
 from app.motion.posable_mesh import PosableMesh
 from app.motion.prepared import Motion, prepare_motion
@@ -17,7 +17,6 @@ __all__ = [
     "Animation",
     "Box",
     "Build",
-    "Extent",
     "Motion",
     "Placed",
     "PosableMesh",

@@ -33,13 +33,6 @@ def box_around(points: Complexes) -> Box:
     return Box(complex(x.min(), y.min()), complex(x.max(), y.max()))
 
 
-class Extent(NamedTuple):
-    """The box around all that an export shows, and what of the document it follows from."""
-
-    source: tuple[object, ...]
-    box: Box
-
-
 def extent_source(document: Document) -> tuple[object, ...]:
     """Return all of a document that its extent depends on; equal where the extent is."""
     motions = [
@@ -49,21 +42,23 @@ def extent_source(document: Document) -> tuple[object, ...]:
     return (*motions, document.frames, document.loop, frames)
 
 
-def measure_extent(document: Document, motions: Mapping[int, Motion]) -> Extent | None:
-    """Measure a document's extent; None where the motions do not know all of its in-betweens.
+def measure_extent(document: Document, motions: Mapping[int, Motion]) -> Box:
+    """Return the box around all that an export of a document shows.
 
     Parameters
     ----------
     document : Document
     motions : mapping of int to Motion
-        One for each figure, by its id.
+        One for each figure, by its id, that knows its in-betweens.
     """
     clips = {figure: clip_of(document, figure) for figure in motions}
     frames = framed_frames(document, exported_frames(document))
     box = motion_box(
         document, frames, lambda figure, frame: motions[figure].positions(clips[figure], frame)
     )
-    return None if box is None else Extent(extent_source(document), box)
+    if box is None:
+        raise ValueError("the in-betweens are not prepared")
+    return box
 
 
 def motion_box(

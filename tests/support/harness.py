@@ -13,7 +13,8 @@ from app.document.settings import Meshing
 from app.editor.action import do
 from app.editor.actions import files
 from app.editor.jobs import Jobs
-from app.editor.session import Project, Session
+from app.editor.project import Project
+from app.editor.session import Session
 from app.render.gpu.context import create_context
 from app.render.renderer import Renderer
 from app.storage.preferences import Preferences
@@ -81,8 +82,12 @@ class Harness:
         self.frames(3)
 
     def open(self, path: Path) -> Project:
-        """Open a picture or a project, and wait until it is there with all its in-betweens."""
-        files.load(self.session, path)
+        """Open a picture or a project, and wait until it is there with all its in-betweens.
+
+        What is open is given up.
+        """
+        self.session.project = None
+        files.open_file(self.session, path)
         self.settle()
         assert self.session.project is not None, [toast.text for toast in self.session.toasts]
         return self.session.project

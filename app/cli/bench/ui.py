@@ -19,7 +19,6 @@ from app.document import Meshing, Target, clip_of
 from app.editor import Jobs, Project, Puppet, Session, do
 from app.editor.actions import files, playback
 from app.errors import LissomError
-from app.motion import Motion, PosableMesh
 from app.render import Renderer
 from app.render.gpu import create_context
 from app.storage import decode_picture, load_project, sample_images
@@ -247,11 +246,8 @@ def _giraffe(triangles: int) -> files.Opened:
     mesh = mesh_inside(*figure.domain.loops, triangles=triangles)
     figure = replace(figure, domain=replace(figure.domain, mesh=mesh))
     document = document.with_figure(figure)
-    puppet = Puppet(
-        picture=decode_picture(figure.picture.data, SAMPLE),
-        is_opaque=False,
-        coarse=Motion.at_rest(clip_of(document, figure.id), PosableMesh.coarse(figure.domain)),
-    )
+    picture = decode_picture(figure.picture.data, SAMPLE)
+    puppet = Puppet.of(clip_of(document, figure.id), picture)
     return files.Opened(document, {figure.id: puppet}, ())
 
 
@@ -344,7 +340,7 @@ class _Drag:
         stage.refresh()
         # Where it begins to move, what it needs is made once.
         self.move(0)
-        stage.until(lambda: self._project.grab is not None and self._project.grab.drag is not None)
+        stage.until(lambda: self._is_followed)
 
     def move(self, number: int) -> None:
         """Put the mouse where it is in this frame: farther on around a circle."""
@@ -354,8 +350,13 @@ class _Drag:
     @property
     def wish(self) -> Target | None:
         """Where the handle is wanted now."""
-        grab = self._project.grab
-        return None if grab is None else grab.targets[self.handle]
+        posing = self._project.posing
+        return None if posing is None else posing.targets[self.handle]
+
+    @property
+    def _is_followed(self) -> bool:
+        """Whether the solver is on its way."""
+        return self._project.posing is not None and self._project.posing.drag is not None
 
     @property
     def followed(self) -> Target | None:

@@ -37,7 +37,7 @@ def run(arguments: argparse.Namespace) -> int:
     )
     files.offer_recovery(session)
     if arguments.file is not None:
-        files.load(session, arguments.file.resolve())
+        files.open_file(session, arguments.file.resolve())
     try:
         Window(session, lambda: Renderer(window_context())).run()
     finally:

@@ -6,7 +6,8 @@ from typing import Concatenate, ParamSpec
 
 from app.document import Command, key_commands
 from app.editor.actions import posing
-from app.editor.session import Project, Session
+from app.editor.project import Project
+from app.editor.session import Session
 
 Arguments = ParamSpec("Arguments")
 
@@ -51,17 +52,29 @@ def hold(session: Session, held: int) -> None:
 
 
 def undo(session: Session) -> None:
-    """Take the last step back: a pose that no key holds, or what the document had last."""
+    """Take the last step back."""
     project = session.project
     if project is None:
         return
-    grab = project.grab or project.settling
-    is_unkept = project.unkeyed is not None or (grab is not None and grab.drag is None)
+    pose = project.posing or project.settling
     posing.drop(session)
-    project.unkeyed = None
-    if not is_unkept:
+    if pose is not None and pose.drag is None:
+        # Nothing is to be seen of it yet but what its gesture did first.
+        project.history.take_back(pose.gesture)
+    else:
         project.history.undo()
-        _forget_what_is_gone(project)
+    _forget_what_is_gone(project)
+
+
+def take_back(session: Session, gesture: object) -> None:
+    """Undo what a gesture has done, as if it had never begun."""
+    project = session.project
+    if project is None:
+        return
+    if any(pose and pose.gesture is gesture for pose in (project.posing, project.settling)):
+        posing.drop(session)
+    project.history.take_back(gesture)
+    _forget_what_is_gone(project)
 
 
 def redo(session: Session) -> None:
@@ -69,7 +82,6 @@ def redo(session: Session) -> None:
     if session.project:
         posing.drop(session)
         session.project.history.redo()
-        session.project.unkeyed = None
         _forget_what_is_gone(session.project)
 
 
@@ -106,8 +118,8 @@ def delete(session: Session) -> None:
 
 def _posed(project: Project) -> tuple[object, ...]:
     """Return the pose that handles are being pulled in, and what it is solved from."""
-    figure, grab = project.figure, project.grab or project.settling
-    poses = [key.pose for key in figure.keys if grab is not None and key.frame == grab.frame]
+    figure, pose = project.figure, project.posing or project.settling
+    poses = [key.pose for key in figure.keys if pose is not None and key.frame == pose.frame]
     return (poses, figure.handles, figure.bounds, figure.domain)
 
 

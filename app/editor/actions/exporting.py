@@ -10,23 +10,23 @@ from pathlib import Path
 from app.document import Clip, ExportSettings, clip_of, scene_commands
 from app.editor.action import Action, do
 from app.editor.actions import editing, posing
+from app.editor.dialogs import FileDialog, Question
 from app.editor.failures import report, sentence
 from app.editor.jobs import Job
-from app.editor.session import ExportRun, FileDialog, Project, Question, Session
+from app.editor.project import Project
+from app.editor.session import ExportRun, Session
 from app.errors import LissomError
 from app.export import ExportRequest, KeptPoses, check_request, plan_export, replaced_files, suited
 from app.export_formats import EXPORT_FORMATS
 from app.motion import (
     Animation,
     Box,
-    Extent,
     Motion,
     PoseSampler,
     extent_source,
-    measure_extent,
 )
 
-PREPARING, MEASURING = "Preparing the export", "Measuring the motion"
+PREPARING = "Preparing the export"
 
 
 def ask(session: Session) -> None:
@@ -99,9 +99,12 @@ def start(session: Session, out: Path) -> None:
             answers=(("Replace", do(replace_files, out)),),
         )
         return
-    motions = {figure: (puppet.fine or puppet.coarse) for figure, puppet in project.puppets.items()}
-    extent = project.reach
-    box = extent.box if extent is not None and extent.source == extent_source(document) else None
+    motions = {
+        figure: puppet.fine.value or puppet.coarse.value
+        for figure, puppet in project.puppets.items()
+    }
+    extent = project.extent
+    box = extent.value if extent.follows(extent_source(document)) else None
 
     def work() -> ExportRun:
         poses = {
@@ -206,36 +209,6 @@ def keep_aspect(session: Session, keeps: bool) -> None:  # noqa: FBT001 - the on
 def show_frame(session: Session, box: Box) -> None:
     """Show what an export shows in the viewport, until the next frame of the window."""
     session.export_frame = box
-
-
-def keep_reach(session: Session) -> None:
-    """Measure how far the motion reaches, unless that is known."""
-    project = session.project
-    if project is None or project.is_posing or MEASURING in session.jobs.kinds:
-        return
-    document = project.document
-    motions = {figure: puppet.coarse for figure, puppet in project.puppets.items()}
-    source = extent_source(document)
-    is_known = project.reach is not None and project.reach.source == source
-    is_prepared = all(motion.knows(clip_of(document, figure)) for figure, motion in motions.items())
-    if is_known or not is_prepared or project.unreachable == source:
-        return
-
-    def done(reach: Extent | None) -> None:
-        project.reach = reach
-
-    def failed(error: Exception) -> None:
-        project.unreachable = source
-        report(session, "The extent of the motion could not be measured", error)
-
-    session.jobs.put(
-        Job(
-            kind=MEASURING,
-            work=lambda: measure_extent(document, motions),
-            done=done,
-            failed=failed,
-        )
-    )
 
 
 def open_folder(session: Session, folder: Path) -> None:

@@ -6,16 +6,16 @@ from functools import cache, lru_cache
 from pathlib import Path
 from typing import NamedTuple
 
-from app.document import Document, Figure, History, Meshing, clip_of
+from app.document import Document, History, Meshing, clip_of
 from app.editor.action import do
 from app.editor.actions import playback, saving
 from app.editor.actions.saving import PROJECT
+from app.editor.dialogs import FileDialog, Question
 from app.editor.failures import report, sentence
 from app.editor.jobs import Job
-from app.editor.session import FileDialog, Project, Puppet, Question, Session
-from app.motion import Motion, PosableMesh
+from app.editor.project import Project, Puppet
+from app.editor.session import Session
 from app.storage import (
-    Picture,
     decode_picture,
     find_leftovers,
     load_project,
@@ -30,7 +30,6 @@ PICTURES = (
 )
 OPENABLE = (PROJECT, *PICTURES)
 OPENING = "Opening"
-OPAQUE = 255
 LOOK = 2.0  # seconds between two looks at whether files are still there
 
 
@@ -92,8 +91,19 @@ def ask_open(session: Session) -> None:
 
 
 def open_file(session: Session, path: Path) -> None:
-    """Open a picture or a project, after a question if there are changes to be lost."""
-    saving.unless_unsaved(session, do(load, path))
+    """Read a picture or a project on the worker, and open it when it is there.
+
+    If there are changes to be lost by then, a question comes first.
+    """
+    meshing = session.meshing
+    session.jobs.put(
+        Job(
+            kind=f"{OPENING} {path.name}",
+            work=lambda: _read(path, meshing),
+            done=lambda opened: saving.unless_unsaved(session, do(show, path, opened)),
+            failed=lambda error: report(session, f"{path.name} cannot be opened", error),
+        )
+    )
 
 
 def open_dropped(session: Session, paths: Sequence[Path]) -> None:
@@ -109,25 +119,13 @@ def open_dropped(session: Session, paths: Sequence[Path]) -> None:
         session.tell(f"{paths[0].name} is {what}. Drop {kinds} or a {PROJECT} file.", tone="error")
 
 
-def load(session: Session, path: Path) -> None:
-    """Read a file on the worker, and show it when it is there."""
-    meshing = session.meshing
-    session.jobs.put(
-        Job(
-            kind=f"{OPENING} {path.name}",
-            work=lambda: _read(path, meshing),
-            done=lambda opened: show(session, path, opened),
-            failed=lambda error: report(session, f"{path.name} cannot be opened", error),
-        )
-    )
-
-
 def show(session: Session, path: Path, opened: Opened) -> None:
     """Make what was read the project of the window."""
     # A sample is the person's to play with, not to save over.
     is_sample = path.parent == sample_images()
     is_project = path.suffix.lower() == PROJECT and not is_sample
     session.autosave.forget()
+    session.pointer = None
     session.project = Project(
         name=path.stem,
         history=History(opened.document, saved=True),
@@ -151,8 +149,9 @@ def _read(path: Path, meshing: Meshing) -> Opened:
 def _read_project(path: Path) -> Opened:
     document = load_project(path)
     puppets = {
-        figure.id: _puppet(
-            document, figure, decode_picture(figure.picture.data, f"the picture of {path.name}")
+        figure.id: Puppet.of(
+            clip_of(document, figure.id),
+            decode_picture(figure.picture.data, f"the picture of {path.name}"),
         )
         for figure in document.figures
     }
@@ -161,17 +160,8 @@ def _read_project(path: Path) -> Opened:
 
 def _read_picture(path: Path, meshing: Meshing) -> Opened:
     document, picture, notices = open_picture(path, meshing)
-    figure = document.figures[0]
-    return Opened(document, {figure.id: _puppet(document, figure, picture)}, notices)
-
-
-def _puppet(document: Document, figure: Figure, picture: Picture) -> Puppet:
-    """Return a figure as the window has it at first: its keys are shown; in-betweens follow."""
-    return Puppet(
-        picture=picture,
-        is_opaque=bool((picture.rgba[..., 3] == OPAQUE).all()),
-        coarse=Motion.at_rest(clip_of(document, figure.id), PosableMesh.coarse(figure.domain)),
-    )
+    identity = document.figures[0].id
+    return Opened(document, {identity: Puppet.of(clip_of(document, identity), picture)}, notices)
 
 
 def offer_recovery(session: Session) -> None:
@@ -194,7 +184,7 @@ def recover(session: Session, path: Path) -> None:
         Job(
             kind=f"{OPENING} unsaved work",
             work=lambda: _read_project(path),
-            done=lambda opened: _show_recovered(session, path, opened),
+            done=lambda opened: saving.unless_unsaved(session, do(show_recovered, path, opened)),
             failed=lambda error: report(session, "The unsaved work cannot be opened", error),
         )
     )
@@ -206,7 +196,9 @@ def throw_away(session: Session, path: Path) -> None:
     session.tell("The unsaved work was discarded.")
 
 
-def _show_recovered(session: Session, path: Path, opened: Opened) -> None:
+def show_recovered(session: Session, path: Path, opened: Opened) -> None:
+    """Make unsaved work the project of the window."""
+    session.pointer = None
     session.project = Project(
         name="recovered",
         history=History(opened.document, saved=False),

@@ -1,6 +1,7 @@
 """Moving along the timeline."""
 
-from app.editor.session import Project, Session
+from app.editor.project import Project
+from app.editor.session import Session
 
 SPEEDS = (0.25, 0.5, 1.0, 2.0)
 
@@ -11,8 +12,7 @@ def seek(session: Session, frame: int) -> None:
         project = session.project
         frame = project.document.frames.clamp(frame)
         project.playhead = project.playhead.seek(frame, session.clock())
-        project.unkeyed = None
-        if project.grab is not None and project.grab.frame != frame:
+        if project.posing is not None and project.posing.frame != frame:
             _leave_pose(session, project)
 
 
@@ -29,7 +29,6 @@ def toggle_play(session: Session) -> None:
         now = session.clock()
         turn = project.playhead.play if project.playhead.since is None else project.playhead.pause
         project.playhead = turn(project.document, now)
-        project.unkeyed = None
         _leave_pose(session, project)
 
 
@@ -96,11 +95,11 @@ def set_speed(session: Session, speed: float) -> None:
 
 def _leave_pose(session: Session, project: Project) -> None:
     """End a pull because the playhead leaves it; where it makes a key, it goes on to rest."""
-    grab = project.grab
-    if grab is not None and session.preferences.auto_key:
-        grab.held = False
-        project.settling = grab
-    project.grab = None
+    posing = project.posing
+    if posing is not None and session.preferences.auto_key:
+        posing.is_held = False
+        project.settling = posing
+    project.posing = None
 
 
 def current_frame(session: Session, project: Project) -> int:

@@ -1,16 +1,29 @@
 """Pulling handles: the wish comes from the pointer, the worker's solver follows."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import replace
+from functools import partial
+from typing import NamedTuple
 
 import numpy as np
 
-from app.document import Clip, Figure, Pose, Target, figure_commands, handle_commands, key_commands
+from app.document import (
+    Clip,
+    Command,
+    Figure,
+    Pose,
+    Target,
+    UnkeyedPose,
+    figure_commands,
+    handle_commands,
+    key_commands,
+)
 from app.editor.actions import playback
 from app.editor.failures import report
 from app.editor.jobs import Job
-from app.editor.session import Grab, Project, Session
-from app.motion import Shown
+from app.editor.project import PoseInProgress, Project
+from app.editor.session import Session
+from app.motion import PoseSampler, Shown
 from app.solving import Drag, Rig, pose_at
 
 POSING, INSERTING = "Posing", "Inserting a key"
@@ -24,27 +37,30 @@ MOST_STEPS = 300
 MUCH_LESS = 0.5
 
 
-def pull(session: Session, wishes: Mapping[int, Target]) -> None:
-    """Wish handles elsewhere in the pose that is shown; the others keep their wishes."""
+def pull(session: Session, wishes: Mapping[int, Target], *, gesture: object | None = None) -> None:
+    """Wish handles elsewhere in the pose that is shown; the others keep their wishes.
+
+    Pulls of one gesture are one step of undo; without one, each is a step until it is let go.
+    """
     project = session.project
     if project is None or project.puppet.shown is None:
         return
-    if project.grab is None or not project.grab.held:
-        project.grab, project.settling = _grab(session, project), None
-    grab = project.grab
-    targets = grab.targets
-    grab.targets = {**targets, **{i: _instead_of(targets.get(i), wishes[i]) for i in wishes}}
-    grab.steps = 0
-    _follow(session, project, grab)
+    if project.posing is None or not project.posing.is_held:
+        project.posing, project.settling = _begin(session, project, gesture or object()), None
+    posing = project.posing
+    targets = posing.targets
+    posing.targets = {**targets, **{i: _instead_of(targets.get(i), wishes[i]) for i in wishes}}
+    posing.steps = 0
+    _follow(session, project, posing)
 
 
 def let_go(session: Session) -> None:
     """End the pull; the solver goes on until it rests."""
-    if session.project and session.project.grab:
-        grab = session.project.grab
-        grab.held = False
+    if session.project and session.project.posing:
+        posing = session.project.posing
+        posing.is_held = False
         if POSING not in session.jobs.kinds:
-            _finish(session, session.project, grab)
+            _finish(session, session.project, posing)
 
 
 def settle(session: Session) -> None:
@@ -58,7 +74,7 @@ def drop(session: Session) -> None:
     """End the pull where the solver is."""
     if session.project and session.project.is_posing:
         session.jobs.drop(POSING)
-        session.project.grab = session.project.settling = None
+        session.project.posing = session.project.settling = None
 
 
 def nudge(session: Session, step: complex) -> None:
@@ -66,7 +82,7 @@ def nudge(session: Session, step: complex) -> None:
     project = session.project
     if project is None or project.puppet.shown is None or not project.selected:
         return
-    targets = project.grab.targets if project.grab else _wishes(project)
+    targets = project.posing.targets if project.posing else _wishes(project)
     moved = {
         identity: replace(targets[identity], position=targets[identity].position + step)
         for identity in project.selected
@@ -75,7 +91,7 @@ def nudge(session: Session, step: complex) -> None:
     let_go(session)
 
 
-def add_handle(session: Session, place: complex) -> None:
+def add_handle(session: Session, place: complex, *, gesture: object | None = None) -> None:
     """Add a handle where the shape is at a place of the screen's plane; nothing moves."""
     project = session.project
     if project is None or project.puppet.shown is None:
@@ -83,25 +99,33 @@ def add_handle(session: Session, place: complex) -> None:
     drop(session)
     rest = _at_rest(project.puppet.shown, place)
     identity = project.figure.next_handle
-    project.history.do(handle_commands.add_handle(project.active, rest))
-    if project.unkeyed is not None:
-        project.unkeyed = _retargeted(project.figure, project.unkeyed)
+    _change_handles(project, handle_commands.add_handle(project.active, rest), gesture or object())
     project.selected, project.chosen = frozenset({identity}), frozenset()
 
 
-def remove_handles(session: Session, identities: frozenset[int]) -> None:
+def remove_handles(
+    session: Session, identities: frozenset[int], *, gesture: object | None = None
+) -> None:
     """Delete handles; every pose stays as it is."""
     project = session.project
     if project is None:
         return
     drop(session)
-    project.history.do(handle_commands.remove_handles(project.active, identities))
+    command = handle_commands.remove_handles(project.active, identities)
+    _change_handles(project, command, gesture or object())
     project.selected -= identities
-    if project.unkeyed is not None:
-        project.unkeyed = _retargeted(project.figure, project.unkeyed)
 
 
-def anchor_at(session: Session, identity: int) -> None:
+def _change_handles(project: Project, command: Command, gesture: object) -> None:
+    """Add or delete handles, in the pose that no key holds as well."""
+    project.history.do(command, gesture=gesture)
+    unkeyed = project.history.unkeyed
+    if unkeyed is not None:
+        pose = _retargeted(project.figure, unkeyed.pose)
+        project.history.pose(replace(unkeyed, pose=pose), gesture=gesture)
+
+
+def anchor_at(session: Session, identity: int, *, gesture: object | None = None) -> None:
     """Make a handle's point the anchor, or let the engine choose again if it is already."""
     project = session.project
     if project is None:
@@ -110,17 +134,17 @@ def anchor_at(session: Session, identity: int) -> None:
     project.history.do(
         figure_commands.set_anchor(
             project.active, None if project.figure.anchor == place else place
-        )
+        ),
+        gesture=gesture,
     )
 
 
-def put_anchor(session: Session, place: complex) -> None:
+def put_anchor(session: Session, place: complex, *, gesture: object | None = None) -> None:
     """Make the shape's point at a place of the screen's plane the anchor."""
     project = session.project
     if project and project.puppet.shown:
-        project.history.do(
-            figure_commands.set_anchor(project.active, _at_rest(project.puppet.shown, place))
-        )
+        rest = _at_rest(project.puppet.shown, place)
+        project.history.do(figure_commands.set_anchor(project.active, rest), gesture=gesture)
 
 
 def _at_rest(shown: Shown, place: complex) -> complex:
@@ -140,7 +164,7 @@ def free_turn(session: Session, identity: int) -> None:
     project = session.project
     if project is None or project.puppet.shown is None:
         return
-    targets = project.grab.targets if project.grab else _wishes(project)
+    targets = project.posing.targets if project.posing else _wishes(project)
     pull(session, {identity: replace(targets[identity], rotation=None)})
     let_go(session)
 
@@ -155,10 +179,9 @@ def insert_key(session: Session) -> None:
     frame = playback.current_frame(session, project)
     playback.halt(session)
     if project.unkeyed is not None:
-        _hold(project, frame, project.unkeyed, gesture=None)
-        project.unkeyed = None
+        _hold(project, frame, project.unkeyed, gesture=object())
     elif frame not in clip.figure.key_frames:
-        rig, sibling = Rig.of(clip.figure, project.puppet.rig), project.puppet.coarse.sampler
+        rig, sibling = Rig.of(clip.figure, project.puppet.rig), project.puppet.coarse.value.sampler
         session.jobs.put(
             Job(
                 kind=INSERTING,
@@ -178,12 +201,12 @@ def _insert(session: Session, project: Project, clip: Clip, frame: int, pose: Po
         project.chosen = frozenset({frame})
 
 
-def _grab(session: Session, project: Project) -> Grab:
+def _begin(session: Session, project: Project, gesture: object) -> PoseInProgress:
     playback.halt(session)
     session.jobs.drop(POSING)
     frame = playback.current_frame(session, project)
     pose = project.unkeyed or (project.puppet.shown.pose if project.puppet.shown else None)
-    return Grab(frame=frame, targets=_wishes(project), pose=pose)
+    return PoseInProgress(frame=frame, targets=_wishes(project), start=pose, gesture=gesture)
 
 
 def _wishes(project: Project) -> Mapping[int, Target]:
@@ -205,87 +228,135 @@ def _wishes(project: Project) -> Mapping[int, Target]:
     }
 
 
-def _follow(session: Session, project: Project, grab: Grab) -> None:
+def _follow(session: Session, project: Project, posing: PoseInProgress) -> None:
     """Let the worker go on, unless it is at it: then it goes on when that is delivered."""
     if POSING in session.jobs.kinds:
         return
-    targets, drag, clip = grab.targets, grab.anew or grab.drag, project.clip
-    rig, sibling = project.puppet.rig, project.puppet.coarse.sampler
-    clock = session.clock
-
-    def work() -> tuple[Drag, int, float]:
-        begun = clock()
-        start = drag
-        if start is None:
-            mine = Rig.of(clip.figure, rig)
-            pose = grab.pose or pose_at(mine, clip, grab.frame, sibling)
-            start = Drag.begin(mine, pose)
-        steps = 0
-        while steps == 0 or (steps < STEPS and not start.is_over and clock() - begun < HASTE):
-            start = start.towards(targets, 1)
-            steps += 1
-        return start, steps, clock() - begun
-
-    def done(result: tuple[Drag, int, float]) -> None:
-        if session.project is not project or grab not in (project.grab, project.settling):
-            return
-        drag, steps, session.solver_seconds = result
-        project.puppet.rig = drag.rig
-        grab.steps += steps
-        if grab.anew is None:
-            grab.drag = drag
-            _keep(session, project, grab, targets)
-        else:
-            grab.anew = drag
-        rests = drag.is_over and grab.targets == targets
-        if not rests and (grab.held or grab.steps < MOST_STEPS):
-            _follow(session, project, grab)
-        elif not grab.held:
-            _finish(session, project, grab)
+    puppet, targets, drag = project.puppet, posing.targets, posing.from_rest or posing.drag
+    begin = partial(
+        _drag_from,
+        posing.start,
+        posing.frame,
+        project.clip,
+        puppet.rig,
+        puppet.coarse.value.sampler,
+    )
 
     def failed(error: Exception) -> None:
-        _end(project, grab)
+        _end(project, posing)
         report(session, "This pose could not be found", error)
 
-    session.jobs.put(Job(kind=POSING, work=work, done=done, failed=failed, urgent=True))
+    session.jobs.put(
+        Job(
+            kind=POSING,
+            work=partial(_take_steps, drag, begin, targets, session.clock),
+            done=partial(_go_on, session, project, posing, targets),
+            failed=failed,
+            urgent=True,
+        )
+    )
 
 
-def _keep(session: Session, project: Project, grab: Grab, targets: Mapping[int, Target]) -> None:
-    """Put the solver's newest map into the document, or show it unkeyed."""
-    if grab.drag is None:
+class _Steps(NamedTuple):
+    """Where the worker has come with a drag, in how many Newton steps and seconds."""
+
+    drag: Drag
+    taken: int
+    seconds: float
+
+
+def _take_steps(
+    drag: Drag | None,
+    begin: Callable[[], Drag],
+    targets: Mapping[int, Target],
+    clock: Callable[[], float],
+) -> _Steps:
+    """Go on with a drag, or begin it; on the worker thread."""
+    begun = clock()
+    drag = begin() if drag is None else drag
+    taken = 0
+    while taken == 0 or (taken < STEPS and not drag.is_over and clock() - begun < HASTE):
+        drag = drag.towards(targets, 1)
+        taken += 1
+    return _Steps(drag, taken, clock() - begun)
+
+
+def _drag_from(
+    start: Pose | None, frame: int, clip: Clip, rig: Rig | None, sibling: PoseSampler | None
+) -> Drag:
+    """Return the drag that begins with a pose, or with what is shown at a frame."""
+    rig = Rig.of(clip.figure, rig)
+    return Drag.begin(rig, start or pose_at(rig, clip, frame, sibling))
+
+
+def _go_on(
+    session: Session,
+    project: Project,
+    posing: PoseInProgress,
+    targets: Mapping[int, Target],
+    steps: _Steps,
+) -> None:
+    """Take note of where the worker has come, and let it go on if there is more to do."""
+    if session.project is not project or posing not in (project.posing, project.settling):
         return
-    pose = grab.drag.pose(targets)
-    if session.preferences.auto_key or grab is project.settling:
-        _hold(project, grab.frame, pose, gesture=grab)
-        project.unkeyed = None
+    session.solver_seconds = steps.seconds
+    project.puppet.rig = steps.drag.rig
+    posing.steps += steps.taken
+    if posing.from_rest is None:
+        posing.drag = steps.drag
+        _keep(session, project, posing, targets)
     else:
-        project.unkeyed = pose
+        posing.from_rest = steps.drag
+    rests = steps.drag.is_over and posing.targets == targets
+    if not rests and (posing.is_held or posing.steps < MOST_STEPS):
+        _follow(session, project, posing)
+    elif not posing.is_held:
+        _finish(session, project, posing)
+
+
+def _keep(
+    session: Session, project: Project, posing: PoseInProgress, targets: Mapping[int, Target]
+) -> None:
+    """Put the solver's newest map into the document, or show it unkeyed."""
+    if posing.drag is None:
+        return
+    pose = posing.drag.pose(targets)
+    if session.preferences.auto_key or posing is project.settling:
+        _hold(project, posing.frame, pose, gesture=posing.gesture)
+    else:
+        unkeyed = UnkeyedPose(figure=project.active, frame=posing.frame, pose=pose)
+        project.history.pose(unkeyed, gesture=posing.gesture)
 
 
 def _hold(project: Project, frame: int, pose: Pose, gesture: object) -> None:
-    if frame in project.figure.key_frames:
-        project.history.do(key_commands.pose_key(project.active, frame, pose), gesture=gesture)
-    else:
-        project.history.do(key_commands.insert_key(project.active, frame, pose), gesture=gesture)
+    """Let a key hold a pose; none is left there that no key holds."""
+    has_key = frame in project.figure.key_frames
+    command = (key_commands.pose_key if has_key else key_commands.insert_key)(
+        project.active, frame, pose
+    )
+    project.history.do(command, gesture=gesture)
+    unkeyed = project.history.unkeyed
+    if unkeyed is not None and (unkeyed.figure, unkeyed.frame) == (project.active, frame):
+        project.history.pose(None, gesture=gesture)
 
 
-def _finish(session: Session, project: Project, grab: Grab) -> None:
+def _finish(session: Session, project: Project, posing: PoseInProgress) -> None:
     """End a pull that was let go and rests; one that is held back is tried from rest, too."""
-    drag, anew = grab.drag, grab.anew
-    if drag is not None and anew is None and not drag.has_arrived:
-        grab.anew, grab.steps = Drag.from_rest(drag.rig), 0
-        _follow(session, project, grab)
+    drag, other = posing.drag, posing.from_rest
+    if drag is not None and other is None and not drag.has_arrived:
+        posing.from_rest, posing.steps = Drag.from_rest(drag.rig), 0
+        _follow(session, project, posing)
         return
-    if drag is not None and anew is not None and anew.lag < MUCH_LESS * drag.lag:
-        grab.drag = anew
-        _keep(session, project, grab, grab.targets)
-    _end(project, grab)
+    if drag is not None and other is not None and other.lag < MUCH_LESS * drag.lag:
+        posing.drag = other
+        _keep(session, project, posing, posing.targets)
+    _end(project, posing)
 
 
-def _end(project: Project, grab: Grab) -> None:
-    if project.grab is grab:
-        project.grab = None
-    if project.settling is grab:
+def _end(project: Project, posing: PoseInProgress) -> None:
+    if project.posing is posing:
+        project.posing = None
+    if project.settling is posing:
         project.settling = None
 
 

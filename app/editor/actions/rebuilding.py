@@ -6,7 +6,8 @@ from app.document import figure_commands
 from app.editor.actions import editing, posing
 from app.editor.failures import report, sentence
 from app.editor.jobs import Job
-from app.editor.session import Project, Session
+from app.editor.project import Project
+from app.editor.session import Session
 from app.solving import Renewal, go_on
 from engine.maps import Bounds
 
@@ -103,9 +104,11 @@ def _go_on(session: Session, project: Project, renewal: Renewal) -> None:
 
 def _keep(session: Session, project: Project, renewal: Renewal) -> None:
     project.renewal = None
-    project.history.do(renewal.command)
+    gesture = object()
+    project.history.do(renewal.command, gesture=gesture)
     if renewal.domain is not None:
-        project.unkeyed = project.meshing = None
+        project.history.pose(None, gesture=gesture)
+        project.meshing = None
     for notice in renewal.notices:
         session.tell(sentence(notice))
     if renewal.outside:

@@ -4,9 +4,11 @@ from pathlib import Path
 
 from app.editor.action import Action, do
 from app.editor.actions import exporting
+from app.editor.dialogs import FileDialog, Question
 from app.editor.failures import report
 from app.editor.jobs import Job
-from app.editor.session import FileDialog, Project, Question, Session
+from app.editor.project import Project
+from app.editor.session import Session
 from app.storage import SECONDS, draw_thumbnail, save_preferences, save_project
 
 PROJECT = ".lissom"
@@ -24,7 +26,7 @@ def save_as(session: Session) -> None:
 
 
 def save_then(session: Session, then: Action | None) -> None:
-    """Save the project, and do something else once that has worked."""
+    """Save the project, and do something that gives it up once that has worked."""
     project = session.project
     if project is None:
         return
@@ -39,7 +41,7 @@ def write(session: Session, path: Path, then: Action | None) -> None:
     project = session.project
     if project is None:
         return
-    if project.is_posing and not (project.grab is not None and project.grab.held):
+    if project.is_posing and not (project.posing is not None and project.posing.is_held):
         # To settle afterwards would be a change again, which nobody made.
         project.to_save = (path, then)
         return
@@ -55,7 +57,8 @@ def write(session: Session, path: Path, then: Action | None) -> None:
         session.preferences = session.preferences.with_recent(path)
         session.tell(f"Saved {path.name}.", tone="good")
         if then is not None:
-            then.apply(session)
+            # There may be changes again.
+            unless_unsaved(session, then)
 
     session.jobs.put(
         Job(
@@ -89,7 +92,7 @@ def close(session: Session) -> None:
 
 def give_up(session: Session) -> None:
     """Close the project, whatever it holds."""
-    session.project = None
+    session.project = session.pointer = None
     session.autosave.forget()
 
 

@@ -14,13 +14,13 @@ from app.document import (
 )
 from app.editor.actions import editing, playback
 from app.editor.actions.keys import retime
-from app.editor.session import Project, Session
+from app.editor.project import Project
+from app.editor.session import Session
 from app.editor.timeline_view import (
     EdgeDrag,
     KeyBox,
     KeyDrag,
     Scrub,
-    Shortfalls,
     Strip,
     TimeGesture,
 )
@@ -47,13 +47,6 @@ def follow(session: Session, frame: int, strip: Strip | None) -> None:
         session.project.timing.seen = frame
         if strip is not None:
             look_at(session, strip)
-
-
-def measure(session: Session) -> None:
-    """Find out in which keys handles fall short of their targets."""
-    if session.project:
-        timing = session.project.timing
-        timing.shortfalls = Shortfalls.of(session.project.figure, timing.shortfalls)
 
 
 def begin(session: Session, gesture: TimeGesture, strip: Strip) -> None:

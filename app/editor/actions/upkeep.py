@@ -1,34 +1,190 @@
-"""What follows the document by itself: in-betweens, their distortion, the pose on the screen."""
+"""What follows the document by itself: in-betweens, what is measured of them, what is drawn."""
 
+from collections.abc import Iterator
 from functools import partial
+from typing import Any, TypeVar
 
-from app.document import Clip, clip_of
-from app.editor.actions import measuring, playback, posing
+from app.document import Clip, clip_of, intervals
+from app.editor.actions import playback, posing
+from app.editor.derived import Derivation
 from app.editor.failures import report
 from app.editor.jobs import Job
-from app.editor.session import Project, Puppet, Session
+from app.editor.project import Project, Puppet
+from app.editor.session import Session
+from app.editor.timeline_view import measure_shortfalls
 from app.motion import (
     Build,
     Motion,
     PosableMesh,
     PoseSampler,
+    extent_source,
+    measure_extent,
     next_build,
     prepare_motion,
     show,
     with_series,
 )
+from app.reports import measure_curves
 
 STILL = 0.15  # seconds after which the playhead is taken to stay where it is
 SKETCHING, REFINING, STREAMING = "In-betweens", "Finer in-betweens", "Smooth playback"
+MEASURING, SPANNING = "Measuring", "Measuring the motion"
+
+Source = TypeVar("Source")
+Value = TypeVar("Value")
 
 
 def keep_up(session: Session) -> None:
-    """Ask the worker for in-betweens that are missing, and settle what is drawn; once a frame."""
+    """Ask the worker for what is missing, and settle what is drawn; once a frame."""
     project = session.project
     if project is None:
         return
     posing.settle(session)
-    _ask(session, project)
+    for derivation in missing(session, project):
+        derive(session, derivation)
+    shortfalls, figure = project.timing.shortfalls, project.figure
+    if not shortfalls.follows(figure):
+        # Little work: of the poses that were not measured before, and there is one at a time.
+        shortfalls.take(figure, measure_shortfalls(figure, shortfalls))
+    _show(session, project)
+
+
+def derive(session: Session, derivation: Derivation[Source, Value]) -> None:
+    """Let the worker derive a value, unless it is at it."""
+    if derivation.kind in session.jobs.kinds:
+        return
+    into, source = derivation.into, derivation.source
+
+    def failed(error: Exception) -> None:
+        into.failure = source
+        report(session, derivation.complaint, error)
+
+    session.jobs.put(
+        Job(
+            kind=derivation.kind,
+            work=derivation.work,
+            done=derivation.done or partial(into.take, source),
+            failed=failed,
+        )
+    )
+
+
+def missing(session: Session, project: Project) -> Iterator[Derivation[Any, Any]]:
+    """Yield what the worker is to derive next: what is missed most, of any figure."""
+    document = project.document
+    clips = [(clip_of(document, figure), puppet) for figure, puppet in project.puppets.items()]
+    movable = [(clip, puppet) for clip, puppet in clips if not puppet.coarse.has_failed(clip)]
+    for clip, puppet in movable:
+        if not puppet.coarse.value.knows(clip, roughly=True):
+            # Where nobody sees them before the hand rests, they are not to hold up what follows it.
+            if session.overlays.onion or posing.POSING not in session.jobs.kinds:
+                yield _sketch(clip, puppet, roughly=True)
+            return
+    if project.is_posing:
+        # What follows takes longer than the hand stays where it is.
+        return
+    for clip, puppet in movable:
+        if not puppet.coarse.value.knows(clip):
+            yield _sketch(clip, puppet)
+            return
+        if not _has_fine(clip, puppet) and not puppet.fine.has_failed(clip):
+            yield _refine(clip, puppet)
+            return
+    for clip, puppet in movable:
+        yield from _stream(session, project, clip, puppet)
+    if len(movable) == len(clips):
+        yield from _measure(session, project)
+
+
+def _sketch(clip: Clip, puppet: Puppet, *, roughly: bool = False) -> Derivation[Clip, Motion]:
+    earlier = puppet.coarse.value
+    return Derivation(
+        kind=SKETCHING,
+        into=puppet.coarse,
+        source=clip,
+        work=lambda: _coarse_motion(clip, earlier, roughly=roughly),
+        complaint="The in-betweens of these keys cannot be made",
+    )
+
+
+def _refine(clip: Clip, puppet: Puppet) -> Derivation[Clip, Motion | None]:
+    earlier, sibling = puppet.fine.value, puppet.coarse.value.sampler
+    return Derivation(
+        kind=REFINING,
+        into=puppet.fine,
+        source=clip,
+        work=lambda: _fine_motion(clip, earlier, sibling),
+        complaint="The in-betweens cannot be made in full detail",
+    )
+
+
+def _stream(
+    session: Session, project: Project, clip: Clip, puppet: Puppet
+) -> Iterator[Derivation[Clip, Build | None]]:
+    """Yield some steps of a series that is in the making or that is wanted next."""
+    if STREAMING in session.jobs.kinds or puppet.build.has_failed(clip):
+        return
+    motions = [motion for motion in (puppet.coarse.value, puppet.fine.value) if motion is not None]
+    build = puppet.build.value
+    if build is None or not any(build.is_of(motion) for motion in motions):
+        frame = playback.current_frame(session, project)
+        heat = session.overlays.heat_map != "none"
+        builds = (next_build(motion, clip, frame, heat=heat) for motion in motions)
+        build = next(filter(None, builds), None)
+    # While the worker has it, it is nowhere else: should a step fail, none follows.
+    puppet.build.value = None
+    if build is not None:
+        yield Derivation(
+            kind=STREAMING,
+            into=puppet.build,
+            source=clip,
+            work=build.advance,
+            complaint="Playback cannot be made smooth",
+            done=partial(_take_series, session, project, clip, puppet),
+        )
+
+
+def _take_series(
+    session: Session, project: Project, clip: Clip, puppet: Puppet, build: Build | None
+) -> None:
+    if build is None or build.series is None:
+        puppet.build.take(clip, build)
+        return
+    frame = playback.current_frame(session, project)
+    clip = clip_of(project.document, clip.figure.id)
+    puppet.coarse.value = with_series(puppet.coarse.value, build, clip, frame)
+    if puppet.fine.value is not None:
+        puppet.fine.value = with_series(puppet.fine.value, build, clip, frame)
+
+
+def _measure(session: Session, project: Project) -> Iterator[Derivation[Any, Any]]:
+    """Yield what is measured of the in-betweens."""
+    clip, motion, curves = project.clip, project.puppet.coarse.value, project.curves
+    if intervals(clip) and not (curves.follows(clip) or curves.has_failed(clip)):
+        yield Derivation(
+            kind=MEASURING,
+            into=curves,
+            source=clip,
+            work=lambda: measure_curves(clip, motion),
+            complaint="The distortion could not be measured",
+        )
+    if session.export_frame is None:
+        return
+    document, extent = project.document, project.extent
+    source = extent_source(document)
+    motions = {figure: puppet.coarse.value for figure, puppet in project.puppets.items()}
+    if not (extent.follows(source) or extent.has_failed(source)):
+        yield Derivation(
+            kind=SPANNING,
+            into=extent,
+            source=source,
+            work=lambda: measure_extent(document, motions),
+            complaint="The extent of the motion could not be measured",
+        )
+
+
+def _show(session: Session, project: Project) -> None:
+    """Settle what is drawn in the next frame."""
     frame = playback.current_frame(session, project)
     for figure, puppet in project.puppets.items():
         if puppet.shown is not None and puppet.shown.frame != frame:
@@ -38,118 +194,32 @@ def keep_up(session: Session) -> None:
         puppet.shown = show(clip_of(project.document, figure), frame, pose, motions, puppet.shown)
 
 
-def _ask(session: Session, project: Project) -> None:
-    """Ask for what is missing most, of any figure."""
-    clips = [
-        (clip_of(project.document, figure), puppet) for figure, puppet in project.puppets.items()
-    ]
-    movable = [(clip, puppet) for clip, puppet in clips if puppet.unmovable != clip]
-    for clip, puppet in movable:
-        if not puppet.coarse.knows(clip, roughly=True):
-            # Where nobody sees them before the hand rests, they are not to hold up what follows it.
-            if session.overlays.onion or posing.POSING not in session.jobs.kinds:
-                _prepare(session, clip, puppet, SKETCHING, roughly=True)
-            return
-    if project.is_posing:
-        # What follows takes longer than the hand stays where it is.
-        return
-    for clip, puppet in movable:
-        if not puppet.coarse.knows(clip):
-            _prepare(session, clip, puppet, SKETCHING)
-            return
-        is_own = puppet.coarse.mesh.domain is clip.figure.domain
-        if not is_own and (puppet.fine is None or not puppet.fine.knows(clip)):
-            _prepare(session, clip, puppet, REFINING)
-            return
-    for clip, puppet in movable:
-        _stream(session, project, clip, puppet)
-    if len(movable) == len(clips):
-        measuring.keep_up(session)
-
-
-def _prepare(
-    session: Session, clip: Clip, puppet: Puppet, kind: str, *, roughly: bool = False
-) -> None:
-    if kind in session.jobs.kinds:
-        return
-    earlier = puppet.coarse if kind == SKETCHING else puppet.fine
-
-    def done(motion: Motion) -> None:
-        if kind == SKETCHING:
-            puppet.coarse = motion
-        else:
-            puppet.fine = motion
-
-    session.jobs.put(
-        Job(
-            kind=kind,
-            work=partial(_motion, clip, earlier, kind, puppet.coarse.sampler, roughly=roughly),
-            done=done,
-            failed=partial(_give_up, session, clip, puppet),
-        )
-    )
-
-
-def _motion(
-    clip: Clip,
-    earlier: Motion | None,
-    kind: str,
-    sibling: PoseSampler | None,
-    *,
-    roughly: bool,
-) -> Motion:
-    domain = clip.figure.domain
-    if earlier is None or earlier.mesh.source is not domain:
-        make = PosableMesh.coarse if kind == SKETCHING else PosableMesh.fine
-        is_sibling = sibling is not None and sibling.domain.cage is domain.cage
-        sibling = sibling if is_sibling else None
-        earlier = Motion.at_rest(clip, make(domain))
-    # Exact ones an interval at a time: the next drag is not to wait for its ghosts.
-    return prepare_motion(clip, earlier, sibling, roughly=roughly, at_most=None if roughly else 1)
-
-
-def _stream(session: Session, project: Project, clip: Clip, puppet: Puppet) -> None:
-    """Let the worker go on with a series for a while."""
-    if STREAMING in session.jobs.kinds:
-        return
-    motions = [motion for motion in (puppet.coarse, puppet.fine) if motion is not None]
-    if puppet.build is None or not any(puppet.build.is_of(motion) for motion in motions):
-        frame = playback.current_frame(session, project)
-        heat = session.overlays.heat_map != "none"
-        builds = (next_build(motion, clip, frame, heat=heat) for motion in motions)
-        puppet.build = next(filter(None, builds), None)
-    if puppet.build is not None:
-        session.jobs.put(
-            Job(
-                kind=STREAMING,
-                work=puppet.build.advance,
-                done=partial(_keep_series, session, project, clip, puppet),
-                failed=partial(_give_up, session, clip, puppet),
-            )
-        )
-
-
-def _keep_series(
-    session: Session, project: Project, clip: Clip, puppet: Puppet, build: Build
-) -> None:
-    if build.series is None or puppet.build is not build:
-        return
-    puppet.build = None
-    frame = playback.current_frame(session, project)
-    clip = clip_of(project.document, clip.figure.id)
-    puppet.coarse = with_series(puppet.coarse, build, clip, frame)
-    if puppet.fine is not None:
-        puppet.fine = with_series(puppet.fine, build, clip, frame)
-
-
-def _give_up(session: Session, clip: Clip, puppet: Puppet, error: Exception) -> None:
-    puppet.unmovable = clip
-    report(session, "The in-betweens of these keys cannot be made", error)
-
-
 def _motions(session: Session, project: Project, puppet: Puppet) -> tuple[Motion, ...]:
     is_scrubbed = session.clock() - project.moved_at < STILL
-    is_moving = project.grab is not None or project.playhead.since is not None or is_scrubbed
-    if puppet.fine is None or (is_moving and not session.full_detail):
-        return (puppet.coarse,)
-    return (puppet.fine, puppet.coarse)
+    is_moving = project.posing is not None or project.playhead.since is not None or is_scrubbed
+    coarse, fine = puppet.coarse.value, puppet.fine.value
+    if fine is None or (is_moving and not session.full_detail):
+        return (coarse,)
+    return (fine, coarse)
+
+
+def _has_fine(clip: Clip, puppet: Puppet) -> bool:
+    coarse, fine = puppet.coarse.value, puppet.fine.value
+    is_own = coarse.mesh.domain is clip.figure.domain
+    return is_own or (fine is not None and fine.knows(clip))
+
+
+def _coarse_motion(clip: Clip, earlier: Motion, *, roughly: bool) -> Motion:
+    domain = clip.figure.domain
+    if earlier.mesh.source is not domain:
+        earlier = Motion.at_rest(clip, PosableMesh.coarse(domain))
+    # Exact ones an interval at a time: the next drag is not to wait for its ghosts.
+    return prepare_motion(clip, earlier, roughly=roughly, at_most=None if roughly else 1)
+
+
+def _fine_motion(clip: Clip, earlier: Motion | None, sibling: PoseSampler | None) -> Motion:
+    domain = clip.figure.domain
+    if earlier is None or earlier.mesh.source is not domain:
+        earlier = Motion.at_rest(clip, PosableMesh.fine(domain))
+    is_sibling = sibling is not None and sibling.domain.cage is domain.cage
+    return prepare_motion(clip, earlier, sibling if is_sibling else None, at_most=1)

@@ -6,7 +6,8 @@ from typing import Any, Literal
 
 from app.document import Meshing
 from app.editor.action import Action
-from app.editor.session import Dialog, FileDialog, HeatMap, Session, ShortcutSheet, Toast
+from app.editor.dialogs import Dialog, FileDialog, ShortcutSheet
+from app.editor.session import HeatMap, Session, Toast
 from app.render import View
 from app.storage import LARGEST_GHOST_STEP, LARGEST_SCALE, MOST_GHOSTS, SMALLEST_SCALE, ThemeName
 

@@ -59,7 +59,7 @@ def facts(session: Session) -> list[Fact]:
 
 def _distortion(project: Project) -> Fact | None:
     """Return the largest distortion that is shown, of the kind that is nearest to its bound."""
-    shown, curves = project.puppet.shown, project.curves
+    shown, curves = project.puppet.shown, project.curves.value
     if shown is None:
         return None
     if shown.pose is not None:

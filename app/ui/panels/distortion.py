@@ -154,7 +154,7 @@ def _over_time(session: Session, look: Look, project: Project) -> list[Action]:
     match segments(look, "curves", KINDS, session.curves):
         case "relative" | "absolute" as kind:
             actions.append(do(measuring.show_curves, kind))
-    curves = project.curves
+    curves = project.curves.value
     if curves is None:
         small(look, "Measuring…")
         return actions

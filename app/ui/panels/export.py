@@ -40,10 +40,10 @@ def draw(session: Session, look: Look) -> list[Action]:
     if project is None or project.puppet.shown is None:
         return []
     settings = project.document.export
-    reach = project.reach.box if project.reach else box_around(project.puppet.shown.positions)
+    reach = project.extent.value or box_around(project.puppet.shown.positions)
     view = frame_view(settings, project.document.canvas, reach)
     box = shown_box(view)
-    actions = [do(exporting.show_frame, box), do(exporting.keep_reach)]
+    actions = [do(exporting.show_frame, box)]
     heading(look, "Picture")
     chosen = _picture(look, settings)
     chosen, more = _size(session, look, chosen, view)
@@ -269,5 +269,5 @@ def _preview(
         "Orange: where the motion reaches."
     )
     is_left = not frame.contains(reach, slack=1.0)
-    if is_left and project.reach is not None:
+    if is_left and project.extent.value is not None:
         small(look, "The motion leaves the frame; “All motion” shows all of it.")

@@ -25,10 +25,7 @@ def _edits(session: Session) -> bool:
 
 
 def _undoable(session: Session) -> bool:
-    project = session.project
-    return project is not None and (
-        project.history.undo_label is not None or project.unkeyed is not None
-    )
+    return session.project is not None and session.project.history.undo_label is not None
 
 
 def _redoable(session: Session) -> bool:

@@ -3,7 +3,8 @@
 from imgui_bundle import ImVec2, imgui
 
 from app.editor import Action, EdgeDrag, KeyDrag, Scrub, Session, do
-from app.editor.actions import editing, playback, pointing, timeline_pointing
+from app.editor.actions import editing, playback, timeline_pointing
+from app.editor.tools import pointing
 from app.ui.shortcuts import with_key
 from app.ui.style import Look
 from app.ui.timeline.bar import draw_bar
@@ -32,9 +33,6 @@ def draw(session: Session, look: Look) -> list[Action]:
     if track.is_usable:
         actions += _draw_track(track, playback.current_frame(session, project))
     imgui.end_child()
-    shortfalls = project.timing.shortfalls
-    if shortfalls is None or shortfalls.figure is not project.figure:
-        actions.append(do(timeline_pointing.measure))
     return actions
 
 

@@ -160,8 +160,10 @@ def _inputs(session: Session, project: Project) -> tuple[object, ...]:
     """Return all that the picture depends on: while it stays the same, so does the picture."""
     return (
         *(puppet.shown for puppet in project.puppets.values()),
-        project.puppet.coarse if session.overlays.onion else project.puppet.coarse.sampler,
-        project.grab.targets if project.grab else None,
+        project.puppet.coarse.value
+        if session.overlays.onion
+        else project.puppet.coarse.value.sampler,
+        project.posing.targets if project.posing else None,
         project.selected,
         project.view(session.screen),
         project.playhead.since is None,
@@ -238,14 +240,16 @@ def _scene(session: Session, project: Project, shown: Shown, drawing: _Drawing) 
 
 def _meshes(puppet: Puppet) -> set[PosableMesh]:
     """Return the meshes on which a figure is shown, or may be soon."""
-    meshes = {motion.mesh for motion in (puppet.coarse, puppet.fine) if motion is not None}
+    meshes = {
+        motion.mesh for motion in (puppet.coarse.value, puppet.fine.value) if motion is not None
+    }
     return meshes if puppet.shown is None else meshes | {puppet.shown.mesh}
 
 
 def _ghosts(
     session: Session, project: Project, shown: Shown, drawing: _Drawing
 ) -> tuple[Ghost, ...]:
-    choice, motion = session.preferences, project.puppet.coarse
+    choice, motion = session.preferences, project.puppet.coarse.value
     if project.playhead.since is not None:
         return ()
     # While the hand moves, in-betweens come a moment later: until then the last ones stay.
@@ -282,7 +286,7 @@ def _marks(
     if not session.overlays.handles or project.playhead.since is not None:
         return tuple(lines), ()
     style = HandleStyle()
-    wishes = project.grab.targets if project.grab else None
+    wishes = project.posing.targets if project.posing else None
     if wishes is None and shown.pose is not None:
         wishes = shown.pose.targets
     marks = []
@@ -306,7 +310,7 @@ def _marks(
 
 def _anchor(project: Project, shown: Shown) -> complex | None:
     """Return where the anchor is in what is shown; None where a handle marks it, or none is yet."""
-    figure, sampler = shown.clip.figure, project.puppet.coarse.sampler
+    figure, sampler = shown.clip.figure, project.puppet.coarse.value.sampler
     rest = figure.anchor
     if rest is None and sampler is not None and sampler.anchor is None:
         rest = sampler.sites.anchor

@@ -5,8 +5,9 @@ from imgui_bundle import ImVec2, imgui
 from imgui_bundle import icons_fontawesome_6 as icons
 
 from app.document import Figure
-from app.editor import Action, Boxing, Project, Pulling, Session, Turning, do
-from app.editor.actions import pointing, posing, viewing
+from app.editor import Action, BoxMark, Project, Session, SweepMark, do
+from app.editor.actions import posing, viewing
+from app.editor.tools import TOOLS, Hint, Spot, pointing
 from app.motion import Shown
 from app.render import View
 from app.ui.shortcuts import BINDINGS, with_key
@@ -15,6 +16,7 @@ from app.ui.viewport.ring import Ring, draw_ring
 from engine.geometry import contains
 
 CTRL, ALT = int(imgui.Key.mod_ctrl), int(imgui.Key.mod_alt)
+KEYS = {"ctrl": CTRL, "shift": int(imgui.Key.mod_shift), "alt": ALT}
 ZOOM_STEP = 1.15  # a notch of the wheel
 GRIP = 0.75  # em: radius within which a handle is grabbed
 SMALLEST_ZOOM, LARGEST_ZOOM = 0.02, 64.0
@@ -50,14 +52,16 @@ def draw(session: Session, look: Look, texture: int | None) -> list[Action]:
     stage = _Stage(project, project.puppet.shown, project.view(session.screen), corner, density)
     # Before the canvas: what comes first gets the pointer. Were they laid over it, a press in the
     # frame in which the pointer arrives would be the canvas's, or nobody's.
-    hovered, over_handles = _handles(session, look, stage)
+    hovered, pressed, over_handles = _handles(session, look, stage)
     imgui.set_cursor_screen_pos(corner)
     imgui.invisible_button("canvas", room, _ANY_BUTTON)
     on_canvas = imgui.is_item_hovered()
     over = imgui.is_window_hovered() or imgui.is_item_active()
     ring = _ring(session, stage)
     on_ring = ring is not None and on_canvas and hovered is None and ring.is_pointed(look)
-    actions += _press_canvas(session, stage, on_ring=on_ring)
+    spot = _spot(stage, hovered, on_ring=on_ring)
+    if pressed or _is_canvas_pressed():
+        actions.append(do(pointing.press, spot))
     actions += _navigate(stage, over=over)
     actions += over_handles
     actions += _go_on(session, stage)
@@ -65,14 +69,14 @@ def draw(session: Session, look: Look, texture: int | None) -> list[Action]:
         actions.append(do(pointing.hover, hovered))
     if ring is not None:
         draw_ring(look, ring, is_pointed=on_ring and session.pointer is None)
-    hint = _hint(session, stage, hovered) if on_canvas or hovered is not None else ""
-    hint = "Drag to turn the shape around the handle" if on_ring else hint
+    hint = _hint(session, stage, spot) if on_canvas or hovered is not None else ""
     if hint != session.hint:
         actions.append(do(pointing.explain, hint))
     actions += _badges(look, project, corner, room)
     return actions
 
 
+RIGHT = imgui.MouseButton_.right
 _ANY_BUTTON = (
     imgui.ButtonFlags_.mouse_button_left
     | imgui.ButtonFlags_.mouse_button_right
@@ -110,42 +114,43 @@ class _Stage:
         return bool(contains(outline, np.array([place]))[0])
 
 
+def _spot(stage: _Stage, handle: int | None, *, on_ring: bool) -> Spot:
+    """Return where the pointer is, and what is under it."""
+    io, place = imgui.get_io(), stage.pointer
+    return Spot(
+        place=place,
+        handle=handle,
+        on_ring=on_ring,
+        on_shape=stage.is_on_shape(place),
+        ctrl=io.key_ctrl,
+        shift=io.key_shift,
+        alt=io.key_alt,
+    )
+
+
 def _ring(session: Session, stage: _Stage) -> Ring | None:
     """Return the ring around the one handle that is selected, where it can be turned."""
     project, gesture = stage.project, session.pointer
-    is_held = isinstance(gesture, Turning)
+    held = next((m for m in gesture.marks if isinstance(m, SweepMark)), None) if gesture else None
     if not session.overlays.handles or project.playhead.since is not None:
         return None
-    if len(project.selected) != 1 or not (gesture is None or is_held):
+    if len(project.selected) != 1 or not (gesture is None or held is not None):
         return None
     handles = stage.shown.clip.figure.handles
     found = zip(handles, stage.shown.handle_places, stage.shown.handle_turns, strict=True)
     for handle, place, turn in found:
         if handle.id in project.selected:
-            swept = 0.0
-            if isinstance(gesture, Turning):
-                wish = project.grab.targets[handle.id].rotation if project.grab else None
-                turn = gesture.turn if wish is None else wish  # noqa: PLW2901 - what is wished
-                swept = turn - gesture.turn
-            return Ring(stage.point(complex(place)), turn, is_held, swept)
+            centre = stage.point(complex(place))
+            if held is not None:
+                return Ring(centre, held.turn, is_held=True, swept=held.swept)
+            return Ring(centre, turn, is_held=False, swept=0.0)
     return None
 
 
-def _press_canvas(session: Session, stage: _Stage, *, on_ring: bool) -> list[Action]:
-    if not imgui.is_item_activated() or not imgui.is_mouse_clicked(imgui.MouseButton_.left):
-        return []
-    if imgui.is_key_down(imgui.Key.space):
-        return []
-    place = stage.pointer
-    if on_ring:
-        (identity,) = stage.project.selected
-        return [do(pointing.begin, _turning(stage, identity, deletes=False))]
-    is_on_shape = stage.is_on_shape(place)
-    if is_on_shape and imgui.get_io().key_ctrl:
-        return [do(posing.put_anchor, place)]
-    if is_on_shape and not imgui.get_io().key_shift and session.overlays.handles:
-        return [do(pointing.add_handle, place)]
-    return [do(pointing.begin, Boxing(start=place, keeps=imgui.get_io().key_shift))]
+def _is_canvas_pressed() -> bool:
+    """Tell whether the canvas, the last item, was pressed, and not to move the view."""
+    is_pressed = imgui.is_item_activated() and imgui.is_mouse_clicked(imgui.MouseButton_.left)
+    return is_pressed and not imgui.is_key_down(imgui.Key.space)
 
 
 def _navigate(stage: _Stage, *, over: bool) -> list[Action]:
@@ -164,12 +169,16 @@ def _navigate(stage: _Stage, *, over: bool) -> list[Action]:
     return []
 
 
-def _handles(session: Session, look: Look, stage: _Stage) -> tuple[int | None, list[Action]]:
-    """Lay a button over each handle; return the one under the pointer, and what it asks for."""
+def _handles(session: Session, look: Look, stage: _Stage) -> tuple[int | None, bool, list[Action]]:
+    """Lay a button over each handle.
+
+    Return the one under the pointer, whether it was pressed, and what its menu asks for.
+    """
     hovered: int | None = None
+    pressed = False
     actions: list[Action] = []
     if not session.overlays.handles or stage.project.playhead.since is not None:
-        return hovered, actions
+        return hovered, pressed, actions
     radius = GRIP * look.em
     handles = zip(stage.shown.clip.figure.handles, stage.shown.handle_places, strict=True)
     # The one that is drawn last lies on top.
@@ -184,38 +193,11 @@ def _handles(session: Session, look: Look, stage: _Stage) -> tuple[int | None, l
         if imgui.is_item_hovered() or imgui.is_item_active():
             hovered = handle.id
         if imgui.is_item_activated() and imgui.is_mouse_clicked(imgui.MouseButton_.left):
-            actions += _press_handle(stage, handle.id)
-        if imgui.is_item_clicked(imgui.MouseButton_.right):
+            pressed = True
+        if session.pointer is None and imgui.is_item_clicked(imgui.MouseButton_.right):
             imgui.open_popup(f"menu of handle {handle.id}")
         actions += _menu(stage, handle.id)
-    return hovered, actions
-
-
-def _press_handle(stage: _Stage, identity: int) -> list[Action]:
-    io = imgui.get_io()
-    selected = stage.project.selected
-    if io.key_ctrl:
-        return [do(posing.anchor_at, identity)]
-    if io.key_shift:
-        return [do(pointing.select, selected ^ {identity})]
-    pointer = stage.pointer
-    if io.key_alt:
-        turning = _turning(stage, identity, deletes=True)
-        return [do(pointing.select, frozenset({identity})), do(pointing.begin, turning)]
-    chosen = selected if identity in selected else frozenset({identity})
-    return [do(pointing.select, chosen), do(pointing.begin, Pulling(start=pointer))]
-
-
-def _turning(stage: _Stage, identity: int, *, deletes: bool) -> Turning:
-    shown = stage.shown
-    index = [handle.id for handle in shown.clip.figure.handles].index(identity)
-    return Turning(
-        identity=identity,
-        centre=complex(shown.handle_places[index]),
-        start=stage.pointer,
-        turn=shown.handle_turns[index],
-        deletes=deletes,
-    )
+    return hovered, pressed, actions
 
 
 def _menu(stage: _Stage, identity: int) -> list[Action]:
@@ -243,32 +225,42 @@ def _go_on(session: Session, stage: _Stage) -> list[Action]:
     gesture = session.pointer
     if gesture is None:
         return []
+    if imgui.is_key_pressed(imgui.Key.escape) or imgui.is_mouse_clicked(RIGHT):
+        return [do(pointing.cancel)]
+    for mark in gesture.marks:
+        if isinstance(mark, BoxMark):
+            low, high = stage.point(mark.corner), stage.point(mark.opposite)
+            draw_list = imgui.get_window_draw_list()
+            accent = imgui.get_style_color_vec4(imgui.Col_.nav_cursor)
+            draw_list.add_rect_filled(low, high, ink(accent, 0.12))
+            draw_list.add_rect(low, high, ink(accent, 0.8))
     pointer, delta = stage.pointer, imgui.get_io().mouse_delta
     moves = [do(pointing.move, pointer)] if delta.x or delta.y else []
-    if not imgui.is_mouse_down(imgui.MouseButton_.left):
-        return [*moves, do(pointing.end, pointer)]
-    if isinstance(gesture, Boxing):
-        low, high = stage.point(gesture.start), imgui.get_mouse_pos()
-        draw_list = imgui.get_window_draw_list()
-        accent = imgui.get_style_color_vec4(imgui.Col_.nav_cursor)
-        draw_list.add_rect_filled(low, high, ink(accent, 0.12))
-        draw_list.add_rect(low, high, ink(accent, 0.8))
-        return []
-    return moves
+    is_held = imgui.is_mouse_down(imgui.MouseButton_.left)
+    return moves if is_held else [*moves, do(pointing.end, pointer)]
 
 
-def _hint(session: Session, stage: _Stage, hovered: int | None) -> str:
+def _hint(session: Session, stage: _Stage, spot: Spot) -> str:
+    """Return what can be done where the pointer is."""
+    if session.pointer is not None:
+        return "Esc takes it back"
     if stage.project.playhead.since is not None:
         return "Space stops"
-    if hovered is not None:
-        name = next(h.name for h in stage.shown.clip.figure.handles if h.id == hovered)
-        turn, anchor = with_key(ALT, "drag"), with_key(CTRL, "click")
-        return f"{name}: drag to pose, {turn} to turn, {anchor} for the anchor"
     if not session.overlays.handles:
         return "The handles are hidden: H shows them"
-    if stage.is_on_shape(stage.pointer):
-        return f"Click to add a handle, {with_key(CTRL, 'click')} to put the anchor here"
-    return "Drag to select, wheel to zoom, middle drag to move the view"
+    found = [hint for tool in TOOLS for hint in tool.hints(session, spot)]
+    told = [f"{_how(hint)} {hint.what}" for hint in found]
+    if spot.handle is not None:
+        names = {handle.id: handle.name for handle in stage.shown.clip.figure.handles}
+        return f"{names[spot.handle]}: {', '.join(told)}"
+    if not (spot.on_shape or spot.on_ring):
+        told += ["wheel to zoom", "middle drag to move the view"]
+    text = ", ".join(told)
+    return text[:1].upper() + text[1:]
+
+
+def _how(hint: Hint) -> str:
+    return with_key(KEYS[hint.key], hint.how) if hint.key else hint.how
 
 
 def _badges(look: Look, project: Project, corner: ImVec2, room: ImVec2) -> list[Action]:

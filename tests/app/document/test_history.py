@@ -5,7 +5,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from app.document.commands import Command, figure_commands, handle_commands, scene_commands
-from app.document.history import History
+from app.document.history import History, UnkeyedPose
 from app.errors import LissomError
 
 seeds = st.lists(st.integers(0, 2**32 - 1), max_size=25)
@@ -102,6 +102,61 @@ def test_a_gesture_back_to_where_it_began_is_no_step():
     assert history.document is before
     history.undo()
     assert history.document is first
+
+
+def test_a_gesture_that_is_taken_back_leaves_no_trace():
+    history = History(disc_document(), saved=True)
+    for fps in (10, 11, 12):
+        history.do(set_fps(fps))
+    history.undo()
+    history.undo()
+    before, drag = history.document, object()
+    for fps in (20, 21):
+        history.do(set_fps(fps), gesture=drag)
+    assert history.redo_label is None
+    history.take_back(object())
+    history.take_back(None)
+    assert history.document.fps == 21
+    history.take_back(drag)
+    assert history.document is before
+    history.take_back(drag)
+    assert history.document is before
+    seen = []
+    while history.redo_label:
+        history.redo()
+        seen.append(history.document.fps)
+    assert seen == [11, 12]
+    # Over by another step: it is that step's to undo.
+    history.do(set_fps(30), gesture=drag)
+    history.do(set_fps(31))
+    history.take_back(drag)
+    assert history.document.fps == 31
+
+
+def test_a_pose_that_no_key_holds_is_undone_and_redone_like_all_else():
+    first = disc_document()
+    pose = first.figures[0].keys[0].pose
+    history = History(first, saved=True)
+    poses = [UnkeyedPose(figure=0, frame=5, pose=pose) for _ in range(3)]
+    history.pose(poses[0])
+    history.do(set_fps(10))
+    drag = object()
+    for unkeyed in poses[1:]:
+        history.pose(unkeyed, gesture=drag)
+    assert (history.undo_label, history.unkeyed) == ("Pose", poses[2])
+    assert history.document.fps == 10
+    history.undo()
+    assert history.unkeyed is poses[0]
+    history.undo()
+    assert (history.document, history.unkeyed) == (first, poses[0])
+    assert history.is_saved
+    history.undo()
+    assert history.unkeyed is None
+    for unkeyed in (poses[0], poses[0], poses[2]):
+        history.redo()
+        assert history.unkeyed is unkeyed
+    history.pose(None, gesture=drag)
+    assert history.unkeyed is None
 
 
 def test_anything_between_ends_a_gesture():

@@ -13,9 +13,10 @@ from app.document.history import History
 from app.document.keyframe import Keyframe
 from app.document.settings import FrameRange
 from app.document.timeline import clip_of
-from app.editor.actions.upkeep import _ask, keep_up
+from app.editor.actions.upkeep import STREAMING, keep_up, missing
 from app.editor.jobs import Jobs
-from app.editor.session import Grab, Session
+from app.editor.project import PoseInProgress
+from app.editor.session import Session
 from app.motion.posable_mesh import PosableMesh
 from app.motion.prepared import Motion, pair_of, prepare_motion
 from app.motion.series_queue import Build, memory, next_build, with_series
@@ -138,23 +139,62 @@ def test_a_session_streams_what_it_plays_and_stops_while_a_hand_pulls(document, 
             session.jobs.deliver()
 
     settle()
-    assert streamed(project.puppet.coarse, clip) == [True] * 3
+    assert streamed(project.puppet.coarse.value, clip) == [True] * 3
     project.playhead = project.playhead.seek(13, 0.0)
     settle()
     assert isinstance(project.puppet.shown.vertices, Streamed)
-    assert project.puppet.build is None
+    assert project.puppet.build.value is None
     # Another key's pose: its two intervals are built anew, but not while it is being pulled.
     key = clip.figure.keys[1]
     moved = replace(key, pose=replace(key.pose, phi=key.pose.phi + 1))
     edited = altered(document, keys=(clip.figure.keys[0], moved, *clip.figure.keys[2:]))
     project.history = History(edited, saved=True)
     settle()
-    assert streamed(project.puppet.coarse, clip_of(edited, 0)) == [True] * 3
-    project.puppet.coarse = prepare_motion(clip, Motion.at_rest(clip, project.puppet.coarse.mesh))
+    assert streamed(project.puppet.coarse.value, clip_of(edited, 0)) == [True] * 3
+    project.puppet.coarse.value = prepare_motion(
+        clip, Motion.at_rest(clip, project.puppet.coarse.value.mesh)
+    )
     project.history = History(document, saved=True)
-    project.grab = object.__new__(Grab)
-    _ask(session, project)
-    assert not session.jobs.kinds
+    project.posing = object.__new__(PoseInProgress)
+    assert not list(missing(session, project))
+
+
+def test_a_series_that_failed_once_is_built_anew_when_the_document_changes(
+    document, clip, tmp_path, monkeypatch
+):
+    project = project_of(document, np.zeros((90, 120, 4), np.uint8), "blob")
+    session = Session(clock=lambda: 0.0, jobs=Jobs(), folder=tmp_path, project=project)
+    asked = []
+
+    def settle():
+        for _ in range(1_000):
+            keep_up(session)
+            if not session.jobs.kinds:
+                return
+            asked.extend(session.jobs.kinds)
+            assert session.jobs.settle()
+            session.jobs.deliver()
+        raise AssertionError(f"there is no end of {session.jobs.kinds}")
+
+    def broken(_):
+        yield
+        raise ZeroDivisionError("a bug")
+
+    with monkeypatch.context() as patch:
+        patch.setattr("app.motion.series_queue.build_series", broken)
+        settle()
+        settle()
+    assert asked.count(STREAMING) == 1
+    assert [toast.text for toast in session.toasts] == ["Playback cannot be made smooth."]
+    assert streamed(project.puppet.coarse.value, clip) == [False] * 3
+    assert project.puppet.build.has_failed(clip)
+    # The other intervals are as they were: what was in the making is theirs, and no more of use.
+    keys = clip.figure.keys
+    moved = replace(keys[-1], pose=replace(keys[-1].pose, phi=keys[-1].pose.phi + 1))
+    edited = altered(document, keys=(*keys[:-1], moved))
+    project.history = History(edited, saved=True)
+    settle()
+    assert streamed(project.puppet.coarse.value, clip_of(edited, 0)) == [True] * 3
 
 
 def test_the_worker_takes_few_steps_at_once(clip, prepared, monkeypatch):

@@ -7,7 +7,7 @@ from harness import Harness
 
 from app.document.keyframe import Target
 from app.editor.actions import playback, posing
-from app.editor.session import Project
+from app.editor.project import Project
 from app.storage.assets import sample_images
 
 

@@ -8,7 +8,7 @@ import pytest
 
 from app.editor.action import do
 from app.editor.actions import viewing
-from app.editor.session import FileDialog
+from app.editor.dialogs import FileDialog
 from app.ui.dialogs.folder_listing import Entry, read_folder
 from app.ui.style.theme import PALETTES
 

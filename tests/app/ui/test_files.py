@@ -1,6 +1,8 @@
 """Files that are dropped, work that is kept by itself, and preferences that outlive a crash."""
 
+import importlib
 import threading
+from contextlib import contextmanager
 from dataclasses import replace
 from types import MappingProxyType
 
@@ -8,8 +10,8 @@ import pytest
 
 from app.document.commands import handle_commands
 from app.document.keyframe import Target
-from app.editor.actions import editing, posing, saving, viewing
-from app.editor.session import Question
+from app.editor.actions import editing, files, posing, saving, viewing
+from app.editor.dialogs import Question
 from app.storage.assets import sample_images
 from app.storage.autosave import SECONDS
 from app.storage.preferences import CHECKER, Preferences, load_preferences
@@ -101,6 +103,76 @@ def test_changes_are_asked_about_before_a_dropped_file_opens(window, project, dr
     assert window.session.project.name == "ring"
 
 
+@contextmanager
+def waiting(monkeypatch, where):
+    """Let a function wait on the worker until the block is over."""
+    may_go_on = threading.Event()
+    module, _, name = where.rpartition(".")
+    function = getattr(importlib.import_module(module), name)
+
+    def late(*arguments, **named):
+        may_go_on.wait(60)
+        return function(*arguments, **named)
+
+    with monkeypatch.context() as patch:
+        patch.setattr(where, late)
+        try:
+            yield
+        finally:
+            may_go_on.set()
+
+
+def test_changes_made_while_a_file_is_read_are_asked_about(window, project, monkeypatch):
+    with waiting(monkeypatch, "app.editor.actions.files.open_picture"):
+        window.act(files.open_file, RING)
+        assert window.session.dialog is None
+        window.act(posing.add_handle, complex(*project.document.canvas) / 2)
+    window.settle()
+    assert window.session.project is project
+    assert len(project.figure.handles) == 1
+    assert isinstance(window.session.dialog, Question)
+    window.run(lambda robot: robot.item_click("//###dialog/Don't save"))
+    assert window.session.project.name == "ring"
+
+
+def test_changes_made_while_unsaved_work_is_read_are_asked_about(
+    window, project, monkeypatch, tmp_path
+):
+    path = tmp_path / "unsaved.lissom"
+    save_project(path, project.document)
+    with waiting(monkeypatch, "app.editor.actions.files.load_project"):
+        window.act(files.recover, path)
+        window.act(posing.add_handle, complex(*project.document.canvas) / 2)
+    window.settle()
+    assert window.session.project is project
+    assert isinstance(window.session.dialog, Question)
+    window.run(lambda robot: robot.item_click("//###dialog/Cancel"))
+    assert path.exists()
+
+
+@pytest.mark.parametrize("verb", [saving.quit_lissom, saving.close])
+def test_changes_made_while_the_project_is_saved_are_asked_about(
+    window, project, monkeypatch, tmp_path, verb
+):
+    saving.write(window.session, tmp_path / "bar.lissom", None)
+    window.settle()
+    change(window, project)
+    window.act(verb)
+    with waiting(monkeypatch, "app.editor.actions.saving.save_project"):
+        window.run(lambda robot: robot.item_click("//###dialog/Save"))
+        window.act(posing.add_handle, complex(*project.document.canvas) / 3)
+    window.settle()
+    assert window.session.project is project
+    assert not window.session.quitting
+    assert len(project.figure.handles) == 2
+    assert isinstance(window.session.dialog, Question)
+    window.run(lambda robot: robot.item_click("//###dialog/Save"))
+    window.settle()
+    assert len(load_project(tmp_path / "bar.lissom").figures[0].handles) == 2
+    assert window.session.quitting or window.session.project is None
+    window.session.quitting = False
+
+
 @pytest.fixture
 def kept(window):
     """Returns how many handles the autosave has, None if there is none; lets jobs end."""
@@ -153,10 +225,10 @@ def test_the_autosave_does_not_come_while_the_hand_drags(window, project, kept):
     posing.pull(window.session, {0: Target(position=place)})
     pass_time(window, 2 * SECONDS)
     assert kept() is None
-    assert project.grab is not None
+    assert project.posing is not None
     window.act(posing.let_go)
     window.settle()
-    assert project.grab is None
+    assert project.posing is None
     assert kept() == 1
 
 
@@ -166,11 +238,11 @@ def test_what_is_saved_stays_so_though_a_pose_had_not_settled(window, project, t
     place = complex(*project.document.canvas)
     posing.wish(window.session, {0: Target(position=place), 1: Target(position=1.2 * place)})
     window.frames(2)
-    assert project.grab is not None
+    assert project.posing is not None
     path = tmp_path / "bar.lissom"
     saving.write(window.session, path, None)
     window.settle()
-    assert project.grab is None
+    assert project.posing is None
     assert project.history.is_saved
     (saved,), (now,) = load_project(path).figures[0].keys, project.figure.keys
     assert saved.pose.targets == now.pose.targets

@@ -113,16 +113,19 @@ def test_a_person_makes_an_animation_and_takes_it_back(window, tmp_path):
     assert len(reopened.document.figures[0].handles) == 2
 
 
-def test_dragging_follows_and_is_one_step(window, bar):
+def test_dragging_follows_and_is_one_step(window, bar, monkeypatch):
     session = window.session
+    session.solver_seconds = 0.0
+    monkeypatch.setattr(window.clock, "cost", 1e-4)
     start = handle_places(bar)[1]
     before = bar.document
     window.run(lambda robot: drag(robot, window, start, start + 150j, steps=12))
     window.settle()
-    assert bar.grab is None
+    assert bar.posing is None
     lag = bar.document.figures[0].lags(bar.document.figures[0].keys[0].pose)[1]
     assert lag < 0.05 * abs(150j)
-    assert session.solver_seconds >= 0
+    # It is looked at before the steps and after.
+    assert session.solver_seconds >= window.clock.cost
     editing.undo(session)
     assert bar.document is before
 
@@ -151,7 +154,7 @@ def test_a_shape_that_is_caught_comes_free_when_the_hand_lets_go(window, bar, mo
     assert abs(handle_places(bar)[1] - wanted) > 50
     posing.let_go(session)
     window.settle()
-    assert bar.grab is None
+    assert bar.posing is None
     assert abs(handle_places(bar)[1] - wanted) < 5
     assert bar.document.figures[0].keys[0].pose.certificate.certified
     editing.undo(session)
@@ -165,7 +168,7 @@ def test_a_pose_that_the_playhead_leaves_comes_to_rest(window, bar, leave):
     posing.pull(session, {1: Target(position=wanted)})
     posing.let_go(session)
     leave(session)
-    assert bar.grab is None
+    assert bar.posing is None
     assert bar.is_posing
     window.settle()
     assert not bar.is_posing
@@ -180,7 +183,7 @@ def test_a_pose_that_rests_in_the_hand_ends_where_the_playhead_leaves_it(window,
     posing.pull(session, {1: Target(position=handle_places(bar)[1] + 150j)})
     window.settle()
     posed = bar.document
-    assert bar.grab.held
+    assert bar.posing.is_held
     playback.seek(session, 24)
     window.settle()
     assert not bar.is_posing
@@ -217,12 +220,12 @@ def test_the_coarse_mesh_is_shown_while_the_playhead_moves(window):
     project = window.open(BAR)
     session.full_detail = False
     window.frames(30)
-    assert project.puppet.shown.mesh is project.puppet.fine.mesh
+    assert project.puppet.shown.mesh is project.puppet.fine.value.mesh
     playback.seek(session, 3)
     window.frames()
-    assert project.puppet.shown.mesh is project.puppet.coarse.mesh
+    assert project.puppet.shown.mesh is project.puppet.coarse.value.mesh
     window.frames(20)
-    assert project.puppet.shown.mesh is project.puppet.fine.mesh
+    assert project.puppet.shown.mesh is project.puppet.fine.value.mesh
 
 
 def test_a_shape_is_left_alone_where_another_start_gains_little(window, bar):
@@ -230,10 +233,10 @@ def test_a_shape_is_left_alone_where_another_start_gains_little(window, bar):
     posing.pull(session, {1: Target(position=handle_places(bar)[1] + 9000)})
     window.settle()
     held = bar.puppet.shown.positions
-    assert bar.grab.drag.state.status is Status.BOUNDS_REACHED
+    assert bar.posing.drag.state.status is Status.BOUNDS_REACHED
     posing.let_go(session)
     window.settle()
-    assert bar.grab is None
+    assert bar.posing is None
     np.testing.assert_array_equal(bar.puppet.shown.positions, held)
 
 
@@ -244,7 +247,7 @@ def test_inbetweens_follow_a_drag_before_the_hand_lets_go(window, bar):
     window.settle()
     posing.wish(session, {1: Target(position=handle_places(bar)[1] + 120j)})
     window.settle()
-    before = bar.puppet.coarse.positions(bar.clip, 12)
+    before = bar.puppet.coarse.value.positions(bar.clip, 12)
     start = handle_places(bar)[1]
     ghosts, halfway = [], {}
 
@@ -253,14 +256,14 @@ def test_inbetweens_follow_a_drag_before_the_hand_lets_go(window, bar):
         robot.mouse_down(0)
         for step in range(1, 7):
             robot.mouse_move_to_pos(window.point(start + 25j * step))
-            ghosts.append(bar.puppet.coarse.vertices(bar.puppet.coarse.clip, 12))
+            ghosts.append(bar.puppet.coarse.value.vertices(bar.puppet.coarse.value.clip, 12))
         while session.jobs.kinds:
             robot.yield_()
         halfway.update(
-            grab=bar.grab,
-            rough=bar.puppet.coarse.is_rough(bar.clip, 12),
-            known=bar.puppet.coarse.knows(bar.clip, roughly=True),
-            positions=bar.puppet.coarse.positions(bar.clip, 12),
+            grab=bar.posing,
+            rough=bar.puppet.coarse.value.is_rough(bar.clip, 12),
+            known=bar.puppet.coarse.value.knows(bar.clip, roughly=True),
+            positions=bar.puppet.coarse.value.positions(bar.clip, 12),
         )
         robot.mouse_up(0)
 
@@ -271,9 +274,9 @@ def test_inbetweens_follow_a_drag_before_the_hand_lets_go(window, bar):
     assert halfway["rough"]
     assert np.abs(halfway["positions"] - before).max() > 40
     window.settle()
-    assert bar.puppet.coarse.knows(bar.clip)
-    assert not bar.puppet.coarse.is_rough(bar.clip, 12)
-    exact = bar.puppet.coarse.positions(bar.clip, 12)
+    assert bar.puppet.coarse.value.knows(bar.clip)
+    assert not bar.puppet.coarse.value.is_rough(bar.clip, 12)
+    exact = bar.puppet.coarse.value.positions(bar.clip, 12)
     np.testing.assert_allclose(
         halfway["positions"], exact, rtol=0, atol=0.01 * bar.puppet.picture.size[0]
     )
@@ -454,6 +457,55 @@ def test_a_click_on_the_ring_changes_nothing(window, bar):
     assert bar.selected == {1}
 
 
+@pytest.mark.parametrize("by", ["escape", "right button"])
+def test_a_drag_is_taken_back_and_the_next_one_goes_on(window, bar, by):
+    session, before = window.session, bar.document
+    start = handle_places(bar)[1]
+    free = (handle_places(bar)[0] + start) / 2
+
+    def take_back(robot, place):
+        robot.mouse_move_to_pos(window.point(place))
+        robot.mouse_down(0)
+        for reach in (60j, 64j):
+            robot.mouse_move_to_pos(window.point(place + reach))
+            assert session.jobs.settle()
+        robot.yield_(2)
+        assert session.hint == "Esc takes it back"
+        assert bar.document is not before
+        if by == "escape":
+            robot.key_press(int(window.Key.escape))
+        else:
+            robot.mouse_down(1)
+            robot.mouse_up(1)
+        assert bar.document is before
+        assert session.pointer is None
+        robot.mouse_move_to_pos(window.point(place + 90j))
+        robot.mouse_up(0)
+
+    for place in (start, free):
+        window.run(lambda robot, place=place: take_back(robot, place))
+        window.settle()
+        assert bar.document is before
+        assert bar.selected == {1}
+        np.testing.assert_allclose(handle_places(bar)[1], start, rtol=0, atol=1e-9)
+    window.run(lambda robot: drag(robot, window, start, start + 60j))
+    window.settle()
+    assert bar.history.undo_label == "Pose"
+    assert handle_places(bar)[1].imag > start.imag + 30
+
+
+def test_a_press_on_the_shape_that_is_dragged_is_one_step(window, bar):
+    before = bar.document
+    left, right = handle_places(bar).values()
+    middle = (left + right) / 2
+    window.run(lambda robot: drag(robot, window, middle, middle + 60j))
+    window.settle()
+    assert len(bar.figure.handles) == 3
+    assert handle_places(bar)[2].imag > middle.imag + 30
+    window.run(lambda robot: robot.key_press(int(window.Key.mod_ctrl) | int(window.Key.z)))
+    assert bar.document is before
+
+
 def test_wheel_zooms_at_the_pointer_and_home_fits(window, bar):
     place = handle_places(bar)[0]
     before = window.point(place)
@@ -519,7 +571,7 @@ def test_ctrl_click_on_the_shape_puts_the_anchor_there(window, bent):
 def test_an_anchor_that_was_chosen_for_the_person_is_shown(window, bent):
     assert bent.document.figures[0].anchor is None
     place = canvas._anchor(bent, bent.puppet.shown)
-    rest = bent.puppet.coarse.sampler.sites.anchor
+    rest = bent.puppet.coarse.value.sampler.sites.anchor
     moved = bent.document.figures[0].map_of(bent.document.figures[0].keys[1].pose)(np.array([rest]))
     assert abs(place - moved[0]) < 3
     shown = window.picture()

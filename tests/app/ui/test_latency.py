@@ -25,4 +25,4 @@ def test_the_picture_follows_a_pull_in_the_next_frame(window, bar):
 def test_a_slow_solver_shows_every_step(window, bar):
     window.session.clock = count().__next__  # each look at the clock takes a second
     pull(window, bar, 40j)
-    assert bar.grab.steps == 1
+    assert bar.posing.steps == 1

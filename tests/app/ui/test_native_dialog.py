@@ -10,7 +10,7 @@ import pytest
 
 from app.editor.action import do
 from app.editor.actions import files, posing, saving, viewing
-from app.editor.session import FileDialog, Question
+from app.editor.dialogs import FileDialog, Question
 from app.storage.assets import sample_images
 from app.ui.dialogs import native_dialog, system_dialogs
 

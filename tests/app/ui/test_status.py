@@ -54,7 +54,7 @@ def test_inbetweens_show_what_was_measured(window, bent):
     window.settle()
     window.frames(2)
     shown, *_ = facts(window)
-    halfway = bent.puppet.coarse.inbetweens(bent.clip, 0).frame(np.array([0.5, 0.5]))
+    halfway = bent.puppet.coarse.value.inbetweens(bent.clip, 0).frame(np.array([0.5, 0.5]))
     fz, fzbar = halfway.fz, halfway.fzbar
     values = {
         "Shear": distortion.k(fz, fzbar).max(),
@@ -75,7 +75,7 @@ def test_a_bound_that_is_reached_warns(window):
 
 
 def test_extremes_between_the_times_that_were_measured(bent):
-    curves = measure_curves(bent.clip, bent.puppet.coarse)
+    curves = measure_curves(bent.clip, bent.puppet.coarse.value)
     assert curves.extremes.shape == (TIMES, 3)
     np.testing.assert_array_equal(curves.extremes_at(0), curves.extremes[0])
     np.testing.assert_allclose(curves.extremes_at(24), curves.extremes[-1], rtol=1e-12, atol=0)
@@ -92,7 +92,7 @@ def test_extremes_between_the_times_that_were_measured(bent):
         frames=replace(bent.document.frames, last=48),
     )
     looped = clip_of(looped, 0)
-    motion = prepare_motion(looped, Motion.at_rest(looped, bent.puppet.coarse.mesh))
+    motion = prepare_motion(looped, Motion.at_rest(looped, bent.puppet.coarse.value.mesh))
     again = measure_curves(looped, motion)
     assert again.extremes_at(5) == again.extremes_at(53)
     assert again.extremes_at(5) != again.extremes_at(20)

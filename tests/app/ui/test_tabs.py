@@ -11,7 +11,8 @@ from app.document.commands import key_commands
 from app.document.commands.scene_commands import set_export
 from app.document.keyframe import Handle, Keyframe, Pose, Target
 from app.document.settings import Meshing
-from app.editor.actions import editing, exporting, measuring, playback, posing
+from app.editor.actions import editing, exporting, playback, posing, upkeep
+from app.motion.extent import extent_source
 from engine.maps.boundary import Boundary
 from engine.maps.bounds import Bounds
 from engine.maps.certificate import certify
@@ -197,24 +198,25 @@ def test_heat_map_and_curves_follow_the_document(window, project, tab):
 
     tab("Distortion", act)
     assert window.session.overlays.heat_map == "sigma_a"
-    curves = project.curves
+    curves = project.curves.value
     assert curves.clip == project.clip
     assert curves.k_share.max() <= 1 + 1e-3
     assert curves.k.max() == pytest.approx(largest(project, "k"), rel=0.1)
     editing.edit(window.session, key_commands.move_keys(0, frozenset({24}), 4))
     window.settle()
-    assert project.curves.clip == project.clip
-    assert project.curves.frames[-1] == 28
+    assert project.curves.follows(project.clip)
+    assert project.curves.value.frames[-1] == 28
 
 
 def test_curves_of_an_older_document_are_not_kept(window, project, tab):
     tab("Distortion", lambda _: None)
     editing.edit(window.session, key_commands.move_keys(0, frozenset({24}), 4))
     older = project.document
-    measuring.keep_up(window.session)
+    upkeep.keep_up(window.session)
     editing.edit(window.session, key_commands.move_keys(0, frozenset({28}), 4))
     window.settle()
-    assert project.curves.clip == project.clip != older
+    assert project.curves.follows(project.clip)
+    assert project.document is not older
 
 
 @pytest.mark.usefixtures("project")
@@ -333,7 +335,8 @@ def test_export_settings_are_entered_and_undone(window, project, tab):
 def test_frame_of_the_export_shows_only_with_its_tab(window, project, tab):
     tab("Export", lambda _: None)
     assert window.session.export_frame is not None
-    assert project.reach is not None
+    window.settle()
+    assert project.extent.follows(extent_source(project.document))
     tab("Handle", lambda _: None)
     assert window.session.export_frame is None
 
@@ -430,4 +433,4 @@ def test_a_handle_that_is_outweighed_is_not_said_to_be_held_back_by_limits(
         assert "12 px short of its target" in told, title
         assert reason in told, title
         assert "by the limits" not in told
-    assert project.timing.shortfalls.lags[pose] == {1: pytest.approx(12, abs=1e-6)}
+    assert project.timing.shortfalls.value[pose] == {1: pytest.approx(12, abs=1e-6)}

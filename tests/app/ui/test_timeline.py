@@ -435,7 +435,7 @@ def test_keys_go_to_the_nearest_place_that_is_free(frames, subset, wanted, copie
 
 
 def test_keys_that_fall_short_are_known(project):
-    lags = [project.timing.shortfalls.lags[key.pose] for key in project.figure.keys]
+    lags = [project.timing.shortfalls.value[key.pose] for key in project.figure.keys]
     assert [set(lag) for lag in lags] == [set(), set(), {1}, set()]
 
 

@@ -22,9 +22,11 @@ from app.editor.actions import (
     rebuilding,
     saving,
     timeline_pointing,
+    upkeep,
     viewing,
 )
 from app.editor.timeline_view import KeyBox
+from app.motion.extent import Box, extent_source
 from app.storage.assets import sample_images
 from app.storage.autosave import SECONDS
 from app.ui.viewport import canvas
@@ -126,6 +128,53 @@ def test_undo_takes_a_loose_pose_back_first(window, bent):
     assert bent.document is before
 
 
+def test_undo_and_redo_go_through_loose_poses_one_by_one(window, bent):
+    session = window.session
+    window.act(viewing.toggle_auto_key)
+    before = bent.document
+    poses = [None]
+    for shift in (-30j, -60j, -90j):
+        posing.wish(session, {1: Target(position=place_of(bent, 1) + shift)})
+        window.settle()
+        poses.append(bent.unkeyed)
+    assert len(set(poses)) == 4
+    for pose in poses[-2::-1]:
+        editing.undo(session)
+        assert bent.unkeyed is pose
+    assert bent.document is before
+    for pose in poses[1:]:
+        editing.redo(session)
+        assert bent.unkeyed is pose
+    window.frames(2)
+    assert bent.puppet.shown.pose is poses[-1]
+    posing.insert_key(session)
+    assert bent.unkeyed is None
+    assert bent.figure.key(24).pose is poses[-1]
+    editing.undo(session)
+    assert (bent.document, bent.unkeyed) == (before, poses[-1])
+
+
+def test_a_loose_pose_waits_at_its_frame(window, bent):
+    session = window.session
+    window.act(viewing.toggle_auto_key)
+    posing.wish(session, {1: Target(position=place_of(bent, 1) - 80j)})
+    window.settle()
+    pose = bent.unkeyed
+    playback.scrub(session, 24)
+    assert bent.unkeyed is pose
+    playback.scrub(session, 7)
+    window.settle()
+    assert bent.unkeyed is None
+    assert bent.puppet.shown.pose is None
+    playback.toggle_play(session)
+    playback.seek(session, 24)
+    assert bent.unkeyed is None
+    playback.scrub(session, 24)
+    window.settle()
+    assert bent.unkeyed is pose
+    assert bent.puppet.shown.pose is pose
+
+
 def test_deleting_a_handle_while_it_is_dragged(window, bent):
     start = place_of(bent, 1)
 
@@ -141,7 +190,7 @@ def test_deleting_a_handle_while_it_is_dragged(window, bent):
     window.settle()
     assert [handle.id for handle in bent.document.figures[0].handles] == [0]
     assert bent.selected == frozenset()
-    assert bent.grab is None
+    assert bent.posing is None
 
 
 def test_deleting_a_key_while_it_is_dragged(window, bent):
@@ -176,7 +225,7 @@ def test_key_that_goes_while_the_solver_still_follows_does_not_come_back(
 ):
     editing.choose_keys(window.session, frozenset({24}))
     posing.wish(window.session, {1: Target(position=place_of(bent, 1) - 150j)})
-    assert bent.grab is not None
+    assert bent.posing is not None
     change(window.session)
     window.settle()
     assert frames_of(bent) == frames
@@ -185,7 +234,7 @@ def test_key_that_goes_while_the_solver_still_follows_does_not_come_back(
 def test_other_changes_leave_the_solver_at_work(window, bent):
     posing.wish(window.session, {1: Target(position=place_of(bent, 1) - 150j)})
     keys.set_fps(window.session, 12.0)
-    assert bent.grab is not None
+    assert bent.posing is not None
     window.settle()
     assert bent.document.figures[0].lags(bent.document.figures[0].key(24).pose)[1] < 10
 
@@ -197,15 +246,15 @@ def test_bounds_and_places_that_change_end_the_pull(window, bent):
     ):
         posing.wish(window.session, {1: Target(position=place_of(bent, 1) - 20j)})
         editing.edit(window.session, command)
-        assert bent.grab is None
+        assert bent.posing is None
 
 
 def test_playhead_that_goes_elsewhere_ends_the_pull(window, bent):
     posing.wish(window.session, {1: Target(position=place_of(bent, 1) - 150j)})
     playback.scrub(window.session, 24)
-    assert bent.grab is not None
+    assert bent.posing is not None
     playback.scrub(window.session, 7)
-    assert bent.grab is None
+    assert bent.posing is None
     window.settle()
     assert frames_of(bent) == [0, 24]
 
@@ -372,8 +421,8 @@ def test_poses_that_follow_each_other_twice_are_prepared_once(window, bent):
     for _ in range(20):
         window.frames()
         window.session.jobs.settle()
-    assert bent.puppet.coarse.knows(bent.clip)
-    assert len(bent.puppet.coarse.ready) == 2
+    assert bent.puppet.coarse.value.knows(bent.clip)
+    assert len(bent.puppet.coarse.value.ready) == 2
 
 
 FAILURES = {
@@ -382,11 +431,15 @@ FAILURES = {
         lambda session: keys.set_variant(session, "nu"),
     ),
     "Measuring": (
-        "app.editor.actions.measuring.measure_curves",
+        "app.editor.actions.upkeep.measure_curves",
         lambda session: keys.set_variant(session, "nu"),
     ),
     "Measuring the motion": (
-        "app.editor.actions.exporting.measure_extent",
+        "app.editor.actions.upkeep.measure_extent",
+        lambda session: keys.set_variant(session, "nu"),
+    ),
+    "Smooth playback": (
+        "app.motion.series_queue.build_series",
         lambda session: keys.set_variant(session, "nu"),
     ),
     "Solving the keys": ("app.editor.actions.rebuilding.go_on", rebuilding.solve_again),
@@ -409,7 +462,10 @@ FAILURES = {
         "app.editor.actions.saving.save_project",
         lambda session: saving.write(session, session.folder / "bar.lissom", None),
     ),
-    "Opening": ("app.editor.actions.files.open_picture", lambda session: files.load(session, BAR)),
+    "Opening": (
+        "app.editor.actions.files.open_picture",
+        lambda session: files.open_file(session, BAR),
+    ),
 }
 
 
@@ -454,8 +510,11 @@ WAITING = {
         lambda session: keys.set_variant(session, "nu"),
     ),
     "Measuring the motion": (
-        "app.editor.actions.exporting.measure_extent",
-        exporting.keep_reach,
+        "app.editor.actions.upkeep.measure_extent",
+        lambda session: (
+            exporting.show_frame(session, Box(0j, 1 + 1j)),
+            upkeep.keep_up(session),
+        ),
     ),
     "Solving the keys": ("app.editor.actions.rebuilding.go_on", rebuilding.solve_again),
     "Posing": (
@@ -479,15 +538,15 @@ def test_results_for_a_closed_project_go_nowhere(window, bent, monkeypatch, kind
         assert kind in window.session.jobs.kinds
         closed = bent.document
         saving.give_up(window.session)
-        files.load(window.session, sample_images() / "s.png")
+        files.open_file(window.session, sample_images() / "s.png")
         window.frames(3)
     window.settle()
     other = window.session.project
     assert other.name == "s"
     assert len(other.document.figures[0].keys) == 1
     assert other.history.undo_label is None
-    assert other.reach is None or other.reach.source[0] is other.document.figures[0].domain
-    assert (other.grab, other.renewal, other.unkeyed) == (None, None, None)
+    assert other.extent.source in (None, extent_source(other.document))
+    assert (other.posing, other.renewal, other.unkeyed) == (None, None, None)
     assert other.puppet.shown.is_current
     assert bent.document is closed
     assert closed.figures[0].handles == before.figures[0].handles

@@ -11,7 +11,7 @@ from PIL import Image
 
 from app.document.settings import ExportSettings
 from app.editor.actions import exporting, files, keys, posing, saving
-from app.editor.session import Question
+from app.editor.dialogs import Question
 from app.storage.assets import sample_images
 from app.ui.window import exporter
 
@@ -278,7 +278,7 @@ def test_export_goes_on_when_another_project_is_opened(window, tmp_path):
     begin(window, out)
     saving.give_up(window.session)
     window.frames(2)
-    files.load(window.session, sample_images() / "s.png")
+    files.open_file(window.session, sample_images() / "s.png")
     window.settle()
     other = window.session.project
     assert other.name == "s"
@@ -303,7 +303,7 @@ def test_export_and_in_betweens_of_the_window_do_not_wait_for_each_other(window,
     keys.set_variant(window.session, "nu")
     keys.insert_at(window.session, FRAMES - 1)
     window.settle()
-    sampler = project.puppet.coarse.sampler
+    sampler = project.puppet.coarse.value.sampler
     known = dict(sampler._samples)
     assert known
     with sampler._lock:  # as a worker has it while it prepares an interval

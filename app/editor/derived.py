@@ -1,0 +1,65 @@
+"""Values that are worked out behind the scenes: what they follow from, and whether that failed."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Generic, TypeVar
+
+Source = TypeVar("Source")
+Value = TypeVar("Value")
+
+
+@dataclass(slots=True, eq=False)
+class Derived(Generic[Source, Value]):
+    """A value that follows a source; it stays while another one is on its way.
+
+    Parameters
+    ----------
+    value : Value
+    source : Source, optional
+        What it was derived from; None before the first one.
+    failure : Source, optional
+        What none could be derived from: that is not tried again.
+    """
+
+    value: Value
+    source: Source | None = None
+    failure: Source | None = None
+
+    def follows(self, source: Source) -> bool:
+        """Tell whether the value is that of a source."""
+        return self.source is not None and self.source == source
+
+    def has_failed(self, source: Source) -> bool:
+        """Tell whether a source is known to give no value."""
+        return self.failure is not None and self.failure == source
+
+    def take(self, source: Source, value: Value) -> None:
+        """Hold the value of a source."""
+        self.source, self.value = source, value
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Derivation(Generic[Source, Value]):
+    """What the worker is to do for a derived value.
+
+    Parameters
+    ----------
+    kind : str
+        Of the job.
+    into : Derived
+    source : Source
+        What the value is derived from.
+    work : callable
+        Returns it; pure, on frozen input.
+    complaint : str
+        What is said where that fails.
+    done : callable, optional
+        Takes the value in place of `into`.
+    """
+
+    kind: str
+    into: Derived[Source, Value]
+    source: Source
+    work: Callable[[], Value]
+    complaint: str
+    done: Callable[[Value], None] | None = None

@@ -1,0 +1,66 @@
+"""What the person is asked before anything is done."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+from app.editor.action import Action
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class FileDialog:
+    """A question for a file: the system's own dialog, or our file browser where it has none.
+
+    Parameters
+    ----------
+    title : str
+    folder : Path
+        Where it begins; in our browser, whose contents it lists.
+    name : str
+        Of the file to write, or what was typed.
+    suffixes : tuple of str
+        Which files it lists, such as ".png"; none where a folder is to be written.
+    writes : bool
+        Whether it asks for a file to write (else for one to read).
+    chosen : callable
+        Returns the action for the chosen path.
+    marked : str
+        The entry of our browser's list that is marked.
+    """
+
+    title: str
+    folder: Path
+    name: str = ""
+    suffixes: tuple[str, ...]
+    writes: bool
+    chosen: Callable[[Path], Action]
+    marked: str = ""
+
+    @property
+    def wants_folder(self) -> bool:
+        """Whether it asks for a folder to write to."""
+        return self.writes and not self.suffixes
+
+    def path_of(self, name: str) -> Path:
+        """Return the path that a name stands for; one to write gets its suffix if it has none."""
+        path = self.folder / name
+        if self.writes and self.suffixes and path.suffix.lower() not in self.suffixes:
+            return path.with_name(path.name + self.suffixes[0])
+        return path
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Question:
+    """A question with up to three answers, the last of which is to do nothing."""
+
+    title: str
+    text: str
+    answers: tuple[tuple[str, Action], ...]
+
+
+@dataclass(frozen=True, slots=True)
+class ShortcutSheet:
+    """The list of all keys."""
+
+
+Dialog = FileDialog | Question | ShortcutSheet

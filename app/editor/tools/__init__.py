@@ -1,0 +1,12 @@
+"""What the pointer does in the viewport: one table of tools, and the verbs that give it to them.
+
+In: presses and moves of the pointer in the drawing's plane.
+Out: a session that the tool in hand has changed, and that forgets it where it is cancelled.
+Imports: `app.editor.actions`.
+"""
+
+from app.editor.tools import pointing
+from app.editor.tools.table import TOOLS
+from app.editor.tools.tool import Hint, Spot, Tool
+
+__all__ = ["TOOLS", "Hint", "Spot", "Tool", "pointing"]

@@ -1,0 +1,48 @@
+"""The pointer in the viewport, from press to release: the tool that takes the press has it."""
+
+from app.editor.session import Session
+from app.editor.tools.table import TOOLS
+from app.editor.tools.tool import Spot
+
+
+def press(session: Session, spot: Spot) -> None:
+    """Give a press to the first tool that takes it."""
+    if session.project is None or session.project.puppet.shown is None:
+        return
+    gestures = (tool.press(session, spot) for tool in TOOLS)
+    session.pointer = next((gesture for gesture in gestures if gesture is not None), None)
+
+
+def move(session: Session, place: complex) -> None:
+    """Follow the pointer to another place of the plane."""
+    if session.project and session.pointer:
+        session.pointer.move(session, place)
+
+
+def end(session: Session, place: complex) -> None:
+    """End what the pointer does where it is."""
+    gesture, session.pointer = session.pointer, None
+    if session.project and gesture:
+        gesture.end(session, place)
+
+
+def cancel(session: Session) -> None:
+    """End what the pointer does, and take it back."""
+    gesture, session.pointer = session.pointer, None
+    if session.project and gesture:
+        gesture.cancel(session)
+
+
+def hover(session: Session, handle: int | None) -> None:
+    """Note which handle is under the pointer."""
+    session.hovered = handle
+
+
+def explain(session: Session, hint: str) -> None:
+    """Show a hint in the status bar."""
+    session.hint = hint
+
+
+def use_space(session: Session) -> None:
+    """Note that Space was held to move the view, so that letting it go does not play."""
+    session.space_used = True

@@ -1,0 +1,112 @@
+"""Posing by hand: handles are added where the shape is pressed, and pulled."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Self
+
+from app.document import Target
+from app.editor.actions import editing, posing
+from app.editor.project import Project
+from app.editor.session import Mark, Session
+from app.editor.tools.tool import Hint, Selection, Spot, is_away, take_back
+
+
+@dataclass(slots=True, kw_only=True, eq=False)
+class Pulling:
+    """The pointer pulls handles.
+
+    Parameters
+    ----------
+    start : complex
+        Where it was pressed.
+    before : Selection
+    places : mapping of int to complex
+        Those of the handles at the start, by id.
+    moved : bool
+        Whether it has gone farther than a click may.
+    """
+
+    start: complex
+    before: Selection
+    places: Mapping[int, complex]
+    moved: bool = False
+
+    @classmethod
+    def hints(cls, session: Session, spot: Spot) -> tuple[Hint, ...]:
+        """Tell that handles are dragged, and that a click adds one."""
+        if spot.handle is not None:
+            return (Hint("drag", "to pose"),)
+        if spot.on_shape and session.overlays.handles and not spot.on_ring:
+            return (Hint("click", "to add a handle"),)
+        return ()
+
+    @classmethod
+    def press(cls, session: Session, spot: Spot) -> Self | None:
+        """Take hold of a handle and of all that are selected with it, or of a new one."""
+        project = session.project
+        if project is None or spot.ctrl or spot.shift or spot.on_ring:
+            return None
+        before = Selection.of(project)
+        if spot.handle is not None:
+            if spot.alt:
+                return None
+            is_selected = spot.handle in project.selected
+            editing.select(session, project.selected if is_selected else frozenset({spot.handle}))
+            return cls(start=spot.place, before=before, places=_selected_places(project))
+        if not spot.on_shape or not session.overlays.handles:
+            return None
+        pulling = cls(start=spot.place, before=before, places={})
+        posing.add_handle(session, spot.place, gesture=pulling)
+        pulling.places = dict.fromkeys(project.selected, spot.place)
+        return pulling
+
+    def move(self, session: Session, place: complex) -> None:
+        """Pull the handles as far as the pointer goes; each keeps the turn that it wishes."""
+        project = session.project
+        self.moved = self.moved or is_away(session, self.start, place)
+        if project is None or not self.moved:
+            return
+        known = {handle.id for handle in project.figure.handles}
+        turns = _wished_turns(project)
+        wishes = {
+            identity: Target(position=start + place - self.start, rotation=turns.get(identity))
+            for identity, start in self.places.items()
+            if identity in known
+        }
+        if wishes:
+            posing.pull(session, wishes, gesture=self)
+
+    def end(self, session: Session, place: complex) -> None:  # noqa: ARG002 - as a tool's
+        """Let the handles go."""
+        posing.let_go(session)
+
+    def cancel(self, session: Session) -> None:
+        """Put the shape back where it was, without the handle that was added."""
+        take_back(session, self, self.before)
+
+    @property
+    def marks(self) -> tuple[Mark, ...]:
+        """Nothing: the handles show it."""
+        return ()
+
+
+def _selected_places(project: Project) -> dict[int, complex]:
+    shown = project.puppet.shown
+    if shown is None:
+        return {}
+    return {
+        handle.id: complex(place)
+        for handle, place in zip(shown.clip.figure.handles, shown.handle_places, strict=True)
+        if handle.id in project.selected
+    }
+
+
+def _wished_turns(project: Project) -> dict[int, float | None]:
+    shown = project.puppet.shown
+    if project.posing is not None:
+        targets = project.posing.targets
+    elif shown is not None and shown.pose is not None:
+        targets = shown.pose.targets
+    else:
+        return {}
+    return {identity: target.rotation for identity, target in targets.items()}

@@ -1,0 +1,84 @@
+"""What a tool is: it takes a press, and then has the pointer until the button is let go."""
+
+from dataclasses import dataclass
+from typing import Literal, Protocol, Self
+
+from app.editor.actions import editing
+from app.editor.project import Project
+from app.editor.session import Session, ToolInHand
+
+CLICK = 3.0  # pixels of the screen that a click may wander
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Spot:
+    """Where the pointer is, and what is under it.
+
+    Parameters
+    ----------
+    place : complex
+        In the plane.
+    handle : int, optional
+        The one under it.
+    on_ring : bool
+        Whether it is on the ring around the selected handle.
+    on_shape : bool
+    ctrl, shift, alt : bool
+        Which keys are held.
+    """
+
+    place: complex
+    handle: int | None = None
+    on_ring: bool = False
+    on_shape: bool = False
+    ctrl: bool = False
+    shift: bool = False
+    alt: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Hint:
+    """What can be done at a spot: how, which key is held for it, and to what end."""
+
+    how: str
+    what: str
+    key: Literal["", "ctrl", "shift", "alt"] = ""
+
+
+class Tool(ToolInHand, Protocol):
+    """Something that the pointer does; an instance has it in hand, from press to release."""
+
+    @classmethod
+    def hints(cls, session: Session, spot: Spot) -> tuple[Hint, ...]:
+        """Return what it would do at a spot, in words."""
+
+    @classmethod
+    def press(cls, session: Session, spot: Spot) -> Self | None:
+        """Begin at a spot; None where it is for another tool."""
+
+
+@dataclass(frozen=True, slots=True)
+class Selection:
+    """What was selected when a gesture began."""
+
+    handles: frozenset[int]
+    keys: frozenset[int]
+
+    @classmethod
+    def of(cls, project: Project) -> Self:
+        """Return what is selected now."""
+        return cls(project.selected, project.chosen)
+
+
+def take_back(session: Session, gesture: ToolInHand, before: Selection) -> None:
+    """Undo what a gesture did to the document and to the selection."""
+    if session.project:
+        session.project.selected, session.project.chosen = before.handles, before.keys
+        editing.take_back(session, gesture)
+
+
+def is_away(session: Session, start: complex, place: complex) -> bool:
+    """Tell whether the pointer has gone farther than a click may."""
+    if session.project is None:
+        return False
+    return abs(place - start) * session.project.view(session.screen).scale > CLICK

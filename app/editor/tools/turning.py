@@ -1,0 +1,109 @@
+"""Turning the shape around a handle, by the ring around it or by a key."""
+
+import cmath
+from dataclasses import dataclass
+from typing import Self
+
+from app.document import Target
+from app.editor.actions import editing, posing
+from app.editor.session import Mark, Session, SweepMark
+from app.editor.tools.tool import Hint, Selection, Spot, is_away, take_back
+
+LEAST_ARM = 12.0  # pixels of the screen from a handle, within which a press has no direction
+
+
+@dataclass(slots=True, kw_only=True, eq=False)
+class Turning:
+    """The pointer turns the shape around a handle.
+
+    Parameters
+    ----------
+    handle : int
+    centre : complex
+        Where that is.
+    start : complex
+        Where the pointer was pressed.
+    before : Selection
+    turn : float
+        By how much the shape was turned there at the start, in radians.
+    deletes : bool
+        Whether a click, which turns nothing, deletes the handle.
+    swept : float
+        By how much the pointer has turned it, in radians.
+    moved : bool
+    """
+
+    handle: int
+    centre: complex
+    start: complex
+    before: Selection
+    turn: float
+    deletes: bool
+    swept: float = 0.0
+    moved: bool = False
+
+    @classmethod
+    def hints(cls, session: Session, spot: Spot) -> tuple[Hint, ...]:  # noqa: ARG003 - as a tool's
+        """Tell how the shape is turned."""
+        if spot.on_ring:
+            return (Hint("drag", "to turn the shape around the handle"),)
+        return () if spot.handle is None else (Hint("drag", "to turn", "alt"),)
+
+    @classmethod
+    def press(cls, session: Session, spot: Spot) -> Self | None:
+        """Take hold of the ring around the selected handle, or of a handle with Alt."""
+        project = session.project
+        shown = project.puppet.shown if project else None
+        if project is None or shown is None:
+            return None
+        is_by_key = spot.handle is not None and spot.alt and not (spot.ctrl or spot.shift)
+        if not is_by_key and not (spot.on_ring and len(project.selected) == 1):
+            return None
+        before = Selection.of(project)
+        handle = spot.handle if is_by_key else next(iter(project.selected))
+        identities = [handle.id for handle in shown.clip.figure.handles]
+        if handle is None or handle not in identities:
+            return None
+        editing.select(session, frozenset({handle}))
+        index = identities.index(handle)
+        return cls(
+            handle=handle,
+            centre=complex(shown.handle_places[index]),
+            start=spot.place,
+            before=before,
+            turn=shown.handle_turns[index],
+            deletes=is_by_key,
+        )
+
+    def move(self, session: Session, place: complex) -> None:
+        """Turn the shape as far as the pointer goes around the handle."""
+        project = session.project
+        if project is None or not (self.moved or is_away(session, self.start, place)):
+            return
+        if not self.moved:
+            arm = abs(self.start - self.centre) * project.view(session.screen).scale
+            if arm < LEAST_ARM:
+                # From so near, the direction in which it leaves is where the turn begins.
+                self.start = place
+        self.moved = True
+        swept = (place - self.centre) / (self.start - self.centre or 1)
+        if swept and self.handle in {handle.id for handle in project.figure.handles}:
+            self.swept = cmath.phase(swept)
+            target = Target(position=self.centre, rotation=self.turn + self.swept)
+            posing.pull(session, {self.handle: target}, gesture=self)
+
+    def end(self, session: Session, place: complex) -> None:  # noqa: ARG002 - as a tool's
+        """Let the shape go; delete the handle that was only clicked."""
+        if self.deletes and not self.moved:
+            posing.remove_handles(session, frozenset({self.handle}))
+        else:
+            posing.let_go(session)
+
+    def cancel(self, session: Session) -> None:
+        """Turn the shape back."""
+        take_back(session, self, self.before)
+
+    @property
+    def marks(self) -> tuple[Mark, ...]:
+        """How far it is turned."""
+        return (SweepMark(handle=self.handle, turn=self.turn + self.swept, swept=self.swept),)

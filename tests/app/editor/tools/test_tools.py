@@ -1,0 +1,240 @@
+"""What the pointer does in the viewport: who takes a press, and that it can be taken back whole."""
+
+from dataclasses import replace
+from itertools import product
+
+import numpy as np
+import pytest
+from animations import still_document
+from projects import project_of
+
+from app.document.commands import handle_commands, scene_commands
+from app.editor import BoxMark, Jobs, Session, SweepMark
+from app.editor.actions import editing, playback, posing
+from app.editor.actions.upkeep import keep_up
+from app.editor.tools import TOOLS, Spot, pointing
+from app.storage import Preferences
+
+LEFT, RIGHT, FREE = 40 + 45j, 80 + 45j, 60 + 60j
+
+
+@pytest.fixture
+def session(tmp_path):
+    """A blob with two handles, the first of which is selected; one step can be done again."""
+    document = still_document()
+    for place in (LEFT, RIGHT):
+        document = handle_commands.add_handle(0, place)(document)
+    project = project_of(document, np.zeros((90, 120, 4), np.uint8), "blob")
+    project.history.do(scene_commands.set_fps(12))
+    project.history.undo()
+    session = Session(clock=lambda: 0.0, jobs=Jobs(), folder=tmp_path, project=project)
+    editing.select(session, frozenset({0}))
+    settle(session)
+    return session
+
+
+def settle(session):
+    while True:
+        keep_up(session)
+        if not session.jobs.kinds:
+            return
+        assert session.jobs.settle()
+        session.jobs.deliver()
+
+
+def frames(session, count=2):
+    """Let the worker take some steps."""
+    for _ in range(count):
+        keep_up(session)
+        assert session.jobs.settle()
+        session.jobs.deliver()
+
+
+def drag(session, spot, *places):
+    pointing.press(session, spot)
+    for place in places:
+        pointing.move(session, place)
+        frames(session)
+
+
+def state(project):
+    unkeyed = project.history.unkeyed
+    return project.document, unkeyed, project.selected, project.chosen, project.posing
+
+
+AT_LEFT, AT_RIGHT = Spot(place=LEFT, handle=0), Spot(place=RIGHT, handle=1)
+ON_SHAPE, BESIDE = Spot(place=FREE, on_shape=True), Spot(place=5 + 5j)
+ON_RING = Spot(place=LEFT + 20, on_shape=True, on_ring=True)
+
+
+@pytest.mark.parametrize(
+    ("spot", "name"),
+    [
+        (AT_LEFT, "Pulling"),
+        (ON_SHAPE, "Pulling"),
+        (replace(ON_SHAPE, alt=True), "Pulling"),
+        (replace(AT_LEFT, alt=True), "Turning"),
+        (ON_RING, "Turning"),
+        (replace(AT_LEFT, ctrl=True), "Anchoring"),
+        (replace(ON_SHAPE, ctrl=True), "Anchoring"),
+        (replace(AT_LEFT, shift=True), "Selecting"),
+        (replace(ON_SHAPE, shift=True), "Selecting"),
+        (BESIDE, "Selecting"),
+        (replace(BESIDE, ctrl=True), "Selecting"),
+    ],
+)
+def test_a_press_is_for_one_tool(session, spot, name):
+    pointing.press(session, spot)
+    assert type(session.pointer).__name__ == name
+
+
+@pytest.mark.parametrize("auto_key", [True, False])
+def test_whatever_a_press_began_is_taken_back_wholly(session, auto_key):
+    project = session.project
+    session.preferences = Preferences(auto_key=auto_key)
+    flags = [
+        dict(zip(("ctrl", "shift", "alt"), held, strict=True)) for held in product((0, 1), repeat=3)
+    ]
+    for spot in (AT_LEFT, AT_RIGHT, ON_SHAPE, BESIDE, ON_RING):
+        for held in flags:
+            before = state(project)
+            drag(session, replace(spot, **held), spot.place + 6, spot.place + 9j)
+            assert session.pointer is not None, (spot, held)
+            pointing.cancel(session)
+            frames(session)
+            assert state(project) == before, (spot, held)
+            assert session.pointer is None
+            # What could be done again still can.
+            assert project.history.redo_label == "Set frames per second"
+            # The hand goes on, and lets go.
+            pointing.move(session, spot.place + 20)
+            pointing.end(session, spot.place + 20)
+            frames(session)
+            assert state(project) == before, (spot, held)
+
+
+def test_a_press_on_the_shape_that_is_dragged_is_one_step(session):
+    project, first = session.project, session.project.document
+    drag(session, ON_SHAPE, FREE + 8, FREE + 8 + 8j)
+    pointing.end(session, FREE + 8 + 8j)
+    settle(session)
+    assert len(project.figure.handles) == 3
+    target = project.figure.keys[0].pose.targets[2].position
+    assert abs(target - (FREE + 8 + 8j)) < 1e-9
+    editing.undo(session)
+    assert project.document is first
+    editing.redo(session)
+    assert len(project.figure.handles) == 3
+
+
+def test_undo_before_the_solver_has_begun_takes_the_new_handle_back(session):
+    project, first = session.project, session.project.document
+    pointing.press(session, ON_SHAPE)
+    pointing.move(session, FREE + 8)
+    assert len(project.figure.handles) == 3
+    editing.undo(session)
+    assert project.document is first
+    settle(session)
+    assert project.document is first
+
+
+def test_selected_handles_are_pulled_together(session):
+    project = session.project
+    editing.select(session, frozenset({0, 1}))
+    drag(session, AT_RIGHT, RIGHT + 6j)
+    pointing.end(session, RIGHT + 6j)
+    settle(session)
+    targets = project.figure.keys[0].pose.targets
+    assert [targets[i].position for i in (0, 1)] == pytest.approx([LEFT + 6j, RIGHT + 6j])
+    # One that is not selected alone.
+    editing.select(session, frozenset({0}))
+    drag(session, Spot(place=RIGHT + 6j, handle=1), RIGHT)
+    pointing.end(session, RIGHT)
+    settle(session)
+    targets = project.figure.keys[0].pose.targets
+    assert [targets[i].position for i in (0, 1)] == pytest.approx([LEFT + 6j, RIGHT])
+
+
+def test_a_turn_begins_where_the_pointer_leaves_the_handle(session):
+    end = RIGHT + 15j * np.exp(0.2j)
+    drag(session, replace(AT_RIGHT, alt=True), RIGHT + 15j, end)
+    (mark,) = session.pointer.marks
+    assert mark == SweepMark(handle=1, turn=pytest.approx(0.2), swept=pytest.approx(0.2))
+    pointing.end(session, end)
+    settle(session)
+    target = session.project.figure.keys[0].pose.targets[1]
+    assert target.rotation == pytest.approx(0.2)
+
+
+def test_a_click_with_alt_deletes_and_one_on_the_ring_does_not(session):
+    for spot, left in ((ON_RING, 2), (replace(AT_LEFT, alt=True), 1)):
+        pointing.press(session, spot)
+        pointing.end(session, spot.place)
+        assert len(session.project.figure.handles) == left
+
+
+def test_the_anchor_goes_to_where_it_is_set_and_back_by_a_second_click(session):
+    project = session.project
+    for anchor in (RIGHT, None):
+        pointing.press(session, replace(AT_RIGHT, ctrl=True))
+        pointing.end(session, RIGHT)
+        assert project.figure.anchor == anchor
+    pointing.press(session, replace(ON_SHAPE, ctrl=True))
+    pointing.end(session, FREE)
+    assert project.figure.anchor == pytest.approx(FREE)
+
+
+@pytest.mark.parametrize("shift", [False, True])
+def test_a_box_selects_what_is_in_it(session, shift):
+    kept = {0} if shift else set()
+    for corner, opposite, inside in (
+        (RIGHT - 5 + 5j, RIGHT + 5 - 5j, {1}),
+        (5 + 5j, RIGHT + 5 + 5j, {0, 1}),
+        (RIGHT + 5 + 5j, 5 + 5j, {0, 1}),
+        (5 + 5j, 10 + 10j, set()),
+    ):
+        editing.select(session, frozenset({0}))
+        pointing.press(session, Spot(place=corner, shift=shift))
+        pointing.move(session, opposite)
+        assert session.pointer.marks == (BoxMark(corner=corner, opposite=opposite),)
+        pointing.end(session, opposite)
+        assert session.project.selected == inside | kept
+
+
+def test_a_playhead_that_leaves_a_drag_does_not_leave_it_half_taken_back(session):
+    """The pose that is left settles where it was; the drag goes on at the other frame."""
+    project, first = session.project, session.project.document
+    drag(session, AT_RIGHT, RIGHT + 6j)
+    playback.scrub(session, 10)
+    pointing.move(session, RIGHT + 9j)
+    frames(session)
+    assert project.figure.key_frames == {0, 10}
+    pointing.cancel(session)
+    settle(session)
+    assert project.document is first
+
+
+def test_handles_that_go_while_they_are_dragged_are_let_be(session):
+    for spot in (AT_RIGHT, replace(AT_RIGHT, alt=True)):
+        drag(session, spot, RIGHT + 15j)
+        posing.remove_handles(session, frozenset({1}))
+        before = session.project.document
+        pointing.move(session, RIGHT + 20)
+        pointing.end(session, RIGHT + 20)
+        settle(session)
+        assert session.project.document is before
+        editing.undo(session)
+        editing.undo(session)
+        settle(session)
+
+
+@pytest.mark.parametrize("spot", [AT_LEFT, ON_SHAPE, BESIDE, ON_RING])
+def test_there_is_a_hint_wherever_something_can_be_done(session, spot):
+    hints = [hint for tool in TOOLS for hint in tool.hints(session, spot)]
+    assert hints
+    for hint in hints:
+        held = {hint.key: True} if hint.key else {}
+        pointing.press(session, replace(spot, **held))
+        named = type(session.pointer)
+        assert hint in named.hints(session, spot)
+        pointing.cancel(session)
