@@ -28,7 +28,7 @@ class FrameRange:
     def __post_init__(self) -> None:
         require(
             0 <= self.first <= self.last <= LAST_FRAME,
-            f"Frames {self.first} to {self.last} are no range: it goes from 0 or later to the "
+            f"Frames {self.first} to {self.last} are not a range: it goes from 0 or later to the "
             f"same frame or a later one, at most {LAST_FRAME:,}.",
         )
 

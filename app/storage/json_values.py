@@ -85,5 +85,5 @@ def without_repeats(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
     content = dict(pairs)
     if len(content) < len(pairs):
         (repeated, _), *_ = Counter(name for name, _ in pairs).most_common(1)
-        raise LissomError(f"the field {repeated!r} stands twice in one object")
+        raise LissomError(f"the field {repeated!r} is given twice in one object")
     return content

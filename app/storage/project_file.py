@@ -122,7 +122,7 @@ def _read(archive: Archive) -> Document:
             f"schema {SCHEMA}. Update Lissom to open it"
         )
     if schema < 1:
-        raise LissomError(f"its schema {schema} is none")
+        raise LissomError(f"its schema {schema} does not exist")
     document = read_document(content, _Parts(archive))
     attachments = {name: archive.read(name) for name in archive.unread if name != THUMBNAIL}
     return replace(document, attachments=MappingProxyType(attachments))
@@ -224,7 +224,7 @@ def _read_json(archive: Archive) -> JsonObject:
 def _finite(text: str) -> float:
     number = float(text)
     if not isfinite(number):
-        raise LissomError(f"its project.json holds {text}, which is no number to reckon with")
+        raise LissomError(f"its project.json holds {text}, which is not a finite number")
     return number
 
 

@@ -27,5 +27,5 @@ def _existing(text: str) -> Path:
     """Return the path of a file; whatever is no command is taken for one."""
     path = Path(text)
     if not path.is_file():
-        raise LissomError(f"{text} is no command and no file (see 'lissom --help')")
+        raise LissomError(f"{text} is neither a command nor a file (see 'lissom --help')")
     return path

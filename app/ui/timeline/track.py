@@ -111,7 +111,7 @@ def is_pressed() -> bool:
 
 
 def was_dragged() -> bool:
-    """Tell whether the pointer went somewhere since the button was pressed, and be it back."""
+    """Tell whether the pointer was dragged since the press, even if it has come back."""
     io, left = imgui.get_io(), imgui.MouseButton_.left
     # What Dear ImGui keeps of the way lacks the last part of it, before the button was let go.
     last = imgui.get_mouse_drag_delta(left, 0.0)

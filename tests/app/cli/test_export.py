@@ -166,7 +166,7 @@ def test_notices_tell_what_the_person_should_know(project, tmp_path, capsys):
     ("words", "reason"),
     [
         (["--out", "frames", "--frames", "3"], "0:47"),
-        (["--out", "frames", "--frames", "4:2"], "no range"),
+        (["--out", "frames", "--frames", "4:2"], "not a range"),
         (["--out", "frames", "--frames", "0:99"], "0 to 6"),
         (["--out", "frames", "--size", "100"], "1920x1080"),
         (["--out", "frames", "--size", "0x10"], "1 to 65,535"),

@@ -106,7 +106,7 @@ def test_whatever_a_script_cannot_say_is_refused(path, value, message):
     [
         ("{", "is not JSON: .* in line 1"),
         ("[]", "the script must be an object"),
-        ('{"schema": 1, "schema": 1}', "'schema' stands twice"),
+        ('{"schema": 1, "schema": 1}', "'schema' is given twice"),
         ("[" * 100_000, "nested too deeply"),
     ],
 )

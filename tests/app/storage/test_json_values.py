@@ -20,6 +20,6 @@ def test_a_repeated_field_among_many_is_found_at_little_cost():
 
     count = 400
     names = [Name(number) for number in range(count)] + [Name(count - 1)]
-    with pytest.raises(LissomError, match=f"'{count - 1}' stands twice"):
+    with pytest.raises(LissomError, match=f"'{count - 1}' is given twice"):
         without_repeats([(name, None) for name in names])
     assert compared < 5 * count

@@ -297,7 +297,7 @@ def test_text_that_is_no_object_is_refused(tmp_path, members, text):
         (b'"x": ' + b"[" * 45 + b"]" * 45, "nested too deeply"),
         (b'"x": ' + b'{"x":' * 45 + b"1" + b"}" * 45, "nested too deeply"),
         (b'"x": 1' + b"0" * 5000, "not JSON"),
-        (b'"fps": 24', "'fps' stands twice"),
+        (b'"fps": 24', "'fps' is given twice"),
     ],
 )
 def test_what_could_not_be_written_again_is_refused(tmp_path, members, field, message):
