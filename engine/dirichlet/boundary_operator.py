@@ -1,0 +1,106 @@
+"""The matrix of the integral equation, entry by entry.
+
+Row i is the equation at node i, μ/2 + 1/(2π) ∮ μ Im(dζ / (ζ − z)) = b: plain quadrature far from a
+panel, and exact integrals of its polynomials near it.
+"""
+
+from dataclasses import dataclass
+from typing import Self
+
+import numpy as np
+from scipy.sparse import csr_array
+from scipy.spatial import cKDTree
+
+from engine.arrays import Complexes, Floats, Indices
+from engine.dirichlet.panels import NODES, Panels
+from engine.dirichlet.product_integration import is_near, near_distance, panel_weights
+from engine.geometry import as_xy
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class BoundaryOperator:
+    """The collocated operator of some panels.
+
+    Parameters
+    ----------
+    nodes, differentials : complex128, shape (N,)
+    near : csr_array, complex, shape (N, N)
+        Entries of panels at the nodes near them, times 2π, with the imaginary part 1.
+    near_by_column : csr_array, complex, shape (N, N)
+        The transpose.
+    """
+
+    nodes: Complexes
+    differentials: Complexes
+    near: csr_array
+    near_by_column: csr_array
+
+    @classmethod
+    def of(cls, panels: Panels) -> Self:
+        """Integrate the panels exactly at the nodes near them."""
+        nodes = panels.nodes.ravel()
+        size = len(nodes)
+        rows, values = [], []
+        for power in np.unique(panels.power):
+            each = _near_entries(panels, nodes, int(power))
+            rows.append(each[0])
+            values.append(each[1])
+        pairs, entries = np.concatenate(rows), np.concatenate(values)
+        # On a straight panel the kernel of a node of the same panel vanishes, but for the jump.
+        own = np.repeat(np.eye(NODES)[None] * np.pi, len(panels), axis=0).reshape(size, NODES)
+        pairs = np.concatenate(
+            [pairs, np.column_stack([np.arange(size), np.arange(size) // NODES])]
+        )
+        entries = np.concatenate([entries, own])
+        columns = pairs[:, 1:] * NODES + np.arange(NODES)
+        row = np.repeat(pairs[:, 0], NODES)
+        near = csr_array((entries.ravel() + 1j, (row, columns.ravel())), shape=(size, size))
+        return cls(
+            nodes=nodes,
+            differentials=panels.differentials().ravel(),
+            near=near,
+            near_by_column=near.T.tocsr(),
+        )
+
+    def near_rows(self, columns: Indices) -> Indices:
+        """Return the nodes at which some columns are integrated exactly."""
+        return np.unique(self.near_by_column[columns].indices)
+
+    def near_columns(self, rows: Indices) -> Indices:
+        """Return the columns that are integrated exactly at some nodes."""
+        return np.unique(self.near[rows].indices)
+
+    def entries(self, rows: Indices, columns: Indices) -> Floats:
+        """Return a part of the matrix (r, c)."""
+        with np.errstate(divide="ignore", invalid="ignore"):
+            plain = self.differentials[columns] / (self.nodes[columns] - self.nodes[rows, None])
+        found: Floats = plain.imag.copy()
+        exact = self.near[rows][:, columns].toarray()
+        chosen = exact.imag != 0.0
+        found[chosen] = exact.real[chosen]
+        found /= 2 * np.pi
+        return found
+
+
+def _near_entries(panels: Panels, nodes: Complexes, power: int) -> tuple[Indices, Floats]:
+    """Return the pairs (t, 2) of nodes and near panels of a power, and the entries (t, NODES)."""
+    own = np.flatnonzero(panels.power == power)
+    length = np.abs(panels.span[own])
+    around = (0.5 + near_distance(panels.power[own])) * length
+    middles = panels.origin[own] + panels.span[own] / 2
+    found = cKDTree(as_xy(nodes)).query_ball_point(as_xy(middles), around)
+    panel = np.repeat(own, [len(each) for each in found])
+    node = np.concatenate([np.asarray(each, dtype=np.intp) for each in found])
+    panel, node = panel[node // NODES != panel], node[node // NODES != panel]
+    w = (nodes[node] - panels.origin[panel]) / panels.span[panel]
+    if power != 1:
+        # Across a corner both panels start there, and nodes as close to it as 1e-10 of a panel keep
+        # all their digits only if the corner is never added and subtracted.
+        across = np.where(panels.forward[panel], panel - 1, panel + 1) % len(panels)
+        beside = node // NODES == across
+        arcs = panels.arcs().ravel()[node[beside]]
+        w[beside] = arcs * (panels.span[across[beside]] / panels.span[panel[beside]])
+    near = is_near(w, power)
+    sign = np.where(panels.forward[panel[near]], 1.0, -1.0)
+    entries: Floats = sign[:, None] * panel_weights(w[near], power)[0].imag
+    return np.column_stack([node[near], panel[near]]), entries
