@@ -3,30 +3,23 @@
 from collections.abc import Collection
 
 import numpy as np
-from imgui_bundle import ImVec4, imgui
 
-from app.document import falls_short, time_of
+from app.document import time_of
 from app.editor import HeatMap, Project, Puppet, Session
-from app.motion import Box, PosableMesh, Shown, Vertices
+from app.motion import PosableMesh, Shown, Vertices
 from app.render import (
-    Colour,
-    Disc,
     DrawnMesh,
     Ghost,
-    HandleMark,
-    HandleStyle,
     Heat,
-    Line,
     Renderer,
     Scene,
     Wireframe,
-    mark_anchor,
-    mark_handles,
     shader_is_faster,
 )
 from app.render.gpu import GpuMesh, GpuPicture, PosedMesh, Target
-from app.ui.style import PALETTES, Palette, interface_scale
+from app.ui.style import PALETTES
 from app.ui.viewport.backdrop import background, measure_brightness
+from app.ui.viewport.marks import mark_all, pixel_scale, plain
 from engine.arrays import Floats
 from engine.maps import distortion
 
@@ -171,14 +164,8 @@ def _inputs(session: Session, project: Project) -> tuple[object, ...]:
         session.overlays,
         session.export_frame,
         session.preferences,
-        _scale(session),
+        pixel_scale(session),
     )
-
-
-def _scale(session: Session) -> float:
-    """Return how many pixels of the picture a pixel of the design takes."""
-    density = imgui.get_io().display_framebuffer_scale.x or 1.0
-    return interface_scale(session.preferences.scale) * density
 
 
 def measure(shown: Shown, heat_map: HeatMap) -> Floats:
@@ -223,11 +210,11 @@ def _scene(session: Session, project: Project, shown: Shown, drawing: _Drawing) 
     if overlays.heat_map != "none":
         low, high = heat_limits(project, overlays.heat_map)
         heat = Heat(low=low, high=high)
-    wireframe = Wireframe(colour=_colour(palette.text, 0.35)) if overlays.wireframe else None
-    lines, discs = _marks(session, project, shown, palette)
+    wireframe = Wireframe(colour=plain(palette.text, 0.35)) if overlays.wireframe else None
+    lines, discs = mark_all(session, project, shown, palette)
     return Scene(
         background=background(
-            session.preferences.backdrop, palette, drawing.brightness, _scale(session)
+            session.preferences.backdrop, palette, drawing.brightness, pixel_scale(session)
         ),
         meshes=tuple(poses),
         heat=heat,
@@ -269,82 +256,3 @@ def _ghosts(
             pose = drawing.drawn_mesh(project.active, motion.mesh, number).pose(vertices)
             ghosts.append(Ghost(meshes=(pose,), tint=tint, opacity=GHOST_OPACITY / step**0.5))
     return tuple(ghosts)
-
-
-def _marks(
-    session: Session, project: Project, shown: Shown, palette: Palette
-) -> tuple[tuple[Line, ...], tuple[Disc, ...]]:
-    scale = _scale(session)
-    figure = shown.clip.figure
-    lines: list[Line] = []
-    if session.overlays.outline:
-        lines.append(_outline(shown, palette, scale))
-    if session.overlays.cage:
-        lines.append(_cage(shown, palette, scale))
-    if session.export_frame is not None:
-        lines.append(_frame(session.export_frame, palette, scale))
-    if not session.overlays.handles or project.playhead.since is not None:
-        return tuple(lines), ()
-    style = HandleStyle()
-    wishes = project.posing.targets if project.posing else None
-    if wishes is None and shown.pose is not None:
-        wishes = shown.pose.targets
-    marks = []
-    for handle, place in zip(figure.handles, shown.handle_places, strict=True):
-        wish = wishes.get(handle.id) if wishes else None
-        lags = wish is not None and falls_short(figure, abs(wish.position - place))
-        marks.append(
-            HandleMark(
-                place=complex(place),
-                wish=wish.position if lags and wish is not None else None,
-                anchor=handle.position == figure.anchor,
-                selected=handle.id in project.selected,
-                hovered=handle.id == session.hovered,
-            )
-        )
-    handle_lines, discs = mark_handles(marks, scale=scale, style=style)
-    anchor = _anchor(project, shown)
-    below = () if anchor is None else mark_anchor(anchor, scale=scale, style=style)
-    return (*lines, *handle_lines), (*below, *discs)
-
-
-def _anchor(project: Project, shown: Shown) -> complex | None:
-    """Return where the anchor is in what is shown; None where a handle marks it, or none is yet."""
-    figure, sampler = shown.clip.figure, project.puppet.coarse.value.sampler
-    rest = figure.anchor
-    if rest is None and sampler is not None and sampler.anchor is None:
-        rest = sampler.sites.anchor
-    if rest is None or any(handle.position == rest for handle in figure.handles):
-        return None
-    found = shown.mesh.locate(np.array([rest]), shown.mesh.domain.mesh.vertices)
-    return complex(found.on(shown.positions)[0])
-
-
-def _outline(shown: Shown, palette: Palette, scale: float) -> Line:
-    """Return the outline, moved with the shape."""
-    points = shown.positions[: len(shown.mesh.domain.outline)]
-    return Line(points=points, colour=_colour(palette.accent), width=1.5 * scale, closed=True)
-
-
-def _cage(shown: Shown, palette: Palette, scale: float) -> Line:
-    """Return the cage, which stays around the shape at rest."""
-    return Line(
-        points=shown.mesh.domain.cage,
-        colour=_colour(palette.warning, 0.8),
-        width=1.5 * scale,
-        dash=5.0 * scale,
-        closed=True,
-    )
-
-
-def _frame(box: Box, palette: Palette, scale: float) -> Line:
-    """Return the edge of what an export shows."""
-    low, high = box
-    corners = [low, complex(high.real, low.imag), high, complex(low.real, high.imag)]
-    return Line(
-        points=np.array(corners), colour=_colour(palette.accent), width=1.5 * scale, closed=True
-    )
-
-
-def _colour(colour: ImVec4, alpha: float = 1.0) -> Colour:
-    return colour.x, colour.y, colour.z, alpha * colour.w

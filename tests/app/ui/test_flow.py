@@ -13,7 +13,7 @@ from app.editor.action import do
 from app.editor.actions import editing, exporting, keys, playback, posing, saving
 from app.solving.drag import Drag
 from app.storage.assets import sample_images
-from app.ui.viewport import canvas
+from app.ui.viewport import badges, marks
 from engine.deform.deformer import Status
 
 BAR = sample_images() / "bar.png"
@@ -562,15 +562,15 @@ def test_ctrl_click_on_the_shape_puts_the_anchor_there(window, bent):
         np.array([bent.document.figures[0].anchor])
     )
     assert abs(moved[0] - wanted) < 3
-    assert abs(canvas._anchor(bent, bent.puppet.shown) - wanted) < 3
+    assert abs(marks.find_anchor(bent, bent.puppet.shown) - wanted) < 3
     posing.anchor_at(window.session, 0)
     window.settle()
-    assert canvas._anchor(bent, bent.puppet.shown) is None  # the handle itself shows it
+    assert marks.find_anchor(bent, bent.puppet.shown) is None  # the handle itself shows it
 
 
 def test_an_anchor_that_was_chosen_for_the_person_is_shown(window, bent):
     assert bent.document.figures[0].anchor is None
-    place = canvas._anchor(bent, bent.puppet.shown)
+    place = marks.find_anchor(bent, bent.puppet.shown)
     rest = bent.puppet.coarse.value.sampler.sites.anchor
     moved = bent.document.figures[0].map_of(bent.document.figures[0].keys[1].pose)(np.array([rest]))
     assert abs(place - moved[0]) < 3
@@ -580,3 +580,23 @@ def test_an_anchor_that_was_chosen_for_the_person_is_shown(window, bent):
     )
     window.settle()
     assert window.picture() != shown
+
+
+def test_three_hints_lead_to_the_first_motion(window):
+    """Click, drag, move the playhead and drag again; one handle is enough."""
+    session = window.session
+    project = window.open(BAR)
+    steps = [badges.first_step(project)]
+    place = complex(*project.document.canvas) / 2
+    posing.add_handle(session, place)
+    window.settle()
+    steps.append(badges.first_step(project))
+    posing.wish(session, {0: Target(position=place + 60j)})
+    window.settle()
+    steps.append(badges.first_step(project))
+    playback.seek(session, 24)
+    window.settle()
+    posing.wish(session, {0: Target(position=place)})
+    window.settle()
+    steps.append(badges.first_step(project))
+    assert steps == [0, 1, 2, None]

@@ -29,7 +29,7 @@ from app.editor.timeline_view import KeyBox
 from app.motion.extent import Box, extent_source
 from app.storage.assets import sample_images
 from app.storage.autosave import SECONDS
-from app.ui.viewport import canvas
+from app.ui.viewport import marks
 from engine.maps.bounds import Bounds
 
 BAR = sample_images() / "bar.png"
@@ -351,7 +351,7 @@ def test_handle_out_of_reach_is_told_and_freed_again(window, bent, monkeypatch):
     assert find_shortfall(bent.figure, bent.puppet.shown.pose).lags[1] > 100
 
     wishes, written = [], []
-    mark, text = canvas.mark_handles, imgui.text_colored
+    mark, text = marks.mark_handles, imgui.text_colored
 
     def marked(marks, **options):
         wishes.extend(mark.wish for mark in marks)
@@ -362,7 +362,7 @@ def test_handle_out_of_reach_is_told_and_freed_again(window, bent, monkeypatch):
         text(colour, words)
 
     with monkeypatch.context() as patch:
-        patch.setattr(canvas, "mark_handles", marked)
+        patch.setattr(marks, "mark_handles", marked)
         patch.setattr(imgui, "text_colored", told)
         window.show_tab("Handle")
         editing.select(session, frozenset())

@@ -1,0 +1,105 @@
+"""What marks the drawing in the viewport: handles, anchor, outline, cage and export frame."""
+
+import numpy as np
+from imgui_bundle import ImVec4, imgui
+
+from app.document import falls_short
+from app.editor import Project, Session
+from app.motion import Box, Shown
+from app.render import (
+    Colour,
+    Disc,
+    HandleMark,
+    HandleStyle,
+    Line,
+    mark_anchor,
+    mark_handles,
+)
+from app.ui.style import Palette, interface_scale
+
+
+def pixel_scale(session: Session) -> float:
+    """Return how many pixels of the picture a pixel of the design takes."""
+    density = imgui.get_io().display_framebuffer_scale.x or 1.0
+    return interface_scale(session.preferences.scale) * density
+
+
+def plain(colour: ImVec4, alpha: float = 1.0) -> Colour:
+    """Return a colour of the theme as the renderer takes it."""
+    return colour.x, colour.y, colour.z, alpha * colour.w
+
+
+def mark_all(
+    session: Session, project: Project, shown: Shown, palette: Palette
+) -> tuple[tuple[Line, ...], tuple[Disc, ...]]:
+    """Return all lines and discs that mark what is shown, in the order in which they are drawn."""
+    scale = pixel_scale(session)
+    figure = shown.clip.figure
+    lines: list[Line] = []
+    if session.overlays.outline:
+        lines.append(_outline(shown, palette, scale))
+    if session.overlays.cage:
+        lines.append(_cage(shown, palette, scale))
+    if session.export_frame is not None:
+        lines.append(_frame(session.export_frame, palette, scale))
+    if not session.overlays.handles or project.playhead.since is not None:
+        return tuple(lines), ()
+    style = HandleStyle()
+    wishes = project.posing.targets if project.posing else None
+    if wishes is None and shown.pose is not None:
+        wishes = shown.pose.targets
+    marks = []
+    for handle, place in zip(figure.handles, shown.handle_places, strict=True):
+        wish = wishes.get(handle.id) if wishes else None
+        lags = wish is not None and falls_short(figure, abs(wish.position - place))
+        marks.append(
+            HandleMark(
+                place=complex(place),
+                wish=wish.position if lags and wish is not None else None,
+                anchor=handle.position == figure.anchor,
+                selected=handle.id in project.selected,
+                hovered=handle.id == session.hovered,
+            )
+        )
+    handle_lines, discs = mark_handles(marks, scale=scale, style=style)
+    anchor = find_anchor(project, shown)
+    below = () if anchor is None else mark_anchor(anchor, scale=scale, style=style)
+    return (*lines, *handle_lines), (*below, *discs)
+
+
+def find_anchor(project: Project, shown: Shown) -> complex | None:
+    """Return where the anchor is in what is shown; None where a handle marks it, or none is yet."""
+    figure, sampler = shown.clip.figure, project.puppet.coarse.value.sampler
+    rest = figure.anchor
+    if rest is None and sampler is not None and sampler.anchor is None:
+        rest = sampler.sites.anchor
+    if rest is None or any(handle.position == rest for handle in figure.handles):
+        return None
+    found = shown.mesh.locate(np.array([rest]), shown.mesh.domain.mesh.vertices)
+    return complex(found.on(shown.positions)[0])
+
+
+def _outline(shown: Shown, palette: Palette, scale: float) -> Line:
+    """Return the outline, moved with the shape."""
+    points = shown.positions[: len(shown.mesh.domain.outline)]
+    return Line(points=points, colour=plain(palette.accent), width=1.5 * scale, closed=True)
+
+
+def _cage(shown: Shown, palette: Palette, scale: float) -> Line:
+    """Return the cage, which stays around the shape at rest."""
+    return Line(
+        points=shown.mesh.domain.cage,
+        colour=plain(palette.warning, 0.8),
+        width=1.5 * scale,
+        dash=5.0 * scale,
+        closed=True,
+    )
+
+
+def _frame(box: Box, palette: Palette, scale: float) -> Line:
+    """Return the edge of what an export shows."""
+    low, high = box
+    corners = [low, complex(high.real, low.imag), high, complex(low.real, high.imag)]
+    return Line(
+        points=np.array(corners), colour=plain(palette.accent), width=1.5 * scale, closed=True
+    )
