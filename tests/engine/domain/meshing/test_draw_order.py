@@ -1,5 +1,6 @@
 import numpy as np
 from numpy.testing import assert_array_equal
+from shapes import regular_polygon
 
 from engine.domain.meshing.draw_order import with_limbs_on_top
 from engine.domain.meshing.mesh import Mesh
@@ -22,6 +23,13 @@ def test_triangles_come_in_the_order_of_their_way_from_the_centre():
     assert np.flatnonzero(left).max() < np.flatnonzero(right).min()
     assert np.corrcoef(np.flatnonzero(left), -middles[left].imag)[0, 1] > 0.95
     assert np.corrcoef(np.flatnonzero(right), middles[right].imag)[0, 1] > 0.95
+
+
+def test_both_ways_around_a_hole_are_ways_from_the_centre():
+    outline, hole = regular_polygon(40), 0.6 * regular_polygon(30)[::-1]
+    ordered = with_limbs_on_top(triangulate(outline, 2000, holes=[hole]), 0.8)
+    turns = np.abs(np.angle(ordered.vertices[ordered.triangles].mean(axis=1)))
+    assert np.corrcoef(np.arange(len(turns)), turns)[0, 1] > 0.99
 
 
 def test_triangles_stay_counter_clockwise():
