@@ -81,7 +81,11 @@ def _use_keyboard(*, is_used: bool) -> None:
     Elsewhere these keys have other meanings: arrows nudge handles, Space plays.
     """
     io, flag = imgui.get_io(), imgui.ConfigFlags_.nav_enable_keyboard
-    io.config_flags = io.config_flags | flag if is_used else io.config_flags & ~flag
+    if bool(io.config_flags & flag) == is_used:
+        return
+    io.config_flags ^= flag
+    # Shown where keys press a button; gone with the question, or it would mark something else.
+    imgui.set_nav_cursor_visible(is_used)
 
 
 def _waiting(look: Look) -> list[Action]:

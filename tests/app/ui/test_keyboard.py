@@ -204,3 +204,23 @@ def test_recent_files_that_are_gone_are_marked(window, tmp_path):
     window.run(open_recent)
     window.settle()
     assert window.session.project.name == "there"
+
+
+@pytest.mark.usefixtures("bent")
+def test_no_frame_stays_around_a_button_when_a_question_is_gone(window):
+    def press_a_button(robot):
+        robot.set_ref("//Deform")
+        robot.item_click("**/###key 24")
+
+    window.show_tab("Deform")
+    window.run(press_a_button)
+    imgui.get_io().add_mouse_pos_event(5.0, 795.0)
+    window.settle()
+    window.frames(30)
+    before = window.picture()
+    window.act(show_dialog, Question(title="?", text="?", answers=()))
+    window.frames(5)
+    press(window, imgui.Key.tab, imgui.Key.escape)
+    imgui.get_io().add_mouse_pos_event(5.0, 795.0)
+    window.frames(30)
+    assert window.picture() == before
