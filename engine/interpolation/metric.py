@@ -23,7 +23,8 @@ from engine.interpolation.keyframe_samples import KeyframeSamples
 from engine.paths import IntegrationPaths
 
 DEGREE = 24  # of the series of a piece of time
-TOLERANCE = 1e-10  # of the series' last terms, and of the modes left out, in ln |f_z|
+TOLERANCE = 1e-10  # of the series' last terms, in ln |f_z|
+LEFT_OUT = 1e-8  # of the modes, in ln |f_z|: two digits more than the points' places need
 LAST_TERMS = 3
 SHORTEST = 2.0**-30  # pieces of time are not halved below this
 
@@ -150,7 +151,7 @@ def separate(metric: OutlineMetric) -> tuple[Floats, PiecewiseSeries]:
     -------
     modes : float64, shape (N, j)
     series : PiecewiseSeries
-        Of the j coefficients; the residuals are `modes @ series(t)` to about 1e-10.
+        Of the j coefficients; the residuals are `modes @ series(t)` to about 1e-8.
     """
     x = nodes(DEGREE)
     pending = [(0.0, 1.0)]
@@ -167,7 +168,7 @@ def separate(metric: OutlineMetric) -> tuple[Floats, PiecewiseSeries]:
             middle = (start + end) / 2
             pending += [(middle, end), (start, middle)]
     modes, sizes, functions = np.linalg.svd(np.hstack(pieces), full_matrices=False)
-    kept = max(1, int(np.count_nonzero(sizes > TOLERANCE)))
+    kept = max(1, int(np.count_nonzero(sizes > LEFT_OUT)))
     series = (sizes[:kept, None] * functions[:kept]).reshape(kept, len(pieces), DEGREE + 1)
     times, coefficients = np.array(breaks), series.transpose(1, 2, 0)
     return modes[:, :kept], PiecewiseSeries(

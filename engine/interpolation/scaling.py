@@ -6,7 +6,7 @@ from typing import Self
 
 import numpy as np
 
-from engine.arrays import Complexes, Floats, Indices, freeze
+from engine.arrays import Booleans, Complexes, Floats, Indices, freeze
 from engine.geometry import box_diagonal, sample_graded
 from engine.maps import HarmonicMap, evaluate
 
@@ -28,6 +28,7 @@ PARTS = (
 ROUNDS = 8
 TOO_HIGH = 2e-7  # by which a minimum that is found may be too high; taken off
 GAIN = 1e-7  # by which a stretch must promise to lower ρ to be looked at
+MANY = 4096  # stretches that are refined at a time
 RUN = 16  # times at whose ends all samples are looked at
 MARGIN = 0.05  # by which a sample may be lower in between than both ends of a run tell
 # Part of the interval beside each key in which the bounds tighten, from the worst of the outline to
@@ -168,32 +169,47 @@ class SharpScaling:
         return rho
 
     def _minima(self, times: Floats, worst: Worst | None) -> Floats:
-        lowest = np.empty(len(times))
-        for start in range(0, len(times), RUN):
-            block = slice(start, start + RUN)
-            lowest[block] = self._lowest(times[block], worst)
+        """Return the minima of the ratios within the given bounds."""
+        if not len(times):
+            return np.ones(0)
+        samples = self.samples.bounded(worst)
+        starts = np.arange(0, len(times), RUN)
+        at_ends = samples.ratios(times[np.append(starts, len(times) - 1), None])
+        lowest = np.full(len(times), CEILING)
+        found = []
+        for run, start in enumerate(starts):
+            chosen = _low_samples(at_ends[run : run + 2])
+            if len(chosen):
+                block = slice(start, start + RUN)
+                ratios = self.samples.at(chosen).bounded(worst).ratios(times[block, None])
+                lowest[block] = ratios.min(axis=1)
+                when, which = np.nonzero(self._promising(chosen, ratios))
+                found.append((start + when, chosen[which]))
+        if found:
+            when, segment = (np.concatenate(each) for each in zip(*found, strict=True))
+            for part in np.array_split(np.arange(len(when)), 1 + len(when) // MANY):
+                self._refine(times, lowest, when[part], segment[part], worst)
         return np.minimum((1.0 - TOO_HIGH) * lowest, 1.0)
 
-    def _lowest(self, times: Floats, worst: Worst | None) -> Floats:
-        """Return the minimum of the ratios at each time of a run, within the given bounds.
+    def _promising(self, chosen: Indices, ratios: Floats) -> Booleans:
+        """Tell from which of some samples (c,) segments start that may hold a minimum, (s, c)."""
+        after = np.roll(ratios, -1, axis=1)
+        drop = np.abs(after - ratios)
+        drop = np.maximum(drop, np.maximum(np.roll(drop, 1, axis=1), np.roll(drop, -1, axis=1)))
+        goal = np.minimum(ratios.min(axis=1), 1.0) - GAIN
+        low: Booleans = np.minimum(ratios, after) - drop < goal[:, None]
+        low &= np.roll(chosen, -1) == (chosen + 1) % len(self.samples.k)
+        return low
+
+    def _refine(
+        self, times: Floats, lowest: Floats, when: Indices, segment: Indices, worst: Worst | None
+    ) -> None:
+        """Lower the minima by what is found on segments (c,) at times `when` (c,).
 
         The ratios have kinks where the worse keyframe changes, so that the stretches around low
-        samples are only cut finer, round after round: no parabola is fitted.
+        places are only cut finer, round after round: no parabola is fitted.
         """
-        samples = self.samples.bounded(worst)
-        chosen = _low_samples(samples.ratios(times[[0, -1], None]))
-        if not len(chosen):
-            return np.full(len(times), CEILING)
-        sampled = self.samples.at(chosen).bounded(worst).ratios(times[:, None])
-        lowest: Floats = sampled.min(axis=1)
-        after = np.roll(sampled, -1, axis=1)
-        drop = np.abs(after - sampled)
-        drop = np.maximum(drop, np.maximum(np.roll(drop, 1, axis=1), np.roll(drop, -1, axis=1)))
-        goal = np.minimum(lowest, 1.0) - GAIN
-        low = np.minimum(sampled, after) - drop < goal[:, None]
-        low &= np.roll(chosen, -1) == (chosen + 1) % len(self.samples.k)
-        when, which = np.nonzero(low)
-        segment, place, width = chosen[which], np.full(len(when), 0.5), 0.5
+        place, width = np.full(len(when), 0.5), 0.5
         for _ in range(ROUNDS):
             places = _around(place, width)
             found = self.curves.at(segment, places).bounded(worst).ratios(times[when, None])
@@ -203,7 +219,6 @@ class SharpScaling:
             kept = found[rows, best] - variation <= lowest[when]
             when, segment, place = when[kept], segment[kept], places[rows, best][kept]
             width *= 2.0 / PARTS
-        return lowest
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
