@@ -14,7 +14,7 @@ from app.motion import Box, Build, Motion, PosableMesh, Shown
 from app.render import View, fit_view
 from app.reports import Curves
 from app.solving import Drag, Renewal, Rig
-from app.storage import Picture
+from app.storage import Origin, Picture
 from engine.maps import Bounds
 
 OPAQUE = 255
@@ -104,6 +104,9 @@ class Project:
         Of the picture or the project, without its suffix.
     path : Path, optional
         Of the project file; None for a new one.
+    is_recovered : bool
+        Whether it is unsaved work of an earlier time, which is not saved before the person has seen
+        where.
     puppets : dict of int to Puppet
         One for each figure, by its id.
     active : int
@@ -145,6 +148,7 @@ class Project:
     path: Path | None
     puppets: dict[int, Puppet]
     active: int
+    is_recovered: bool = False
     posing: PoseInProgress | None = None
     settling: PoseInProgress | None = None
     curves: Derived[Clip, Curves | None] = field(default_factory=lambda: Derived(None))
@@ -170,6 +174,11 @@ class Project:
     def document(self) -> Document:
         """The document as it is now."""
         return self.history.document
+
+    @property
+    def origin(self) -> Origin:
+        """What is kept with its changes, so that they are found again under their name."""
+        return Origin(self.name, self.path)
 
     @property
     def figure(self) -> Figure:

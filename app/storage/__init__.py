@@ -6,7 +6,14 @@ Imports: `app.document`.
 """
 
 from app.storage.assets import sample_images, shader_source
-from app.storage.autosave import SECONDS, Autosave, find_leftovers, remove_leftover
+from app.storage.autosave import (
+    SECONDS,
+    Autosave,
+    Origin,
+    find_leftovers,
+    load_leftover,
+    remove_leftover,
+)
 from app.storage.files import (
     atomic_file,
     check_writable,
@@ -48,6 +55,7 @@ __all__ = [
     "SMALLEST_SCALE",
     "Autosave",
     "JsonObject",
+    "Origin",
     "Picture",
     "Preferences",
     "ThemeName",
@@ -60,6 +68,7 @@ __all__ = [
     "decode_picture",
     "draw_thumbnail",
     "find_leftovers",
+    "load_leftover",
     "load_preferences",
     "load_project",
     "open_picture",

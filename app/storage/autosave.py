@@ -4,14 +4,18 @@ Beside each file lies one that its window holds a lock on. The system lets go of
 process ends, whereas a process's number is soon given to another one and proves nothing.
 """
 
+import json
 import os
 import secrets
 import sys
 from contextlib import suppress
+from dataclasses import replace
 from pathlib import Path
+from types import MappingProxyType
+from typing import NamedTuple
 
 from app.document import Document
-from app.storage.project_file import save_project
+from app.storage.project_file import load_project, save_project
 
 if sys.platform == "win32":
     import msvcrt
@@ -21,6 +25,18 @@ else:
 SECONDS = 20.0  # between a change and its autosave, at least
 # What the system says of a lock that is held; other errors mean that it knows no locks there.
 HELD = (BlockingIOError, PermissionError)
+# The member of the file that tells where the work came from; projects that are saved have none.
+ORIGIN = "origin.json"
+
+
+class Origin(NamedTuple):
+    """What unsaved work is called, and the project file that it belongs to, if there is one."""
+
+    name: str
+    path: Path | None
+
+
+UNKNOWN = Origin("recovered", None)
 
 
 class Autosave:
@@ -36,8 +52,8 @@ class Autosave:
         self._path = folder / f"unsaved-{secrets.token_hex(8)}.lissom"
         self._lock: int | None = None
 
-    def write(self, document: Document) -> None:
-        """Keep a document, in place of an earlier one.
+    def write(self, document: Document, origin: Origin) -> None:
+        """Keep a document and where it came from, in place of an earlier one.
 
         Raises
         ------
@@ -51,7 +67,10 @@ class Autosave:
             with suppress(OSError):
                 self._lock = os.open(_lock_of(self._path), os.O_RDWR | os.O_CREAT, 0o600)
                 _hold(self._lock)
-        save_project(self._path, document)
+        told = json.dumps({"name": origin.name, "path": origin.path and str(origin.path)}).encode()
+        # One file with both, so that they are of one time however this ends.
+        members = MappingProxyType({**document.attachments, ORIGIN: told})
+        save_project(self._path, replace(document, attachments=members))
 
     def forget(self) -> None:
         """Remove what was kept."""
@@ -72,10 +91,37 @@ def find_leftovers(folder: Path) -> list[Path]:
     return sorted(found, key=lambda path: found[path], reverse=True)
 
 
+def load_leftover(path: Path) -> tuple[Document, Origin]:
+    """Read what a window kept that is gone, and where that came from.
+
+    Raises
+    ------
+    LissomError
+        As `load_project`.
+    """
+    document = load_project(path)
+    attachments = dict(document.attachments)
+    origin = _origin(attachments.pop(ORIGIN, b""))
+    return replace(document, attachments=MappingProxyType(attachments)), origin
+
+
 def remove_leftover(path: Path) -> None:
     """Remove what a window kept that is gone."""
     path.unlink(missing_ok=True)
     _lock_of(path).unlink(missing_ok=True)
+
+
+def _origin(told: bytes) -> Origin:
+    """Understand where work came from; nonsense must not hide the work itself."""
+    try:
+        match json.loads(told):
+            case {"name": str(name), "path": str(path)} if Path(path).is_absolute():
+                return Origin(name, Path(path))
+            case {"name": str(name)}:
+                return Origin(name, None)
+    except (ValueError, RecursionError):
+        pass
+    return UNKNOWN
 
 
 def _lock_of(path: Path) -> Path:

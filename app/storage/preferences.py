@@ -55,6 +55,10 @@ class Preferences:
         others = (other for other in self.recent if other != path)
         return replace(self, recent=(path, *others)[:MOST_RECENT], folder=path.parent)
 
+    def without_recent(self, path: Path) -> "Preferences":
+        """Return the preferences with a file taken off the recent ones."""
+        return replace(self, recent=tuple(other for other in self.recent if other != path))
+
 
 def settings_folder() -> Path:
     """Return the folder for settings and unsaved work of this person; it may not exist yet."""

@@ -141,10 +141,12 @@ def _recent(session: Session, look: Look, thumbnail: Look_up) -> list[Action]:
     for index, (path, is_there) in enumerate(recent):
         if index % 2:
             imgui.same_line(0, GAP * look.em)
-        imgui.begin_disabled(not is_there)
+        # Greyed and not disabled: a click takes it off the list.
+        colour = imgui.Col_.text if is_there else imgui.Col_.text_disabled
+        imgui.push_style_color(imgui.Col_.text, imgui.get_style_color_vec4(colour))
         if _row(look, path, index, thumbnail(path) if is_there else None, is_there=is_there):
-            actions.append(do(files.open_file, path))
-        imgui.end_disabled()
+            actions.append(do(files.open_recent, path))
+        imgui.pop_style_color()
     return actions
 
 

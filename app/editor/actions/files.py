@@ -16,8 +16,10 @@ from app.editor.jobs import Job
 from app.editor.project import Project, Puppet
 from app.editor.session import Session
 from app.storage import (
+    Origin,
     decode_picture,
     find_leftovers,
+    load_leftover,
     load_project,
     open_picture,
     remove_leftover,
@@ -69,6 +71,18 @@ def recent_files(session: Session) -> tuple[tuple[Path, bool], ...]:
 @lru_cache(maxsize=1)
 def _found(paths: tuple[Path, ...], _: int) -> tuple[tuple[Path, bool], ...]:
     return tuple((path, os.path.isfile(path)) for path in paths)  # noqa: PTH113 - never raises
+
+
+def open_recent(session: Session, path: Path) -> None:
+    """Open a file of the recent ones; one that is gone is taken off them."""
+    if os.path.isfile(path):  # noqa: PTH113 - never raises
+        open_file(session, path)
+        return
+    session.preferences = session.preferences.without_recent(path)
+    session.tell(
+        f"{path.name} is not in {path.parent} any more. It was taken off the recent files.",
+        tone="error",
+    )
 
 
 class Opened(NamedTuple):
@@ -147,11 +161,14 @@ def _read(path: Path, meshing: Meshing) -> Opened:
 
 
 def _read_project(path: Path) -> Opened:
-    document = load_project(path)
+    return _decoded(load_project(path), path.name)
+
+
+def _decoded(document: Document, name: str) -> Opened:
     puppets = {
         figure.id: Puppet.of(
             clip_of(document, figure.id),
-            decode_picture(figure.picture.data, f"the picture of {path.name}"),
+            decode_picture(figure.picture.data, f"the picture of {name}"),
         )
         for figure in document.figures
     }
@@ -183,11 +200,16 @@ def recover(session: Session, path: Path) -> None:
     session.jobs.put(
         Job(
             kind=f"{OPENING} unsaved work",
-            work=lambda: _read_project(path),
-            done=lambda opened: saving.unless_unsaved(session, do(show_recovered, path, opened)),
+            work=lambda: _read_leftover(path),
+            done=lambda read: saving.unless_unsaved(session, do(show_recovered, path, *read)),
             failed=lambda error: report(session, "The unsaved work cannot be opened", error),
         )
     )
+
+
+def _read_leftover(path: Path) -> tuple[Opened, Origin]:
+    document, origin = load_leftover(path)
+    return _decoded(document, origin.name), origin
 
 
 def throw_away(session: Session, path: Path) -> None:
@@ -196,16 +218,18 @@ def throw_away(session: Session, path: Path) -> None:
     session.tell("The unsaved work was discarded.")
 
 
-def show_recovered(session: Session, path: Path, opened: Opened) -> None:
-    """Make unsaved work the project of the window."""
+def show_recovered(session: Session, path: Path, opened: Opened, origin: Origin) -> None:
+    """Make unsaved work the project of the window, under its own name and unsaved."""
     session.pointer = None
     session.project = Project(
-        name="recovered",
+        name=origin.name,
         history=History(opened.document, saved=False),
         puppets=opened.puppets,
         active=opened.document.figures[-1].id,
-        path=None,
+        path=origin.path,
+        is_recovered=True,
     )
-    session.autosave.write(opened.document)
+    session.autosave.write(opened.document, origin)
     remove_leftover(path)
-    session.tell("This is your unsaved work. Save it to keep it.", tone="good")
+    what = f"unsaved work on {origin.path.name}" if origin.path else "unsaved work"
+    session.tell(f"This is your {what}. Save it to keep it.", tone="good")

@@ -16,7 +16,7 @@ SAVING, AUTOSAVING, KEEPING = "Saving", "Autosaving", "Keeping preferences"
 
 
 def save(session: Session) -> None:
-    """Save the project where it was saved or opened, or ask where."""
+    """Save the project where it was saved or opened; ask where if it is new or recovered."""
     save_then(session, None)
 
 
@@ -30,7 +30,7 @@ def save_then(session: Session, then: Action | None) -> None:
     project = session.project
     if project is None:
         return
-    if project.path is None:
+    if project.path is None or project.is_recovered:
         _ask_where(session, then)
     else:
         write(session, project.path, then)
@@ -53,7 +53,7 @@ def write(session: Session, path: Path, then: Action | None) -> None:
 
     def done(_: None) -> None:
         project.history.mark_saved(document)
-        project.path = path
+        project.name, project.path, project.is_recovered = path.stem, path, False
         session.preferences = session.preferences.with_recent(path)
         session.tell(f"Saved {path.name}.", tone="good")
         if then is not None:
@@ -152,7 +152,7 @@ def autosave(session: Session) -> None:
 
 
 def _keep(session: Session, project: Project, now: float) -> None:
-    document = project.document
+    document, origin = project.document, project.origin
     project.kept, project.kept_at = document, now
 
     def done(_: None) -> None:
@@ -163,7 +163,7 @@ def _keep(session: Session, project: Project, now: float) -> None:
     session.jobs.put(
         Job(
             kind=AUTOSAVING,
-            work=lambda: session.autosave.write(document),
+            work=lambda: session.autosave.write(document, origin),
             done=done,
             failed=lambda error: report(session, "Unsaved work cannot be kept", error),
         )

@@ -36,9 +36,13 @@ def _recent(session: Session) -> list[Action]:
         return []
     actions = []
     for index, (path, is_there) in enumerate(recent):
+        # Greyed and not disabled: a click takes it off the list.
+        colour = imgui.Col_.text if is_there else imgui.Col_.text_disabled
+        imgui.push_style_color(imgui.Col_.text, imgui.get_style_color_vec4(colour))
         note = "" if is_there else "not found"
-        if imgui.menu_item(f"{path.name}###recent {index}", note, False, is_there)[0]:  # noqa: FBT003
-            actions.append(do(files.open_file, path))
+        if imgui.menu_item(f"{path.name}###recent {index}", note, False)[0]:  # noqa: FBT003
+            actions.append(do(files.open_recent, path))
+        imgui.pop_style_color()
         imgui.set_item_tooltip(str(path))
     imgui.end_menu()
     return actions

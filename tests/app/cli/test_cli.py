@@ -14,6 +14,7 @@ from app.cli.main import COMMANDS, main
 from app.document import FRAMINGS, VARIANTS, Meshing
 from app.editor.actions import saving
 from app.editor.jobs import Job
+from app.storage import Origin
 from app.storage.assets import sample_images
 from engine.domain.outline import Detail, Holes
 
@@ -176,7 +177,7 @@ def test_an_autosave_that_is_written_while_the_person_leaves_is_not_offered(tmp_
             def keep():
                 begun.set()
                 left.wait(10)
-                session.autosave.write(disc_document())
+                session.autosave.write(disc_document(), Origin("disc", None))
 
             session.jobs.put(Job(kind=saving.AUTOSAVING, work=keep, done=print, failed=print))
             assert begun.wait(10)

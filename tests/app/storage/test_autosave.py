@@ -4,13 +4,21 @@ import os
 import signal
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 from documents import differences, disc_document, full_document
 
-from app.storage.autosave import Autosave, find_leftovers, remove_leftover
-from app.storage.project_file import load_project, save_project
+from app.storage.autosave import (
+    UNKNOWN,
+    Autosave,
+    Origin,
+    find_leftovers,
+    load_leftover,
+    remove_leftover,
+)
+from app.storage.project_file import save_project
 
 TESTS = Path(__file__).parents[2]
 # Keeps a document in the folder that it is given, and waits.
@@ -19,8 +27,8 @@ import sys
 sys.path[:0] = [{str(TESTS / "support")!r}, {str(TESTS.parent)!r}]
 from pathlib import Path
 from documents import disc_document
-from app.storage.autosave import Autosave
-Autosave(Path(sys.argv[1])).write(disc_document())
+from app.storage.autosave import UNKNOWN, Autosave
+Autosave(Path(sys.argv[1])).write(disc_document(), UNKNOWN)
 print("kept", flush=True)
 sys.stdin.read()
 """
@@ -44,7 +52,9 @@ def test_the_work_of_a_killed_process_is_offered_and_of_a_living_one_not(tmp_pat
         assert find_leftovers(tmp_path) == []
         process.send_signal(signal.SIGKILL)
     (leftover,) = find_leftovers(tmp_path)
-    assert not differences(load_project(leftover), disc_document())
+    document, origin = load_leftover(leftover)
+    assert not differences(document, disc_document())
+    assert origin == UNKNOWN
     remove_leftover(leftover)
     assert list(tmp_path.iterdir()) == []
 
@@ -57,12 +67,47 @@ def test_the_number_of_a_living_process_hides_nothing(tmp_path):
 
 def test_the_work_of_another_living_window_is_not_offered(tmp_path, autosave):
     other = Autosave(tmp_path)
-    other.write(disc_document())
-    autosave.write(full_document())
+    other.write(disc_document(), UNKNOWN)
+    autosave.write(full_document(), UNKNOWN)
     assert find_leftovers(tmp_path) == []
     other.forget()
     (kept,) = tmp_path.glob("unsaved-*.lissom")
-    assert not differences(load_project(kept), full_document())
+    assert not differences(load_leftover(kept)[0], full_document())
+
+
+@pytest.mark.parametrize(
+    "origin", [Origin("dragon", None), Origin("dräch", TESTS / "dräch.lissom")]
+)
+def test_work_remembers_where_it_came_from(tmp_path, autosave, origin):
+    autosave.write(full_document(), origin)
+    (kept,) = tmp_path.glob("unsaved-*.lissom")
+    document, told = load_leftover(kept)
+    assert told == origin
+    # A saved project does not say so.
+    assert not differences(document, full_document())
+    assert document.attachments == full_document().attachments
+
+
+@pytest.mark.parametrize(
+    "told", [None, b"\xff", b"[" * 99_999, b"[]", b'{"name": 1}', b'{"path": "/a.lissom"}']
+)
+def test_work_that_says_nothing_of_where_it_came_from_is_there_all_the_same(tmp_path, told):
+    document = disc_document()
+    if told is not None:
+        document = replace(document, attachments={"origin.json": told})
+    save_project(tmp_path / "unsaved-1.lissom", document)
+    read, origin = load_leftover(tmp_path / "unsaved-1.lissom")
+    assert origin == UNKNOWN
+    assert not differences(read, disc_document())
+    assert not read.attachments
+
+
+def test_a_place_that_depends_on_the_folder_is_no_place(tmp_path):
+    document = replace(
+        disc_document(), attachments={"origin.json": b'{"name": "a", "path": "a.lissom"}'}
+    )
+    save_project(tmp_path / "unsaved-1.lissom", document)
+    assert load_leftover(tmp_path / "unsaved-1.lissom")[1] == Origin("a", None)
 
 
 def test_leftovers_come_newest_first(tmp_path, autosave):
@@ -70,13 +115,13 @@ def test_leftovers_come_newest_first(tmp_path, autosave):
         path = tmp_path / f"unsaved-{name}.lissom"
         path.write_bytes(b"")
         os.utime(path, (1000 - age, 1000 - age))
-    autosave.write(disc_document())
+    autosave.write(disc_document(), UNKNOWN)
     assert [path.stem[-1] for path in find_leftovers(tmp_path)] == ["b", "c", "a"]
 
 
 def test_nothing_stays_of_what_is_forgotten(tmp_path, autosave):
     for _ in range(2):
-        autosave.write(disc_document())
+        autosave.write(disc_document(), UNKNOWN)
         autosave.forget()
         autosave.forget()
         assert list(tmp_path.iterdir()) == []
@@ -89,5 +134,5 @@ def test_where_the_system_knows_no_locks_work_is_offered_rather_than_hidden(
         raise OSError(38, "Function not implemented")
 
     monkeypatch.setattr("app.storage.autosave._hold", no_locks)
-    autosave.write(disc_document())
+    autosave.write(disc_document(), UNKNOWN)
     assert len(find_leftovers(tmp_path)) == 1

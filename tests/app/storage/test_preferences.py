@@ -95,6 +95,9 @@ def test_recent_files_are_the_newest_ones_once_each():
     assert list(preferences.recent) == newest
     assert preferences.folder == paths[-2].parent
     assert preferences.theme == "light"
+    fewer = preferences.without_recent(paths[-1])
+    assert list(fewer.recent) == [newest[0], *newest[2:]]
+    assert fewer.without_recent(Path("/other.png")) == fewer
 
 
 def test_the_folder_follows_the_system(monkeypatch, tmp_path):

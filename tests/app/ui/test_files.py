@@ -140,7 +140,7 @@ def test_changes_made_while_unsaved_work_is_read_are_asked_about(
 ):
     path = tmp_path / "unsaved.lissom"
     save_project(path, project.document)
-    with waiting(monkeypatch, "app.editor.actions.files.load_project"):
+    with waiting(monkeypatch, "app.editor.actions.files.load_leftover"):
         window.act(files.recover, path)
         window.act(posing.add_handle, complex(*project.document.canvas) / 2)
     window.settle()

@@ -178,7 +178,8 @@ def test_the_layout_can_be_put_back(window):
     assert after == pytest.approx(before, abs=1)
 
 
-def test_recent_files_that_are_gone_are_marked(window, tmp_path):
+@pytest.mark.parametrize("place", ["welcome", "menu"])
+def test_recent_files_that_are_gone_are_marked_and_taken_off_by_a_click(window, tmp_path, place):
     there, gone = tmp_path / "there.png", tmp_path / "gone.png"
     there.write_bytes((sample_images() / "bar.png").read_bytes())
     preferences = window.session.preferences
@@ -188,14 +189,19 @@ def test_recent_files_that_are_gone_are_marked(window, tmp_path):
     window.frames(3)
 
     def open_gone(robot):
-        robot.set_ref("Welcome")
-        place = robot.item_info("**/###recent 1").rect_full.get_center()
-        robot.mouse_move_to_pos(place)
-        robot.mouse_click(0)
+        if place == "menu":
+            robot.set_ref("##MainMenuBar")
+            robot.menu_click("File/Open recent/###recent 1")
+        else:
+            robot.set_ref("Welcome")
+            robot.item_click("**/###recent 1")
 
     window.run(open_gone)
     window.settle()
-    assert window.session.toasts == []
+    assert window.session.project is None
+    assert window.session.preferences.recent == (there,)
+    (toast,) = window.session.toasts
+    assert toast.text.startswith(f"gone.png is not in {tmp_path} any more.")
 
     def open_recent(robot):
         robot.set_ref("##MainMenuBar")

@@ -4,10 +4,13 @@ import errno
 
 import pytest
 
-from app.editor.actions import exporting, files, saving
+from app.editor.actions import exporting, files, posing, saving
+from app.editor.dialogs import FileDialog
 from app.storage.assets import sample_images
-from app.storage.autosave import Autosave, find_leftovers
+from app.storage.autosave import SECONDS, Autosave, find_leftovers, load_leftover
+from app.storage.project_file import load_project
 from app.ui.timeline import timeline
+from app.ui.window.title import window_title
 
 
 @pytest.fixture
@@ -84,9 +87,25 @@ def test_a_panel_that_raises_is_told_and_the_rest_lives_on(window, monkeypatch, 
     capfd.readouterr()
 
 
+def crash(window, project):
+    """End without a farewell while there is unsaved work, and start again; what it goes by."""
+    window.clock.now += SECONDS
+    project.kept = None
+    saving.autosave(window.session)
+    window.settle()
+    window.session.autosave = Autosave(window.folder)
+    for lock in window.folder.glob("unsaved-*.lock"):
+        lock.unlink()
+    window.session.project = None
+    files.offer_recovery(window.session)
+    window.frames(3)
+    (leftover,) = find_leftovers(window.folder)
+    return load_leftover(leftover)[1]
+
+
 def test_unsaved_work_comes_back_after_a_crash(window, project):
     crashed = Autosave(window.folder)
-    crashed.write(project.document)
+    crashed.write(project.document, project.origin)
     (orphan,) = window.folder.glob("unsaved-*.lissom")
     assert find_leftovers(window.folder) == []
     orphan.with_suffix(".lock").unlink()
@@ -103,3 +122,60 @@ def test_unsaved_work_comes_back_after_a_crash(window, project):
     assert not recovered.history.is_saved
     assert not orphan.exists()
     crashed.forget()
+
+
+def test_recovered_work_has_its_name_and_goes_back_to_its_file_once_that_was_shown(
+    window, project, tmp_path
+):
+    path = tmp_path / "posed.lissom"
+    saving.write(window.session, path, None)
+    window.settle()
+    saved = path.read_bytes()
+    place = complex(*project.document.canvas) / 2
+    window.act(posing.add_handle, place)
+    window.settle()
+    crash(window, project)
+
+    window.run(lambda robot: robot.item_click("//###dialog/Open"))
+    window.settle()
+    recovered = window.session.project
+    assert window_title(window.session) == "posed.lissom* – Lissom"
+    assert (recovered.name, recovered.path) == ("posed", path)
+    assert len(recovered.figure.handles) == 1
+    assert any("posed.lissom" in text for text in texts(window))
+    assert path.read_bytes() == saved
+    # A second crash finds it again.
+    assert crash(window, recovered) == (recovered.name, path)
+    window.run(lambda robot: robot.item_click("//###dialog/Open"))
+    window.settle()
+
+    window.act(saving.save)
+    window.frames(2)
+    dialog = window.session.dialog
+    assert isinstance(dialog, FileDialog)
+    assert dialog.writes
+    assert dialog.folder / dialog.name == path
+    assert path.read_bytes() == saved
+    dialog.chosen(path).apply(window.session)
+    window.session.dialog = None
+    window.settle()
+    assert window_title(window.session) == "posed.lissom – Lissom"
+    assert len(load_project(path).figures[0].handles) == 1
+    assert find_leftovers(window.folder) == []
+
+    window.act(posing.add_handle, place / 2)
+    window.settle()
+    window.act(saving.save)
+    window.settle()
+    assert window.session.dialog is None
+    assert len(load_project(path).figures[0].handles) == 2
+
+
+def test_recovered_work_on_a_picture_has_its_name_and_no_file(window, project):
+    window.act(posing.add_handle, complex(*project.document.canvas) / 2)
+    window.settle()
+    assert crash(window, project) == ("bar", None)
+    window.run(lambda robot: robot.item_click("//###dialog/Open"))
+    window.settle()
+    assert window_title(window.session) == "bar* – Lissom"
+    assert window.session.project.path is None
