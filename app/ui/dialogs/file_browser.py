@@ -11,11 +11,13 @@ from imgui_bundle import icons_fontawesome_6 as icons
 from app.editor import Action, FileDialog, do
 from app.editor.actions import browse, choose, close_dialog
 from app.ui.dialogs.folder_listing import Entry, Listing, read_folder
+from app.ui.shortcuts import in_words
 from app.ui.style import Look, icon_button, main_button, small
 
 WIDTH, HEIGHT = 42.0, 22.0  # em, where the window has room for them
 SIZE, CHANGED, BUTTON = 5.5, 9.5, 7.0  # em
 SEPARATOR = "/"
+UP = int(imgui.Key.mod_alt) | int(imgui.Key.up_arrow)
 NAME_FIELD = "##file name"
 ROW_FLAGS = (
     imgui.SelectableFlags_.span_all_columns
@@ -143,7 +145,7 @@ class FileBrowser:
 def _places(dialog: FileDialog, look: Look, width: float) -> FileDialog:
     """Draw the ways out of the folder: up, home, and the folders that it is in."""
     start = imgui.get_cursor_pos_x()
-    if icon_button(look, icons.ICON_FA_ARROW_UP, "up", "The folder above", keys="Alt+Up"):
+    if icon_button(look, icons.ICON_FA_ARROW_UP, "up", "The folder above", keys=in_words(UP)):
         return _enter(dialog, dialog.folder.parent)
     imgui.same_line(0, 0)
     if icon_button(look, icons.ICON_FA_HOUSE, "home", "Your own folder"):

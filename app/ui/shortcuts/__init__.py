@@ -7,7 +7,7 @@ Imports: `app.editor`, `app.ui.style`.
 
 from app.ui.shortcuts.binding import Binding
 from app.ui.shortcuts.gestures import GESTURES
-from app.ui.shortcuts.keys import MODIFIERS, with_key
+from app.ui.shortcuts.keys import MODIFIERS, in_words, with_key
 from app.ui.shortcuts.pressed import ARROWS, pressed
 from app.ui.shortcuts.table import BINDINGS
 from app.ui.shortcuts.widgets import bound_button, bound_item
@@ -20,6 +20,7 @@ __all__ = [
     "Binding",
     "bound_button",
     "bound_item",
+    "in_words",
     "pressed",
     "with_key",
 ]
