@@ -135,8 +135,8 @@ class Project:
         Where to save it, and what to do then, as soon as its pose has settled.
     moved_at : float
         The clock's seconds when the playhead was last seen to move.
-    kept : Document, optional
-        The one that the autosave holds, from the time `kept_at` on.
+    autosaved : Document, optional
+        The one that the autosave holds, from the time `autosaved_at` on.
     gesture : object, optional
         Commands given while it lasts make one step of undo together.
     held : int
@@ -160,8 +160,8 @@ class Project:
     extent: Derived[tuple[object, ...], Box | None] = field(default_factory=lambda: Derived(None))
     to_save: tuple[Path, Action | None] | None = None
     moved_at: float = -inf
-    kept: Document | None = None
-    kept_at: float = 0.0
+    autosaved: Document | None = None
+    autosaved_at: float = 0.0
     playhead: Playhead = field(default_factory=Playhead)
     timing: Timing = field(default_factory=Timing)
     selected: frozenset[int] = frozenset()  # ids of handles

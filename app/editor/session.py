@@ -112,7 +112,7 @@ class Session:
     jobs: Jobs
     folder: Path  # for settings and unsaved work
     preferences: Preferences = field(default_factory=Preferences)
-    kept_preferences: Preferences = field(init=False)  # as they are on the disk
+    saved_preferences: Preferences = field(init=False)  # as they are on the disk
     autosave: Autosave = field(init=False)
     project: Project | None = None
     overlays: Overlays = field(default_factory=Overlays)
@@ -135,7 +135,7 @@ class Session:
 
     def __post_init__(self) -> None:
         """Take the preferences to be as they were read, and nothing to be kept yet."""
-        self.kept_preferences = self.preferences
+        self.saved_preferences = self.preferences
         self.autosave = Autosave(self.folder)
 
     @property

@@ -304,7 +304,7 @@ def _go_on(
     posing.steps += steps.taken
     if posing.from_rest is None:
         posing.drag = steps.drag
-        _keep(session, project, posing, targets)
+        _accept(session, project, posing, targets)
     else:
         posing.from_rest = steps.drag
     rests = steps.drag.is_over and posing.targets == targets
@@ -314,7 +314,7 @@ def _go_on(
         _finish(session, project, posing)
 
 
-def _keep(
+def _accept(
     session: Session, project: Project, posing: PoseInProgress, targets: Mapping[int, Target]
 ) -> None:
     """Put the solver's newest map into the document, or show it unkeyed."""
@@ -349,7 +349,7 @@ def _finish(session: Session, project: Project, posing: PoseInProgress) -> None:
         return
     if drag is not None and other is not None and other.lag < MUCH_LESS * drag.lag:
         posing.drag = other
-        _keep(session, project, posing, posing.targets)
+        _accept(session, project, posing, posing.targets)
     _end(project, posing)
 
 

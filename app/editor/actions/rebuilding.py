@@ -82,7 +82,7 @@ def _go_on(session: Session, project: Project, renewal: Renewal) -> None:
         session.tell("The keys were not posed again: the project changed meanwhile. Start again.")
         return
     if renewal.is_over:
-        _keep(session, project, renewal)
+        _accept(session, project, renewal)
         return
     project.renewal = renewal
     picture = project.puppets[renewal.before.id].picture.rgba
@@ -102,7 +102,7 @@ def _go_on(session: Session, project: Project, renewal: Renewal) -> None:
     )
 
 
-def _keep(session: Session, project: Project, renewal: Renewal) -> None:
+def _accept(session: Session, project: Project, renewal: Renewal) -> None:
     project.renewal = None
     gesture = object()
     project.history.do(renewal.command, gesture=gesture)

@@ -12,7 +12,7 @@ from app.editor.session import Session
 from app.storage import SECONDS, draw_thumbnail, save_preferences, save_project
 
 PROJECT = ".lissom"
-SAVING, AUTOSAVING, KEEPING = "Saving", "Autosaving", "Keeping preferences"
+SAVING, AUTOSAVING, WRITING = "Saving", "Autosaving", "Saving preferences"
 
 
 def save(session: Session) -> None:
@@ -107,7 +107,7 @@ def leave(session: Session) -> None:
     session.quitting = True
 
 
-def keep_up(session: Session) -> None:
+def maintain(session: Session) -> None:
     """Write what is due: a project that has settled, unsaved work, preferences; once a frame."""
     project = session.project
     if project is not None and not project.is_posing and project.to_save is not None:
@@ -115,18 +115,18 @@ def keep_up(session: Session) -> None:
         project.to_save = None
         write(session, path, then)
     autosave(session)
-    keep_preferences(session)
+    write_preferences(session)
 
 
-def keep_preferences(session: Session) -> None:
+def write_preferences(session: Session) -> None:
     """Write the preferences when they have changed."""
     preferences, folder = session.preferences, session.folder
-    if preferences == session.kept_preferences:
+    if preferences == session.saved_preferences:
         return
-    session.kept_preferences = preferences
+    session.saved_preferences = preferences
     session.jobs.put(
         Job(
-            kind=KEEPING,
+            kind=WRITING,
             work=lambda: save_preferences(folder, preferences),
             done=lambda _: None,
             failed=lambda error: report(session, "The preferences cannot be kept", error),
@@ -142,22 +142,22 @@ def autosave(session: Session) -> None:
     if project is None or project.is_posing:
         return
     if project.history.is_saved:
-        if project.kept is not None:
-            project.kept = None
+        if project.autosaved is not None:
+            project.autosaved = None
             session.autosave.forget()
         return
-    is_due = now - project.kept_at >= SECONDS and project.kept is not project.document
+    is_due = now - project.autosaved_at >= SECONDS and project.autosaved is not project.document
     if is_due and AUTOSAVING not in session.jobs.kinds:
-        _keep(session, project, now)
+        _autosave_now(session, project, now)
 
 
-def _keep(session: Session, project: Project, now: float) -> None:
+def _autosave_now(session: Session, project: Project, now: float) -> None:
     document, origin = project.document, project.origin
-    project.kept, project.kept_at = document, now
+    project.autosaved, project.autosaved_at = document, now
 
     def done(_: None) -> None:
         # In the meantime it may have been saved, or closed.
-        if session.project is not project or project.kept is not document:
+        if session.project is not project or project.autosaved is not document:
             session.autosave.forget()
 
     session.jobs.put(

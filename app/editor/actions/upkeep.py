@@ -34,7 +34,7 @@ Source = TypeVar("Source")
 Value = TypeVar("Value")
 
 
-def keep_up(session: Session) -> None:
+def maintain(session: Session) -> None:
     """Ask the worker for what is missing, and settle what is drawn; once a frame."""
     project = session.project
     if project is None:

@@ -18,7 +18,7 @@ class Selecting:
     start, place : complex
         Where it was pressed, and where it is.
     before : Selection
-    keeps : bool
+    adds : bool
         Whether what was selected stays so.
     has_box : bool
     """
@@ -26,7 +26,7 @@ class Selecting:
     start: complex
     place: complex
     before: Selection
-    keeps: bool
+    adds: bool
     has_box: bool
 
     @classmethod
@@ -48,7 +48,7 @@ class Selecting:
         if spot.handle is not None:
             editing.select(session, project.selected ^ {spot.handle})
         return cls(
-            start=spot.place, place=spot.place, before=before, keeps=spot.shift, has_box=has_box
+            start=spot.place, place=spot.place, before=before, adds=spot.shift, has_box=has_box
         )
 
     def move(self, session: Session, place: complex) -> None:  # noqa: ARG002 - as a tool's
@@ -69,7 +69,7 @@ class Selecting:
             for handle, at in places
             if box.contains(Box(complex(at), complex(at)), slack=0.0)
         }
-        editing.select(session, project.selected | inside if self.keeps else frozenset(inside))
+        editing.select(session, project.selected | inside if self.adds else frozenset(inside))
 
     def cancel(self, session: Session) -> None:
         """Select what was selected before."""

@@ -168,7 +168,7 @@ class Shell:
         session.export_frame = None
         playback.halt_at_end(session)
         # Panels are to see the frame that it is by now.
-        self._attempt(partial(upkeep.keep_up, session))
+        self._attempt(partial(upkeep.maintain, session))
         if _is_busy(session):
             self._awake_until = session.clock() + AWAKE
         if session.clock() < self._awake_until:
@@ -192,8 +192,8 @@ class Shell:
         # After the actions, so that a pull goes on with the newest wish; before the picture is
         # drawn, so that it shows at once how far the solver has come.
         self._attempt(self.session.jobs.deliver)
-        self._attempt(partial(upkeep.keep_up, self.session))
-        self._attempt(partial(saving.keep_up, self.session))
+        self._attempt(partial(upkeep.maintain, self.session))
+        self._attempt(partial(saving.maintain, self.session))
         if self.session.quitting:
             hello_imgui.get_runner_params().app_shall_exit = True
 

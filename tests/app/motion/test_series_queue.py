@@ -13,7 +13,7 @@ from app.document.history import History
 from app.document.keyframe import Keyframe
 from app.document.settings import FrameRange
 from app.document.timeline import clip_of
-from app.editor.actions.upkeep import STREAMING, keep_up, missing
+from app.editor.actions.upkeep import STREAMING, maintain, missing
 from app.editor.jobs import Jobs
 from app.editor.project import PoseInProgress
 from app.editor.session import Session
@@ -132,7 +132,7 @@ def test_a_session_streams_what_it_plays_and_stops_while_a_hand_pulls(document, 
 
     def settle():
         while True:
-            keep_up(session)
+            maintain(session)
             if not session.jobs.kinds:
                 return
             assert session.jobs.settle()
@@ -168,7 +168,7 @@ def test_a_series_that_failed_once_is_built_anew_when_the_document_changes(
 
     def settle():
         for _ in range(1_000):
-            keep_up(session)
+            maintain(session)
             if not session.jobs.kinds:
                 return
             asked.extend(session.jobs.kinds)

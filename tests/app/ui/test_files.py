@@ -194,7 +194,7 @@ def pass_time(window, seconds):
 def test_the_autosave_comes_some_time_after_a_change(window, project, kept):
     pass_time(window, SECONDS)
     assert kept() is None
-    project.kept_at = window.clock.now
+    project.autosaved_at = window.clock.now
     change(window, project)
     pass_time(window, SECONDS - 1)
     assert kept() is None
@@ -207,7 +207,7 @@ def test_the_autosave_comes_some_time_after_a_change(window, project, kept):
 
 
 def test_more_changes_are_kept_in_its_place(window, project, kept):
-    project.kept_at = window.clock.now
+    project.autosaved_at = window.clock.now
     change(window, project)
     pass_time(window, SECONDS)
     assert kept() == 1
@@ -219,7 +219,7 @@ def test_more_changes_are_kept_in_its_place(window, project, kept):
 
 
 def test_the_autosave_does_not_come_while_the_hand_drags(window, project, kept):
-    project.kept_at = window.clock.now
+    project.autosaved_at = window.clock.now
     change(window, project)
     place = complex(*project.document.canvas) / 2
     posing.pull(window.session, {0: Target(position=place)})
@@ -288,7 +288,7 @@ def test_nothing_stays_of_work_that_is_given_up_meanwhile(window, project, monke
         save_project(path, document)
 
     monkeypatch.setattr("app.storage.autosave.save_project", save_late)
-    project.kept_at = window.clock.now
+    project.autosaved_at = window.clock.now
     change(window, project)
     pass_time(window, SECONDS)
     assert saving.AUTOSAVING in window.session.jobs.kinds

@@ -212,7 +212,7 @@ def test_curves_of_an_older_document_are_not_kept(window, project, tab):
     tab("Distortion", lambda _: None)
     editing.edit(window.session, key_commands.move_keys(0, frozenset({24}), 4))
     older = project.document
-    upkeep.keep_up(window.session)
+    upkeep.maintain(window.session)
     editing.edit(window.session, key_commands.move_keys(0, frozenset({28}), 4))
     window.settle()
     assert project.curves.follows(project.clip)

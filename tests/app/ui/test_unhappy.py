@@ -513,7 +513,7 @@ WAITING = {
         "app.editor.actions.upkeep.measure_extent",
         lambda session: (
             exporting.show_frame(session, Box(0j, 1 + 1j)),
-            upkeep.keep_up(session),
+            upkeep.maintain(session),
         ),
     ),
     "Solving the keys": ("app.editor.actions.rebuilding.go_on", rebuilding.solve_again),

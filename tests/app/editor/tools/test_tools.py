@@ -11,7 +11,7 @@ from projects import project_of
 from app.document.commands import handle_commands, scene_commands
 from app.editor import BoxMark, Jobs, Session, SweepMark
 from app.editor.actions import editing, playback, posing
-from app.editor.actions.upkeep import keep_up
+from app.editor.actions.upkeep import maintain
 from app.editor.tools import TOOLS, Spot, pointing
 from app.storage import Preferences
 
@@ -35,7 +35,7 @@ def session(tmp_path):
 
 def settle(session):
     while True:
-        keep_up(session)
+        maintain(session)
         if not session.jobs.kinds:
             return
         assert session.jobs.settle()
@@ -45,7 +45,7 @@ def settle(session):
 def frames(session, count=2):
     """Let the worker take some steps."""
     for _ in range(count):
-        keep_up(session)
+        maintain(session)
         assert session.jobs.settle()
         session.jobs.deliver()
 
