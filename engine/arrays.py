@@ -10,6 +10,7 @@ from engine.errors import EngineError
 type_ = TypeVar("type_", bound=np.generic)
 Complexes = npt.NDArray[np.complex128]
 Floats = npt.NDArray[np.float64]
+Singles = npt.NDArray[np.float32]
 Integers = npt.NDArray[np.int32]
 Indices = npt.NDArray[np.intp]
 Booleans = npt.NDArray[np.bool_]

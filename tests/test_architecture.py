@@ -16,6 +16,16 @@ MOST_LOOSE = 5  # modules beside the packages of app and engine
 # Rooms whose modules are found by their names, and that nothing else imports from.
 BY_NAME = {"app.cli", "app.cli.bench", "app.cli.commands", "app.cli.usage"}
 
+# Modules whose functions are only called by the module's name: the verbs of actions and commands,
+# and the ways in to panels and to the parts of the command line.
+VERBS = (
+    "app.editor.actions.",
+    "app.editor.tools.",
+    "app.document.commands.",
+    "app.cli.",
+    "app.ui.",
+)
+
 # Calls that say what a thing is, and compute nothing.
 DECLARATIONS = {"TypeVar", "field", "get_args"}
 
@@ -119,6 +129,43 @@ def public_names(package: str) -> set[str]:
         if isinstance(node, ast.Assign) and ast.unparse(node.targets[0]) == "__all__":
             return set(ast.literal_eval(node.value))
     return set()
+
+
+def defined_names(name: str) -> tuple[set[str], set[str]]:
+    """Return the public classes and type aliases of a module, and its public functions."""
+    types, functions = set(), set()
+    for node in ast.parse(FILES[name].read_text(encoding="utf-8")).body:
+        if isinstance(node, ast.ClassDef):
+            types.add(node.name)
+        elif isinstance(node, ast.FunctionDef):
+            functions.add(node.name)
+        elif isinstance(node, (ast.Assign, ast.AnnAssign)) and not (
+            node.value is None or isinstance(node.value, ast.Call)
+        ):
+            target = ast.unparse(node.targets[0] if isinstance(node, ast.Assign) else node.target)
+            is_alias = target[0].isupper() and not target.isupper()
+            # An abbreviation of a library's own name is no other name.
+            if is_alias and not ast.unparse(node.value).endswith(f".{target}"):
+                types.add(target)
+    return ({n for n in types if n[0] != "_"}, {n for n in functions if n[0] != "_"})
+
+
+def test_a_type_has_a_name_of_its_own():
+    seen: dict[str, str] = {}
+    for name in FILES:
+        for defined in defined_names(name)[0]:
+            assert seen.setdefault(defined, name) == name, f"{defined} in {seen[defined]}, {name}"
+
+
+def test_a_function_that_a_face_shows_has_a_name_of_its_own():
+    seen: dict[str, str] = {}
+    for name in FILES:
+        if name.startswith(VERBS):
+            continue
+        package = name if name in PACKAGES else name.rpartition(".")[0]
+        for function in defined_names(name)[1] & public_names(package):
+            where = seen.setdefault(function, name)
+            assert where == name, f"{function} in {where}, {name}"
 
 
 def test_the_engine_is_tested_without_the_program():

@@ -45,6 +45,14 @@ class Extremes(NamedTuple):
         certificate = pose.certificate
         return cls(certificate.k, certificate.sigma_a, certificate.sigma_b)
 
+    def joined(self, other: "Extremes") -> "Extremes":
+        """Return the worse of both."""
+        return Extremes(
+            k=max(self.k, other.k),
+            sigma_a=max(self.sigma_a, other.sigma_a),
+            sigma_b=min(self.sigma_b, other.sigma_b),
+        )
+
     def uses(self, bounds: Bounds) -> tuple[Use, ...]:
         """Return how much of each limit is used; stretches count by their logarithms."""
         share_a = log(self.sigma_a) / log(bounds.sigma_a)

@@ -12,13 +12,13 @@ from app.export.framing import shown_box
 from app.export.plan import ExportPlan
 from app.export.poses import Poses
 from app.motion import Placed, box_around
-from app.render import TRANSPARENT, Background, Colour, DrawnMesh, Renderer, Scene
+from app.render import TRANSPARENT, Backdrop, Colour, DrawnMesh, Renderer, Scene
 from app.render.gpu import (
     Context,
     GlError,
     GpuMesh,
     GpuPicture,
-    Target,
+    RenderTarget,
 )
 from engine.arrays import Bytes
 
@@ -65,7 +65,7 @@ class Painter:
         self._context = context
         self._poses = [poses[figure.id] for figure in document.figures]
         self._view = plan.view
-        self._background = Background(colour=_colour(plan))
+        self._background = Backdrop(colour=_colour(plan))
         self._meshes = [figure.domain.mesh for figure in document.figures]
         self._reach = box_around(np.concatenate([mesh.vertices for mesh in self._meshes]))
         # The mesh has a margin around the drawing, which may lie off the canvas from the start.
@@ -76,7 +76,9 @@ class Painter:
             programs = self._renderer.programs
             # At its own size the drawing comes out exact from one sample a pixel; made much smaller
             # it is finer from four.
-            self._target = Target(programs, plan.view.size, 2 if plan.view.scale < _SMALL else 1)
+            self._target = RenderTarget(
+                programs, plan.view.size, 2 if plan.view.scale < _SMALL else 1
+            )
             owned.callback(self._target.release)
             # Errors up to here are a window's, or of moderngl, which binds the framebuffer of
             # before again though it may be gone. A target without memory has raised by itself.

@@ -12,7 +12,7 @@ from app.render.ramp import heat_ramp
 from app.render.renderer import Renderer
 from app.render.scene import (
     TRANSPARENT,
-    Background,
+    Backdrop,
     Colour,
     Disc,
     Ghost,
@@ -26,7 +26,7 @@ from app.render.view import View, canvas_view, fit_view
 
 __all__ = [
     "TRANSPARENT",
-    "Background",
+    "Backdrop",
     "Colour",
     "Disc",
     "DrawLists",

@@ -6,9 +6,10 @@ from typing import Final
 import moderngl
 import numpy as np
 
-from app.render.gpu import Programs, ShaderFiles, Singles, set_uniforms
+from app.render.gpu import Programs, ShaderFiles, set_uniforms
 from app.render.scene import Disc, Line
 from app.render.view import View
+from engine.arrays import Singles
 
 _LINE: Final = ShaderFiles(vertex=("line.vert",), fragment=("line.frag",))
 _LINE_LAYOUT: Final = "2f 2f 2f 2f 4f 1f 1f 1f /i"

@@ -6,10 +6,10 @@ from typing import Final
 
 import moderngl
 
-from app.render.gpu import PosedMesh, Programs, ShaderFiles, Target
+from app.render.gpu import PosedMesh, Programs, RenderTarget, ShaderFiles
 from app.render.overlay import Overlay
 from app.render.ramp import heat_ramp
-from app.render.scene import Background, Colour, Ghost, Heat, Scene, Wireframe
+from app.render.scene import Backdrop, Colour, Ghost, Heat, Scene, Wireframe
 from app.render.view import View
 
 _BACKGROUND: Final = ShaderFiles(vertex=("screen.vert",), fragment=("background.frag",))
@@ -28,17 +28,17 @@ class Renderer:
         self.programs = Programs(context)
         self._context = context
         self._overlay = Overlay(self.programs)
-        self._layer: Target | None = None
+        self._layer: RenderTarget | None = None
         ramp = heat_ramp()
         self._ramp = context.texture((len(ramp), 1), 3, ramp.tobytes())
         self._ramp.repeat_x = self._ramp.repeat_y = False
 
-    def draw(self, target: Target, view: View, scene: Scene) -> None:
+    def draw(self, target: RenderTarget, view: View, scene: Scene) -> None:
         """Draw a scene in place of whatever the target holds, and leave the target bound.
 
         Parameters
         ----------
-        target : Target
+        target : RenderTarget
         view : View
             Of the target's size.
         scene : Scene
@@ -61,7 +61,7 @@ class Renderer:
         self._context.enable_only(moderngl.BLEND)
         self._context.blend_func = (moderngl.ONE, moderngl.ONE_MINUS_SRC_ALPHA)
 
-    def _draw_background(self, background: Background, view: View, samples: int) -> None:
+    def _draw_background(self, background: Backdrop, view: View, samples: int) -> None:
         self._context.enable_only(moderngl.NOTHING)
         width, height = view.size
         origin_x, origin_y = view.transform[2:]
@@ -99,12 +99,12 @@ class Renderer:
         mesh.draw(_WIRE, uniforms)
         mesh.draw_border(_BORDER, uniforms)
 
-    def _draw_ghost(self, ghost: Ghost, target: Target, view: View) -> None:
+    def _draw_ghost(self, ghost: Ghost, target: RenderTarget, view: View) -> None:
         # On a layer of its own: limbs that overlap would shine through each other.
         wanted = (target.size, target.oversampling)
         if self._layer is None or (self._layer.size, self._layer.oversampling) != wanted:
             self._release_layer()
-            self._layer = Target(self.programs, *wanted)
+            self._layer = RenderTarget(self.programs, *wanted)
         self._layer.framebuffer.use()
         self._layer.framebuffer.clear()
         self._blend_over()

@@ -13,7 +13,7 @@ TRANSPARENT: Final[Colour] = (0.0, 0.0, 0.0, 0.0)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Background:
+class Backdrop:
     """What lies behind everything.
 
     Parameters
@@ -131,7 +131,7 @@ class Scene:
 
     Parameters
     ----------
-    background : Background
+    background : Backdrop
     meshes : tuple of PosedMesh
         The drawing in this frame, the furthest first.
     heat : Heat, optional
@@ -143,7 +143,7 @@ class Scene:
     discs : tuple of Disc
     """
 
-    background: Background = Background()
+    background: Backdrop = Backdrop()
     meshes: tuple[PosedMesh, ...] = ()
     heat: Heat | None = None
     wireframe: Wireframe | None = None

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from app.document import Clip, Variant, intervals
+from app.document import Clip, Extremes, Variant, intervals
 from app.motion import Animation
 from engine.arrays import Complexes
 from engine.maps import Boundary, Certificate, certify, distortion
@@ -13,31 +13,6 @@ from engine.maps import Boundary, Certificate, certify, distortion
 TIMES = 65
 # Of the larger k, σ_a or σ_b: what the quadrature and the integral equation may add.
 ACCURACY = 1e-6
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Extremes:
-    """The largest k and σ_a and the smallest σ_b somewhere."""
-
-    k: float
-    sigma_a: float
-    sigma_b: float
-
-    def within(self, other: "Extremes") -> bool:
-        """Tell whether these are no worse than others, but for rounding."""
-        return (
-            self.k <= other.k + ACCURACY
-            and self.sigma_a <= other.sigma_a * (1 + ACCURACY)
-            and self.sigma_b >= other.sigma_b * (1 - ACCURACY)
-        )
-
-    def joined(self, other: "Extremes") -> "Extremes":
-        """Return the worse of both."""
-        return Extremes(
-            k=max(self.k, other.k),
-            sigma_a=max(self.sigma_a, other.sigma_a),
-            sigma_b=min(self.sigma_b, other.sigma_b),
-        )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -51,8 +26,13 @@ class IntervalReport:
 
     @property
     def is_within(self) -> bool:
-        """Whether the in-betweens keep to the keyframes' own distortion."""
-        return self.reached.within(self.keys)
+        """Whether the in-betweens keep to the keyframes' own distortion, but for rounding."""
+        reached, keys = self.reached, self.keys
+        return (
+            reached.k <= keys.k + ACCURACY
+            and reached.sigma_a <= keys.sigma_a * (1 + ACCURACY)
+            and reached.sigma_b >= keys.sigma_b * (1 - ACCURACY)
+        )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -88,7 +88,7 @@ def _samples(look: Look, thumbnail: Look_up) -> list[Action]:
     return actions
 
 
-def _card(look: Look, sample: files.Sample, image: Thumbnail | None) -> bool:
+def _card(look: Look, sample: files.SampleFile, image: Thumbnail | None) -> bool:
     palette = look.palette
     size = ImVec2(CARD * look.em, 0.88 * CARD * look.em)
     corner = imgui.get_cursor_screen_pos()

@@ -27,7 +27,7 @@ ON_CIRCLE = 64  # points; what they miss falls like CIRCLE^(−half of them)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Box:
+class SkeletonBox:
     """Nodes of one level that are eliminated but for their skeleton; n of them, r in the skeleton.
 
     Parameters
@@ -54,7 +54,7 @@ class SkeletonSolver:
 
     Parameters
     ----------
-    levels : tuple of tuple of Box
+    levels : tuple of tuple of SkeletonBox
         From the lowest level up.
     top : float64, shape (m, m)
         The inverse of what is left.
@@ -62,7 +62,7 @@ class SkeletonSolver:
         Of the nodes' weights.
     """
 
-    levels: tuple[tuple[Box, ...], ...]
+    levels: tuple[tuple[SkeletonBox, ...], ...]
     top: Floats
     roots: Floats
 
@@ -137,7 +137,7 @@ class _Active:
         ]
         return cls(nodes=np.concatenate([part.nodes for part in parts]), block=np.block(blocks))
 
-    def eliminated(self, surroundings: Floats, first: int) -> tuple[Box, "_Active"]:
+    def eliminated(self, surroundings: Floats, first: int) -> tuple[SkeletonBox, "_Active"]:
         """Find the skeleton, and eliminate the other nodes."""
         triangle, order = scipy.linalg.qr(
             surroundings, mode="r", pivoting=True, overwrite_a=True, check_finite=False
@@ -167,7 +167,9 @@ class _Active:
         expand, local = np.empty((size, rank)), np.empty((size, size))
         expand[others], expand[kept] = follow, np.eye(rank) - weights @ follow
         local[others], local[kept] = change, -weights @ change
-        box = Box(first=first, reduce=freeze(reduce), expand=freeze(expand), local=freeze(local))
+        box = SkeletonBox(
+            first=first, reduce=freeze(reduce), expand=freeze(expand), local=freeze(local)
+        )
         return box, _Active(nodes=self.nodes[kept], block=inner + to_kept @ follow)
 
 

@@ -8,7 +8,7 @@ import numpy as np
 from engine.arrays import Booleans, Bytes, Complexes, Floats
 from engine.domain.meshing import Mesh, triangulate, with_limbs_on_top
 from engine.domain.outline import Detail, Hole, Holes, enclose
-from engine.domain.picture import Colour, subject_mask
+from engine.domain.picture import BackgroundColour, subject_mask
 from engine.errors import EngineError
 from engine.geometry import deepest_point
 
@@ -55,7 +55,7 @@ def build_domain(
     triangles: int,
     detail: Detail,
     tolerance: int = 18,
-    background: Literal["auto", "none"] | Colour = "auto",
+    background: Literal["auto", "none"] | BackgroundColour = "auto",
     mask: Booleans | None = None,
     holes: Holes = "fill",
 ) -> tuple[Domain, tuple[str, ...]]:

@@ -7,7 +7,7 @@ Imports: `engine.interpolation`, `engine.chebyshev`.
 
 from engine.streaming.build import MOST_ROWS, build_series, finish
 from engine.streaming.channels import Channels, Distortions, Positions
-from engine.streaming.series import Series, SeriesPiece, Singles
+from engine.streaming.series import Series, SeriesPiece
 
 __all__ = [
     "MOST_ROWS",
@@ -16,7 +16,6 @@ __all__ = [
     "Positions",
     "Series",
     "SeriesPiece",
-    "Singles",
     "build_series",
     "finish",
 ]

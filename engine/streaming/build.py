@@ -6,11 +6,11 @@ from typing import TypeVar
 
 import numpy as np
 
-from engine.arrays import Floats, freeze
+from engine.arrays import Floats, Singles, freeze
 from engine.chebyshev import nodes, to_coefficients
 from engine.interpolation import Scaling
 from engine.streaming.channels import Channels, Sample, scales, weights_at
-from engine.streaming.series import Series, SeriesPiece, Singles
+from engine.streaming.series import Series, SeriesPiece
 
 Result = TypeVar("Result")
 

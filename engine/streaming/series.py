@@ -4,14 +4,11 @@ from bisect import bisect_right
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
-from engine.arrays import Floats
+from engine.arrays import Floats, Singles
 from engine.chebyshev import basis
 from engine.errors import EngineError
 from engine.interpolation import Scaling
-
-Singles = npt.NDArray[np.float32]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

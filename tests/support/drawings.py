@@ -9,7 +9,7 @@ import pytest
 
 from app.render.gpu.mesh import GpuMesh, PosedMesh, PositionBuffer, VertexSource, singles
 from app.render.gpu.picture import GpuPicture
-from app.render.gpu.target import Target
+from app.render.gpu.target import RenderTarget
 from app.render.renderer import Renderer
 from app.render.scene import Scene
 from app.render.view import View
@@ -54,7 +54,7 @@ class Easel:
         return pose
 
     def frame(self, view: View, scene: Scene, *, oversampling: int = 1) -> Bytes:
-        target = Target(self.renderer.programs, view.size, oversampling)
+        target = RenderTarget(self.renderer.programs, view.size, oversampling)
         self.renderer.draw(target, view, scene)
         pixels = target.read_straight_rgba()
         target.release()

@@ -27,7 +27,7 @@ from app.document import (
 from app.export import ExportRequest, KeptPoses, Painter, encode_png, export, plan_export
 from app.motion import Animation
 from app.render import Renderer
-from app.render.gpu import Target, create_context
+from app.render.gpu import RenderTarget, create_context
 from app.storage import decode_picture, sample_images, save_project
 from engine.domain import build_domain
 
@@ -58,7 +58,7 @@ def _speed() -> Table:
         interpolated = _by_the_clock(lambda: painter.pose(11.0))
         drawn = _by_the_clock(lambda: painter.draw(posed))
         encoded = _by_the_clock(lambda: encode_png(frame))
-    read = _by_the_clock(Target(Renderer(context).programs, FULL_HD).read_straight_rgba)
+    read = _by_the_clock(RenderTarget(Renderer(context).programs, FULL_HD).read_straight_rgba)
     context.release()
     each = whole / len(plan.times)
     return Table(

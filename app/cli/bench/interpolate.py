@@ -31,7 +31,7 @@ INTEGRATED = (Variant.NU, Variant.ETA, Variant.SCALED_ETA, Variant.METRIC)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Pair:
+class KeyframePair:
     """Two keyframes of the giraffe, sampled at the vertices of a mesh."""
 
     maps: tuple[HarmonicMap, HarmonicMap]
@@ -86,13 +86,13 @@ def tables() -> Iterator[Table]:
     picture = decode_picture((sample_images() / "giraffe.png").read_bytes(), "")
     domain, _ = build_domain(picture.rgba, triangles=1000, detail="normal")
     transform = HilbertTransform.on(domain.outline, domain.cage)
-    pairs = [Pair.of(domain, vertices, transform) for vertices in SIZES]
+    pairs = [KeyframePair.of(domain, vertices, transform) for vertices in SIZES]
     yield _frames(pairs[1])
     yield _preparation(domain, pairs[1])
     yield _growth(domain, pairs)
 
 
-def _frames(pair: Pair) -> Table:
+def _frames(pair: KeyframePair) -> Table:
     first, second = (key.positions for key in pair.keyframes)
     rows = [
         Row(name="linear blend", seconds=measure(lambda: 0.6 * first + 0.4 * second, repeats=50))
@@ -106,7 +106,7 @@ def _frames(pair: Pair) -> Table:
     return Table(title=f"A frame at {len(first):,} vertices, directly", rows=tuple(rows))
 
 
-def _preparation(domain: Domain, pair: Pair) -> Table:
+def _preparation(domain: Domain, pair: KeyframePair) -> Table:
     sites, transform = pair.sites, pair.transform
     first, second = (key.positions for key in pair.keyframes)
     nodes = len(transform.nodes)
@@ -138,7 +138,7 @@ def _preparation(domain: Domain, pair: Pair) -> Table:
     return Table(title=f"Preparation at {len(first):,} vertices", rows=tuple(rows))
 
 
-def _growth(domain: Domain, pairs: Sequence[Pair]) -> Table:
+def _growth(domain: Domain, pairs: Sequence[KeyframePair]) -> Table:
     rows = []
     for pair in pairs:
         count = len(pair.mesh.vertices)

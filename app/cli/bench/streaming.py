@@ -15,17 +15,17 @@ from app.render.gpu import (
     GpuPicture,
     PosedMesh,
     PositionBuffer,
+    RenderTarget,
     SeriesBuffer,
-    Target,
     create_context,
 )
 from app.solving import load_pose_script, pose_document
 from app.storage import open_picture, sample_images
-from engine.arrays import Floats
+from engine.arrays import Floats, Singles
 from engine.domain.meshing import Mesh, triangulate
 from engine.interpolation import Inbetweens
 from engine.maps import distortion
-from engine.streaming import Distortions, Positions, Series, Singles, build_series, finish
+from engine.streaming import Distortions, Positions, Series, build_series, finish
 
 SIZES = (10_000, 100_000, 1_000_000)
 VARIANTS = (Variant.LINEAR, Variant.NU, Variant.ETA, Variant.SCALED_ETA, Variant.METRIC)
@@ -193,7 +193,7 @@ def _drawing(interval: Interval, series: dict[Variant, Series]) -> Table:
     renderer = Renderer(context)
     picture = GpuPicture(context, np.full((1000, 1000, 4), 255, dtype=np.uint8))
     gpu = GpuMesh(renderer.programs, picture, rest=mesh.vertices, triangles=mesh.triangles)
-    target = Target(renderer.programs, (8, 8))
+    target = RenderTarget(renderer.programs, (8, 8))
     view = fit_view(0j, 1000 + 1000j, target.size)
     rows = []
     for variant, found in series.items():

@@ -47,7 +47,7 @@ def tables(extent: Extent | None = None) -> Iterator[Table]:
     extent = extent or Extent()
     yield _start(extent)
     with tempfile.TemporaryDirectory() as folder:
-        stage = _Stage(Path(folder))
+        stage = _Driver(Path(folder))
         yield _opening(stage, extent)
         stage.settle()
         files.show(stage.session, Path(folder) / SAMPLE, _giraffe(extent.triangles))
@@ -86,7 +86,7 @@ class _Screen(Offscreen):
         self.paint_seconds += time.thread_time() - begun
 
 
-class _Stage:
+class _Driver:
     """The window that is measured, with a clock that can be put forward."""
 
     def __init__(self, folder: Path) -> None:
@@ -188,7 +188,7 @@ def _open_window() -> list[float]:
     return times
 
 
-def _opening(stage: _Stage, extent: Extent) -> Table:
+def _opening(stage: _Driver, extent: Extent) -> Table:
     """Measure from a dropped picture to a drag."""
     stage.session.meshing = Meshing(triangles=extent.triangles)
     times = [_open_and_drag(stage, sample_images() / PICTURE) for _ in range(extent.repeats)]
@@ -207,7 +207,7 @@ def _opening(stage: _Stage, extent: Extent) -> Table:
     )
 
 
-def _open_and_drag(stage: _Stage, path: Path) -> tuple[float, float]:
+def _open_and_drag(stage: _Driver, path: Path) -> tuple[float, float]:
     session = stage.session
     stage.mouse(0j)
     session.project = None
@@ -251,7 +251,7 @@ def _giraffe(triangles: int) -> files.Opened:
     return files.Opened(document, {figure.id: puppet}, ())
 
 
-def _frames(stage: _Stage, extent: Extent) -> Iterator[Table]:
+def _frames(stage: _Driver, extent: Extent) -> Iterator[Table]:
     """Measure frames of everything that a person does."""
     count = extent.frames
     runs = {
@@ -290,12 +290,12 @@ def _ms(seconds: float) -> str:
     return f"{1e3 * seconds:.1f} ms"
 
 
-def _still(stage: _Stage, count: int) -> list[_Frame]:
+def _still(stage: _Driver, count: int) -> list[_Frame]:
     stage.settle()
     return [stage.frame() for _ in range(count)]
 
 
-def _playing(stage: _Stage, count: int) -> list[_Frame]:
+def _playing(stage: _Driver, count: int) -> list[_Frame]:
     """Play so that each frame of the window shows another one of the animation."""
     stage.ask(playback.toggle_play)
     stage.settle()
@@ -305,7 +305,7 @@ def _playing(stage: _Stage, count: int) -> list[_Frame]:
     return frames
 
 
-def _scrubbing(stage: _Stage, count: int) -> list[_Frame]:
+def _scrubbing(stage: _Driver, count: int) -> list[_Frame]:
     frames = []
     for number in range(count):
         stage.ask(playback.scrub, number % stage.project.document.frames.last)
@@ -313,7 +313,7 @@ def _scrubbing(stage: _Stage, count: int) -> list[_Frame]:
     return frames
 
 
-def _dragging(stage: _Stage, count: int) -> list[_Frame]:
+def _dragging(stage: _Driver, count: int) -> list[_Frame]:
     """Drag, with the solver at work beside."""
     drag = _Drag(stage)
     frames = []
@@ -327,7 +327,7 @@ def _dragging(stage: _Stage, count: int) -> list[_Frame]:
 class _Drag:
     """The first handle, pulled around by the mouse in the first frame of the animation."""
 
-    def __init__(self, stage: _Stage) -> None:
+    def __init__(self, stage: _Driver) -> None:
         self._stage = stage
         self._project = stage.project
         stage.ask(playback.scrub, self._project.figure.keys[0].frame)
@@ -370,7 +370,7 @@ class _Drag:
         self._stage.settle()
 
 
-def _latency(stage: _Stage, extent: Extent) -> Table:
+def _latency(stage: _Driver, extent: Extent) -> Table:
     """Measure from a move of the pointer to the first picture of a pose that was solved for it."""
     drag = _Drag(stage)
     sent: list[tuple[Target | None, float]] = []

@@ -21,7 +21,7 @@ from app.render.gpu import (
     GpuPicture,
     PosedMesh,
     PositionBuffer,
-    Target,
+    RenderTarget,
     create_context,
     probe,
     singles,
@@ -88,7 +88,7 @@ def _draws_exactly(backend: Backend) -> bool:
         mesh = GpuMesh(renderer.programs, texture, rest=rest, triangles=triangles)
         vertices = PositionBuffer(context, len(rest))
         vertices.write(singles(rest))
-        target = Target(renderer.programs, (16, 12))
+        target = RenderTarget(renderer.programs, (16, 12))
         renderer.draw(target, canvas_view((16, 12)), Scene(meshes=(PosedMesh(mesh, vertices),)))
         return np.array_equal(target.read_straight_rgba(), picture)
     finally:

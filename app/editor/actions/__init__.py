@@ -20,7 +20,7 @@ from app.editor.actions import (
     viewing,
 )
 from app.editor.actions.viewing import (
-    Overlay,
+    OverlayName,
     answer,
     browse,
     choose,
@@ -31,7 +31,7 @@ from app.editor.actions.viewing import (
 )
 
 __all__ = [
-    "Overlay",
+    "OverlayName",
     "answer",
     "browse",
     "choose",

@@ -35,7 +35,7 @@ OPENING = "Opening"
 LOOK = 2.0  # seconds between two looks at whether files are still there
 
 
-class Sample(NamedTuple):
+class SampleFile(NamedTuple):
     """A picture, or a project with its picture, that ships with Lissom."""
 
     name: str
@@ -45,14 +45,14 @@ class Sample(NamedTuple):
 
 
 @cache
-def samples() -> tuple[Sample, ...]:
+def samples() -> tuple[SampleFile, ...]:
     """Return the samples, animated ones first."""
     found = []
     for picture in sorted(sample_images().glob("*.png")):
         project = picture.with_suffix(PROJECT)
         is_animated = project.is_file()
         found.append(
-            Sample(
+            SampleFile(
                 picture.stem.capitalize(),
                 project if is_animated else picture,
                 picture,

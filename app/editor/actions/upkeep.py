@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 from functools import partial
-from typing import Any, TypeVar
+from typing import Any
 
 from app.document import Clip, clip_of, intervals
 from app.editor.actions import playback, posing
@@ -30,9 +30,6 @@ STILL = 0.15  # seconds after which the playhead is taken to stay where it is
 SKETCHING, REFINING, STREAMING = "In-betweens", "Finer in-betweens", "Smooth playback"
 MEASURING, SPANNING = "Measuring", "Measuring the motion"
 
-Source = TypeVar("Source")
-Value = TypeVar("Value")
-
 
 def maintain(session: Session) -> None:
     """Ask the worker for what is missing, and settle what is drawn; once a frame."""
@@ -49,7 +46,7 @@ def maintain(session: Session) -> None:
     _show(session, project)
 
 
-def derive(session: Session, derivation: Derivation[Source, Value]) -> None:
+def derive(session: Session, derivation: Derivation[Any, Any]) -> None:
     """Let the worker derive a value, unless it is at it."""
     if derivation.kind in session.jobs.kinds:
         return

@@ -12,7 +12,7 @@ from app.render import View
 from app.storage import LARGEST_GHOST_STEP, LARGEST_SCALE, MOST_GHOSTS, SMALLEST_SCALE, ThemeName
 
 SCALE_STEP = 0.25
-Overlay = Literal["handles", "wireframe", "outline", "cage", "onion"]
+OverlayName = Literal["handles", "wireframe", "outline", "cage", "onion"]
 HEAT_MAPS: tuple[HeatMap, ...] = ("none", "k", "sigma_a", "sigma_b")
 
 
@@ -38,7 +38,7 @@ def resize(session: Session, width: int, height: int) -> None:
     session.screen = (max(width, 1), max(height, 1))
 
 
-def toggle(session: Session, overlay: Overlay) -> None:
+def toggle(session: Session, overlay: OverlayName) -> None:
     """Show or hide an overlay."""
     shown: dict[str, Any] = {overlay: not getattr(session.overlays, overlay)}
     session.overlays = replace(session.overlays, **shown)

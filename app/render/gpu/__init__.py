@@ -11,16 +11,16 @@ from app.render.gpu.context import (
     Context,
     GlError,
     create_context,
-    finish,
+    finish_drawing,
     is_software,
     probe,
     window_context,
 )
-from app.render.gpu.mesh import GpuMesh, PosedMesh, PositionBuffer, Singles, singles
+from app.render.gpu.mesh import GpuMesh, PosedMesh, PositionBuffer, singles
 from app.render.gpu.picture import GpuPicture
 from app.render.gpu.programs import Programs, ShaderFiles, set_uniforms
 from app.render.gpu.series_buffer import SeriesBuffer
-from app.render.gpu.target import Target
+from app.render.gpu.target import RenderTarget
 
 __all__ = [
     "AUTOMATIC",
@@ -32,12 +32,11 @@ __all__ = [
     "PosedMesh",
     "PositionBuffer",
     "Programs",
+    "RenderTarget",
     "SeriesBuffer",
     "ShaderFiles",
-    "Singles",
-    "Target",
     "create_context",
-    "finish",
+    "finish_drawing",
     "is_software",
     "probe",
     "set_uniforms",

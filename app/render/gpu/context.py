@@ -89,7 +89,7 @@ def is_software(context: moderngl.Context) -> bool:
     return any(name in renderer for name in ("llvmpipe", "softpipe", "swiftshader", "swr"))
 
 
-def finish(context: moderngl.Context) -> None:
+def finish_drawing(context: moderngl.Context) -> None:
     """Wait until everything is drawn in the current context, while other threads go on.
 
     ModernGL itself waits with Python's lock held.

@@ -7,14 +7,12 @@ from typing import Final, Protocol
 
 import moderngl
 import numpy as np
-import numpy.typing as npt
 
 from app.errors import LissomError
 from app.render.gpu.picture import GpuPicture
 from app.render.gpu.programs import Programs, ShaderFiles, set_uniforms
-from engine.arrays import Complexes, Integers, readonly
+from engine.arrays import Complexes, Integers, Singles, readonly
 
-Singles = npt.NDArray[np.float32]
 Attribute = tuple[moderngl.Buffer, str, str]
 """A buffer, its format, and the attribute of the shader that it feeds."""
 

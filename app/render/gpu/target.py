@@ -13,7 +13,7 @@ from engine.arrays import Bytes
 _STRAIGHT: Final = ShaderFiles(vertex=("screen.vert",), fragment=("straight.frag",))
 
 
-class Target:
+class RenderTarget:
     """Owner of a premultiplied RGBA16F frame.
 
     Parameters

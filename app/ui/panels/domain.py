@@ -8,7 +8,7 @@ from imgui_bundle import icons_fontawesome_6 as icons
 
 from app.document import Meshing
 from app.editor import Action, Overlays, Project, Session, do
-from app.editor.actions import Overlay, rebuilding, viewing
+from app.editor.actions import OverlayName, rebuilding, viewing
 from app.ui.style import (
     FILL,
     Look,
@@ -26,7 +26,7 @@ from engine.domain.meshing import Mesh
 DETAILS = (("coarse", "Coarse"), ("normal", "Normal"), ("fine", "Fine"))
 TRIANGLES = Scale(left=2_000, right=1_000_000, logarithmic=True)
 TOLERANCES = Scale(left=0, right=120)
-SHOWN: tuple[tuple[Overlay, str, str], ...] = (
+SHOWN: tuple[tuple[OverlayName, str, str], ...] = (
     ("outline", "Outline", "The edge of the shape, which moves with the drawing"),
     ("cage", "Cage", "The polygon around the drawing at rest that moves every point inside"),
     ("wireframe", "Mesh", "The triangles that the drawing is cut into"),

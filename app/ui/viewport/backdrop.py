@@ -3,7 +3,7 @@
 import numpy as np
 from imgui_bundle import ImVec4
 
-from app.render import Background
+from app.render import Backdrop
 from app.storage import CHECKER
 from app.ui.style import PALETTES, Palette
 from engine.arrays import Bytes, Floats
@@ -35,7 +35,7 @@ def measure_brightness(picture: Bytes) -> Floats:
     return np.asarray(shares / max(shares.sum(), 1.0))
 
 
-def background(backdrop: str, palette: Palette, brightness: Floats, scale: float) -> Background:
+def background(backdrop: str, palette: Palette, brightness: Floats, scale: float) -> Backdrop:
     """Return the backdrop; the squares of the other theme, where the drawing is lost on its own's.
 
     Parameters
@@ -51,12 +51,12 @@ def background(backdrop: str, palette: Palette, brightness: Floats, scale: float
     """
     if backdrop != CHECKER:
         red, green, blue = (channel / 255 for channel in bytes.fromhex(backdrop[1:]))
-        return Background(colour=(red, green, blue, 1.0))
+        return Backdrop(colour=(red, green, blue, 1.0))
     if _lost(brightness, palette.paper) > MUCH:
         papers = PALETTES.values()
         palette = min(papers, key=lambda other: _lost(brightness, other.paper))
     paper, check = ((c.x, c.y, c.z, c.w) for c in (palette.paper, palette.check))
-    return Background(colour=paper, checks=check, square=SQUARE * scale)
+    return Backdrop(colour=paper, checks=check, square=SQUARE * scale)
 
 
 def _lost(brightness: Floats, paper: ImVec4) -> float:

@@ -16,7 +16,7 @@ from app.render import (
     Wireframe,
     shader_is_faster,
 )
-from app.render.gpu import GpuMesh, GpuPicture, PosedMesh, Target
+from app.render.gpu import GpuMesh, GpuPicture, PosedMesh, RenderTarget
 from app.ui.style import PALETTES
 from app.ui.viewport.backdrop import background, measure_brightness
 from app.ui.viewport.marks import mark_all, pixel_scale, plain
@@ -37,8 +37,8 @@ class Canvas:
 
     def __init__(self, renderer: Renderer) -> None:
         self._renderer = renderer
-        self._target: Target | None = None
-        self._retired: Target | None = None
+        self._target: RenderTarget | None = None
+        self._retired: RenderTarget | None = None
         self._drawing: _Drawing | None = None
         self._drawn: tuple[object, ...] = ()
 
@@ -48,7 +48,7 @@ class Canvas:
         return None if self._target is None else self._target.texture.glo
 
     @property
-    def target(self) -> Target | None:
+    def target(self) -> RenderTarget | None:
         """Where the picture is."""
         return self._target
 
@@ -80,7 +80,7 @@ class Canvas:
         # ImGui may still show the last one in this frame.
         if self._retired is not None:
             self._retired.release()
-        self._retired, self._target = self._target, Target(self._renderer.programs, size)
+        self._retired, self._target = self._target, RenderTarget(self._renderer.programs, size)
         self._drawn = ()
 
     def _forget_drawing(self) -> None:

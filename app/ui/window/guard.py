@@ -5,7 +5,7 @@ from collections.abc import Callable
 
 from imgui_bundle import imgui
 
-Report = Callable[[str, str], None]
+Tell = Callable[[str, str], None]
 
 
 def allow_recovery() -> None:
@@ -17,7 +17,7 @@ def allow_recovery() -> None:
     io.config_error_recovery_enable_debug_log = True
 
 
-def guard(what: str, draw: Callable[[], None], report: Report) -> None:
+def guard(what: str, draw: Callable[[], None], report: Tell) -> None:
     """Draw a part of the window; where that fails, restore ImGui's stacks and report it.
 
     Parameters

@@ -5,7 +5,7 @@ from imgui_bundle import ImVec2, hello_imgui, imgui
 from PIL import Image
 
 from app.render import DrawLists
-from app.render.gpu import Context, Programs, finish
+from app.render.gpu import Context, Programs, finish_drawing
 from app.ui.window.window import SIZE, Window
 
 
@@ -58,7 +58,7 @@ class Offscreen:
         self._target.clear(*self._params.imgui_window_params.background_color)
         if self._lists is not None and data is not None and data.valid:
             self._lists.draw(self._target, self._window.textures())
-        finish(self._gl)
+        finish_drawing(self._gl)
 
     def picture(self) -> Image.Image:
         """Return what was painted last."""

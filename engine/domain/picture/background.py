@@ -8,7 +8,7 @@ from scipy import ndimage
 from engine.arrays import Booleans, Bytes
 from engine.domain.picture.grid import block_factor, reduce_blocks, repeat_blocks
 
-Colour = tuple[int, int, int]  # red, green, blue, each 0 to 255
+BackgroundColour = tuple[int, int, int]  # red, green, blue, each 0 to 255
 
 WORKING_SIDE = 1400  # pixels: larger pictures are flooded in blocks
 COLOUR_BIN = 16  # levels: how finely colours are told apart when the border votes
@@ -31,7 +31,9 @@ class Background:
     agreement: float
 
 
-def flood_background(rgb: Bytes, tolerance: int, colour: Colour | None = None) -> Background:
+def flood_background(
+    rgb: Bytes, tolerance: int, colour: BackgroundColour | None = None
+) -> Background:
     """Find the background of an opaque picture as what its border's colour floods.
 
     Parameters

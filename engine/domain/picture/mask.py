@@ -6,7 +6,7 @@ from typing import Literal
 import numpy as np
 
 from engine.arrays import Booleans, Bytes, readonly
-from engine.domain.picture.background import Colour, flood_background
+from engine.domain.picture.background import BackgroundColour, flood_background
 from engine.errors import EngineError
 
 VISIBLE_ALPHA = 8  # of 255: what is fainter may be left out, what is not must be kept
@@ -37,7 +37,7 @@ def subject_mask(
     rgba: Bytes,
     *,
     tolerance: int = 18,
-    background: Literal["auto", "none"] | Colour = "auto",
+    background: Literal["auto", "none"] | BackgroundColour = "auto",
     mask: Booleans | None = None,
 ) -> Subject:
     """Find the subject of a picture: what is not transparent, or stands on a plain background.
@@ -107,7 +107,7 @@ def _masked(visible: Booleans, mask: Booleans) -> Booleans:
 
 
 def _without_colour(
-    rgba: Bytes, tolerance: int, colour: Colour
+    rgba: Bytes, tolerance: int, colour: BackgroundColour
 ) -> tuple[Booleans, tuple[str, ...]]:
     """Return what is left where a colour has flooded the picture from its border."""
     if not all(0 <= level <= 255 for level in colour):

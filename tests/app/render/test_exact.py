@@ -5,7 +5,7 @@ import pytest
 from drawings import Easel, all_levels, grid_mesh, soft_blob
 from numpy.testing import assert_array_equal
 
-from app.render.scene import Background, Scene
+from app.render.scene import Backdrop, Scene
 from app.render.view import canvas_view
 from engine.arrays import Bytes
 
@@ -58,7 +58,7 @@ def test_a_coloured_background_is_exact_where_it_is_seen(easel):
     pose = easel.pose(easel.mesh(picture, rest, triangles), rest)
     colour = (12 / 255, 200 / 255, 77 / 255, 1.0)
     frame = easel.frame(
-        canvas_view((120, 90)), Scene(background=Background(colour=colour), meshes=(pose,))
+        canvas_view((120, 90)), Scene(background=Backdrop(colour=colour), meshes=(pose,))
     )
     alpha = picture[..., 3:] / 255
     wanted = picture[..., :3] * alpha + np.array([12, 200, 77]) * (1 - alpha)

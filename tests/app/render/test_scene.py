@@ -10,16 +10,16 @@ from numpy.testing import assert_allclose, assert_array_equal
 from app.errors import LissomError
 from app.render.gpu.mesh import GpuMesh, PosedMesh, PositionBuffer, border_edges, singles
 from app.render.gpu.picture import GpuPicture
-from app.render.gpu.target import Target
+from app.render.gpu.target import RenderTarget
 from app.render.handles import HandleMark, mark_handles
-from app.render.scene import Background, Disc, Ghost, Heat, Line, Scene, Wireframe
+from app.render.scene import Backdrop, Disc, Ghost, Heat, Line, Scene, Wireframe
 from app.render.view import View, canvas_view, fit_view
 from engine.arrays import Complexes
 
 WIDTH, HEIGHT = 120, 90
 VIEW = View(centre=60 + 45j, scale=1.25, size=(180, 140))
-PAPER = Background(colour=(0.97, 0.97, 0.95, 1.0), checks=(0.88, 0.88, 0.87, 1.0))
-NIGHT = Background(colour=(0.16, 0.17, 0.19, 1.0), checks=(0.20, 0.21, 0.23, 1.0), square=8.0)
+PAPER = Backdrop(colour=(0.97, 0.97, 0.95, 1.0), checks=(0.88, 0.88, 0.87, 1.0))
+NIGHT = Backdrop(colour=(0.16, 0.17, 0.19, 1.0), checks=(0.20, 0.21, 0.23, 1.0), square=8.0)
 
 
 def bent(rest: Complexes, amount: float = 1.0) -> Complexes:
@@ -121,7 +121,7 @@ def test_an_overlay_at_twice_the_scale_has_twice_the_pixels(easel):
     for scale in (1, 2):
         view = View(centre=5j, scale=2.0 * scale, size=(160 * scale, 80 * scale))
         lines, discs = mark_handles(marks, scale=scale)
-        scene = Scene(background=Background(colour=(1, 1, 1, 1)), lines=lines, discs=discs)
+        scene = Scene(background=Backdrop(colour=(1, 1, 1, 1)), lines=lines, discs=discs)
         frames.append(easel.frame(view, scene).astype(float))
     halved = frames[1].reshape(80, 2, 160, 2, 4).mean(axis=(1, 3))
     assert np.abs(halved - frames[0]).mean() < 2
@@ -261,7 +261,7 @@ def test_oversampling_comes_nearer_to_the_mean_of_what_a_pixel_shows(easel):
 def test_what_cannot_be_drawn_is_refused(easel):
     gl, programs = easel.gl, easel.renderer.programs
     with pytest.raises(LissomError, match=r"frame of 100000 × 10 pixels is too large"):
-        Target(programs, (100_000, 10))
+        RenderTarget(programs, (100_000, 10))
     with pytest.raises(LissomError, match=r"picture has 100000 × 1 pixels"):
         GpuPicture(gl, np.zeros((1, 100_000, 4), np.uint8))
     mesh, rest = blob_mesh(easel, 2)
@@ -276,7 +276,7 @@ def test_what_cannot_be_drawn_is_refused(easel):
     with pytest.raises(ValueError, match="given no values"):
         easel.frame(VIEW, Scene(meshes=(pose,), heat=Heat(low=0.0, high=1.0)))
     pose.release()
-    target = Target(programs, (10, 10))
+    target = RenderTarget(programs, (10, 10))
     with pytest.raises(ValueError, match="cannot fill a frame"):
         easel.renderer.draw(target, VIEW, Scene())
     target.release()

@@ -11,8 +11,8 @@ from app.render.drawn_mesh import DrawnMesh, shader_is_faster
 from app.render.gpu.mesh import GpuMesh, PosedMesh
 from app.render.gpu.programs import set_uniforms
 from app.render.gpu.series_buffer import SeriesBuffer, most_rows
-from app.render.gpu.target import Target
-from app.render.scene import Background, Ghost, Heat, Scene, Wireframe
+from app.render.gpu.target import RenderTarget
+from app.render.scene import Backdrop, Ghost, Heat, Scene, Wireframe
 from app.render.view import View
 from app.storage.assets import shader_source
 from engine.arrays import Complexes
@@ -74,7 +74,7 @@ def test_the_shader_places_vertices_as_the_processor_does(easel, rows):
     )
     binding = easel.gl.vertex_array(program, list(source.attributes()))
     feedback = easel.gl.buffer(reserve=8 * len(rest))
-    target = Target(easel.renderer.programs, (4, 4))  # feedback fails without one
+    target = RenderTarget(easel.renderer.programs, (4, 4))  # feedback fails without one
     target.framebuffer.use()
     for time in (0.0, 0.13, 0.5, 0.81, 1.0, 0.2):
         source.place(series, time)
@@ -98,7 +98,7 @@ def test_both_ways_give_the_same_picture(easel, time):
         pose.write_heat((rest.real / WIDTH).astype(np.float32))
         for heat in (None, Heat(low=0.0, high=1.0)):
             scene = Scene(
-                background=Background(colour=(1.0, 1.0, 1.0, 1.0)),
+                background=Backdrop(colour=(1.0, 1.0, 1.0, 1.0)),
                 meshes=(pose,),
                 heat=heat,
                 wireframe=Wireframe(colour=(0.0, 0.1, 0.3, 0.8)),

@@ -90,7 +90,7 @@ def test_a_panel_that_raises_is_told_and_the_rest_lives_on(window, monkeypatch, 
 def crash(window, project):
     """End without a farewell while there is unsaved work, and start again; what it goes by."""
     window.clock.now += SECONDS
-    project.kept = None
+    project.autosaved = None
     saving.autosave(window.session)
     window.settle()
     window.session.autosave = Autosave(window.folder)
