@@ -43,7 +43,7 @@ class PoseInProgress:
     is_held : bool
         Whether the person still pulls.
     steps : int
-        Newton steps since the wish changed last, or since `from_rest` began.
+        Newton steps towards the present wish, or since `from_rest` began.
     """
 
     frame: int

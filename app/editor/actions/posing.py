@@ -27,9 +27,11 @@ from app.motion import PoseSampler, Shown
 from app.solving import Drag, Rig, pose_at
 
 POSING, INSERTING = "Posing", "Inserting a key"
-# Newton steps of one job at most, and the seconds after which it begins no other: what it has found
-# by then is in the next picture.
+# While the hand moves: Newton steps of one job at most, and the seconds after which it begins no
+# other: what it has found by then is in the next picture.
 STEPS, HASTE = 2, 0.004
+# While the hand rests: the seconds of one job, as many as fit between two pictures.
+REST = 0.012
 # Steps after the hand let go; a drag that is free to come to rest needs far fewer.
 MOST_STEPS = 300
 # Part of a pose's lag that another pose may have at most to take its place: less would be a jump
@@ -249,12 +251,25 @@ def _follow(session: Session, project: Project, posing: PoseInProgress) -> None:
     session.jobs.put(
         Job(
             kind=POSING,
-            work=partial(_take_steps, drag, begin, targets, session.clock),
+            work=partial(_take_steps, drag, begin, targets, _pace(posing), session.clock),
             done=partial(_go_on, session, project, posing, targets),
             failed=failed,
             urgent=True,
         )
     )
+
+
+class _Pace(NamedTuple):
+    """How many Newton steps the worker may take at once, and for how many seconds it begins one."""
+
+    most: int
+    seconds: float
+
+
+def _pace(posing: PoseInProgress) -> _Pace:
+    """Return the pace that shows every step while the hand moves, and hurries while it rests."""
+    has_moved = posing.steps == 0
+    return _Pace(STEPS, HASTE) if has_moved else _Pace(MOST_STEPS, REST)
 
 
 class _Steps(NamedTuple):
@@ -269,13 +284,14 @@ def _take_steps(
     drag: Drag | None,
     begin: Callable[[], Drag],
     targets: Mapping[int, Target],
+    pace: _Pace,
     clock: Callable[[], float],
 ) -> _Steps:
     """Go on with a drag, or begin it; on the worker thread."""
     begun = clock()
     drag = begin() if drag is None else drag
     taken = 0
-    while taken == 0 or (taken < STEPS and not drag.is_over and clock() - begun < HASTE):
+    while taken == 0 or (taken < pace.most and not drag.is_over and clock() - begun < pace.seconds):
         drag = drag.towards(targets, 1)
         taken += 1
     return _Steps(drag, taken, clock() - begun)
@@ -301,7 +317,8 @@ def _go_on(
         return
     session.solver_seconds = steps.seconds
     project.puppet.rig = steps.drag.rig
-    posing.steps += steps.taken
+    if posing.targets is targets:
+        posing.steps += steps.taken
     if posing.from_rest is None:
         posing.drag = steps.drag
         _accept(session, project, posing, targets)

@@ -2,6 +2,8 @@
 
 from itertools import count
 
+import numpy as np
+
 from app.document.keyframe import Target
 from app.editor.actions import posing
 
@@ -26,3 +28,39 @@ def test_a_slow_solver_shows_every_step(window, bar):
     window.session.clock = count().__next__  # each look at the clock takes a second
     pull(window, bar, 40j)
     assert bar.posing.steps == 1
+    # Nor does the picture wait while the hand rests.
+    for steps in (2, 3):
+        assert window.session.jobs.settle()
+        window.frames()
+        assert bar.posing.steps == steps
+
+
+def test_a_hand_that_moves_sees_every_step(window, bar):
+    for step in range(1, 6):
+        pull(window, bar, 40j * step)
+        assert 1 <= bar.posing.steps <= posing.STEPS
+
+
+def test_a_hand_that_rests_gets_as_many_steps_as_fit_before_the_next_picture(window, bar):
+    pull(window, bar, 60j)
+    assert not bar.posing.drag.is_over
+    # The clock stands still while the worker computes: all of them fit.
+    assert window.session.jobs.settle()
+    window.frames()
+    assert bar.posing.drag.is_over
+    assert bar.posing.steps > posing.STEPS
+
+
+def test_nothing_moves_once_the_pose_rests(window, bar):
+    pull(window, bar, 60j)
+    window.settle()
+    assert bar.posing.drag.is_over
+    rested, shown = bar.document, bar.puppet.shown.positions
+    window.frames(20)
+    assert posing.POSING not in window.session.jobs.kinds
+    window.act(posing.let_go)
+    window.settle()
+    window.frames(20)
+    assert bar.posing is None
+    assert bar.document is rested
+    np.testing.assert_array_equal(bar.puppet.shown.positions, shown)
