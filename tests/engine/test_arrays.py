@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_array_equal
 
-from engine.arrays import as_points, readonly
+from engine.arrays import as_points, freeze, readonly
 from engine.errors import EngineError
 
 
@@ -49,3 +49,13 @@ def test_points_become_complex_and_frozen() -> None:
     points = as_points([1, 2, 3], "points")
     assert points.dtype == np.complex128
     assert not points.flags.writeable
+
+
+@pytest.mark.parametrize("order", ["C", "F"])
+def test_an_array_is_frozen_in_place_and_keeps_its_order_of_memory(order):
+    array = np.zeros((3, 4), order=order)
+    frozen = freeze(array)
+    assert frozen is array
+    assert frozen.flags.f_contiguous == (order == "F")
+    with pytest.raises(ValueError, match="read-only"):
+        array[0] = 1

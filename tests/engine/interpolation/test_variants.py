@@ -182,7 +182,7 @@ def test_nu_can_break_property_6():
 
 
 @given(case=cases, time=MIDDLE)
-@settings(max_examples=12)
+@settings(max_examples=6)
 def test_scaled_eta_keeps_properties_5_to_7_on_the_outline_away_from_the_keys(case, time):
     name, seed = case
     maps = pair(name, seed)
@@ -196,7 +196,7 @@ def test_scaled_eta_keeps_properties_5_to_7_on_the_outline_away_from_the_keys(ca
 
 
 @given(case=cases, time=times)
-@settings(max_examples=12)
+@settings(max_examples=6)
 def test_scaled_eta_keeps_properties_5_to_7_globally_at_all_times(case, time):
     name, seed = case
     maps = pair(name, seed)
@@ -229,7 +229,7 @@ def test_metric_keeps_properties_5_to_7_globally(case, time):
 
 
 @given(seed=st.integers(0, 10_000), time=st.floats(0, 3))
-@settings(max_examples=6)
+@settings(max_examples=3)
 def test_properties_5_to_8_hold_in_every_interval_of_four_keyframes(seed, time):
     name = "letter L"
     maps = [random_map(SHAPES[name], 4 * seed + i, k=0.4) for i in range(4)]
