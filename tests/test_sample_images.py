@@ -18,9 +18,14 @@ VISIBLE = 8  # alpha from which the mask of a picture with a soft rim counts a p
 
 @pytest.fixture
 def draw(monkeypatch: pytest.MonkeyPatch) -> ModuleType:
-    """The drawing script, loaded as `python sample_images/draw.py` finds it."""
+    """The script that draws the samples."""
+    return load("draw", monkeypatch)
+
+
+def load(name: str, monkeypatch: pytest.MonkeyPatch) -> ModuleType:
+    """Load a drawing script as `python sample_images/NAME.py` finds it."""
     monkeypatch.syspath_prepend(str(SAMPLES))
-    spec = importlib.util.spec_from_file_location("draw", SAMPLES / "draw.py")
+    spec = importlib.util.spec_from_file_location(name, SAMPLES / f"{name}.py")
     assert spec is not None
     assert spec.loader is not None
     module = importlib.util.module_from_spec(spec)
@@ -71,5 +76,15 @@ def test_script_draws_every_shipped_picture(draw: ModuleType) -> None:
 def test_script_draws_the_shipped_bar(draw: ModuleType, tmp_path: Path) -> None:
     draw.main(["bar", "--out", str(tmp_path)])
     with Image.open(tmp_path / "bar.png") as drawn, Image.open(SAMPLES / "bar.png") as shipped:
-        difference = np.asarray(drawn, dtype=int) - np.asarray(shipped, dtype=int)
-    assert np.abs(difference).max() <= 1
+        assert differ_at_most(drawn, shipped) <= 1
+
+
+def test_script_draws_the_shipped_icon(monkeypatch: pytest.MonkeyPatch) -> None:
+    module = load("icon", monkeypatch)
+    with Image.open(SAMPLES.parent / "icon" / "lissom.png") as shipped:
+        assert differ_at_most(module.icon().image(), shipped) <= 1
+
+
+def differ_at_most(drawn: Image.Image, shipped: Image.Image) -> int:
+    difference = np.asarray(drawn, dtype=int) - np.asarray(shipped, dtype=int)
+    return int(np.abs(difference).max())

@@ -24,6 +24,8 @@ COMMANDS = {
     "certify": "Tell how far an animation distorts its drawing, and prove its keyframes.",
     "interpolate": "In-betweens of harmonic maps at points, from file to file.",
     "export": "Render an animation to picture files or video.",
+    "thumbnail": "Write the small picture of a project, as file managers ask for it.",
+    "desktop": "Enter Lissom into the menu of applications, or take it out again.",
     "doctor": "Tell what works on this machine, and what to install where it does not.",
     "bench": "Measure the speed of every part on this machine.",
 }

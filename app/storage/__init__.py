@@ -5,7 +5,7 @@ Out: documents, decoded pictures and settings; files that are whole or absent.
 Imports: `app.document`.
 """
 
-from app.storage.assets import sample_images, shader_source
+from app.storage.assets import app_icon, sample_images, shader_source
 from app.storage.autosave import (
     SECONDS,
     Autosave,
@@ -59,6 +59,7 @@ __all__ = [
     "Picture",
     "Preferences",
     "ThemeName",
+    "app_icon",
     "as_flag",
     "as_number",
     "as_object",

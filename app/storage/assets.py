@@ -20,9 +20,23 @@ def shader_source(name: str) -> str:
     LissomError
         If the installation lacks it.
     """
-    path = _folder("shaders") / name
+    return _read(_folder("shaders") / name).decode()
+
+
+def app_icon() -> bytes:
+    """Return the icon of Lissom, a PNG picture of 512 × 512 pixels.
+
+    Raises
+    ------
+    LissomError
+        If the installation lacks it.
+    """
+    return _read(_folder("icon") / "lissom.png")
+
+
+def _read(path: Path) -> bytes:
     try:
-        return path.read_text(encoding="utf-8")
+        return path.read_bytes()
     except OSError as error:
         raise LissomError(f"cannot read {path}; install Lissom again") from error
 

@@ -17,10 +17,10 @@ MOST_PIXELS = 8_000_000
 PROJECT = ".lissom"
 
 
-def draw_thumbnail(rgba: Bytes) -> bytes:
-    """Return a small PNG file of a picture, uint8 (h, w, 4), for `save_project`."""
+def draw_thumbnail(rgba: Bytes, side: int = SIDE) -> bytes:
+    """Return a PNG file of a picture, uint8 (h, w, 4), made small: its sides are at most `side`."""
     small = Image.fromarray(rgba)
-    small.thumbnail((SIDE, SIDE))
+    small.thumbnail((side, side))
     file = io.BytesIO()
     small.save(file, "PNG")
     return file.getvalue()

@@ -1,12 +1,15 @@
 """The window: the session, what is drawn with OpenGL, and the loop around them."""
 
+import io
 import os
 import sys
 from collections.abc import Callable
 from pathlib import Path
 
+import numpy as np
 from imgui_bundle import glfw_utils, hello_imgui  # before glfw: it brings the library itself
 from imgui_bundle import icons_fontawesome_6 as icons
+from PIL import Image
 
 import glfw  # isort: skip
 
@@ -15,6 +18,7 @@ from app.editor.actions import files
 from app.errors import LissomError
 from app.render import Renderer, Textures, Thumbnail, Thumbnails
 from app.render.gpu import is_software
+from app.storage import app_icon
 from app.ui.panel import Panel
 from app.ui.panels import deform, distortion, domain, export, handle
 from app.ui.timeline import timeline
@@ -24,6 +28,7 @@ from app.ui.window.shell import Shell
 from app.ui.window.title import NAME, window_title
 
 SIZE = (1280, 800)
+ICON_SIDES = (16, 32, 64)  # pixels
 # Where the display of X11 or Wayland is named.
 DISPLAYS = ("DISPLAY", "WAYLAND_DISPLAY")
 
@@ -31,6 +36,18 @@ DISPLAYS = ("DISPLAY", "WAYLAND_DISPLAY")
 def has_display() -> bool:
     """Tell whether there is a screen for the window, as far as the environment says."""
     return sys.platform != "linux" or any(map(os.environ.get, DISPLAYS))
+
+
+def _show_icon() -> None:
+    """Give the window its icon, on the systems whose windows bring one."""
+    if glfw.get_platform() not in {glfw.PLATFORM_X11, glfw.PLATFORM_WIN32}:
+        return
+    with Image.open(io.BytesIO(app_icon())) as icon:
+        pictures = [np.asarray(icon.resize((side, side))) for side in ICON_SIDES]
+    # As lists, which glfw takes apart much faster than arrays.
+    images = [(*picture.shape[:2], picture.tolist()) for picture in pictures]
+    window = glfw_utils.glfw_window_hello_imgui()
+    glfw.set_window_icon(window, len(images), images)  # type: ignore[arg-type]  # tuples of theirs
 
 
 class Window:
@@ -76,6 +93,7 @@ class Window:
         params.app_window_params.window_title = self._title
         calls = params.callbacks
         calls.enqueue_post_init(self._accept_files)
+        calls.enqueue_post_init(_show_icon)
         calls.pre_new_frame = hello_imgui.sequence_functions(self._rename, calls.pre_new_frame)
         params.ini_folder_type = hello_imgui.IniFolderType.absolute_path
         params.ini_filename = str(self.session.folder / "window.ini")

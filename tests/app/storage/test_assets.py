@@ -1,4 +1,7 @@
+import io
+
 import pytest
+from PIL import Image
 
 from app.errors import LissomError
 from app.storage import assets
@@ -7,6 +10,8 @@ from app.storage import assets
 def test_the_checkout_has_its_shaders_and_pictures():
     assert "void main" in assets.shader_source("mesh.vert")
     assert (assets.sample_images() / "giraffe.png").is_file()
+    with Image.open(io.BytesIO(assets.app_icon())) as icon:
+        assert (icon.format, icon.mode, icon.size) == ("PNG", "RGBA", (512, 512))
 
 
 def test_an_installed_package_uses_what_it_ships(tmp_path, monkeypatch):

@@ -8,6 +8,7 @@ from app.editor.jobs import Job
 from app.storage.assets import sample_images
 from app.ui.style import PALETTES
 from app.ui.style.widgets import shortened
+from app.ui.window import window as window_module
 from app.ui.window.title import window_title
 
 
@@ -247,6 +248,24 @@ def test_the_title_names_the_file_and_marks_changes(window, tmp_path):
     saving.write(session, tmp_path / "posed.lissom", None)
     window.settle()
     assert window_title(session) == "posed.lissom – Lissom"
+
+
+@pytest.mark.parametrize("platform", ["PLATFORM_X11", "PLATFORM_WIN32", "PLATFORM_WAYLAND"])
+def test_the_window_has_an_icon_where_windows_bring_one(monkeypatch, platform):
+    glfw, shown = window_module.glfw, []
+    monkeypatch.setattr(glfw, "get_platform", lambda: getattr(glfw, platform))
+    monkeypatch.setattr(glfw, "set_window_icon", lambda *icon: shown.append(icon))
+    monkeypatch.setattr(window_module.glfw_utils, "glfw_window_hello_imgui", lambda: "the window")
+    window_module._show_icon()
+    if platform == "PLATFORM_WAYLAND":
+        assert shown == []
+        return
+    ((where, count, icons),) = shown
+    assert (where, count) == ("the window", 3)
+    for width, height, pixels in icons:
+        assert np.shape(pixels) == (height, width, 4)
+        assert pixels[0][0][3] == 0
+        assert pixels[height // 2][width // 2][3] == 255
 
 
 @pytest.mark.parametrize(

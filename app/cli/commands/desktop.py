@@ -1,0 +1,175 @@
+"""`lissom desktop`: Lissom in the menu of applications, and .lissom files that open with it.
+
+Everything is written for one person, as freedesktop.org has it: the specifications of base
+directories, desktop entries, icon themes and shared MIME information; thumbnailer entries are as
+the desktops that read them agree.
+"""
+
+import argparse
+import os
+import re
+import shutil
+import subprocess
+import sys
+import sysconfig
+from contextlib import suppress
+from pathlib import Path
+
+from app.errors import LissomError
+from app.storage import app_icon, decode_picture, draw_thumbnail, write_atomically
+
+PROGRAM = "lissom"
+# Below the person's own folder of data.
+ENTRY_AT = "applications/lissom.desktop"
+THUMBNAILER_AT = "thumbnailers/lissom.thumbnailer"
+MIME_TYPE_AT = "mime/packages/lissom.xml"
+ICONS_AT = {
+    side: f"icons/hicolor/{side}x{side}/apps/lissom.png"
+    for side in (16, 24, 32, 48, 64, 128, 256, 512)
+}
+PLACES = (ENTRY_AT, THUMBNAILER_AT, MIME_TYPE_AT, *ICONS_AT.values())
+# What makes the desktop look again, and the folder that it reads.
+REFRESHERS = {"update-desktop-database": "applications", "update-mime-database": "mime"}
+# What the second of them makes of the packages; of none, it makes files that say nothing.
+MIME_DATABASE = (
+    *("XMLnamespaces", "aliases", "generic-icons", "globs", "globs2", "icons", "magic"),
+    *("mime.cache", "subclasses", "treemagic", "types", "version"),
+)
+PATIENCE = 60.0  # seconds
+ENTRY = """\
+[Desktop Entry]
+Type=Application
+Name=Lissom
+GenericName=Puppet Animation
+Comment=Pose a drawing with a few handles, and get in-betweens that never fold
+TryExec={program}
+Exec={quoted} %f
+Icon=lissom
+Terminal=false
+StartupWMClass=Lissom
+Categories=Graphics;2DGraphics;
+Keywords=animation;puppet;in-between;
+MimeType=application/x-lissom;
+"""
+THUMBNAILER = """\
+[Thumbnailer Entry]
+TryExec={program}
+Exec={quoted} thumbnail %i --out %o --size %s
+MimeType=application/x-lissom;
+"""
+# A project is a zip file whose first member, not packed, tells what it is.
+MIME_TYPE = """\
+<?xml version="1.0" encoding="UTF-8"?>
+<mime-info xmlns="http://www.freedesktop.org/standards/shared-mime-info">
+  <mime-type type="application/x-lissom">
+    <comment>Lissom project</comment>
+    <sub-class-of type="application/zip"/>
+    <icon name="lissom"/>
+    <magic priority="60">
+      <match type="string" offset="0" value="PK\\003\\004">
+        <match type="string" offset="30" value="mimetypeapplication/x-lissom"/>
+      </match>
+    </magic>
+    <glob pattern="*.lissom"/>
+  </mime-type>
+</mime-info>
+"""
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Enter Lissom into the desktop, or take it out of it."""
+    if sys.platform in {"win32", "darwin"}:
+        raise LissomError(
+            "'lissom desktop' is for Linux and its kin; here, choose Lissom for .lissom files in "
+            "the settings of the system"
+        )
+    home = _data_home()
+    try:
+        if arguments.install:
+            _install(home)
+            print(
+                f"Lissom is in the menu of applications, and .lissom files open with it ({home})."
+            )
+        else:
+            _remove(home)
+            print(f"Nothing of Lissom is left in {home}.")
+    except OSError as error:
+        raise LissomError(f"cannot change {error.filename}: {error.strerror}") from error
+    return 0
+
+
+def _data_home() -> Path:
+    """Return the person's own folder of data; a path that is not absolute is to be ignored."""
+    chosen = Path(os.environ.get("XDG_DATA_HOME", ""))
+    return chosen if chosen.is_absolute() else Path.home() / ".local" / "share"
+
+
+def _install(home: Path) -> None:
+    for place, content in _contents(_program()).items():
+        _write(home / place, content)
+    _refresh(home)
+
+
+def _remove(home: Path) -> None:
+    for place in PLACES:
+        (home / place).unlink(missing_ok=True)
+    _refresh(home)
+    if not list(home.glob("mime/packages/*")):
+        for name in MIME_DATABASE:
+            (home / "mime" / name).unlink(missing_ok=True)
+    if not list(home.glob("applications/*.desktop")):
+        (home / "applications" / "mimeinfo.cache").unlink(missing_ok=True)
+    folders = {parent for place in PLACES for parent in Path(place).parents} - {Path()}
+    for folder in sorted({*folders, Path("mime/application")}, reverse=True):
+        with suppress(OSError):  # others keep something there, or it is gone
+            (home / folder).rmdir()
+
+
+def _contents(program: str) -> dict[str, bytes]:
+    """Return what is written, by its place."""
+    icon = decode_picture(app_icon(), "the icon of Lissom").rgba
+    said = {"program": program.replace("\\", r"\\"), "quoted": _quoted(program)}
+    return {
+        ENTRY_AT: ENTRY.format_map(said).encode(),
+        THUMBNAILER_AT: THUMBNAILER.format_map(said).encode(),
+        MIME_TYPE_AT: MIME_TYPE.encode(),
+        **{place: draw_thumbnail(icon, side) for side, place in ICONS_AT.items()},
+    }
+
+
+def _program() -> str:
+    """Return the path of this very program; that of another installation may come first on PATH."""
+    own = Path(sysconfig.get_path("scripts")) / PROGRAM
+    program = str(own) if own.is_file() else shutil.which(PROGRAM)
+    if program is None:
+        raise LissomError(f"there is no program {PROGRAM} in {own.parent}; install Lissom again")
+    return program
+
+
+def _quoted(program: str) -> str:
+    """Return a program as an Exec line has it: quoted as an argument, then escaped as a text."""
+    argument = re.sub(r'(["`$\\])', r"\\\1", program).replace("%", "%%")
+    return '"{}"'.format(argument.replace("\\", r"\\"))
+
+
+def _refresh(home: Path) -> None:
+    """Let the desktop look again; where that does not work, it looks by itself sooner or later."""
+    for name, folder in REFRESHERS.items():
+        refresher = shutil.which(name)
+        if refresher is not None and (home / folder).is_dir():
+            with suppress(OSError, subprocess.SubprocessError):
+                subprocess.run(  # noqa: S603 - no shell, and nothing that anybody typed
+                    [refresher, home / folder],
+                    stdout=subprocess.DEVNULL,
+                    stderr=subprocess.DEVNULL,
+                    timeout=PATIENCE,
+                    check=False,
+                )
+    # The sign to look for icons again, says the specification of icon themes.
+    with suppress(FileNotFoundError):
+        os.utime(home / "icons" / "hicolor")
+
+
+def _write(path: Path, content: bytes) -> None:
+    path.parent.mkdir(parents=True, exist_ok=True)
+    write_atomically(path, lambda file: file.write(content))

@@ -1,0 +1,19 @@
+"""`lissom thumbnail`: the small picture of a project, as file managers ask for it."""
+
+import argparse
+
+from app.errors import LissomError
+from app.storage import check_writable, draw_thumbnail, read_thumbnail, write_atomically
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Write the small picture of a project."""
+    check_writable(arguments.out)
+    rgba = read_thumbnail(arguments.project)
+    if rgba is None:
+        raise LissomError(
+            f"{arguments.project} holds no small picture; open it in the window and save it"
+        )
+    content = draw_thumbnail(rgba, arguments.size)
+    write_atomically(arguments.out, lambda file: file.write(content))
+    return 0
