@@ -7,8 +7,8 @@ import numpy.typing as npt
 
 from app.document import Pose
 from engine.arrays import Booleans, Complexes, Floats, Integers
-from engine.domain import Domain, mesh_inside
-from engine.domain.meshing import Mesh
+from engine.domain import Domain
+from engine.domain.meshing import Mesh, in_order_of, triangulate
 from engine.maps import cauchy_coordinates
 
 # Triangles of the mesh that is shown while the full one would be too slow.
@@ -79,7 +79,8 @@ class PosableMesh:
         """Return a coarse mesh of the same domain, or the figure's own if that is as coarse."""
         if len(source.mesh.triangles) <= COARSE_TRIANGLES:
             return cls.fine(source)
-        coarse = replace(source, mesh=mesh_inside(*source.loops, triangles=COARSE_TRIANGLES))
+        mesh = triangulate(source.outline, COARSE_TRIANGLES, holes=source.loops[1:])
+        coarse = replace(source, mesh=in_order_of(mesh, source.mesh))
         return cls(domain=coarse, source=source, coordinates=_coordinates(coarse))
 
     def locate(self, points: Complexes, positions: Complexes) -> "AttachedPoints":
