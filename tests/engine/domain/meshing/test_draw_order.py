@@ -131,13 +131,13 @@ def test_the_ways_around_a_hole_are_two_limbs():
     turns = np.angle(ordered.vertices[ordered.triangles].mean(axis=1))
     # Less where they begin and where they meet.
     sides = [
-        np.flatnonzero((turns > 0.5) & (turns < 2.9)),
-        np.flatnonzero((turns < -0.5) & (turns > -2.9)),
+        np.flatnonzero((turns > 0.5) & (turns < 2.7)),
+        np.flatnonzero((turns < -0.5) & (turns > -2.7)),
     ]
     first, second = sorted(sides, key=np.min)
     assert first.max() < second.min()
     for side in sides:
-        assert np.corrcoef(side, np.abs(turns[side]))[0, 1] > 0.99
+        assert np.corrcoef(side, np.abs(turns[side]))[0, 1] > 0.98
 
 
 def test_what_is_plump_is_no_limb():
