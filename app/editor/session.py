@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Literal, Protocol
 
-from app.document import Document, Meshing
+from app.document import Document, Figure, Meshing, Pose
 from app.editor.action import Action
 from app.editor.dialogs import Dialog
 from app.editor.jobs import Jobs
@@ -76,6 +76,14 @@ class SweepMark:
 Mark = BoxMark | SweepMark
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class CopiedPose:
+    """A pose to be pasted, and the figure as it was when it was copied."""
+
+    figure: Figure
+    pose: Pose
+
+
 class ToolInHand(Protocol):
     """A tool that has the pointer in the viewport; places are of the plane."""
 
@@ -128,6 +136,7 @@ class Session:
     keeps_aspect: bool = True  # of an export whose size is entered
     curves: CurveKind = "relative"
     pointer: ToolInHand | None = None
+    copied: CopiedPose | None = None
     space_used: bool = False  # Space was held to move the view
     hovered: int | None = None  # the handle under the pointer
     hint: str = ""  # about what is under the pointer

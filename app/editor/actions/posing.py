@@ -123,7 +123,7 @@ def _change_handles(project: Project, command: Command, gesture: object) -> None
     project.history.do(command, gesture=gesture)
     unkeyed = project.history.unkeyed
     if unkeyed is not None:
-        pose = _retargeted(project.figure, unkeyed.pose)
+        pose = retargeted(project.figure, unkeyed.pose)
         project.history.pose(replace(unkeyed, pose=pose), gesture=gesture)
 
 
@@ -177,24 +177,36 @@ def insert_key(session: Session) -> None:
     if project is None:
         return
     drop(session)
-    clip = project.clip
     frame = playback.current_frame(session, project)
     playback.halt(session)
     if project.unkeyed is not None:
-        _hold(project, frame, project.unkeyed, gesture=object())
-    elif frame not in clip.figure.key_frames:
-        rig, sibling = Rig.of(clip.figure, project.puppet.rig), project.puppet.coarse.value.sampler
-        session.jobs.put(
-            Job(
-                kind=INSERTING,
-                work=lambda: pose_at(rig, clip, frame, sibling),
-                done=lambda pose: _insert(session, project, clip, frame, pose),
-                failed=lambda error: report(session, "The key could not be inserted", error),
-                urgent=True,
-            )
-        )
+        hold(project, frame, project.unkeyed, gesture=object())
+    elif frame not in project.figure.key_frames:
+        complaint = "The key could not be inserted"
+        fit_pose(session, project, INSERTING, complaint, partial(_insert, session, project))
     else:
         session.tell(f"Frame {frame} has a key already. Drag a handle to change it.")
+
+
+def fit_pose(
+    session: Session,
+    project: Project,
+    kind: str,
+    complaint: str,
+    take: Callable[[Clip, int, Pose], None],
+) -> None:
+    """Let the worker find the pose that is nearest to what the present frame shows."""
+    clip, frame = project.clip, playback.current_frame(session, project)
+    rig, sibling = Rig.of(clip.figure, project.puppet.rig), project.puppet.coarse.value.sampler
+    session.jobs.put(
+        Job(
+            kind=kind,
+            work=lambda: pose_at(rig, clip, frame, sibling),
+            done=lambda pose: take(clip, frame, pose),
+            failed=lambda error: report(session, complaint, error),
+            urgent=True,
+        )
+    )
 
 
 def _insert(session: Session, project: Project, clip: Clip, frame: int, pose: Pose) -> None:
@@ -219,7 +231,7 @@ def _wishes(project: Project) -> Mapping[int, Target]:
     shown, figure = project.puppet.shown, project.figure
     pose = project.unkeyed or (shown.pose if shown else None)
     if pose is not None:
-        return _retargeted(figure, pose).targets
+        return retargeted(figure, pose).targets
     if shown is None:
         return {}
     rest = np.array([handle.position for handle in figure.handles], dtype=np.complex128)
@@ -339,13 +351,13 @@ def _accept(
         return
     pose = posing.drag.pose(targets)
     if session.preferences.auto_key or posing is project.settling:
-        _hold(project, posing.frame, pose, gesture=posing.gesture)
+        hold(project, posing.frame, pose, gesture=posing.gesture)
     else:
         unkeyed = UnkeyedPose(figure=project.active, frame=posing.frame, pose=pose)
         project.history.pose(unkeyed, gesture=posing.gesture)
 
 
-def _hold(project: Project, frame: int, pose: Pose, gesture: object) -> None:
+def hold(project: Project, frame: int, pose: Pose, gesture: object) -> None:
     """Let a key hold a pose; none is left there that no key holds."""
     has_key = frame in project.figure.key_frames
     command = (key_commands.pose_key if has_key else key_commands.insert_key)(
@@ -382,7 +394,7 @@ def _instead_of(target: Target | None, wish: Target) -> Target:
     return wish if target is None else replace(wish, unknown=target.unknown)
 
 
-def _retargeted(figure: Figure, pose: Pose) -> Pose:
+def retargeted(figure: Figure, pose: Pose) -> Pose:
     """Return a pose with a target for each handle of a figure: its own, or where it is."""
     places = figure.map_of(pose)(
         np.array([handle.position for handle in figure.handles], dtype=np.complex128)

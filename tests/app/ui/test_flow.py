@@ -506,6 +506,19 @@ def test_a_press_on_the_shape_that_is_dragged_is_one_step(window, bar):
     assert bar.document is before
 
 
+def test_a_pose_is_copied_and_pasted_by_keys(window, bent):
+    pose = bent.figure.key(24).pose
+    ctrl = int(window.Key.mod_ctrl)
+    window.run(lambda robot: robot.key_press(ctrl | int(window.Key.c)))
+    playback.scrub(window.session, 40)
+    window.settle()
+    window.run(lambda robot: robot.key_press(ctrl | int(window.Key.v)))
+    window.settle()
+    assert bent.figure.key_frames == {0, 24, 40}
+    assert bent.figure.key(40).pose.phi is pose.phi
+    assert bent.puppet.shown.is_current
+
+
 def test_wheel_zooms_at_the_pointer_and_home_fits(window, bar):
     place = handle_places(bar)[0]
     before = window.point(place)
