@@ -114,7 +114,7 @@ class Drag:
     @property
     def is_over(self) -> bool:
         """Whether more steps would change nothing."""
-        return self.state.status is not Status.LAGGING
+        return self.state.status.is_final
 
     @property
     def has_arrived(self) -> bool:
@@ -133,7 +133,7 @@ class Drag:
         state = self.state
         for _ in range(steps):
             state = self.deformer.step(state, wish)
-            if state.status is not Status.LAGGING:
+            if state.status.is_final:
                 break
         return Drag(rig=self.rig, deformer=self.deformer, state=state)
 

@@ -1,14 +1,16 @@
 """Logarithmic barrier of the three bounds, with a primal–dual Hessian.
 
 Each bound reads b < u with u linear in a = |f_z|: k a for the conformal distortion, a − sigma_b for
-the smallest stretch, sigma_a − a for the largest. Its barrier −log(u² − b²) is smooth at b = 0. The
-first factor, the slack s = u − b, carries the wall; in the Hessian weight / s² is replaced by
-dual / s, with a dual variable that follows weight / s from step to step. Near a wall the plain
-Hessian trusts a step no longer than the slack, and a drag that once touched the walls crawls along
-them; with the dual variables it does not (primal–dual interior point, Nocedal and Wright, ch. 19).
+the smallest stretch, sigma_a − a for the largest. As c = u² − b² > 0 it is smooth at b = 0, and its
+barrier is −weight · log c. The Hessian of the barrier is (weight / c²) ∇c ∇cᵀ − (weight / c) ∇²c;
+with a dual variable y that follows weight / c from step to step it becomes (y / c) ∇c ∇cᵀ − y ∇²c,
+the condensed system of a primal–dual interior point method (Nocedal and Wright, ch. 19): near a
+wall the former trusts a step no longer than the slack, and a map that once touched the walls crawls
+along them.
 """
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -16,8 +18,22 @@ from engine.arrays import Floats
 from engine.deform.energy import Radial
 from engine.maps import Limits
 
-# A dual variable stays within this factor of weight / slack, so that it forgets old walls.
-DUAL_RANGE = 1e4
+# A dual variable stays within this factor of weight / c. Measured: with much more, samples whose
+# dual variable has all but vanished stop every step by curvature that the Hessian does not see.
+DUAL_RANGE = 20.0
+
+
+class Walls(NamedTuple):
+    """Where a barrier becomes infinite: limits (m,) of its own for each sample."""
+
+    k: Floats
+    sigma_a: Floats
+    sigma_b: Floats
+
+    @classmethod
+    def around(cls, limits: Limits, count: int) -> "Walls":
+        """Return the same walls for all of `count` samples."""
+        return cls(*(np.full(count, x) for x in (limits.k, limits.sigma_a, limits.sigma_b)))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -26,64 +42,83 @@ class Barrier:
 
     Parameters
     ----------
-    walls : Limits
-        Where it becomes infinite.
+    walls : Walls
     weight : float
     duals : float64, shape (3, m), or None
-        One for each bound and sample, positive; None for weight / slack, the exact Hessian.
+        One for each bound and sample, positive; None for weight / c, the exact Hessian.
     """
 
-    walls: Limits
+    walls: Walls
     weight: float
     duals: Floats | None = None
 
     def slacks(self, a: Floats, b: Floats) -> Floats:
         """Return u − b (3, m) of each bound, positive within the walls."""
-        slacks: Floats = np.array([u - b for u, _ in self._distances(a)])
+        u, _ = self._distances(a)
+        slacks: Floats = u - b
         return slacks
+
+    def margins(self, a: Floats, b: Floats) -> Floats:
+        """Return c = u² − b² (3, m) of each bound, positive within the walls."""
+        u, _ = self._distances(a)
+        margins: Floats = (u - b) * (u + b)
+        return margins
+
+    def margin_changes(self, a: Floats, b: Floats, da: Floats, db: Floats) -> Floats:
+        """Return the change of c (3, m), to first order, for changes of a and b."""
+        u, u_a = self._distances(a)
+        changes: Floats = 2.0 * (u * u_a * da - b * db)
+        return changes
+
+    def margin_gradient(self, a: Floats, factors: Floats) -> tuple[Floats, Floats]:
+        """Return the derivatives (m,) of Σ factor · c over the bounds: by a, and by b over b."""
+        u, u_a = self._distances(a)
+        return (2.0 * factors * u * u_a).sum(axis=0), (-2.0 * factors).sum(axis=0)
 
     def value(self, a: Floats, b: Floats) -> Floats:
         """Return the barrier at each sample; ∞ everywhere where one sample is not within."""
-        product = np.ones(np.shape(a))
-        for u, _ in self._distances(a):
-            if not np.all(u > b):
-                return np.full(np.shape(a), np.inf)
-            product = product * (u * u - b * b)
-        density: Floats = -self.weight * np.log(product)
+        u, _ = self._distances(a)
+        if not np.all(u > b):
+            return np.full(np.shape(a), np.inf)
+        density: Floats = -self.weight * np.log((u - b) * (u + b)).sum(axis=0)
         return density
 
     def derivatives(self, a: Floats, b: Floats) -> Radial:
-        """Return the barrier with its derivatives, strictly within the walls."""
-        first_a, b_per_b, aa, ab, bb = (np.zeros(np.shape(a)) for _ in range(5))
-        duals = self.current_duals(a, b)
-        for (u, u_a), dual in zip(self._distances(a), duals, strict=True):
-            slack, far = u - b, u + b
-            product = slack * far
-            near_curvature, far_curvature = dual / slack, self.weight / (far * far)
-            first_a -= 2.0 * self.weight * u_a * u / product
-            b_per_b += 2.0 * self.weight / product
-            aa += u_a * u_a * (near_curvature + far_curvature)
-            ab += u_a * (far_curvature - near_curvature)
-            bb += near_curvature + far_curvature
-        return Radial(self.value(a, b), first_a, b_per_b, aa, ab, bb)
+        """Return the derivatives of the barrier, strictly within the walls."""
+        u, u_a = self._distances(a)
+        c = (u - b) * (u + b)
+        central, dual = self.weight / c, self.current_duals(a, b)
+        # The part of −y ∇²c that is positive: never less than the barrier itself has.
+        bent = np.maximum(dual, central)
+        by_a, b_per_b = self.margin_gradient(a, -central)
+        return Radial(
+            a=by_a,
+            b_per_b=b_per_b,
+            aa=(u_a * u_a * dual * (4.0 * u * u / c - 2.0)).sum(axis=0),
+            ab=(-4.0 * dual * u_a * u * b / c).sum(axis=0),
+            bb=(dual * (4.0 * b * b / c + 2.0)).sum(axis=0),
+            around_a=(-2.0 * np.where(u_a < 0, bent, dual) * u_a * u / a).sum(axis=0),
+            around_b=2.0 * bent.sum(axis=0),
+        )
 
     def current_duals(self, a: Floats, b: Floats) -> Floats:
         """Return the dual variables (3, m) as they are used at this point."""
-        central = self.weight / self.slacks(a, b)
+        central = self.weight / self.margins(a, b)
         if self.duals is None:
             return central
         return np.clip(self.duals, central / DUAL_RANGE, central * DUAL_RANGE)
 
-    def next_duals(self, a: Floats, b: Floats, a_ahead: Floats, b_ahead: Floats) -> Floats:
-        """Return the dual variables (3, m) after a full Newton step to (a_ahead, b_ahead).
+    def next_duals(self, a: Floats, b: Floats, da: Floats, db: Floats) -> Floats:
+        """Return the dual variables (3, m) after Newton's step for dual · c = weight.
 
-        Newton's step for dual · slack = weight, each stopped before it reaches zero.
+        Each is stopped before it reaches zero. `da`, `db` are the changes of a and b in the step.
         """
-        duals, slacks = self.current_duals(a, b), self.slacks(a, b)
-        change = (self.weight - duals * self.slacks(a_ahead, b_ahead)) / slacks
-        return np.maximum(duals + change, 0.1 * duals)
+        duals, margins = self.current_duals(a, b), self.margins(a, b)
+        ahead = margins + self.margin_changes(a, b, da, db)
+        return np.maximum(duals + (self.weight - duals * ahead) / margins, 0.1 * duals)
 
-    def _distances(self, a: Floats) -> tuple[tuple[Floats, float], ...]:
-        """Return u and du/da of each bound."""
-        walls = self.walls
-        return (walls.k * a, walls.k), (a - walls.sigma_b, 1.0), (walls.sigma_a - a, -1.0)
+    def _distances(self, a: Floats) -> tuple[Floats, Floats]:
+        """Return u and du/da (3, m) of the bounds on k, σ_b and σ_a."""
+        k, sigma_a, sigma_b = self.walls
+        one = np.ones(np.shape(a))
+        return np.array([k * a, a - sigma_b, sigma_a - a]), np.array([k * one, one, -one])

@@ -1,37 +1,44 @@
-"""A drag: from certified map to certified map, one Newton step at a time.
+"""A deformation: from certified map to certified map, one Newton step at a time.
 
 The objective is the symmetric Dirichlet energy with stiff handles and a barrier at the bounds
-(Chen and Weber 2015, 2017). What makes it hold in wild drags:
+(Chen and Weber 2015, 2017). While the hand moves, a drag follows it:
 
 - each handle is pulled by a leash, towards a point a little ahead of where it is. The leash is
   shortened when the bounds cut steps short and lengthened again when they do not: the trust region;
 - the barrier's weight rises and falls with the same signs, and its Hessian is primal–dual;
 - a step is cut until its map is certified with a part of the slack left, and where the certificate
-  found a bound broken between two samples, a sample is added: the barrier then sees it;
-- a drag that does not get on begins its barrier afresh.
+  found a bound broken between two samples, a sample is added: the barrier then sees it.
+
+When the hand rests, `continuation` finds the minimum: from the present map, whose energy then only
+falls, and where bounds hold it back from the shape at rest too, since limbs that were pulled
+through each other can stay entangled. The pose of least energy is kept.
 """
 
-from dataclasses import dataclass, field, replace
-from enum import Enum
+from dataclasses import dataclass, replace
+from math import inf
 from typing import NamedTuple
 
 import numpy as np
 
 from engine.arrays import Complexes, Floats
-from engine.deform.barrier import Barrier
+from engine.deform.barrier import Barrier, Walls
 from engine.deform.certified_step import CertifiedStep, add_samples, take_certified_step
+from engine.deform.continuation import MARGIN, Search, Way, advance, begin_search
 from engine.deform.energy import symmetric_dirichlet
 from engine.deform.handles import Handles, Wish
 from engine.deform.objective import Jet, Objective
+from engine.deform.state import State, Statistics, Status
 from engine.deform.steering import (
     FULL,
     LEASH,
     LEAST_RESTING,
+    ROUNDING,
     Schedule,
     closing_limits,
     cut_to_leash,
     limits_for,
     place_walls,
+    rigidly_aligned,
 )
 from engine.errors import EngineError
 from engine.maps import Boundary, Bounds, Certificate, HarmonicMap, Limits, certify
@@ -40,99 +47,17 @@ from engine.maps import Boundary, Bounds, Certificate, HarmonicMap, Limits, cert
 # much softer.
 LEAST_TIGHTENING = 0.1
 SOFTNESS = 0.003
-# Expected gain relative to the objective: near rest, where a sketched Hessian would go in circles,
-# and at rest.
+# Expected gain relative to the energy near rest, where a sketched Hessian would go in circles.
 NEAR_REST = 1e-4
-REST = 1e-8
-# Handles that are where they should be (of L), and bounds that are reached (relative).
-ARRIVED = 1e-3
-REACHED = 0.02
 # One row of a recorded path: so many steps, or until the expected gain is below this.
 PATH_STEPS = 10
 PATH_REST = 1e-3
-
-
-class Status(Enum):
-    """How far a drag has come."""
-
-    CONVERGED = "converged"
-    """At rest in a minimum."""
-    BOUNDS_REACHED = "bounds reached"
-    """At rest, but handles are away from their targets: the bounds allow no more."""
-    LAGGING = "lagging"
-    """The handles are still on their way."""
-    TIGHTENING = "tightening"
-    """The bounds became tighter than the map; it is on its way into them."""
-    OUTSIDE = "outside the bounds"
-    """The map is outside its bounds and finds no way into them."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Statistics:
-    """What the last step did.
-
-    Parameters
-    ----------
-    energy : float
-        Arc-length mean of the symmetric Dirichlet density before the step; 2 at rest.
-    handle_error : float
-        Root mean square distance of the handles from their targets before the step, over L.
-    decrement : float
-        Gain that Newton's model expected of the whole step.
-    length : float
-        Part of the step that was taken.
-    barrier_weight : float
-    leash : float
-        Part of it that was paid out.
-    refusals : int
-        Maps that were tried and not certified.
-    samples : int
-    """
-
-    energy: float
-    handle_error: float
-    decrement: float
-    length: float
-    barrier_weight: float
-    leash: float
-    refusals: int
-    samples: int
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class State:
-    """A certified map in a drag, with what the next step needs.
-
-    It does not depend on the handles: it can go on with others, and with other bounds.
-
-    Parameters
-    ----------
-    map : HarmonicMap
-    certificate : Certificate
-        Of the map, for its limits.
-    limits : Limits
-        What the map is held to: the bounds, or looser ones on the way into tightened bounds.
-    status : Status
-    statistics : Statistics or None
-        None before the first step.
-    boundary : Boundary
-        With the samples that were added.
-    schedule : Schedule
-    duals : float64, shape (3, m), or None
-        Of the barrier.
-    wish : Wish or None
-        Of the last step.
-    """
-
-    map: HarmonicMap
-    certificate: Certificate
-    limits: Limits
-    status: Status = Status.LAGGING
-    statistics: Statistics | None = None
-    boundary: Boundary
-    schedule: Schedule = field(default_factory=Schedule)
-    duals: Floats | None = None
-    wish: Wish | None = None
+# Steps without progress after which a drag is handed over to the search for the minimum.
+PATIENCE = 4
+# Handles that are wanted this far (of L) from where they are at rest are also led along their way.
+FAR = 0.15
+# A search from elsewhere must gain this part of the energy: less is not worth a jump.
+WORTH_A_JUMP = 1e-3
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -213,6 +138,11 @@ class Deformer:
     def step(self, state: State, wish: Wish) -> State:
         """Take one Newton step towards a wish; the new state's map is certified like the old.
 
+        Call it once for each picture while the hand moves, that is, with changing wishes: the shape
+        follows. Call it on with the same wish, as often as there is time, until the status is final
+        (`Status.is_final`): the shape comes to rest in a minimum, and its energy only falls. From
+        then on the same wish returns the same state.
+
         Parameters
         ----------
         state : State
@@ -225,7 +155,36 @@ class Deformer:
         s samples in the Hessian, n the number of cage vertices; then 22 n³ for its factors.
         """
         if len(wish.positions) == 0 and self._is_within(state.certificate):
-            return replace(state, limits=self.bounds, status=Status.CONVERGED)
+            return replace(state, limits=self.bounds, status=Status.CONVERGED, wish=wish)
+        if not self._goes_on(state, wish):
+            state = replace(state, search=None, outcome=None, ways=())
+        elif state.status.is_final:
+            return state
+        elif state.search is None and self._has_followed(state):
+            state = self._begin(state, wish, (Way.HERE, Way.REST))
+        if state.search is None:
+            return self._follow_hand(state, wish)
+        return self._search_on(state, state.search)
+
+    def _goes_on(self, state: State, wish: Wish) -> bool:
+        """Tell whether the last step was towards this wish, with these handles and bounds."""
+        return (
+            state.handles is self.handles
+            and state.limits == self.bounds
+            and _same(wish, state.wish)
+        )
+
+    def _has_followed(self, state: State) -> bool:
+        """Tell whether a drag has come as far as it gets by itself."""
+        last = state.statistics
+        return (
+            last is not None
+            and self._is_within(state.certificate)
+            and (state.schedule.idle >= PATIENCE or (not last.leashed and last.length > FULL))
+        )
+
+    def _follow_hand(self, state: State, wish: Wish) -> State:
+        """Take one step of a drag."""
         step = self._prepare(state, wish)
         taken = take_certified_step(
             step.objective, step.jet, state.map, state.certificate, step.required
@@ -239,41 +198,38 @@ class Deformer:
             # A sketch may overshoot between its samples in the open: nothing to do with the walls.
             overshot=step.objective.sketched and not step.leashed,
         )
-        settled = (
-            not (step.leashed or step.tightening)
-            and 2 * decrement < REST * step.energy
-            and step.schedule.weight <= LEAST_RESTING
-        )
         boundary, duals = add_samples(
             self.boundary, state.boundary, step.next_duals(taken), taken.broken
         )
-        if schedule.asks_for_renewal and step.leashed:
-            boundary, duals, schedule = self.boundary, None, schedule.renewed()
+        status = Status.MOVING
+        if step.tightening:
+            status = Status.OUTSIDE if schedule.at_rest else Status.TIGHTENING
+        reached = step.jet.advanced(taken.length, taken.direction.jet)
+        free = replace(step.objective, handles=self.handles, wish=wish, barrier=None)
         return State(
             map=taken.map,
             certificate=taken.certificate,
             limits=step.limits,
-            status=self._status(
-                taken.certificate,
-                tightening=step.tightening,
-                settled=settled,
-                at_rest=schedule.at_rest,
-                arrived=error < ARRIVED,
-            ),
+            status=status,
             statistics=Statistics(
                 energy=step.energy,
-                handle_error=error,
+                objective=free.energy(reached),
+                handle_error=_handle_error(reached, wish, self.boundary.size),
                 decrement=decrement,
                 length=taken.length,
                 barrier_weight=step.schedule.weight,
                 leash=step.schedule.leash,
+                leashed=step.leashed,
                 refusals=taken.refusals,
                 samples=len(state.boundary.points),
+                optimality=inf,
+                active=(),
             ),
             boundary=boundary,
             schedule=schedule,
             duals=duals,
             wish=wish,
+            handles=self.handles,
         )
 
     def _prepare(self, state: State, wish: Wish) -> "_Step":
@@ -282,7 +238,7 @@ class Deformer:
         jet = free.jet(state.map.phi, state.map.psi)
         a, b = np.abs(jet.f), np.abs(jet.g)
         limits = closing_limits(self.bounds, state.limits, a, b)
-        walls, required = place_walls(limits, a, b, state.certificate)
+        limits_of_walls, required = place_walls(limits, a, b, state.certificate)
         schedule = state.schedule if _same(wish, state.wish) else state.schedule.for_new_wish()
         tightening = limits is not self.bounds
         if tightening:
@@ -293,7 +249,11 @@ class Deformer:
         else:
             handles = self.handles
             wish, leashed = cut_to_leash(handles, self.boundary.size, schedule.leash, jet, wish)
-        barrier = Barrier(walls=walls, weight=schedule.weight, duals=state.duals)
+        # On the way into the bounds the walls move with the map, and dual variables would lag.
+        walls = Walls.around(limits_of_walls, len(a))
+        barrier = Barrier(
+            walls=walls, weight=schedule.weight, duals=None if tightening else state.duals
+        )
         return _Step(
             jet=jet,
             barrier=barrier,
@@ -311,40 +271,32 @@ class Deformer:
             tightening=tightening,
         )
 
-    def settle(self, state: State, wish: Wish, *, at_most: int = 500) -> tuple[State, int]:
-        """Step until the shape is at rest, or `at_most` times; return the number of steps too."""
-        for count in range(1, at_most + 1):
-            state = self.step(state, wish)
-            if state.status not in (Status.LAGGING, Status.TIGHTENING):
-                return state, count
-        return state, at_most
+    def settle(self, state: State, wish: Wish, *, at_most: int = 600) -> tuple[State, int]:
+        """Find the pose of least energy for a wish; return the number of steps too.
 
-    def settle_anew(self, state: State, wish: Wish) -> tuple[State, int]:
-        """Settle; where the shape is held back, settle from the undeformed shape too.
-
-        Limbs that were pulled through each other can stay entangled when the handles come back.
-        The better of both results by the objective is returned, with all steps that were taken. It
-        may be a jump: for the end of a drag, not for its course.
+        From the present map, from the shape at rest, and, for handles that are far from where they
+        are at rest, along the straight way there, as long as bounds hold the shape back. At most
+        `at_most` steps are taken. The energy is never above that of the present map, once that is
+        within the bounds.
         """
-        state, count = self.settle(state, wish)
-        if state.status is Status.CONVERGED:
-            return state, count
-        fresh, more = self.settle(self.start(), wish)
-        objective = Objective(boundary=self.boundary, handles=self.handles, wish=wish)
-        values = [
-            objective.value(objective.jet(end.map.phi, end.map.psi)) for end in (state, fresh)
-        ]
-        return (state if values[0] <= values[1] else fresh), count + more
-
-    def _is_within(self, certificate: Certificate) -> bool:
-        return self.bounds.allow(
-            k=certificate.k, sigma_a=certificate.sigma_a, sigma_b=certificate.sigma_b
-        )
+        count = 0
+        if not (self._goes_on(state, wish) and state.status.is_final):
+            while count < at_most and not self._is_within(state.certificate):
+                state, count = self._follow_hand(state, wish), count + 1
+                if state.status.is_final:
+                    return state, count
+            if len(wish.positions) > 0 and count < at_most:
+                state = self._begin(state, wish, (Way.HERE, Way.REST, Way.PATH))
+        while count < at_most:
+            state, count = self.step(state, wish), count + 1
+            if state.status.is_final:
+                break
+        return state, count
 
     def follow(self, state: State, wish: Wish) -> tuple[State, int]:
         """Take the few steps that one row of a recorded path gets; return their number too."""
         for count in range(1, PATH_STEPS + 1):
-            state = self.step(state, wish)
+            state = self._follow_hand(state, wish)
             done = state.statistics
             if done is None or (
                 done.length > FULL
@@ -354,25 +306,111 @@ class Deformer:
                 return state, count
         return state, PATH_STEPS
 
-    def _status(
-        self,
-        certificate: Certificate,
-        *,
-        tightening: bool,
-        settled: bool,
-        at_rest: bool,
-        arrived: bool,
-    ) -> Status:
-        if tightening:
-            return Status.OUTSIDE if at_rest else Status.TIGHTENING
-        # Handles that have arrived make no progress, but the shape between them may.
-        if not settled and (arrived or not at_rest):
-            return Status.LAGGING
-        near = self.bounds.towards_identity(REACHED)
-        reached = not near.allow(
+    def _begin(self, state: State, wish: Wish, ways: tuple[Way, ...]) -> State:
+        """Return the state at the beginning of the searches along these ways."""
+        if np.array_equal(state.map.phi, self.boundary.cage) and not np.any(state.map.psi):
+            ways = tuple(way for way in ways if way is not Way.HERE)
+        state = replace(
+            state,
+            limits=self.bounds,
+            status=Status.MOVING,
+            wish=wish,
+            handles=self.handles,
+            boundary=self.boundary,
+            schedule=Schedule(weight=LEAST_RESTING),
+            duals=None,
+            ways=ways,
+            outcome=None,
+        )
+        return replace(state, search=self._search(state, wish, ways[0]))
+
+    def _search(self, state: State, wish: Wish, way: Way) -> Search:
+        """Return the search along a way, at its beginning."""
+        first, certificate = state.map, state.certificate
+        if way is not Way.HERE:
+            first = rigidly_aligned(self.handles, wish, self.boundary.cage)
+            certificate = certify(first, self.boundary, self.bounds)
+        within = self.bounds.towards_identity(ROUNDING)
+        keeps = within.allow(
             k=certificate.k, sigma_a=certificate.sigma_a, sigma_b=certificate.sigma_b
         )
-        return Status.BOUNDS_REACHED if reached and not arrived else Status.CONVERGED
+        return begin_search(
+            Objective(boundary=self.boundary, handles=self.handles, wish=wish),
+            first,
+            certificate,
+            inside=self.bounds.towards_identity(MARGIN),
+            limits=within if keeps else self.bounds,
+            way=way,
+        )
+
+    def _search_on(self, state: State, search: Search) -> State:
+        """Take one step of the search, and keep its map if it has less energy."""
+        free = Objective(boundary=self.boundary, handles=self.handles, wish=search.wish)
+        energy = free.energy(free.jet(state.map.phi, state.map.psi))
+        search = advance(search)
+        # From the present map every gain is shown; of a search from elsewhere the end is shown, if
+        # it is worth the jump.
+        from_here = state.outcome is None or state.ways[0] is Way.HERE
+        if from_here:
+            better = search.energy < energy
+        else:
+            better = search.is_over and search.energy < (1.0 - WORTH_A_JUMP) * energy
+        if better:
+            state = replace(state, map=search.map, certificate=search.certificate)
+        jet = free.jet(state.map.phi, state.map.psi)
+        state = replace(state, search=search, statistics=self._search_statistics(free, jet, search))
+        if not search.is_over:
+            return state
+        outcome, before = search, state.outcome
+        if before is not None and not (better or (from_here and search.has_arrived)):
+            outcome = before
+        ways = self._further_ways(state.ways, outcome, polished=before is not None and from_here)
+        state = replace(state, outcome=outcome, ways=ways)
+        if ways:
+            return replace(state, search=self._search(state, search.wish, ways[0]))
+        # What was found may be a little above the present map, which is nearer to the bounds.
+        shown = free.energy(jet)
+        if not outcome.has_arrived or shown < (1.0 - WORTH_A_JUMP) * outcome.energy:
+            return replace(state, status=Status.UNFINISHED)
+        return replace(state, status=Status.AT_LIMITS if outcome.active else Status.CONVERGED)
+
+    def _further_ways(
+        self, ways: tuple[Way, ...], outcome: Search, *, polished: bool
+    ) -> tuple[Way, ...]:
+        """Return the ways that are left to search; the last is from the present map once more."""
+        if outcome.has_arrived and not outcome.active:
+            return ()
+        others = [way for way in ways[1:] if way is not Way.PATH or self._is_far(outcome.wish)]
+        if others:
+            return tuple(others)
+        return () if polished else (Way.HERE,)
+
+    def _search_statistics(self, free: Objective, jet: Jet, search: Search) -> Statistics:
+        density = symmetric_dirichlet(np.abs(jet.f), np.abs(jet.g))
+        return Statistics(
+            energy=float(self.boundary.weights @ density),
+            objective=free.energy(jet),
+            handle_error=_handle_error(jet, search.wish, self.boundary.size),
+            decrement=search.gain,
+            length=search.length,
+            barrier_weight=search.weight,
+            leash=1.0,
+            leashed=False,
+            refusals=search.refusals,
+            samples=len(search.boundary.points),
+            optimality=search.optimality,
+            active=search.active,
+        )
+
+    def _is_far(self, wish: Wish) -> bool:
+        """Tell whether a handle is wanted far from where it is at rest."""
+        ways = np.abs(wish.positions - self.handles.points)
+        return bool(ways.max(initial=0.0) > FAR * self.boundary.size)
+
+    def _is_within(self, certificate: Certificate) -> bool:
+        return self.bounds.allow(
+            k=certificate.k, sigma_a=certificate.sigma_a, sigma_b=certificate.sigma_b
+        )
 
 
 class _Step(NamedTuple):

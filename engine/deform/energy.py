@@ -1,7 +1,7 @@
 """The energy of one sample as a function of a = |f_z| and b = |f_z̄|, with its derivatives.
 
 Every isotropic energy density and every bound of the method depends on the Jacobian by a and b
-alone, so that its gradient and Hessian with respect to F = f_z and G = conj(f_z̄) follow from six
+alone, so that its gradient and Hessian with respect to F = f_z and G = conj(f_z̄) follow from a few
 numbers. In the frames F / a and G / b the Hessian of a density h(a, b) is the radial block
 [[h_aa, h_ab], [h_ab, h_bb]] and the tangential entries h_a / a and h_b / b (Chen and Weber 2017).
 For the densities here the radial block is positive semidefinite, h_b ≥ 0, and the only eigenvalue
@@ -16,17 +16,24 @@ from engine.arrays import Floats
 
 
 class Radial(NamedTuple):
-    """A density h(a, b) and its derivatives at each sample, float64 (m,) each.
+    """Derivatives of a density h(a, b) at each sample, float64 (m,) each.
 
-    `b_per_b` is h_b / b, which stays smooth at b = 0.
+    The gradient is `a` and `b_per_b` = h_b / b, which stays smooth at b = 0. The Hessian is `aa`,
+    `ab`, `bb` and, along the circles |F| = a and |G| = b, `around_a` = h_a / a and `around_b` =
+    h_b / b; a primal–dual barrier has others there than its gradient says.
     """
 
-    value: Floats
     a: Floats
     b_per_b: Floats
     aa: Floats
     ab: Floats
     bb: Floats
+    around_a: Floats
+    around_b: Floats
+
+    def weighted(self, weights: Floats) -> "Radial":
+        """Return the derivatives times a weight (m,) for each sample."""
+        return Radial(*(weights * part for part in self))
 
     def plus(self, other: "Radial") -> "Radial":
         """Return the sum of two densities."""
@@ -46,17 +53,20 @@ def symmetric_dirichlet(a: Floats, b: Floats) -> Floats:
 
 
 def symmetric_dirichlet_derivatives(a: Floats, b: Floats) -> Radial:
-    """Return the symmetric Dirichlet density with its derivatives, for a > b ≥ 0."""
+    """Return the derivatives of the symmetric Dirichlet density, for a > b ≥ 0."""
     x, y = a * a, b * b
     cubed = (x - y) ** 3
     stretch, squeeze = (a + b) ** -4, (a - b) ** -4
     # In σ_a and σ_b the density splits, so that its second derivatives are 1 + 3 σ⁻⁴ each.
     second = 2.0 + 3.0 * (stretch + squeeze)
+    a_per_a = 2.0 * (1.0 - (x + 3.0 * y) / cubed)
+    b_per_b = 2.0 * (1.0 + (3.0 * x + y) / cubed)
     return Radial(
-        value=symmetric_dirichlet(a, b),
-        a=2.0 * a * (1.0 - (x + 3.0 * y) / cubed),
-        b_per_b=2.0 * (1.0 + (3.0 * x + y) / cubed),
+        a=a * a_per_a,
+        b_per_b=b_per_b,
         aa=second,
         ab=3.0 * (stretch - squeeze),
         bb=second,
+        around_a=a_per_a,
+        around_b=b_per_b,
     )

@@ -1,5 +1,6 @@
 """Projected Newton's method for the objective of a drag."""
 
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -15,6 +16,8 @@ TO_THE_WALL = 0.9
 SHORTEST = 1e-6
 # Added to the diagonal, relative to its mean; multiplied until the factorisation succeeds.
 SHIFT, SHIFT_GROWTH = 1e-10, 1e2
+# Parts of what the projection removes from the Hessian that are tried to be left in it.
+KEPT_NEGATIVE = (1.0, 0.5)
 
 
 class Direction(NamedTuple):
@@ -42,17 +45,65 @@ class Direction(NamedTuple):
         return Direction(factor * self.phi, factor * self.psi, jet, factor * self.derivative)
 
 
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Model:
+    """A positive quadratic model of the objective at a map, its Hessian factored.
+
+    Parameters
+    ----------
+    objective : Objective
+    gradient : float64, shape (4n − 2,)
+    factor : float64, shape (4n − 2, 4n − 2)
+        Cholesky's, for `lapack.dpotrs`.
+    """
+
+    objective: Objective
+    gradient: Floats
+    factor: Floats
+
+    def direction(self, correction: Floats | None = None) -> Direction:
+        """Return the step to the minimum, with a `correction` (4n − 2,) added to the gradient."""
+        wanted = self.gradient if correction is None else self.gradient + correction
+        solution, _ = lapack.dpotrs(self.factor, wanted, lower=1)
+        # The unknowns are the conjugates (see `objective`).
+        change = -np.ascontiguousarray(solution).view(np.complex128).conj()
+        n = len(self.objective.boundary.cage)
+        phi, psi = change[:n], np.concatenate([[0.0], change[n:]])
+        derivative = -float(self.gradient @ solution)
+        return Direction(phi, psi, self.objective.jet(phi, psi), derivative)
+
+
 def newton_direction(objective: Objective, jet: Jet) -> Direction:
     """Solve for the step that minimises the projected quadratic model of the objective."""
+    return newton_model(objective, jet, exact=False).direction()
+
+
+def newton_model(objective: Objective, jet: Jet, *, exact: bool) -> Model:
+    """Return the quadratic model of the objective at a map.
+
+    Parameters
+    ----------
+    objective : Objective
+    jet : Jet
+    exact : bool
+        Whether to leave in the Hessian what the projection removes, or half of it, as long as it
+        stays positive: near a minimum steps are Newton's own, and far from it they follow bent
+        valleys that the projection crawls along.
+    """
     radial = objective.radial(jet)
-    gradient = objective.gradient(jet, radial)
-    solution = _solve(objective.hessian(jet, radial), gradient)
-    derivative = -float(gradient @ solution)
-    # The unknowns are the conjugates (see `objective`).
-    change = -solution.view(np.complex128).conj()
-    n = len(objective.boundary.cage)
-    phi, psi = change[:n], np.concatenate([[0.0], change[n:]])
-    return Direction(phi, psi, objective.jet(phi, psi), derivative)
+    hessian = objective.hessian(jet, radial)
+    factor = None
+    if exact:
+        removed = objective.negative_part(jet, radial)
+        for part in KEPT_NEGATIVE:
+            bent = hessian.copy()
+            bent[: len(removed), : len(removed)] -= part * removed
+            factor = _factor(bent, SHIFT * float(hessian.diagonal().mean()))
+            if factor is not None:
+                break
+    if factor is None:
+        factor = _factor_shifted(hessian)
+    return Model(objective=objective, gradient=objective.gradient(jet, radial), factor=factor)
 
 
 def line_search(
@@ -83,18 +134,23 @@ def line_search(
     return 0.0
 
 
-def _solve(hessian: Floats, gradient: Floats) -> Floats:
-    """Solve with the upper triangle of a positive semidefinite matrix; 0 if nothing helps."""
-    diagonal = hessian.diagonal().copy()
-    shift = SHIFT * float(diagonal.mean())
+def _factor_shifted(hessian: Floats) -> Floats:
+    """Factor a positive semidefinite matrix, given by its upper triangle, with a shift it needs."""
+    shift = SHIFT * float(hessian.diagonal().mean())
     # Twelve tries reach far beyond any diagonal: then the numbers themselves are at their end.
     for _ in range(12):
-        shifted = hessian.copy()
-        np.fill_diagonal(shifted, diagonal + shift)
-        # Seen as Fortran order the upper triangle is the lower one.
-        factor, failed = lapack.dpotrf(shifted.T, lower=1, overwrite_a=1)
-        if not failed:
-            solution, _ = lapack.dpotrs(factor, gradient, lower=1)
-            return np.ascontiguousarray(solution)
+        factor = _factor(hessian, shift)
+        if factor is not None:
+            return factor
         shift *= SHIFT_GROWTH
-    return np.zeros_like(gradient)
+    # Nothing helps: an infinite Hessian, whose steps are 0.
+    return np.diag(np.full(len(hessian), np.inf))
+
+
+def _factor(hessian: Floats, shift: float) -> Floats | None:
+    """Factor a matrix given by its upper triangle plus a shift; None if it is not positive."""
+    shifted = hessian.copy()
+    np.fill_diagonal(shifted, hessian.diagonal() + shift)
+    # Seen as Fortran order the upper triangle is the lower one.
+    factor, failed = lapack.dpotrf(shifted.T, lower=1, overwrite_a=1)
+    return None if failed else factor

@@ -89,10 +89,15 @@ class Objective:
 
     def value(self, jet: Jet) -> float:
         """Return the objective, ∞ where the map folds or leaves the walls."""
-        a, b = np.abs(jet.f), np.abs(jet.g)
-        density = symmetric_dirichlet(a, b)
-        if self.barrier is not None:
-            density = density + self.barrier.value(a, b)
+        value = self.energy(jet)
+        if self.barrier is not None and np.isfinite(value):
+            density = self.barrier.value(np.abs(jet.f), np.abs(jet.g))
+            value += float(self.boundary.spacing @ density)
+        return value
+
+    def energy(self, jet: Jet) -> float:
+        """Return the objective without its barrier."""
+        density = symmetric_dirichlet(np.abs(jet.f), np.abs(jet.g))
         pull = np.abs(jet.positions - self.wish.positions) ** 2
         value = self.boundary.weights @ density + self.handles.stiffness @ pull
         if self._turning.any():
@@ -107,23 +112,37 @@ class Objective:
         return bool(np.all(self.barrier.slacks(a, b) > 0))
 
     def radial(self, jet: Jet) -> Radial:
-        """Return the density of energy and barrier with its derivatives at the samples."""
+        """Return what each sample contributes to the derivatives of energy and barrier."""
         a, b = np.abs(jet.f), np.abs(jet.g)
-        density = symmetric_dirichlet_derivatives(a, b)
-        return density if self.barrier is None else density.plus(self.barrier.derivatives(a, b))
+        energy = symmetric_dirichlet_derivatives(a, b).weighted(self.boundary.weights)
+        if self.barrier is None:
+            return energy
+        return energy.plus(self.barrier.derivatives(a, b).weighted(self.boundary.spacing))
 
     def gradient(self, jet: Jet, radial: Radial) -> Floats:
         """Return the gradient (4n − 2,)."""
-        weights, derivatives = self.boundary.weights, self.boundary.derivatives
-        by_f = weights * radial.a * jet.f.conj() / np.abs(jet.f)
-        by_g = weights * radial.b_per_b * jet.g.conj()
         pull = 2.0 * self.handles.stiffness * (jet.positions - self.wish.positions)
-        by_phi = by_f @ derivatives + pull.conj() @ self.handles.coordinates
-        by_psi = by_g @ derivatives + pull @ self.handles.coordinates
+        by_phi = pull.conj() @ self.handles.coordinates
+        by_psi = pull @ self.handles.coordinates
         if self._turning.any():
             # d arg F = Im(dF / F) = Re(−i dF / F).
             angle = 2.0 * self._turning_stiffness * self._turning_angles(jet)
             by_phi += (-1j * angle / jet.fz[self._turning]) @ self._turning_rows
+        by_handles = np.concatenate([by_phi, by_psi[1:]]).view(np.float64)
+        gradient: Floats = by_handles + self.sampled_gradient(jet, radial.a, radial.b_per_b)
+        return gradient
+
+    def sampled_gradient(self, jet: Jet, by_a: Floats, b_per_b: Floats) -> Floats:
+        """Return the gradient (4n − 2,) of a sum over the samples of functions of a and b.
+
+        Parameters
+        ----------
+        jet : Jet
+        by_a, b_per_b : float64, shape (m,)
+            What each sample contributes to the derivative by a, and to that by b over b.
+        """
+        by_phi = (by_a * jet.f.conj() / np.abs(jet.f)) @ self.boundary.derivatives
+        by_psi = (b_per_b * jet.g.conj()) @ self.boundary.derivatives
         return np.concatenate([by_phi, by_psi[1:]]).view(np.float64)
 
     def hessian(self, jet: Jet, radial: Radial) -> Floats:
@@ -137,13 +156,13 @@ class Objective:
         is a quadrature, coarser than that of energy and gradient. Cost: 24 s n² for s samples.
         """
         n = len(self.boundary.cage)
-        which, entries = self._quadrature(jet, radial)
+        which, entries = self._quadrature(radial)
         rows = self.boundary.derivatives[which]
         f, g = jet.f[which], jet.g[which]
         b = np.abs(g)
         frame_f = f.conj() / np.abs(f)
         frame_g = np.where(b > 0, g.conj(), 1.0) / np.where(b > 0, b, 1.0)
-        radial_f, tangential_f, radial_g, tangential_g, cross = entries
+        radial_f, tangential_f, radial_g, tangential_g, cross, _ = entries
         root_f, root_g = np.sqrt(radial_f), np.sqrt(radial_g)
         by_phi = np.concatenate(
             [
@@ -169,24 +188,45 @@ class Objective:
         )
         return hessian
 
-    def _quadrature(self, jet: Jet, radial: Radial) -> tuple[Indices, Floats]:
-        """Return the samples that enter the Hessian, with their five coefficients (5, s)."""
-        weights = self.boundary.weights
-        entries = weights * np.array(
+    def negative_part(self, jet: Jet, radial: Radial) -> Floats:
+        """Return what the projection removed from the Hessian of φ, (2n, 2n).
+
+        `hessian` minus this is the exact Hessian; it need not be positive.
+        """
+        which, entries = self._quadrature(radial)
+        bent = entries[-1] > 0
+        f = jet.f[which][bent]
+        roots = -1j * np.sqrt(entries[-1][bent]) * f.conj() / np.abs(f)
+        by_phi = np.concatenate(
+            [
+                self.boundary.derivatives[which][bent] * roots[:, None],
+                *self._turning_roots(jet, removed=True),
+            ]
+        ).view(np.float64)
+        removed: Floats = by_phi.T @ by_phi
+        return removed
+
+    def _quadrature(self, radial: Radial) -> tuple[Indices, Floats]:
+        """Return the samples that enter the Hessian, with their coefficients (6, s).
+
+        The last one is what the projection removes.
+        """
+        entries = np.array(
             [
                 radial.aa,
-                np.maximum(radial.a / np.abs(jet.f), 0.0),
+                np.maximum(radial.around_a, 0.0),
                 radial.bb,
-                radial.b_per_b,
+                radial.around_b,
                 radial.ab,
+                np.maximum(-radial.around_a, 0.0),
             ]
         )
-        m, n = len(weights), len(self.boundary.cage)
+        m, n = len(self.boundary.points), len(self.boundary.cage)
         stride = min(STRIDE, m // (SAMPLES_PER_VERTEX * n)) if self.sketched else 1
         if stride <= 1:
             return np.arange(m), entries
         density = radial.aa + radial.bb
-        strong = density > STRONG * float(weights @ density)
+        strong = density > STRONG * self.boundary.spacing * float(density.sum())
         starts = np.arange(0, m, stride)
         alone = np.flatnonzero(strong)
         summed = np.add.reduceat(np.where(strong, 0.0, entries), starts, axis=1)
@@ -219,18 +259,20 @@ class Objective:
         angles: Floats = np.angle(jet.fz[self._turning] * wished)
         return angles
 
-    def _turning_roots(self, jet: Jet) -> list[Complexes]:
+    def _turning_roots(self, jet: Jet, *, removed: bool = False) -> list[Complexes]:
         """Return the rows whose Gram matrix is the projected Hessian of the rotation terms.
 
-        With dF / F = x + iy the term c δ² has the Hessian 2c [[0, −δ], [−δ, 1]]; its one positive
-        eigenvalue is c (1 + root) with root² = 1 + 4 δ², for the vector (−2δ, 1 + root).
+        With dF / F = x + iy the term c δ² has the Hessian 2c [[0, −δ], [−δ, 1]]; its eigenvalues
+        are c (1 ± root) with root² = 1 + 4 δ², for the vectors (−2δ, 1 ± root). The negative one is
+        what the projection removed.
         """
         if not self._turning.any():
             return []
         delta = self._turning_angles(jet)
-        positive = 1.0 + np.sqrt(1.0 + 4.0 * delta**2)
-        vector = np.hypot(2.0 * delta, positive)
+        root = np.sqrt(1.0 + 4.0 * delta**2)
+        eigenvalue = 1.0 - root if removed else 1.0 + root
         # x vx + y vy = Re((vx − i vy) dF / F).
-        scale = np.sqrt(self._turning_stiffness * positive) / vector
-        frame = scale * (-2.0 * delta - 1j * positive) / jet.fz[self._turning]
+        length = np.maximum(np.hypot(2.0 * delta, eigenvalue), np.finfo(np.float64).tiny)
+        scale = np.sqrt(self._turning_stiffness * np.abs(eigenvalue)) / length
+        frame = scale * (-2.0 * delta - 1j * eigenvalue) / jet.fz[self._turning]
         return [frame[:, None] * self._turning_rows]

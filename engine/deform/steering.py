@@ -9,7 +9,7 @@ import numpy as np
 from engine.arrays import Complexes, Floats
 from engine.deform.handles import Handles, Wish
 from engine.deform.objective import Jet
-from engine.maps import Certificate, Limits
+from engine.maps import Certificate, HarmonicMap, Limits
 
 # The leash: a handle is pulled towards a point at most this far (of L) ahead of it, and turned by
 # at most this angle; farther away the quadratic model says nothing. Both times the part of the
@@ -140,20 +140,36 @@ def cut_to_leash(
     return Wish(positions + cut * pull, near), leashed
 
 
+def rigidly_aligned(handles: Handles, wish: Wish, cage: Complexes) -> HarmonicMap:
+    """Return the rigid motion that brings the shape at rest nearest to its wish."""
+    centre, wanted, angle = _common_motion(handles, handles.points, wish.positions)
+    return HarmonicMap(
+        cage=cage, phi=wanted + np.exp(1j * angle) * (cage - centre), psi=np.zeros_like(cage)
+    )
+
+
 def _turned(handles: Handles, positions: Complexes, targets: Complexes, most: float) -> Complexes:
-    """Return the positions turned as a whole towards the targets (Procrustes), up to an angle."""
+    """Return the positions turned as a whole towards the targets, up to an angle."""
     if len(positions) == 0:
         return positions
-    weights = handles.stiffness / handles.stiffness.sum()
-    centre = weights @ positions
-    from_centre, wanted = positions - centre, targets - weights @ targets
-    correlation = weights @ (from_centre.conj() * wanted)
-    scale = weights @ (np.abs(from_centre) * np.abs(wanted))
-    if abs(correlation) <= CORRELATED * scale:
-        return positions
-    angle = np.clip(np.angle(correlation), -most, most)
-    turned: Complexes = centre + np.exp(1j * angle) * from_centre
+    centre, _, angle = _common_motion(handles, positions, targets)
+    turn = np.exp(1j * np.clip(angle, -most, most))
+    turned: Complexes = centre + turn * (positions - centre)
     return turned
+
+
+def _common_motion(
+    handles: Handles, positions: Complexes, targets: Complexes
+) -> tuple[complex, complex, float]:
+    """Return the centres of positions and targets, and the angle between both (Procrustes)."""
+    weights = handles.stiffness / handles.stiffness.sum()
+    centre, wanted = complex(weights @ positions), complex(weights @ targets)
+    from_centre, from_wanted = positions - centre, targets - wanted
+    correlation = weights @ (from_centre.conj() * from_wanted)
+    scale = weights @ (np.abs(from_centre) * np.abs(from_wanted))
+    if abs(correlation) <= CORRELATED * scale:
+        return centre, wanted, 0.0
+    return centre, wanted, float(np.angle(correlation))
 
 
 def limits_for(certificate: Certificate, bounds: Limits) -> Limits:

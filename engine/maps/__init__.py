@@ -9,7 +9,7 @@ from engine.maps import distortion
 from engine.maps.boundary import Boundary
 from engine.maps.bounds import Bounds, Limits
 from engine.maps.cauchy import cauchy_coordinates, cauchy_derivatives, evaluate
-from engine.maps.certificate import Certificate, certify, certify_segments
+from engine.maps.certificate import Certificate, certify, certify_segments, segment_enclosures
 from engine.maps.harmonic_map import HarmonicMap
 
 __all__ = [
@@ -24,4 +24,5 @@ __all__ = [
     "certify_segments",
     "distortion",
     "evaluate",
+    "segment_enclosures",
 ]

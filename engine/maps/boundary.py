@@ -36,7 +36,10 @@ class Boundary:
     points : complex128, shape (m,)
         Samples in order along the outline; segment i leads from sample i to sample i + 1.
     weights : float64, shape (m,)
-        Arc length that belongs to each sample, with sum 1.
+        Of the samples in means over the outline, with sum 1: the arc length that belongs to each,
+        and 0 for those that were added. Sums do not change by refinement.
+    spacing : float64, shape (m,)
+        The arc length that belongs to each sample, added or not, with sum 1.
     half_lengths : float64, shape (m,)
         Of the segments.
     derivatives : complex128, shape (m, n)
@@ -53,6 +56,7 @@ class Boundary:
     size: float
     points: Complexes
     weights: Floats
+    spacing: Floats
     half_lengths: Floats
     derivatives: Complexes
     curvature_kernel: Floats
@@ -85,12 +89,14 @@ class Boundary:
         )
         ends = np.roll(points, -1)
         half = np.abs(ends - points) / 2
+        lengths = readonly(_arc_lengths(half))
         return cls(
             outline=outline,
             cage=cage,
             size=size,
             points=readonly(points),
-            weights=readonly(_arc_lengths(half)),
+            weights=lengths,
+            spacing=lengths,
             half_lengths=readonly(half),
             derivatives=readonly(cauchy_derivatives(cage, points)),
             curvature_kernel=readonly(_curvature_kernel(cage, points, ends)),
@@ -126,7 +132,8 @@ class Boundary:
         return replace(
             self,
             points=readonly(points),
-            weights=readonly(_arc_lengths(half)),
+            weights=readonly(np.insert(self.weights, segments + 1, 0.0)),
+            spacing=readonly(_arc_lengths(half)),
             half_lengths=readonly(half),
             derivatives=readonly(np.insert(self.derivatives, segments + 1, rows, axis=0)),
             curvature_kernel=readonly(kernel),

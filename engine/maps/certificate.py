@@ -18,6 +18,7 @@ If that is 0, F has no zero in the domain, and the extremes of k, σ_a and σ_b 
 
 from dataclasses import dataclass
 from math import inf, pi
+from typing import NamedTuple
 
 import numpy as np
 
@@ -99,23 +100,49 @@ def certify_segments(
     EngineError
         If the map is over another cage.
     """
+    with np.errstate(over="ignore", invalid="ignore"):
+        coefficients, segments = _measure(harmonic_map, boundary)
+        return _bisect(boundary.cage, coefficients, segments, limits)
+
+
+class Enclosures(NamedTuple):
+    """What is proven about each segment between two samples, float64 (m,) each."""
+
+    k: Floats
+    sigma_a: Floats
+    sigma_b: Floats
+
+
+def segment_enclosures(harmonic_map: HarmonicMap, boundary: Boundary) -> Enclosures:
+    """Bound the distortion on each segment as it is, without bisection.
+
+    Raises
+    ------
+    EngineError
+        If the map is over another cage.
+    """
+    _, segments = _measure(harmonic_map, boundary)
+    return _enclose(segments)[0]
+
+
+def _measure(harmonic_map: HarmonicMap, boundary: Boundary) -> tuple[Complexes, "_Segments"]:
+    """Return φ and ψ (n, 2), and what is known of the map at the samples and between them."""
     if not np.array_equal(harmonic_map.cage, boundary.cage):
         raise EngineError("The map is over another cage than the outline's samples.")
     coefficients = np.column_stack([harmonic_map.phi, harmonic_map.psi])
-    with np.errstate(over="ignore", invalid="ignore"):
-        # Constants do not matter to derivatives; without them a far shape loses no digits.
-        values = boundary.derivatives @ (coefficients - coefficients[0])
-        jumps = np.abs(difference_jumps(boundary.cage, coefficients))
-        errors = (boundary.curvature_kernel @ jumps) * (boundary.half_lengths**2 / 2)[:, None]
-        segments = _Segments(
-            starts=boundary.points,
-            ends=np.roll(boundary.points, -1),
-            first=values,
-            last=np.roll(values, -1, axis=0),
-            errors=errors,
-            origins=np.arange(len(values)),
-        )
-        return _bisect(boundary.cage, coefficients, segments, limits)
+    # Constants do not matter to derivatives; without them a far shape loses no digits.
+    values = boundary.derivatives @ (coefficients - coefficients[0])
+    jumps = np.abs(difference_jumps(boundary.cage, coefficients))
+    errors = (boundary.curvature_kernel @ jumps) * (boundary.half_lengths**2 / 2)[:, None]
+    segments = _Segments(
+        starts=boundary.points,
+        ends=np.roll(boundary.points, -1),
+        first=values,
+        last=np.roll(values, -1, axis=0),
+        errors=errors,
+        origins=np.arange(len(values)),
+    )
+    return coefficients, segments
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -173,18 +200,8 @@ def _bisect(
     broken: list[Indices] = []
     for depth in range(DEEPEST + 1):
         a, b = np.abs(segments.first[:, 0]), np.abs(segments.first[:, 1])
-        a_last, b_last = np.abs(segments.last[:, 0]), np.abs(segments.last[:, 1])
         attained.include(_ratio(b, a), a + b, a - b)
-        delta = np.angle(segments.last[:, 0] * segments.first[:, 0].conj())
-        cosine = np.cos(delta / 2)
-        r, r_last = a * cosine, a_last * cosine
-        error_f = segments.errors[:, 0] + ROUNDING * (a + a_last)
-        error_g = segments.errors[:, 1] + ROUNDING * (a + a_last)
-        clear = np.minimum(r, r_last) > error_f
-        k = np.maximum(_ratio(b + error_g, r - error_f), _ratio(b_last + error_g, r_last - error_f))
-        both = error_f + error_g
-        sigma_a = np.maximum(a + b, a_last + b_last) + both
-        sigma_b = np.minimum(r - b, r_last - b_last) - both
+        (k, sigma_a, sigma_b), clear, delta = _enclose(segments)
         # All said positively: what is not a number is neither tight nor within.
         tight = clear & _are_tight(attained, limits, k, sigma_a, sigma_b)
         within = clear & (k <= limits.k) & (sigma_a <= limits.sigma_a) & (sigma_b >= limits.sigma_b)
@@ -200,6 +217,24 @@ def _bisect(
         turn += float(delta[tight].sum())
         segments = segments.halves(~tight, cage, coefficients)
     return _conclude(proven, turn, limits), np.unique(np.concatenate(broken))
+
+
+def _enclose(segments: _Segments) -> tuple[Enclosures, Booleans, Floats]:
+    """Return the enclosures, where F is proven not to vanish, and its angles of turn Δ."""
+    a, b = np.abs(segments.first[:, 0]), np.abs(segments.first[:, 1])
+    a_last, b_last = np.abs(segments.last[:, 0]), np.abs(segments.last[:, 1])
+    delta = np.angle(segments.last[:, 0] * segments.first[:, 0].conj())
+    cosine = np.cos(delta / 2)
+    r, r_last = a * cosine, a_last * cosine
+    error_f = segments.errors[:, 0] + ROUNDING * (a + a_last)
+    error_g = segments.errors[:, 1] + ROUNDING * (a + a_last)
+    both = error_f + error_g
+    enclosures = Enclosures(
+        k=np.maximum(_ratio(b + error_g, r - error_f), _ratio(b_last + error_g, r_last - error_f)),
+        sigma_a=np.maximum(a + b, a_last + b_last) + both,
+        sigma_b=np.minimum(r - b, r_last - b_last) - both,
+    )
+    return enclosures, np.minimum(r, r_last) > error_f, delta
 
 
 def _are_tight(

@@ -33,7 +33,7 @@ def run(arguments: argparse.Namespace) -> int:
     for wish in wishes[:-1]:
         state, count = deformer.follow(state, wish)
         steps += count
-    state, count = deformer.settle_anew(state, wishes[-1])
+    state, count = deformer.settle(state, wishes[-1])
     certificate = state.certificate
     write_arrays(
         arguments.out,

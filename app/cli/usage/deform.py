@@ -20,8 +20,8 @@ MAP.npz holds outline, cage and
   handles_mapped (h,) complex128  where the handles are
   k, sigma_a, sigma_b             proven for the whole shape: nowhere beyond
   certified                       whether that is within the bounds, and the map injective
-  status                          "converged", or "bounds reached" or "lagging" where handles
-                                  could not follow
+  status                          "converged" at rest; "at the limits" at rest, held back by the
+                                  bounds; "unfinished" where neither is proven
   steps                           Newton steps in all
 
 examples:

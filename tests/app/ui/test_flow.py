@@ -14,7 +14,7 @@ from app.editor.actions import editing, exporting, keys, playback, posing, savin
 from app.solving.drag import Drag
 from app.storage.assets import sample_images
 from app.ui.viewport import badges, marks
-from engine.deform.deformer import Status
+from engine.deform import Status
 
 BAR = sample_images() / "bar.png"
 
@@ -136,7 +136,7 @@ class CaughtDrag(Drag):
     def towards(self, targets, steps):  # noqa: ARG002
         state = self.deformer.step(self.state, self.rig.wish(targets))
         return CaughtDrag(
-            rig=self.rig, deformer=self.deformer, state=replace(state, status=Status.BOUNDS_REACHED)
+            rig=self.rig, deformer=self.deformer, state=replace(state, status=Status.AT_LIMITS)
         )
 
     @classmethod
@@ -233,7 +233,7 @@ def test_a_shape_is_left_alone_where_another_start_gains_little(window, bar):
     posing.pull(session, {1: Target(position=handle_places(bar)[1] + 9000)})
     window.settle()
     held = bar.puppet.shown.positions
-    assert bar.posing.drag.state.status is Status.BOUNDS_REACHED
+    assert bar.posing.drag.state.status is Status.AT_LIMITS
     posing.let_go(session)
     window.settle()
     assert bar.posing is None

@@ -77,7 +77,7 @@ def test_affine_targets_that_the_bounds_forbid_end_at_the_bounds():
     bounds = Bounds(k=0.2, sigma_a=1.5, sigma_b=0.6)
     deformer = bar(bounds)
     state, _ = deformer.settle(deformer.start(), deformer.handles.wish(2 * BAR_POINTS))
-    assert state.status is Status.BOUNDS_REACHED
+    assert state.status is Status.AT_LIMITS
     assert_sound(state, bounds)
     assert state.certificate.sigma_a > 1.45
 
@@ -159,7 +159,7 @@ def test_wild_requests_stay_certified_and_the_shape_comes_back(name):
         assert np.isfinite(state.map.phi).all()
         if step % 13 == 0:
             assert_sound(state, BOUNDS)
-    assert state.status in (Status.LAGGING, Status.BOUNDS_REACHED)
+    assert state.status in (Status.MOVING, Status.AT_LIMITS)
     assert state.statistics.handle_error > 0.01
     assert np.mean(lengths) > 0.1
     state, _ = deformer.settle(state, deformer.handles.wish(STAR_POINTS))
@@ -449,23 +449,7 @@ def test_handles_do_not_pull_while_the_shape_walks_into_its_bounds():
             break
         assert np.ptp(tight.positions(state).real) <= stretched
         stretched = np.ptp(tight.positions(state).real)
-    assert state.status is Status.LAGGING
-
-
-def test_a_drag_that_does_not_get_on_begins_its_barrier_afresh():
-    deformer = star()
-    state = dragged(deformer, 9 * STAR_POINTS, 30)
-    stale = replace(
-        state,
-        duals=np.full((3, len(state.boundary.points)), 1e6),
-        schedule=replace(state.schedule, idle=4, best=0.0),
-    )
-    after = deformer.step(stale, state.wish)
-    assert after.duals is None
-    assert after.boundary is deformer.boundary
-    assert after.schedule.leash == 1.0
-    again = deformer.step(replace(stale, schedule=replace(stale.schedule, idle=5)), state.wish)
-    assert again.duals is not None
+    assert state.status is Status.MOVING
 
 
 def test_samples_are_added_where_a_bound_was_broken():
@@ -491,7 +475,7 @@ def test_a_wild_drag_adds_samples():
     most = 0
     for _ in range(40):
         state = deformer.step(state, wish)
-        most = max(most, len(state.boundary.points))
+        most = max(most, state.statistics.samples)
     assert most > len(deformer.boundary.points)
 
 
@@ -509,12 +493,11 @@ def test_a_shape_that_stays_entangled_is_settled_anew():
     for share in np.linspace(0, 1, 12):
         state, _ = deformer.follow(state, handles.wish(points + share * (points[::-1] - points)))
     home = handles.wish(points)
-    assert deformer.settle(state, home)[0].status is Status.BOUNDS_REACHED
-    back, _ = deformer.settle_anew(state, home)
+    back, _ = deformer.settle(state, home)
     assert back.status is Status.CONVERGED
     assert_allclose(deformer.positions(back), points, rtol=0, atol=1e-6)
-    # What the handles cannot reach from anywhere stays as the drag left it.
+    # What the handles cannot reach from anywhere is at its limits.
     far = handles.wish(5 * points)
-    reached, _ = deformer.settle_anew(back, far)
-    assert reached.status is not Status.CONVERGED
+    reached, _ = deformer.settle(back, far)
+    assert reached.status is Status.AT_LIMITS
     assert reached.certificate.certified

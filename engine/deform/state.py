@@ -1,0 +1,125 @@
+"""Where a deformation is, and what the steps to it did."""
+
+from dataclasses import dataclass, field
+from enum import Enum
+
+from engine.arrays import Floats
+from engine.deform.continuation import ActiveBound, Search, Way
+from engine.deform.handles import Handles, Wish
+from engine.deform.steering import Schedule
+from engine.maps import Boundary, Certificate, HarmonicMap, Limits
+
+
+class Status(Enum):
+    """How far a deformation has come."""
+
+    MOVING = "moving"
+    """On its way: more steps lead on."""
+    CONVERGED = "converged"
+    """At rest in a minimum of the energy, which no bound holds back."""
+    AT_LIMITS = "at the limits"
+    """At rest in a minimum of the energy within the bounds: they allow no less."""
+    UNFINISHED = "unfinished"
+    """No more steps lead on, but what was found is not proven to be a minimum."""
+    TIGHTENING = "tightening"
+    """The bounds became tighter than the map; it is on its way into them."""
+    OUTSIDE = "outside the bounds"
+    """The map is outside its bounds and finds no way into them."""
+
+    @property
+    def is_final(self) -> bool:
+        """Whether more steps with the same wish change nothing."""
+        return self not in (Status.MOVING, Status.TIGHTENING)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Statistics:
+    """What the last step did.
+
+    Parameters
+    ----------
+    energy : float
+        Arc-length mean of the symmetric Dirichlet density; 2 at rest.
+    objective : float
+        The energy and that of the handles, at the whole wish: what is minimised.
+    handle_error : float
+        Root mean square distance of the handles from their targets, over L.
+    decrement : float
+        Gain that Newton's model expected of the whole step.
+    length : float
+        Part of the step that was taken.
+    barrier_weight : float
+    leash : float
+        Part of it that was paid out.
+    leashed : bool
+        Whether the leash held handles back.
+    refusals : int
+        Maps that were tried and not certified.
+    samples : int
+    optimality : float
+        Expected gain and complementarity of the bounds over the objective: 0 at a minimum, infinite
+        where it is not known.
+    active : tuple of ActiveBound
+        The bounds that hold the shape back, and where.
+    """
+
+    energy: float
+    objective: float
+    handle_error: float
+    decrement: float
+    length: float
+    barrier_weight: float
+    leash: float
+    leashed: bool
+    refusals: int
+    samples: int
+    optimality: float
+    active: tuple[ActiveBound, ...]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class State:
+    """A certified map in a deformation, with what the next step needs.
+
+    It does not depend on the handles: it can go on with others, and with other bounds.
+
+    Parameters
+    ----------
+    map : HarmonicMap
+    certificate : Certificate
+        Of the map, for its limits.
+    limits : Limits
+        What the map is held to: the bounds, or looser ones on the way into tightened bounds.
+    status : Status
+    statistics : Statistics or None
+        None before the first step.
+    boundary : Boundary
+        With the samples that were added.
+    schedule : Schedule
+    duals : float64, shape (3, m), or None
+        Of the barrier.
+    wish : Wish or None
+        Of the last step.
+    handles : Handles or None
+        Of the last step.
+    search : Search or None
+        For the minimum, once the drag has come as far as it gets.
+    ways : tuple of Way
+        Of this search and of those that are still to come.
+    outcome : Search or None
+        The best of the searches that are over.
+    """
+
+    map: HarmonicMap
+    certificate: Certificate
+    limits: Limits
+    status: Status = Status.MOVING
+    statistics: Statistics | None = None
+    boundary: Boundary
+    schedule: Schedule = field(default_factory=Schedule)
+    duals: Floats | None = None
+    wish: Wish | None = None
+    handles: Handles | None = None
+    search: Search | None = None
+    ways: tuple[Way, ...] = ()
+    outcome: Search | None = None

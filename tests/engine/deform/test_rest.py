@@ -1,0 +1,230 @@
+"""How a deformation comes to rest: minima, active bounds, and what the status says of them."""
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from deform_shapes import (
+    BAR_POINTS,
+    STAR_POINTS,
+    assert_sound,
+    bar,
+    dense_outline,
+    star,
+)
+from numpy.testing import assert_allclose, assert_array_equal
+from scipy.optimize import minimize, nnls
+from shapes import regular_polygon
+
+from engine.deform import Deformer, Handles, Objective, Status
+from engine.deform.continuation import MARGIN, OPTIMAL
+from engine.maps import Boundary, Bounds
+from engine.maps.cauchy import cauchy_coordinates, cauchy_derivatives
+
+TIGHT = Bounds(k=0.2, sigma_a=1.5, sigma_b=0.6)
+ARCHED = BAR_POINTS + np.array([0, 1j, 0])
+TWISTED = STAR_POINTS * np.exp(1j * np.array([0, 0.7, -0.5, 0.6, -0.8, 0.4]))
+
+
+def settled(deformer, targets, state=None):
+    wish = deformer.handles.wish(targets)
+    return deformer.settle(deformer.start() if state is None else state, wish)[0]
+
+
+@pytest.mark.parametrize(
+    ("deformer", "targets"),
+    [(bar(TIGHT), ARCHED), (star(TIGHT), TWISTED), (bar(TIGHT), 2 * BAR_POINTS)],
+    ids=["arched bar", "twisted star", "stretched bar"],
+)
+def test_no_direction_that_the_bounds_allow_lowers_the_energy(deformer, targets):
+    # Karush, Kuhn and Tucker, by finite differences: the gradient of the energy is a combination
+    # of the gradients of the bounds that are reached, with multipliers of the right sign.
+    state = settled(deformer, targets)
+    assert state.status is Status.AT_LIMITS
+    assert state.statistics.optimality <= OPTIMAL
+    assert_sound(state, TIGHT)
+    boundary, handles = state.search.boundary, deformer.handles
+    objective = Objective(boundary=boundary, handles=handles, wish=handles.wish(targets))
+    jet, n, h = objective.jet(state.map.phi, state.map.psi), len(boundary.cage), 1e-6
+    inner = TIGHT.towards_identity(MARGIN)
+
+    def slacks(jet):
+        a, b = np.abs(jet.f), np.abs(jet.g)
+        return np.concatenate([inner.k - b / a, inner.sigma_a - a - b, a - b - inner.sigma_b])
+
+    near = slacks(jet) < 3e-4
+    assert near.any()
+    gradient, normals = np.empty(4 * n - 2), np.empty((4 * n - 2, np.count_nonzero(near)))
+    for row, unit in enumerate(np.eye(4 * n - 2)):
+        change = unit.view(complex)
+        moved = objective.jet(change[:n], np.concatenate([[0], change[n:]]))
+        ahead, behind = jet.advanced(h, moved), jet.advanced(-h, moved)
+        gradient[row] = (objective.energy(ahead) - objective.energy(behind)) / (2 * h)
+        normals[row] = (slacks(ahead) - slacks(behind))[near] / (2 * h)
+    scale = np.abs(normals).max(axis=0)
+    _, left = nnls(normals / scale, gradient)
+    assert left < 5e-3 * np.linalg.norm(gradient)
+    names = {bound.name for bound in state.statistics.active}
+    assert names
+    for bound in state.statistics.active:
+        assert bound.price > 0
+        assert np.abs(boundary.points - bound.place).min() == 0
+
+
+def test_a_squeezed_disc_reaches_the_optimum_that_is_known_otherwise():
+    # Two handles squeeze a disc along the real axis. With its symmetries φ and ψ are few numbers,
+    # which a general optimiser finds with bounds on dense samples.
+    outline, cage = regular_polygon(16), regular_polygon(16, 1.15)
+    boundary = Boundary.sample(outline, cage)
+    points, targets = np.array([-0.9, 0.9]), np.array([-0.55, 0.55])
+    bounds = Bounds(k=0.3, sigma_a=1.15, sigma_b=0.75)
+    handles = Handles.place(boundary, points)
+    deformer = Deformer(boundary=boundary, handles=handles, bounds=bounds)
+    state = settled(deformer, targets)
+    assert state.status is Status.AT_LIMITS
+
+    samples = dense_outline(boundary, 1600)
+    derivatives, coordinates = cauchy_derivatives(cage, samples), cauchy_coordinates(cage, points)
+    quarter = np.array([0, 1, 2, 3, 4])  # vertices of the first quadrant, on both axes
+    basis = []
+    for vertex in quarter:
+        for part in (1, 1j):
+            column = np.zeros(16, complex)
+            for place, value in (
+                (vertex, part),
+                (-vertex % 16, np.conj(part)),
+                ((vertex + 8) % 16, -part),
+                ((8 - vertex) % 16, -np.conj(part)),
+            ):
+                column[place] += value
+            if np.abs(column).max() > 0:
+                basis.append(column)
+    basis = np.array(basis).T
+    f, g = derivatives @ basis, coordinates @ basis
+
+    def fields(x):
+        phi, psi = x[: basis.shape[1]], x[basis.shape[1] :]
+        return np.abs(f @ phi), np.abs(f @ psi), g @ phi + np.conj(g @ psi)
+
+    def energy(x):
+        a, b, places = fields(x)
+        density = (a**2 + b**2) * (1 + (a**2 - b**2) ** -2.0)
+        return density.mean() + handles.stiffness @ np.abs(places - targets) ** 2
+
+    def within(x):
+        a, b, _ = fields(x)
+        # Where F has a positive real part it does not wind, and the map does not fold.
+        upright = (f @ x[: basis.shape[1]]).real - 0.3
+        return np.array([0.3 * a - b, 1.15 - a - b, a - b - 0.75, upright])[:, ::8].ravel()
+
+    rest, *_ = np.linalg.lstsq(
+        np.concatenate([basis.real, basis.imag]), np.concatenate([cage.real, cage.imag]), rcond=None
+    )
+    start = np.concatenate([rest, np.zeros(basis.shape[1])])
+    best = minimize(
+        energy,
+        start,
+        method="SLSQP",
+        constraints={"type": "ineq", "fun": within},
+        options={"maxiter": 400, "ftol": 1e-6},
+    )
+    assert best.success
+    fz, fzbar = state.map.derivatives(samples)
+    a, b = np.abs(fz), np.abs(fzbar)
+    density = (a**2 + b**2) * (1 + (a**2 - b**2) ** -2.0)
+    places = deformer.positions(state)
+    found = density.mean() + handles.stiffness @ np.abs(places - targets) ** 2
+    assert best.fun > 20  # the handles are far from where they should be
+    assert_allclose(found, best.fun, rtol=2e-3)
+    assert_allclose(places, fields(best.x)[2], atol=1e-3)
+
+
+def test_wider_bounds_never_end_in_more_energy():
+    row = [
+        Bounds(k=0.13, sigma_a=1.3, sigma_b=0.77),
+        Bounds(k=0.35, sigma_a=1.6, sigma_b=0.6),
+        Bounds(k=0.6, sigma_a=2.5, sigma_b=0.4),
+        Bounds(k=0.9, sigma_a=10.0, sigma_b=0.1),
+    ]
+    energies = [settled(bar(bounds), ARCHED).statistics.objective for bounds in row]
+    for tight, wide in pairwise(energies):
+        assert wide <= (1 + 1e-6) * tight
+
+
+def test_all_ways_to_a_mild_pose_end_in_the_same():
+    deformer = bar()
+    targets = BAR_POINTS + np.array([0, 0.3j, 0])
+    from_rest = settled(deformer, targets)
+    state = deformer.start()
+    for share in np.linspace(0, 1, 5)[1:]:
+        row = BAR_POINTS + share * (targets - BAR_POINTS)
+        state, _ = deformer.follow(state, deformer.handles.wish(row))
+    along = settled(deformer, targets, state)
+    outline = deformer.boundary.outline
+    for other in (along, settled(deformer, targets, deformer.start(from_rest.map))):
+        assert other.status is Status.CONVERGED
+        assert_allclose(other.statistics.objective, from_rest.statistics.objective, rtol=1e-6)
+        assert_allclose(other.map(outline), from_rest.map(outline), rtol=0, atol=1e-3)
+
+
+def test_after_release_the_energy_only_falls_and_then_nothing_moves():
+    deformer = bar(TIGHT)
+    state = deformer.start()
+    for share in np.linspace(0, 1, 8)[1:]:
+        row = BAR_POINTS + share * (ARCHED - BAR_POINTS)
+        state = deformer.step(state, deformer.handles.wish(row))
+    assert state.status is Status.MOVING
+    wish = deformer.handles.wish(ARCHED)
+    energies = []
+    while not state.status.is_final:
+        state = deformer.step(state, wish)
+        assert state.certificate.certified
+        if state.search is not None:
+            energies.append(state.statistics.objective)
+    assert len(energies) > 5
+    assert all(after <= before for before, after in pairwise(energies))
+    assert state.status is Status.AT_LIMITS
+    assert deformer.step(state, wish) is state
+    # A new wish sets it going again.
+    assert deformer.step(state, deformer.handles.wish(BAR_POINTS)).status is Status.MOVING
+
+
+@pytest.mark.parametrize("targets", [TWISTED, 3 * STAR_POINTS])
+def test_resuming_never_loses_and_gains_little(targets):
+    deformer = star(TIGHT)
+    state = settled(deformer, targets)
+    again = settled(deformer, targets, deformer.start(state.map))
+    before, after = state.statistics.objective, again.statistics.objective
+    assert (1 - 1e-3) * before <= after <= (1 + 1e-9) * before
+
+
+def test_coming_to_rest_is_repeated_bit_for_bit():
+    one, two = (settled(star(TIGHT), TWISTED) for _ in range(2))
+    assert_array_equal(one.map.phi, two.map.phi)
+    assert_array_equal(one.map.psi, two.map.psi)
+    assert one.certificate == two.certificate
+
+
+def test_a_search_that_is_given_up_says_so(monkeypatch):
+    monkeypatch.setattr("engine.deform.continuation.MOST_STEPS", 2)
+    monkeypatch.setattr("engine.deform.continuation.MOST_STEPS_HERE", 2)
+    state = settled(star(TIGHT), TWISTED)
+    assert state.status is Status.UNFINISHED
+    assert state.status.is_final
+    assert state.statistics.optimality > OPTIMAL
+    assert_sound(state, TIGHT)
+
+
+def test_bounds_that_hold_nothing_back_are_not_active():
+    state = settled(star(), STAR_POINTS + np.array([0, 0.2j, 0.1, 0, 0, -0.1]))
+    assert state.status is Status.CONVERGED
+    assert state.statistics.active == ()
+
+
+def test_a_rigid_wish_is_met_at_once_and_without_distortion():
+    deformer = star(TIGHT)
+    targets = np.exp(2.5j) * STAR_POINTS + 30 - 4j
+    state, steps = deformer.settle(deformer.start(), deformer.handles.wish(targets))
+    assert state.status is Status.CONVERGED
+    assert steps < 15
+    assert_allclose(deformer.positions(state), targets, rtol=0, atol=1e-6)
