@@ -18,7 +18,7 @@ from app.storage import Origin, Picture
 from engine.maps import Bounds
 
 OPAQUE = 255
-FIT_MARGIN = 0.08  # of the viewport, left free around a picture that is fitted into it
+FIT_MARGIN = 0.08  # of the viewport, left free around what is fitted into it
 
 
 @dataclass(slots=True, kw_only=True, eq=False)
@@ -167,6 +167,7 @@ class Project:
     selected: frozenset[int] = frozenset()  # ids of handles
     chosen: frozenset[int] = frozenset()  # frames of keys
     camera: View | None = None
+    awaits_extent: bool = False  # whether the camera fits the motion once that is measured
     gesture: object | None = None
     held: int = 0
 
@@ -212,5 +213,9 @@ class Project:
         """Return what the viewport shows on a screen of this size in pixels."""
         if self.camera is not None:
             return replace(self.camera, size=screen)
-        margin = FIT_MARGIN * min(screen)
-        return fit_view(0j, complex(*self.document.canvas), screen, margin=margin)
+        return view_around(Box(0j, complex(*self.document.canvas)), screen)
+
+
+def view_around(box: Box, screen: tuple[int, int]) -> View:
+    """Return the view of a box on a screen of this size in pixels, with some room around it."""
+    return fit_view(*box, screen, margin=FIT_MARGIN * min(screen))

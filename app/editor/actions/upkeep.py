@@ -5,7 +5,7 @@ from functools import partial
 from typing import Any
 
 from app.document import Clip, clip_of, intervals
-from app.editor.actions import playback, posing
+from app.editor.actions import playback, posing, viewing
 from app.editor.derived import Derivation
 from app.editor.failures import report
 from app.editor.jobs import Job
@@ -44,6 +44,8 @@ def maintain(session: Session) -> None:
         # Little work: of the poses that were not measured before, and there is one at a time.
         shortfalls.take(figure, measure_shortfalls(figure, shortfalls))
     _show(session, project)
+    if project.awaits_extent:
+        _fit_motion(session, project)
 
 
 def derive(session: Session, derivation: Derivation[Any, Any]) -> None:
@@ -165,7 +167,7 @@ def _measure(session: Session, project: Project) -> Iterator[Derivation[Any, Any
             work=lambda: measure_curves(clip, motion),
             complaint="The distortion could not be measured",
         )
-    if session.export_frame is None:
+    if session.export_frame is None and not project.awaits_extent:
         return
     document, extent = project.document, project.extent
     source = extent_source(document)
@@ -178,6 +180,14 @@ def _measure(session: Session, project: Project) -> Iterator[Derivation[Any, Any
             work=lambda: measure_extent(document, motions),
             complaint="The extent of the motion could not be measured",
         )
+
+
+def _fit_motion(session: Session, project: Project) -> None:
+    source = extent_source(project.document)
+    if project.extent.follows(source) and project.extent.value is not None:
+        viewing.look_at(session, project.extent.value)
+    elif project.extent.has_failed(source):
+        project.awaits_extent = False
 
 
 def _show(session: Session, project: Project) -> None:

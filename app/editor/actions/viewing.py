@@ -1,36 +1,71 @@
 """How the window looks: camera, overlays, theme, dialogs."""
 
 from dataclasses import replace
+from functools import reduce
 from pathlib import Path
 from typing import Any, Literal
 
 from app.document import Meshing
 from app.editor.action import Action
 from app.editor.dialogs import Dialog, FileDialog, ShortcutSheet
+from app.editor.project import view_around
 from app.editor.session import HeatMap, Session, Toast
+from app.motion import Box, box_around
 from app.render import View
 from app.storage import LARGEST_GHOST_STEP, LARGEST_SCALE, MOST_GHOSTS, SMALLEST_SCALE, ThemeName
 
 SCALE_STEP = 0.25
+AROUND_HANDLES = 0.12  # of the figure's diagonal, on each side of the handles that are fitted
 OverlayName = Literal["handles", "wireframe", "outline", "cage", "onion"]
 HEAT_MAPS: tuple[HeatMap, ...] = ("none", "k", "sigma_a", "sigma_b")
 
 
 def look_from(session: Session, camera: View | None) -> None:
-    """Move the camera; None fits the picture into the viewport."""
+    """Move the camera; None fits the picture's frame into the viewport, whatever its size."""
     if session.project:
         session.project.camera = camera
+        session.project.awaits_extent = False
 
 
-def fit(session: Session) -> None:
-    """Show the whole picture."""
-    look_from(session, None)
+def fit_pose(session: Session) -> None:
+    """Show all figures as they are in this frame, whole."""
+    if session.project:
+        shown = [puppet.shown for puppet in session.project.puppets.values()]
+        boxes = [box_around(each.positions) for each in shown if each is not None]
+        if boxes:
+            look_at(session, reduce(Box.joined, boxes))
+
+
+def fit_motion(session: Session) -> None:
+    """Show where all figures get to in any frame, as soon as that is measured."""
+    if session.project:
+        session.project.awaits_extent = True
+
+
+def fit_selection(session: Session) -> None:
+    """Show the selected handles with some of the figure around them, or the whole figure."""
+    project = session.project
+    if project is None or project.puppet.shown is None:
+        return
+    shown = project.puppet.shown
+    box = box_around(shown.positions)
+    selected = [handle.id in project.selected for handle in shown.clip.figure.handles]
+    if any(selected):
+        room = AROUND_HANDLES * abs(box.upper - box.lower) * (1 + 1j)
+        box = box_around(shown.handle_places[selected])
+        box = Box(box.lower - room, box.upper + room)
+    look_at(session, box)
+
+
+def look_at(session: Session, box: Box) -> None:
+    """Move the camera so that a box of the plane fills the viewport."""
+    look_from(session, view_around(box, session.screen))
 
 
 def actual_size(session: Session) -> None:
     """Show one pixel of the picture as one of the screen, around the same centre."""
     if session.project:
-        session.project.camera = replace(session.project.view(session.screen), scale=1.0)
+        look_from(session, replace(session.project.view(session.screen), scale=1.0))
 
 
 def resize(session: Session, width: int, height: int) -> None:

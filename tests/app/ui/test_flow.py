@@ -10,7 +10,8 @@ from app.document.commands.figure_commands import set_anchor
 from app.document.keyframe import Target
 from app.document.settings import ExportSettings, Meshing
 from app.editor.action import do
-from app.editor.actions import editing, exporting, keys, playback, posing, saving
+from app.editor.actions import editing, exporting, keys, playback, posing, saving, viewing
+from app.render.view import View
 from app.solving.drag import Drag
 from app.storage.assets import sample_images
 from app.ui.viewport import badges, marks
@@ -519,7 +520,7 @@ def test_a_pose_is_copied_and_pasted_by_keys(window, bent):
     assert bent.puppet.shown.is_current
 
 
-def test_wheel_zooms_at_the_pointer_and_home_fits(window, bar):
+def test_wheel_zooms_at_the_pointer(window, bar):
     place = handle_places(bar)[0]
     before = window.point(place)
 
@@ -531,8 +532,76 @@ def test_wheel_zooms_at_the_pointer_and_home_fits(window, bar):
     after = window.point(place)
     assert bar.camera is not None
     np.testing.assert_allclose([after.x, after.y], [before.x, before.y], rtol=0, atol=1.0)
-    window.run(lambda robot: robot.key_press(int(window.Key.home)))
-    assert bar.camera is None
+
+
+def check_fitted(window, project, lower, upper):
+    """Hold the view against the box that it should fit: centred, and tight one way."""
+    view = project.view(window.session.screen)
+    np.testing.assert_allclose(view.centre, (lower + upper) / 2, rtol=0, atol=0.01)
+    fill = np.array([(upper - lower).real, (upper - lower).imag]) * view.scale
+    room = np.array(window.session.screen) - fill
+    np.testing.assert_allclose(room.min(), 0.16 * min(window.session.screen), rtol=0, atol=0.5)
+
+
+def corners(points):
+    x, y = points.real, points.imag
+    return complex(x.min(), y.min()), complex(x.max(), y.max())
+
+
+def move_away(window):
+    viewing.look_from(window.session, View(centre=-5000j, scale=3.0, size=window.session.screen))
+    window.frames(2)
+
+
+def test_home_fits_the_pose_wherever_it_is(window, bent):
+    for frame in (0, 12, 24):
+        playback.seek(window.session, frame)
+        window.settle()
+        move_away(window)
+        window.run(lambda robot: robot.key_press(int(window.Key.home)))
+        check_fitted(window, bent, *corners(bent.puppet.shown.positions))
+
+
+def test_shift_home_fits_the_whole_motion(window, bent):
+    points = []
+    for frame in range(25):
+        playback.seek(window.session, frame)
+        window.settle()
+        points.append(bent.puppet.shown.positions)
+    move_away(window)
+    chord = int(window.Key.mod_shift) | int(window.Key.home)
+    window.run(lambda robot: robot.key_press(chord))
+    window.settle()
+    check_fitted(window, bent, *corners(np.concatenate(points)))
+
+
+def test_a_camera_that_is_moved_waits_for_no_motion(window, bent):
+    viewing.fit_motion(window.session)
+    move_away(window)
+    window.settle()
+    assert bent.camera.centre == -5000j
+
+
+def test_f_fits_the_selected_handles_or_the_shape(window, bent):
+    def press(robot):
+        robot.key_press(int(window.Key.f))
+
+    whole = corners(bent.puppet.shown.positions)
+    bent.selected = frozenset()
+    move_away(window)
+    window.run(press)
+    check_fitted(window, bent, *whole)
+    for selected in ({1}, {0, 1}):
+        bent.selected = frozenset(selected)
+        move_away(window)
+        window.run(press)
+        places = handle_places(bent)
+        chosen = corners(np.array([places[identity] for identity in selected]))
+        view = bent.view(window.session.screen)
+        np.testing.assert_allclose(view.centre, sum(chosen) / 2, rtol=0, atol=0.01)
+        near = np.array([*chosen]) - view.centre
+        assert (np.abs(near.real) * view.scale < 0.5 * window.session.screen[0]).all()
+        assert (np.abs(near.imag) * view.scale < 0.5 * window.session.screen[1]).all()
 
 
 def test_unsaved_changes_are_asked_about(window, bar, tmp_path):
