@@ -126,7 +126,7 @@ def test_dragging_follows_and_is_one_step(window, bar, monkeypatch):
     lag = bar.document.figures[0].lags(bar.document.figures[0].keys[0].pose)[1]
     assert lag < 0.05 * abs(150j)
     # It is looked at before the steps and after.
-    assert session.solver_seconds >= window.clock.cost
+    assert session.solver_seconds >= 0.999 * window.clock.cost
     editing.undo(session)
     assert bar.document is before
 
