@@ -358,14 +358,22 @@ class Deformer:
         if better:
             state = replace(state, map=search.map, certificate=search.certificate)
         jet = free.jet(state.map.phi, state.map.psi)
-        state = replace(state, search=search, statistics=self._search_statistics(free, jet, search))
+        state = replace(
+            state, search=search, statistics=self._search_statistics(free, jet, search, search)
+        )
         if not search.is_over:
             return state
+        # A minimum that was found before stays what is known, unless there is much less energy.
         outcome, before = search, state.outcome
-        if before is not None and not (better or (from_here and search.has_arrived)):
+        if before is not None and not search.energy < (1.0 - WORTH_A_JUMP) * before.energy:
             outcome = before
         ways = self._further_ways(state.ways, outcome, polished=before is not None and from_here)
-        state = replace(state, outcome=outcome, ways=ways)
+        state = replace(
+            state,
+            outcome=outcome,
+            ways=ways,
+            statistics=self._search_statistics(free, jet, search, outcome),
+        )
         if ways:
             return replace(state, search=self._search(state, search.wish, ways[0]))
         # What was found may be a little above the present map, which is nearer to the bounds.
@@ -385,7 +393,10 @@ class Deformer:
             return tuple(others)
         return () if polished else (Way.HERE,)
 
-    def _search_statistics(self, free: Objective, jet: Jet, search: Search) -> Statistics:
+    def _search_statistics(
+        self, free: Objective, jet: Jet, search: Search, outcome: Search
+    ) -> Statistics:
+        """Return what a step of a search did, and what is known of the outcome."""
         density = symmetric_dirichlet(np.abs(jet.f), np.abs(jet.g))
         return Statistics(
             energy=float(self.boundary.weights @ density),
@@ -398,8 +409,8 @@ class Deformer:
             leashed=False,
             refusals=search.refusals,
             samples=len(search.boundary.points),
-            optimality=search.optimality,
-            active=search.active,
+            optimality=outcome.optimality,
+            active=outcome.active,
         )
 
     def _is_far(self, wish: Wish) -> bool:
