@@ -37,13 +37,10 @@ class PoseInProgress:
         What is one step of undo together.
     drag : Drag, optional
         How far the solver has followed; None until its first steps are done.
-    from_rest : Drag, optional
-        From the drawing at rest to the same wish, tried once the hand has let go of a shape that is
-        held back: pulled through itself, it may be entangled.
     is_held : bool
         Whether the person still pulls.
     steps : int
-        Newton steps towards the present wish, or since `from_rest` began.
+        Newton steps towards the present wish.
     """
 
     frame: int
@@ -51,9 +48,13 @@ class PoseInProgress:
     start: Pose | None
     gesture: object
     drag: Drag | None = None
-    from_rest: Drag | None = None
     is_held: bool = True
     steps: int = 0
+
+    @property
+    def is_at_rest(self) -> bool:
+        """Whether the solver has found the pose, and moves nothing any more."""
+        return self.drag is not None and self.drag.is_over
 
 
 @dataclass(slots=True, kw_only=True, eq=False)

@@ -9,7 +9,7 @@ import numpy as np
 from app.document import Clip, Figure, Pose, Target, resting_pose, time_of
 from app.motion import Animation, PoseSampler
 from engine.arrays import Booleans, Complexes
-from engine.deform import Deformer, Handles, State, Status, Wish
+from engine.deform import Deformer, Handles, State, Wish
 from engine.maps import Boundary, Bounds, HarmonicMap, certify
 
 # A pose that the present bounds do not allow is the start of a drag back into them: its own
@@ -106,26 +106,10 @@ class Drag:
         deformer = rig.within_bounds_of(pose)
         return cls(rig=rig, deformer=deformer, state=deformer.start(rig.figure.map_of(pose)))
 
-    @classmethod
-    def from_rest(cls, rig: Rig) -> Self:
-        """Return the drag that begins with the drawing as it is."""
-        return cls(rig=rig, deformer=rig.deformer, state=rig.deformer.start())
-
     @property
     def is_over(self) -> bool:
         """Whether more steps would change nothing."""
         return self.state.status.is_final
-
-    @property
-    def has_arrived(self) -> bool:
-        """Whether the drag came to rest with nothing in its way."""
-        return self.state.status is Status.CONVERGED
-
-    @property
-    def lag(self) -> float:
-        """How far the handles are from their targets, root mean square over the drawing's size."""
-        last = self.state.statistics
-        return np.inf if last is None else last.handle_error
 
     def towards(self, targets: Mapping[int, Target], steps: int) -> "Drag":
         """Return the drag after some steps towards the targets, or fewer if it comes to rest."""

@@ -32,11 +32,8 @@ POSING, INSERTING = "Posing", "Inserting a key"
 STEPS, HASTE = 2, 0.004
 # While the hand rests: the seconds of one job, as many as fit between two pictures.
 REST = 0.012
-# Steps after the hand let go; a drag that is free to come to rest needs far fewer.
-MOST_STEPS = 300
-# Part of a pose's lag that another pose may have at most to take its place: less would be a jump
-# for little.
-MUCH_LESS = 0.5
+# Steps towards one wish; a drag comes to rest in far fewer.
+MOST_STEPS = 600
 
 
 def pull(session: Session, wishes: Mapping[int, Target], *, gesture: object | None = None) -> None:
@@ -62,14 +59,14 @@ def let_go(session: Session) -> None:
         posing = session.project.posing
         posing.is_held = False
         if POSING not in session.jobs.kinds:
-            _finish(session, session.project, posing)
+            _end(session.project, posing)
 
 
 def settle(session: Session) -> None:
     """Bring a pose to rest that the playhead has left; called once a frame."""
     project = session.project
     if project and project.settling and POSING not in session.jobs.kinds:
-        _finish(session, project, project.settling)
+        _end(project, project.settling)
 
 
 def drop(session: Session) -> None:
@@ -246,7 +243,7 @@ def _follow(session: Session, project: Project, posing: PoseInProgress) -> None:
     """Let the worker go on, unless it is at it: then it goes on when that is delivered."""
     if POSING in session.jobs.kinds:
         return
-    puppet, targets, drag = project.puppet, posing.targets, posing.from_rest or posing.drag
+    puppet, targets = project.puppet, posing.targets
     begin = partial(
         _drag_from,
         posing.start,
@@ -263,7 +260,7 @@ def _follow(session: Session, project: Project, posing: PoseInProgress) -> None:
     session.jobs.put(
         Job(
             kind=POSING,
-            work=partial(_take_steps, drag, begin, targets, _pace(posing), session.clock),
+            work=partial(_take_steps, posing.drag, begin, targets, _pace(posing), session.clock),
             done=partial(_go_on, session, project, posing, targets),
             failed=failed,
             urgent=True,
@@ -331,25 +328,17 @@ def _go_on(
     project.puppet.rig = steps.drag.rig
     if posing.targets is targets:
         posing.steps += steps.taken
-    if posing.from_rest is None:
-        posing.drag = steps.drag
-        _accept(session, project, posing, targets)
-    else:
-        posing.from_rest = steps.drag
+    posing.drag = steps.drag
+    _accept(session, project, steps.drag.pose(targets), posing)
     rests = steps.drag.is_over and posing.targets == targets
-    if not rests and (posing.is_held or posing.steps < MOST_STEPS):
+    if not rests and posing.steps < MOST_STEPS:
         _follow(session, project, posing)
     elif not posing.is_held:
-        _finish(session, project, posing)
+        _end(project, posing)
 
 
-def _accept(
-    session: Session, project: Project, posing: PoseInProgress, targets: Mapping[int, Target]
-) -> None:
+def _accept(session: Session, project: Project, pose: Pose, posing: PoseInProgress) -> None:
     """Put the solver's newest map into the document, or show it unkeyed."""
-    if posing.drag is None:
-        return
-    pose = posing.drag.pose(targets)
     if session.preferences.auto_key or posing is project.settling:
         hold(project, posing.frame, pose, gesture=posing.gesture)
     else:
@@ -367,19 +356,6 @@ def hold(project: Project, frame: int, pose: Pose, gesture: object) -> None:
     unkeyed = project.history.unkeyed
     if unkeyed is not None and (unkeyed.figure, unkeyed.frame) == (project.active, frame):
         project.history.pose(None, gesture=gesture)
-
-
-def _finish(session: Session, project: Project, posing: PoseInProgress) -> None:
-    """End a pull that was let go and rests; one that is held back is tried from rest, too."""
-    drag, other = posing.drag, posing.from_rest
-    if drag is not None and other is None and not drag.has_arrived:
-        posing.from_rest, posing.steps = Drag.from_rest(drag.rig), 0
-        _follow(session, project, posing)
-        return
-    if drag is not None and other is not None and other.lag < MUCH_LESS * drag.lag:
-        posing.drag = other
-        _accept(session, project, posing, posing.targets)
-    _end(project, posing)
 
 
 def _end(project: Project, posing: PoseInProgress) -> None:

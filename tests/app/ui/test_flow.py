@@ -1,7 +1,5 @@
 """The main job, through the window's own widgets: from a sample to exported frames."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 from PIL import Image
@@ -12,7 +10,6 @@ from app.document.settings import ExportSettings, Meshing
 from app.editor.action import do
 from app.editor.actions import editing, exporting, keys, playback, posing, saving, viewing
 from app.render.view import View
-from app.solving.drag import Drag
 from app.storage.assets import sample_images
 from app.ui.viewport import badges, marks
 from engine.deform import Status
@@ -131,37 +128,6 @@ def test_dragging_follows_and_is_one_step(window, bar, monkeypatch):
     assert bar.document is before
 
 
-class CaughtDrag(Drag):
-    """A drag of an entangled shape: one step brings it to the bounds, and none leads on."""
-
-    def towards(self, targets, steps):  # noqa: ARG002
-        state = self.deformer.step(self.state, self.rig.wish(targets))
-        return CaughtDrag(
-            rig=self.rig, deformer=self.deformer, state=replace(state, status=Status.AT_LIMITS)
-        )
-
-    @classmethod
-    def from_rest(cls, rig):
-        return Drag.from_rest(rig)
-
-
-def test_a_shape_that_is_caught_comes_free_when_the_hand_lets_go(window, bar, monkeypatch):
-    monkeypatch.setattr(posing, "Drag", CaughtDrag)
-    session = window.session
-    wanted = handle_places(bar)[1] + 150j
-    first = bar.document
-    posing.pull(session, {1: Target(position=wanted)})
-    window.settle()
-    assert abs(handle_places(bar)[1] - wanted) > 50
-    posing.let_go(session)
-    window.settle()
-    assert bar.posing is None
-    assert abs(handle_places(bar)[1] - wanted) < 5
-    assert bar.document.figures[0].keys[0].pose.certificate.certified
-    editing.undo(session)
-    assert bar.document is first
-
-
 @pytest.mark.parametrize("leave", [playback.toggle_play, lambda s: playback.seek(s, 24)])
 def test_a_pose_that_the_playhead_leaves_comes_to_rest(window, bar, leave):
     session = window.session
@@ -229,7 +195,7 @@ def test_the_coarse_mesh_is_shown_while_the_playhead_moves(window):
     assert project.puppet.shown.mesh is project.puppet.fine.value.mesh
 
 
-def test_a_shape_is_left_alone_where_another_start_gains_little(window, bar):
+def test_a_shape_that_is_held_back_is_left_alone_when_the_hand_lets_go(window, bar):
     session = window.session
     posing.pull(session, {1: Target(position=handle_places(bar)[1] + 9000)})
     window.settle()

@@ -53,8 +53,9 @@ def test_a_hand_that_rests_gets_as_many_steps_as_fit_before_the_next_picture(win
 
 def test_nothing_moves_once_the_pose_rests(window, bar):
     pull(window, bar, 60j)
+    assert not bar.posing.is_at_rest
     window.settle()
-    assert bar.posing.drag.is_over
+    assert bar.posing.is_at_rest
     rested, shown = bar.document, bar.puppet.shown.positions
     window.frames(20)
     assert posing.POSING not in window.session.jobs.kinds
