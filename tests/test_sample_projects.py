@@ -45,6 +45,7 @@ def test_a_sample_begins_and_ends_as_it_was_drawn(name):
     for key in (document.figures[0].keys[0], document.figures[0].keys[-1]):
         assert_allclose(document.figures[0].map_of(key.pose)(vertices), vertices, rtol=0, atol=1e-2)
     assert exported_frames(document).last == document.frames.last - 1
+    assert document.export.framing == "fit"
 
 
 @pytest.mark.parametrize("name", ["character", "giraffe"])

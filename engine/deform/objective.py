@@ -97,12 +97,14 @@ class Objective:
 
     def energy(self, jet: Jet) -> float:
         """Return the objective without its barrier."""
-        density = symmetric_dirichlet(np.abs(jet.f), np.abs(jet.g))
-        pull = np.abs(jet.positions - self.wish.positions) ** 2
-        value = self.boundary.weights @ density + self.handles.stiffness @ pull
-        if self._turning.any():
-            value += self._turning_stiffness @ self._turning_angles(jet) ** 2
-        return float(value)
+        # A trial step may lead farther than numbers reach; there the energy is ∞.
+        with np.errstate(over="ignore", invalid="ignore"):
+            density = symmetric_dirichlet(np.abs(jet.f), np.abs(jet.g))
+            pull = np.abs(jet.positions - self.wish.positions) ** 2
+            value = self.boundary.weights @ density + self.handles.stiffness @ pull
+            if self._turning.any():
+                value += self._turning_stiffness @ self._turning_angles(jet) ** 2
+        return np.inf if np.isnan(value) else float(value)
 
     def within(self, jet: Jet) -> bool:
         """Tell whether the samples are strictly within the walls."""
