@@ -283,7 +283,7 @@ def test_newton_finds_the_free_minimum_in_30_steps():
     assert 2 < objective.value(jet) < 5
 
 
-@pytest.mark.parametrize("size", [1e100, 1e160, 1e300])
+@pytest.mark.parametrize("size", [1e160, 1e300])
 def test_a_trial_step_may_lead_farther_than_numbers_reach(size):
     objective, phi, psi, _ = problem(sketched=True)
     far = objective.jet(size * phi, size * psi)
