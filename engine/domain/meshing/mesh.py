@@ -37,8 +37,9 @@ class Mesh:
         """Return the undirected edges (e, 2), each once, the smaller index first, in order."""
         ends = np.concatenate([self.triangles[:, [k, (k + 1) % 3]] for k in range(3)])
         ends.sort(axis=1)
-        # One 64-bit key an edge: much faster than `np.unique` over rows.
-        keys = np.unique(ends[:, 0].astype(np.int64) << 32 | ends[:, 1])
+        # One 64-bit key an edge, and sorted: much faster than `np.unique`, of rows or of keys.
+        keys = np.sort(ends[:, 0].astype(np.int64) << 32 | ends[:, 1])
+        keys = keys[np.diff(keys, prepend=-1) > 0]
         return np.column_stack([keys >> 32, keys & 0xFFFFFFFF]).astype(np.int32)
 
 
