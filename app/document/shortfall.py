@@ -8,8 +8,9 @@ from typing import NamedTuple
 
 from app.document.figure import Figure
 from app.document.keyframe import Pose
+from engine.arrays import Complexes
 from engine.geometry import box_diagonal
-from engine.maps import Bounds
+from engine.maps import Bounds, distortion
 
 # Of the diagonal of the outline's box: a handle this far from its target falls short. A free handle
 # always gives in a little, since it pulls against the stiffness of the shape.
@@ -44,6 +45,15 @@ class Extremes(NamedTuple):
         """Return what is proven of a pose."""
         certificate = pose.certificate
         return cls(certificate.k, certificate.sigma_a, certificate.sigma_b)
+
+    @classmethod
+    def measured(cls, fz: Complexes, fzbar: Complexes) -> "Extremes":
+        """Return the extremes of a map whose derivatives at some points are these, each (p,)."""
+        return cls(
+            k=float(distortion.k(fz, fzbar).max()),
+            sigma_a=float(distortion.sigma_a(fz, fzbar).max()),
+            sigma_b=float(distortion.sigma_b(fz, fzbar).min()),
+        )
 
     def joined(self, other: "Extremes") -> "Extremes":
         """Return the worse of both."""

@@ -17,7 +17,7 @@ def shown_box(view: View) -> Box:
     return Box(view.centre - half, view.centre + half)
 
 
-def frame_view(settings: ExportSettings, picture: tuple[int, int], reach: Box) -> View:
+def frame_view(settings: ExportSettings, picture: tuple[int, int], motion: Box) -> View:
     """Return the view of every frame of an export.
 
     Parameters
@@ -26,7 +26,7 @@ def frame_view(settings: ExportSettings, picture: tuple[int, int], reach: Box) -
         Its framing and size.
     picture : tuple of int
         Width and height of the source picture.
-    reach : Box
+    motion : Box
         Around the whole motion.
 
     Notes
@@ -36,9 +36,9 @@ def frame_view(settings: ExportSettings, picture: tuple[int, int], reach: Box) -
     """
     if settings.framing == "canvas":
         return canvas_view(picture, settings.size)
-    extent = reach.upper - reach.lower
+    extent = motion.upper - motion.lower
     margin = complex(1, 1) * MARGIN * max(extent.real, extent.imag)
-    lower, upper = reach.lower - margin, reach.upper + margin
+    lower, upper = motion.lower - margin, motion.upper + margin
     if settings.size is not None:
         return fit_view(lower, upper, settings.size)
     left, bottom = math.floor(lower.real), math.floor(lower.imag)

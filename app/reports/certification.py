@@ -6,8 +6,7 @@ import numpy as np
 
 from app.document import Clip, Extremes, Variant, intervals
 from app.motion import Animation
-from engine.arrays import Complexes
-from engine.maps import Boundary, Certificate, certify, distortion
+from engine.maps import Boundary, Certificate, certify
 
 # Times in each interval. In-betweens are analytic in time: their extremes cannot hide between.
 TIMES = 65
@@ -81,7 +80,10 @@ def certify_clip(clip: Clip, variant: Variant | None = None) -> Report:
     reports = []
     for first, last in intervals(clip):
         poses = clip.keys[first].pose, clip.keys[last].pose
-        ends = [_extremes(*clip.figure.map_of(pose).derivatives(boundary.points)) for pose in poses]
+        ends = [
+            Extremes.measured(*clip.figure.map_of(pose).derivatives(boundary.points))
+            for pose in poses
+        ]
         bound = ends[0].joined(ends[1])
         inbetweens = animation.sampler.inbetweens(
             *poses, animation.variant, turns=clip.keys[first].turns
@@ -89,7 +91,7 @@ def certify_clip(clip: Clip, variant: Variant | None = None) -> Report:
         reached = bound
         for t in np.linspace(0.0, 1.0, TIMES)[1:-1]:
             frame = inbetweens.frame(np.array([1.0 - t, t]))
-            reached = reached.joined(_extremes(frame.fz, frame.fzbar))
+            reached = reached.joined(Extremes.measured(frame.fz, frame.fzbar))
         reports.append(
             IntervalReport(
                 first=clip.keys[first].frame,
@@ -99,11 +101,3 @@ def certify_clip(clip: Clip, variant: Variant | None = None) -> Report:
             )
         )
     return Report(keys=keys, intervals=tuple(reports))
-
-
-def _extremes(fz: Complexes, fzbar: Complexes) -> Extremes:
-    return Extremes(
-        k=float(distortion.k(fz, fzbar).max()),
-        sigma_a=float(distortion.sigma_a(fz, fzbar).max()),
-        sigma_b=float(distortion.sigma_b(fz, fzbar).min()),
-    )

@@ -68,12 +68,9 @@ def measure_curves(clip: Clip, motion: Motion) -> Curves:
             t = keys[first].easing(float(share))
             blended = inbetweens.frame(np.array([1.0 - t, t]))
             frames.append(start + share * (end - start))
-            k = distortion.k(blended.fz, blended.fzbar)
-            sigma_a = distortion.sigma_a(blended.fz, blended.fzbar)
-            sigma_b = distortion.sigma_b(blended.fz, blended.fzbar)
-            ks.append(k)
+            ks.append(distortion.k(blended.fz, blended.fzbar))
             taus.append(distortion.tau(blended.fz, blended.fzbar))
-            extremes.append((k.max(), sigma_a.max(), sigma_b.min()))
+            extremes.append(Extremes.measured(blended.fz, blended.fzbar))
     worst_k, worst_tau = _worst(np.array(ks)), _worst(np.array(taus))
     return Curves(
         clip=clip,

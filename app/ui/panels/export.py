@@ -40,15 +40,15 @@ def draw(session: Session, look: Look) -> list[Action]:
     if project is None or project.puppet.shown is None:
         return []
     settings = project.document.export
-    reach = project.extent.value or box_around(project.puppet.shown.positions)
-    view = frame_view(settings, project.document.canvas, reach)
+    motion = project.extent.value or box_around(project.puppet.shown.positions)
+    view = frame_view(settings, project.document.canvas, motion)
     box = shown_box(view)
     actions = [do(exporting.show_frame, box)]
     heading(look, "Picture")
     chosen = _picture(look, settings)
     chosen, more = _size(session, look, chosen, view)
     actions += more
-    _preview(look, project, settings, box, reach)
+    _preview(look, project, settings, box, motion)
     heading(look, "Frames")
     chosen = _frames(look, project, chosen)
     if chosen != settings:
@@ -226,11 +226,11 @@ def _preview_height(look: Look) -> float:
 
 
 def _preview(
-    look: Look, project: Project, settings: ExportSettings, frame: Box, reach: Box
+    look: Look, project: Project, settings: ExportSettings, frame: Box, motion: Box
 ) -> None:
     """Draw the export's frame around the drawing and all that moves."""
     canvas = Box(0j, complex(*project.document.canvas))
-    around = frame.joined(canvas).joined(reach)
+    around = frame.joined(canvas).joined(motion)
     width, height = imgui.get_content_region_avail().x, _preview_height(look)
     corner = imgui.get_cursor_screen_pos()
     extent = around.upper - around.lower
@@ -261,13 +261,13 @@ def _preview(
             draw_list.path_line_to(place(complex(point)))
         draw_list.path_stroke(ink(palette.dim), 1.3, imgui.ImDrawFlags_.closed)
     draw_list.add_rect(*ends(canvas), ink(palette.dim, 0.6))
-    draw_list.add_rect(*ends(reach), ink(palette.warning, 0.8))
+    draw_list.add_rect(*ends(motion), ink(palette.warning, 0.8))
     draw_list.add_rect(*ends(frame), ink(palette.accent), 0.0, 1.6)
     imgui.dummy(ImVec2(width, height))
     tip(
         "Blue: what the export shows, as in the viewport. Grey: the picture's canvas.\n"
         "Orange: where the motion reaches."
     )
-    is_left = not frame.contains(reach, slack=1.0)
+    is_left = not frame.contains(motion, slack=1.0)
     if is_left and project.extent.value is not None:
         small(look, "The motion leaves the frame; “All motion” shows all of it.")

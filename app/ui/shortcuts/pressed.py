@@ -43,9 +43,9 @@ def _close_menu() -> bool:
 def _nudges(session: Session) -> list[Action]:
     if session.project is None or not session.project.selected:
         return []
-    reach = 10.0 if imgui.get_io().key_shift else 1.0
+    step = 10.0 if imgui.get_io().key_shift else 1.0
     return [
-        do(posing.nudge, reach * direction)
+        do(posing.nudge, step * direction)
         for key, direction in ARROWS.items()
         if imgui.is_key_pressed(key)
     ]

@@ -141,14 +141,14 @@ def _control_points(
 ) -> Easing | None:
     palette, draw_list, em = look.palette, imgui.get_window_draw_list(), look.em
     moved = None
-    reach = 0.7 * em
+    radius = 0.7 * em
     for index, end in enumerate((_point(0, 0, corner, size), _point(1, 1, corner, size))):
         x, y = curve[2 * index : 2 * index + 2]
         centre = _point(x, y, corner, size)
         draw_list.add_line(end, centre, ink(palette.dim), 1.5)
-        imgui.set_cursor_screen_pos(ImVec2(centre.x - reach, centre.y - reach))
+        imgui.set_cursor_screen_pos(ImVec2(centre.x - radius, centre.y - radius))
         imgui.set_next_item_allow_overlap()
-        imgui.invisible_button(f"control {index + 1}", ImVec2(2 * reach, 2 * reach))
+        imgui.invisible_button(f"control {index + 1}", ImVec2(2 * radius, 2 * radius))
         hot = imgui.is_item_hovered() or imgui.is_item_active()
         tip("Drag: both points stay inside the square, so that in-betweens keep their limits")
         draw_list.add_circle_filled(centre, 0.5 * em if hot else 0.42 * em, ink(palette.desk))

@@ -88,8 +88,8 @@ def draw_box(track: Track) -> None:
 def draw_keys(track: Track) -> list[Action]:
     """Draw the keys, and take what the pointer does to them."""
     actions: list[Action] = []
-    reach = _reach(track)
-    grip = GRIP * reach
+    radius = _radius(track)
+    grip = GRIP * radius
     gesture = track.project.timing.gesture
     draw_list = imgui.get_window_draw_list()
     low, high = ImVec2(track.left, track.track_top), ImVec2(track.right, track.track_bottom)
@@ -102,7 +102,7 @@ def draw_keys(track: Track) -> list[Action]:
         origin = _origin(gesture, key.frame)
         track.button(f"key {origin}", *box, right=True)
         is_held = isinstance(gesture, KeyDrag) and key.frame == gesture.pressed + gesture.by
-        _draw_key(track, key, 1.15 * reach if in_hand() or is_held else reach)
+        _draw_key(track, key, 1.15 * radius if in_hand() or is_held else radius)
         if is_pressed():
             actions += _press(track, key.frame)
         if imgui.is_item_clicked(imgui.MouseButton_.right):
@@ -116,7 +116,7 @@ def draw_keys(track: Track) -> list[Action]:
     return actions
 
 
-def _reach(track: Track) -> float:
+def _radius(track: Track) -> float:
     """Return how large keys are, in pixels: smaller where they would cover each other."""
     pairs = pairwise(track.project.figure.keys)
     gap = min((later.frame - key.frame for key, later in pairs), default=LAST_FRAME)
@@ -146,20 +146,20 @@ def _press(track: Track, frame: int) -> list[Action]:
     return [do(editing.choose_keys, chosen), do(timeline_pointing.begin, drag, track.strip)]
 
 
-def _draw_key(track: Track, key: Keyframe, reach: float) -> None:
+def _draw_key(track: Track, key: Keyframe, radius: float) -> None:
     palette, draw_list, em = track.look.palette, imgui.get_window_draw_list(), track.look.em
     x, y = track.x(key.frame), track.middle
     fill, warns = _colour(track, key)
     chosen = key.frame in track.project.chosen
     if chosen:
-        _diamond(ImVec2(x, y), reach + 0.24 * em, ink(palette.accent, 0.35))
-    _diamond(ImVec2(x, y), reach + 0.12 * em, ink(palette.desk))
-    _diamond(ImVec2(x, y), reach, ink(fill))
+        _diamond(ImVec2(x, y), radius + 0.24 * em, ink(palette.accent, 0.35))
+    _diamond(ImVec2(x, y), radius + 0.12 * em, ink(palette.desk))
+    _diamond(ImVec2(x, y), radius, ink(fill))
     gesture = track.project.timing.gesture
     if isinstance(gesture, KeyDrag) and gesture.by and key.frame == gesture.pressed + gesture.by:
         write_tag(track, x, f"{key.frame}  ({gesture.by:+d})")
     if warns and chosen:
-        _diamond(ImVec2(x, y), 0.45 * reach, ink(warns))
+        _diamond(ImVec2(x, y), 0.45 * radius, ink(warns))
     if warns:
         draw_list.add_circle_filled(ImVec2(x, track.bar_top - 0.1 * em), 0.2 * em, ink(warns))
 
@@ -175,12 +175,12 @@ def _colour(track: Track, key: Keyframe) -> tuple[ImVec4, ImVec4 | None]:
     return (palette.accent if key.frame in track.project.chosen else warns or palette.text), warns
 
 
-def _diamond(centre: ImVec2, reach: float, colour: int) -> None:
+def _diamond(centre: ImVec2, radius: float, colour: int) -> None:
     imgui.get_window_draw_list().add_quad_filled(
-        ImVec2(centre.x, centre.y - reach),
-        ImVec2(centre.x + reach, centre.y),
-        ImVec2(centre.x, centre.y + reach),
-        ImVec2(centre.x - reach, centre.y),
+        ImVec2(centre.x, centre.y - radius),
+        ImVec2(centre.x + radius, centre.y),
+        ImVec2(centre.x, centre.y + radius),
+        ImVec2(centre.x - radius, centre.y),
         colour,
     )
 

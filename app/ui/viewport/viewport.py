@@ -44,27 +44,27 @@ def draw(session: Session, look: Look, texture: int | None) -> list[Action]:
     imgui.get_window_draw_list().add_image(
         imgui.ImTextureRef(texture), corner, opposite, ImVec2(0, 1), ImVec2(1, 0)
     )
-    stage = _Stage(project, project.puppet.shown, project.view(session.screen), corner, density)
+    canvas = _Canvas(project, project.puppet.shown, project.view(session.screen), corner, density)
     # Before the canvas: what comes first gets the pointer. Were they laid over it, a press in the
     # frame in which the pointer arrives would be the canvas's, or nobody's.
-    hovered, pressed, over_handles = _handles(session, look, stage)
+    hovered, pressed, over_handles = _handles(session, look, canvas)
     imgui.set_cursor_screen_pos(corner)
     imgui.invisible_button("canvas", room, _ANY_BUTTON)
     on_canvas = imgui.is_item_hovered()
     over = imgui.is_window_hovered() or imgui.is_item_active()
-    ring = _ring(session, stage)
+    ring = _ring(session, canvas)
     on_ring = ring is not None and on_canvas and hovered is None and ring.is_pointed(look)
-    spot = _spot(stage, hovered, on_ring=on_ring)
+    spot = _spot(canvas, hovered, on_ring=on_ring)
     if pressed or _is_canvas_pressed():
         actions.append(do(pointing.press, spot))
-    actions += _navigate(stage, over=over)
+    actions += _navigate(canvas, over=over)
     actions += over_handles
-    actions += _go_on(session, stage)
+    actions += _go_on(session, canvas)
     if hovered != session.hovered:
         actions.append(do(pointing.hover, hovered))
     if ring is not None:
         draw_ring(look, ring, is_pointed=on_ring and session.pointer is None)
-    hint = _hint(session, stage, spot) if on_canvas or hovered is not None else ""
+    hint = _hint(session, canvas, spot) if on_canvas or hovered is not None else ""
     if hint != session.hint:
         actions.append(do(pointing.explain, hint))
     actions += draw_badges(look, project, corner, room)
@@ -79,7 +79,7 @@ _ANY_BUTTON = (
 )
 
 
-class _Stage:
+class _Canvas:
     """Where the picture is on the screen."""
 
     def __init__(
@@ -109,33 +109,33 @@ class _Stage:
         return bool(contains(outline, np.array([place]))[0])
 
 
-def _spot(stage: _Stage, handle: int | None, *, on_ring: bool) -> Spot:
+def _spot(canvas: _Canvas, handle: int | None, *, on_ring: bool) -> Spot:
     """Return where the pointer is, and what is under it."""
-    io, place = imgui.get_io(), stage.pointer
+    io, place = imgui.get_io(), canvas.pointer
     return Spot(
         place=place,
         handle=handle,
         on_ring=on_ring,
-        on_shape=stage.is_on_shape(place),
+        on_shape=canvas.is_on_shape(place),
         ctrl=io.key_ctrl,
         shift=io.key_shift,
         alt=io.key_alt,
     )
 
 
-def _ring(session: Session, stage: _Stage) -> Ring | None:
+def _ring(session: Session, canvas: _Canvas) -> Ring | None:
     """Return the ring around the one handle that is selected, where it can be turned."""
-    project, gesture = stage.project, session.pointer
+    project, gesture = canvas.project, session.pointer
     held = next((m for m in gesture.marks if isinstance(m, SweepMark)), None) if gesture else None
     if not session.overlays.handles or project.playhead.since is not None:
         return None
     if len(project.selected) != 1 or not (gesture is None or held is not None):
         return None
-    handles = stage.shown.clip.figure.handles
-    found = zip(handles, stage.shown.handle_places, stage.shown.handle_turns, strict=True)
+    handles = canvas.shown.clip.figure.handles
+    found = zip(handles, canvas.shown.handle_places, canvas.shown.handle_turns, strict=True)
     for handle, place, turn in found:
         if handle.id in project.selected:
-            centre = stage.point(complex(place))
+            centre = canvas.point(complex(place))
             if held is not None:
                 return Ring(centre, held.turn, is_held=True, swept=held.swept)
             return Ring(centre, turn, is_held=False, swept=0.0)
@@ -148,23 +148,25 @@ def _is_canvas_pressed() -> bool:
     return is_pressed and not imgui.is_key_down(imgui.Key.space)
 
 
-def _navigate(stage: _Stage, *, over: bool) -> list[Action]:
+def _navigate(canvas: _Canvas, *, over: bool) -> list[Action]:
     """Pan by the middle button or Space and the left one; zoom by the wheel at the pointer."""
     io = imgui.get_io()
-    view = stage.view
+    view = canvas.view
     with_space = imgui.is_key_down(imgui.Key.space) and imgui.is_mouse_down(0)
     if over and (imgui.is_mouse_down(imgui.MouseButton_.middle) or with_space):
-        delta = complex(io.mouse_delta.x, io.mouse_delta.y) * stage.density
+        delta = complex(io.mouse_delta.x, io.mouse_delta.y) * canvas.density
         actions = [do(pointing.use_space)] if with_space else []
         return [*actions, do(viewing.look_from, view.panned(delta))] if delta else actions
     if over and io.mouse_wheel:
         scale = min(max(view.scale * ZOOM_STEP**io.mouse_wheel, SMALLEST_ZOOM), LARGEST_ZOOM)
-        pixel = view.to_pixels(np.array([stage.pointer]))[0]
+        pixel = view.to_pixels(np.array([canvas.pointer]))[0]
         return [do(viewing.look_from, view.zoomed(scale / view.scale, complex(pixel)))]
     return []
 
 
-def _handles(session: Session, look: Look, stage: _Stage) -> tuple[int | None, bool, list[Action]]:
+def _handles(
+    session: Session, look: Look, canvas: _Canvas
+) -> tuple[int | None, bool, list[Action]]:
     """Lay a button over each handle.
 
     Return the one under the pointer, whether it was pressed, and what its menu asks for.
@@ -172,13 +174,13 @@ def _handles(session: Session, look: Look, stage: _Stage) -> tuple[int | None, b
     hovered: int | None = None
     pressed = False
     actions: list[Action] = []
-    if not session.overlays.handles or stage.project.playhead.since is not None:
+    if not session.overlays.handles or canvas.project.playhead.since is not None:
         return hovered, pressed, actions
     radius = GRIP * look.em
-    handles = zip(stage.shown.clip.figure.handles, stage.shown.handle_places, strict=True)
+    handles = zip(canvas.shown.clip.figure.handles, canvas.shown.handle_places, strict=True)
     # The one that is drawn last lies on top.
     for handle, place in reversed(list(handles)):
-        centre = stage.point(complex(place))
+        centre = canvas.point(complex(place))
         imgui.set_cursor_screen_pos(ImVec2(centre.x - radius, centre.y - radius))
         imgui.invisible_button(
             f"handle {handle.id}",
@@ -191,20 +193,20 @@ def _handles(session: Session, look: Look, stage: _Stage) -> tuple[int | None, b
             pressed = True
         if session.pointer is None and imgui.is_item_clicked(imgui.MouseButton_.right):
             imgui.open_popup(f"menu of handle {handle.id}")
-        actions += _menu(stage, handle.id)
+        actions += _menu(canvas, handle.id)
     return hovered, pressed, actions
 
 
-def _menu(stage: _Stage, identity: int) -> list[Action]:
+def _menu(canvas: _Canvas, identity: int) -> list[Action]:
     actions: list[Action] = []
     if not imgui.begin_popup(f"menu of handle {identity}"):
         return actions
-    handle = stage.project.figure.handle(identity)
-    target = stage.shown.pose.targets.get(identity) if stage.shown.pose else None
+    handle = canvas.project.figure.handle(identity)
+    target = canvas.shown.pose.targets.get(identity) if canvas.shown.pose else None
     item = imgui.internal.menu_item_ex  # as menu_item_simple, with icons in a column
     if item("Delete", icons.ICON_FA_TRASH, with_key(ALT, "click")):
         actions.append(do(posing.remove_handles, frozenset({identity})))
-    is_anchor = handle.position == stage.project.figure.anchor
+    is_anchor = handle.position == canvas.project.figure.anchor
     label = "Automatic anchor" if is_anchor else "Make it the anchor"
     if item(label, icons.ICON_FA_ANCHOR, with_key(CTRL, "click")):
         actions.append(do(posing.anchor_at, identity))
@@ -215,7 +217,7 @@ def _menu(stage: _Stage, identity: int) -> list[Action]:
     return actions
 
 
-def _go_on(session: Session, stage: _Stage) -> list[Action]:
+def _go_on(session: Session, canvas: _Canvas) -> list[Action]:
     """Follow the pointer in what it began; end it where the button is let go."""
     gesture = session.pointer
     if gesture is None:
@@ -224,29 +226,29 @@ def _go_on(session: Session, stage: _Stage) -> list[Action]:
         return [do(pointing.cancel)]
     for mark in gesture.marks:
         if isinstance(mark, BoxMark):
-            low, high = stage.point(mark.corner), stage.point(mark.opposite)
+            low, high = canvas.point(mark.corner), canvas.point(mark.opposite)
             draw_list = imgui.get_window_draw_list()
             accent = imgui.get_style_color_vec4(imgui.Col_.nav_cursor)
             draw_list.add_rect_filled(low, high, ink(accent, 0.12))
             draw_list.add_rect(low, high, ink(accent, 0.8))
-    pointer, delta = stage.pointer, imgui.get_io().mouse_delta
+    pointer, delta = canvas.pointer, imgui.get_io().mouse_delta
     moves = [do(pointing.move, pointer)] if delta.x or delta.y else []
     is_held = imgui.is_mouse_down(imgui.MouseButton_.left)
     return moves if is_held else [*moves, do(pointing.end, pointer)]
 
 
-def _hint(session: Session, stage: _Stage, spot: Spot) -> str:
+def _hint(session: Session, canvas: _Canvas, spot: Spot) -> str:
     """Return what can be done where the pointer is."""
     if session.pointer is not None:
         return "Esc takes it back"
-    if stage.project.playhead.since is not None:
+    if canvas.project.playhead.since is not None:
         return "Space stops"
     if not session.overlays.handles:
         return "The handles are hidden: H shows them"
     found = [hint for tool in TOOLS for hint in tool.hints(session, spot)]
     told = [f"{_how(hint)} {hint.what}" for hint in found]
     if spot.handle is not None:
-        names = {handle.id: handle.name for handle in stage.shown.clip.figure.handles}
+        names = {handle.id: handle.name for handle in canvas.shown.clip.figure.handles}
         return f"{names[spot.handle]}: {', '.join(told)}"
     if not (spot.on_shape or spot.on_ring):
         told += ["wheel to zoom", "middle drag to move the view"]
