@@ -99,10 +99,15 @@ def _weights(offset: float) -> tuple[Floats, Floats]:
     """
     place = (np.arange(-HALF_WINDOW, HALF_WINDOW + 1) - offset) / (HALF_WINDOW + 0.5)
     bump = np.exp(-1.0 / np.maximum(1.0 - place**2, 1e-3))
-    powers = np.vander(place, 3, increasing=True)
-    weighted = powers.T * bump
-    fit: Floats = np.linalg.solve(weighted @ powers, weighted)[0]
-    return fit, bump / bump.sum()
+    # The first row of the inverse of the parabola's normal equations, by its cofactors: in a frame
+    # that is played, this is most of what ρ costs.
+    square = place * place
+    first, second = bump * place, bump * square
+    m0, m1, m2 = float(bump.sum()), float(first.sum()), float(second.sum())
+    m3, m4 = float(second @ place), float(second @ square)
+    c0, c1, c2 = m2 * m4 - m3 * m3, m2 * m3 - m1 * m4, m1 * m3 - m2 * m2
+    fit: Floats = (c0 * bump + c1 * first + c2 * second) / (m0 * c0 + m1 * c1 + m2 * c2)
+    return fit, bump / m0
 
 
 def _fits(values: Floats, offset: float) -> Floats:
