@@ -3,6 +3,8 @@
 import argparse
 
 PARTS = ("domain", "deform", "interpolate", "streaming", "export", "ui")
+# Only when they are asked for: they take a quarter of an hour.
+LONG_PARTS = ("limits",)
 
 EPILOG = """\
 Everything is measured side by side in one run; the last column is the ratio to the first row of
@@ -11,6 +13,7 @@ each table. Times are those of one processor core unless a row says otherwise.
 examples:
   lissom bench
   lissom bench domain
+  lissom bench limits
 """
 
 
@@ -21,6 +24,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "parts",
         metavar="PART",
         nargs="*",
-        choices=[*PARTS, []],
-        help=f"what to measure: {', '.join(PARTS)} (default: all)",
+        choices=[*PARTS, *LONG_PARTS, []],
+        help=f"what to measure: {', '.join(PARTS)} (default: all of these), or "
+        f"{', '.join(LONG_PARTS)}, which takes a quarter of an hour",
     )

@@ -1,0 +1,220 @@
+"""The deformer at its limits: hard requests, and how they come to rest; a quarter of an hour."""
+
+import time
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import cycle, pairwise
+
+import numpy as np
+
+from app.cli.bench.deform import DRAG_STEPS, star
+from app.cli.bench.table import Row, Table
+from app.storage import decode_picture, sample_images
+from engine.arrays import Complexes
+from engine.deform import (
+    Deformer,
+    Handles,
+    State,
+    Status,
+)
+from engine.domain import build_domain
+from engine.geometry import contains
+from engine.maps import Boundary, Bounds, certify
+
+# Hard requests: bounds from the tightest to the widest, and drawings to try them on.
+ROW_OF_BOUNDS = (
+    Bounds(k=0.13, sigma_a=1.3, sigma_b=0.77),
+    Bounds(k=0.35, sigma_a=1.6, sigma_b=0.6),
+    Bounds(k=0.6, sigma_a=2.0, sigma_b=0.5),
+    Bounds(k=0.6, sigma_a=2.5, sigma_b=0.4),
+    Bounds(k=0.7, sigma_a=3.0, sigma_b=0.33),
+    Bounds(k=0.8, sigma_a=5.0, sigma_b=0.2),
+    Bounds(k=0.9, sigma_a=10.0, sigma_b=0.1),
+    Bounds(k=0.95, sigma_a=20.0, sigma_b=0.05),
+)
+DRAWINGS = ("bar", "s", "character", "giraffe")
+PATH_ROWS = 20
+# What is left of a motion that can be seen, of the diagonal.
+SEEN = 1e-4
+
+
+def tables() -> Iterator[Table]:
+    """Measure hard requests, and rows of bounds under them."""
+    yield _hard_requests()
+    yield _rows_of_bounds()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Request:
+    """Handles that are asked for something that the bounds may not allow."""
+
+    boundary: Boundary
+    bounds: Bounds
+    points: Complexes
+    targets: Complexes
+
+    def deformer(self) -> Deformer:
+        return Deformer(
+            boundary=self.boundary,
+            handles=Handles.place(self.boundary, self.points),
+            bounds=self.bounds,
+        )
+
+
+def _hard_requests() -> Table:
+    """Bring 72 requests to rest from the shape at rest, and compare with other ways there."""
+    steps, totals, seconds, resumed, paths, rest = [], [], [], [], [], []
+    optimal = certified = 0
+    requests = list(_requests())
+    for request in requests:
+        deformer = request.deformer()
+        wish = deformer.handles.wish(request.targets)
+        begun = time.process_time()
+        state, total = deformer.settle(deformer.start(), wish)
+        seconds.append(time.process_time() - begun)
+        totals.append(total)
+        last, found = state.statistics, state.outcome
+        if last is None or found is None:
+            continue
+        steps.append(found.steps)
+        optimal += state.status in (Status.CONVERGED, Status.AT_LIMITS)
+        certified += certify(state.map, request.boundary, request.bounds).certified
+        again, _ = deformer.settle(deformer.start(state.map), wish)
+        resumed.append(1.0 - _energy(again) / last.objective)
+        paths.append(last.objective / _energy(_along_path(request)))
+        rest.append(_rest_after_release(request))
+    resumed_most, path_ratio = max(resumed), np.quantile(paths, 0.95)
+    return Table(
+        title=f"{len(requests)} hard requests, from the shape at rest",
+        rows=(
+            _fact("certified", f"{certified} of {len(requests)}"),
+            _fact("proven minima, optimality measure at most 1e-6", f"{optimal}"),
+            _fact("Newton steps of the way that is kept", _median_and_most(steps)),
+            _fact("Newton steps of all ways", _median_and_most(totals)),
+            _fact("seconds for all ways", _median_and_most(seconds)),
+            _fact("gain by resuming, of the energy", f"at most {resumed_most:.1e}"),
+            _fact("energy over that of a path in 20 rows", f"95 % at most {path_ratio:.4f}"),
+            _fact("processor's seconds to rest after release", _median_and_most(rest)),
+        ),
+    )
+
+
+def _rows_of_bounds() -> Table:
+    """Widen the bounds under the same requests: the energy must not rise."""
+    rises = []
+    for request in list(_requests())[::12]:
+        energies = []
+        for bounds in ROW_OF_BOUNDS:
+            deformer = _Request(
+                boundary=request.boundary,
+                bounds=bounds,
+                points=request.points,
+                targets=request.targets,
+            ).deformer()
+            wish = deformer.handles.wish(request.targets)
+            energies.append(_energy(deformer.settle(deformer.start(), wish)[0]))
+        rises.append(max(after / before - 1.0 for before, after in pairwise(energies)))
+    return Table(
+        title=f"{len(rises)} requests under {len(ROW_OF_BOUNDS)} bounds, from tight to wide",
+        rows=tuple(
+            _fact(f"largest rise of the energy, request {number}", f"{max(rise, 0.0):.1e}")
+            for number, rise in enumerate(rises)
+        ),
+    )
+
+
+def _requests() -> Iterator[_Request]:
+    """Yield six kinds of requests on each shape, under bounds that follow each other."""
+    bounds = cycle(ROW_OF_BOUNDS[(5 * place) % 8] for place in range(8))
+    shapes = [star(25), star(50)]
+    for name in DRAWINGS:
+        picture = decode_picture((sample_images() / f"{name}.png").read_bytes(), "")
+        domain, _ = build_domain(picture.rgba, triangles=1000, detail="coarse")
+        shapes.append(Boundary.sample(domain.outline, domain.cage))
+    for number, boundary in enumerate(shapes):
+        rng = np.random.default_rng(number)
+        size = boundary.size
+        for _ in range(2):
+            points = _inside(boundary, rng)
+            far = rng.normal(size=6) + 1j * rng.normal(size=6)
+            middle = points.mean()
+            grid = _grid(boundary)
+            pulled = np.zeros(len(grid))
+            pulled[rng.integers(len(grid))] = 0.12 * size
+            asked = (
+                (points, points + 0.15 * size * far),
+                (points, points + 0.05 * size * far),
+                (points, middle + 0.02 * size * np.exp(1j * np.arange(6))),
+                (points, points[rng.permutation(6)]),
+                (points, middle + 3 * np.exp(1j * rng.normal()) * (points - middle)),
+                (grid, grid + pulled * np.exp(2j * np.pi * rng.random())),
+            )
+            for places, targets in asked:
+                yield _Request(
+                    boundary=boundary, bounds=next(bounds), points=places, targets=targets
+                )
+
+
+def _inside(boundary: Boundary, rng: np.random.Generator) -> Complexes:
+    """Return six random points of a shape."""
+    low, spread = _box(boundary)
+    points = low + spread.real * rng.random(2000) + 1j * spread.imag * rng.random(2000)
+    return points[contains(boundary.outline, points)][:6]
+
+
+def _grid(boundary: Boundary) -> Complexes:
+    """Return the points of a grid of 5 × 5 that are in a shape."""
+    low, spread = _box(boundary)
+    share = np.arange(1, 6) / 6
+    grid = (low + spread.real * share[:, None] + 1j * spread.imag * share).ravel()
+    return grid[contains(boundary.outline, grid)]
+
+
+def _box(boundary: Boundary) -> tuple[complex, complex]:
+    x, y = boundary.outline.real, boundary.outline.imag
+    return complex(x.min(), y.min()), complex(np.ptp(x), np.ptp(y))
+
+
+def _along_path(request: _Request) -> State:
+    """Follow the straight way in rows as a recorded drag does, and come to rest."""
+    deformer = request.deformer()
+    state = deformer.start()
+    for share in np.arange(1, PATH_ROWS + 1) / PATH_ROWS:
+        row = request.points + share * (request.targets - request.points)
+        state, _ = deformer.follow(state, deformer.handles.wish(row))
+    return deformer.settle(state, deformer.handles.wish(request.targets))[0]
+
+
+def _rest_after_release(request: _Request) -> float:
+    """Return the seconds from the end of a drag until the outline hardly moves any more."""
+    deformer = request.deformer()
+    state = deformer.start()
+    for share in np.arange(1, DRAG_STEPS + 1) / DRAG_STEPS:
+        row = request.points + share * (request.targets - request.points)
+        state = deformer.step(state, deformer.handles.wish(row))
+    wish = deformer.handles.wish(request.targets)
+    begun = time.process_time()
+    seen = [(0.0, state)]
+    while not state.status.is_final:
+        state = deformer.step(state, wish)
+        seen.append((time.process_time() - begun, state))
+    outline = request.boundary.outline
+    end = state.map(outline)
+    moving = [
+        second
+        for second, earlier in seen
+        if np.abs(earlier.map(outline) - end).max() > SEEN * request.boundary.size
+    ]
+    return max(moving, default=0.0)
+
+
+def _energy(state: State) -> float:
+    return np.inf if state.statistics is None else state.statistics.objective
+
+
+def _median_and_most(values: list[float] | list[int]) -> str:
+    return f"median {np.median(values):.3g}, at most {max(values):.3g}"
+
+
+def _fact(name: str, note: str) -> Row:
+    return Row(name=name, seconds=None, note=note)
