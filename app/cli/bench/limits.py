@@ -1,4 +1,4 @@
-"""The deformer at its limits: hard requests, and how they come to rest; a quarter of an hour."""
+"""The deformer at its limits: hard requests, and how they come to rest; it takes many minutes."""
 
 import time
 from collections.abc import Iterator

@@ -3,7 +3,7 @@
 import argparse
 
 PARTS = ("domain", "deform", "interpolate", "streaming", "export", "ui")
-# Only when they are asked for: they take a quarter of an hour.
+# Only when they are asked for: they take many minutes.
 LONG_PARTS = ("limits",)
 
 EPILOG = """\
@@ -26,5 +26,5 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         nargs="*",
         choices=[*PARTS, *LONG_PARTS, []],
         help=f"what to measure: {', '.join(PARTS)} (default: all of these), or "
-        f"{', '.join(LONG_PARTS)}, which takes a quarter of an hour",
+        f"{', '.join(LONG_PARTS)}, which takes many minutes",
     )
