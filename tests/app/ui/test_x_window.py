@@ -66,7 +66,6 @@ class Person:
         self.display = display
         self._home = home
         self.settings = home / ".config" / "lissom"
-        self.handle = None  # the colour of a selected one
         # No programs for file dialogs on this path, and nobody else's settings.
         self._environment = {
             "DISPLAY": display,
@@ -133,15 +132,12 @@ class Person:
 
     def drag(self, start, end, steps=6):
         """Drag a selected handle, and wait until the shape has followed."""
-        if self.handle is None:
-            # Once, where it rests: after a drag it may still be on its last pixels.
-            self.handle = middle(self.see(start))
         words = ["mousemove", *start, "mousedown", 1]
         for step in range(1, steps + 1):
             place = (start[i] + (end[i] - start[i]) * step // steps for i in (0, 1))
             words += ["mousemove", *place]
         self.tell(*words, "mouseup", 1)
-        until(lambda: is_as(middle(self.see(end)), self.handle), "the handle")
+        until(lambda: is_orange(middle(self.see(end))), "the handle")
 
     def quit(self, process):
         """Press the keys that end the program, until it does: a window that just came is deaf."""
@@ -178,8 +174,10 @@ def middle(look):
     return look[NEAR - 5 : NEAR + 5, NEAR - 5 : NEAR + 5].mean(axis=(0, 1))
 
 
-def is_as(colour, other):
-    return np.abs(colour - other).max() < 25
+def is_orange(colour):
+    """Tell whether a selected handle is there, wherever between the pixels its middle lies."""
+    red, _, blue = colour
+    return red > 200 and blue < 0.4 * red
 
 
 def differ(one, other):
