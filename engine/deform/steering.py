@@ -35,10 +35,7 @@ FULL = 0.7
 # A drag gets on when its shortfall (handles from their targets, over L) is this much less than
 # ever.
 PROGRESS = 1e-3
-# After so many steps without progress the barrier is begun afresh: where steps have been cut often,
-# dual variables and added samples can hold a map fast that would have a way out.
-RENEWALS = (5, 10, 20, 30)
-# After so many the drag is at rest.
+# After so many steps without progress the drag is at rest.
 IDLE_AT_REST = 50
 # The walls stand inside the limits by this part of the way to the identity.
 MARGIN = 1e-4
@@ -105,15 +102,6 @@ class Schedule:
             best=shortfall if progress else self.best,
             idle=0 if progress else self.idle + 1,
         )
-
-    def renewed(self) -> Self:
-        """Return the schedule with a barrier and a leash as at the start."""
-        return replace(self, weight=FIRST_WEIGHT, leash=1.0)
-
-    @property
-    def asks_for_renewal(self) -> bool:
-        """Whether the barrier should be begun afresh now."""
-        return self.idle in RENEWALS
 
     @property
     def at_rest(self) -> bool:
