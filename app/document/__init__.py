@@ -15,6 +15,7 @@ from app.document.commands import (
 )
 from app.document.easing import HOLD, LINEAR, PRESETS, Easing
 from app.document.figure import Figure, PictureFile, new_figure
+from app.document.handle_pairs import mirrored_name, pairs_by_name
 from app.document.history import History, UnkeyedPose
 from app.document.keyframe import MOST_TURNS, Handle, Keyframe, Pose, Target
 from app.document.model import Document
@@ -84,7 +85,9 @@ __all__ = [
     "handle_commands",
     "intervals",
     "key_commands",
+    "mirrored_name",
     "new_figure",
+    "pairs_by_name",
     "resting_pose",
     "scene_commands",
     "time_of",
