@@ -11,13 +11,14 @@ from app.document.commands import (
     figure_commands,
     handle_commands,
     key_commands,
+    pose_commands,
     scene_commands,
 )
 from app.document.easing import HOLD, LINEAR, PRESETS, Easing
 from app.document.figure import Figure, PictureFile, new_figure
 from app.document.handle_pairs import mirrored_name, pairs_by_name
 from app.document.history import History, UnkeyedPose
-from app.document.keyframe import MOST_TURNS, Handle, Keyframe, Pose, Target
+from app.document.keyframe import MOST_TURNS, Handle, KeptPose, Keyframe, Pose, Target
 from app.document.model import Document
 from app.document.playhead import Playhead
 from app.document.settings import (
@@ -27,6 +28,7 @@ from app.document.settings import (
     ExportSettings,
     FrameRange,
     Framing,
+    Marker,
     Meshing,
 )
 from app.document.shortfall import Extremes, Shortfall, falls_short, find_shortfall
@@ -63,7 +65,9 @@ __all__ = [
     "Framing",
     "Handle",
     "History",
+    "KeptPose",
     "Keyframe",
+    "Marker",
     "Meshing",
     "Moment",
     "PictureFile",
@@ -88,6 +92,7 @@ __all__ = [
     "mirrored_name",
     "new_figure",
     "pairs_by_name",
+    "pose_commands",
     "resting_pose",
     "scene_commands",
     "time_of",

@@ -9,7 +9,8 @@ from itertools import pairwise
 import numpy as np
 
 from app.document.checks import NOTHING, Unknown, require, require_place, require_size
-from app.document.keyframe import Handle, Keyframe, Pose
+from app.document.handle_pairs import pairs_by_name
+from app.document.keyframe import Handle, KeptPose, Keyframe, Pose
 from app.document.settings import VARIANTS, Meshing
 from app.errors import LissomError
 from engine.domain import Domain
@@ -74,6 +75,11 @@ class Figure:
         Or its name.
     bounds : Bounds
         Distortion that the solver allows in new poses.
+    library : tuple of KeptPose
+        Poses that are kept to be used again.
+    mirror : float, optional
+        Where the upright axis crosses the picture at which flipped poses are mirrored, in pixels
+        from its left edge; None takes the middle of the handles that are pairs, or of the shape.
     """
 
     id: int = 0
@@ -86,12 +92,17 @@ class Figure:
     anchor: complex | None = None
     variant: Variant = Variant.METRIC
     bounds: Bounds = Bounds()
+    library: tuple[KeptPose, ...] = ()
+    mirror: float | None = None
     unknown: Unknown = field(default_factory=lambda: NOTHING, repr=False, hash=False)
 
     def __post_init__(self) -> None:
         require(self.id >= 0, f"A figure's id is not negative, unlike {self.id}.")
         self._check_handles()
         self._check_keys()
+        self._check_library()
+        if self.mirror is not None:
+            require_place(complex(self.mirror), "The axis of mirroring")
         require(
             self.variant in VARIANTS,
             f"The variant is one of {', '.join(VARIANTS)}, not {str(self.variant)!r}.",
@@ -103,6 +114,29 @@ class Figure:
     def key_frames(self) -> frozenset[int]:
         """The frames that have a key."""
         return frozenset(key.frame for key in self.keys)
+
+    @property
+    def poses(self) -> tuple[Pose, ...]:
+        """Those of the keys, then those of the library."""
+        return (*(key.pose for key in self.keys), *(kept.pose for kept in self.library))
+
+    @property
+    def axis(self) -> float:
+        """Where the upright axis crosses the picture at which flipped poses are mirrored."""
+        if self.mirror is not None:
+            return self.mirror
+        paired = pairs_by_name(self.handles)
+        places = [self.handle(identity).position.real for identity in paired]
+        if not places:
+            places = [float(self.domain.outline.real.min()), float(self.domain.outline.real.max())]
+        return sum(places) / len(places)
+
+    def kept_pose(self, name: str) -> KeptPose:
+        """Return the pose of the library with this name."""
+        for kept in self.library:
+            if kept.name == name:
+                return kept
+        raise LissomError(f"There is no pose {name!r} in the library.")
 
     def handle(self, identity: int) -> Handle:
         """Return the handle with this id."""
@@ -173,21 +207,29 @@ class Figure:
 
     def _check_keys(self) -> None:
         require(len(self.keys) > 0, "An animation has at least one key.")
-        identities = {handle.id for handle in self.handles}
         for before, after in pairwise(key.frame for key in self.keys):
             require(after != before, f"Two keys are at frame {before}.")
             require(after > before, f"The keys at frames {before} and {after} are mixed up.")
         for key in self.keys:
-            frame = key.frame
-            require(
-                key.pose.targets.keys() == identities,
-                f"The key at frame {frame} does not have one target for each handle.",
-            )
-            require(
-                len(key.pose.phi) == len(key.pose.psi) == len(self.domain.cage),
-                f"The key at frame {frame} has coefficients for a cage of {len(key.pose.phi)} "
-                f"vertices, not of {len(self.domain.cage)}.",
-            )
+            self._check_pose(key.pose, f"The key at frame {key.frame}")
+
+    def _check_library(self) -> None:
+        names = set()
+        for kept in self.library:
+            require(kept.name not in names, f"Two poses have the name {kept.name!r}.")
+            names.add(kept.name)
+            self._check_pose(kept.pose, f"The pose {kept.name!r}")
+
+    def _check_pose(self, pose: Pose, what: str) -> None:
+        require(
+            pose.targets.keys() == {handle.id for handle in self.handles},
+            f"{what} does not have one target for each handle.",
+        )
+        require(
+            len(pose.phi) == len(pose.psi) == len(self.domain.cage),
+            f"{what} has coefficients for a cage of {len(pose.phi)} vertices, not of "
+            f"{len(self.domain.cage)}.",
+        )
 
 
 def new_figure(picture: PictureFile, domain: Domain, meshing: Meshing) -> Figure:

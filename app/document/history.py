@@ -182,11 +182,11 @@ def _figure_held_only_by(old: Figure, new: Figure | None) -> int:
         mesh = old.domain.mesh
         arrays = (old.domain.outline, old.domain.cage, mesh.vertices, mesh.triangles)
         held += sum(array.nbytes for array in arrays)
-    kept = [] if new is None else [key.pose for key in new.keys]
+    kept = () if new is None else new.poses
     poses, maps = {id(pose) for pose in kept}, {id(pose.phi) for pose in kept}
-    for key in old.keys:
-        if id(key.pose) not in poses:
+    for pose in old.poses:
+        if id(pose) not in poses:
             held += POSE_BYTES
-        if id(key.pose.phi) not in maps:
-            held += key.pose.phi.nbytes + key.pose.psi.nbytes
+        if id(pose.phi) not in maps:
+            held += pose.phi.nbytes + pose.psi.nbytes
     return held

@@ -97,6 +97,25 @@ class Pose:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class KeptPose:
+    """A pose in a figure's library, under a name.
+
+    Parameters
+    ----------
+    name : str
+        Unique in the library.
+    pose : Pose
+    """
+
+    name: str
+    pose: Pose
+    unknown: Unknown = field(default_factory=lambda: NOTHING, repr=False, hash=False)
+
+    def __post_init__(self) -> None:
+        require(bool(self.name.strip()), "A pose of the library needs a name.")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Keyframe:
     """A pose at a frame, and the way from there to the next key.
 

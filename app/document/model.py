@@ -8,10 +8,11 @@ and a certificate is proven of its map, never read.
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from itertools import pairwise
 
 from app.document.checks import NOTHING, Unknown, require
 from app.document.figure import Figure
-from app.document.settings import FASTEST, ExportSettings, FrameRange
+from app.document.settings import FASTEST, ExportSettings, FrameRange, Marker
 from app.errors import LissomError
 
 
@@ -25,10 +26,12 @@ class Document:
         From the one behind all others to the one in front; there is always one.
     frames : FrameRange
         All frames of the animation; every key lies in it.
-    work : FrameRange, optional
-        The part of them that plays; None plays everything.
+    preview : FrameRange, optional
+        The part of them that plays, to look at it; None plays everything. Exports do not heed it.
     fps : float
         Frames per second.
+    markers : tuple of Marker
+        In the order of their frames, of which each has one at most.
     loop : bool
         Whether the last frame leads back to the first one: both are the same moment.
     export : ExportSettings
@@ -40,7 +43,8 @@ class Document:
 
     figures: tuple[Figure, ...]
     frames: FrameRange = FrameRange(0, 48)
-    work: FrameRange | None = None
+    preview: FrameRange | None = None
+    markers: tuple[Marker, ...] = ()
     fps: float = 24.0
     loop: bool = False
     export: ExportSettings = ExportSettings()
@@ -52,9 +56,13 @@ class Document:
     def __post_init__(self) -> None:
         self._check_figures()
         require(
-            self.work is None or (self.work.first in self.frames and self.work.last in self.frames),
-            f"The work range {self.work} is not within {self.frames}.",
+            self.preview is None
+            or (self.preview.first in self.frames and self.preview.last in self.frames),
+            f"The preview range {self.preview} is not within {self.frames}.",
         )
+        for before, after in pairwise(marker.frame for marker in self.markers):
+            require(after != before, f"Two markers are at frame {before}.")
+            require(after > before, f"The markers at frames {before} and {after} are mixed up.")
         require(
             0 < self.fps <= FASTEST,
             f"The speed must be above 0 and at most {FASTEST:g} frames per second, "
@@ -63,8 +71,8 @@ class Document:
 
     @property
     def played(self) -> FrameRange:
-        """The frames that play: the work range, or all."""
-        return self.work or self.frames
+        """The frames that play: the preview range, or all."""
+        return self.preview or self.frames
 
     @property
     def canvas(self) -> tuple[int, int]:
@@ -77,6 +85,13 @@ class Document:
             if figure.id == identity:
                 return figure
         raise LissomError(f"There is no figure with the id {identity}.")
+
+    def marker(self, frame: int) -> Marker:
+        """Return the marker at this frame."""
+        for marker in self.markers:
+            if marker.frame == frame:
+                return marker
+        raise LissomError(f"There is no marker at frame {frame}.")
 
     def with_figure(self, changed: Figure) -> "Document":
         """Return the document with another figure of the same id, and with room for its keys."""

@@ -1,10 +1,10 @@
 """What is chosen once for a document: frames, interpolation, meshing, export."""
 
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Literal, get_args
 
-from app.document.checks import require, require_size
+from app.document.checks import NOTHING, Unknown, require, require_size
 from app.export_formats import EXPORT_FORMATS
 from engine.domain import MOST_TRIANGLES
 from engine.domain.outline import Detail
@@ -41,6 +41,29 @@ class FrameRange:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class Marker:
+    """A name for a frame, such as the beat of a song.
+
+    Parameters
+    ----------
+    frame : int
+        It may lie beyond the end of the animation.
+    name : str
+    """
+
+    frame: int
+    name: str
+    unknown: Unknown = field(default_factory=lambda: NOTHING, repr=False, hash=False)
+
+    def __post_init__(self) -> None:
+        require(
+            0 <= self.frame <= LAST_FRAME,
+            f"A marker is at a frame from 0 to {LAST_FRAME:,}, not at {self.frame}.",
+        )
+        require(bool(self.name.strip()), "A marker needs a name.")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class ExportSettings:
     """What the person last chose for exports.
 
@@ -55,7 +78,7 @@ class ExportSettings:
     framing : str
         "fit" shows all of the motion, "canvas" the picture's own frame.
     frames : FrameRange, optional
-        None exports the work range, or everything where there is none.
+        None exports everything.
     """
 
     format: str = "png"

@@ -133,20 +133,20 @@ def exported_frames(document: Document) -> FrameRange:
     """
     if document.export.frames is not None:
         return document.export.frames
-    played = document.played
-    whole = document.loop and played == document.frames and played.first < played.last
-    if whole and _is_same(document, played.first, played.last):
-        return FrameRange(played.first, played.last - 1)
-    return played
+    frames = document.frames
+    is_loop = document.loop and frames.first < frames.last
+    if is_loop and _is_same(document, frames.first, frames.last):
+        return FrameRange(frames.first, frames.last - 1)
+    return frames
 
 
 def framed_frames(document: Document, exported: FrameRange) -> FrameRange:
     """Return the frames whose motion an export shows whole where it is fitted into the frame.
 
-    All that play are among them, so that some frames exported anew match those of before.
+    All of the animation's are among them, so that some frames exported anew match those of before.
     """
-    played = document.played
-    return FrameRange(min(played.first, exported.first), max(played.last, exported.last))
+    frames = document.frames
+    return FrameRange(min(frames.first, exported.first), max(frames.last, exported.last))
 
 
 def _is_same(document: Document, first: int, second: int) -> bool:

@@ -10,7 +10,7 @@ from app.editor.derived import Derived
 SMALLEST, LARGEST = 0.002, 4.0  # em that a frame takes
 MARGIN = 1.4  # em left and right of frames that are fitted
 ROOM = 0.04  # of the width, right of the last frame: there keys can be dragged on
-Edge = Literal["work start", "work range", "work end", "animation end"]
+Edge = Literal["preview start", "preview range", "preview end", "animation end"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -106,7 +106,7 @@ class KeyDrag:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class EdgeDrag:
-    """The pointer moves an end of the work range, all of it, or the animation's end."""
+    """The pointer moves an end of the preview range, all of it, or the animation's end."""
 
     edge: Edge
     start: float

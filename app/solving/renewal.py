@@ -4,7 +4,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from app.document import Command, Figure, Keyframe, Meshing, Pose, figure_commands
+from app.document import Command, Figure, Meshing, Pose, figure_commands
 from app.solving.drag import Rig, fit_map
 from engine.arrays import Bytes
 from engine.domain import Domain, build_domain
@@ -28,15 +28,15 @@ class Renewal:
     meshing : Meshing, optional
         What the domain is built anew with; None keeps it.
     pulls : bool
-        Whether keys that are within the bounds already are pulled to their targets again, too.
+        Whether poses that are within the bounds already are pulled to their targets again, too.
     domain : Domain, optional
         The new one, once it is built.
     rig : Rig, optional
         None before the first key.
     poses : tuple of Pose
-        Of the keys that are solved.
-    outside : tuple of int
-        Frames of those that found no way into the bounds, and stay as they were.
+        Those that are solved, in the order of `Figure.poses`.
+    outside : tuple of str
+        Those that found no way into the bounds, and stay as they were, in words.
     notices : tuple of str
         What was remedied, in words.
     """
@@ -48,27 +48,27 @@ class Renewal:
     domain: Domain | None = None
     rig: Rig | None = None
     poses: tuple[Pose, ...] = ()
-    outside: tuple[int, ...] = ()
+    outside: tuple[str, ...] = ()
     notices: tuple[str, ...] = ()
 
     @property
     def is_over(self) -> bool:
-        """Whether every key is solved."""
-        return len(self.poses) == len(self.before.keys)
+        """Whether every pose is solved."""
+        return len(self.poses) == len(self.before.poses)
 
     @property
     def progress(self) -> float:
         """The part of its steps that is done, 0 to 1."""
         builds = self.meshing is not None
         done = len(self.poses) + (self.domain is not None)
-        return done / (len(self.before.keys) + builds)
+        return done / (len(self.before.poses) + builds)
 
     @property
     def now(self) -> str:
         """What the next step does, in words."""
         if self.meshing is not None and self.domain is None:
             return "Building the domain"
-        return f"Solving key {len(self.poses) + 1} of {len(self.before.keys)}"
+        return f"Solving pose {len(self.poses) + 1} of {len(self.before.poses)}"
 
     @property
     def command(self) -> Command:
@@ -96,10 +96,20 @@ def go_on(renewal: Renewal, picture: Bytes) -> Renewal:
     if renewal.meshing is not None and renewal.domain is None:
         return _with_domain(renewal, picture, renewal.meshing)
     rig = renewal.rig or Rig.of(replace(renewal.before, bounds=renewal.bounds))
-    key = renewal.before.keys[len(renewal.poses)]
-    pose = _solved(renewal, rig, key)
-    outside = renewal.outside if pose.certificate.certified else (*renewal.outside, key.frame)
+    index = len(renewal.poses)
+    pose = _solved(renewal, rig, renewal.before.poses[index])
+    outside = renewal.outside
+    if not pose.certificate.certified:
+        outside = (*outside, _in_words(renewal.before, index))
     return replace(renewal, rig=rig, poses=(*renewal.poses, pose), outside=outside)
+
+
+def _in_words(figure: Figure, index: int) -> str:
+    """Return where a pose of a figure is: at a key's frame, or under a name in the library."""
+    count = len(figure.keys)
+    if index < count:
+        return f"at frame {figure.keys[index].frame}"
+    return f"“{figure.library[index - count].name}”"
 
 
 def _with_domain(renewal: Renewal, picture: Bytes, meshing: Meshing) -> Renewal:
@@ -114,30 +124,30 @@ def _with_domain(renewal: Renewal, picture: Bytes, meshing: Meshing) -> Renewal:
     keys = tuple(
         replace(key, pose=replace(key.pose, phi=rest.phi, psi=rest.psi)) for key in before.keys
     )
-    rig = Rig.of(replace(before, domain=domain, keys=keys, bounds=renewal.bounds))
+    rig = Rig.of(replace(before, domain=domain, keys=keys, library=(), bounds=renewal.bounds))
     return replace(renewal, domain=domain, rig=rig, notices=notices)
 
 
-def _solved(renewal: Renewal, rig: Rig, key: Keyframe) -> Pose:
-    """Return a key's pose over the rig's cage, within its bounds, pulled to its targets."""
+def _solved(renewal: Renewal, rig: Rig, pose: Pose) -> Pose:
+    """Return a pose over the rig's cage, within its bounds, pulled to its targets."""
     boundary, bounds = rig.deformer.boundary, rig.deformer.bounds
     first = (
-        renewal.before.map_of(key.pose)
+        renewal.before.map_of(pose)
         if renewal.domain is None
-        else _carried_over(renewal.before, key.pose, rig)
+        else _carried_over(renewal.before, pose, rig)
     )
     if not renewal.pulls and certify(first, boundary, bounds).certified:
-        return key.pose
+        return pose
     try:
         state = rig.deformer.resume(first)
     except EngineError:
         # It folds over the new cage: from the drawing at rest every pose can be reached.
         state = rig.deformer.start()
-    state, _ = rig.deformer.settle(state, rig.wish(key.pose.targets), at_most=MOST_STEPS)
+    state, _ = rig.deformer.settle(state, rig.wish(pose.targets), at_most=MOST_STEPS)
     certificate = certify(state.map, boundary, bounds)
     if renewal.domain is None and not certificate.certified:
-        return replace(key.pose, certificate=certify(first, boundary, bounds))
-    return replace(key.pose, phi=state.map.phi, psi=state.map.psi, certificate=certificate)
+        return replace(pose, certificate=certify(first, boundary, bounds))
+    return replace(pose, phi=state.map.phi, psi=state.map.psi, certificate=certificate)
 
 
 def _carried_over(figure: Figure, pose: Pose, rig: Rig) -> HarmonicMap:

@@ -2,9 +2,9 @@
 
 A project is a zip file: `mimetype` (first, not packed), `project.json`, `thumbnail.png`, and for
 each figure, under `figures/` and its id, the picture byte for byte as `source.*`, the arrays of the
-domain, and phi and psi of each key under `keys/`. The maps are stored, not solved again, so that
-another solver never changes an animation. Fields and members that this version does not know are
-handed on.
+domain, and phi and psi of each key under `keys/` and of the library's poses under `poses/`. The
+maps are stored, not solved again, so that another solver never changes an animation. Fields and
+members that this version does not know are handed on.
 
 A file is input like any other, whoever wrote it. What it would unpack to is known, and limited,
 before anything is; pictures and domains are checked; and what holds of a map is not written but
@@ -38,6 +38,7 @@ LARGEST_JSON = 32 * MEBIBYTE
 MOST_VALUES = 1_000_000
 LARGEST_THUMBNAIL = 2 * MEBIBYTE
 THUMBNAIL = "thumbnail.png"
+KEYS, POSES = "keys", "poses"  # folders of the maps of a figure
 # Of lists and objects in each other; fields that are not known are kept, and must be writable.
 DEEPEST = 40
 # What zipfile and json raise on damaged files; the first two of them are encryption and a zip
@@ -138,9 +139,11 @@ def _figure_members(figure: Figure) -> dict[str, bytes]:
         f"{folder}/vertices.npy": array_member(mesh.vertices),
         f"{folder}/triangles.npy": array_member(mesh.triangles),
     }
-    for index, key in enumerate(figure.keys):
-        phi, psi = _coefficient_members(figure.id, index)
-        members |= {phi: array_member(key.pose.phi), psi: array_member(key.pose.psi)}
+    keys = [key.pose for key in figure.keys]
+    for name, poses in ((KEYS, keys), (POSES, [kept.pose for kept in figure.library])):
+        for index, pose in enumerate(poses):
+            phi, psi = _coefficient_members(figure.id, name, index)
+            members |= {phi: array_member(pose.phi), psi: array_member(pose.psi)}
     return members
 
 
@@ -148,9 +151,9 @@ def _folder(figure: int) -> str:
     return f"figures/{figure}"
 
 
-def _coefficient_members(figure: int, index: int) -> tuple[str, str]:
-    keys = f"{_folder(figure)}/keys"
-    return f"{keys}/{index:05}.phi.npy", f"{keys}/{index:05}.psi.npy"
+def _coefficient_members(figure: int, name: str, index: int) -> tuple[str, str]:
+    folder = f"{_folder(figure)}/{name}"
+    return f"{folder}/{index:05}.phi.npy", f"{folder}/{index:05}.psi.npy"
 
 
 class _Parts:
@@ -195,7 +198,12 @@ class _Parts:
         return domain
 
     def coefficients(self, figure: int, key: int) -> tuple[Complexes, Complexes]:
-        phi, psi = _coefficient_members(figure, key)
+        return self._coefficients(*_coefficient_members(figure, KEYS, key))
+
+    def kept_coefficients(self, figure: int, index: int) -> tuple[Complexes, Complexes]:
+        return self._coefficients(*_coefficient_members(figure, POSES, index))
+
+    def _coefficients(self, phi: str, psi: str) -> tuple[Complexes, Complexes]:
         most = LARGEST_OUTLINE
         return self._archive.points(phi, most=most), self._archive.points(psi, most=most)
 

@@ -15,7 +15,9 @@ from app.document import (
     FrameRange,
     Framing,
     Handle,
+    KeptPose,
     Keyframe,
+    Marker,
     Meshing,
     PictureFile,
     Pose,
@@ -40,7 +42,7 @@ from engine.domain import Domain
 from engine.domain.outline import Detail
 from engine.maps import Boundary, Bounds, HarmonicMap, certify
 
-SCHEMA = 1
+SCHEMA = 2
 Json = dict[str, Any]
 Value = TypeVar("Value")
 
@@ -57,6 +59,9 @@ class FigureParts(Protocol):
     def coefficients(self, figure: int, key: int) -> tuple[Complexes, Complexes]:
         """Return phi and psi of the key with this index."""
 
+    def kept_coefficients(self, figure: int, index: int) -> tuple[Complexes, Complexes]:
+        """Return phi and psi of the library's pose with this index."""
+
 
 def write_document(document: Document) -> Json:
     """Return the fields of a document, those that this version does not know among them."""
@@ -66,7 +71,8 @@ def write_document(document: Document) -> Json:
             "app_version": version("lissom"),
             "figures": [_write_figure(figure) for figure in document.figures],
             "frames": _write_range(document.frames),
-            "work": _write_range(document.work),
+            "preview": _write_range(document.preview),
+            "markers": [_write_marker(marker) for marker in document.markers],
             "fps": document.fps,
             "loop": document.loop,
             "export": {
@@ -95,6 +101,8 @@ def read_document(content: JsonObject, parts: FigureParts) -> Document:
     LissomError, EngineError
         If a field is missing or of another kind, or the document would not be valid.
     """
+    if as_whole(content["schema"], "schema") < SCHEMA:
+        _bring_up_to_schema_2(content)
     figures = [
         as_object(figure, f"figures[{i}]")
         for i, figure in enumerate(as_list(content["figures"], "figures"))
@@ -106,12 +114,32 @@ def read_document(content: JsonObject, parts: FigureParts) -> Document:
     document = Document(
         figures=tuple(_read_figure(figure, parts) for figure in figures),
         frames=_read_range(content["frames"], "frames"),
-        work=_read_optional(content["work"], "work", _read_range),
+        preview=_read_optional(content["preview"], "preview", _read_range),
+        markers=tuple(
+            _read_marker(marker, f"markers[{i}]")
+            for i, marker in enumerate(as_list(content["markers"], "markers"))
+        ),
         fps=as_number(content["fps"], "fps"),
         loop=as_flag(content["loop"], "loop"),
         export=_read_export(as_object(content["export"], "export")),
     )
     return replace(document, unknown=_unknown_of(content, write_document(document)))
+
+
+def _bring_up_to_schema_2(content: JsonObject) -> None:
+    """Give the fields of schema 1 those that came with schema 2, so that nothing looks different.
+
+    What played was what was exported, unless exports had frames of their own.
+    """
+    work = content.pop("work")
+    content |= {"preview": work, "markers": []}
+    export = as_object(content["export"], "export")
+    if export["frames"] is None:
+        content["export"] = {**export, "frames": work}
+    content["figures"] = [
+        {**as_object(figure, f"figures[{i}]"), "library": [], "mirror": None}
+        for i, figure in enumerate(as_list(content["figures"], "figures"))
+    ]
 
 
 def _write_figure(figure: Figure) -> Json:
@@ -137,6 +165,8 @@ def _write_figure(figure: Figure) -> Json:
             "sigma_a": figure.bounds.sigma_a,
             "sigma_b": figure.bounds.sigma_b,
         },
+        "library": [_write_kept(kept) for kept in figure.library],
+        "mirror": figure.mirror,
     }
     return _with_unknown(known, figure.unknown)
 
@@ -146,6 +176,7 @@ def _read_figure(fields: JsonObject, parts: FigureParts) -> Figure:
     identity = as_whole(fields["id"], f"{where}.id")
     handles = as_list(fields["handles"], f"{where}.handles")
     keys = as_list(fields["keys"], f"{where}.keys")
+    library = as_list(fields["library"], f"{where}.library")
     bounds = _read_bounds(as_object(fields["bounds"], f"{where}.bounds"))
     picture = parts.picture(identity, as_object(fields["picture"], f"{where}.picture"))
     domain = parts.domain(identity)
@@ -171,6 +202,13 @@ def _read_figure(fields: JsonObject, parts: FigureParts) -> Figure:
         anchor=_read_optional(fields["anchor"], f"{where}.anchor", as_point),
         variant=cast(Variant, as_text(fields["variant"], f"{where}.variant")),
         bounds=bounds,
+        library=tuple(
+            _read_kept(
+                kept, f"{where}.library[{i}]", partial(pose, *parts.kept_coefficients(identity, i))
+            )
+            for i, kept in enumerate(library)
+        ),
+        mirror=_read_optional(fields["mirror"], f"{where}.mirror", as_number),
     )
     return replace(figure, unknown=_unknown_of(fields, _write_figure(figure)))
 
@@ -229,7 +267,7 @@ def _write_key(key: Keyframe) -> Json:
         "frame": key.frame,
         "easing": key.easing.written(),
         "turns": key.turns,
-        "targets": [_write_target(i, target) for i, target in key.pose.targets.items()],
+        "targets": _write_targets(key.pose),
     }
     return _with_unknown(known, key.unknown)
 
@@ -238,17 +276,40 @@ def _read_key(
     content: object, where: str, pose: Callable[[Mapping[int, Target]], Pose]
 ) -> Keyframe:
     fields = as_object(content, where)
-    targets = as_list(fields["targets"], f"{where}.targets")
-    read = dict(_read_target(target, f"{where}.targets[{i}]") for i, target in enumerate(targets))
-    if len(read) < len(targets):
-        raise LissomError(f"{where} has two targets for one handle")
     key = Keyframe(
         frame=as_whole(fields["frame"], f"{where}.frame"),
-        pose=pose(read),
+        pose=pose(_read_targets(fields)),
         easing=Easing.parse(fields["easing"]),
         turns=as_whole(fields["turns"], f"{where}.turns"),
     )
     return replace(key, unknown=_unknown_of(fields, _write_key(key)))
+
+
+def _write_kept(kept: KeptPose) -> Json:
+    known = {"name": kept.name, "targets": _write_targets(kept.pose)}
+    return _with_unknown(known, kept.unknown)
+
+
+def _read_kept(
+    content: object, where: str, pose: Callable[[Mapping[int, Target]], Pose]
+) -> KeptPose:
+    fields = as_object(content, where)
+    name = as_text(fields["name"], f"{where}.name")
+    kept = KeptPose(name=name, pose=pose(_read_targets(fields)))
+    return replace(kept, unknown=_unknown_of(fields, _write_kept(kept)))
+
+
+def _write_targets(pose: Pose) -> list[Json]:
+    return [_write_target(i, target) for i, target in pose.targets.items()]
+
+
+def _read_targets(fields: JsonObject) -> Mapping[int, Target]:
+    where = fields.where
+    targets = as_list(fields["targets"], f"{where}.targets")
+    read = dict(_read_target(target, f"{where}.targets[{i}]") for i, target in enumerate(targets))
+    if len(read) < len(targets):
+        raise LissomError(f"{where} has two targets for one handle")
+    return read
 
 
 def _write_target(identity: int, target: Target) -> Json:
@@ -268,6 +329,19 @@ def _read_target(content: object, where: str) -> tuple[int, Target]:
         rotation=_read_optional(fields["rotation"], f"{where}.rotation", as_number),
     )
     return identity, replace(target, unknown=_unknown_of(fields, _write_target(identity, target)))
+
+
+def _write_marker(marker: Marker) -> Json:
+    return _with_unknown({"frame": marker.frame, "name": marker.name}, marker.unknown)
+
+
+def _read_marker(content: object, where: str) -> Marker:
+    fields = as_object(content, where)
+    marker = Marker(
+        frame=as_whole(fields["frame"], f"{where}.frame"),
+        name=as_text(fields["name"], f"{where}.name"),
+    )
+    return replace(marker, unknown=_unknown_of(fields, _write_marker(marker)))
 
 
 def _write_point(point: complex) -> list[float]:

@@ -15,17 +15,19 @@ from app.document.commands import (
     figure_commands,
     handle_commands,
     key_commands,
+    pose_commands,
     scene_commands,
 )
 from app.document.easing import HOLD, PRESETS, Easing
 from app.document.figure import PictureFile, new_figure
-from app.document.keyframe import Handle, Keyframe, Pose, Target
+from app.document.keyframe import Handle, KeptPose, Keyframe, Pose, Target
 from app.document.model import Document
 from app.document.settings import (
     FRAMINGS,
     VARIANTS,
     ExportSettings,
     FrameRange,
+    Marker,
     Meshing,
 )
 from app.export_formats import EXPORT_FORMATS
@@ -91,8 +93,13 @@ def random_pose(rng: np.random.Generator, document: Document, domain: Domain | N
 
 def random_command(rng: np.random.Generator, document: Document) -> Command:
     """One of all commands; some are not possible on the document."""
-    makers = (_random_handle_command, _random_key_command, _random_settings_command)
-    return makers[rng.integers(3)](rng, document)
+    makers = (
+        _random_handle_command,
+        _random_key_command,
+        _random_pose_command,
+        _random_settings_command,
+    )
+    return makers[rng.integers(4)](rng, document)
 
 
 def _random_handle_command(rng: np.random.Generator, document: Document) -> Command:
@@ -137,16 +144,37 @@ def _random_key_command(rng: np.random.Generator, document: Document) -> Command
     return commands[rng.integers(len(commands))]
 
 
+def _random_pose_command(rng: np.random.Generator, document: Document) -> Command:
+    pose = random_pose(rng, document)
+    commands = [
+        pose_commands.keep_pose(0, pose),
+        pose_commands.keep_pose(0, document.figures[0].keys[0].pose, f"é {rng.integers(3)}"),
+        pose_commands.set_mirror(0, None if rng.random() < 0.3 else 200 * rng.random()),
+    ]
+    if document.figures[0].library:
+        kept = document.figures[0].library[rng.integers(len(document.figures[0].library))]
+        commands += [
+            pose_commands.rename_pose(0, kept.name, f"name {rng.integers(3)}"),
+            pose_commands.delete_pose(0, kept.name),
+        ]
+    return commands[rng.integers(len(commands))]
+
+
 def _random_settings_command(rng: np.random.Generator, document: Document) -> Command:
     frames = FrameRange(int(rng.integers(4)), int(rng.integers(4, 90)))
-    poses = [random_pose(rng, document) for _ in document.figures[0].keys]
+    poses = [random_pose(rng, document) for _ in document.figures[0].poses]
     bounds = Bounds(k=0.5 + rng.random() / 3)
     domain = disc_domain(int(rng.integers(10, 16)))
-    again = [random_pose(rng, document, domain) for _ in document.figures[0].keys]
+    again = [random_pose(rng, document, domain) for _ in document.figures[0].poses]
+    at = document.markers[0].frame if document.markers else 7
     commands = [
         scene_commands.set_fps(float(rng.choice([12, 23.976, 60]))),
         scene_commands.set_frames(frames),
-        scene_commands.set_work_range(None if rng.random() < 0.5 else frames),
+        scene_commands.set_preview(None if rng.random() < 0.5 else frames),
+        scene_commands.add_marker(int(rng.integers(90)), [None, "beat"][rng.integers(2)]),
+        scene_commands.rename_marker(at, f"ü {rng.integers(3)}"),
+        scene_commands.move_marker(at, int(rng.integers(90))),
+        scene_commands.delete_marker(at),
         scene_commands.set_loop(loop=bool(rng.integers(2))),
         figure_commands.set_variant(0, VARIANTS[rng.integers(len(VARIANTS))]),
         figure_commands.set_anchor(0, None if rng.random() < 0.3 else inside(rng)),
@@ -207,13 +235,19 @@ def full_document() -> Document:
         anchor=100.5 + 99j,
         variant="scaled-eta",
         bounds=Bounds(k=0.5, sigma_a=3.0, sigma_b=0.4),
+        library=(
+            KeptPose(name="bow", pose=bent, unknown=more),
+            KeptPose(name="über\n", pose=dataclasses.replace(bent, psi=0.02 * cage.conj())),
+        ),
+        mirror=1 / 3,
         unknown=MappingProxyType({"visible": False, "bounds": {"tau": 4}}),
     )
     return dataclasses.replace(
         empty,
         figures=(figure,),
         frames=FrameRange(1, 60),
-        work=FrameRange(3, 40),
+        preview=FrameRange(3, 40),
+        markers=(Marker(frame=0, name="go", unknown=more), Marker(frame=700, name="ü")),
         fps=23.976,
         loop=True,
         export=ExportSettings(

@@ -5,7 +5,20 @@ Out: the changed document.
 Imports: the values of `app.document`.
 """
 
-from app.document.commands import figure_commands, handle_commands, key_commands, scene_commands
+from app.document.commands import (
+    figure_commands,
+    handle_commands,
+    key_commands,
+    pose_commands,
+    scene_commands,
+)
 from app.document.commands.command import Command
 
-__all__ = ["Command", "figure_commands", "handle_commands", "key_commands", "scene_commands"]
+__all__ = [
+    "Command",
+    "figure_commands",
+    "handle_commands",
+    "key_commands",
+    "pose_commands",
+    "scene_commands",
+]

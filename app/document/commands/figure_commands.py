@@ -5,7 +5,7 @@ from dataclasses import replace
 
 from app.document.commands.command import figure_command
 from app.document.figure import Figure
-from app.document.keyframe import Keyframe, Pose
+from app.document.keyframe import Pose
 from app.document.settings import Meshing
 from app.errors import LissomError
 from engine.domain import Domain
@@ -34,12 +34,12 @@ def set_bounds(figure: Figure, bounds: Bounds, poses: Sequence[Pose] | None = No
     figure : Figure
     bounds : Bounds
     poses : sequence of Pose, optional
-        One for each key, solved within the new bounds; without them the keys stay as they are.
+        One for each of the figure's, solved within the new bounds; without them all poses stay as
+        they are.
     """
-    keys = figure.keys if poses is None else _posed(figure, poses)
-    if bounds == figure.bounds and keys is figure.keys:
-        return figure
-    return replace(figure, bounds=bounds, keys=keys)
+    if poses is not None:
+        return replace(_posed(figure, poses), bounds=bounds)
+    return figure if bounds == figure.bounds else replace(figure, bounds=bounds)
 
 
 @figure_command("Rebuild domain")
@@ -56,15 +56,25 @@ def replace_domain(
     meshing : Meshing
         What it was built with.
     poses : sequence of Pose
-        One for each key, solved again over the new cage.
+        One for each of the figure's, solved again over the new cage.
     """
     unknown = {name: value for name, value in figure.unknown.items() if name != "domain"}
+    return replace(_posed(figure, poses, domain), meshing=meshing, unknown=unknown)
+
+
+def _posed(figure: Figure, poses: Sequence[Pose], domain: Domain | None = None) -> Figure:
+    """Return the figure with other poses, in the order of `Figure.poses`, over a domain."""
+    if len(poses) != len(figure.poses):
+        raise LissomError(f"There are {len(figure.poses)} poses, but {len(poses)} in their place.")
+    count = len(figure.keys)
     return replace(
-        figure, domain=domain, meshing=meshing, keys=_posed(figure, poses), unknown=unknown
+        figure,
+        domain=domain or figure.domain,
+        keys=tuple(
+            replace(key, pose=pose) for key, pose in zip(figure.keys, poses[:count], strict=True)
+        ),
+        library=tuple(
+            replace(kept, pose=pose)
+            for kept, pose in zip(figure.library, poses[count:], strict=True)
+        ),
     )
-
-
-def _posed(figure: Figure, poses: Sequence[Pose]) -> tuple[Keyframe, ...]:
-    if len(poses) != len(figure.keys):
-        raise LissomError(f"There are {len(figure.keys)} keys, but {len(poses)} poses for them.")
-    return tuple(replace(key, pose=pose) for key, pose in zip(figure.keys, poses, strict=True))

@@ -1,13 +1,14 @@
 """Commands on handles. None of them changes a map: whatever is shown stays as it is."""
 
-from collections.abc import Collection
+from collections.abc import Callable, Collection
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
 from app.document.commands.command import figure_command
 from app.document.figure import Figure
-from app.document.keyframe import Handle, Keyframe, Target
+from app.document.keyframe import Handle, Pose, Target
 
 
 @figure_command("Add handle")
@@ -32,12 +33,7 @@ def add_handle(
         position=position,
         weight=weight,
     )
-    return replace(
-        figure,
-        handles=(*figure.handles, handle),
-        next_handle=handle.id + 1,
-        keys=_follow(figure, handle),
-    )
+    return _with_poses(figure, partial(_follow, figure, handle), (*figure.handles, handle))
 
 
 @figure_command("Move handle")
@@ -46,7 +42,8 @@ def move_handle(figure: Figure, identity: int, position: complex) -> Figure:
     if figure.handle(identity).position == position:
         return figure
     handle = replace(figure.handle(identity), position=position)
-    return replace(_with_handle(figure, handle), keys=_follow(figure, handle))
+    handles = _with_handle(figure, handle).handles
+    return _with_poses(figure, partial(_follow, figure, handle), handles)
 
 
 @figure_command("Delete handle")
@@ -55,12 +52,13 @@ def remove_handles(figure: Figure, identities: Collection[int]) -> Figure:
     gone = {figure.handle(identity).id for identity in identities}
     if not gone:
         return figure
-    keys = []
-    for key in figure.keys:
-        targets = {i: target for i, target in key.pose.targets.items() if i not in gone}
-        keys.append(replace(key, pose=replace(key.pose, targets=targets)))
+
+    def remaining(pose: Pose) -> Pose:
+        targets = {i: target for i, target in pose.targets.items() if i not in gone}
+        return replace(pose, targets=targets)
+
     handles = tuple(handle for handle in figure.handles if handle.id not in gone)
-    return replace(figure, handles=handles, keys=tuple(keys))
+    return _with_poses(figure, remaining, handles)
 
 
 @figure_command("Rename handle")
@@ -84,17 +82,26 @@ def _with_handle(figure: Figure, changed: Handle) -> Figure:
     return replace(figure, handles=handles)
 
 
-def _follow(figure: Figure, handle: Handle) -> tuple[Keyframe, ...]:
-    """Return the keys with the handle's targets where their maps take its place."""
-    place = np.array([handle.position], dtype=np.complex128)
-    keys = []
-    for key in figure.keys:
-        old = key.pose.targets.get(handle.id)
-        position = complex(figure.map_of(key.pose)(place)[0])
-        target = Target(position=position) if old is None else replace(old, position=position)
-        targets = {**key.pose.targets, handle.id: target}
-        keys.append(replace(key, pose=replace(key.pose, targets=targets)))
-    return tuple(keys)
+def _with_poses(
+    figure: Figure, change: Callable[[Pose], Pose], handles: tuple[Handle, ...]
+) -> Figure:
+    """Return the figure with other handles, and every pose of it changed."""
+    return replace(
+        figure,
+        handles=handles,
+        next_handle=max([figure.next_handle, *(handle.id + 1 for handle in handles)]),
+        keys=tuple(replace(key, pose=change(key.pose)) for key in figure.keys),
+        library=tuple(replace(kept, pose=change(kept.pose)) for kept in figure.library),
+    )
+
+
+def _follow(figure: Figure, handle: Handle, pose: Pose) -> Pose:
+    """Return a pose with the handle's target where its map takes the handle."""
+    old = pose.targets.get(handle.id)
+    (place,) = figure.map_of(pose)(np.array([handle.position], dtype=np.complex128))
+    position = complex(place)
+    target = Target(position=position) if old is None else replace(old, position=position)
+    return replace(pose, targets={**pose.targets, handle.id: target})
 
 
 def _free_name(figure: Figure) -> str:

@@ -1,11 +1,13 @@
-"""Commands on the scene: how long it is, what of it plays, and how, and what is exported."""
+"""Commands on the scene: how long it is, what of it plays and is exported, and its markers."""
 
+from collections.abc import Iterable
 from dataclasses import replace
+from itertools import pairwise
 
 from app.document.commands.command import command
 from app.document.commands.key_commands import require_factor, scaled, stretched
 from app.document.model import Document
-from app.document.settings import ExportSettings, FrameRange
+from app.document.settings import ExportSettings, FrameRange, Marker
 from app.errors import LissomError
 
 
@@ -17,7 +19,7 @@ def set_fps(document: Document, fps: float) -> Document:
 
 @command("Set frames")
 def set_frames(document: Document, frames: FrameRange) -> Document:
-    """Set the first and last frame; keys may not be left outside. The work range is cut to them."""
+    """Set the first and last frame, which cut the preview range; no key may be left outside."""
     if frames == document.frames:
         return document
     keys = (key for figure in document.figures for key in figure.keys)
@@ -25,20 +27,20 @@ def set_frames(document: Document, frames: FrameRange) -> Document:
     if outside is not None:
         raise LissomError(
             f"The key at frame {outside} would lie outside frames {frames.first} to {frames.last}; "
-            "move or delete it first, or set a work range instead."
+            "move or delete it first, or set a preview range instead."
         )
-    work = document.work
-    if work is not None:
-        apart = work.last < frames.first or work.first > frames.last
-        cut = FrameRange(frames.clamp(work.first), frames.clamp(work.last))
-        work = None if apart else cut
-    return replace(document, frames=frames, work=work)
+    preview = document.preview
+    if preview is not None:
+        apart = preview.last < frames.first or preview.first > frames.last
+        cut = FrameRange(frames.clamp(preview.first), frames.clamp(preview.last))
+        preview = None if apart else cut
+    return replace(document, frames=frames, preview=preview)
 
 
-@command("Set work range")
-def set_work_range(document: Document, work: FrameRange | None) -> Document:
-    """Set the part of the frames that plays, or None for all of them."""
-    return document if work == document.work else replace(document, work=work)
+@command("Set preview range")
+def set_preview(document: Document, preview: FrameRange | None) -> Document:
+    """Set the part of the frames that plays, or None for all of them; exports do not heed it."""
+    return document if preview == document.preview else replace(document, preview=preview)
 
 
 @command("Set loop")
@@ -55,7 +57,7 @@ def set_export(document: Document, export: ExportSettings) -> Document:
 
 @command("Scale time")
 def scale_time(document: Document, factor: float) -> Document:
-    """Make the whole animation longer or shorter: its keys, its frames and its work range."""
+    """Make the whole animation longer or shorter: keys, markers, frames and preview range."""
     require_factor(factor)
     if factor == 1:
         return document
@@ -68,5 +70,58 @@ def scale_time(document: Document, factor: float) -> Document:
         document,
         figures=tuple(stretched(figure, first, factor) for figure in document.figures),
         frames=scale(document.frames),
-        work=None if document.work is None else scale(document.work),
+        preview=None if document.preview is None else scale(document.preview),
+        markers=tuple(
+            replace(marker, frame=scaled(marker.frame, first, factor))
+            for marker in document.markers
+        ),
     )
+
+
+@command("Add marker")
+def add_marker(document: Document, frame: int, name: str | None = None) -> Document:
+    """Mark a frame, by default under a name that no other marker has."""
+    taken = {marker.name for marker in document.markers}
+    number = len(document.markers) + 1
+    while f"Marker {number}" in taken:
+        number += 1
+    marker = Marker(frame=frame, name=f"Marker {number}" if name is None else name)
+    return _with_markers(document, (*document.markers, marker))
+
+
+@command("Rename marker")
+def rename_marker(document: Document, frame: int, name: str) -> Document:
+    """Give the marker at a frame another name."""
+    return _with_marker(document, frame, replace(document.marker(frame), name=name))
+
+
+@command("Move marker")
+def move_marker(document: Document, frame: int, to: int) -> Document:
+    """Put the marker at a frame on another one."""
+    return _with_marker(document, frame, replace(document.marker(frame), frame=to))
+
+
+@command("Delete marker")
+def delete_marker(document: Document, frame: int) -> Document:
+    """Take the marker at a frame away."""
+    gone = document.marker(frame)
+    return _with_markers(document, (marker for marker in document.markers if marker is not gone))
+
+
+def _with_marker(document: Document, frame: int, changed: Marker) -> Document:
+    before = document.marker(frame)
+    if changed == before:
+        return document
+    return _with_markers(
+        document, (changed if marker is before else marker for marker in document.markers)
+    )
+
+
+def _with_markers(document: Document, markers: Iterable[Marker]) -> Document:
+    ordered = sorted(markers, key=lambda marker: marker.frame)
+    for one, other in pairwise(ordered):
+        if one.frame == other.frame:
+            raise LissomError(
+                f"Two markers would be at frame {one.frame}; move or delete the one there first."
+            )
+    return replace(document, markers=tuple(ordered))

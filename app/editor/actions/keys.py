@@ -140,24 +140,24 @@ def set_last_frame(session: Session, last: int) -> None:
 
 
 def play_all(session: Session) -> None:
-    """Play all frames, and not a work range."""
-    retime(session, scene_commands.set_work_range(None))
+    """Play all frames, and not a preview range."""
+    retime(session, scene_commands.set_preview(None))
 
 
-def start_work_here(session: Session) -> None:
-    """Let the work range begin at the playhead."""
+def start_preview_here(session: Session) -> None:
+    """Let the preview range begin at the playhead."""
     project = session.project
     if project:
         frame = playback.current_frame(session, project)
-        _set_work(session, frame, max(frame, project.document.played.last))
+        _set_preview(session, frame, max(frame, project.document.played.last))
 
 
-def end_work_here(session: Session) -> None:
-    """Let the work range end at the playhead."""
+def end_preview_here(session: Session) -> None:
+    """Let the preview range end at the playhead."""
     project = session.project
     if project:
         frame = playback.current_frame(session, project)
-        _set_work(session, min(frame, project.document.played.first), frame)
+        _set_preview(session, min(frame, project.document.played.first), frame)
 
 
 def set_variant(session: Session, variant: Variant) -> None:
@@ -165,11 +165,11 @@ def set_variant(session: Session, variant: Variant) -> None:
     editing.edit_figure(session, figure_commands.set_variant, variant)
 
 
-def _set_work(session: Session, first: int, last: int) -> None:
-    work = FrameRange(first, last)
+def _set_preview(session: Session, first: int, last: int) -> None:
+    preview = FrameRange(first, last)
     if session.project:
-        whole = work == session.project.document.frames
-        retime(session, scene_commands.set_work_range(None if whole else work))
+        whole = preview == session.project.document.frames
+        retime(session, scene_commands.set_preview(None if whole else preview))
 
 
 def _rearrange(session: Session, command: Command) -> None:

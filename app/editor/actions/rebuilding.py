@@ -26,7 +26,7 @@ def choose_bounds(session: Session, bounds: Bounds) -> None:
     if project is None:
         return
     project.drafted_bounds = None
-    certificates = [key.pose.certificate for key in project.figure.keys]
+    certificates = [pose.certificate for pose in project.figure.poses]
     if all(bounds.allow(k=c.k, sigma_a=c.sigma_a, sigma_b=c.sigma_b) for c in certificates):
         cancel(session)
         editing.edit_figure(session, figure_commands.set_bounds, bounds)
@@ -112,10 +112,9 @@ def _accept(session: Session, project: Project, renewal: Renewal) -> None:
     for notice in renewal.notices:
         session.tell(sentence(notice))
     if renewal.outside:
-        frames = ", ".join(map(str, renewal.outside))
         poses = "pose" if len(renewal.outside) == 1 else "poses"
         session.tell(
-            f"The {poses} at frame {frames} could not be brought within the limits. "
+            f"The {poses} {', '.join(renewal.outside)} could not be brought within the limits. "
             "Move the handles there nearer to the drawing, or undo.",
             tone="error",
         )

@@ -92,7 +92,7 @@ def cancel(session: Session) -> None:
             _become(session, before, "Move keys")
             editing.choose_keys(session, keys)
         case EdgeDrag(before=before, after=after) if session.project.document is after:
-            _become(session, before, "Set work range")
+            _become(session, before, "Set preview range")
         case KeyBox(keeps=keeps):
             editing.choose_keys(session, keeps)
     end(session)
@@ -158,15 +158,15 @@ def _trim(drag: EdgeDrag, pointed: float) -> Command:
             least = max(last_key, frames.first + 1)
             last = min(max(round(pointed), least), LAST_FRAME)
             return scene_commands.set_frames(FrameRange(frames.first, last))
-        case "work start":
-            work = FrameRange(max(min(frame, played.last - 1), frames.first), played.last)
-        case "work end":
-            work = FrameRange(played.first, min(max(frame, played.first + 1), frames.last))
-        case "work range":
+        case "preview start":
+            preview = FrameRange(max(min(frame, played.last - 1), frames.first), played.last)
+        case "preview end":
+            preview = FrameRange(played.first, min(max(frame, played.first + 1), frames.last))
+        case "preview range":
             by = round(pointed - drag.start)
             by = min(max(by, frames.first - played.first), frames.last - played.last)
-            work = FrameRange(played.first + by, played.last + by)
-    return scene_commands.set_work_range(None if work == frames else work)
+            preview = FrameRange(played.first + by, played.last + by)
+    return scene_commands.set_preview(None if preview == frames else preview)
 
 
 def _become(session: Session, document: Document, label: str) -> None:

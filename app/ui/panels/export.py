@@ -28,7 +28,7 @@ from app.ui.style import (
 
 BACKGROUNDS = (("transparent", "Transparent"), ("colour", "Colour"))
 FRAMINGS = (("fit", "All motion"), ("canvas", "Canvas"))
-RANGES = (("played", "What plays"), ("own", "From – to"))
+RANGES = (("all", "All frames"), ("own", "From – to"))
 WHITE = "#ffffff"
 LARGEST = 65_535
 PREVIEW, LARGEST_PREVIEW = 3.2, 6.0  # em: at least and at most
@@ -159,8 +159,8 @@ def _frames(look: Look, project: Project, settings: ExportSettings) -> ExportSet
     document = project.document
     frames = exported_frames(document)
     label(look, "Range")
-    match segments(look, "range", RANGES, "played" if settings.frames is None else "own"):
-        case "played":
+    match segments(look, "range", RANGES, "all" if settings.frames is None else "own"):
+        case "all":
             settings = replace(settings, frames=None)
         case "own":
             settings = replace(settings, frames=frames)

@@ -350,15 +350,15 @@ BINDINGS: dict[str, Binding] = {
         active=lambda session: session.preferences.auto_key,
         in_bar=True,
     ),
-    "work start": Binding(
-        label="Start playback range here",
-        action=do(keys.start_work_here),
+    "preview start": Binding(
+        label="Start preview range here",
+        action=do(keys.start_preview_here),
         menu="Time",
         keys=(Key.b,),
         parted=True,
     ),
-    "work end": Binding(
-        label="End playback range here", action=do(keys.end_work_here), menu="Time", keys=(Key.n,)
+    "preview end": Binding(
+        label="End preview range here", action=do(keys.end_preview_here), menu="Time", keys=(Key.n,)
     ),
     "fit time": Binding(
         label="Fit timeline",

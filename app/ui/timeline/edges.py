@@ -1,32 +1,32 @@
-"""The playback range above the ruler, and the animation's end on the track."""
+"""The preview range above the ruler, and the animation's end on the track."""
 
 from imgui_bundle import ImVec2, imgui
 
 from app.editor import Action, Edge, EdgeDrag, do
 from app.editor.actions import keys, timeline_pointing
 from app.ui.style import ink, tip
-from app.ui.timeline.track import WORK, Track, in_hand, is_pressed, write_tag
+from app.ui.timeline.track import PREVIEW, Track, in_hand, is_pressed, write_tag
 
 GRIP = 0.55  # em: half the width in which the pointer takes an end
 
 
 def draw_edges(track: Track) -> list[Action]:
     """Draw what plays and where the animation ends; both are changed by dragging."""
-    return _work_range(track) + _animation_end(track)
+    return _preview_range(track) + _animation_end(track)
 
 
-def _work_range(track: Track) -> list[Action]:
+def _preview_range(track: Track) -> list[Action]:
     palette, draw_list, em = track.look.palette, imgui.get_window_draw_list(), track.look.em
     document = track.project.document
-    played, is_part = document.played, document.work is not None
+    played, is_part = document.played, document.preview is not None
     left, right = track.x(played.first), track.x(played.last)
-    low, high = track.top + 0.05 * em, track.top + (WORK - 0.15) * em
+    low, high = track.top + 0.05 * em, track.top + (PREVIEW - 0.15) * em
     bounds = ImVec2(track.left, track.top), ImVec2(track.right, track.bottom)
     draw_list.push_clip_rect(*bounds, intersect_with_current_clip_rect=True)
     draw_list.add_rect_filled(
         ImVec2(track.left, low), ImVec2(track.right, high), ink(palette.desk), 0.2 * em
     )
-    actions = _edge(track, "work range", left, right, resizes=False) if is_part else []
+    actions = _edge(track, "preview range", left, right, resizes=False) if is_part else []
     hot = is_part and in_hand()
     colour = palette.accent if is_part else palette.dim
     draw_list.add_rect_filled(
@@ -37,8 +37,8 @@ def _work_range(track: Track) -> list[Action]:
     )
     grip = GRIP * em
     ends: tuple[tuple[Edge, float, int], ...] = (
-        ("work start", left, 1),
-        ("work end", right, -1),
+        ("preview start", left, 1),
+        ("preview end", right, -1),
     )
     for edge, x, side in ends:
         actions += _edge(track, edge, x - grip, x + grip, resizes=True)

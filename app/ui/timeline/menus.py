@@ -88,10 +88,10 @@ def _time_items(look: Look, project: Project) -> list[Action]:
     if imgui.menu_item_simple("Copy first pose to last key", enabled=count > 1):
         actions.append(do(keys.match_ends))
     imgui.separator()
-    for name in ("work start", "work end"):
+    for name in ("preview start", "preview end"):
         binding = BINDINGS[name]
         if imgui.menu_item_simple(binding.label, binding.keys_in_words):
             actions.append(binding.action)
-    if imgui.menu_item_simple("Play all frames", enabled=project.document.work is not None):
+    if imgui.menu_item_simple("Play all frames", enabled=project.document.preview is not None):
         actions.append(do(keys.play_all))
     return actions

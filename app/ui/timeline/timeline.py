@@ -130,7 +130,7 @@ def _hint(track: Track) -> str:
         return "Esc takes it back" if isinstance(gesture, EdgeDrag) else ""
     y = imgui.get_mouse_pos().y
     if y < track.ruler_top:
-        return "Drag the ends of the playback range, double-click to play all frames"
+        return "Drag the ends of the preview range, double-click to play all frames"
     if y < track.track_top:
         return f"Drag to move the playhead, wheel to scroll, {with_key(CTRL, 'wheel')} to zoom"
     return (

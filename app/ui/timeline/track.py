@@ -5,7 +5,7 @@ from imgui_bundle import ImVec2, imgui
 from app.editor import Project, Strip
 from app.ui.style import Look, ink
 
-WORK, RULER, OVERVIEW = 0.7, 1.55, 0.75  # em: heights of the bands above and below the track
+PREVIEW, RULER, OVERVIEW = 0.7, 1.55, 0.75  # em: heights of the bands above and below the track
 BAR, BAR_SHARE = 3.6, 0.62  # em: height of intervals at most, and as a part of the track's
 CRAMPED, CRAMPED_SHARE = 5.5, 0.85  # em: below this height bars take more, and the overview goes
 ROUNDING = 0.4  # em
@@ -27,7 +27,7 @@ class Track:
         self.size = imgui.get_content_region_avail()
         self.left, self.top = self.corner.x, self.corner.y
         self.right, self.bottom = self.left + self.size.x, self.top + self.size.y
-        self.ruler_top = self.top + WORK * look.em
+        self.ruler_top = self.top + PREVIEW * look.em
         self.track_top = self.ruler_top + RULER * look.em
         self.is_cramped = self.size.y < CRAMPED * look.em
         is_whole = self.is_cramped or project.timing.strip is None

@@ -18,12 +18,13 @@ from numpy.testing import assert_allclose
 from app.document import figure_commands as figures
 from app.document import handle_commands as handles
 from app.document import key_commands as keys
+from app.document import pose_commands as poses
 from app.document import scene_commands as settings
 from app.document.easing import HOLD, LINEAR, PRESETS
 from app.document.figure import PictureFile
 from app.document.keyframe import MOST_TURNS, Handle, Keyframe, Target
 from app.document.model import Document
-from app.document.settings import VARIANTS, ExportSettings, FrameRange, Meshing
+from app.document.settings import VARIANTS, ExportSettings, FrameRange, Marker, Meshing
 from app.errors import LissomError
 from engine.errors import EngineError
 from engine.maps.bounds import Bounds
@@ -207,11 +208,11 @@ def test_reversing_keys_turns_the_motion_round():
 
 
 def test_scaling_time():
-    document = settings.set_work_range(FrameRange(2, 30))(animated(4, 10, 20))
+    document = settings.set_preview(FrameRange(2, 30))(animated(4, 10, 20))
     assert frames_of(keys.scale_keys(0, {10, 20}, 1.5)(document)) == [4, 10, 25]
     double = settings.scale_time(2.0)(document)
     assert frames_of(double) == [8, 20, 40]
-    assert (double.frames, double.work) == (FrameRange(0, 96), FrameRange(4, 60))
+    assert (double.frames, double.preview) == (FrameRange(0, 96), FrameRange(4, 60))
 
 
 def test_the_last_key_becomes_the_first():
@@ -236,11 +237,11 @@ def test_settings():
     assert figures.set_bounds(0, Bounds(k=0.5))(document).figures[0].bounds.k == 0.5
 
 
-def test_a_shorter_animation_cuts_its_work_range():
-    document = settings.set_work_range(FrameRange(5, 30))(animated(0, 10))
-    assert settings.set_frames(FrameRange(0, 20))(document).work == FrameRange(5, 20)
-    document = settings.set_work_range(FrameRange(25, 30))(document)
-    assert settings.set_frames(FrameRange(0, 20))(document).work is None
+def test_a_shorter_animation_cuts_its_preview_range():
+    document = settings.set_preview(FrameRange(5, 30))(animated(0, 10))
+    assert settings.set_frames(FrameRange(0, 20))(document).preview == FrameRange(5, 20)
+    document = settings.set_preview(FrameRange(25, 30))(document)
+    assert settings.set_frames(FrameRange(0, 20))(document).preview is None
 
 
 def test_bounds_and_a_new_domain_come_with_solved_poses():
@@ -281,7 +282,7 @@ def test_bounds_and_a_new_domain_come_with_solved_poses():
         keys.set_turns(0, {0, 10}, 0),
         settings.set_fps(24.0),
         settings.set_frames(FrameRange(0, 48)),
-        settings.set_work_range(None),
+        settings.set_preview(None),
         settings.set_loop(loop=False),
         figures.set_variant(0, "metric"),
         figures.set_anchor(0, None),
@@ -344,13 +345,18 @@ OTHER_CAGE = random_pose(np.random.default_rng(0), DOCUMENT, disc_domain(13))
         (settings.set_fps(0.0), "frames per second"),
         (settings.set_fps(float("nan")), "frames per second"),
         (settings.set_frames(FrameRange(0, 15)), "key at frame 20 would lie outside"),
-        (settings.set_work_range(FrameRange(3, 49)), "work range"),
+        (settings.set_preview(FrameRange(3, 49)), "preview range"),
         (figures.set_variant(0, "arap"), "variant"),
         (figures.set_anchor(0, CENTRE + 2 * RADIUS), "The anchor"),
         (figures.set_anchor(0, complex("inf")), "anchor must be within"),
-        (figures.set_bounds(0, Bounds(), [POSE]), "3 keys, but 1 poses"),
+        (settings.add_marker(-1), "marker is at a frame from 0"),
+        (settings.delete_marker(3), "no marker at frame 3"),
+        (poses.delete_pose(0, "bow"), "no pose 'bow'"),
+        (poses.keep_pose(0, POSE, "  "), "needs a name"),
+        (poses.keep_pose(0, OTHER_CAGE, "bow"), "cage of 13"),
+        (figures.set_bounds(0, Bounds(), [POSE]), "3 poses, but 1"),
         (figures.replace_domain(0, disc_domain(13), Meshing(), [POSE] * 3), "cage of 12"),
-        (figures.replace_domain(0, disc_domain(13), Meshing(), [OTHER_CAGE]), "3 keys, but 1"),
+        (figures.replace_domain(0, disc_domain(13), Meshing(), [OTHER_CAGE]), "3 poses, but 1"),
     ],
 )
 def test_what_is_not_possible_says_why(command, message):
@@ -447,3 +453,46 @@ def test_two_pictures_of_one_content_have_one_hash():
     again = PictureFile(data=PICTURE.data, suffix=".png", size=(200, 200))
     assert again.sha256 == PICTURE.sha256
     assert len(PICTURE.sha256) == 64
+
+
+def test_markers_stay_in_order_and_apart():
+    document = settings.add_marker(20)(settings.add_marker(6, "beat")(disc_document()))
+    assert [(m.frame, m.name) for m in document.markers] == [(6, "beat"), (20, "Marker 2")]
+    moved = settings.move_marker(6, 30)(settings.rename_marker(20, "end")(document))
+    assert [(m.frame, m.name) for m in moved.markers] == [(20, "end"), (30, "beat")]
+    with pytest.raises(LissomError, match="Two markers would be at frame 30"):
+        settings.move_marker(20, 30)(moved)
+    assert settings.delete_marker(20)(moved).markers == (Marker(frame=30, name="beat"),)
+    assert [m.frame for m in settings.scale_time(2.0)(moved).markers] == [40, 60]
+    assert settings.move_marker(6, 6)(document) is document
+
+
+def test_poses_of_the_library_follow_handles_as_keys_do():
+    document = animated(0, 10)
+    pose = document.figures[0].keys[1].pose
+    document = poses.keep_pose(0, pose, "bow")(poses.keep_pose(0, pose)(document))
+    assert [kept.name for kept in document.figures[0].library] == ["Pose 1", "bow"]
+    place = CENTRE + 20 - 35j
+    for command in (
+        handles.add_handle(0, place),
+        handles.move_handle(0, 0, CENTRE + 5),
+        handles.remove_handles(0, {1}),
+    ):
+        document = command(document)
+        (figure,) = document.figures
+        assert figure.kept_pose("bow").pose.targets == figure.keys[1].pose.targets
+    renamed = poses.rename_pose(0, "bow", "low bow")(document)
+    with pytest.raises(LissomError, match="Two poses have the name 'Pose 1'"):
+        poses.rename_pose(0, "low bow", "Pose 1")(renamed)
+    assert [k.name for k in poses.delete_pose(0, "Pose 1")(renamed).figures[0].library] == [
+        "low bow"
+    ]
+
+
+def test_the_axis_of_mirroring_is_in_the_middle_until_it_is_moved():
+    document = disc_document()
+    assert document.figures[0].axis == pytest.approx(CENTRE.real)
+    for name, place in (("paw.L", CENTRE - 40), ("paw.R", CENTRE + 60), ("tail", CENTRE + 80)):
+        document = handles.add_handle(0, place, name=name)(document)
+    assert document.figures[0].axis == CENTRE.real + 10
+    assert poses.set_mirror(0, 7.0)(document).figures[0].axis == 7.0

@@ -245,7 +245,7 @@ def test_arrays_that_are_shared_are_counted_once():
             vertices=np.resize(domain.mesh.vertices, 100_000), triangles=domain.mesh.triangles
         ),
     )
-    poses = [key.pose for key in history.document.figures[0].keys]
+    poses = history.document.figures[0].poses
     meshing = history.document.figures[0].meshing
     history.do(figure_commands.replace_domain(0, large, meshing, poses))
     for fps in range(30, 430):

@@ -136,7 +136,7 @@ def test_exports_leave_out_the_frame_that_a_loop_repeats():
     assert exported_frames(keyed(0, 9)) == FrameRange(0, 48)
     assert exported_frames(keyed(0, 9, loop=True)) == FrameRange(0, 47)
     assert exported_frames(keyed(0, last=0, loop=True)) == FrameRange(0, 0)
-    assert exported_frames(keyed(0, 9, loop=True, work=FrameRange(3, 8))) == FrameRange(3, 8)
+    assert exported_frames(keyed(0, 9, loop=True, preview=FrameRange(3, 8))) == FrameRange(0, 47)
     assert exported_frames(keyed(0, 48, loop=True)) == FrameRange(0, 47)
     assert exported_frames(keyed(10, 30, loop=True)) == FrameRange(0, 47)
     chosen = replace(EMPTY.export, frames=FrameRange(5, 48))
@@ -194,12 +194,12 @@ def test_the_playhead_runs_backwards_and_at_other_speeds():
             Playhead(speed=speed)
 
 
-def test_the_playhead_stays_in_the_work_range_while_it_plays():
-    document = keyed(0, 9, last=48, loop=True, work=FrameRange(10, 12))
+def test_the_playhead_stays_in_the_preview_range_while_it_plays():
+    document = keyed(0, 9, last=48, loop=True, preview=FrameRange(10, 12))
     running = Playhead(frame=30).play(document, 0.0)
     assert [running.frame_at(document, n / 24) for n in range(5)] == [10, 11, 12, 10, 11]
     assert Playhead(frame=30).frame_at(document, 9.0) == 30
-    one = keyed(0, 9, last=48, loop=True, work=FrameRange(7, 7))
+    one = keyed(0, 9, last=48, loop=True, preview=FrameRange(7, 7))
     assert Playhead().play(one, 0.0).frame_at(one, 1.3) == 7
     still = keyed(0, last=0, loop=True)
     assert Playhead().play(still, 0.0).frame_at(still, 1.3) == 0

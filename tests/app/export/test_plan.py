@@ -47,7 +47,7 @@ def test_frames_of_a_part_are_framed_as_those_of_the_whole(document, tmp_path):
     whole = plan_of(document, tmp_path / "frames", poses).view
     assert plan_of(document, tmp_path / "frames", poses, frames=FrameRange(3, 3)).view == whole
     assert plan_of(document, tmp_path / "frames", poses, fps=10.0).view == whole
-    beyond = replace(document, work=FrameRange(2, 4))
+    beyond = replace(document, preview=FrameRange(2, 4))
     assert plan_of(beyond, tmp_path / "frames", poses, frames=FrameRange(0, 10)).view == whole
 
 

@@ -8,7 +8,14 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from documents import differences, disc_document, disc_domain, full_document, random_command
+from documents import (
+    altered,
+    differences,
+    disc_document,
+    disc_domain,
+    full_document,
+    random_command,
+)
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -91,8 +98,16 @@ def test_any_document_comes_back_to_the_last_bit(tmp_path_factory, seeds, is_ful
 
 
 def test_a_stored_file_of_schema_1_opens():
-    assert not differences(load_project(STORED), full_document())
+    first = altered(full_document(), markers=(), library=(), mirror=None)
+    assert not differences(load_project(STORED), first)
     assert load_thumbnail(STORED) == THUMBNAIL
+
+
+def test_what_played_in_a_file_of_schema_1_is_still_exported(tmp_path):
+    members = read_members(STORED)
+    played = with_json(members, "export", "frames", value=None)
+    loaded = load_project(pack(tmp_path / "a", played))
+    assert loaded.preview == loaded.export.frames == full_document().preview
 
 
 def test_the_same_document_gives_the_same_bytes_whenever_it_is_saved(tmp_path):
@@ -121,7 +136,7 @@ def test_the_layout_of_the_file(tmp_path, members):
     phi = np.load(io.BytesIO(members["figures/0/keys/00001.phi.npy"]), allow_pickle=False)
     assert phi.tobytes() == full_document().figures[0].keys[1].pose.phi.tobytes()
     content = json.loads(members["project.json"])
-    assert content["schema"] == 1
+    assert content["schema"] == 2
     assert content["app_version"].count(".") >= 1
     assert list(content) == sorted(content)
     keys = content["figures"][0]["keys"]
@@ -191,8 +206,8 @@ def test_there_may_be_no_thumbnail(tmp_path):
 
 
 def test_a_newer_schema_is_refused_by_its_version(tmp_path, members):
-    newer = with_json(with_json(members, "schema", value=2), "app_version", value="9.1")
-    with pytest.raises(LissomError, match=r"newer Lissom \(9\.1, schema 2\).*Update Lissom"):
+    newer = with_json(with_json(members, "schema", value=3), "app_version", value="9.1")
+    with pytest.raises(LissomError, match=r"newer Lissom \(9\.1, schema 3\).*Update Lissom"):
         load_project(pack(tmp_path / "a", newer))
 
 
@@ -215,7 +230,15 @@ def test_a_newer_schema_need_have_nothing_else_in_common(tmp_path):
         (["frames"], [0], "frames must be two whole numbers"),
         (["frames"], [0, 5], "outside the animation"),
         (["frames"], [0, 1.5], "frames must be a whole number"),
-        (["work"], [0, 900], "work range"),
+        (["preview"], [0, 900], "preview range"),
+        (["markers"], {}, "markers must be a list"),
+        (["markers", 0, "name"], " ", "marker needs a name"),
+        (["markers", 0, "frame"], 700, "Two markers are at frame 700"),
+        (["markers", 0, "frame"], 701, "mixed up"),
+        (["markers", 1, "frame"], 10**30, "marker is at a frame"),
+        (["figures", 0, "mirror"], 1e9, "axis of mirroring"),
+        (["figures", 0, "library", 0, "name"], "über\n", "Two poses have the name"),
+        (["figures", 0, "library", 0, "targets"], [], "one target for each handle"),
         (["figures", 0, "anchor"], [0], "anchor must be a point"),
         (["figures", 0, "anchor"], [0, 0], "anchor at"),
         (["figures", 0, "variant"], "arap", "variant"),

@@ -298,16 +298,16 @@ def test_playhead_is_dragged_and_stops_at_the_ends(window, project, play):
     assert project.history.undo_label is None
 
 
-def test_work_range_and_end_are_dragged(window, project, play):
+def test_preview_range_and_end_are_dragged(window, project, play):
     first = project.document
-    assert play(lambda hand: hand.drag("work start", 5, 10)).work == FrameRange(10, 60)
-    assert play(lambda hand: hand.drag("work end", 5, 40)).work == FrameRange(10, 40)
-    assert play(lambda hand: hand.drag("work range", 90)).work == FrameRange(30, 60)
+    assert play(lambda hand: hand.drag("preview start", 5, 10)).preview == FrameRange(10, 60)
+    assert play(lambda hand: hand.drag("preview end", 5, 40)).preview == FrameRange(10, 40)
+    assert play(lambda hand: hand.drag("preview range", 90)).preview == FrameRange(30, 60)
     assert play(lambda hand: hand.drag("animation end", 40, 54)).frames == FrameRange(0, 54)
-    assert project.document.work == FrameRange(30, 54)
+    assert project.document.preview == FrameRange(30, 54)
     assert play(lambda hand: hand.drag("animation end", 10)).frames == FrameRange(0, 48)
-    play(lambda hand: hand.robot.item_double_click("**/work start"))
-    assert project.document.work is None
+    play(lambda hand: hand.robot.item_double_click("**/preview start"))
+    assert project.document.preview is None
     assert undo_all(window) == 6
     assert project.document is first
 
@@ -449,7 +449,7 @@ def test_last_frame_and_speed_are_typed(window, project, play):
 
 @pytest.mark.parametrize("field", ["frame", "fps"])
 def test_one_click_on_a_number_takes_what_is_typed(window, project, field):
-    """The keys 1, b and n would zoom and set the playback range."""
+    """The keys 1, b and n would zoom and set the preview range."""
     before, camera = project.document, project.camera
 
     def type_into(robot):
@@ -463,7 +463,7 @@ def test_one_click_on_a_number_takes_what_is_typed(window, project, field):
     window.run(type_into)
     window.settle()
     assert project.camera is camera
-    assert project.document.work == before.work
+    assert project.document.preview == before.preview
     told = {
         "frame": playback.current_frame(window.session, project),
         "fps": project.document.fps,

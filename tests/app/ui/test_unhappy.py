@@ -269,12 +269,12 @@ def test_playhead_stays_in_the_animation_that_undo_makes_shorter(window, bent):
 
 
 @pytest.mark.usefixtures("bent")
-def test_end_of_the_work_range_before_its_beginning_takes_that_along(window):
+def test_end_of_the_preview_range_before_its_beginning_takes_that_along(window):
     session = window.session
     for frame, key, work in ((20, "b", (20, 48)), (10, "n", (10, 10)), (30, "b", (30, 30))):
         playback.seek(session, frame)
         window.run(lambda robot, key=key: press(robot, getattr(window.Key, key)))
-        assert session.project.document.work == FrameRange(*work)
+        assert session.project.document.preview == FrameRange(*work)
 
 
 def test_only_what_is_there_is_selected(window, bent):

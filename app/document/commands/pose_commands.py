@@ -1,0 +1,45 @@
+"""Commands on a figure's library of poses, and on the axis at which poses are flipped."""
+
+from dataclasses import replace
+
+from app.document.commands.command import figure_command
+from app.document.figure import Figure
+from app.document.keyframe import KeptPose, Pose
+
+
+@figure_command("Keep pose")
+def keep_pose(figure: Figure, pose: Pose, name: str | None = None) -> Figure:
+    """Put a pose into the library, by default under a name that no other one has."""
+    kept = KeptPose(name=_free_name(figure) if name is None else name, pose=pose)
+    return replace(figure, library=(*figure.library, kept))
+
+
+@figure_command("Rename pose")
+def rename_pose(figure: Figure, name: str, to: str) -> Figure:
+    """Give a pose of the library another name."""
+    renamed = figure.kept_pose(name)
+    if to == name:
+        return figure
+    library = tuple(replace(kept, name=to) if kept is renamed else kept for kept in figure.library)
+    return replace(figure, library=library)
+
+
+@figure_command("Delete pose")
+def delete_pose(figure: Figure, name: str) -> Figure:
+    """Take a pose out of the library; keys that were made of it stay."""
+    gone = figure.kept_pose(name)
+    return replace(figure, library=tuple(kept for kept in figure.library if kept is not gone))
+
+
+@figure_command("Move mirror axis")
+def set_mirror(figure: Figure, mirror: float | None) -> Figure:
+    """Set where the axis crosses the picture at which poses are flipped; None finds its middle."""
+    return figure if mirror == figure.mirror else replace(figure, mirror=mirror)
+
+
+def _free_name(figure: Figure) -> str:
+    taken = {kept.name for kept in figure.library}
+    number = len(taken) + 1
+    while f"Pose {number}" in taken:
+        number += 1
+    return f"Pose {number}"
