@@ -12,14 +12,12 @@ from engine.domain.build import (
     mesh_inside,
     texture_coordinates,
 )
-from engine.domain.outline import Hole
 from engine.domain.validity import MOST_MESH_TRIANGLES, require_domain
 
 __all__ = [
     "MOST_MESH_TRIANGLES",
     "MOST_TRIANGLES",
     "Domain",
-    "Hole",
     "build_domain",
     "mesh_inside",
     "require_domain",

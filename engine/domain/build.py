@@ -7,10 +7,10 @@ import numpy as np
 
 from engine.arrays import Booleans, Bytes, Complexes, Floats
 from engine.domain.meshing import Mesh, triangulate, with_limbs_on_top
-from engine.domain.outline import Detail, Hole, Holes, enclose
+from engine.domain.outline import Detail, Holes, enclose
 from engine.domain.picture import BackgroundColour, subject_mask
 from engine.errors import EngineError
-from engine.geometry import deepest_point
+from engine.geometry import Hole, deepest_point
 
 FEWEST_TRIANGLES = 1_000
 MOST_TRIANGLES = 2_000_000

@@ -4,15 +4,13 @@ import numpy as np
 
 from engine.arrays import Complexes, Integers
 from engine.domain.build import MOST_TRIANGLES, Domain
-from engine.domain.outline import LARGEST_OUTLINE, Hole
+from engine.domain.outline import LARGEST_OUTLINE
 from engine.errors import EngineError
 from engine.geometry import (
     box_diagonal,
-    contains,
     distance_to_boundary,
-    lies_within,
     require_around,
-    require_holes,
+    require_cages_in_holes,
     require_simple,
     signed_area,
 )
@@ -51,24 +49,13 @@ def require_domain(domain: Domain) -> None:
                 f"The {name} must have 3 to {LARGEST_OUTLINE:,} vertices, not {count:,}."
             )
     require_simple(domain.outline, "outline")
-    require_holes(domain.loops[1:], domain.outline)
+    require_cages_in_holes(domain.holes, domain.outline)
     require_around(domain.cage, domain.outline)
-    for number, hole in enumerate(domain.holes):
-        _require_hole_cage(hole, number)
     room = distance_to_boundary(domain.outline, np.concatenate(domain.cages), domain.loops[1:])
     if room.min() < NEAREST * box_diagonal(domain.outline):
         raise EngineError("The cage comes too near the outline; it must keep a distance.")
     _require_near(domain.mesh.vertices, "mesh")
     _require_tiling(domain)
-
-
-def _require_hole_cage(hole: Hole, number: int) -> None:
-    name = f"cage of hole {number}"
-    require_simple(hole.cage, name, clockwise=True)
-    if not lies_within(hole.cage, hole.outline):
-        raise EngineError(f"The {name} is not inside the hole; it must lie strictly within.")
-    if not contains(hole.cage, np.array([hole.centre])).all():
-        raise EngineError(f"The centre of hole {number} is not inside its cage.")
 
 
 def _require_near(points: Complexes, name: str) -> None:

@@ -5,6 +5,7 @@ Out: samples, pieces, triangles, distances, areas, and whether something is insi
 Imports: `engine.arrays`, `engine.errors`.
 """
 
+from engine.geometry.hole import Hole, require_cages_in_holes
 from engine.geometry.polygon import (
     as_xy,
     box_diagonal,
@@ -27,6 +28,7 @@ from engine.geometry.polygon import (
 from engine.geometry.segments import Pieces, bisect, distance_to_segments
 
 __all__ = [
+    "Hole",
     "Pieces",
     "as_xy",
     "bisect",
@@ -41,6 +43,7 @@ __all__ = [
     "lies_within",
     "loop_ends",
     "require_around",
+    "require_cages_in_holes",
     "require_holes",
     "require_inside",
     "require_simple",

@@ -1,6 +1,6 @@
 """Harmonic maps over a cage, how far they distort, and the proof of it.
 
-In: a cage, coefficients of Φ and Ψ, points, bounds.
+In: a cage, holes, coefficients of Φ and Ψ, points, bounds.
 Out: values and derivatives, k, σ_a, σ_b, τ, and certificates.
 Imports: `engine.geometry`.
 """
@@ -11,6 +11,7 @@ from engine.maps.bounds import Bounds, Limits
 from engine.maps.cauchy import cauchy_coordinates, cauchy_derivatives, evaluate
 from engine.maps.certificate import Certificate, certify, certify_segments, segment_enclosures
 from engine.maps.harmonic_map import HarmonicMap
+from engine.maps.span import Span
 
 __all__ = [
     "Boundary",
@@ -18,6 +19,7 @@ __all__ = [
     "Certificate",
     "HarmonicMap",
     "Limits",
+    "Span",
     "cauchy_coordinates",
     "cauchy_derivatives",
     "certify",

@@ -1,5 +1,6 @@
 """Samples of the outline on which a map over the cage is measured and bounded."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Self
 
@@ -7,13 +8,14 @@ import numpy as np
 
 from engine.arrays import Complexes, Floats, Indices, as_points, readonly
 from engine.geometry import (
+    Hole,
     box_diagonal,
-    distance_to_segments,
     require_around,
+    require_cages_in_holes,
     require_simple,
     sample_graded,
 )
-from engine.maps.cauchy import cauchy_coordinates, cauchy_derivatives
+from engine.maps.span import Span
 
 # Longest segments of the outline, over their distance to the nearest cage vertex, and over the
 # diagonal of the outline. Measured: the extremes on the samples are then within a few thousandths
@@ -24,58 +26,66 @@ SEGMENT_PER_SIZE = 1 / 200
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Boundary:
-    """An outline inside a cage, sampled as densely as the derivatives of maps ask for.
+    """The boundary of a domain, sampled as densely as the derivatives of maps ask for.
 
-    Build it with `Boundary.sample`; it depends on the shape only and serves all maps over the cage.
+    Build it with `Boundary.sample`; it depends on the shape only and serves all maps on it.
 
     Parameters
     ----------
-    outline, cage : complex128, shapes (p,) and (n,)
+    outline : complex128
+    span : Span
+        The functions of maps: cage and holes.
     size : float
         L, the diagonal of the outline's bounding box.
     points : complex128, shape (m,)
-        Samples in order along the outline; segment i leads from sample i to sample i + 1.
+        Samples in order along the outline, then along the loop of each hole, the domain on the
+        left; segment i leads from sample i to the next one on its loop.
+    starts : intp, shape (1 + holes,)
+        The first sample of each loop.
     weights : float64, shape (m,)
-        Of the samples in means over the outline, with sum 1: the arc length that belongs to each,
+        Of the samples in means over the boundary, with sum 1: the arc length that belongs to each,
         and 0 for those that were added. Sums do not change by refinement.
     spacing : float64, shape (m,)
         The arc length that belongs to each sample, added or not, with sum 1.
     half_lengths : float64, shape (m,)
         Of the segments.
     derivatives : complex128, shape (m, n)
-        C_j' at the samples.
-    curvature_kernel : float64, shape (m, n)
-        1 / (2π d_j²) with d_j the distance of cage vertex j from the segment: times the jumps of
-        Δφ/Δz it bounds |Φ'''| on the segment.
+        Of the n functions of the span, C_j' and 1 / (z − c_j), at the samples.
+    bending_kernel : float64, shape (m, n)
+        Times how much each singularity bends a function (`Span.bending`), it bounds |Φ'''| on the
+        segment.
     vertex_coordinates : complex128, shape (p, n)
-        C_j at the outline's vertices.
+        The functions themselves at the vertices of all loops.
     """
 
     outline: Complexes
-    cage: Complexes
+    span: Span
     size: float
     points: Complexes
+    starts: Indices
     weights: Floats
     spacing: Floats
     half_lengths: Floats
     derivatives: Complexes
-    curvature_kernel: Floats
+    bending_kernel: Floats
     vertex_coordinates: Complexes
 
     @classmethod
-    def sample(cls, outline: Complexes, cage: Complexes) -> Self:
-        """Sample an outline.
+    def sample(cls, outline: Complexes, cage: Complexes, holes: Sequence[Hole] = ()) -> Self:
+        """Sample the boundary of a domain.
 
         Parameters
         ----------
         outline, cage : complex128, shapes (p,) and (n,)
             Counter-clockwise polygons. The outline is simple and lies strictly inside the cage. The
             cage may cross itself away from the outline, as some published ones do.
+        holes : sequence of Hole
 
         Raises
         ------
         EngineError
-            If the outline is not simple, or not strictly inside the cage.
+            If the outline is not simple, or not strictly inside the cage, or a hole is not inside
+            the outline, or its cage not in the hole.
         """
         outline, cage = (
             as_points(outline, "outline", at_least=3),
@@ -83,34 +93,64 @@ class Boundary:
         )
         require_simple(outline, "outline")
         require_around(cage, outline)
+        require_cages_in_holes(holes, outline)
+        span = Span(cage=cage, holes=tuple(holes))
+        loops = [outline, *(hole.outline for hole in holes)]
         size = box_diagonal(outline)
-        points = sample_graded(
-            outline, cage, ratio=SEGMENT_PER_DISTANCE, longest=SEGMENT_PER_SIZE * size
-        )
-        ends = np.roll(points, -1)
+        singular = np.concatenate([span.vertices, span.centres])
+        samples = [
+            sample_graded(
+                loop, singular, ratio=SEGMENT_PER_DISTANCE, longest=SEGMENT_PER_SIZE * size
+            )
+            for loop in loops
+        ]
+        points = np.concatenate(samples)
+        starts = np.cumsum([0, *map(len, samples[:-1])])
+        ends = points[_following(len(points), starts)]
         half = np.abs(ends - points) / 2
-        lengths = readonly(_arc_lengths(half))
+        lengths = readonly(_arc_lengths(half, starts))
         return cls(
             outline=outline,
-            cage=cage,
+            span=span,
             size=size,
             points=readonly(points),
+            starts=readonly(starts),
             weights=lengths,
             spacing=lengths,
             half_lengths=readonly(half),
-            derivatives=readonly(cauchy_derivatives(cage, points)),
-            curvature_kernel=readonly(_curvature_kernel(cage, points, ends)),
-            vertex_coordinates=readonly(cauchy_coordinates(cage, outline)),
+            derivatives=readonly(span.derivatives(points)),
+            bending_kernel=readonly(span.bending_kernel(points, ends)),
+            vertex_coordinates=readonly(span.coordinates(np.concatenate(loops))),
         )
+
+    @property
+    def cage(self) -> Complexes:
+        """The polygon of the Cauchy coordinates around the outline."""
+        return self.span.cage
+
+    @property
+    def holes(self) -> tuple[Hole, ...]:
+        """Those of the domain."""
+        return self.span.holes
+
+    @property
+    def loops(self) -> tuple[Complexes, ...]:
+        """The polygons of the boundary: the outline, then those of the holes."""
+        return (self.outline, *(hole.outline for hole in self.holes))
+
+    @property
+    def following(self) -> Indices:
+        """The sample at which each segment ends, intp (m,)."""
+        return _following(len(self.points), self.starts)
 
     @property
     def nbytes(self) -> int:
         """Memory that the arrays take, in bytes."""
-        arrays = (self.points, self.derivatives, self.curvature_kernel, self.vertex_coordinates)
+        arrays = (self.points, self.derivatives, self.bending_kernel, self.vertex_coordinates)
         return sum(array.nbytes for array in arrays)
 
     def refined(self, segments: Indices) -> Self:
-        """Return the same outline with one more sample in the middle of each given segment.
+        """Return the same boundary with one more sample in the middle of each given segment.
 
         Parameters
         ----------
@@ -119,34 +159,39 @@ class Boundary:
         """
         segments = np.unique(segments)
         starts = self.points[segments]
-        ends = self.points[(segments + 1) % len(self.points)]
+        ends = self.points[self.following[segments]]
         middles = (starts + ends) / 2
         points = np.insert(self.points, segments + 1, middles)
+        loops = self.starts + np.searchsorted(segments, self.starts)
         half = np.insert(self.half_lengths, segments + 1, 0.0)
-        kernel = np.insert(self.curvature_kernel, segments + 1, 0.0, axis=0)
+        kernel = np.insert(self.bending_kernel, segments + 1, 0.0, axis=0)
         first = segments + np.arange(len(segments))
         half[first] = half[first + 1] = self.half_lengths[segments] / 2
-        kernel[first] = _curvature_kernel(self.cage, starts, middles)
-        kernel[first + 1] = _curvature_kernel(self.cage, middles, ends)
-        rows = cauchy_derivatives(self.cage, middles)
+        kernel[first] = self.span.bending_kernel(starts, middles)
+        kernel[first + 1] = self.span.bending_kernel(middles, ends)
+        rows = self.span.derivatives(middles)
         return replace(
             self,
             points=readonly(points),
+            starts=readonly(loops),
             weights=readonly(np.insert(self.weights, segments + 1, 0.0)),
-            spacing=readonly(_arc_lengths(half)),
+            spacing=readonly(_arc_lengths(half, loops)),
             half_lengths=readonly(half),
             derivatives=readonly(np.insert(self.derivatives, segments + 1, rows, axis=0)),
-            curvature_kernel=readonly(kernel),
+            bending_kernel=readonly(kernel),
         )
 
 
-def _arc_lengths(half_lengths: Floats) -> Floats:
+def _following(count: int, starts: Indices) -> Indices:
+    """Return the next sample of each of some samples, on loops that begin at `starts`."""
+    following: Indices = np.arange(1, count + 1)
+    following[np.append(starts[1:], count) - 1] = starts
+    return following
+
+
+def _arc_lengths(half_lengths: Floats, starts: Indices) -> Floats:
     """Return the arc length from the middle of the segment before each sample to that after it."""
-    lengths: Floats = half_lengths + np.roll(half_lengths, 1)
+    lengths: Floats = half_lengths.copy()
+    lengths[_following(len(lengths), starts)] += half_lengths
     lengths /= lengths.sum()
     return lengths
-
-
-def _curvature_kernel(cage: Complexes, starts: Complexes, ends: Complexes) -> Floats:
-    kernel: Floats = 1.0 / (2 * np.pi * distance_to_segments(cage, starts, ends).T ** 2)
-    return kernel

@@ -11,7 +11,8 @@ difference s_j = (φ_{j+1} − φ_j) / (z_{j+1} − z_j), so that
     2πi Φ''(z) = Σ (s_j − s_{j−1}) / B_j.
 
 Points lie strictly inside the cage. On the cage Φ' is log-singular at the vertices; outside it the
-formulas give the values of another function (0 for constants), which no caller wants.
+formulas give the values of another function, 0 for constants. That is what cages in holes are for,
+which run clockwise (`engine.maps.span`).
 """
 
 from collections.abc import Iterator
@@ -98,16 +99,6 @@ def cauchy_derivatives(cage: Complexes, points: Complexes) -> Complexes:
         per_length = edge_logarithms(cage, points[block]) / lengths
         derivatives[block] = np.roll(per_length, 1, axis=1) - per_length
     return derivatives
-
-
-def cauchy_second_derivatives(cage: Complexes, points: Complexes) -> Complexes:
-    """Return E_j(z) = C_j''(z) = (z_{j+1} − z_{j−1}) / (2πi B_{j−1} B_j B_{j+1}), (m, n)."""
-    chord = (np.roll(cage, -1) - np.roll(cage, 1)) / TWO_PI_I
-    second = np.empty((len(points), len(cage)), dtype=np.complex128)
-    for block in _blocks(len(points), len(cage)):
-        b = cage - points[block, None]
-        second[block] = chord / (np.roll(b, 1, axis=1) * b * np.roll(b, -1, axis=1))
-    return second
 
 
 def evaluate(

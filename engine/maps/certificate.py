@@ -14,6 +14,10 @@ because |F| is at least its component along the bisector of the end values. Then
 on the segment and turns by exactly Δ, so that the sum of all Δ is 2π times the winding number of F.
 If that is 0, F has no zero in the domain, and the extremes of k, σ_a and σ_b are on the outline
 (Theorem 4 of Chen and Weber 2015). Segments whose bounds are not good enough are bisected.
+
+Around holes both hold for the whole boundary, and |Φ'''| also has 2 |a_j| / d³ of each logarithm.
+The winding has to be 0 along every loop by itself: a map like 1/z turns a ring inside out without a
+fold, but comes from the identity by no deformation, and has no single-valued log f_z.
 """
 
 from dataclasses import dataclass
@@ -26,8 +30,8 @@ from engine.arrays import Booleans, Complexes, Floats, Indices
 from engine.errors import EngineError
 from engine.maps.boundary import Boundary
 from engine.maps.bounds import Limits
-from engine.maps.cauchy import difference_jumps, evaluate
 from engine.maps.harmonic_map import HarmonicMap
+from engine.maps.span import Span
 
 # Segments are bisected until the reported extremes are this close to attained ones.
 TIGHTNESS = 0.002
@@ -42,7 +46,7 @@ ROUNDING = 1e-11
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Certificate:
-    """What is proven about a map, in the closed domain inside the outline.
+    """What is proven about a map, in the closed domain.
 
     Parameters
     ----------
@@ -50,8 +54,8 @@ class Certificate:
         Enclosures: k and σ_a are nowhere larger, σ_b is nowhere smaller. Where nothing better can
         be proven k is infinite and sigma_b is −sigma_a.
     winding : int or None
-        Winding number of f_z along the outline, the number of its zeros inside; None if f_z
-        vanishes, or nearly, on the outline.
+        Winding number of f_z along the boundary, the number of its zeros inside; None if f_z
+        vanishes, or nearly, on the boundary, or if it winds around holes.
     certified : bool
         The map is locally injective and keeps to the limits that it was tested for.
     limits : Limits or None
@@ -102,7 +106,7 @@ def certify_segments(
     """
     with np.errstate(over="ignore", invalid="ignore"):
         coefficients, segments = _measure(harmonic_map, boundary)
-        return _bisect(boundary.cage, coefficients, segments, limits)
+        return _bisect(boundary, coefficients, segments, limits)
 
 
 class Enclosures(NamedTuple):
@@ -127,18 +131,18 @@ def segment_enclosures(harmonic_map: HarmonicMap, boundary: Boundary) -> Enclosu
 
 def _measure(harmonic_map: HarmonicMap, boundary: Boundary) -> tuple[Complexes, "_Segments"]:
     """Return φ and ψ (n, 2), and what is known of the map at the samples and between them."""
-    if not np.array_equal(harmonic_map.cage, boundary.cage):
+    span, following = boundary.span, boundary.following
+    if not harmonic_map.span.equals(span):
         raise EngineError("The map is over another cage than the outline's samples.")
-    coefficients = np.column_stack([harmonic_map.phi, harmonic_map.psi])
-    # Constants do not matter to derivatives; without them a far shape loses no digits.
-    values = boundary.derivatives @ (coefficients - coefficients[0])
-    jumps = np.abs(difference_jumps(boundary.cage, coefficients))
-    errors = (boundary.curvature_kernel @ jumps) * (boundary.half_lengths**2 / 2)[:, None]
+    coefficients = harmonic_map.coefficients
+    values = boundary.derivatives @ span.without_constant(coefficients)
+    bending = boundary.bending_kernel @ span.bending(coefficients)
+    errors = bending * (boundary.half_lengths**2 / 2)[:, None]
     segments = _Segments(
         starts=boundary.points,
-        ends=np.roll(boundary.points, -1),
+        ends=boundary.points[following],
         first=values,
-        last=np.roll(values, -1, axis=0),
+        last=values[following],
         errors=errors,
         origins=np.arange(len(values)),
     )
@@ -156,12 +160,12 @@ class _Segments:
     errors: Floats
     origins: Indices
 
-    def halves(self, which: Booleans, cage: Complexes, coefficients: Complexes) -> "_Segments":
+    def halves(self, which: Booleans, span: Span, coefficients: Complexes) -> "_Segments":
         """Return both halves of the chosen segments; the bound on |Φ'''| holds on in each."""
         starts, ends = self.starts[which], self.ends[which]
         first, last = self.first[which], self.last[which]
         middles = (starts + ends) / 2
-        (values,) = evaluate(cage, coefficients, middles, orders=(1,))
+        (values,) = span.evaluate(coefficients, middles, orders=(1,))
         quarter = self.errors[which] / 4
         return _Segments(
             starts=np.concatenate([starts, middles]),
@@ -193,10 +197,10 @@ def _or_worst(value: float, worst: float) -> float:
 
 
 def _bisect(
-    cage: Complexes, coefficients: Complexes, segments: _Segments, limits: Limits
+    boundary: Boundary, coefficients: Complexes, segments: _Segments, limits: Limits
 ) -> tuple[Certificate, Indices]:
     attained, proven = _Extremes(), _Extremes()
-    turn, bisections = 0.0, 0
+    turns, bisections = np.zeros(len(boundary.starts)), 0
     broken: list[Indices] = []
     for depth in range(DEEPEST + 1):
         a, b = np.abs(segments.first[:, 0]), np.abs(segments.first[:, 1])
@@ -209,14 +213,21 @@ def _bisect(
         bisections += count
         if count == 0 or depth == DEEPEST or bisections > MOST_BISECTIONS:
             proven.include(k, sigma_a, sigma_b)
-            turn = turn + float(delta.sum()) if clear.all() else inf
+            turns += _by_loop(segments, delta, boundary) if clear.all() else inf
             broken.append(segments.origins[~within])
             break
         broken.append(segments.origins[tight & ~within])
         proven.include(k[tight], sigma_a[tight], sigma_b[tight])
-        turn += float(delta[tight].sum())
-        segments = segments.halves(~tight, cage, coefficients)
-    return _conclude(proven, turn, limits), np.unique(np.concatenate(broken))
+        turns += _by_loop(segments, np.where(tight, delta, 0.0), boundary)
+        segments = segments.halves(~tight, boundary.span, coefficients)
+    return _conclude(proven, turns, limits), np.unique(np.concatenate(broken))
+
+
+def _by_loop(segments: _Segments, values: Floats, boundary: Boundary) -> Floats:
+    """Return the sums over each loop, (1 + holes,)."""
+    loop = np.searchsorted(boundary.starts, segments.origins, side="right") - 1
+    sums: Floats = np.bincount(loop, values, minlength=len(boundary.starts)).astype(np.float64)
+    return sums
 
 
 def _enclose(segments: _Segments) -> tuple[Enclosures, Booleans, Floats]:
@@ -256,8 +267,14 @@ def _are_tight(
     return tight
 
 
-def _conclude(proven: _Extremes, turn: float, limits: Limits) -> Certificate:
-    winding = None if turn == inf else round(turn / (2 * pi))
+def _conclude(proven: _Extremes, turns: Floats, limits: Limits) -> Certificate:
+    winding = None
+    if np.isfinite(turns).all():
+        windings = np.round(turns / (2 * pi)).astype(int)
+        winding = int(windings.sum())
+        # Without zeros inside, but around holes, f_z still has no single-valued logarithm.
+        if winding == 0 and windings.any():
+            winding = None
     # Zeros of F inside make k infinite there; without k < 1 on the outline σ_b obeys no minimum
     # principle, and only |f_z| − |f_z̄| ≥ −|f_z̄| remains.
     k = proven.k if winding == 0 else inf

@@ -1,54 +1,117 @@
 """Planar harmonic maps f = Φ + conj(Ψ) with Φ and Ψ in the span of the Cauchy coordinates."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from typing import Self
 
 import numpy as np
 
-from engine.arrays import Complexes, as_points
+from engine.arrays import Complexes, as_points, freeze
 from engine.errors import EngineError
-from engine.maps.cauchy import evaluate
+from engine.geometry import Hole
+from engine.maps.span import Span
+
+
+def _none() -> Complexes:
+    return freeze(np.empty(0, dtype=np.complex128))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class HarmonicMap:
-    """A harmonic map in closed form, Equations (1) and (14).
+    """A harmonic map in closed form, Equations (1) and (14), and around holes `engine.maps.span`.
 
     Parameters
     ----------
     cage : complex128, shape (n,)
         Vertices in counter-clockwise order.
-    phi, psi : complex128, shape (n,)
-        Coefficients of Φ and Ψ. (phi + c, psi − conj(c)) is the same map for every c: compare maps
-        at points, never by their coefficients.
+    phi, psi : complex128, shape (N,)
+        Coefficients of Φ and Ψ: those of the cage first, then those of the cage in each hole.
+        (phi + c, psi − conj(c)), with c constant on the cage, is the same map for every c, and
+        constants on the cage of a hole are nothing: compare maps at points, never by their
+        coefficients.
+    holes : tuple of Hole
+    logs : complex128, shape (holes,)
+        a_j: twice that times ln|z − c_j| is a part of the map.
 
     Raises
     ------
     EngineError
-        If the three arrays differ in length, or hold anything but finite numbers.
+        If there are not as many coefficients as vertices and holes, or they hold anything but
+        finite numbers.
     """
 
     cage: Complexes
     phi: Complexes
     psi: Complexes
+    holes: tuple[Hole, ...] = ()
+    logs: Complexes = field(default_factory=_none)
 
     def __post_init__(self) -> None:
         for name in ("cage", "phi", "psi"):
             object.__setattr__(self, name, as_points(getattr(self, name), name, at_least=3))
-        if not len(self.cage) == len(self.phi) == len(self.psi):
+        object.__setattr__(self, "logs", as_points(self.logs, "logs"))
+        count = len(self.cage) + sum(len(hole.cage) for hole in self.holes)
+        if not count == len(self.phi) == len(self.psi):
             raise EngineError(
-                f"A map over a cage of {len(self.cage)} vertices needs as many coefficients, not "
+                f"A map over a cage of {count} vertices needs as many coefficients, not "
                 f"{len(self.phi)} phi and {len(self.psi)} psi."
+            )
+        if len(self.logs) != len(self.holes):
+            raise EngineError(
+                f"A map around holes needs a logarithm for each of the {len(self.holes)}, not "
+                f"{len(self.logs)}."
             )
 
     @classmethod
-    def identity(cls, cage: Complexes) -> Self:
+    def identity(cls, cage: Complexes, holes: tuple[Hole, ...] = ()) -> Self:
         """Return the map that leaves every point where it is."""
-        return cls(cage=cage, phi=cage, psi=np.zeros_like(cage))
+        return cls.similarity(cage, holes)
+
+    @classmethod
+    def similarity(
+        cls,
+        cage: Complexes,
+        holes: tuple[Hole, ...] = (),
+        *,
+        factor: complex = 1,
+        shift: complex = 0,
+    ) -> Self:
+        """Return the map z ↦ factor · z + shift."""
+        inside = np.zeros(sum(len(hole.cage) for hole in holes), dtype=np.complex128)
+        phi = np.concatenate([factor * cage + shift, inside])
+        logs = np.zeros(len(holes), dtype=np.complex128)
+        return cls(cage=cage, phi=phi, psi=np.zeros_like(phi), holes=holes, logs=logs)
+
+    @property
+    def span(self) -> Span:
+        """The functions that the map is made of."""
+        return Span(cage=self.cage, holes=self.holes)
+
+    @property
+    def coefficients(self) -> Complexes:
+        """Those of Φ and Ψ in the span, logarithms included, complex128 (n, 2)."""
+        if not self.holes:
+            return np.column_stack([self.phi, self.psi])
+        return np.column_stack(
+            [
+                np.concatenate([self.phi, self.logs]),
+                np.concatenate([self.psi, self.logs.conj()]),
+            ]
+        )
+
+    def with_coefficients(self, phi: Complexes, psi: Complexes) -> Self:
+        """Return the map with other coefficients in the same span, like columns of `coefficients`.
+
+        Parameters
+        ----------
+        phi, psi : complex128, shape (n,)
+            The logarithms of the second are the conjugates of those of the first.
+        """
+        count = len(self.phi)
+        return replace(self, phi=phi[:count], psi=psi[:count], logs=phi[count:])
 
     def __call__(self, points: Complexes) -> Complexes:
-        """Return f at points (m,) strictly inside the cage."""
-        (values,) = evaluate(self.cage, self._coefficients(), points, orders=(0,))
+        """Return f at points (m,) strictly inside the cage, and outside those in holes."""
+        (values,) = self.span.evaluate(self.coefficients, points, orders=(0,))
         return values[:, 0] + values[:, 1].conj()
 
     def derivatives(self, points: Complexes) -> tuple[Complexes, Complexes]:
@@ -57,13 +120,5 @@ class HarmonicMap:
         Departs from the paper: its text lost the conjugation bars. f_z = Φ' is holomorphic, and
         f_z̄ = conj(Ψ') is anti-holomorphic.
         """
-        (first,) = evaluate(self.cage, self._coefficients(), points, orders=(1,))
+        (first,) = self.span.evaluate(self.coefficients, points, orders=(1,))
         return first[:, 0], first[:, 1].conj()
-
-    def second_derivatives(self, points: Complexes) -> tuple[Complexes, Complexes]:
-        """Return f_zz = Φ'' and f_z̄z̄ = conj(Ψ''), each (m,); the mixed one is 0 (harmonicity)."""
-        (second,) = evaluate(self.cage, self._coefficients(), points, orders=(2,))
-        return second[:, 0], second[:, 1].conj()
-
-    def _coefficients(self) -> Complexes:
-        return np.column_stack([self.phi, self.psi])

@@ -6,7 +6,7 @@ from scipy import ndimage
 
 from engine.arrays import Booleans, Complexes, Floats
 from engine.domain.outline.enclosure import Enclosure
-from engine.domain.outline.holes import Hole
+from engine.geometry import Hole
 from engine.geometry.polygon import (
     as_xy,
     box_diagonal,

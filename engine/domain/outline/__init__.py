@@ -6,6 +6,5 @@ Imports: `engine.domain.picture`, `engine.geometry`.
 """
 
 from engine.domain.outline.enclosure import LARGEST_OUTLINE, Detail, Enclosure, Holes, enclose
-from engine.domain.outline.holes import Hole
 
-__all__ = ["LARGEST_OUTLINE", "Detail", "Enclosure", "Hole", "Holes", "enclose"]
+__all__ = ["LARGEST_OUTLINE", "Detail", "Enclosure", "Holes", "enclose"]

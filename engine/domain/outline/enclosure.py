@@ -8,11 +8,11 @@ import numpy as np
 from engine.arrays import Booleans, Complexes, readonly
 from engine.domain.outline.cage import offset_cage
 from engine.domain.outline.fitting import Candidates, fit_polygon
-from engine.domain.outline.holes import Hole, trace_hole
+from engine.domain.outline.holes import trace_hole
 from engine.domain.outline.margin import DistanceField, MarginCurve, curve_at_margin, distance_field
 from engine.domain.picture import WholePiece, join_parts, working_grid
 from engine.errors import EngineError
-from engine.geometry import require_holes
+from engine.geometry import Hole, require_holes
 
 Detail = Literal["coarse", "normal", "fine"]
 Holes = Literal["fill", "keep"]

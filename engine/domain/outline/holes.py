@@ -5,41 +5,20 @@ clockwise, so that the subject lies on the left, and margin and offset lead into
 shrink with the hole, so that outline and cage leave its middle free.
 """
 
-from dataclasses import dataclass
-
 import numpy as np
 from scipy import ndimage
 
-from engine.arrays import Booleans, Complexes, Integers
+from engine.arrays import Booleans, Integers
 from engine.domain.outline.cage import offset_cage
 from engine.domain.outline.fitting import Candidates, fit_polygon
 from engine.domain.outline.margin import curve_at_margin, distance_field
 from engine.errors import EngineError
-from engine.geometry import deepest_point
+from engine.geometry import Hole, deepest_point
 
 SMALLEST_HOLE = 0.012  # radius of the largest disc in a hole that is kept, of the diagonal
 SHARE = 0.25  # of that radius: the margin at most, and the offset from outline to cage
 FEWEST_EDGES = 16
 FRAME = 2  # cells of the subject around a hole that is cut out
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Hole:
-    """A hole of a domain.
-
-    Parameters
-    ----------
-    outline : complex128, shape (n,)
-        Simple, clockwise: the domain lies on its left.
-    cage : complex128, shape (n,)
-        Simple, clockwise, strictly inside the outline, one vertex for each of its own.
-    centre : complex
-        c, a point inside the cage: where the map's term ln |z - c| is singular.
-    """
-
-    outline: Complexes
-    cage: Complexes
-    centre: complex
 
 
 def trace_hole(

@@ -157,15 +157,15 @@ def test_what_overflows_is_not_certified(phi, psi):
 def test_one_sample_that_is_not_a_number_is_enough_to_refuse():
     # Only G has it there: all that compares with it is false.
     segments = certificate_module._Segments(
-        starts=CAGE[:3],
-        ends=np.roll(CAGE[:3], -1),
+        starts=BOUNDARY.points[:3],
+        ends=np.roll(BOUNDARY.points[:3], -1),
         first=np.array([[1, 0], [1, np.nan], [1, 0]], dtype=complex),
         last=np.array([[1, np.nan], [1, 0], [1, 0]], dtype=complex),
         errors=np.zeros((3, 2)),
         origins=np.arange(3),
     )
     coefficients = np.column_stack([CAGE, 0 * CAGE])
-    proof, broken = certificate_module._bisect(CAGE + 9, coefficients, segments, LOOSE)
+    proof, broken = certificate_module._bisect(BOUNDARY, coefficients, segments, LOOSE)
     assert not proof.certified
     assert proof.k == np.inf
     assert {0, 1} <= set(broken.tolist())
@@ -192,7 +192,7 @@ def test_segments_are_refined_in_any_order():
     assert_array_equal(mixed.points, sorted_.points)
     assert_array_equal(mixed.half_lengths, sorted_.half_lengths)
     assert_array_equal(mixed.derivatives, sorted_.derivatives)
-    assert_array_equal(mixed.curvature_kernel, sorted_.curvature_kernel)
+    assert_array_equal(mixed.bending_kernel, sorted_.bending_kernel)
     assert_allclose(mixed.derivatives, cauchy_derivatives(CAGE, mixed.points), atol=1e-12)
 
 
@@ -269,5 +269,5 @@ def test_a_chord_that_passes_near_zero_bounds_the_segment(monkeypatch):
         errors=np.zeros((1, 2)),
         origins=np.array([0]),
     )
-    found, _ = certificate_module._bisect(CAGE, np.zeros((len(CAGE), 2)), segment, LOOSE)
+    found, _ = certificate_module._bisect(BOUNDARY, np.zeros((len(CAGE), 2)), segment, LOOSE)
     assert_allclose(found.sigma_b, 0.1, rtol=1e-6)

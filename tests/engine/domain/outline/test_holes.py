@@ -11,9 +11,9 @@ from scipy import ndimage
 
 from engine.arrays import Booleans, Bytes, Complexes
 from engine.domain import build_domain, require_domain
-from engine.domain.outline import Detail, Enclosure, Hole, enclose
+from engine.domain.outline import Detail, Enclosure, enclose
 from engine.domain.picture import subject_mask
-from engine.geometry import contains, signed_area
+from engine.geometry import Hole, contains, signed_area
 
 DETAILS: tuple[Detail, ...] = ("coarse", "normal", "fine")
 

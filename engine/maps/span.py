@@ -1,0 +1,161 @@
+"""The functions whose combinations are the maps of a domain, with holes or without.
+
+Φ and Ψ are combinations of the Cauchy coordinates of all cages: the one around the domain, and one
+in each hole, which runs clockwise. Seen from the domain the latter give 0 for constants and decay
+towards infinity; together they span the single-valued holomorphic functions of the domain. For
+each hole there is one function more, the logarithm of log-harmonic terms,
+
+    f = Φ + conj(Ψ) + Σ_j 2 a_j ln|z − c_j|,    c_j in hole j,
+
+a_j / (z − c_j) in f_z and conj(a_j) / (z − c_j) in conj(f_z̄): that is why Φ and Ψ with the columns
+ln|z − c_j| for values, and 1 / (z − c_j) for derivatives, have a_j and conj(a_j) as coefficients.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from engine.arrays import Complexes, Floats
+from engine.geometry import Hole, distance_to_segments
+from engine.maps.cauchy import (
+    cauchy_coordinates,
+    cauchy_derivatives,
+    difference_jumps,
+    evaluate,
+)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Span:
+    """The n functions that maps are made of: coordinates of all N cage vertices, then logarithms.
+
+    Parameters
+    ----------
+    cage : complex128
+        Around the domain, counter-clockwise.
+    holes : tuple of Hole
+    """
+
+    cage: Complexes
+    holes: tuple[Hole, ...] = ()
+
+    @property
+    def cages(self) -> tuple[Complexes, ...]:
+        """The cage around the domain, then those in its holes."""
+        return (self.cage, *(hole.cage for hole in self.holes))
+
+    @property
+    def vertices(self) -> Complexes:
+        """Those of all cages, one cage after the other, complex128 (N,)."""
+        return np.concatenate(self.cages)
+
+    @property
+    def centres(self) -> Complexes:
+        """c_j of each hole, complex128 (holes,)."""
+        return np.array([hole.centre for hole in self.holes], dtype=np.complex128)
+
+    @property
+    def slices(self) -> tuple[slice, ...]:
+        """Which coefficients belong to which cage."""
+        ends = np.cumsum([len(cage) for cage in self.cages]).tolist()
+        return tuple(map(slice, [0, *ends[:-1]], ends))
+
+    def __len__(self) -> int:
+        """Return the number of functions, n."""
+        return sum(map(len, self.cages)) + len(self.holes)
+
+    def equals(self, other: "Span") -> bool:
+        """Tell whether the coefficients of both mean the same maps."""
+        return (
+            len(self.holes) == len(other.holes)
+            and all(map(np.array_equal, self.cages, other.cages))
+            and np.array_equal(self.centres, other.centres)
+        )
+
+    def identity(self) -> Complexes:
+        """Return the coefficients (n,) of z."""
+        return np.concatenate([self.cage, np.zeros(len(self) - len(self.cage))])
+
+    def without_constant(self, coefficients: Complexes) -> Complexes:
+        """Return the coefficients (n, ...) of the same function less a constant.
+
+        Derivatives do not change by it, and of a far shape they lose no digits.
+        """
+        if not self.holes:
+            return np.asarray(coefficients - coefficients[0])
+        changed = coefficients.copy()
+        changed[: len(self.cage)] -= coefficients[0]
+        return changed
+
+    def coordinates(self, points: Complexes) -> Complexes:
+        """Return the functions' values at points, complex128 (p, n)."""
+        columns = [cauchy_coordinates(cage, points) for cage in self.cages]
+        return _joined([*columns, self._logarithms(points).astype(np.complex128)])
+
+    def derivatives(self, points: Complexes) -> Complexes:
+        """Return the functions' derivatives at points, complex128 (p, n)."""
+        columns = [cauchy_derivatives(cage, points) for cage in self.cages]
+        return _joined([*columns, 1.0 / (points[:, None] - self.centres)])
+
+    def evaluate(
+        self, coefficients: Complexes, points: Complexes, *, orders: tuple[int, ...]
+    ) -> list[Complexes]:
+        """Evaluate combinations of the functions, without forming the coordinates.
+
+        Parameters
+        ----------
+        coefficients : complex128, shape (n, q)
+        points : complex128, shape (p,)
+            In the domain.
+        orders : tuple of int
+            Which derivatives are wanted, each 0, 1 or 2.
+
+        Returns
+        -------
+        list of complex128, shape (p, q)
+            One array for each entry of `orders`.
+        """
+        by_cage = [
+            evaluate(cage, coefficients[part], points, orders=orders)
+            for cage, part in zip(self.cages, self.slices, strict=True)
+        ]
+        if not self.holes:
+            return by_cage[0]
+        logs = coefficients[-len(self.holes) :]
+        inverse = 1.0 / (points[:, None] - self.centres)
+        of_logs = (self._logarithms(points), inverse, -(inverse**2))
+        return [
+            sum((parts[place] for parts in by_cage), start=of_logs[order] @ logs)
+            for place, order in enumerate(orders)
+        ]
+
+    def bending(self, coefficients: Complexes) -> Floats:
+        """Return by how much each singularity bends combinations (n, q) of the functions, (n, q).
+
+        That is the jump of Δφ/Δz at a cage vertex, and the coefficient of a logarithm.
+        """
+        jumps = [
+            np.abs(difference_jumps(cage, coefficients[part]))
+            for cage, part in zip(self.cages, self.slices, strict=True)
+        ]
+        return np.concatenate([*jumps, np.abs(coefficients[len(self) - len(self.holes) :])])
+
+    def bending_kernel(self, starts: Complexes, ends: Complexes) -> Floats:
+        """Return the matrix (s, n) from `bending` to a bound on |Φ'''| along segments (s,).
+
+        1 / (2π d²) for a cage vertex at the distance d from the segment, 2 / d³ for a logarithm.
+        """
+        to_vertices = distance_to_segments(self.vertices, starts, ends).T
+        kernel: Floats = 1.0 / (2 * np.pi * to_vertices**2)
+        if not self.holes:
+            return kernel
+        return np.hstack([kernel, 2.0 / distance_to_segments(self.centres, starts, ends).T ** 3])
+
+    def _logarithms(self, points: Complexes) -> Floats:
+        logarithms: Floats = np.log(np.abs(points[:, None] - self.centres))
+        return logarithms
+
+
+def _joined(columns: list[Complexes]) -> Complexes:
+    filled = [column for column in columns if column.shape[1]]
+    return filled[0] if len(filled) == 1 else np.hstack(filled)
