@@ -7,7 +7,7 @@ import numpy as np
 
 from app.document import Clip, Pose, Variant, intervals, resting_pose, time_of
 from engine.arrays import Complexes
-from engine.dirichlet import HilbertTransform, ProjectedTransform
+from engine.dirichlet import Extension, HilbertTransform, ProjectedTransform
 from engine.domain import Domain
 from engine.interpolation import (
     Frame,
@@ -66,6 +66,7 @@ class PoseSampler:
         self._inbetweens: dict[tuple[Pose, Pose, int, Variant, bool], Inbetweens] = {}
         self._sibling = sibling
         self._transform: HilbertTransform | None = None
+        self._extension: Extension | None = None
         self._quick_transform: ProjectedTransform | None = None
 
     @property
@@ -82,11 +83,21 @@ class PoseSampler:
             return self._transform
 
     @property
+    def extension(self) -> Extension:
+        """The transform at the nodes of the paths, prepared when it is asked for first."""
+        with self._lock:
+            if self._extension is None:
+                self._extension = self.transform.at(self.sites.paths.nodes)
+            return self._extension
+
+    @property
     def quick_transform(self) -> ProjectedTransform:
         """What stands in for the transform in rough in-betweens."""
         with self._lock:
             if self._quick_transform is None:
-                self._quick_transform = ProjectedTransform.on(self.domain.outline, self.domain.cage)
+                self._quick_transform = ProjectedTransform.on(
+                    self.domain.outline, self.domain.cage, self.sites.paths.nodes
+                )
             return self._quick_transform
 
     def keep_only(self, poses: Sequence[Pose]) -> None:
@@ -129,10 +140,10 @@ class PoseSampler:
 
     def _transform_for(
         self, variant: Variant, *, rough: bool
-    ) -> HilbertTransform | ProjectedTransform | None:
+    ) -> Extension | ProjectedTransform | None:
         if not variant.needs_transform:
             return None
-        return self.quick_transform if rough else self.transform
+        return self.quick_transform if rough else self.extension
 
 
 class Animation:

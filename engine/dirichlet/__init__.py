@@ -5,7 +5,7 @@ Out: holomorphic functions with these real parts, at any points inside.
 Imports: `engine.maps`, `engine.geometry`.
 """
 
-from engine.dirichlet.hilbert import HilbertTransform
+from engine.dirichlet.hilbert import Extension, HilbertTransform
 from engine.dirichlet.projected import ProjectedTransform
 
-__all__ = ["HilbertTransform", "ProjectedTransform"]
+__all__ = ["Extension", "HilbertTransform", "ProjectedTransform"]

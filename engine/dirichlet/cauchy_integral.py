@@ -1,172 +1,202 @@
 """Cauchy integrals of densities on panels, evaluated at many points up to the outline itself.
 
-Points are sorted into squares. What panels far from a square contribute is one Taylor polynomial
-for all its points; panels that are far from a quarter of the square but not from the whole are
-added to the quarter's polynomial, and so on; the few panels near a point are integrated exactly.
-Time and memory grow with the sum of points and nodes, not with their product.
+What panels far from a point contribute comes through expansions: moments of the densities about
+the centres of clusters, Taylor polynomials about those of squares. Panels near a point are
+integrated exactly. Which is which, and the weights of the latter, depend on the panels and the
+points alone and are worked out once; time and memory grow with the sum of points and nodes, not
+with their product.
 """
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cache
+from itertools import pairwise
+from typing import Self
 
 import numpy as np
+from scipy.sparse import bsr_array
 from scipy.special import comb
 
 from engine.arrays import Complexes, Floats, Indices, freeze
-from engine.dirichlet.panels import Panels
-from engine.dirichlet.product_integration import near_distance, panel_weights
-from engine.geometry import distance_to_segments
+from engine.dirichlet.interactions import Interactions, interactions, ragged
+from engine.dirichlet.near_field import near_matrix
+from engine.dirichlet.panels import NODES, Panels
 
-TERMS = 24
-# Distance of far panels over the radius of a square: Taylor polynomials err by FAR^-TERMS = 3e-10.
-FAR = 2.5
-# Pairs of points and near panels up to which a square is not divided: cheaper than dividing it.
-FEW_PAIRS = 256
-BLOCK = 4096  # points that are integrated exactly at a time
+TERMS = 20  # of expansions: they err by FAR^-TERMS = 1e-8 of the largest density at most
+BLOCK = 512  # pairs whose expansions are translated at a time, so that they stay in cache
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Square:
-    """Some of the points, with what is known of the integral there.
+class CauchyIntegral:
+    """g(z) = 1/(2πi) ∮ μ dζ / (ζ − z) and g'(z) at fixed points, for any densities.
 
-    Parameters
-    ----------
-    points : intp, shape (t,)
-        Numbers of the points.
-    centre, radius : complex, float
-        Of a disc that holds them.
-    panels : intp, shape (p,)
-        Numbers of the panels that `taylor` lacks.
-    taylor : complex128, shape (TERMS, j)
-        Coefficients of ((z − centre) / radius)^k.
-    """
-
-    points: Indices
-    centre: complex
-    radius: float
-    panels: Indices
-    taylor: Complexes
-
-
-def cauchy_integrals(
-    panels: Panels, densities: Floats, points: Complexes
-) -> tuple[Complexes, Complexes]:
-    """Return g(z) = 1/(2πi) ∮ μ dζ / (ζ − z) and g'(z) of some densities at points.
+    Build it with `CauchyIntegral.of`.
 
     Parameters
     ----------
     panels : Panels
-    densities : float64, shape (N, j)
-        At the nodes of the panels.
-    points : complex128, shape (t,)
-        Strictly inside the outline, by some 1e-14 of its size at least.
-
-    Returns
-    -------
-    values, derivatives : complex128, shape (t, j)
-
-    Notes
-    -----
-    g' is the Cauchy integral of dμ/dζ. By differentiating under the integral instead, the small
-    jumps of a discrete μ between panels would become poles on the outline.
+    acting : Interactions
+    near : bsr_array, float64, shape (4 t, N)
+        From densities to what near panels add to Re g, Im g, Re g' and Im g' at the points in the
+        order of the squares.
+    offsets : complex128, shape (t,)
+        Of the points in that order from the centres of their leaves, over the radius.
     """
-    count, columns = len(panels), densities.shape[1]
-    by_panel = np.asarray(densities.reshape(count, -1, columns) / (2j * np.pi), np.complex128)
-    masses = np.concatenate(
-        [by_panel * panels.differentials()[:, :, None], panels.increments(by_panel)], axis=2
-    )
-    results = np.empty((len(points), 2 * columns), dtype=np.complex128)
-    near: list[list[Indices]] = [[] for _ in range(count)]
-    for leaf in _leaves(panels, masses, points):
-        offsets = (points[leaf.points] - leaf.centre) / leaf.radius
-        results[leaf.points] = np.vander(offsets, TERMS, increasing=True) @ leaf.taylor
-        for panel in leaf.panels:
-            near[panel].append(leaf.points)
-    values, derivatives = results[:, :columns], results[:, columns:]
-    for panel, groups in enumerate(near):
-        for points_near in _blocks(groups):
-            w = (points[points_near] - panels.origin[panel]) / panels.span[panel]
-            weights, derivative_weights = panel_weights(w, int(panels.power[panel]))
-            own = by_panel[panel] * (1.0 if panels.forward[panel] else -1.0)
-            values[points_near] += weights @ own
-            derivatives[points_near] += derivative_weights @ own / panels.span[panel]
-    return values, derivatives
+
+    panels: Panels
+    acting: Interactions
+    near: bsr_array
+    offsets: Complexes
+
+    @classmethod
+    def of(cls, panels: Panels, points: Complexes) -> Self:
+        """Prepare the integrals at points (t,).
+
+        They lie strictly inside the outline, by some 1e-14 of its size at least.
+        """
+        acting = interactions(panels, points)
+        squares, near = acting.squares, acting.near
+        leaf, _ = ragged(squares.ends[squares.leaves] - squares.starts[squares.leaves])
+        leaf = squares.leaves[leaf]
+        z = points[squares.order]
+        count = len(panels)
+        keys = near.squares * count + near.clusters
+        alone = np.array(
+            [
+                ~np.isin(near.squares * count + (near.clusters + side) % count, keys)
+                for side in (-1, 1)
+            ]
+        )
+        # The near pairs of a leaf belong to each of its points.
+        first = np.searchsorted(near.squares, leaf)
+        rows, place = ragged(np.searchsorted(near.squares, leaf, side="right") - first)
+        own = first[rows] + place
+        return cls(
+            panels=panels,
+            acting=acting,
+            near=near_matrix(panels, z, rows, near.clusters[own], alone[:, own]),
+            offsets=freeze((z - squares.centre[leaf]) / squares.radius[leaf]),
+        )
+
+    @property
+    def nbytes(self) -> int:
+        """Memory that the arrays take, in bytes."""
+        near = self.near
+        own = near.data.nbytes + near.indices.nbytes + near.indptr.nbytes + self.offsets.nbytes
+        return int(own) + self.acting.nbytes
+
+    def __call__(self, densities: Floats) -> tuple[Complexes, Complexes]:
+        """Return g and g' of some densities.
+
+        Parameters
+        ----------
+        densities : float64, shape (N, j)
+            At the nodes of the panels.
+
+        Returns
+        -------
+        values, derivatives : complex128, shape (t, j)
+        """
+        squares, columns = self.acting.squares, densities.shape[1]
+        near = (self.near @ densities).reshape(len(self.offsets), 2, 2, columns)
+        results = np.empty((2, len(self.offsets), columns), dtype=np.complex128)
+        polynomials = self._taylor(densities)
+        ranks = np.arange(1.0, TERMS)[:, None]
+        slopes = np.zeros_like(polynomials)
+        slopes[:, :-1] = polynomials[:, 1:] * ranks / squares.radius[squares.leaves, None, None]
+        both = np.concatenate([polynomials, slopes], axis=2)
+        starts, ends = squares.starts[squares.leaves], squares.ends[squares.leaves]
+        for first in range(0, len(starts), BLOCK):
+            last = min(first + BLOCK, len(starts)) - 1
+            block = slice(starts[first], ends[last])
+            powers = _powers(self.offsets[block])
+            found = near[block, :, 0] + 1j * near[block, :, 1]
+            flat = found.reshape(-1, 2 * columns)
+            for leaf in range(first, last + 1):
+                own = slice(starts[leaf] - block.start, ends[leaf] - block.start)
+                flat[own] += powers[:, own].T @ both[leaf]
+            results[:, squares.order[block]] = found.transpose(1, 0, 2)
+        return results[0], results[1]
+
+    def _taylor(self, densities: Floats) -> Complexes:
+        """Return the polynomials (l, TERMS, j) of the leaves."""
+        squares, clusters, far, direct, _ = self.acting
+        columns = densities.shape[1]
+        by_panel = densities.reshape(len(self.panels), NODES, columns)
+        masses = by_panel * (self.panels.differentials() / (2j * np.pi))[:, :, None]
+        moments = self._moments(masses)
+        taylor = np.zeros((TERMS, len(squares.centre), columns), dtype=np.complex128)
+        for block, targets, starts in _blocks(far.squares):
+            # 1 / (ζ − z) = Σ binom(i + k, k) (z − c_T)^i (c_S − ζ)^k / (c_S − c_T)^(i + k + 1).
+            source, target = far.clusters[block], far.squares[block]
+            inverse = 1.0 / (clusters.centre[source] - squares.centre[target])
+            scaled = moments[:, source] * _powers(clusters.radius[source] * inverse)[:, :, None]
+            into = scaled.reshape(TERMS, -1).view(np.float64)
+            parts = (_translation() @ into).view(np.complex128).reshape(scaled.shape)
+            parts *= (_powers(squares.radius[target] * inverse) * inverse)[:, :, None]
+            taylor[:, targets] += np.add.reduceat(parts, starts, axis=1)
+        nodes = self.panels.nodes
+        for block, targets, starts in _blocks(direct.squares):
+            panel, target = direct.clusters[block], direct.squares[block]
+            inverse = 1.0 / (nodes[panel] - squares.centre[target, None])
+            powers = _powers(squares.radius[target, None] * inverse) * inverse
+            parts = np.matmul(powers.transpose(1, 0, 2), masses[panel])
+            taylor[:, targets] += np.add.reduceat(parts, starts).transpose(1, 0, 2)
+        for level in squares.levels[1:]:
+            for quadrant, matrix in enumerate(_to_quarters()):
+                own = level.start + np.flatnonzero(squares.quadrant[level] == quadrant)
+                given = taylor[:, squares.parent[own]]
+                taylor[:, own] += (matrix @ given.reshape(TERMS, -1)).reshape(given.shape)
+        return np.ascontiguousarray(taylor[:, squares.leaves].transpose(1, 0, 2))
+
+    def _moments(self, masses: Complexes) -> Complexes:
+        """Return Σ m ((c − ζ) / r)^k of the clusters, (TERMS, c, j)."""
+        clusters, nodes = self.acting.clusters, self.panels.nodes
+        columns = masses.shape[2]
+        moments = np.empty((TERMS, len(clusters.centre), columns), dtype=np.complex128)
+        for level, (first, end) in enumerate(pairwise(clusters.firsts)):
+            own = slice(first, end)
+            of_panel = first + (np.arange(len(nodes)) >> level)
+            away = clusters.centre[of_panel, None] - nodes
+            powers = _powers(away / clusters.radius[of_panel, None]).transpose(1, 0, 2)
+            by_panel = np.matmul(powers, masses)
+            moments[:, own] = np.add.reduceat(
+                by_panel, np.arange(0, len(nodes), 1 << level)
+            ).transpose(1, 0, 2)
+        return moments
 
 
-def _leaves(panels: Panels, masses: Complexes, points: Complexes) -> Iterator[Square]:
-    """Divide the points until each square has few panels near it."""
-    lengths = np.abs(panels.span)
-    near = near_distance(panels.power) * lengths
-    everything = np.zeros((TERMS, masses.shape[2]), dtype=np.complex128)
-    nodes = panels.nodes
-    stack = [_square(np.arange(len(points)), points, np.arange(len(panels)), everything)]
-    while stack:
-        square = _absorb(panels, nodes, near, masses, stack.pop())
-        left = square.panels
-        if len(left) * len(square.points) <= FEW_PAIRS or square.radius <= lengths[left].min() / 4:
-            yield square
-        else:
-            stack.extend(_quarters(square, points))
+def _powers(base: Complexes) -> Complexes:
+    """Return base^k for k < TERMS, (TERMS, ...)."""
+    powers = np.empty((TERMS, *base.shape), dtype=np.complex128)
+    powers[0] = 1.0
+    for k in range(1, TERMS):
+        np.multiply(powers[k - 1], base, out=powers[k])
+    return powers
 
 
-def _square(points: Indices, z: Complexes, panels: Indices, taylor: Complexes) -> Square:
-    box = z[points]
-    low = complex(box.real.min(), box.imag.min())
-    high = complex(box.real.max(), box.imag.max())
-    # A single point has no extent, but the polynomial wants a radius.
-    radius = max(abs(high - low) / 2, 1e-12 * abs(high), 1e-100)
-    return Square(
-        points=points, centre=(low + high) / 2, radius=radius, panels=panels, taylor=taylor
-    )
-
-
-def _absorb(
-    panels: Panels, nodes: Complexes, near: Floats, masses: Complexes, square: Square
-) -> Square:
-    """Move the panels that are far from a square into its polynomial."""
-    own = square.panels
-    starts = panels.origin[own]
-    centre = np.array([square.centre])
-    distance = distance_to_segments(centre, starts, starts + panels.span[own])[0]
-    far = distance >= np.maximum(FAR * square.radius, square.radius + near[own])
-    inverse = square.radius / (nodes[own[far]].ravel() - square.centre)
-    powers = np.empty((TERMS, len(inverse)), dtype=np.complex128)
-    np.divide(inverse, square.radius, out=powers[0])
-    for term in range(1, TERMS):
-        np.multiply(powers[term - 1], inverse, out=powers[term])
-    added = powers @ masses[own[far]].reshape(len(inverse), masses.shape[2])
-    return replace(square, panels=own[~far], taylor=square.taylor + added)
-
-
-def _quarters(square: Square, z: Complexes) -> Iterator[Square]:
-    offset = z[square.points] - square.centre
-    quadrant = (offset.real > 0) + 2 * (offset.imag > 0)
-    for k in range(4):
-        points = square.points[quadrant == k]
-        if len(points):
-            quarter = _square(points, z, square.panels, square.taylor)
-            yield replace(quarter, taylor=_translated(square, quarter))
-
-
-def _translated(square: Square, quarter: Square) -> Complexes:
-    """Expand the polynomial of a square about the centre of one of its quarters."""
-    shift = (quarter.centre - square.centre) / square.radius
-    shrink = quarter.radius / square.radius
-    ranks = np.arange(TERMS)
-    powers, shrunk = shift**ranks, shrink**ranks
-    matrix = _binomials() * powers[np.maximum(ranks - ranks[:, None], 0)] * shrunk[:, None]
-    return np.asarray(matrix @ square.taylor)
-
-
-def _blocks(groups: list[Indices]) -> Iterator[Indices]:
-    points = np.concatenate(groups) if groups else np.empty(0, dtype=np.intp)
-    for start in range(0, len(points), BLOCK):
-        yield points[start : start + BLOCK]
+def _blocks(targets: Indices) -> Iterator[tuple[slice, Indices, Indices]]:
+    """Yield blocks of sorted pairs, their targets once each, and where the pairs of each start."""
+    for first in range(0, len(targets), BLOCK):
+        own = targets[first : first + BLOCK]
+        starts = np.flatnonzero(np.diff(own, prepend=-1))
+        yield slice(first, first + BLOCK), own[starts], starts
 
 
 @cache
-def _binomials() -> Floats:
-    """Return [j, k]: what ((z − c) + d)^k gives to (z − c)^j."""
+def _translation() -> Floats:
+    """Return binom(i + k, k), what the moment k adds to the power i."""
     ranks = np.arange(TERMS)
-    return freeze(comb(ranks, ranks[:, None]).astype(np.float64))
+    return freeze(comb(ranks[:, None] + ranks, ranks).astype(np.float64))
+
+
+@cache
+def _to_quarters() -> Complexes:
+    """Return the matrices (4, TERMS, TERMS) from the polynomial of a square to its quarters'."""
+    ranks = np.arange(TERMS)
+    raised = np.maximum(ranks - ranks[:, None], 0)
+    # Of Σ c_k ((z − c) / r)^k, with half the radius about a centre that is off by half a side.
+    shifts = np.array([-1 - 1j, 1 - 1j, -1 + 1j, 1 + 1j]) / np.sqrt(8)
+    binomials = comb(ranks, ranks[:, None])
+    matrices = binomials * shifts[:, None, None] ** raised * 0.5 ** ranks[:, None]
+    return freeze(np.asarray(matrices, dtype=np.complex128))

@@ -20,7 +20,7 @@ import numpy as np
 
 from engine.arrays import Complexes, Floats
 from engine.dirichlet.boundary_operator import BoundaryOperator
-from engine.dirichlet.cauchy_integral import cauchy_integrals
+from engine.dirichlet.cauchy_integral import CauchyIntegral
 from engine.dirichlet.panels import Panels
 from engine.dirichlet.skeleton_solver import SkeletonSolver
 from engine.geometry import box_diagonal, contains, distance_to_boundary, edges
@@ -71,15 +71,56 @@ class HilbertTransform:
         """Points of the outline (N,) at which real parts are given."""
         return self.panels.nodes.ravel()
 
-    def extend(self, real_parts: Floats, points: Complexes) -> tuple[Complexes, Complexes]:
+    def at(self, points: Complexes) -> "Extension":
+        """Prepare the evaluation at points (t,) of the closed domain.
+
+        Time and memory grow with the number of points and nodes, and not with their product.
+        """
+        inside = _strictly_inside(self.outline, points)
+        integral = CauchyIntegral.of(self.panels, inside)
+        return Extension(transform=self, points=points, integral=integral)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Extension:
+    """A Hilbert transform at fixed points; it serves all intervals.
+
+    Build it with `HilbertTransform.at`.
+
+    Parameters
+    ----------
+    transform : HilbertTransform
+    points : complex128, shape (t,)
+    integral : CauchyIntegral
+        At the points, or a hair's breadth from those that are on the outline.
+    """
+
+    transform: HilbertTransform
+    points: Complexes
+    integral: CauchyIntegral
+
+    @property
+    def outline(self) -> Complexes:
+        """The outline (p,)."""
+        return self.transform.outline
+
+    @property
+    def nodes(self) -> Complexes:
+        """Points of the outline (N,) at which real parts are given."""
+        return self.transform.nodes
+
+    @property
+    def nbytes(self) -> int:
+        """Memory beyond the transform's own, in bytes."""
+        return self.integral.nbytes
+
+    def extend(self, real_parts: Floats) -> tuple[Complexes, Complexes]:
         """Return holomorphic functions with given real parts on the outline, and their derivatives.
 
         Parameters
         ----------
         real_parts : float64, shape (N, j)
             At `nodes`.
-        points : complex128, shape (t,)
-            In the closed domain.
 
         Returns
         -------
@@ -87,8 +128,7 @@ class HilbertTransform:
             Of each function, up to an imaginary constant. At a corner that turns inwards a
             derivative is unbounded, and the value there means nothing.
         """
-        densities = self.solver(real_parts)
-        return cauchy_integrals(self.panels, densities, _strictly_inside(self.outline, points))
+        return self.integral(self.transform.solver(real_parts))
 
 
 def _strictly_inside(outline: Complexes, points: Complexes) -> Complexes:

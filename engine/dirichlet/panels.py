@@ -123,6 +123,14 @@ def legendre_matrices() -> tuple[Floats, Floats]:
     return freeze(to_legendre), freeze(derivatives @ to_legendre)
 
 
+@cache
+def end_values() -> tuple[Floats, Floats]:
+    """Return the weights (NODES,) that take values at the nodes to those at τ = 0 and at τ = 1."""
+    to_legendre, _ = legendre_matrices()
+    signs = (-1.0) ** np.arange(NODES)
+    return freeze(signs @ to_legendre), freeze(to_legendre.sum(axis=0))
+
+
 def _room(pieces: Pieces, outline: Complexes, cage: Complexes) -> Floats:
     """Return how long a panel on each of the pieces of edges may be."""
     count, starts, ends = len(outline), pieces.starts, pieces.ends

@@ -33,6 +33,8 @@ class ProjectedTransform:
     Parameters
     ----------
     outline, cage : complex128, shapes (p,) and (n,)
+    points : complex128, shape (t,)
+        In the closed domain.
     nodes : complex128, shape (N,)
         Points of the outline at which real parts are given.
     fit : float64, shape (2n, N)
@@ -41,12 +43,13 @@ class ProjectedTransform:
 
     outline: Complexes
     cage: Complexes
+    points: Complexes
     nodes: Complexes
     fit: Floats
 
     @classmethod
-    def on(cls, outline: Complexes, cage: Complexes) -> Self:
-        """Prepare the fit for an outline (p,) inside a cage (n,)."""
+    def on(cls, outline: Complexes, cage: Complexes, points: Complexes) -> Self:
+        """Prepare the fit for an outline (p,) inside a cage (n,), and points (t,)."""
         longest = SEGMENT_PER_SIZE * box_diagonal(outline)
         nodes = sample_graded(outline, cage, ratio=SEGMENT_PER_DISTANCE, longest=longest)
         lengths = np.abs(np.roll(nodes, -1) - nodes)
@@ -54,22 +57,20 @@ class ProjectedTransform:
         coordinates = cauchy_coordinates(cage, nodes)
         matrix = root[:, None] * np.hstack([coordinates.real, -coordinates.imag])
         fit = np.linalg.pinv(matrix, rcond=CUTOFF) * root
-        return cls(outline=outline, cage=cage, nodes=freeze(nodes), fit=freeze(fit))
+        return cls(outline=outline, cage=cage, points=points, nodes=freeze(nodes), fit=freeze(fit))
 
     @property
     def nbytes(self) -> int:
         """Memory that the arrays take, in bytes."""
         return self.nodes.nbytes + self.fit.nbytes
 
-    def extend(self, real_parts: Floats, points: Complexes) -> tuple[Complexes, Complexes]:
+    def extend(self, real_parts: Floats) -> tuple[Complexes, Complexes]:
         """Return holomorphic functions with about these real parts, and their derivatives.
 
         Parameters
         ----------
         real_parts : float64, shape (N, j)
             At `nodes`.
-        points : complex128, shape (t,)
-            In the closed domain.
 
         Returns
         -------
@@ -77,5 +78,5 @@ class ProjectedTransform:
             Of each function.
         """
         real, imaginary = np.split(self.fit @ real_parts, 2)
-        values, derivatives = evaluate(self.cage, real + 1j * imaginary, points, orders=(0, 1))
+        values, derivatives = evaluate(self.cage, real + 1j * imaginary, self.points, orders=(0, 1))
         return values, derivatives

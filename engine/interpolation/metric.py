@@ -16,7 +16,7 @@ import numpy.typing as npt
 
 from engine.arrays import Complexes, Floats, Integers, freeze
 from engine.chebyshev import PiecewiseSeries, nodes, to_coefficients
-from engine.dirichlet import HilbertTransform, ProjectedTransform
+from engine.dirichlet import Extension, ProjectedTransform
 from engine.interpolation.derivatives import Derivatives, blended_log_fz
 from engine.interpolation.eta import EtaBlend
 from engine.interpolation.keyframe_samples import KeyframeSamples
@@ -66,13 +66,13 @@ class MetricBlend:
         keyframes: Sequence[KeyframeSamples],
         sheets: Integers,
         paths: IntegrationPaths,
-        transform: HilbertTransform | ProjectedTransform,
+        transform: Extension | ProjectedTransform,
     ) -> Self:
         """Solve the Dirichlet problems of the residual between two keyframes."""
         derivatives = [key.map.derivatives(transform.nodes) for key in keyframes]
         fz, fzbar = (np.array(column) for column in zip(*derivatives, strict=True))
         real_parts, series = separate(OutlineMetric.of(fz, fzbar))
-        modes, modes_z = transform.extend(real_parts, paths.nodes)
+        modes, modes_z = transform.extend(real_parts)
         modes.imag -= modes[0].imag
         # Unbounded there; the steps beside these nodes are so short that it is not missed.
         modes_z[paths.cornered] = 0.0

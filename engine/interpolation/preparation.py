@@ -6,8 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from engine.arrays import Integers
-from engine.dirichlet import HilbertTransform, ProjectedTransform
+from engine.arrays import Complexes, Integers
+from engine.dirichlet import Extension, HilbertTransform, ProjectedTransform
 from engine.errors import EngineError
 from engine.interpolation.eta import EtaBlend
 from engine.interpolation.inbetweens import (
@@ -114,11 +114,14 @@ def prepare(
     sites = prepare_sites(outline, maps[0].cage, points, triangles=triangles, anchor=anchor)
     samples = sample_keyframes(maps, sites)
     sheets = root_sheets(np.array([key.anchor_fz for key in samples]), turns)
-    if transform is None and variant.needs_transform:
-        transform = HilbertTransform.on(sites.outline, sites.cage)
+    extension: Extension | None = None
+    if variant.needs_transform:
+        transform = transform or HilbertTransform.on(sites.outline, sites.cage)
+        _require_outline(transform.outline, sites)
+        extension = transform.at(sites.paths.nodes)
     intervals = tuple(
         prepare_inbetweens(
-            variant, sites, samples[i : i + 2], sheets[i : i + 2], transform=transform
+            variant, sites, samples[i : i + 2], sheets[i : i + 2], transform=extension
         )
         for i in range(len(maps) - 1)
     )
@@ -131,7 +134,7 @@ def prepare_inbetweens(
     keyframes: Sequence[KeyframeSamples],
     sheets: Integers,
     *,
-    transform: HilbertTransform | ProjectedTransform | None = None,
+    transform: Extension | ProjectedTransform | None = None,
 ) -> Inbetweens:
     """Prepare the in-betweens of two neighbouring keyframes.
 
@@ -145,9 +148,9 @@ def prepare_inbetweens(
     keyframes : sequence of KeyframeSamples, length 2
     sheets : int32, shape (2,)
         From `root_sheets`.
-    transform : HilbertTransform or ProjectedTransform, optional
-        Of the sites' outline; variants that `needs_transform` says so of need it. The second kind
-        makes rough in-betweens.
+    transform : Extension or ProjectedTransform, optional
+        Of the sites' outline, at the nodes of their paths; variants that `needs_transform` says so
+        of need it. The second kind makes rough in-betweens.
 
     Raises
     ------
@@ -197,14 +200,23 @@ def _two(keyframes: Sequence[KeyframeSamples]) -> tuple[KeyframeSamples, Keyfram
 
 
 def _matching(
-    transform: HilbertTransform | ProjectedTransform | None, sites: Sites
-) -> HilbertTransform | ProjectedTransform:
+    transform: Extension | ProjectedTransform | None, sites: Sites
+) -> Extension | ProjectedTransform:
     """Refuse a transform of another domain, whose in-betweens would be wrong without a word."""
     if transform is None:
         raise EngineError("The metric variant needs a Hilbert transform of the outline.")
-    if not np.array_equal(transform.outline, sites.outline):
+    _require_outline(transform.outline, sites)
+    if not np.array_equal(transform.points, sites.paths.nodes):
         raise EngineError(
-            f"The Hilbert transform is of another outline, of {len(transform.outline)} vertices, "
-            f"than the points', of {len(sites.outline)}; build it anew for this one."
+            "The Hilbert transform is prepared for other points; prepare it for the nodes of the "
+            "sites' paths."
         )
     return transform
+
+
+def _require_outline(outline: Complexes, sites: Sites) -> None:
+    if not np.array_equal(outline, sites.outline):
+        raise EngineError(
+            f"The Hilbert transform is of another outline, of {len(outline)} vertices, than the "
+            f"points', of {len(sites.outline)}; build it anew for this one."
+        )

@@ -10,7 +10,7 @@ import numpy as np
 from app.cli.bench.table import Row, Table, measure
 from app.storage import decode_picture, sample_images
 from engine.arrays import Complexes, Integers
-from engine.dirichlet import HilbertTransform
+from engine.dirichlet import Extension, HilbertTransform
 from engine.domain import Domain, build_domain
 from engine.domain.meshing import Mesh, triangulate
 from engine.interpolation import (
@@ -40,6 +40,7 @@ class KeyframePair:
     keyframes: tuple[KeyframeSamples, ...]
     sheets: Integers
     transform: HilbertTransform
+    extension: Extension
 
     @classmethod
     def of(cls, domain: Domain, vertices: int, transform: HilbertTransform) -> Self:
@@ -56,6 +57,7 @@ class KeyframePair:
             keyframes=keyframes,
             sheets=sheets,
             transform=transform,
+            extension=transform.at(sites.paths.nodes),
         )
 
     def first_keyframe(self) -> tuple[KeyframeSamples, ...]:
@@ -65,7 +67,7 @@ class KeyframePair:
     def inbetweens(self, variant: Variant) -> Inbetweens:
         """Prepare the interval."""
         return prepare_inbetweens(
-            variant, self.sites, self.keyframes, self.sheets, transform=self.transform
+            variant, self.sites, self.keyframes, self.sheets, transform=self.extension
         )
 
 
@@ -121,6 +123,11 @@ def _preparation(domain: Domain, pair: KeyframePair) -> Table:
             name="integral equation, once for each outline",
             seconds=measure(lambda: HilbertTransform.on(domain.outline, domain.cage), repeats=1),
             note=f"{_megabytes(transform.nbytes)}, {nodes:,} nodes, {len(domain.outline)} corners",
+        ),
+        Row(
+            name="Cauchy integrals, once for each mesh",
+            seconds=measure(partial(transform.at, sites.paths.nodes), repeats=3),
+            note=f"{_megabytes(pair.extension.nbytes)}, {len(sites.paths.nodes):,} points",
         ),
         Row(
             name="a keyframe",

@@ -17,12 +17,12 @@ SHAPES = {"bar": bar(), "letter L": letter_l(), "narrow U": narrow_u(0.1)}
 @pytest.mark.parametrize("name", sorted(SHAPES))
 def test_functions_of_the_cage_are_found_from_their_real_parts(name):
     outline, cage = SHAPES[name]
-    transform = ProjectedTransform.on(outline, cage)
     f = random_map(SHAPES[name], 3)
     points = np.concatenate([outline, inner_points(outline, 40, 1)])
+    transform = ProjectedTransform.on(outline, cage, points)
     holomorphic = HarmonicMap(cage=cage, phi=f.phi, psi=np.zeros_like(f.psi))
     at_nodes, expected = holomorphic(transform.nodes), holomorphic(points)
-    values, slopes = transform.extend(at_nodes.real[:, None], points)
+    values, slopes = transform.extend(at_nodes.real[:, None])
     values -= 1j * (values[0] - expected[0]).imag
     assert_allclose(values[:, 0], expected, rtol=0, atol=1e-6)
     assert_allclose(slopes[:, 0], f.derivatives(points)[0], rtol=0, atol=1e-4)
@@ -41,8 +41,8 @@ def test_rough_metric_inbetweens_are_near_the_exact_ones_and_meet_the_keyframes(
         rough, exact = (
             prepare_inbetweens(Variant.METRIC, sites, keyframes, sheets, transform=transform)
             for transform in (
-                ProjectedTransform.on(outline, cage),
-                HilbertTransform.on(outline, cage),
+                ProjectedTransform.on(outline, cage, sites.paths.nodes),
+                HilbertTransform.on(outline, cage).at(sites.paths.nodes),
             )
         )
         for end, f in enumerate(maps):

@@ -43,7 +43,7 @@ def test_intervals_are_prepared_one_at_a_time_and_keyframes_shared(variant):
     keys = sample_keyframes(MAPS[:2], sites)
     keys += sample_keyframes(MAPS[2:], sites, first=2)
     sheets = root_sheets(np.array([key.anchor_fz for key in keys]))
-    transform = HilbertTransform.on(OUTLINE, CAGE)
+    transform = HilbertTransform.on(OUTLINE, CAGE).at(sites.paths.nodes)
     for i, pair in enumerate((keys[:2], keys[1:])):
         interval = prepare_inbetweens(variant, sites, pair, sheets[i : i + 2], transform=transform)
         frame = interval.frame(np.array([0.6, 0.4]))
