@@ -65,9 +65,7 @@ def take_certified_step(
         length = line_search(objective, jet, direction, value, length)
         if length == 0:
             break
-        phi = harmonic_map.phi + length * direction.phi
-        psi = harmonic_map.psi + length * direction.psi
-        tried = HarmonicMap(cage=harmonic_map.cage, phi=phi, psi=psi)
+        tried = harmonic_map.changed(length * direction.phi, length * direction.psi)
         proof, segments = certify_segments(tried, objective.boundary, required)
         if proof.certified:
             harmonic_map, certificate = tried, proof
@@ -98,7 +96,7 @@ def add_samples(
         return boundary, readonly(duals)
     if len(boundary.points) + len(segments) > (1 + MOST_ADDED) * len(base.points):
         return base, None
-    ends = (segments + 1) % len(boundary.points)
+    ends = boundary.following[segments]
     between = np.maximum(duals[:, segments], duals[:, ends])
     return boundary.refined(segments), readonly(np.insert(duals, segments + 1, between, axis=1))
 

@@ -211,7 +211,7 @@ def begin_search(
     way : Way
     """
     boundary, wish, handles = objective.boundary, objective.wish, objective.handles
-    jet = objective.jet(harmonic_map.phi, harmonic_map.psi)
+    jet = objective.jet(*harmonic_map.columns)
     energy = objective.energy(jet)
     rows = 0
     if way is Way.PATH:
@@ -283,7 +283,7 @@ def _objective(search: Search) -> tuple[Objective, Barrier, Jet]:
         wish=wish,
         sketched=search.gain > SKETCHED * search.energy,
     )
-    jet = objective.jet(search.map.phi, search.map.psi)
+    jet = objective.jet(*search.map.columns)
     if search.steps < search.rows:
         weight = _first_weight(objective.energy(jet))
     barrier = Barrier(walls=search.walls, weight=weight, duals=search.duals)
@@ -375,11 +375,7 @@ def _certified(
     broken = np.empty(0, np.intp)
     refusals = 0
     while length > SHORTEST and refusals <= HALVINGS:
-        tried = HarmonicMap(
-            cage=search.map.cage,
-            phi=search.map.phi + length * direction.phi,
-            psi=search.map.psi + length * direction.psi,
-        )
+        tried = search.map.changed(length * direction.phi, length * direction.psi)
         proof, segments = certify_segments(tried, search.boundary, search.limits)
         if proof.certified:
             return (tried, proof), length, refusals, broken
@@ -392,19 +388,19 @@ def _certified(
 def _resolved(search: Search, jet: Jet, broken: Indices) -> Search:
     """Return the search with samples added where segments could bulge, or did."""
     boundary, limits = search.boundary, search.limits
-    a, b = np.abs(jet.f), np.abs(jet.g)
+    a, b, following = np.abs(jet.f), np.abs(jet.g), boundary.following
     proven = segment_enclosures(search.map, boundary)
     worse = (
-        (proven.k, np.maximum(b / a, np.roll(b / a, -1)), limits.k, limits.k),
+        (proven.k, np.maximum(b / a, (b / a)[following]), limits.k, limits.k),
         (
             proven.sigma_a,
-            np.maximum(a + b, np.roll(a + b, -1)),
+            np.maximum(a + b, (a + b)[following]),
             limits.sigma_a,
             limits.sigma_a - 1.0,
         ),
         (
             -proven.sigma_b,
-            -np.minimum(a - b, np.roll(a - b, -1)),
+            -np.minimum(a - b, (a - b)[following]),
             -limits.sigma_b,
             1 - limits.sigma_b,
         ),
@@ -421,12 +417,12 @@ def _resolved(search: Search, jet: Jet, broken: Indices) -> Search:
     finer = boundary.refined(segments)
     new = segments + np.arange(len(segments)) + 1
     added = Objective(boundary=finer, handles=search.handles, wish=search.wish).jet(
-        search.map.phi, search.map.psi
+        *search.map.columns
     )
     walls = _walls(search.inside, limits, np.abs(added.f[new]), np.abs(added.g[new]))
     duals = search.duals
     if duals is not None:
-        ends = (segments + 1) % len(a)
+        ends = following[segments]
         between = np.maximum(duals[:, segments], duals[:, ends])
         duals = readonly(np.insert(duals, segments + 1, between, axis=1))
     return replace(

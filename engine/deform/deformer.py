@@ -88,7 +88,7 @@ class Deformer:
         EngineError
             If the map is not certified within the bounds.
         """
-        first = HarmonicMap.identity(self.boundary.cage) if harmonic_map is None else harmonic_map
+        first = self._at_rest if harmonic_map is None else harmonic_map
         certificate = certify(first, self.boundary, self.bounds)
         if not certificate.certified:
             raise EngineError(
@@ -128,11 +128,14 @@ class Deformer:
     def positions(self, state: State) -> Complexes:
         """Return where the handles are now, complex128 (h,)."""
         coordinates = self.handles.coordinates
-        return coordinates @ state.map.phi + (coordinates @ state.map.psi).conj()
+        phi, psi = state.map.columns
+        return coordinates @ phi + (coordinates @ psi).conj()
 
     def rotations(self, state: State) -> Floats:
         """Return the closest rotation arg f_z at each handle now, float64 (h,), in radians."""
-        angles: Floats = np.angle(self.handles.derivatives @ (state.map.phi - state.map.phi[0]))
+        phi, _ = state.map.columns
+        alone = self.boundary.span.without_constant(phi)
+        angles: Floats = np.angle(self.handles.derivatives @ alone)
         return angles
 
     def step(self, state: State, wish: Wish) -> State:
@@ -235,7 +238,7 @@ class Deformer:
     def _prepare(self, state: State, wish: Wish) -> "_Step":
         """Choose what the next step minimises, and what it must keep."""
         free = Objective(boundary=state.boundary, handles=self.handles, wish=wish)
-        jet = free.jet(state.map.phi, state.map.psi)
+        jet = free.jet(*state.map.columns)
         a, b = np.abs(jet.f), np.abs(jet.g)
         limits = closing_limits(self.bounds, state.limits, a, b)
         limits_of_walls, required = place_walls(limits, a, b, state.certificate)
@@ -308,7 +311,7 @@ class Deformer:
 
     def _begin(self, state: State, wish: Wish, ways: tuple[Way, ...]) -> State:
         """Return the state at the beginning of the searches along these ways."""
-        if np.array_equal(state.map.phi, self.boundary.cage) and not np.any(state.map.psi):
+        if state.map.is_same(self._at_rest):
             ways = tuple(way for way in ways if way is not Way.HERE)
         state = replace(
             state,
@@ -328,7 +331,7 @@ class Deformer:
         """Return the search along a way, at its beginning."""
         first, certificate = state.map, state.certificate
         if way is not Way.HERE:
-            first = rigidly_aligned(self.handles, wish, self.boundary.cage)
+            first = rigidly_aligned(self.handles, wish, self._at_rest)
             certificate = certify(first, self.boundary, self.bounds)
         within = self.bounds.towards_identity(ROUNDING)
         keeps = within.allow(
@@ -346,7 +349,7 @@ class Deformer:
     def _search_on(self, state: State, search: Search) -> State:
         """Take one step of the search, and keep its map if it has less energy."""
         free = Objective(boundary=self.boundary, handles=self.handles, wish=search.wish)
-        energy = free.energy(free.jet(state.map.phi, state.map.psi))
+        energy = free.energy(free.jet(*state.map.columns))
         search = advance(search)
         # From the present map every gain is shown; of a search from elsewhere the end is shown, if
         # it is worth the jump.
@@ -357,7 +360,7 @@ class Deformer:
             better = search.is_over and search.energy < (1.0 - WORTH_A_JUMP) * energy
         if better:
             state = replace(state, map=search.map, certificate=search.certificate)
-        jet = free.jet(state.map.phi, state.map.psi)
+        jet = free.jet(*state.map.columns)
         state = replace(
             state, search=search, statistics=self._search_statistics(free, jet, search, search)
         )
@@ -412,6 +415,10 @@ class Deformer:
             optimality=outcome.optimality,
             active=outcome.active,
         )
+
+    @property
+    def _at_rest(self) -> HarmonicMap:
+        return HarmonicMap.identity(self.boundary.cage, self.boundary.holes)
 
     def _is_far(self, wish: Wish) -> bool:
         """Tell whether a handle is wanted far from where it is at rest."""

@@ -9,7 +9,7 @@ import numpy.typing as npt
 from engine.arrays import Complexes, Floats, as_points, readonly
 from engine.errors import EngineError
 from engine.geometry import require_inside
-from engine.maps import Boundary, cauchy_coordinates, cauchy_derivatives
+from engine.maps import Boundary
 
 # λ = STIFFNESS / L² for a handle of weight 1.
 STIFFNESS = 1e4
@@ -49,8 +49,8 @@ class Handles:
     arm : float
         Length that turns a rotation into a distance: an angle δ costs 2 λ (arm · δ)².
     coordinates, derivatives : complex128, shape (h, n)
-        C_j and C_j' at the points.
-    hessian : float64, shape (4n − 2, 4n − 2)
+        Of the functions of the span, C_j and C_j', at the points.
+    hessian : float64, shape (u, u)
         Of the energy of the positions, in the order of `Objective`.
     coincident : tuple of (int, int)
         Pairs of handles at one point.
@@ -74,7 +74,7 @@ class Handles:
         ----------
         boundary : Boundary
         points : complex128, shape (h,)
-            In the closed outline; none at all is allowed.
+            In the closed domain; none at all is allowed.
         weights : array_like of float, shape (h,), optional
             Relative stiffnesses, 1 by default.
 
@@ -84,9 +84,15 @@ class Handles:
             If a point is outside the outline or not finite, or a weight is not positive.
         """
         points = as_points(points, "handles")
-        require_inside(boundary.outline, points, "handle", tolerance=COINCIDENT * boundary.size)
+        require_inside(
+            boundary.outline,
+            points,
+            "handle",
+            holes=boundary.loops[1:],
+            tolerance=COINCIDENT * boundary.size,
+        )
         stiffness = _weights(weights, len(points)) * STIFFNESS / boundary.size**2
-        coordinates = cauchy_coordinates(boundary.cage, points)
+        coordinates = boundary.span.coordinates(points)
         distances = np.abs(points[:, None] - points)
         first, second = np.nonzero(np.triu(distances <= COINCIDENT * boundary.size, 1))
         return cls(
@@ -94,8 +100,8 @@ class Handles:
             stiffness=readonly(stiffness),
             arm=ARM * boundary.size,
             coordinates=readonly(coordinates),
-            derivatives=readonly(cauchy_derivatives(boundary.cage, points)),
-            hessian=readonly(_hessian(coordinates, stiffness)),
+            derivatives=readonly(boundary.span.derivatives(points)),
+            hessian=readonly(_hessian(boundary, coordinates, stiffness)),
             coincident=tuple(zip(first.tolist(), second.tolist(), strict=True)),
         )
 
@@ -148,10 +154,21 @@ def _weights(weights: npt.ArrayLike | None, count: int) -> Floats:
     return factors
 
 
-def _hessian(coordinates: Complexes, stiffness: Floats) -> Floats:
+def _hessian(boundary: Boundary, coordinates: Complexes, stiffness: Floats) -> Floats:
     root = np.sqrt(2.0 * stiffness)[:, None] * coordinates
+    count = len(boundary.holes)
+    of_psi = root[:, 1 : len(boundary.span) - count]
+    # A logarithm is in Φ and, conjugate, in Ψ.
+    root[:, len(boundary.span) - count :] *= 2.0
     # Re f = Re(Σ C φ + Σ C ψ), Im f = Im(Σ C φ − Σ C ψ).
-    real, imaginary = np.hstack([root, root[:, 1:]]), -1j * np.hstack([root, -root[:, 1:]])
+    real, imaginary = np.hstack([root, of_psi]), -1j * np.hstack([root, -of_psi])
     rows = np.concatenate([real, imaginary]).view(np.float64)
     hessian: Floats = rows.T @ rows
+    for part in boundary.span.slices[1:]:
+        # A constant on the cage of a hole is nothing, and would be free.
+        idle = STIFFNESS / boundary.size**2 / (part.stop - part.start)
+        for first in (2 * part.start, 2 * (part.start + len(boundary.span) - 1)):
+            for column in (first, first + 1):
+                own = slice(column, column + 2 * (part.stop - part.start), 2)
+                hessian[own, own] += idle
     return hessian

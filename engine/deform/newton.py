@@ -26,7 +26,7 @@ class Direction(NamedTuple):
     Parameters
     ----------
     phi, psi : complex128, shape (n,)
-        The change of the coefficients; psi_0 stays.
+        The change of the coefficients, those of logarithms included; psi_0 stays.
     jet : Jet
         The same change, measured.
     derivative : float
@@ -52,8 +52,8 @@ class Model:
     Parameters
     ----------
     objective : Objective
-    gradient : float64, shape (4n − 2,)
-    factor : float64, shape (4n − 2, 4n − 2)
+    gradient : float64, shape (u,)
+    factor : float64, shape (u, u)
         Cholesky's, for `lapack.dpotrs`.
     """
 
@@ -62,13 +62,15 @@ class Model:
     factor: Floats
 
     def direction(self, correction: Floats | None = None) -> Direction:
-        """Return the step to the minimum, with a `correction` (4n − 2,) added to the gradient."""
+        """Return the step to the minimum, with a `correction` (u,) added to the gradient."""
         wanted = self.gradient if correction is None else self.gradient + correction
         solution, _ = lapack.dpotrs(self.factor, wanted, lower=1)
         # The unknowns are the conjugates (see `objective`).
         change = -np.ascontiguousarray(solution).view(np.complex128).conj()
-        n = len(self.objective.boundary.cage)
-        phi, psi = change[:n], np.concatenate([[0.0], change[n:]])
+        boundary = self.objective.boundary
+        n, count = len(boundary.span), len(boundary.holes)
+        phi = change[:n]
+        psi = np.concatenate([[0.0], change[n:], phi[n - count :].conj()])
         derivative = -float(self.gradient @ solution)
         return Direction(phi, psi, self.objective.jet(phi, psi), derivative)
 

@@ -4,10 +4,16 @@ The unknowns are φ and ψ without ψ_0 (the gauge: (φ + c, ψ − conj(c)) is 
 vector they are the real and imaginary parts, alternating, of the conjugates of φ and ψ_1, ψ_2, …;
 with that order Re Σ P_j φ_j is the plain product with the parts of a complex row P, and matrices
 need no rearrangement.
+
+Around q holes the last q entries of φ are the logarithms' a_j, and those of ψ their conjugates: ψ's
+are no unknowns, and what they contribute is folded onto φ's. Constants on the cage of a hole, which
+change no map, have a stiffness of their own (`Handles`), and steps never change them. In all there
+are u = 4 n − 2 − 2 q real unknowns for the n functions of the span.
 """
 
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -76,15 +82,15 @@ class Objective:
         return np.isfinite(self.wish.rotations)
 
     def jet(self, phi: Complexes, psi: Complexes) -> Jet:
-        """Measure a map, or a change of a map."""
-        # Constants do not matter to derivatives; without them a far shape loses no digits.
-        values = self.boundary.derivatives @ np.column_stack([phi - phi[0], psi - psi[0]])
-        coordinates = self.handles.coordinates
+        """Measure a map, or a change of a map, by the columns (n,) of its coefficients."""
+        span, coordinates = self.boundary.span, self.handles.coordinates
+        phi_alone, psi_alone = span.without_constant(phi), span.without_constant(psi)
+        values = self.boundary.derivatives @ np.column_stack([phi_alone, psi_alone])
         return Jet(
             f=np.ascontiguousarray(values[:, 0]),
             g=np.ascontiguousarray(values[:, 1]),
             positions=coordinates @ phi + (coordinates @ psi).conj(),
-            fz=self.handles.derivatives @ (phi - phi[0]),
+            fz=self.handles.derivatives @ phi_alone,
         )
 
     def value(self, jet: Jet) -> float:
@@ -122,7 +128,7 @@ class Objective:
         return energy.plus(self.barrier.derivatives(a, b).weighted(self.boundary.spacing))
 
     def gradient(self, jet: Jet, radial: Radial) -> Floats:
-        """Return the gradient (4n − 2,)."""
+        """Return the gradient (u,)."""
         pull = 2.0 * self.handles.stiffness * (jet.positions - self.wish.positions)
         by_phi = pull.conj() @ self.handles.coordinates
         by_psi = pull @ self.handles.coordinates
@@ -130,12 +136,12 @@ class Objective:
             # d arg F = Im(dF / F) = Re(−i dF / F).
             angle = 2.0 * self._turning_stiffness * self._turning_angles(jet)
             by_phi += (-1j * angle / jet.fz[self._turning]) @ self._turning_rows
-        by_handles = np.concatenate([by_phi, by_psi[1:]]).view(np.float64)
+        by_handles = self._by_unknowns(by_phi, by_psi)
         gradient: Floats = by_handles + self.sampled_gradient(jet, radial.a, radial.b_per_b)
         return gradient
 
     def sampled_gradient(self, jet: Jet, by_a: Floats, b_per_b: Floats) -> Floats:
-        """Return the gradient (4n − 2,) of a sum over the samples of functions of a and b.
+        """Return the gradient (u,) of a sum over the samples of functions of a and b.
 
         Parameters
         ----------
@@ -145,10 +151,17 @@ class Objective:
         """
         by_phi = (by_a * jet.f.conj() / np.abs(jet.f)) @ self.boundary.derivatives
         by_psi = (b_per_b * jet.g.conj()) @ self.boundary.derivatives
-        return np.concatenate([by_phi, by_psi[1:]]).view(np.float64)
+        return self._by_unknowns(by_phi, by_psi)
+
+    def _by_unknowns(self, by_phi: Complexes, by_psi: Complexes) -> Floats:
+        """Return a gradient (u,) from what multiplies φ and ψ (n,), logarithms included."""
+        count = len(self.boundary.holes)
+        if count:
+            by_phi[-count:] += by_psi[-count:].conj()
+        return np.concatenate([by_phi, by_psi[1 : len(by_psi) - count]]).view(np.float64)
 
     def hessian(self, jet: Jet, radial: Radial) -> Floats:
-        """Return the positive semidefinite part of the Hessian (4n − 2, 4n − 2), upper triangle.
+        """Return the positive semidefinite part of the Hessian (u, u), upper triangle.
 
         Notes
         -----
@@ -157,7 +170,7 @@ class Objective:
         h_a / a can be negative: max(h_a / a, 0) is the exact projection. The sum over the samples
         is a quadrature, coarser than that of energy and gradient. Cost: 24 s n² for s samples.
         """
-        n = len(self.boundary.cage)
+        n = len(self.boundary.span)
         which, entries = self._quadrature(radial)
         rows = self.boundary.derivatives[which]
         f, g = jet.f[which], jet.g[which]
@@ -181,14 +194,35 @@ class Objective:
                 rows * (-1j * np.sqrt(tangential_g) * frame_g)[:, None],
             ]
         ).view(np.float64)
-        s = len(which)
+        s, u = len(which), len(self.handles.hessian)
         hessian = self.handles.hessian.copy()
         hessian[: 2 * n, : 2 * n] += by_phi.T @ by_phi
-        hessian[2 * n :, 2 * n :] += by_psi.T @ by_psi
-        hessian[: 2 * n, 2 * n :] += by_phi[:s].T @ (
-            (cross / (root_f * root_g))[:, None] * by_psi[:s]
-        )
+        of_psi = by_psi.T @ by_psi
+        mixed = by_phi[:s].T @ ((cross / (root_f * root_g))[:, None] * by_psi[:s])
+        hessian[2 * n :, 2 * n :] += of_psi[: u - 2 * n, : u - 2 * n]
+        hessian[: 2 * n, 2 * n :] += mixed[:, : u - 2 * n]
+        if self.boundary.holes:
+            self._fold_logarithms(hessian, mixed, of_psi)
         return hessian
+
+    def _fold_logarithms(self, hessian: Floats, mixed: Floats, of_psi: Floats) -> None:
+        """Add what ψ's logarithms, the conjugates of φ's, contribute to a Hessian (u, u).
+
+        Parameters
+        ----------
+        hessian : float64, shape (u, u)
+            Its upper triangle is changed.
+        mixed : float64, shape (2n, 2n − 2)
+            Between the parts of φ and those of ψ_1, ψ_2, …
+        of_psi : float64, shape (2n − 2, 2n − 2)
+        """
+        count = 2 * len(self.boundary.holes)
+        sign = np.tile([1.0, -1.0], count // 2)  # a conjugate has the other imaginary part
+        logs = slice(len(mixed) - count, len(mixed))
+        across, own = mixed[:, -count:] * sign, of_psi[:, -count:] * sign
+        hessian[: len(mixed), logs] += across
+        hessian[logs, logs] += across[logs].T + sign[:, None] * own[-count:]
+        hessian[logs, len(mixed) :] += own[:-count].T
 
     def negative_part(self, jet: Jet, radial: Radial) -> Floats:
         """Return what the projection removed from the Hessian of φ, (2n, 2n).
@@ -223,13 +257,15 @@ class Objective:
                 np.maximum(-radial.around_a, 0.0),
             ]
         )
-        m, n = len(self.boundary.points), len(self.boundary.cage)
+        m, n = len(self.boundary.points), len(self.boundary.span)
         stride = min(STRIDE, m // (SAMPLES_PER_VERTEX * n)) if self.sketched else 1
         if stride <= 1:
             return np.arange(m), entries
         density = radial.aa + radial.bb
         strong = density > STRONG * self.boundary.spacing * float(density.sum())
-        starts = np.arange(0, m, stride)
+        starts = np.concatenate(
+            [np.arange(*loop, stride) for loop in pairwise([*self.boundary.starts, m])]
+        )
         alone = np.flatnonzero(strong)
         summed = np.add.reduceat(np.where(strong, 0.0, entries), starts, axis=1)
         middles = np.minimum(starts + stride // 2, m - 1)

@@ -128,11 +128,12 @@ def cut_to_leash(
     return Wish(positions + cut * pull, near), leashed
 
 
-def rigidly_aligned(handles: Handles, wish: Wish, cage: Complexes) -> HarmonicMap:
+def rigidly_aligned(handles: Handles, wish: Wish, at_rest: HarmonicMap) -> HarmonicMap:
     """Return the rigid motion that brings the shape at rest nearest to its wish."""
     centre, wanted, angle = _common_motion(handles, handles.points, wish.positions)
-    return HarmonicMap(
-        cage=cage, phi=wanted + np.exp(1j * angle) * (cage - centre), psi=np.zeros_like(cage)
+    turn = complex(np.exp(1j * angle))
+    return HarmonicMap.similarity(
+        at_rest.cage, at_rest.holes, factor=turn, shift=wanted - turn * centre
     )
 
 

@@ -89,25 +89,41 @@ class HarmonicMap:
     @property
     def coefficients(self) -> Complexes:
         """Those of Φ and Ψ in the span, logarithms included, complex128 (n, 2)."""
+        return np.column_stack(self.columns)
+
+    @property
+    def columns(self) -> tuple[Complexes, Complexes]:
+        """The same one by one, complex128 (n,) each."""
         if not self.holes:
-            return np.column_stack([self.phi, self.psi])
-        return np.column_stack(
-            [
-                np.concatenate([self.phi, self.logs]),
-                np.concatenate([self.psi, self.logs.conj()]),
-            ]
+            return self.phi, self.psi
+        return (
+            np.concatenate([self.phi, self.logs]),
+            np.concatenate([self.psi, self.logs.conj()]),
         )
 
-    def with_coefficients(self, phi: Complexes, psi: Complexes) -> Self:
-        """Return the map with other coefficients in the same span, like columns of `coefficients`.
+    def changed(self, phi: Complexes, psi: Complexes) -> Self:
+        """Return the map with something added to its coefficients.
 
         Parameters
         ----------
         phi, psi : complex128, shape (n,)
-            The logarithms of the second are the conjugates of those of the first.
+            Like `columns`: the second ends in the conjugates of the first's last entries.
         """
         count = len(self.phi)
-        return replace(self, phi=phi[:count], psi=psi[:count], logs=phi[count:])
+        return replace(
+            self,
+            phi=self.phi + phi[:count],
+            psi=self.psi + psi[:count],
+            logs=self.logs + phi[count:],
+        )
+
+    def is_same(self, other: "HarmonicMap") -> bool:
+        """Tell whether both have the same coefficients."""
+        return (
+            np.array_equal(self.phi, other.phi)
+            and np.array_equal(self.psi, other.psi)
+            and np.array_equal(self.logs, other.logs)
+        )
 
     def __call__(self, points: Complexes) -> Complexes:
         """Return f at points (m,) strictly inside the cage, and outside those in holes."""

@@ -52,7 +52,7 @@ def _drag(boundary: Boundary) -> Table:
         states.append(deformer.step(states[-1], wish))
     state = states[DRAG_STEPS // 2]
     objective = Objective(boundary=boundary, handles=handles, wish=wish, sketched=True)
-    jet = objective.jet(state.map.phi, state.map.psi)
+    jet = objective.jet(*state.map.columns)
     radial = objective.radial(jet)
     rows = (
         Row(

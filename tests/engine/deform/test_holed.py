@@ -1,0 +1,216 @@
+"""Deformations of shapes with holes: derivatives of the objective, and some drags."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from holed_shapes import boundary_of, inner_points, plate, random_map, ring
+from numpy.testing import assert_allclose, assert_array_equal
+
+from engine.deform import Deformer, Handles, Status
+from engine.deform.barrier import Barrier, Walls
+from engine.deform.objective import Objective
+from engine.errors import EngineError
+from engine.maps import Boundary, Bounds, HarmonicMap, Limits, certify
+
+
+def on_circle(radius, degrees):
+    return radius * np.exp(1j * np.deg2rad(np.array(degrees)))
+
+
+AROUND = on_circle(0.75, np.arange(0, 360, 45))
+BOTH = np.concatenate([on_circle(0.9, [0, 90, 180, 270]), on_circle(0.58, [0, 90, 180, 270])])
+KIDNEY = np.array(
+    [0.75, 0.55 + 0.6j, 0.1 + 0.8j, -0.3 + 0.5j, -0.15, -0.3 - 0.5j, 0.1 - 0.8j, 0.55 - 0.6j]
+)
+CRESCENT = np.array(
+    [1, 1 + 0.9j, 0.2 + 1.1j, -0.9 + 1j, -1.3 + 0.3j, -0.8 + 0.25j, -0.1 + 0.1j, 0.6 - 0.3j]
+)
+EGG = np.array([1.3, 0.2 + 0.6j, -0.6, 0.3 - 0.9j])
+SWIRL = np.concatenate([BOTH[:4] * np.exp(0.3j), BOTH[4:] * np.exp(-0.3j) + 0.12 + 0.1j])
+DRAGS = {
+    "kidney": (AROUND, KIDNEY),
+    "egg": (on_circle(0.75, [0, 90, 180, 270]), EGG),
+    "crescent": (AROUND, CRESCENT),
+    "swirl": (BOTH, SWIRL),
+}
+ON_PLATE = np.array(
+    [
+        -1.55,
+        -0.55 + 0.45j,
+        -0.55 - 0.45j,
+        0.55 + 0.45j,
+        0.55 - 0.45j,
+        1.55,
+        -1.1 + 0.45j,
+        1.1 - 0.45j,
+    ]
+)
+
+
+def problem(shape, name, seed=3):
+    boundary = boundary_of(name, 3)
+    handles = Handles.place(boundary, inner_points(shape, 200)[:5])
+    wish = handles.wish(1.02 * handles.points + 0.01j, [0.3, np.nan, np.nan, -0.2, np.nan])
+    walls = Walls.around(Limits(k=0.95, sigma_a=30.0, sigma_b=0.01), len(boundary.points))
+    objective = Objective(
+        boundary=boundary, handles=handles, wish=wish, barrier=Barrier(walls=walls, weight=0.2)
+    )
+    phi, psi = random_map(shape, seed, 0.02).columns
+    grown = HarmonicMap.similarity(shape.cage, shape.holes, factor=0.6).columns[0]
+    return objective, phi + grown, psi
+
+
+def changes_of(objective, x):
+    """Return the columns of coefficients that the unknowns (u,) stand for."""
+    change, count = x.view(complex).conj(), len(objective.boundary.holes)
+    phi = change[: len(objective.boundary.span)]
+    return phi, np.concatenate([[0], change[len(phi) :], phi[-count:].conj()])
+
+
+@pytest.mark.parametrize(("shape", "name"), [(ring(), "ring"), (plate(), "plate")])
+def test_derivatives_agree_with_finite_differences(shape, name):
+    objective, phi, psi = problem(shape, name)
+    boundary, h = objective.boundary, 1e-6
+    jet = objective.jet(phi, psi)
+    radial = objective.radial(jet)
+    assert np.all(radial.around_a > 0)  # nothing is projected
+    # Only at their wish rotations have no projected part.
+    objective = replace(objective, wish=objective.handles.wish(objective.wish.positions))
+    gradient = objective.gradient(jet, radial)
+    hessian = np.triu(objective.hessian(jet, radial))
+    hessian = hessian + np.triu(hessian, 1).T
+    idle = np.zeros_like(hessian)
+    n = len(boundary.span)
+    for part in boundary.span.slices[1:]:
+        for first in (2 * part.start, 2 * (part.start + n - 1)):
+            for column in (first, first + 1):
+                own = slice(column, column + 2 * (part.stop - part.start), 2)
+                idle[own, own] = 1e4 / boundary.size**2 / (part.stop - part.start)
+    rng = np.random.default_rng(0)
+    for _ in range(4):
+        x = rng.normal(size=len(gradient))
+        moved = objective.jet(*changes_of(objective, x))
+        ahead, behind = jet.advanced(h, moved), jet.advanced(-h, moved)
+        slope = (objective.value(ahead) - objective.value(behind)) / (2 * h)
+        assert_allclose(gradient @ x, slope, rtol=1e-5)
+        by_gradient = (
+            objective.gradient(ahead, objective.radial(ahead))
+            - objective.gradient(behind, objective.radial(behind))
+        ) / (2 * h)
+        product = (hessian - idle) @ x
+        assert_allclose(product, by_gradient, rtol=0, atol=2e-6 * np.abs(product).max())
+
+
+def test_steps_never_change_what_is_nothing():
+    """The constant on the cage of a hole stays where it is, bit for bit but for rounding."""
+    points, targets = DRAGS["kidney"]
+    boundary = boundary_of("ring")
+    deformer = Deformer(boundary=boundary, handles=Handles.place(boundary, points), bounds=Bounds())
+    state = deformer.start()
+    for _ in range(5):
+        state = deformer.step(state, deformer.handles.wish(targets))
+    inner = state.map.phi[48:], state.map.psi[48:]
+    for coefficients in inner:
+        assert np.abs(coefficients).max() > 1e-4
+        assert abs(coefficients.sum()) < 1e-9
+
+
+@pytest.mark.parametrize("name", DRAGS)
+def test_the_prototypes_drags_come_to_certified_rest(name):
+    points, targets = DRAGS[name]
+    boundary = boundary_of("ring")
+    deformer = Deformer(boundary=boundary, handles=Handles.place(boundary, points), bounds=Bounds())
+    wish = deformer.handles.wish(targets)
+    state = deformer.start()
+    for _ in range(150):
+        state = deformer.step(state, wish)
+        assert state.certificate.certified
+        if state.status.is_final:
+            break
+    assert state.status in (Status.CONVERGED, Status.AT_LIMITS)
+    assert state.statistics.optimality <= 1e-5
+    assert certify(state.map, boundary, Bounds()).certified
+    assert abs(state.map.logs[0]) > 1e-5
+    assert state.statistics.handle_error < 0.02
+
+
+def test_three_holes_bend():
+    boundary = boundary_of("plate", 3)
+    deformer = Deformer(
+        boundary=boundary, handles=Handles.place(boundary, ON_PLATE), bounds=Bounds()
+    )
+    wanted = 1.2j + (1.2 - ON_PLATE.imag) * np.exp(1j * (ON_PLATE.real / 1.2 - np.pi / 2))
+    state, _ = deformer.settle(deformer.start(), deformer.handles.wish(wanted))
+    assert state.status.is_final
+    assert state.certificate.certified
+    assert state.statistics.handle_error < 0.02
+
+
+def test_a_hole_gives_where_a_filled_one_resists():
+    """Squeezed by the same handles, a ring has less energy than the disc it encloses."""
+    shape = ring()
+    points, targets = on_circle(0.8, [0, 180]), on_circle(0.55, [0, 180])
+    energies = []
+    for holes in (shape.holes, ()):
+        boundary = Boundary.sample(shape.outline, shape.cage, holes)
+        deformer = Deformer(
+            boundary=boundary, handles=Handles.place(boundary, points), bounds=Bounds()
+        )
+        state, _ = deformer.settle(deformer.start(), deformer.handles.wish(targets))
+        energies.append(state.statistics.energy - 2)
+    assert energies[0] < 0.7 * energies[1]
+
+
+def test_a_tiny_hole_hardly_matters():
+    points, targets = DRAGS["egg"]
+    targets = (points + targets) / 2
+    placed = []
+    tiny = ring(0.002)
+    for holes in (tiny.holes, ()):
+        boundary = Boundary.sample(tiny.outline, tiny.cage, holes)
+        deformer = Deformer(
+            boundary=boundary, handles=Handles.place(boundary, points), bounds=Bounds()
+        )
+        state, _ = deformer.settle(deformer.start(), deformer.handles.wish(targets))
+        placed.append(state.map(inner_points(ring())))
+    assert_allclose(placed[0], placed[1], rtol=0, atol=2e-3)
+
+
+def test_a_shape_elsewhere_deforms_alike():
+    points, targets = DRAGS["egg"]
+    factor, shift = 300j, 500 - 200j
+    moved = ring().moved(factor, shift)
+    maps = []
+    for shape, p, t in (
+        (ring(), points, targets),
+        (moved, factor * points + shift, factor * targets + shift),
+    ):
+        boundary = Boundary.sample(shape.outline, shape.cage, shape.holes)
+        deformer = Deformer(boundary=boundary, handles=Handles.place(boundary, p), bounds=Bounds())
+        state, _ = deformer.settle(deformer.start(), deformer.handles.wish(t))
+        places = inner_points(ring())
+        maps.append(state.map(places if shape is not moved else factor * places + shift))
+    assert_allclose(factor * maps[0] + shift, maps[1], rtol=0, atol=1e-3 * abs(factor))
+
+
+def test_handles_stand_on_the_shape_and_not_in_its_holes():
+    with pytest.raises(EngineError, match="is outside the outline"):
+        Handles.place(boundary_of("ring"), np.array([0.1 + 0.1j]))
+    assert len(Handles.place(boundary_of("ring"), np.array([0.5 + 0j])).points) == 1
+
+
+def test_the_same_drag_gives_the_same_map():
+    points, targets = DRAGS["crescent"]
+    boundary = boundary_of("ring")
+    found = []
+    for _ in range(2):
+        deformer = Deformer(
+            boundary=boundary, handles=Handles.place(boundary, points), bounds=Bounds()
+        )
+        state = deformer.start()
+        for _ in range(4):
+            state = deformer.step(state, deformer.handles.wish(targets))
+        found.append(state.map)
+    for name in ("phi", "psi", "logs"):
+        assert_array_equal(getattr(found[0], name), getattr(found[1], name))
