@@ -30,7 +30,7 @@ from app.storage.json_values import (
     without_repeats,
 )
 from app.storage.opening import open_picture
-from app.storage.picture import Picture, decode_picture, read_picture_file
+from app.storage.pictures import Picture, decode_picture, read_picture_file
 from app.storage.preferences import (
     CHECKER,
     LARGEST_GHOST_STEP,

@@ -4,7 +4,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from app.document import Document, Meshing, PictureFile, new_figure
-from app.storage.picture import Picture, decode_picture, read_picture_file
+from app.storage.pictures import Picture, decode_picture, read_picture_file
 from engine.domain import build_domain
 
 

@@ -26,7 +26,7 @@ from app.errors import EXPECTED_ERRORS, LissomError
 from app.storage.archive import MEBIBYTE, Archive, array_member, write_archive
 from app.storage.files import write_atomically
 from app.storage.json_values import JsonObject, as_object, as_text, as_whole, without_repeats
-from app.storage.picture import stored_size
+from app.storage.pictures import stored_size
 from app.storage.project_json import SCHEMA, read_document, read_size, write_document
 from engine.arrays import Complexes, as_points
 from engine.domain import MOST_MESH_TRIANGLES, Domain, require_domain

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 from PIL import Image, ImageOps
 
-from app.storage.picture import DECODER_ERRORS, FORMATS
+from app.storage.pictures import DECODER_ERRORS, FORMATS
 from app.storage.project_file import load_thumbnail
 from engine.arrays import Bytes
 

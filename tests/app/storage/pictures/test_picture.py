@@ -18,7 +18,7 @@ from profiles import (
 )
 
 from app.errors import LissomError
-from app.storage.picture import decode_picture, read_picture_file
+from app.storage.pictures import decode_picture, read_picture_file
 
 GREY = np.arange(12, dtype=np.uint8).reshape(3, 4) * 20
 RGB = np.stack([GREY, GREY[::-1], 255 - GREY], axis=-1)

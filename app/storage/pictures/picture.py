@@ -13,7 +13,7 @@ import numpy as np
 from PIL import Image, ImageFile, ImageOps, UnidentifiedImageError
 
 from app.errors import LissomError
-from app.storage.colour import to_srgb
+from app.storage.pictures.colour import to_srgb
 from engine.arrays import Bytes, Floats, readonly
 
 # PostScript and PDF are left out on purpose: Pillow would run an interpreter for them.

@@ -1,0 +1,31 @@
+"""Pictures: one, or one on many layers, as pixels in sRGB with straight alpha.
+
+In: the bytes of a picture file.
+Out: decoded pictures, and in words what was done to them.
+Imports: `app.errors`, `engine.arrays`.
+"""
+
+from app.storage.pictures.layered import Layer, LayeredPicture
+from app.storage.pictures.openraster import read_openraster
+from app.storage.pictures.photoshop import read_photoshop
+from app.storage.pictures.picture import (
+    DECODER_ERRORS,
+    FORMATS,
+    Picture,
+    decode_picture,
+    read_picture_file,
+    stored_size,
+)
+
+__all__ = [
+    "DECODER_ERRORS",
+    "FORMATS",
+    "Layer",
+    "LayeredPicture",
+    "Picture",
+    "decode_picture",
+    "read_openraster",
+    "read_photoshop",
+    "read_picture_file",
+    "stored_size",
+]

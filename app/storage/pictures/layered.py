@@ -1,0 +1,126 @@
+"""A drawing on several layers, and what its readers share."""
+
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+from app.errors import LissomError
+from app.storage.pictures.picture import Picture
+
+MOST_LAYERS = 200
+# Pixels of all layers together; decoded, each takes four bytes.
+MOST_PIXELS = 256_000_000
+# Groups in each other.
+DEEPEST = 50
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Layer:
+    """A layer of a drawing.
+
+    Parameters
+    ----------
+    name : str
+        Unique in its drawing.
+    data : bytes
+        The layer's picture as a file.
+    picture : Picture
+        The same, decoded.
+    corner : complex
+        Where its lower left corner is on the canvas, in pixels, y up.
+    visible : bool
+    opacity : float
+        In [0, 1].
+    """
+
+    name: str
+    data: bytes
+    picture: Picture
+    corner: complex = 0j
+    visible: bool = True
+    opacity: float = 1.0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class LayeredPicture:
+    """A drawing on layers.
+
+    Parameters
+    ----------
+    size : tuple of int
+        Width and height of the canvas in pixels.
+    layers : tuple of Layer
+        From the one behind all others to the one in front; there is always one.
+    notices : tuple of str
+        What could not be kept, in words.
+    """
+
+    size: tuple[int, int]
+    layers: tuple[Layer, ...]
+    notices: tuple[str, ...]
+
+
+def layered_picture(
+    size: tuple[int, int], found: Sequence[tuple[str, Layer]], notices: Sequence[str]
+) -> LayeredPicture:
+    """Return the drawing of the layers that were found, each with a name of its own.
+
+    Parameters
+    ----------
+    size : tuple of int
+    found : sequence of (str, Layer)
+        From back to front, each with the names of the groups that it is in, as "limbs/left"; layers
+        of which nothing is to be seen are left out.
+    notices : sequence of str
+
+    Raises
+    ------
+    LissomError
+        If no layer is left.
+    """
+    notices, kept = list(notices), []
+    for group, layer in found:
+        if layer.picture.rgba[..., 3].any():
+            kept.append((group, layer))
+        else:
+            notices.append(f"left out the empty layer {layer.name!r}")
+    if not kept:
+        raise LissomError("it has no layer on which anything is drawn")
+    own = Counter(layer.name for _, layer in kept)
+    taken: set[str] = set()
+    layers = []
+    for group, layer in kept:
+        name = f"{group}/{layer.name}" if group and own[layer.name] > 1 else layer.name
+        number, free = 1, name
+        while free in taken:
+            number += 1
+            free = f"{name} {number}"
+        taken.add(free)
+        layers.append(replace(layer, name=free))
+    return LayeredPicture(size=size, layers=tuple(layers), notices=tuple(notices))
+
+
+def require_room(sizes: Sequence[tuple[int, int]]) -> None:
+    """Refuse more layers, or larger ones, than there is room for, before they are decoded."""
+    if len(sizes) > MOST_LAYERS:
+        raise LissomError(
+            f"it has {len(sizes)} layers; Lissom takes up to {MOST_LAYERS}: merge some of them"
+        )
+    if sum(width * height for width, height in sizes) > MOST_PIXELS:
+        raise LissomError(
+            f"its layers have more than {MOST_PIXELS:,} pixels together; crop or scale it first"
+        )
+
+
+def corner_from_top(left: float, top: float, size: tuple[int, int], canvas: int) -> complex:
+    """Return the lower left corner of a layer, y up, whose upper left one was counted from above.
+
+    Parameters
+    ----------
+    left, top : float
+    size : tuple of int
+        Of the layer.
+    canvas : int
+        The canvas's height.
+    """
+    return complex(left, canvas - top - size[1])

@@ -1,0 +1,157 @@
+"""Reading Photoshop files with psd-tools, where that is installed."""
+
+import io
+import struct
+import zlib
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any, Final
+
+from PIL import Image, ImageChops
+
+from app.errors import LissomError
+from app.storage.pictures.layered import (
+    DEEPEST,
+    Layer,
+    LayeredPicture,
+    corner_from_top,
+    layered_picture,
+    require_room,
+)
+from app.storage.pictures.picture import decode_picture
+
+MEBIBYTE = 1024 * 1024
+SIGNATURE = b"8BPS"
+# What is drawn, and by which name psd-tools knows it. Shapes and placed pictures come with pixels.
+DRAWN: Final = {"pixel", "shape", "smartobject"}
+SKIPPED: Final = {"type": "text"}
+NORMAL: Final = {"NORMAL", "PASS_THROUGH"}
+DAMAGE = (
+    OSError,
+    ValueError,
+    KeyError,
+    IndexError,
+    TypeError,
+    AttributeError,
+    AssertionError,
+    NotImplementedError,
+    OverflowError,
+    MemoryError,
+    RecursionError,
+    struct.error,
+    zlib.error,
+)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Group:
+    """What the groups around a layer do to it."""
+
+    path: str = ""
+    visible: bool = True
+    opacity: float = 1.0
+    depth: int = 0
+
+
+def read_photoshop(data: bytes) -> LayeredPicture:
+    """Read the layers of a Photoshop file.
+
+    Groups are flattened: what lies in them stays in its order, with the group's visibility and
+    opacity. Masks are taken into the pixels.
+
+    Raises
+    ------
+    LissomError
+        If psd-tools is not installed, or the file is no Photoshop file, is damaged or too large, or
+        nothing is drawn on it.
+    """
+    if not data.startswith(SIGNATURE):
+        raise LissomError("it is not a Photoshop file")
+    try:
+        import psd_tools  # noqa: PLC0415 - it is an extra
+    except ImportError as error:
+        raise LissomError(
+            "Photoshop files need psd-tools: install Lissom with `pip install 'lissom[psd]'`, or "
+            "save the drawing as OpenRaster (.ora)"
+        ) from error
+    try:
+        return _read(psd_tools.PSDImage.open(io.BytesIO(data), max_alloc_bytes=2048 * MEBIBYTE))
+    except DAMAGE as error:
+        raise LissomError(f"it is not a Photoshop file, or it is damaged ({error})") from error
+
+
+def _read(drawing: Any) -> LayeredPicture:
+    notices: list[str] = []
+    found = list(_drawn_layers(drawing, _Group(), notices))
+    require_room([(layer.width, layer.height) for _, layer in found])
+    layers = []
+    for group, layer in found:
+        image = _pixels(layer)
+        if image is None:
+            notices.append(f"left out the empty layer {layer.name!r}")
+            continue
+        file = _png(image)
+        picture = decode_picture(file, layer.name)
+        read = Layer(
+            name=layer.name.strip() or "layer",
+            data=file,
+            picture=picture,
+            corner=corner_from_top(layer.left, layer.top, picture.size, drawing.height),
+            visible=group.visible and layer.visible,
+            opacity=group.opacity * layer.opacity / 255,
+        )
+        layers.append((group.path, read))
+    if not found and not notices:
+        # Saved without layers: the picture that all programs see.
+        file = _png(drawing.topil().convert("RGBA"))
+        flat = decode_picture(file, "the picture")
+        layers = [("", Layer(name="picture", data=file, picture=flat))]
+    return layered_picture((drawing.width, drawing.height), layers, notices)
+
+
+def _drawn_layers(around: Any, group: _Group, notices: list[str]) -> Iterator[tuple[_Group, Any]]:
+    """Go through what is drawn, from the back, with what the groups do to it."""
+    if group.depth > DEEPEST:
+        raise LissomError(f"its groups lie more than {DEEPEST} deep in each other")
+    for layer in around:
+        name = layer.name.strip()
+        if layer.blend_mode.name not in NORMAL:
+            mode = layer.blend_mode.name.lower().replace("_", " ")
+            notices.append(f"{name!r} is drawn normally, not in the mode {mode!r}")
+        if layer.is_group():
+            inner = _Group(
+                path="/".join(part for part in (group.path, name) if part),
+                visible=group.visible and layer.visible,
+                opacity=group.opacity * layer.opacity / 255,
+                depth=group.depth + 1,
+            )
+            yield from _drawn_layers(layer, inner, notices)
+        elif layer.kind in DRAWN:
+            yield group, layer
+        else:
+            kind = SKIPPED.get(layer.kind, "adjustment")
+            notices.append(f"left out the {kind} layer {name!r}: Lissom takes drawn layers only")
+
+
+def _png(image: Image.Image) -> bytes:
+    file = io.BytesIO()
+    image.save(file, "PNG", compress_level=1)
+    return file.getvalue()
+
+
+def _pixels(layer: Any) -> Image.Image | None:
+    """Return the pixels of a layer with its mask taken in; None where it has none."""
+    if layer.width == 0 or layer.height == 0:
+        return None
+    image = layer.topil()
+    if image is None:
+        return None
+    pixels: Image.Image = image.convert("RGBA")
+    mask = layer.mask
+    if mask is not None and not mask.disabled:
+        seen = Image.new("L", pixels.size, mask.background_color)
+        drawn = mask.topil()
+        if drawn is not None:
+            seen.paste(drawn.convert("L"), (mask.left - layer.left, mask.top - layer.top))
+        pixels.putalpha(ImageChops.multiply(pixels.getchannel("A"), seen))
+    return pixels

@@ -1,0 +1,174 @@
+import io
+import zipfile
+
+import numpy as np
+import pytest
+from layered import blob, openraster
+from numpy.testing import assert_array_equal
+from PIL import Image
+from psd_tools import PSDImage
+from psd_tools.constants import BlendMode
+
+from app.errors import LissomError
+from app.storage.pictures import read_openraster, read_photoshop
+
+HEAD = '<layer name="head" src="data/0.png" x="10" y="20"/>'
+BODY = '<layer name="body" src="data/1.png" x="5" y="40" opacity="0.5" visibility="hidden"/>'
+
+
+def drawing(stack=HEAD + BODY, size=(100, 120)):
+    return openraster(size, stack, [blob(30, 20), blob(50, 60)])
+
+
+def layers_of(data):
+    return {layer.name: layer for layer in read_openraster(data).layers}
+
+
+def test_layers_come_from_back_to_front_where_they_are_on_the_canvas():
+    read = read_openraster(drawing())
+    assert read.size == (100, 120)
+    assert [layer.name for layer in read.layers] == ["body", "head"]
+    body, head = read.layers
+    # Rows count from above in the file, and from below here.
+    assert head.corner == 10 + 1j * (120 - 20 - 20)
+    assert body.corner == 5 + 1j * (120 - 40 - 60)
+    assert (head.visible, head.opacity) == (True, 1.0)
+    assert (body.visible, body.opacity) == (False, 0.5)
+    assert_array_equal(head.picture.rgba, np.asarray(blob(30, 20)))
+    assert read.notices == ()
+
+
+def test_groups_are_flattened_with_what_they_do_to_their_layers():
+    stack = (
+        '<stack name="limbs" x="3" y="4" opacity="0.5"><stack name="left" visibility="hidden">'
+        f"{HEAD}</stack>{HEAD}</stack>{HEAD}"
+    )
+    read = read_openraster(drawing(stack))
+    assert [layer.name for layer in read.layers] == ["head", "limbs/head", "limbs/left/head"]
+    front, right, left = read.layers
+    assert right.corner - front.corner == 3 - 4j
+    assert left.corner == right.corner
+    assert (front.opacity, right.opacity, left.opacity) == (1.0, 0.5, 0.5)
+    assert (front.visible, right.visible, left.visible) == (True, True, False)
+
+
+def test_layers_of_one_name_are_told_apart():
+    assert sorted(layers_of(drawing(HEAD * 3))) == ["head", "head 2", "head 3"]
+
+
+def test_what_cannot_be_kept_is_told():
+    stack = (
+        HEAD.replace("/>", ' composite-op="svg:multiply"/>')
+        + '<text name="title"/>'
+        + '<layer name="nothing" src="data/2.png"/>'
+    )
+    empty = Image.new("RGBA", (4, 4))
+    read = read_openraster(openraster((100, 100), stack, [blob(9, 9), blob(9, 9), empty]))
+    assert [layer.name for layer in read.layers] == ["head"]
+    assert sorted(read.notices) == [
+        "'head' is drawn normally, not in the mode 'multiply'",
+        "left out 'title': Lissom takes drawn layers only",
+        "left out the empty layer 'nothing'",
+    ]
+
+
+@pytest.mark.parametrize(
+    ("data", "words"),
+    [
+        (b"no zip", "not an OpenRaster file"),
+        (openraster((9, 9), HEAD, [blob(9, 9)], mimetype=b"application/zip"), "not an OpenRaster"),
+        (drawing(size=(0, 9)), "size of '0' pixels"),
+        (drawing(HEAD.replace('x="10"', 'x="nan"')), "x='nan'"),
+        (drawing(HEAD.replace("0.png", "7.png")), "lacks data/7.png"),
+        (drawing(""), "no layer on which anything is drawn"),
+        (drawing("<stack>" * 60 + "</stack>" * 60), "more than 50 deep"),
+        (drawing("<stack>"), "stack.xml is damaged"),
+        (drawing(HEAD * 201), "up to 200: merge"),
+    ],
+)
+def test_bad_files_are_told_in_words(data, words):
+    with pytest.raises(LissomError, match=words):
+        read_openraster(data)
+
+
+def test_entities_do_not_grow():
+    file = io.BytesIO()
+    with zipfile.ZipFile(file, "w") as archive:
+        archive.writestr("mimetype", "image/openraster")
+        archive.writestr(
+            "stack.xml", '<!DOCTYPE image [<!ENTITY a "aaaa">]><image w="9" h="9"><stack/></image>'
+        )
+    with pytest.raises(LissomError, match="document type"):
+        read_openraster(file.getvalue())
+
+
+def test_a_member_that_would_unpack_to_too_much_is_refused_before_it_is_unpacked():
+    file = io.BytesIO()
+    with zipfile.ZipFile(file, "w", zipfile.ZIP_DEFLATED) as archive:
+        archive.writestr("mimetype", "image/openraster")
+        archive.writestr("stack.xml", f'<image w="9" h="9"><stack>{HEAD}</stack></image>')
+        archive.writestr("data/0.png", bytes(10_000_000))
+    with pytest.raises(LissomError, match=r"data/0.png is too large"):
+        read_openraster(file.getvalue())
+
+
+def photoshop(build):
+    drawing = PSDImage.new("RGB", (100, 120))
+    build(drawing)
+    file = io.BytesIO()
+    drawing.save(file)
+    return file.getvalue()
+
+
+def test_layers_of_a_photoshop_file():
+    def build(drawing):
+        drawing.create_pixel_layer(blob(50, 60), name="body", top=40, left=5)
+        group = drawing.create_group(name="face", opacity=128)
+        head = group.create_pixel_layer(blob(30, 20), name="head", top=20, left=10)
+        head.visible = False
+        head.blend_mode = BlendMode.MULTIPLY
+
+    read = read_photoshop(photoshop(build))
+    assert read.size == (100, 120)
+    body, head = read.layers
+    assert (body.name, body.corner, body.visible, body.opacity) == ("body", 5 + 20j, True, 1.0)
+    assert (head.name, head.corner, head.visible) == ("head", 10 + 80j, False)
+    assert head.opacity == pytest.approx(128 / 255)
+    assert_array_equal(body.picture.rgba, np.asarray(blob(50, 60)))
+    assert read.notices == ("'head' is drawn normally, not in the mode 'multiply'",)
+
+
+def test_a_mask_is_taken_into_the_pixels():
+    half = Image.new("L", (30, 20))
+    half.paste(255, (0, 0, 15, 20))
+
+    def build(drawing):
+        layer = drawing.create_pixel_layer(blob(30, 20), name="head", top=20, left=10)
+        layer.update_mask(half)
+
+    (head,) = read_photoshop(photoshop(build)).layers
+    alpha = head.picture.rgba[..., 3]
+    # psd-tools writes a layer's own alpha as a mask, too; this one took its place.
+    assert_array_equal(alpha, np.asarray(half))
+
+
+def test_a_photoshop_file_without_layers_is_one_layer():
+    file = io.BytesIO()
+    PSDImage.frompil(blob(30, 20).convert("RGB")).save(file)
+    (layer,) = read_photoshop(file.getvalue()).layers
+    assert layer.picture.size == (30, 20)
+
+
+@pytest.mark.parametrize("data", [b"", b"8BPS", b"8BPS" + bytes(200), b"PK no"])
+def test_damaged_photoshop_files_are_told_in_words(data):
+    with pytest.raises(LissomError, match="Photoshop"):
+        read_photoshop(data)
+
+
+def test_a_photoshop_file_cut_short_is_told_in_words():
+    whole = photoshop(lambda drawing: drawing.create_pixel_layer(blob(30, 20), name="head"))
+    for end in range(4, len(whole), max(1, len(whole) // 40)):
+        try:
+            read_photoshop(whole[:end])
+        except LissomError:
+            continue
