@@ -5,8 +5,16 @@ Out: a `Mesh`.
 Imports: `engine.geometry`.
 """
 
+from engine.domain.meshing.depth import in_depth_order, spread_depth
 from engine.domain.meshing.draw_order import in_order_of, with_limbs_on_top
 from engine.domain.meshing.mesh import Mesh
 from engine.domain.meshing.triangulation import triangulate
 
-__all__ = ["Mesh", "in_order_of", "triangulate", "with_limbs_on_top"]
+__all__ = [
+    "Mesh",
+    "in_depth_order",
+    "in_order_of",
+    "spread_depth",
+    "triangulate",
+    "with_limbs_on_top",
+]
