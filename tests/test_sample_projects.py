@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from app.document.timeline import clip_of, exported_frames
+from app.document.queries.timeline import clip_of, exported_frames
 from app.reports.certification import certify_clip
 from app.solving.script import load_pose_script
 from app.storage.project_file import load_project

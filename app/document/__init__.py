@@ -11,6 +11,7 @@ from app.document.commands import (
     figure_commands,
     handle_commands,
     key_commands,
+    layer_commands,
     pose_commands,
     scene_commands,
 )
@@ -19,8 +20,28 @@ from app.document.figure import Figure, PictureFile, new_figure
 from app.document.handle_pairs import mirrored_name, pairs_by_name
 from app.document.history import History, UnkeyedPose
 from app.document.keyframe import MOST_TURNS, Handle, KeptPose, Keyframe, Pose, Target
+from app.document.layering import Attachment, Switch
 from app.document.model import Document
 from app.document.playhead import Playhead
+from app.document.queries import (
+    Clip,
+    Extremes,
+    Front,
+    Moment,
+    Shortfall,
+    clip_of,
+    closes,
+    exported_frames,
+    falls_short,
+    find_shortfall,
+    frame_times,
+    framed_frames,
+    fronts_at,
+    intervals,
+    is_visible,
+    resting_pose,
+    time_of,
+)
 from app.document.settings import (
     FRAMINGS,
     LAST_FRAME,
@@ -30,19 +51,6 @@ from app.document.settings import (
     Framing,
     Marker,
     Meshing,
-)
-from app.document.shortfall import Extremes, Shortfall, falls_short, find_shortfall
-from app.document.timeline import (
-    Clip,
-    Moment,
-    clip_of,
-    closes,
-    exported_frames,
-    frame_times,
-    framed_frames,
-    intervals,
-    resting_pose,
-    time_of,
 )
 from engine.variant import Variant
 
@@ -54,6 +62,7 @@ __all__ = [
     "MOST_TURNS",
     "PRESETS",
     "VARIANTS",
+    "Attachment",
     "Clip",
     "Command",
     "Document",
@@ -63,6 +72,7 @@ __all__ = [
     "Figure",
     "FrameRange",
     "Framing",
+    "Front",
     "Handle",
     "History",
     "KeptPose",
@@ -74,6 +84,7 @@ __all__ = [
     "Playhead",
     "Pose",
     "Shortfall",
+    "Switch",
     "Target",
     "UnkeyedPose",
     "Unknown",
@@ -86,9 +97,12 @@ __all__ = [
     "find_shortfall",
     "frame_times",
     "framed_frames",
+    "fronts_at",
     "handle_commands",
     "intervals",
+    "is_visible",
     "key_commands",
+    "layer_commands",
     "mirrored_name",
     "new_figure",
     "pairs_by_name",

@@ -11,6 +11,7 @@ import numpy as np
 from app.document.checks import NOTHING, Unknown, require, require_place, require_size
 from app.document.handle_pairs import pairs_by_name
 from app.document.keyframe import Handle, KeptPose, Keyframe, Pose
+from app.document.layering import Attachment, Switch, require_in_order
 from app.document.settings import VARIANTS, Meshing
 from app.errors import LissomError
 from engine.domain import Domain
@@ -80,6 +81,27 @@ class Figure:
     mirror : float, optional
         Where the upright axis crosses the picture at which flipped poses are mirrored, in pixels
         from its left edge; None takes the middle of the handles that are pairs, or of the shape.
+    name : str
+        Unique in the document.
+    corner : complex
+        Where the lower left corner of the picture is on the canvas; the domain, the handles and all
+        else are in pixels of the canvas, y up.
+    still : bool
+        Whether it is a picture that is never deformed, such as a background. Its domain is all of
+        it, cut out by nothing.
+    reference : bool
+        Whether it is there for the person only, and not exported.
+    locked : bool
+        Whether a click on the drawing passes through it.
+    hidden : bool
+        Whether it is seen at no time.
+    switches : tuple of Switch
+        When it comes to be seen or hidden, in the order of their frames; it begins as the first one
+        says. Always seen without any.
+    opacity : float
+        In [0, 1].
+    attachment : Attachment, optional
+        The joint by which it hangs on another figure. Its anchor is then given.
     """
 
     id: int = 0
@@ -94,10 +116,31 @@ class Figure:
     bounds: Bounds = Bounds()
     library: tuple[KeptPose, ...] = ()
     mirror: float | None = None
+    name: str = "figure"
+    corner: complex = 0j
+    still: bool = False
+    reference: bool = False
+    locked: bool = False
+    hidden: bool = False
+    switches: tuple[Switch, ...] = ()
+    opacity: float = 1.0
+    attachment: Attachment | None = None
     unknown: Unknown = field(default_factory=lambda: NOTHING, repr=False, hash=False)
 
     def __post_init__(self) -> None:
         require(self.id >= 0, f"A figure's id is not negative, unlike {self.id}.")
+        require(bool(self.name.strip()), "A figure needs a name.")
+        require_place(self.corner, f"The corner of {self.name!r}")
+        require(0 <= self.opacity <= 1, f"Opacity is between 0 and 1, not {self.opacity:g}.")
+        require_in_order(self.switches)
+        require(
+            self.attachment is None or self.anchor is not None,
+            f"{self.name!r} is attached, but has no anchor.",
+        )
+        require(
+            not self.still or (len(self.keys) == 1 and not self.handles),
+            f"{self.name!r} is a still picture: it has neither handles nor a second key.",
+        )
         self._check_handles()
         self._check_keys()
         self._check_library()
@@ -212,6 +255,10 @@ class Figure:
             require(after > before, f"The keys at frames {before} and {after} are mixed up.")
         for key in self.keys:
             self._check_pose(key.pose, f"The key at frame {key.frame}")
+            require(
+                key.fronts.keys() <= key.pose.targets.keys(),
+                f"The key at frame {key.frame} puts a handle in front that is not there.",
+            )
 
     def _check_library(self) -> None:
         names = set()

@@ -5,13 +5,14 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from types import MappingProxyType
 
-from app.document.checks import NOTHING, Unknown, require, require_place
+from app.document.checks import FARTHEST, NOTHING, Unknown, require, require_place
 from app.document.easing import LINEAR, Easing
 from engine.arrays import Complexes, as_points
 from engine.maps import Certificate
 
 HEAVIEST = 1e6
 MOST_TURNS = 20
+NO_FRONTS: Mapping[int, float] = MappingProxyType({})
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -28,12 +29,19 @@ class Handle:
         Where it sits in the picture at rest, in pixels, y up.
     weight : float
         How strongly it pulls, relative to others.
+    front : float
+        What the drawing is painted in around it where it lies over itself: −1 behind, 1 in front, 0
+        in its usual order. Keys may say otherwise.
+    extent : float, optional
+        How far around it that holds, in pixels; None is the usual part of the drawing.
     """
 
     id: int
     name: str
     position: complex
     weight: float = 1.0
+    front: float = 0.0
+    extent: float | None = None
     unknown: Unknown = field(default_factory=lambda: NOTHING, repr=False, hash=False)
 
     def __post_init__(self) -> None:
@@ -45,6 +53,20 @@ class Handle:
             f"The weight of handle {self.name!r} must be above 0 and at most {HEAVIEST:,.0f}, "
             f"not {self.weight:g}.",
         )
+        require_front(self.front)
+        require(
+            self.extent is None or 0 < self.extent <= FARTHEST,
+            f"The extent of handle {self.name!r} must be above 0 and at most {FARTHEST:,.0f} "
+            f"pixels, not {self.extent}.",
+        )
+
+
+def require_front(front: float) -> None:
+    """Raise a `LissomError` unless a depth lies between behind and in front."""
+    require(
+        -1 <= front <= 1,
+        f"What is painted in front is between −1, behind, and 1, in front, not {front:g}.",
+    )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -127,12 +149,15 @@ class Keyframe:
         How time runs until the next key.
     turns : int
         Whole turns, counter-clockwise, that the anchor makes on the way beyond the shorter way.
+    fronts : mapping of int to float
+        What is in front from here on, by the ids of handles; the others stay as they were.
     """
 
     frame: int
     pose: Pose
     easing: Easing = LINEAR
     turns: int = 0
+    fronts: Mapping[int, float] = field(default_factory=lambda: NO_FRONTS)
     unknown: Unknown = field(default_factory=lambda: NOTHING, repr=False, hash=False)
 
     def __post_init__(self) -> None:
@@ -140,3 +165,6 @@ class Keyframe:
             abs(self.turns) <= MOST_TURNS,
             f"There may be {MOST_TURNS} whole turns on the way to a key, not {self.turns}.",
         )
+        object.__setattr__(self, "fronts", MappingProxyType(dict(self.fronts)))
+        for front in self.fronts.values():
+            require_front(front)

@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from itertools import pairwise
 
-from app.document.checks import NOTHING, Unknown, require
+from app.document.checks import NOTHING, Unknown, require, require_size
 from app.document.figure import Figure
 from app.document.settings import FASTEST, ExportSettings, FrameRange, Marker
 from app.errors import LissomError
@@ -39,6 +39,8 @@ class Document:
         Fields of the project file that this version does not know and hands on.
     attachments : mapping of str to bytes
         Likewise its members, by their names.
+    size : tuple of int, optional
+        Width and height of the canvas; None takes those of the picture behind all others.
     """
 
     figures: tuple[Figure, ...]
@@ -52,6 +54,7 @@ class Document:
     attachments: Mapping[str, bytes] = field(
         default_factory=lambda: NOTHING, repr=False, hash=False
     )
+    size: tuple[int, int] | None = None
 
     def __post_init__(self) -> None:
         self._check_figures()
@@ -76,8 +79,8 @@ class Document:
 
     @property
     def canvas(self) -> tuple[int, int]:
-        """Width and height of the scene: those of the picture behind all others."""
-        return self.figures[0].picture.size
+        """Width and height of the scene in pixels."""
+        return self.figures[0].picture.size if self.size is None else self.size
 
     def figure(self, identity: int) -> Figure:
         """Return the figure with this id."""
@@ -104,15 +107,32 @@ class Document:
         figures = tuple(changed if figure.id == changed.id else figure for figure in self.figures)
         return replace(self, figures=figures, frames=frames)
 
+    def carriers(self, identity: int) -> tuple[Figure, ...]:
+        """Return the figure with this id, the one that it hangs on, and so on."""
+        chain = [self.figure(identity)]
+        while (joint := chain[-1].attachment) is not None:
+            chain.append(self.figure(joint.to))
+            require(
+                len(chain) <= len(self.figures),
+                f"{chain[0].name!r} would hang on itself; detach one of the figures between first.",
+            )
+        return tuple(chain)
+
     def _check_figures(self) -> None:
         require(len(self.figures) > 0, "A document has at least one figure.")
-        identities = set()
+        if self.size is not None:
+            require_size(self.size, "canvas")
+        identities, names = set(), set()
         for figure in self.figures:
             require(figure.id not in identities, f"Two figures have the id {figure.id}.")
+            require(figure.name not in names, f"Two figures are called {figure.name!r}.")
             identities.add(figure.id)
+            names.add(figure.name)
             for key in figure.keys:
                 require(
                     key.frame in self.frames,
                     f"The key at frame {key.frame} lies outside the animation's frames "
                     f"{self.frames.first} to {self.frames.last}.",
                 )
+        for figure in self.figures:
+            self.carriers(figure.id)

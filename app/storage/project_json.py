@@ -8,6 +8,7 @@ from types import MappingProxyType
 from typing import Any, Protocol, TypeVar, cast
 
 from app.document import (
+    Attachment,
     Document,
     Easing,
     ExportSettings,
@@ -21,6 +22,7 @@ from app.document import (
     Meshing,
     PictureFile,
     Pose,
+    Switch,
     Target,
     Unknown,
     Variant,
@@ -43,6 +45,18 @@ from engine.domain.outline import Detail
 from engine.maps import Boundary, Bounds, HarmonicMap, certify
 
 SCHEMA = 2
+# What a figure is as a layer unless it is written otherwise: a scene of one figure says none of it.
+USUAL_LAYER: dict[str, Any] = {
+    "name": "figure",
+    "corner": [0.0, 0.0],
+    "still": False,
+    "reference": False,
+    "locked": False,
+    "hidden": False,
+    "switches": [],
+    "opacity": 1.0,
+    "attachment": None,
+}
 Json = dict[str, Any]
 Value = TypeVar("Value")
 
@@ -65,26 +79,26 @@ class FigureParts(Protocol):
 
 def write_document(document: Document) -> Json:
     """Return the fields of a document, those that this version does not know among them."""
-    return _with_unknown(
-        {
-            "schema": SCHEMA,
-            "app_version": version("lissom"),
-            "figures": [_write_figure(figure) for figure in document.figures],
-            "frames": _write_range(document.frames),
-            "preview": _write_range(document.preview),
-            "markers": [_write_marker(marker) for marker in document.markers],
-            "fps": document.fps,
-            "loop": document.loop,
-            "export": {
-                "format": document.export.format,
-                "size": None if document.export.size is None else list(document.export.size),
-                "background": document.export.background,
-                "framing": document.export.framing,
-                "frames": _write_range(document.export.frames),
-            },
+    known: Json = {
+        "schema": SCHEMA,
+        "app_version": version("lissom"),
+        "figures": [_write_figure(figure) for figure in document.figures],
+        "frames": _write_range(document.frames),
+        "preview": _write_range(document.preview),
+        "markers": [_write_marker(marker) for marker in document.markers],
+        "fps": document.fps,
+        "loop": document.loop,
+        "export": {
+            "format": document.export.format,
+            "size": None if document.export.size is None else list(document.export.size),
+            "background": document.export.background,
+            "framing": document.export.framing,
+            "frames": _write_range(document.export.frames),
         },
-        document.unknown,
-    )
+    }
+    if document.size is not None:
+        known["size"] = list(document.size)
+    return _with_unknown(known, document.unknown)
 
 
 def read_document(content: JsonObject, parts: FigureParts) -> Document:
@@ -122,8 +136,10 @@ def read_document(content: JsonObject, parts: FigureParts) -> Document:
         fps=as_number(content["fps"], "fps"),
         loop=as_flag(content["loop"], "loop"),
         export=_read_export(as_object(content["export"], "export")),
+        size=_read_optional(content.get("size"), "size", read_size),
     )
-    return replace(document, unknown=_unknown_of(content, write_document(document)))
+    known = {"size": None, **write_document(document)}
+    return replace(document, unknown=_unknown_of(content, known))
 
 
 def _bring_up_to_schema_2(content: JsonObject) -> None:
@@ -167,8 +183,69 @@ def _write_figure(figure: Figure) -> Json:
         },
         "library": [_write_kept(kept) for kept in figure.library],
         "mirror": figure.mirror,
+        **_write_layer(figure),
     }
     return _with_unknown(known, figure.unknown)
+
+
+def _write_layer(figure: Figure) -> Json:
+    """Return how a figure stands among others; what is as usual is left out."""
+    joint = figure.attachment
+    fields: Json = {
+        "name": figure.name,
+        "corner": _write_point(figure.corner),
+        "still": figure.still,
+        "reference": figure.reference,
+        "locked": figure.locked,
+        "hidden": figure.hidden,
+        "switches": [[switch.frame, switch.visible] for switch in figure.switches],
+        "opacity": figure.opacity,
+        "attachment": None
+        if joint is None
+        else {
+            "to": joint.to,
+            "at": _write_point(joint.at),
+            "turns": joint.turns,
+            "rest": joint.rest,
+        },
+    }
+    return {name: value for name, value in fields.items() if value != USUAL_LAYER[name]}
+
+
+def _read_layer(fields: JsonObject) -> dict[str, Any]:
+    where = fields.where
+    given = {**USUAL_LAYER, **fields}
+    return {
+        "name": as_text(given["name"], f"{where}.name"),
+        "corner": as_point(given["corner"], f"{where}.corner"),
+        **{
+            name: as_flag(given[name], f"{where}.{name}")
+            for name in ("still", "reference", "locked", "hidden")
+        },
+        "switches": tuple(
+            _read_switch(switch, f"{where}.switches[{i}]")
+            for i, switch in enumerate(as_list(given["switches"], f"{where}.switches"))
+        ),
+        "opacity": as_number(given["opacity"], f"{where}.opacity"),
+        "attachment": _read_optional(given["attachment"], f"{where}.attachment", _read_attachment),
+    }
+
+
+def _read_switch(content: object, where: str) -> Switch:
+    pair = as_list(content, where)
+    if len(pair) != 2:
+        raise LissomError(f"{where} must be a frame and true or false, not {shown(pair)}")
+    return Switch(as_whole(pair[0], where), as_flag(pair[1], where))
+
+
+def _read_attachment(content: object, where: str) -> Attachment:
+    fields = as_object(content, where)
+    return Attachment(
+        to=as_whole(fields["to"], f"{where}.to"),
+        at=as_point(fields["at"], f"{where}.at"),
+        turns=as_flag(fields["turns"], f"{where}.turns"),
+        rest=as_number(fields["rest"], f"{where}.rest"),
+    )
 
 
 def _read_figure(fields: JsonObject, parts: FigureParts) -> Figure:
@@ -209,8 +286,10 @@ def _read_figure(fields: JsonObject, parts: FigureParts) -> Figure:
             for i, kept in enumerate(library)
         ),
         mirror=_read_optional(fields["mirror"], f"{where}.mirror", as_number),
+        **_read_layer(fields),
     )
-    return replace(figure, unknown=_unknown_of(fields, _write_figure(figure)))
+    known = {**USUAL_LAYER, **_write_figure(figure)}
+    return replace(figure, unknown=_unknown_of(fields, known))
 
 
 def _read_bounds(content: JsonObject) -> Bounds:
@@ -248,6 +327,10 @@ def _write_handle(handle: Handle) -> Json:
         "position": _write_point(handle.position),
         "weight": handle.weight,
     }
+    if handle.front:
+        known["front"] = handle.front
+    if handle.extent is not None:
+        known["extent"] = handle.extent
     return _with_unknown(known, handle.unknown)
 
 
@@ -258,17 +341,22 @@ def _read_handle(content: object, where: str) -> Handle:
         name=as_text(fields["name"], f"{where}.name"),
         position=as_point(fields["position"], f"{where}.position"),
         weight=as_number(fields["weight"], f"{where}.weight"),
+        front=as_number(fields.get("front", 0.0), f"{where}.front"),
+        extent=_read_optional(fields.get("extent"), f"{where}.extent", as_number),
     )
-    return replace(handle, unknown=_unknown_of(fields, _write_handle(handle)))
+    known = {"front": None, "extent": None, **_write_handle(handle)}
+    return replace(handle, unknown=_unknown_of(fields, known))
 
 
 def _write_key(key: Keyframe) -> Json:
-    known = {
+    known: Json = {
         "frame": key.frame,
         "easing": key.easing.written(),
         "turns": key.turns,
         "targets": _write_targets(key.pose),
     }
+    if key.fronts:
+        known["fronts"] = [[handle, front] for handle, front in key.fronts.items()]
     return _with_unknown(known, key.unknown)
 
 
@@ -281,8 +369,19 @@ def _read_key(
         pose=pose(_read_targets(fields)),
         easing=Easing.parse(fields["easing"]),
         turns=as_whole(fields["turns"], f"{where}.turns"),
+        fronts=_read_fronts(fields.get("fronts", []), f"{where}.fronts"),
     )
-    return replace(key, unknown=_unknown_of(fields, _write_key(key)))
+    return replace(key, unknown=_unknown_of(fields, {"fronts": None, **_write_key(key)}))
+
+
+def _read_fronts(content: object, where: str) -> dict[int, float]:
+    fronts = {}
+    for i, pair in enumerate(as_list(content, where)):
+        numbers = as_list(pair, f"{where}[{i}]")
+        if len(numbers) != 2:
+            raise LissomError(f"{where}[{i}] must be a handle and a number, not {shown(numbers)}")
+        fronts[as_whole(numbers[0], where)] = as_number(numbers[1], where)
+    return fronts
 
 
 def _write_kept(kept: KeptPose) -> Json:

@@ -138,3 +138,11 @@ class HarmonicMap:
         """
         (first,) = self.span.evaluate(self.coefficients, points, orders=(1,))
         return first[:, 0], first[:, 1].conj()
+
+    def moved(self, factor: complex, shift: complex) -> Self:
+        """Return factor · f + shift, as distorted as f where the factor's modulus is 1."""
+        factor = complex(factor)
+        phi = factor * self.phi
+        # The coordinates of the outer cage sum to 1: a constant is the same at all its vertices.
+        phi[: len(self.cage)] += shift
+        return replace(self, phi=phi, psi=factor.conjugate() * self.psi, logs=factor * self.logs)

@@ -15,12 +15,14 @@ from app.document.commands import (
     figure_commands,
     handle_commands,
     key_commands,
+    layer_commands,
     pose_commands,
     scene_commands,
 )
 from app.document.easing import HOLD, PRESETS, Easing
 from app.document.figure import PictureFile, new_figure
 from app.document.keyframe import Handle, KeptPose, Keyframe, Pose, Target
+from app.document.layering import Attachment, Switch
 from app.document.model import Document
 from app.document.settings import (
     FRAMINGS,
@@ -96,10 +98,49 @@ def random_command(rng: np.random.Generator, document: Document) -> Command:
     makers = (
         _random_handle_command,
         _random_key_command,
+        _random_layer_command,
         _random_pose_command,
         _random_settings_command,
     )
-    return makers[rng.integers(4)](rng, document)
+    return makers[rng.integers(5)](rng, document)
+
+
+def _random_layer_command(rng: np.random.Generator, document: Document) -> Command:
+    figures = document.figures
+    figure = figures[rng.integers(len(figures))]
+    other = figures[rng.integers(len(figures))]
+    joint = Attachment(to=other.id, at=inside(rng), turns=bool(rng.integers(2)), rest=rng.random())
+    copy = dataclasses.replace(
+        figure, id=layer_commands.free_identity(document), corner=inside(rng)
+    )
+    turn = complex(np.exp(1j * rng.normal()))
+    flag = bool(rng.integers(2))
+    commands = [
+        layer_commands.duplicate_figure(figure.id),
+        layer_commands.add_figure(copy),
+        layer_commands.add_figure(copy, 0),
+        layer_commands.remove_figure(max(each.id for each in figures)),
+        layer_commands.move_figure(figure.id, int(rng.integers(len(figures) + 1))),
+        layer_commands.rename_figure(figure.id, f"layer {rng.integers(4)}"),
+        layer_commands.set_opacity(figure.id, rng.random()),
+        layer_commands.set_hidden(figure.id, hidden=flag),
+        layer_commands.set_locked(figure.id, locked=flag),
+        layer_commands.set_reference(figure.id, reference=flag),
+        layer_commands.switch_at(figure.id, int(rng.integers(50)), visible=flag),
+        layer_commands.switch_at(figure.id, int(rng.integers(50)), visible=None),
+        layer_commands.attach(figure.id, inside(rng), joint),
+        layer_commands.detach(figure.id, turn, inside(rng)),
+    ]
+    if figure.handles:
+        handle = figure.handles[rng.integers(len(figure.handles))].id
+        frame = figure.keys[rng.integers(len(figure.keys))].frame
+        commands += [
+            layer_commands.set_front(figure.id, handle, rng.uniform(-1, 1), None),
+            layer_commands.set_front(figure.id, handle, 0.5, 10 * rng.random() + 1),
+            layer_commands.key_front(figure.id, frame, handle, rng.uniform(-1, 1)),
+            layer_commands.key_front(figure.id, frame, handle, None),
+        ]
+    return commands[rng.integers(len(commands))]
 
 
 def _random_handle_command(rng: np.random.Generator, document: Document) -> Command:
@@ -201,7 +242,15 @@ def full_document() -> Document:
     empty = disc_document()
     more = MappingProxyType({"colour": "#123456", "nested": {"list": [1, None, "ü"]}})
     handles = (
-        Handle(id=1, name="nose", position=110 + 95.5j, weight=2.5, unknown=more),
+        Handle(
+            id=1,
+            name="nose",
+            position=110 + 95.5j,
+            weight=2.5,
+            front=-0.75,
+            extent=12.5,
+            unknown=more,
+        ),
         Handle(id=4, name="Fuß\n\ud800", position=60 + 100j),
     )
     targets = {
@@ -230,7 +279,7 @@ def full_document() -> Document:
         keys=(
             Keyframe(frame=3, pose=bent, easing=PRESETS["in-out"], unknown=more),
             Keyframe(frame=10, pose=folded, easing=Easing((0.1, 0.2, 1 / 3, 1.0)), turns=-1),
-            Keyframe(frame=40, pose=bent, easing=HOLD),
+            Keyframe(frame=40, pose=bent, easing=HOLD, fronts={4: 0.25, 1: 0.0}),
         ),
         anchor=100.5 + 99j,
         variant="scaled-eta",
@@ -240,11 +289,20 @@ def full_document() -> Document:
             KeptPose(name="über\n", pose=dataclasses.replace(bent, psi=0.02 * cage.conj())),
         ),
         mirror=1 / 3,
+        name="Körper",
+        corner=-3.5 + 2j,
+        reference=True,
+        locked=True,
+        hidden=True,
+        switches=(Switch(0, visible=False), Switch(12, visible=True)),
+        opacity=0.25,
+        attachment=Attachment(to=5, at=90 + 80j, turns=False, rest=-0.5),
         unknown=MappingProxyType({"visible": False, "bounds": {"tau": 4}}),
     )
     return dataclasses.replace(
         empty,
-        figures=(figure,),
+        figures=(figure, dataclasses.replace(figure, id=5, name="parent", attachment=None)),
+        size=(640, 480),
         frames=FrameRange(1, 60),
         preview=FrameRange(3, 40),
         markers=(Marker(frame=0, name="go", unknown=more), Marker(frame=700, name="ü")),

@@ -9,6 +9,7 @@ from app.document.commands import (
     figure_commands,
     handle_commands,
     key_commands,
+    layer_commands,
     pose_commands,
     scene_commands,
 )
@@ -19,6 +20,7 @@ __all__ = [
     "figure_commands",
     "handle_commands",
     "key_commands",
+    "layer_commands",
     "pose_commands",
     "scene_commands",
 ]

@@ -58,7 +58,11 @@ def remove_handles(figure: Figure, identities: Collection[int]) -> Figure:
         return replace(pose, targets=targets)
 
     handles = tuple(handle for handle in figure.handles if handle.id not in gone)
-    return _with_poses(figure, remaining, handles)
+    keys = tuple(
+        replace(key, fronts={i: front for i, front in key.fronts.items() if i not in gone})
+        for key in figure.keys
+    )
+    return _with_poses(replace(figure, keys=keys), remaining, handles)
 
 
 @figure_command("Rename handle")

@@ -48,7 +48,7 @@ def spread_depth(
     graph = _ways(mesh)
     for point, depth, extent in zip(points.tolist(), depths, extents, strict=True):
         start = int(np.argmin(np.abs(mesh.vertices - point)))
-        ways = dijkstra(graph, directed=False, indices=start, limit=extent)
+        ways = dijkstra(graph, directed=False, indices=[start], limit=extent)[0]
         part = np.clip((extent - ways) / ((1 - PLATEAU) * extent), 0.0, 1.0)
         weight = part * part * (3 - 2 * part)
         # w / (1 − w), beside the 1 of no depth at all: alone, a point brings w times its depth.

@@ -11,8 +11,8 @@ from projects import project_of
 
 from app.document.history import History
 from app.document.keyframe import Keyframe
+from app.document.queries.timeline import clip_of
 from app.document.settings import FrameRange
-from app.document.timeline import clip_of
 from app.editor.actions.upkeep import STREAMING, maintain, missing
 from app.editor.jobs import Jobs
 from app.editor.project import PoseInProgress

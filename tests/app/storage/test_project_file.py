@@ -23,6 +23,7 @@ from app.document.commands import handle_commands, key_commands
 from app.errors import LissomError
 from app.storage.archive import MIMETYPE
 from app.storage.project_file import load_project, load_thumbnail, save_project
+from app.storage.project_json import USUAL_LAYER
 from engine.maps import Boundary, certify
 
 CAGE, MESH = disc_domain().cage, disc_domain().mesh
@@ -98,7 +99,19 @@ def test_any_document_comes_back_to_the_last_bit(tmp_path_factory, seeds, is_ful
 
 
 def test_a_stored_file_of_schema_1_opens():
-    first = altered(full_document(), markers=(), library=(), mirror=None)
+    full = full_document()
+    figure = full.figures[0]
+    usual = disc_document().figures[0]
+    as_layer = {name: getattr(usual, name) for name in USUAL_LAYER}
+    first = altered(
+        replace(full, figures=(replace(figure, attachment=None),), size=None),
+        markers=(),
+        library=(),
+        mirror=None,
+        handles=tuple(replace(handle, front=0.0, extent=None) for handle in figure.handles),
+        keys=tuple(replace(key, fronts={}) for key in figure.keys),
+        **as_layer,
+    )
     assert not differences(load_project(STORED), first)
     assert load_thumbnail(STORED) == THUMBNAIL
 
@@ -272,6 +285,23 @@ def test_a_newer_schema_need_have_nothing_else_in_common(tmp_path):
         (["figures", 0, "keys", 1, "targets", 0, "handle"], 4, "two targets for one handle"),
         (["figures", 0, "keys", 1, "targets", 0, "rotation"], "x", "rotation must be a number"),
         (["figures", 0, "keys", 1], 7, r"keys\[1\] must be an object"),
+        (["figures", 0, "keys", 2, "fronts"], [[4]], r"fronts\[0\] must be a handle and a number"),
+        (["figures", 0, "keys", 2, "fronts"], [[4, 7]], "between −1, behind, and 1, in front"),
+        (["figures", 0, "keys", 2, "fronts"], [[9, 0.5]], "in front that is not there"),
+        (["figures", 0, "handles", 0, "front"], 2, "between −1, behind, and 1, in front"),
+        (["figures", 0, "handles", 0, "extent"], 0, "extent of handle 'nose'"),
+        (["figures", 0, "name"], " ", "needs a name"),
+        (["figures", 0, "name"], "parent", "Two figures are called 'parent'"),
+        (["figures", 0, "corner"], [1e9, 0], "corner of 'Körper'"),
+        (["figures", 0, "still"], True, "still picture"),
+        (["figures", 0, "opacity"], 1.5, "Opacity is between 0 and 1"),
+        (["figures", 0, "switches"], [[12, True], [12, False]], "shown or hidden at frame 12"),
+        (["figures", 0, "switches"], [[12]], "a frame and true or false"),
+        (["figures", 0, "attachment", "to"], 7, "no figure with the id 7"),
+        (["figures", 0, "attachment", "to"], 0, "would hang on itself"),
+        (["figures", 0, "attachment", "at"], [1e9, 0], "A joint must be within"),
+        (["figures", 0, "anchor"], None, "attached, but has no anchor"),
+        (["size"], [0, 5], "size of the canvas"),
     ],
 )
 def test_fields_that_make_no_sense_are_named(tmp_path, members, way, value, message):
@@ -292,6 +322,8 @@ def test_every_field_is_needed(tmp_path, members):
     whole = json.loads(members["project.json"])
     known = json.loads(members["project.json"].replace(b'"nested"', b'"colour"'))
     kept = {"colour", "nested", "list", "tau", "extension", "quality", "visible", "app_version"}
+    # What is as usual is not written.
+    kept |= {"size", "front", "extent", "fronts", *USUAL_LAYER}
     missing = [way for way in ways(known) if way[-1] not in kept]
     assert len(missing) > 60
     for way in missing:

@@ -9,7 +9,7 @@ from documents import altered
 
 from app.document import Extremes
 from app.document.keyframe import Target
-from app.document.timeline import clip_of
+from app.document.queries.timeline import clip_of
 from app.editor.actions import playback, posing
 from app.errors import LissomError
 from app.motion.prepared import Motion, prepare_motion

@@ -10,8 +10,8 @@ from imgui_bundle import ImVec2, imgui
 
 from app.document.commands import handle_commands, key_commands
 from app.document.keyframe import Target
+from app.document.queries.shortfall import find_shortfall
 from app.document.settings import FrameRange, Meshing
-from app.document.shortfall import find_shortfall
 from app.editor.actions import (
     editing,
     exporting,

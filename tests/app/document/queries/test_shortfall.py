@@ -9,7 +9,7 @@ from numpy.testing import assert_allclose
 
 from app.document.commands.handle_commands import add_handle
 from app.document.keyframe import Target
-from app.document.shortfall import LAG, Extremes, find_shortfall
+from app.document.queries.shortfall import LAG, Extremes, find_shortfall
 from engine.maps import Bounds
 
 

@@ -14,8 +14,7 @@ from app.document.commands.key_commands import pose_key
 from app.document.easing import HOLD, PRESETS
 from app.document.keyframe import Keyframe
 from app.document.playhead import Playhead
-from app.document.settings import FrameRange
-from app.document.timeline import (
+from app.document.queries.timeline import (
     Moment,
     clip_of,
     closes,
@@ -24,6 +23,7 @@ from app.document.timeline import (
     intervals,
     time_of,
 )
+from app.document.settings import FrameRange
 from app.errors import LissomError
 
 EMPTY = disc_document()

@@ -1,0 +1,204 @@
+"""Commands on the figures as layers: which there are, in what order, seen when, hung on what."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from app.document.commands.command import command, figure_command
+from app.document.figure import Figure
+from app.document.keyframe import Pose, Target
+from app.document.layering import Attachment, Switch
+from app.document.model import Document
+from app.errors import LissomError
+
+
+@command("Add layer")
+def add_figure(document: Document, figure: Figure, index: int | None = None) -> Document:
+    """Add a figure in front of all others, or at an index in the order from back to front.
+
+    Its id must be a free one, as `free_identity` gives it; its name is numbered where it is taken.
+    """
+    figures = list(document.figures)
+    place = len(figures) if index is None else index
+    figures.insert(place, replace(figure, name=free_name(document, figure.name)))
+    # A canvas that was one picture's stays what it was.
+    return replace(document, figures=tuple(figures), size=document.canvas)
+
+
+@command("Duplicate layer")
+def duplicate_figure(document: Document, identity: int) -> Document:
+    """Put a copy of a figure in front of it."""
+    figure = document.figure(identity)
+    index = document.figures.index(figure)
+    copy = replace(
+        figure, id=free_identity(document), name=free_name(document, f"{figure.name} copy")
+    )
+    figures = (*document.figures[: index + 1], copy, *document.figures[index + 1 :])
+    return replace(document, figures=figures, size=document.canvas)
+
+
+@command("Delete layer")
+def remove_figure(document: Document, identity: int) -> Document:
+    """Remove a figure. What hung on it hangs on nothing any more, and stays as it is by itself."""
+    gone = document.figure(identity)
+    if len(document.figures) == 1:
+        raise LissomError("A document has at least one layer; add another one first.")
+    figures = tuple(
+        replace(figure, attachment=None)
+        if figure.attachment is not None and figure.attachment.to == identity
+        else figure
+        for figure in document.figures
+        if figure is not gone
+    )
+    return replace(document, figures=figures, size=document.canvas)
+
+
+@command("Move layer")
+def move_figure(document: Document, identity: int, index: int) -> Document:
+    """Put a figure at an index in the order from back to front."""
+    figure = document.figure(identity)
+    others = [other for other in document.figures if other is not figure]
+    if not 0 <= index <= len(others):
+        raise LissomError(f"There are {len(others) + 1} layers; none can be number {index + 1}.")
+    others.insert(index, figure)
+    if tuple(others) == document.figures:
+        return document
+    return replace(document, figures=tuple(others), size=document.canvas)
+
+
+@command("Rename layer")
+def rename_figure(document: Document, identity: int, name: str) -> Document:
+    """Give a figure another name, which no other one may have."""
+    return _with(document, identity, name=name.strip())
+
+
+@command("Set opacity")
+def set_opacity(document: Document, identity: int, opacity: float) -> Document:
+    """Set how opaque a figure is painted."""
+    return _with(document, identity, opacity=float(opacity))
+
+
+@command("Show or hide layer")
+def set_hidden(document: Document, identity: int, *, hidden: bool) -> Document:
+    """Hide a figure at all times, or show it again."""
+    return _with(document, identity, hidden=hidden)
+
+
+@command("Lock or unlock layer")
+def set_locked(document: Document, identity: int, *, locked: bool) -> Document:
+    """Let clicks on the drawing pass through a figure, or stop at it again."""
+    return _with(document, identity, locked=locked)
+
+
+@command("Set reference")
+def set_reference(document: Document, identity: int, *, reference: bool) -> Document:
+    """Leave a figure out of exports, or take it in again."""
+    return _with(document, identity, reference=reference)
+
+
+@figure_command("Show or hide from here on")
+def switch_at(figure: Figure, frame: int, *, visible: bool | None) -> Figure:
+    """Show or hide a figure from a frame on; None takes back what was said at that frame."""
+    others = [switch for switch in figure.switches if switch.frame != frame]
+    if visible is not None:
+        if not others and not figure.switches and frame > 0:
+            # What was seen before stays so.
+            others = [Switch(0, not visible)]
+        others.append(Switch(frame, visible))
+    switches = tuple(sorted(others, key=lambda switch: switch.frame))
+    return figure if switches == figure.switches else replace(figure, switches=switches)
+
+
+@command("Attach")
+def attach(document: Document, identity: int, anchor: complex, joint: Attachment) -> Document:
+    """Hang a figure by its anchor on a point of another one; circles are refused.
+
+    `app.motion` finds the point and the turn with which nothing moves at a frame.
+    """
+    return _with(document, identity, anchor=anchor, attachment=joint)
+
+
+@command("Detach")
+def detach(document: Document, identity: int, factor: complex, shift: complex) -> Document:
+    """Let a figure hang on nothing any more, turned and moved as it was seen at one moment.
+
+    Parameters
+    ----------
+    document : Document
+    identity : int
+    factor : complex
+        Of modulus 1: by which all poses are turned.
+    shift : complex
+        By which they are moved then.
+    """
+    figure = document.figure(identity)
+    if figure.attachment is None:
+        return document
+    keys = tuple(
+        replace(key, pose=_carried(figure, key.pose, factor, shift)) for key in figure.keys
+    )
+    library = tuple(
+        replace(kept, pose=_carried(figure, kept.pose, factor, shift)) for kept in figure.library
+    )
+    return document.with_figure(replace(figure, keys=keys, library=library, attachment=None))
+
+
+@figure_command("Set depth")
+def set_front(figure: Figure, identity: int, front: float, extent: float | None) -> Figure:
+    """Set what is in front around a handle, where no key says otherwise, and how far around it."""
+    handle = figure.handle(identity)
+    if (handle.front, handle.extent) == (front, extent):
+        return figure
+    changed = replace(handle, front=float(front), extent=extent)
+    handles = tuple(changed if other.id == identity else other for other in figure.handles)
+    return replace(figure, handles=handles)
+
+
+@figure_command("Set depth from here on")
+def key_front(figure: Figure, frame: int, identity: int, front: float | None) -> Figure:
+    """Set what is in front around a handle from a key on; None says nothing at that key."""
+    key = figure.key(frame)
+    handle = figure.handle(identity)
+    fronts = {i: depth for i, depth in key.fronts.items() if i != handle.id}
+    if front is not None:
+        fronts[handle.id] = float(front)
+    if fronts == key.fronts:
+        return figure
+    changed = replace(key, fronts=fronts)
+    return replace(figure, keys=tuple(changed if k is key else k for k in figure.keys))
+
+
+def free_identity(document: Document) -> int:
+    """Return an id that no figure has."""
+    return 1 + max(figure.id for figure in document.figures)
+
+
+def free_name(document: Document, name: str) -> str:
+    """Return a name for a figure that no other one has: this one, or this one with a number."""
+    taken = {figure.name for figure in document.figures}
+    number, free = 1, name
+    while free in taken:
+        number += 1
+        free = f"{name} {number}"
+    return free
+
+
+def _with(document: Document, identity: int, **changes: object) -> Document:
+    figure = document.figure(identity)
+    if all(getattr(figure, name) == value for name, value in changes.items()):
+        return document
+    return document.with_figure(replace(figure, **changes))  # type: ignore[arg-type]
+
+
+def _carried(figure: Figure, pose: Pose, factor: complex, shift: complex) -> Pose:
+    moved = figure.map_of(pose).moved(factor, shift)
+    turn = float(np.angle(factor))
+    targets = {
+        identity: Target(
+            position=factor * target.position + shift,
+            rotation=None if target.rotation is None else target.rotation + turn,
+            unknown=target.unknown,
+        )
+        for identity, target in pose.targets.items()
+    }
+    return replace(pose, targets=targets, phi=moved.phi, psi=moved.psi)

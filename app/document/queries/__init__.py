@@ -1,0 +1,41 @@
+"""What follows from a document: which keys a moment blends, what is in front, what falls short.
+
+In: figures, poses and handles.
+Out: answers; nothing is changed.
+Imports: the values of `app.document`.
+"""
+
+from app.document.queries.fronts import Front, fronts_at, is_visible
+from app.document.queries.shortfall import Extremes, Shortfall, falls_short, find_shortfall
+from app.document.queries.timeline import (
+    Clip,
+    Moment,
+    clip_of,
+    closes,
+    exported_frames,
+    frame_times,
+    framed_frames,
+    intervals,
+    resting_pose,
+    time_of,
+)
+
+__all__ = [
+    "Clip",
+    "Extremes",
+    "Front",
+    "Moment",
+    "Shortfall",
+    "clip_of",
+    "closes",
+    "exported_frames",
+    "falls_short",
+    "find_shortfall",
+    "frame_times",
+    "framed_frames",
+    "fronts_at",
+    "intervals",
+    "is_visible",
+    "resting_pose",
+    "time_of",
+]

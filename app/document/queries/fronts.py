@@ -1,0 +1,61 @@
+"""What is in front at a frame, and what is seen at all."""
+
+from typing import NamedTuple
+
+from app.document.figure import Figure
+from app.document.queries.timeline import Clip
+from engine.geometry import box_diagonal
+
+# Of the drawing's diagonal: how far a depth reaches that is given no extent.
+USUAL_EXTENT = 0.15
+
+
+class Front(NamedTuple):
+    """A point of the drawing that is in front, or behind, and how far around it that holds.
+
+    Parameters
+    ----------
+    place : complex
+        At rest.
+    depth : float
+        From −1, behind, to 1, in front.
+    extent : float
+        In pixels.
+    """
+
+    place: complex
+    depth: float
+    extent: float
+
+
+def fronts_at(clip: Clip, frame: float) -> tuple[Front, ...]:
+    """Return what is in front, or behind, at a frame; what is neither is left out.
+
+    A key's depths hold from its frame on until another key gives others; before the first one the
+    handles' own do, or in a loop what the last one left.
+    """
+    figure = clip.figure
+    depths = {handle.id: handle.front for handle in figure.handles}
+    if clip.loop and clip.period and frame not in clip.frames:
+        frame = clip.frames.first + (frame - clip.frames.first) % clip.period
+    is_before_all = clip.loop and frame < clip.keys[0].frame
+    for key in clip.keys:
+        if key.frame <= frame or is_before_all:
+            depths.update(key.fronts)
+    usual = USUAL_EXTENT * box_diagonal(figure.domain.outline)
+    return tuple(
+        Front(handle.position, depths[handle.id], handle.extent or usual)
+        for handle in figure.handles
+        if depths[handle.id]
+    )
+
+
+def is_visible(figure: Figure, frame: float) -> bool:
+    """Tell whether a figure is seen at a frame."""
+    if figure.hidden:
+        return False
+    shown = figure.switches[0].visible if figure.switches else True
+    for switch in figure.switches:
+        if switch.frame <= frame:
+            shown = switch.visible
+    return shown

@@ -1,0 +1,138 @@
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from documents import CENTRE, disc_document, inside
+from numpy.testing import assert_allclose
+
+from app.document import handle_commands as handles
+from app.document import layer_commands as layers
+from app.document.layering import Attachment, Switch
+from app.document.queries.fronts import fronts_at, is_visible
+from app.document.queries.timeline import clip_of
+from app.errors import LissomError
+
+
+def scene(*names):
+    """A document with a figure for each name, from back to front, with the ids 0, 1, 2 …"""
+    document = disc_document()
+    document = layers.rename_figure(0, names[0])(document)
+    for name in names[1:]:
+        figure = replace(
+            document.figures[0], id=layers.free_identity(document), name=name, attachment=None
+        )
+        document = layers.add_figure(figure)(document)
+    return document
+
+
+def order(document):
+    return [figure.name for figure in document.figures]
+
+
+def test_layers_are_added_moved_duplicated_and_deleted():
+    document = scene("body", "arm", "head")
+    assert order(document) == ["body", "arm", "head"]
+    assert order(layers.move_figure(2, 0)(document)) == ["head", "body", "arm"]
+    assert layers.move_figure(1, 1)(document) is document
+    copied = layers.duplicate_figure(1)(document)
+    assert order(copied) == ["body", "arm", "arm copy", "head"]
+    assert copied.figures[2].id == 3
+    assert order(layers.duplicate_figure(1)(copied))[2] == "arm copy 2"
+    assert order(layers.remove_figure(1)(document)) == ["body", "head"]
+    with pytest.raises(LissomError, match="at least one layer"):
+        layers.remove_figure(0)(disc_document())
+    with pytest.raises(LissomError, match="none can be number 4"):
+        layers.move_figure(1, 3)(document)
+
+
+def test_the_canvas_stays_whatever_lies_behind():
+    document = scene("body", "arm")
+    assert layers.move_figure(1, 0)(document).canvas == (200, 200)
+    assert layers.remove_figure(0)(document).canvas == (200, 200)
+    wide = replace(document.figures[0], id=7, name="wide", corner=-50j)
+    assert layers.add_figure(wide, 0)(document).size == (200, 200)
+
+
+def test_two_layers_have_two_names():
+    document = scene("body", "arm")
+    with pytest.raises(LissomError, match="Two figures are called 'body'"):
+        layers.rename_figure(1, "body ")(document)
+    assert layers.rename_figure(1, "arm")(document) is document
+
+
+def test_nothing_hangs_on_itself_and_what_it_hung_on_may_go():
+    document = scene("body", "arm", "hand")
+    joint = Attachment(to=0, at=CENTRE)
+    document = layers.attach(1, CENTRE, joint)(document)
+    document = layers.attach(2, CENTRE, Attachment(to=1, at=CENTRE))(document)
+    assert [figure.name for figure in document.carriers(2)] == ["hand", "arm", "body"]
+    for child, parent in ((0, 2), (0, 1), (1, 1)):
+        with pytest.raises(LissomError, match="would hang on itself"):
+            layers.attach(child, CENTRE, Attachment(to=parent, at=CENTRE))(document)
+    loose = layers.remove_figure(1)(document)
+    assert loose.figure(2).attachment is None
+    with pytest.raises(LissomError, match="no figure with the id 9"):
+        layers.attach(1, CENTRE, Attachment(to=9, at=CENTRE))(document)
+
+
+def test_detached_poses_are_turned_and_moved_and_as_distorted_as_before():
+    document = handles.add_handle(0, CENTRE)(scene("body", "arm"))
+    document = handles.add_handle(1, CENTRE + 20)(document)
+    document = layers.attach(1, CENTRE, Attachment(to=0, at=CENTRE))(document)
+    factor, shift = np.exp(0.4j), 3 - 2j
+    loose = layers.detach(1, factor, shift)(document).figure(1)
+    before = document.figure(1)
+    assert loose.attachment is None
+    points = np.array([CENTRE, CENTRE + 30j])
+    old, new = (figure.map_of(figure.keys[0].pose) for figure in (before, loose))
+    assert_allclose(new(points), factor * old(points) + shift, rtol=0, atol=1e-11)
+    assert_allclose(np.abs(new.derivatives(points)), np.abs(old.derivatives(points)), atol=1e-12)
+    (target,) = loose.keys[0].pose.targets.values()
+    assert_allclose(target.position, factor * (CENTRE + 20) + shift)
+    assert layers.detach(0, factor, shift)(document) is document
+
+
+def test_a_layer_is_seen_as_its_switches_say():
+    document = layers.switch_at(0, 12, visible=False)(disc_document())
+    assert document.figures[0].switches == (Switch(0, visible=True), Switch(12, visible=False))
+    document = layers.switch_at(0, 20, visible=True)(document)
+    seen = [is_visible(document.figures[0], frame) for frame in (0, 11.9, 12, 19, 20, 50)]
+    assert seen == [True, True, False, False, True, True]
+    hidden = layers.set_hidden(0, hidden=True)(document)
+    assert not is_visible(hidden.figures[0], 0)
+    assert layers.switch_at(0, 12, visible=None)(document).figures[0].switches == (
+        Switch(0, visible=True),
+        Switch(20, visible=True),
+    )
+    assert is_visible(disc_document().figures[0], 5)
+
+
+def test_depth_holds_from_a_key_on():
+    rng = np.random.default_rng(1)
+    document = handles.add_handle(0, inside(rng), name="nose")(disc_document())
+    document = handles.add_handle(0, inside(rng), name="tail")(document)
+    figure = document.figures[0]
+    pose = figure.keys[0].pose
+    keys = tuple(replace(figure.keys[0], frame=frame, pose=pose) for frame in (0, 10, 20))
+    document = document.with_figure(replace(figure, keys=keys))
+    document = layers.set_front(0, 0, -0.5, 30.0)(document)
+    document = layers.key_front(0, 10, 0, 1.0)(document)
+    document = layers.key_front(0, 20, 1, 0.25)(document)
+
+    def depths(frame, *, loop=False):
+        clip = replace(clip_of(document, 0), loop=loop)
+        return [(front.place, front.depth) for front in fronts_at(clip, frame)]
+
+    nose, tail = (handle.position for handle in document.figures[0].handles)
+    assert depths(0) == depths(9.5) == [(nose, -0.5)]
+    assert depths(10) == [(nose, 1.0)]
+    assert depths(30) == [(nose, 1.0), (tail, 0.25)]
+    fronts = fronts_at(clip_of(document, 0), 30)
+    assert fronts[0].extent == 30.0
+    assert fronts[1].extent == pytest.approx(0.15 * 180 * 2**0.5)
+    assert depths(48 + 9, loop=True) == depths(9)
+    gone = handles.remove_handles(0, {0})(document)
+    assert [dict(key.fronts) for key in gone.figures[0].keys] == [{}, {}, {1: 0.25}]
+    assert layers.key_front(0, 10, 0, None)(document).figures[0].keys[1].fronts == {}
+    with pytest.raises(LissomError, match="between −1, behind, and 1"):
+        layers.set_front(0, 0, 1.5, None)(document)
