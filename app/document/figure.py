@@ -12,7 +12,7 @@ from app.document.checks import NOTHING, Unknown, require, require_place, requir
 from app.document.handle_pairs import pairs_by_name
 from app.document.keyframe import Handle, KeptPose, Keyframe, Pose
 from app.document.layering import Attachment, Switch, require_in_order
-from app.document.settings import VARIANTS, Meshing
+from app.document.settings import NATURAL, VARIANTS, Meshing
 from app.errors import LissomError
 from engine.domain import Domain
 from engine.geometry import box_diagonal, contains
@@ -113,7 +113,7 @@ class Figure:
     keys: tuple[Keyframe, ...]
     anchor: complex | None = None
     variant: Variant = Variant.METRIC
-    bounds: Bounds = Bounds()
+    bounds: Bounds = NATURAL.bounds
     library: tuple[KeptPose, ...] = ()
     mirror: float | None = None
     name: str = "figure"

@@ -1,18 +1,68 @@
-"""What is chosen once for a document: frames, interpolation, meshing, export."""
+"""What is chosen once for a document: stretch, frames, interpolation, meshing, export."""
 
 import re
 from dataclasses import dataclass, field
-from typing import Literal, get_args
+from typing import Final, Literal, NamedTuple, get_args
 
 from app.document.checks import NOTHING, Unknown, require, require_size
 from app.export_formats import EXPORT_FORMATS
 from engine.domain import MOST_TRIANGLES
 from engine.domain.outline import Detail
+from engine.maps import Bounds
 from engine.variant import Variant
 
 Framing = Literal["canvas", "fit"]
 VARIANTS = tuple(Variant)
 FRAMINGS: tuple[Framing, ...] = get_args(Framing)
+
+
+class Stretch(NamedTuple):
+    """How far a drawing gives in to a pull, as a person chooses it: a word for three bounds."""
+
+    name: str
+    bounds: Bounds
+    hint: str
+
+
+# Measured on the samples and on drawn heads, limbs and figures. Natural ones let limbs bend by a
+# right angle, be they a third as thick as long; with three handles on a head, a fourth that is
+# pulled by a third of its width moves what is around it, and the head stays a head, while at
+# σ_a ≤ 2.5 already it follows as a whole. Stiff ones let limbs bend that are a seventh as thick.
+STIFF: Final = Stretch(
+    name="Stiff",
+    bounds=Bounds(k=0.35, sigma_a=1.5, sigma_b=0.67),
+    hint="It bends a little, and keeps its size",
+)
+NATURAL: Final = Stretch(
+    name="Natural",
+    bounds=Bounds(k=0.5, sigma_a=2.0, sigma_b=0.5),
+    hint="Limbs bend and stretch, and a head stays a head",
+)
+RUBBERY: Final = Stretch(
+    name="Rubbery",
+    bounds=Bounds(k=0.8, sigma_a=5.0, sigma_b=0.2),
+    hint="It follows far pulls, which may draw it out of shape",
+)
+STRETCHES: Final = (STIFF, NATURAL, RUBBERY)
+
+
+def stretch_of(bounds: Bounds) -> Stretch | None:
+    """Return the word for some bounds, if there is one."""
+    return next((stretch for stretch in STRETCHES if stretch.bounds == bounds), None)
+
+
+def loosened(bounds: Bounds) -> Bounds | None:
+    """Return what allows all that some bounds do and more; None where they are rubbery already."""
+    for stretch in STRETCHES:
+        wider = Bounds(
+            k=max(bounds.k, stretch.bounds.k),
+            sigma_a=max(bounds.sigma_a, stretch.bounds.sigma_a),
+            sigma_b=min(bounds.sigma_b, stretch.bounds.sigma_b),
+        )
+        if wider != bounds:
+            return wider
+    return None
+
 
 LAST_FRAME = 999_999
 FASTEST = 1000.0

@@ -2,12 +2,12 @@
 
 import json
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
-from app.document import LAST_FRAME, LINEAR, VARIANTS, Easing, Variant
+from app.document import LAST_FRAME, LINEAR, NATURAL, VARIANTS, Easing, Variant
 from app.errors import LissomError
 from app.storage import JsonObject, as_flag, as_number, as_object, as_point, without_repeats
 from engine.maps import Bounds
@@ -39,7 +39,7 @@ class PoseScript:
     fps: float = 24.0
     loop: bool = False
     variant: Variant = Variant.METRIC
-    bounds: Bounds = Bounds()
+    bounds: Bounds = NATURAL.bounds
     anchor: complex | None = None
 
 
@@ -114,7 +114,8 @@ def _options(script: Mapping[str, Any]) -> dict[str, Any]:
         options["variant"] = Variant(script["variant"])
     if "bounds" in script:
         bounds = _object(script["bounds"], "bounds", BOUND_FIELDS)
-        options["bounds"] = Bounds(**{k: as_number(v, f"bounds.{k}") for k, v in bounds.items()})
+        given = {name: as_number(value, f"bounds.{name}") for name, value in bounds.items()}
+        options["bounds"] = replace(NATURAL.bounds, **given)
     if script.get("anchor") is not None:
         options["anchor"] = as_point(script["anchor"], "anchor")
     return options

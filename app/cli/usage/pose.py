@@ -10,15 +10,16 @@ SCRIPT.json is an animation as a small text. Coordinates are pixels of the pictu
 at its lower left corner and y up, as in `lissom domain`:
 
   {"schema": 1, "fps": 24, "loop": false, "variant": "metric",
-   "bounds": {"k": 0.8, "sigma_a": 5.0, "sigma_b": 0.2}, "anchor": [400, 500],
+   "bounds": {"k": 0.5, "sigma_a": 2.0, "sigma_b": 0.5}, "anchor": [400, 500],
    "handles": {"nose": [120, 880], "hoof": [300, 40]},
    "keys": [{"frame": 0}, {"frame": 24, "targets": {"nose": [90, 400]}, "ease": "in-out"}]}
 
 Left out, fps is 24, loop false, variant "metric" (or nu, scaled-eta, eta, linear), bounds as above,
-the anchor the engine's choice, and ease "linear" (or in, out, in-out, hold, or four numbers from 0
-to 1 of a Bézier curve); it leads to the next key. A handle that a key does not name keeps its
-target of the key before, at first its place in the picture. Each key is solved by a drag from the
-key before; where the bounds hold a handle back, the key is kept and a notice says by how much.
+which is "Natural" in the window ("Rubbery" is 0.8, 5.0, 0.2 and "Stiff" 0.35, 1.5, 0.67), the
+anchor the engine's choice, and ease "linear" (or in, out, in-out, hold, or four numbers from 0 to 1
+of a Bézier curve); it leads to the next key. A handle that a key does not name keeps its target of
+the key before, at first its place in the picture. Each key is solved by a drag from the key before;
+where the bounds hold a handle back, the key is kept and a notice says by how much.
 
 examples:
   lissom pose giraffe.png nod.json --out nod.lissom

@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 
-from app.document import figure_commands
+from app.document import figure_commands, loosened
 from app.editor.actions import editing, posing
 from app.editor.failures import report, sentence
 from app.editor.jobs import Job
@@ -32,6 +32,20 @@ def choose_bounds(session: Session, bounds: Bounds) -> None:
         editing.edit_figure(session, figure_commands.set_bounds, bounds)
     elif bounds != project.figure.bounds:
         _begin(session, Renewal(before=project.figure, bounds=bounds, pulls=False))
+
+
+def loosen(session: Session) -> None:
+    """Allow the next looser stretch, and pull the pose that is shown to its targets again."""
+    project = session.project
+    bounds = loosened(project.figure.bounds) if project else None
+    if project is None or bounds is None:
+        return
+    cancel(session)
+    posing.drop(session)
+    gesture = object()
+    # What was allowed still is, so that no key has to be solved again.
+    project.history.do(figure_commands.set_bounds(project.active, bounds), gesture=gesture)
+    posing.pull_again(session, gesture=gesture)
 
 
 def enter_bound(session: Session, bounds: Bounds, name: str, value: float) -> None:

@@ -7,6 +7,6 @@ Imports: `app.ui.style`, `app.ui.shortcuts`.
 
 from app.ui.bars.icons import draw_icons
 from app.ui.bars.menus import draw_menus
-from app.ui.bars.status import draw_status, facts
+from app.ui.bars.status import draw_status, facts, hold_back
 
-__all__ = ["draw_icons", "draw_menus", "draw_status", "facts"]
+__all__ = ["draw_icons", "draw_menus", "draw_status", "facts", "hold_back"]

@@ -4,11 +4,13 @@ from typing import NamedTuple
 
 from imgui_bundle import ImColor, imgui, imspinner
 
-from app.document import Extremes
-from app.editor import Action, Project, Session
-from app.ui.style import Look, tip
+from app.document import Extremes, find_shortfall, loosened
+from app.editor import Action, Project, Session, do
+from app.editor.actions import rebuilding
+from app.ui.style import Look, shortened, tip
 
 WORDS = {"k": "Shear", "σa": "Stretch", "σb": "Squeeze"}
+LEAST_ROOM = 6.0  # em: narrower, a hint is left out
 SLOW = 0.3  # seconds after which a job is told of; shorter ones would only flicker
 
 
@@ -22,22 +24,58 @@ class Fact(NamedTuple):
 
 def draw_status(session: Session, look: Look) -> list[Action]:
     """Draw the status bar: what goes on, and how the project and the window are."""
-    slow = session.jobs.running_for(SLOW)
-    if slow:
-        _spinner(look)
-        imgui.text_unformatted(f"{slow[0]}…")
-    else:
-        imgui.text_disabled(session.hint or "Ready")
     gap = 1.6 * look.em
     told = facts(session)
     width = sum(imgui.calc_text_size(fact.text).x + gap for fact in told)
-    imgui.same_line(imgui.get_window_width() - width + gap - look.em)
+    end = imgui.get_window_width() - width + gap - look.em
+    actions: list[Action] = []
+    held_back = hold_back(session)
+    slow = session.jobs.running_for(SLOW)
+    if held_back:
+        actions += _held_back(session, look, held_back)
+        imgui.same_line(0, gap)
+    hint = session.hint if held_back else session.hint or "Ready"
+    room = end - imgui.get_cursor_pos_x() - gap
+    if slow:
+        _spinner(look)
+        imgui.text_unformatted(f"{slow[0]}…")
+    elif room > LEAST_ROOM * look.em:
+        imgui.text_disabled(shortened(hint, room))
+    imgui.same_line(end)
     for fact in told:
         imgui.text_colored(look.palette.warning if fact.warns else look.palette.dim, fact.text)
         tip(fact.what)
         imgui.same_line(0, gap)
     imgui.new_line()
-    return []
+    return actions
+
+
+def hold_back(session: Session) -> str:
+    """Return which handle the limits hold back in the pose that is shown, and how far; else ""."""
+    project = session.project
+    shown = project.puppet.shown if project else None
+    if project is None or shown is None or shown.pose is None:
+        return ""
+    shortfall = find_shortfall(shown.clip.figure, shown.pose)
+    names = {handle.id: handle.name for handle in shown.clip.figure.handles}
+    if not (shortfall.at_limits and shortfall.lags):
+        return ""
+    farthest = max(shortfall.lags, key=shortfall.lags.__getitem__)
+    text = f"{names[farthest]} is {shortfall.lags[farthest]:.0f} px short"
+    others = len(shortfall.lags) - 1
+    return f"Stretch limit reached – {text}" + (f", {others} more too" if others else "")
+
+
+def _held_back(session: Session, look: Look, text: str) -> list[Action]:
+    """Tell that the limits hold a handle back, and offer the remedy."""
+    imgui.text_colored(look.palette.warning, text)
+    project = session.project
+    if project is None or loosened(project.figure.bounds) is None:
+        return []
+    imgui.same_line(0, 0.8 * look.em)
+    is_pressed = imgui.small_button("Loosen")
+    tip("Let this drawing stretch further, and pull the handles again")
+    return [do(rebuilding.loosen)] if is_pressed else []
 
 
 def facts(session: Session) -> list[Fact]:

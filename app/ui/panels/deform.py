@@ -1,11 +1,18 @@
-"""How far poses may distort the drawing, how far they do, and what the solver is at."""
+"""How far poses may stretch the drawing, how far they do, and what the solver is at."""
 
 from dataclasses import dataclass, replace
 
 from imgui_bundle import ImVec2, imgui
 from imgui_bundle import icons_fontawesome_6 as icons
 
-from app.document import Shortfall, find_shortfall, intervals, time_of
+from app.document import (
+    STRETCHES,
+    Shortfall,
+    find_shortfall,
+    intervals,
+    stretch_of,
+    time_of,
+)
 from app.editor import Action, Project, Session, do
 from app.editor.actions import playback, rebuilding
 from app.ui.style import (
@@ -16,14 +23,15 @@ from app.ui.style import (
     Scale,
     at_end,
     heading,
-    icon_button,
     number,
+    segments,
     small,
     tip,
     track,
 )
 from engine.maps import Bounds, Certificate
 
+_DETAILS = imgui.TreeNodeFlags_.no_tree_push_on_open | imgui.TreeNodeFlags_.frame_padding
 NEAR = 0.85  # of a bound: from here on a bar warns
 
 
@@ -74,11 +82,12 @@ def draw(session: Session, look: Look) -> list[Action]:
     if project is None or project.puppet.shown is None:
         return []
     bounds = _wanted_bounds(project)
-    reached, what = _reached(project)
-    actions = _heading_with_reset(look, bounds)
-    small(look, f"Poses never exceed these limits. Bars: what {what} uses.")
-    for limit in LIMITS:
-        actions += _limit(look, limit, bounds, reached)
+    actions = _stretch(look, bounds)
+    if imgui.tree_node_ex("Details", _DETAILS):
+        reached, what = _reached(project)
+        small(look, f"Poses never exceed these limits. Bars: what {what} uses.")
+        for limit in LIMITS:
+            actions += _limit(look, limit, bounds, reached)
     heading(look, "Pose")
     _solver(session, look, project)
     heading(look, "Keys")
@@ -101,19 +110,14 @@ def _reached(project: Project) -> tuple[tuple[Certificate, ...], str]:
     return tuple(clip.keys[index].pose.certificate for index in pair), "the keys around it"
 
 
-def _heading_with_reset(look: Look, bounds: Bounds) -> list[Action]:
-    heading(look, "Limits", framed=True)
-    at_end(1.15 * imgui.get_frame_height())
-    is_default = bounds == Bounds()
-    if icon_button(
-        look,
-        icons.ICON_FA_ARROW_ROTATE_LEFT,
-        "reset bounds",
-        "Back to the limits of new drawings",
-        enabled=not is_default,
-    ):
-        return [do(rebuilding.choose_bounds, Bounds())]
-    return []
+def _stretch(look: Look, bounds: Bounds) -> list[Action]:
+    """Draw the one word for all three bounds, and what it means."""
+    heading(look, "Stretch")
+    present = stretch_of(bounds)
+    words = [(stretch.name, stretch.name) for stretch in STRETCHES]
+    chosen = segments(look, "stretch", words, present.name if present else "")
+    small(look, f"{present.hint}." if present else "Limits of your own, under “Details”.")
+    return [do(rebuilding.choose_bounds, s.bounds) for s in STRETCHES if s.name == chosen]
 
 
 def _limit(
@@ -182,7 +186,7 @@ def _solver(session: Session, look: Look, project: Project) -> None:
         _status(look, icons.ICON_FA_TRIANGLE_EXCLAMATION, palette.danger, "Beyond the limits")
     elif shortfall.lags:
         _status(look, icons.ICON_FA_HAND, palette.warning, _lag_in_words(shortfall))
-        remedy = "Wider limits let" if shortfall.at_limits else "More weight lets"
+        remedy = "A looser stretch lets" if shortfall.at_limits else "More weight lets"
         small(look, f"{shortfall.reason.capitalize()}. {remedy} a handle come nearer.")
     else:
         _status(look, icons.ICON_FA_CIRCLE_CHECK, palette.good, "Every handle is in its place")

@@ -55,7 +55,7 @@ def test_a_whole_script_is_read(tmp_path):
 def test_what_is_left_out_has_its_documented_default():
     script = parse_pose_script({"schema": 1, "handles": {}, "keys": [{"frame": 3}]})
     assert (script.fps, script.loop, script.variant) == (24.0, False, "metric")
-    assert script.bounds == Bounds(k=0.8, sigma_a=5.0, sigma_b=0.2)
+    assert script.bounds == Bounds(k=0.5, sigma_a=2.0, sigma_b=0.5)
     assert script.anchor is None
     assert script.keys[0].ease == PRESETS["linear"]
 

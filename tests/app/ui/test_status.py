@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 from documents import altered
 
-from app.document import Extremes
+from app.document import RUBBERY, Extremes
 from app.document.keyframe import Target
 from app.document.queries.timeline import clip_of
-from app.editor.actions import playback, posing
+from app.editor.actions import editing, playback, posing
 from app.errors import LissomError
 from app.motion.prepared import Motion, prepare_motion
 from app.reports.curves import TIMES, measure_curves
@@ -72,6 +72,32 @@ def test_a_bound_that_is_reached_warns(window):
     fact = bars.facts(window.session)[0]
     assert fact.warns
     assert not bars.facts(window.session)[1].warns
+
+
+def test_a_pull_that_is_held_back_is_told_with_its_remedy(window, bent):
+    assert bars.hold_back(window.session) == ""
+    width, height = bent.document.canvas
+    posing.wish(window.session, {1: Target(position=complex(2.4 * width, 0.5 * height))})
+    window.settle()
+    figure = bent.figure
+    lag = figure.lags(figure.key(24).pose)[1]
+    told = bars.hold_back(window.session)
+    assert re.fullmatch(
+        r"Stretch limit reached – handle \d is \d+ px short(, 1 more too)?", told
+    ), told
+    steps = bent.history.undo_label
+
+    def loosen(robot):
+        robot.item_click("**/Loosen")
+
+    window.run(loosen)
+    window.settle()
+    assert bent.figure.bounds == RUBBERY.bounds
+    assert bent.figure.lags(bent.figure.key(24).pose)[1] < 0.5 * lag
+    assert bent.figure.is_proven(bent.figure.key(24).pose)
+    editing.undo(window.session)
+    assert bent.figure is figure, "looser limits and the pose within them are one step"
+    assert bent.history.undo_label == steps
 
 
 def test_extremes_between_the_times_that_were_measured(bent):

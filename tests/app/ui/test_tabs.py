@@ -10,11 +10,10 @@ from projects import project_of
 from app.document.commands import key_commands
 from app.document.commands.scene_commands import set_export
 from app.document.keyframe import Handle, Keyframe, Pose, Target
-from app.document.settings import Meshing
+from app.document.settings import NATURAL, RUBBERY, STIFF, Meshing
 from app.editor.actions import editing, exporting, playback, posing, upkeep
 from app.motion.extent import extent_source
 from engine.maps.boundary import Boundary
-from engine.maps.bounds import Bounds
 from engine.maps.certificate import certify
 from engine.maps.harmonic_map import HarmonicMap
 
@@ -133,11 +132,30 @@ def test_anchor_goes_to_the_handle_and_back(window, project, tab):
     assert project.figure.anchor is None
 
 
+def enter_bound(robot, name, value):
+    """Type a bound into its field, which stands under "Details"."""
+    robot.item_open("**/Details")
+    robot.item_input_value(f"**/##bound {name}", value)
+
+
+def test_one_word_sets_all_three_bounds(window, project, tab):
+    assert project.figure.bounds == NATURAL.bounds, "new drawings are natural"
+    before = project.document
+    tab("Deform", lambda robot: robot.item_click("**/stretch/###Rubbery"))
+    assert project.figure.bounds == RUBBERY.bounds
+    assert project.history.undo_label == "Set bounds"
+    editing.undo(window.session)
+    assert project.document is before
+    tab("Deform", lambda robot: robot.item_click("**/stretch/###Stiff"))
+    assert project.figure.bounds == STIFF.bounds
+    assert all(project.figure.is_proven(key.pose) for key in project.figure.keys)
+
+
 def test_tighter_bounds_bring_keys_in_as_one_step(window, project, tab):
     before = project.document
     reached = largest(project, "k")
     bound = round(0.6 * reached, 2)
-    tab("Deform", lambda robot: robot.item_input_value("**/##bound k", bound))
+    tab("Deform", lambda robot: enter_bound(robot, "k", bound))
     assert project.figure.bounds.k == pytest.approx(bound, abs=1e-6)
     assert largest(project, "k") <= bound
     assert all(key.pose.certificate.certified for key in project.figure.keys)
@@ -151,29 +169,30 @@ def test_knob_that_is_dragged_sets_the_bound_once(window, project, tab):
     before = project.document
 
     def drag(robot):
+        robot.item_open("**/Details")
         name = "**/bound sigma_a track"
         middle = robot.item_info(name).rect_full.get_center()
         robot.mouse_move(name)
         robot.mouse_down(0)
         robot.mouse_move_to_pos(ImVec2(middle.x + 90, middle.y))
         assert project.document is before
-        assert project.drafted_bounds.sigma_a > Bounds().sigma_a
+        assert project.drafted_bounds.sigma_a > NATURAL.bounds.sigma_a
         robot.mouse_up(0)
 
     tab("Deform", drag)
-    assert project.figure.bounds.sigma_a > Bounds().sigma_a
+    assert project.figure.bounds.sigma_a > NATURAL.bounds.sigma_a
     assert project.drafted_bounds is None
     editing.undo(window.session)
     assert project.document is before
     editing.redo(window.session)
-    tab("Deform", lambda robot: robot.item_click("**/###reset bounds"))
-    assert project.figure.bounds == Bounds()
+    tab("Deform", lambda robot: robot.item_click("**/stretch/###Natural"))
+    assert project.figure.bounds == NATURAL.bounds
 
 
 def test_pose_that_no_handle_holds_is_brought_within_the_bounds(window, project, tab):
     posing.remove_handles(window.session, frozenset({0, 1}))
     bound = round(0.5 * largest(project, "k"), 2)
-    tab("Deform", lambda robot: robot.item_input_value("**/##bound k", bound))
+    tab("Deform", lambda robot: enter_bound(robot, "k", bound))
     certificate = project.figure.key(24).pose.certificate
     assert certificate.certified
     assert certificate.k <= bound + 1e-6

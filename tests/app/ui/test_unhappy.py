@@ -455,7 +455,7 @@ FAILURES = {
         lambda session: posing.wish(session, {1: Target(position=900 + 50j)}),
     ),
     "Inserting a key": (
-        "app.editor.actions.posing.pose_at",
+        "app.editor.actions.posing.inserting.pose_at",
         lambda session: keys.insert_at(session, 12),
     ),
     "Saving": (
@@ -522,7 +522,7 @@ WAITING = {
         lambda session: posing.wish(session, {1: Target(position=900 + 50j)}),
     ),
     "Inserting a key": (
-        "app.editor.actions.posing.pose_at",
+        "app.editor.actions.posing.inserting.pose_at",
         lambda session: keys.insert_at(session, 12),
     ),
 }

@@ -1,0 +1,47 @@
+"""Posing by handles: what the hand pulls, and what the worker's solver makes of it.
+
+In: a session, handles, and where they are wished.
+Out: poses in the document, step by step; handles and the anchor.
+Imports: `app.editor`, `app.document`, `app.motion`, `app.solving`.
+"""
+
+from app.editor.actions.posing.handles import (
+    add_handle,
+    anchor_at,
+    put_anchor,
+    remove_handles,
+)
+from app.editor.actions.posing.inserting import INSERTING, fit_pose, insert_key
+from app.editor.actions.posing.pulling import (
+    drop,
+    free_turn,
+    let_go,
+    nudge,
+    pull,
+    pull_again,
+    settle,
+    wish,
+)
+from app.editor.actions.posing.steps import POSING, STEPS, hold, retargeted
+
+__all__ = [
+    "INSERTING",
+    "POSING",
+    "STEPS",
+    "add_handle",
+    "anchor_at",
+    "drop",
+    "fit_pose",
+    "free_turn",
+    "hold",
+    "insert_key",
+    "let_go",
+    "nudge",
+    "pull",
+    "pull_again",
+    "put_anchor",
+    "remove_handles",
+    "retargeted",
+    "settle",
+    "wish",
+]
