@@ -24,7 +24,7 @@ from app.document.easing import HOLD, LINEAR, PRESETS
 from app.document.figure import PictureFile
 from app.document.keyframe import MOST_TURNS, Handle, Keyframe, Target
 from app.document.model import Document
-from app.document.settings import VARIANTS, ExportSettings, FrameRange, Marker, Meshing
+from app.document.settings import NATURAL, VARIANTS, ExportSettings, FrameRange, Marker, Meshing
 from app.errors import LissomError
 from engine.errors import EngineError
 from engine.maps.bounds import Bounds
@@ -287,7 +287,7 @@ def test_bounds_and_a_new_domain_come_with_solved_poses():
         figures.set_variant(0, "metric"),
         figures.set_anchor(0, None),
         settings.set_export(ExportSettings()),
-        figures.set_bounds(0, Bounds()),
+        figures.set_bounds(0, NATURAL.bounds),
     ],
 )
 def test_what_changes_nothing_gives_the_same_document(command):

@@ -8,11 +8,12 @@ from animations import moving_document
 from projects import project_of
 
 from app.document.commands import figure_commands, handle_commands
+from app.document.settings import NATURAL
 from app.editor import Jobs, Session
 from app.editor.actions import editing, keys, playback, posing
 from app.editor.actions.upkeep import maintain
 from app.storage import Preferences
-from engine.maps import Boundary, Bounds, certify
+from engine.maps import Boundary, certify
 
 PICTURE = np.zeros((90, 120, 4), np.uint8)
 
@@ -98,7 +99,7 @@ def test_a_pose_is_proven_against_the_limits_of_now(session):
     project = session.project
     go(session, 6)
     keys.copy_pose(session)
-    tighter = replace(Bounds(), sigma_a=1.01)
+    tighter = replace(NATURAL.bounds, sigma_a=1.01)
     editing.edit_figure(session, figure_commands.set_bounds, tighter)
     go(session, 3)
     keys.paste_pose(session)
