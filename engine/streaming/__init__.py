@@ -1,13 +1,15 @@
 """In-betweens at the cost of a linear blend: series in time, built once for an interval.
 
-In: in-betweens of two keyframes.
-Out: `Series`: a few arrays whose weighted sum is a frame.
+In: in-betweens of two keyframes; or a whole motion, as points at any time.
+Out: `Series`: a few arrays whose weighted sum is a frame; `ShapeTargets`: the same for other
+programs, of a whole motion within a tolerance.
 Imports: `engine.interpolation`, `engine.chebyshev`.
 """
 
 from engine.streaming.build import MOST_ROWS, build_series, finish
 from engine.streaming.channels import Channels, Distortions, Positions
 from engine.streaming.series import Series, SeriesPiece
+from engine.streaming.targets import ShapeTargets, build_targets
 
 __all__ = [
     "MOST_ROWS",
@@ -16,6 +18,8 @@ __all__ = [
     "Positions",
     "Series",
     "SeriesPiece",
+    "ShapeTargets",
     "build_series",
+    "build_targets",
     "finish",
 ]
