@@ -8,6 +8,8 @@ from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Final
 
+VIDEO: Final = "pip install 'lissom[video]'"
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ExportFormat:
@@ -17,6 +19,10 @@ class ExportFormat:
     ----------
     label : str
         In lists.
+    group : str
+        The heading in lists, of which there is one for each run of formats with the same.
+    use : str
+        In one line, what it is good for and what it cannot do.
     about : str
         What comes out, in the words of the command line's help.
     suffixes : tuple of str
@@ -24,15 +30,26 @@ class ExportFormat:
         own, in a folder.
     is_transparent : bool
         Whether it keeps what is transparent; one that does not needs a background.
+    is_drawn : bool
+        Whether it holds pictures; else it holds shapes, and plays at any rate.
+    largest : int, optional
+        Pixels of a picture each way, at most.
+    fastest : float, optional
+        Pictures a second, at most.
     library, remedy : str
         The module of Python that it needs beyond what Lissom always has, and how to install it;
         both empty where there is none.
     """
 
     label: str
+    group: str
+    use: str
     about: str
     suffixes: tuple[str, ...] = ()
     is_transparent: bool = True
+    is_drawn: bool = True
+    largest: int | None = None
+    fastest: float | None = None
     library: str = ""
     remedy: str = ""
 
@@ -41,6 +58,8 @@ EXPORT_FORMATS: Final[Mapping[str, ExportFormat]] = MappingProxyType(
     {
         "png": ExportFormat(
             label="PNG frames",
+            group="Frames",
+            use="For compositing and editing: exact, each frame a file of its own.",
             about="frame_0000.png, ... in the folder --out, which is made if it is missing. Frame "
             "0 of the timeline is frame_0000.png; numbers go on one by one from that of the first "
             "frame, with --fps too, and have more digits if one needs them. Frames of before with "
@@ -48,32 +67,57 @@ EXPORT_FORMATS: Final[Mapping[str, ExportFormat]] = MappingProxyType(
         ),
         "apng": ExportFormat(
             label="Animated PNG",
+            group="Animation",
+            use="For web pages and chats: exact colours and soft edges; large files.",
             about="an animation with exact colours and transparency",
             suffixes=(".apng", ".png"),
         ),
         "gif": ExportFormat(
             label="GIF",
+            group="Animation",
+            use="Plays everywhere; hard edges, 255 colours, at most 50 pictures a second.",
             about="an animation in 255 colours a frame; each pixel is opaque or transparent, so "
             "that soft edges become hard",
             suffixes=(".gif",),
+            largest=65_535,
+            fastest=50.0,  # programs slow down pictures that last under 2/100 of a second
         ),
         "webp": ExportFormat(
             label="WebP",
+            group="Animation",
+            use="As exact as Animated PNG and smaller; for browsers, few editors read it.",
             about="an animation with exact colours and transparency, smaller than apng",
             suffixes=(".webp",),
-        ),
-        "spritesheet": ExportFormat(
-            label="Sprite sheet",
-            about="all frames in one PNG, row by row; how many is told on standard output",
-            suffixes=(".png",),
+            largest=16_383,
         ),
         "mp4": ExportFormat(
             label="MP4 video",
+            group="Video",
+            use="Plays everywhere, small; no transparency, even sides only.",
             about="H.264 video; needs a background colour and pip install 'lissom[video]'",
             suffixes=(".mp4",),
             is_transparent=False,
+            largest=16_384,
             library="av",
-            remedy="pip install 'lissom[video]'",
+            remedy=VIDEO,
+        ),
+        "spritesheet": ExportFormat(
+            label="Sprite sheet",
+            group="Engine and web",
+            use="For 2D engines: all frames in one PNG; a fixed rate and size.",
+            about="all frames in one PNG, row by row; how many is told on standard output",
+            suffixes=(".png",),
+            largest=16_384,
+        ),
+        "glb": ExportFormat(
+            label="glTF model",
+            group="Engine and web",
+            use="For engines and Blender: a moving mesh at any rate and size, in one small file.",
+            about="a textured mesh with morph targets and their weights in time, for engines, "
+            "Blender and browsers: base shape and targets come within --tolerance of the motion. "
+            "100 pixels are a metre, the middle of the canvas' lower edge is the origin",
+            suffixes=(".glb",),
+            is_drawn=False,
         ),
     }
 )

@@ -43,6 +43,7 @@ from app.document.queries import (
     time_of,
 )
 from app.document.settings import (
+    FRAME_NAMES,
     FRAMINGS,
     LAST_FRAME,
     NATURAL,
@@ -55,12 +56,15 @@ from app.document.settings import (
     Framing,
     Marker,
     Meshing,
+    ShapeDetail,
+    SheetLayout,
     loosened,
     stretch_of,
 )
 from engine.variant import Variant
 
 __all__ = [
+    "FRAME_NAMES",
     "FRAMINGS",
     "HOLD",
     "LAST_FRAME",
@@ -93,6 +97,8 @@ __all__ = [
     "PictureFile",
     "Playhead",
     "Pose",
+    "ShapeDetail",
+    "SheetLayout",
     "Shortfall",
     "Switch",
     "Target",

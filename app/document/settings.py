@@ -66,6 +66,12 @@ def loosened(bounds: Bounds) -> Bounds | None:
 
 LAST_FRAME = 999_999
 FASTEST = 1000.0
+FRAME_NAMES = "frame_####"
+# What some system or other takes for more than a character of a name.
+_LITERAL = r'[^#/\\:*?"<>|\x00-\x1f\ud800-\udfff]{0,100}'
+WIDEST_PADDING = 256
+FEWEST_TRIANGLES = 100
+FINEST_TOLERANCE, COARSEST_TOLERANCE = 0.001, 100.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -114,6 +120,59 @@ class Marker:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class SheetLayout:
+    """How the frames lie on a sprite sheet.
+
+    Parameters
+    ----------
+    trimmed : bool
+        Whether each frame keeps no more than what is seen of it; else all cells are alike.
+    padding : int
+        Transparent pixels between frames and at the border.
+    power_of_two : bool
+        Whether both sides of the sheet are powers of two.
+    """
+
+    trimmed: bool = True
+    padding: int = 2
+    power_of_two: bool = False
+
+    def __post_init__(self) -> None:
+        require(
+            0 <= self.padding <= WIDEST_PADDING,
+            f"The padding is 0 to {WIDEST_PADDING} pixels, not {self.padding}.",
+        )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ShapeDetail:
+    """How closely an export of shapes follows the motion.
+
+    Parameters
+    ----------
+    triangles : int
+        Of each figure, about.
+    tolerance : float, optional
+        In pixels, with as many shapes as that takes; None is half a pixel with no more shapes than
+        every viewer shows.
+    """
+
+    triangles: int = 4_000
+    tolerance: float | None = None
+
+    def __post_init__(self) -> None:
+        require(
+            FEWEST_TRIANGLES <= self.triangles <= MOST_TRIANGLES,
+            f"There are {FEWEST_TRIANGLES} to {MOST_TRIANGLES:,} triangles, not {self.triangles}.",
+        )
+        require(
+            self.tolerance is None or FINEST_TOLERANCE <= self.tolerance <= COARSEST_TOLERANCE,
+            f"The tolerance is {FINEST_TOLERANCE} to {COARSEST_TOLERANCE:g} pixels, not "
+            f"{self.tolerance}.",
+        )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class ExportSettings:
     """What the person last chose for exports.
 
@@ -129,6 +188,11 @@ class ExportSettings:
         "fit" shows all of the motion, "canvas" the picture's own frame.
     frames : FrameRange, optional
         None exports everything.
+    names : str
+        Of the files of frames, without their ending: "#" for each digit of the frame's number, and
+        "{name}" for that of the project.
+    sheet : SheetLayout
+    shapes : ShapeDetail
     """
 
     format: str = "png"
@@ -136,6 +200,9 @@ class ExportSettings:
     background: str = "transparent"
     framing: Framing = "fit"
     frames: FrameRange | None = None
+    names: str = FRAME_NAMES
+    sheet: SheetLayout = SheetLayout()
+    shapes: ShapeDetail = ShapeDetail()
 
     def __post_init__(self) -> None:
         require(
@@ -151,6 +218,12 @@ class ExportSettings:
         require(
             self.framing in FRAMINGS,
             f"The framing is one of {', '.join(FRAMINGS)}, not {self.framing!r}.",
+        )
+        require(
+            re.fullmatch(rf"{_LITERAL}#+{_LITERAL}", self.names) is not None
+            and not self.names.startswith("."),
+            f"File names of frames have '#' for each digit of the number, as in {FRAME_NAMES}, and "
+            f"nothing that file names cannot hold, unlike {self.names!r}.",
         )
 
 

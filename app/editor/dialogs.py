@@ -7,6 +7,10 @@ from pathlib import Path
 from app.editor.action import Action
 
 
+def _no_file(_: str) -> bool:
+    return False
+
+
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class FileDialog:
     """A question for a file: the system's own dialog, or our file browser where it has none.
@@ -26,6 +30,8 @@ class FileDialog:
         Returns the action for the chosen path.
     marked : str
         The entry of our browser's list that is marked.
+    is_frame : callable
+        Tells by its name whether a file that is there already may lie in the folder to write to.
     """
 
     title: str
@@ -35,6 +41,7 @@ class FileDialog:
     writes: bool
     chosen: Callable[[Path], Action]
     marked: str = ""
+    is_frame: Callable[[str], bool] = _no_file
 
     @property
     def wants_folder(self) -> bool:

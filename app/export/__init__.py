@@ -1,12 +1,13 @@
 """From a document to picture files, each of them whole or absent, with bounded memory.
 
 In: a document, its motion, and what the person asks for.
-Out: PNG frames, animated pictures, sprite sheets, video.
+Out: PNG frames, animated pictures, sprite sheets, video, models.
 Imports: `app.render`, `app.motion`, `app.storage`.
 """
 
-from app.export.destination import folder_within, suited
+from app.export.destination import PROJECT, FrameNames, folder_within, suited
 from app.export.framing import frame_view, shown_box
+from app.export.moving_shape import with_light_meshes
 from app.export.painting import Painter
 from app.export.plan import (
     ExportPlan,
@@ -18,14 +19,18 @@ from app.export.plan import (
 )
 from app.export.poses import KeptPoses, Poses
 from app.export.run import export
+from app.export.run_shapes import ShapeExport
 from app.export.writers import encode_png, sheet_grid
 
 __all__ = [
+    "PROJECT",
     "ExportPlan",
     "ExportRequest",
+    "FrameNames",
     "KeptPoses",
     "Painter",
     "Poses",
+    "ShapeExport",
     "check_request",
     "encode_png",
     "export",
@@ -37,4 +42,5 @@ __all__ = [
     "sheet_grid",
     "shown_box",
     "suited",
+    "with_light_meshes",
 ]

@@ -1,6 +1,10 @@
 """Where an export goes: names that suit its format, and what is there already."""
 
+import os
 import re
+import shutil
+from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
@@ -8,13 +12,43 @@ from app.errors import LissomError
 from app.export_formats import EXPORT_FORMATS
 from app.storage import check_writable
 
-_FRAME_NAME: Final = re.compile(r"frame_\d{4,}\.png")
+# Stands for the project's name.
+PROJECT: Final = "{name}"
+# A name's last dot is no ending where a number follows, as in v1.2.
+_ENDING: Final = re.compile(r"\.[a-z]\w*")
 
 
-def frame_names(first: int, count: int) -> list[str]:
-    """Return the file names of pictures numbered from `first` on; all have equally many digits."""
-    digits = max(4, len(str(first + count - 1)))
-    return [f"frame_{number:0{digits}d}.png" for number in range(first, first + count)]
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FrameNames:
+    """How the files of frames are called.
+
+    Parameters
+    ----------
+    pattern : str
+        As in `ExportSettings.names`.
+    project : str
+        The name of the project.
+    """
+
+    pattern: str
+    project: str
+
+    def of(self, first: int, count: int) -> list[str]:
+        """Return the names of pictures numbered from `first` on; all have equally many digits."""
+        start, digits, end = self._parts()
+        width = max(digits, len(str(first + count - 1)))
+        return [f"{start}{number:0{width}d}{end}" for number in range(first, first + count)]
+
+    def fits(self, name: str) -> bool:
+        """Tell whether a file is named as a frame is."""
+        start, digits, end = self._parts()
+        pattern = rf"{re.escape(start)}\d{{{digits},}}{re.escape(end)}"
+        return re.fullmatch(pattern, name) is not None
+
+    def _parts(self) -> tuple[str, int, str]:
+        start, digits, end = re.split("(#+)", self.pattern)
+        start, end = (part.replace(PROJECT, self.project) for part in (start, end))
+        return start, len(digits), f"{end}.png"
 
 
 def check_destination(out: Path, name: str) -> None:
@@ -24,12 +58,13 @@ def check_destination(out: Path, name: str) -> None:
     ------
     LissomError
         If it is a folder instead of a file or the other way round, is named like another format,
-        or its folder is missing.
+        or its folder is missing or may not be written to.
     """
     suffixes = EXPORT_FORMATS[name].suffixes
     if suffixes:
         check_writable(out)
-        if out.suffix.lower() in _all_suffixes().difference(suffixes):
+        ending = out.suffix.lower()
+        if ending not in suffixes and (ending in _all_suffixes() or _ENDING.fullmatch(ending)):
             raise LissomError(
                 f"{out} is not named like {name}; let the name end in {' or '.join(suffixes)}"
             )
@@ -43,6 +78,35 @@ def check_destination(out: Path, name: str) -> None:
             )
         if not out.parent.is_dir():
             raise LissomError(f"cannot write {out}: the folder {out.parent} does not exist")
+    folder = out if out.is_dir() else out.parent
+    if not os.access(folder, os.W_OK):
+        raise LissomError(
+            f"cannot write {out}: the folder {folder} may not be written to; choose another one"
+        )
+
+
+def check_room(out: Path, needed: int) -> None:
+    """Refuse an export for which there is not room enough.
+
+    Parameters
+    ----------
+    out : Path
+        Its folder exists.
+    needed : int
+        Bytes that it takes at least.
+
+    Raises
+    ------
+    LissomError
+        If the disk has less.
+    """
+    folder = out if out.is_dir() else out.parent
+    free = shutil.disk_usage(folder).free
+    if free < needed:
+        raise LissomError(
+            f"there are only {free / 1e6:,.1f} MB left where {folder} is, and this export takes "
+            f"{needed / 1e6:,.1f} MB or more; make room or choose another folder"
+        )
 
 
 def suited(out: Path, name: str) -> Path:
@@ -60,7 +124,7 @@ def suited(out: Path, name: str) -> Path:
     return out.with_name(f"{stem} frames") if is_of_another else out
 
 
-def folder_within(chosen: Path, name: str) -> Path:
+def folder_within(chosen: Path, name: str, is_frame: Callable[[str], bool]) -> Path:
     """Return the folder for frames where a person chose an existing one and a name was proposed.
 
     It is the chosen one if that is empty, holds frames alone or has the name; else it is a folder
@@ -70,7 +134,7 @@ def folder_within(chosen: Path, name: str) -> Path:
         others = [
             path
             for path in chosen.iterdir()
-            if not path.name.startswith(".") and not _FRAME_NAME.fullmatch(path.name)
+            if not path.name.startswith(".") and not is_frame(path.name)
         ]
     except OSError:  # whoever writes there will tell what is wrong
         others = []
@@ -84,12 +148,12 @@ def replaced(out: Path, name: str, frames: list[str]) -> list[str]:
     return [frame for frame in frames if (out / frame).exists()]
 
 
-def left_frames(out: Path, frames: list[str]) -> list[str]:
+def left_frames(out: Path, names: FrameNames, frames: list[str]) -> list[str]:
     """Return the names of the frames in a folder that an export will not write again, in order."""
     if not out.is_dir():
         return []
-    names = {path.name for path in out.iterdir() if _FRAME_NAME.fullmatch(path.name)}
-    return sorted(names.difference(frames))
+    there = {path.name for path in out.iterdir() if names.fits(path.name)}
+    return sorted(there.difference(frames))
 
 
 def _all_suffixes() -> set[str]:

@@ -4,6 +4,7 @@ import importlib.util
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Final
 
 import numpy as np
 
@@ -11,17 +12,28 @@ from app.document import (
     Document,
     ExportSettings,
     FrameRange,
+    ShapeDetail,
+    SheetLayout,
     exported_frames,
     frame_times,
     framed_frames,
 )
 from app.errors import LissomError
-from app.export.destination import check_destination, frame_names, left_frames, replaced
+from app.export.destination import (
+    FrameNames,
+    check_destination,
+    check_room,
+    left_frames,
+    replaced,
+)
 from app.export.framing import frame_view
 from app.export.poses import KeptPoses
 from app.export_formats import EXPORT_FORMATS
 from app.motion import Box, box_around, motion_box
 from app.render import View
+
+# Bytes that a pixel of a frame takes at least: an empty PNG has about as many.
+LEAST: Final = 0.001
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -34,13 +46,21 @@ class ExportRequest:
         A folder for PNG frames, a file for every other format.
     settings : ExportSettings
         The document's own, or others for this once.
+    project : str
+        The project's name.
     fps : float, optional
         Pictures per second; the document's rate by default.
     """
 
     out: Path
     settings: ExportSettings
+    project: str
     fps: float | None = None
+
+    @property
+    def names(self) -> FrameNames:
+        """How the files of frames are called."""
+        return FrameNames(pattern=self.settings.names, project=self.project)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -60,10 +80,19 @@ class ExportPlan:
         The frame of the timeline, whole or between two, that each picture shows.
     first : int
         Number of the first picture; the next ones count on from there, whatever the rate.
+    span : tuple of float
+        The frames of the timeline from which and to which shapes move; in a loop the last one is
+        the first one again.
     fps : float
         Pictures per second.
+    canvas : tuple of int
+        Width and height of the document's.
     loop : bool
         Whether an animation plays for ever, or once.
+    frame_names : FrameNames
+        Of the pictures, where each is a file of its own.
+    sheet : SheetLayout
+    shapes : ShapeDetail
     notices : tuple of str
         What the person should know about it.
     """
@@ -74,14 +103,19 @@ class ExportPlan:
     background: tuple[int, int, int] | None
     times: tuple[float, ...]
     first: int
+    span: tuple[float, float]
     fps: float
+    canvas: tuple[int, int]
     loop: bool
+    frame_names: FrameNames
+    sheet: SheetLayout
+    shapes: ShapeDetail
     notices: tuple[str, ...] = ()
 
     @property
     def names(self) -> list[str]:
         """The file names of the pictures, where each is a file of its own."""
-        return frame_names(self.first, len(self.times))
+        return self.frame_names.of(self.first, len(self.times))
 
 
 def check_request(document: Document, request: ExportRequest) -> None:
@@ -103,6 +137,16 @@ def check_request(document: Document, request: ExportRequest) -> None:
     frame_times(document, frames, request.fps)
     name, format_ = settings.format, EXPORT_FORMATS[settings.format]
     check_destination(request.out, name)
+    if settings.size is not None and format_.is_drawn:
+        _check_size(name, settings.size)
+    if request.fps is not None and not format_.is_drawn:
+        raise LissomError(f"{name} plays at any rate; leave the frames per second out")
+    fps = document.fps if request.fps is None else request.fps
+    if format_.fastest is not None and fps > format_.fastest:
+        raise LissomError(
+            f"{name} shows at most {format_.fastest:g} pictures a second, not {fps:g}; choose "
+            "fewer frames per second for it, or apng or webp"
+        )
     if not format_.is_transparent and settings.background == "transparent":
         raise LissomError(
             f"{name} has no transparency: choose a background colour such as #ffffff, or the "
@@ -119,7 +163,7 @@ def replaced_files(document: Document, request: ExportRequest) -> list[str]:
     settings = request.settings
     frames = _frames(document, settings)
     count = len(frame_times(document, frames, request.fps))
-    return replaced(request.out, settings.format, frame_names(frames.first, count))
+    return replaced(request.out, settings.format, request.names.of(frames.first, count))
 
 
 def missing(name: str) -> str:
@@ -168,14 +212,39 @@ def plan_export(
         background=_colour(settings.background),
         times=times,
         first=frames.first,
+        span=(frames.first, _end(document, settings, frames)),
+        canvas=document.canvas,
         fps=document.fps if request.fps is None else request.fps,
         loop=document.loop,
+        frame_names=request.names,
+        sheet=settings.sheet,
+        shapes=settings.shapes,
     )
+    if EXPORT_FORMATS[plan.format].is_drawn:
+        _check_size(plan.format, plan.view.size)
+        width, height = plan.view.size
+        check_room(plan.out, int(LEAST * width * height * len(times)))
     return replace(plan, notices=_left_frames(plan))
+
+
+def _check_size(name: str, size: tuple[int, int]) -> None:
+    """Refuse pictures that a format cannot hold."""
+    largest = EXPORT_FORMATS[name].largest
+    if largest is not None and max(size) > largest:
+        raise LissomError(
+            f"{name} holds at most {largest:,} pixels each way, not {size[0]} × {size[1]}; choose "
+            "a smaller size"
+        )
 
 
 def _frames(document: Document, settings: ExportSettings) -> FrameRange:
     return settings.frames or exported_frames(document)
+
+
+def _end(document: Document, settings: ExportSettings, frames: FrameRange) -> int:
+    """Return the frame at which a motion ends that is shown without steps."""
+    # Pictures of a loop leave out its last frame, which is the first one again.
+    return frames.last if settings.frames is not None else document.frames.last
 
 
 def _colour(background: str) -> tuple[int, int, int] | None:
@@ -187,7 +256,11 @@ def _colour(background: str) -> tuple[int, int, int] | None:
 
 def _left_frames(plan: ExportPlan) -> tuple[str, ...]:
     """Tell of frames in the folder that this export will not write again."""
-    others = [] if EXPORT_FORMATS[plan.format].suffixes else left_frames(plan.out, plan.names)
+    others = (
+        []
+        if EXPORT_FORMATS[plan.format].suffixes
+        else left_frames(plan.out, plan.frame_names, plan.names)
+    )
     if not others:
         return ()
     which = others[0] if len(others) == 1 else f"{others[0]} … {others[-1]}"

@@ -56,9 +56,9 @@ def export(
     """
     with (
         open_writer(plan) as writer,
-        _threads("poses", 1) as poses,
-        _threads("encoder", ENCODERS) as encoders,
-        _threads("writer", 1) as writers,
+        threads("poses", 1) as poses,
+        threads("encoder", ENCODERS) as encoders,
+        threads("writer", 1) as writers,
         _stopped_early(writer),
     ):
         times = iter(plan.times)
@@ -68,22 +68,22 @@ def export(
             while len(posed) <= AHEAD and (time := next(times, None)) is not None:
                 posed.append(poses.submit(pose, time))
             while len(written) > AHEAD or (written and written[0].done()):
-                yield from _come(written[0], index, waits=waits)
+                yield from come(written[0], index, waits=waits)
                 written.popleft().result()
-            yield from _come(posed[0], index, waits=waits)
+            yield from come(posed[0], index, waits=waits)
             frame = draw(posed.popleft().result())
             encoded = encoders.submit(writer.encode, index, frame)
             written.append(writers.submit(_add, writer, encoded))
             yield index + 1
         for due in written:
-            yield from _come(due, len(plan.times), waits=waits)
+            yield from come(due, len(plan.times), waits=waits)
             due.result()
         end = writers.submit(writer.finish)
-        yield from _come(end, len(plan.times), waits=waits)
+        yield from come(end, len(plan.times), waits=waits)
         end.result()
 
 
-def _come(due: Future[Any], count: int, *, waits: bool) -> Iterator[int]:
+def come(due: Future[Any], count: int, *, waits: bool) -> Iterator[int]:
     """Go on yielding the count until something is done, unless it may be waited for."""
     while not waits and not due.done():
         yield count
@@ -104,7 +104,7 @@ def _stopped_early(writer: FrameWriter) -> Iterator[None]:
 
 
 @contextmanager
-def _threads(name: str, count: int) -> Iterator[ThreadPoolExecutor]:
+def threads(name: str, count: int) -> Iterator[ThreadPoolExecutor]:
     """Lend threads; what they have not begun at the end of the block they never do."""
     pool = ThreadPoolExecutor(count, thread_name_prefix=name)
     try:

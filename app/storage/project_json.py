@@ -1,13 +1,14 @@
 """The document as `project.json`, except for the picture's bytes and the arrays."""
 
 from collections.abc import Callable, Mapping
-from dataclasses import replace
+from dataclasses import asdict, replace
 from functools import partial
 from importlib.metadata import version
 from types import MappingProxyType
 from typing import Any, Protocol, TypeVar, cast
 
 from app.document import (
+    FRAME_NAMES,
     Attachment,
     Document,
     Easing,
@@ -22,6 +23,8 @@ from app.document import (
     Meshing,
     PictureFile,
     Pose,
+    ShapeDetail,
+    SheetLayout,
     Switch,
     Target,
     Unknown,
@@ -94,6 +97,9 @@ def write_document(document: Document) -> Json:
             "background": document.export.background,
             "framing": document.export.framing,
             "frames": _write_range(document.export.frames),
+            "names": document.export.names,
+            "sheet": asdict(document.export.sheet),
+            "shapes": asdict(document.export.shapes),
         },
     }
     if document.size is not None:
@@ -317,6 +323,27 @@ def _read_export(content: JsonObject) -> ExportSettings:
         background=as_text(content["background"], "export.background"),
         framing=cast(Framing, as_text(content["framing"], "export.framing")),
         frames=_read_optional(content["frames"], "export.frames", _read_range),
+        # Earlier versions did not know the rest.
+        names=as_text(content.get("names", FRAME_NAMES), "export.names"),
+        sheet=_read_sheet(as_object(content.get("sheet", asdict(SheetLayout())), "export.sheet")),
+        shapes=_read_shapes(
+            as_object(content.get("shapes", asdict(ShapeDetail())), "export.shapes")
+        ),
+    )
+
+
+def _read_sheet(content: JsonObject) -> SheetLayout:
+    return SheetLayout(
+        trimmed=as_flag(content["trimmed"], f"{content.where}.trimmed"),
+        padding=as_whole(content["padding"], f"{content.where}.padding"),
+        power_of_two=as_flag(content["power_of_two"], f"{content.where}.power_of_two"),
+    )
+
+
+def _read_shapes(content: JsonObject) -> ShapeDetail:
+    return ShapeDetail(
+        triangles=as_whole(content["triangles"], f"{content.where}.triangles"),
+        tolerance=_read_optional(content["tolerance"], f"{content.where}.tolerance", as_number),
     )
 
 

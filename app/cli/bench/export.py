@@ -49,7 +49,7 @@ def _speed() -> Table:
     context = create_context()
     poses = {figure.id: KeptPoses(Animation(clip_of(document, figure.id)))}
     with tempfile.TemporaryDirectory() as folder:
-        request = ExportRequest(out=Path(folder), settings=document.export)
+        request = ExportRequest(out=Path(folder), settings=document.export, project="giraffe")
         plan = plan_export(document, request, poses)
         painter = Painter(context, document, pictures, poses, plan)
         posed = painter.pose(11.0)

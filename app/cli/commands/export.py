@@ -1,47 +1,71 @@
-"""`lissom export`: a project's animation as pictures."""
+"""`lissom export`: a project's animation as pictures, video or a model."""
 
 import argparse
+from collections.abc import Mapping
 from contextlib import closing
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 from app.cli.console import StatusLine, notice
-from app.document import ExportSettings, FrameRange, clip_of
+from app.document import Document, ExportSettings, FrameRange, clip_of
+from app.errors import LissomError
 from app.export import (
+    PROJECT,
     ExportPlan,
     ExportRequest,
     KeptPoses,
     Painter,
+    ShapeExport,
     check_request,
     export,
     plan_export,
     sheet_grid,
+    with_light_meshes,
 )
 from app.export_formats import EXPORT_FORMATS, format_by_suffix
 from app.motion import Animation
 from app.render.gpu import create_context
 from app.storage import decode_picture, load_project
+from engine.arrays import Bytes
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Export a project."""
     document = load_project(arguments.project)
+    name = arguments.project.stem
+    out = arguments.out.with_name(arguments.out.name.replace(PROJECT, name))
     request = ExportRequest(
-        out=arguments.out, settings=_settings(document.export, arguments), fps=arguments.fps
+        out=out,
+        settings=_settings(document.export, arguments, out),
+        project=name,
+        fps=arguments.fps,
     )
     check_request(document, request)
     pictures = {
         figure.id: decode_picture(figure.picture.data, f"the picture of {arguments.project}").rgba
         for figure in document.figures
     }
+    if EXPORT_FORMATS[request.settings.format].is_drawn:
+        summary = _draw(document, pictures, request, arguments)
+    else:
+        light = with_light_meshes(document, request.settings.shapes.triangles)
+        summary = _film(light, pictures, request, arguments)
+    print(summary)
+    return 0
+
+
+def _draw(
+    document: Document,
+    pictures: Mapping[int, Bytes],
+    request: ExportRequest,
+    arguments: argparse.Namespace,
+) -> str:
     context = create_context()
     status = StatusLine()
     try:
         status.show("preparing the in-betweens")
-        poses = {
-            figure.id: KeptPoses(Animation(clip_of(document, figure.id), arguments.variant))
-            for figure in document.figures
-        }
+        poses = _poses(document, arguments)
         plan = plan_export(document, request, poses)
         painter = Painter(context, document, pictures, poses, plan)
         with closing(export(plan, painter.pose, painter.draw)) as steps:
@@ -52,28 +76,78 @@ def run(arguments: argparse.Namespace) -> int:
         context.release()
     for message in (*painter.notices, *plan.notices):
         notice(message)
-    print(_summary(plan))
-    return 0
+    return _summary_of_frames(plan)
 
 
-def _settings(own: ExportSettings, arguments: argparse.Namespace) -> ExportSettings:
+def _film(
+    document: Document,
+    pictures: Mapping[int, Bytes],
+    request: ExportRequest,
+    arguments: argparse.Namespace,
+) -> str:
+    status = StatusLine()
+    try:
+        status.show("preparing the in-betweens")
+        poses = _poses(document, arguments)
+        plan = plan_export(document, request, poses)
+        maker = ShapeExport(document, pictures, poses, plan)
+        with closing(maker.run()) as steps:
+            for done in steps:
+                status.show(f"{done} of {len(plan.times)} frames")
+    finally:
+        status.clear()
+    for message in maker.notices:
+        notice(message)
+    return _summary_of_shapes(maker, plan)
+
+
+def _poses(document: Document, arguments: argparse.Namespace) -> dict[int, KeptPoses]:
+    return {
+        figure.id: KeptPoses(Animation(clip_of(document, figure.id), arguments.variant))
+        for figure in document.figures
+    }
+
+
+def _settings(own: ExportSettings, arguments: argparse.Namespace, out: Path) -> ExportSettings:
     """Return the project's settings with those that were given in their place."""
     given = {
-        "format": arguments.format or _format_of(arguments.out),
+        "format": arguments.format or _format_of(out, own),
         "size": arguments.size,
         "background": arguments.background,
         "framing": arguments.framing,
         "frames": None if arguments.frames is None else FrameRange(*arguments.frames),
+        "names": arguments.names,
     }
-    return replace(own, **{name: value for name, value in given.items() if value is not None})
+    shapes = {"triangles": arguments.triangles, "tolerance": arguments.tolerance}
+    return replace(own, **_known(given), shapes=replace(own.shapes, **_known(shapes)))
 
 
-def _format_of(out: Path) -> str | None:
-    """Return the one format that a name stands for."""
-    return None if out.is_dir() else format_by_suffix().get(out.suffix.lower())
+def _known(given: dict[str, Any]) -> dict[str, Any]:
+    return {name: value for name, value in given.items() if value is not None}
 
 
-def _summary(plan: ExportPlan) -> str:
+def _format_of(out: Path, own: ExportSettings) -> str | None:
+    """Return the one format that a name stands for, or None where that is as the project has it.
+
+    Raises
+    ------
+    LissomError
+        If no format has names that end so.
+    """
+    suffix = out.suffix.lower()
+    if out.is_dir() or not suffix:
+        return None
+    every = {end: name for name, format_ in EXPORT_FORMATS.items() for end in format_.suffixes}
+    if suffix not in every:
+        raise LissomError(
+            f"no format has names that end in {out.suffix}: choose one of {', '.join(every)}, or "
+            "say --format"
+        )
+    is_own = suffix in EXPORT_FORMATS[own.format].suffixes
+    return None if is_own else format_by_suffix().get(suffix)
+
+
+def _summary_of_frames(plan: ExportPlan) -> str:
     width, height = plan.view.size
     count = len(plan.times)
     text = f"{plan.out}: {count} {'frame' if count == 1 else 'frames'} of {width} × {height} pixels"
@@ -84,3 +158,15 @@ def _summary(plan: ExportPlan) -> str:
         columns, rows = sheet_grid(plan)
         return f"{text} in {columns} columns and {rows} rows"
     return f"{text}, {plan.fps:g} a second"
+
+
+def _summary_of_shapes(maker: ShapeExport, plan: ExportPlan) -> str:
+    first, last = plan.span
+    counts = [
+        f"{len(shape.motion.targets)} shapes of {len(shape.uv):,} vertices within "
+        f"{shape.motion.error:.2g} pixels of the motion"
+        for shape in maker.shapes
+    ]
+    size = plan.out.stat().st_size / 1000
+    seconds = (last - first) / plan.fps
+    return f"{plan.out}: {'; '.join(counts)}, {seconds:g} s, {size:,.0f} KB"

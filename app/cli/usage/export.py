@@ -16,12 +16,13 @@ formats:
 Without --format, an --out that ends in {telling} chooses it. Animations
 of a project that loops play for ever, others once. PNGs have straight alpha; colours are those of
 sRGB. Interrupted, png leaves the frames that are done, each of them whole, and every other format
-nothing.
+nothing. Files of before are replaced.
 
 examples:
   lissom export wave.lissom --out frames
   lissom export wave.lissom --out wave.gif --size 480x480 --fps 12
   lissom export wave.lissom --out wave.mp4 --background "#ffffff" --framing fit
+  lissom export wave.lissom --out wave.glb --tolerance 0.2
 """
 
 
@@ -50,6 +51,22 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument(
         "--framing", choices=FRAMINGS, help="the picture's own canvas, or all of the motion"
+    )
+    parser.add_argument(
+        "--names",
+        metavar="PATTERN",
+        help='of the files of PNG frames, such as "{name}_####": "#" for each digit of the number, '
+        "{name} for the project's name, here and in --out (default: the project's, frame_####)",
+    )
+    parser.add_argument(
+        "--triangles", metavar="N", type=int, help="of a model, about (default: 4000)"
+    )
+    parser.add_argument(
+        "--tolerance",
+        metavar="PX",
+        type=float,
+        help="how far a model may be from the motion, in pixels, with as many shapes as that takes "
+        "(default: 0.5, with 8 shapes at most)",
     )
     add_variant_option(parser)
     parser.add_argument("--format", choices=tuple(EXPORT_FORMATS), help="what to write")

@@ -16,7 +16,16 @@ from app.editor.jobs import Job
 from app.editor.project import Project
 from app.editor.session import ExportRun, Session
 from app.errors import LissomError
-from app.export import ExportRequest, KeptPoses, check_request, plan_export, replaced_files, suited
+from app.export import (
+    ExportRequest,
+    FrameNames,
+    KeptPoses,
+    check_request,
+    plan_export,
+    replaced_files,
+    suited,
+    with_light_meshes,
+)
 from app.export_formats import EXPORT_FORMATS
 from app.motion import (
     Animation,
@@ -87,8 +96,10 @@ def start(session: Session, out: Path) -> None:
     posing.drop(session)
     document = project.document
     pictures = {figure: puppet.picture.rgba for figure, puppet in project.puppets.items()}
-    request = ExportRequest(out=out, settings=document.export)
+    request = ExportRequest(out=out, settings=document.export, project=project.name)
     check_request(document, request)
+    if not EXPORT_FORMATS[document.export.format].is_drawn:
+        document = with_light_meshes(document, document.export.shapes.triangles)
     there = [] if project.replaceable == out else replaced_files(document, request)
     if there:
         what = "file" if len(there) == 1 else f"{len(there)} files"
@@ -180,8 +191,9 @@ def finish(session: Session, run: ExportRun, notices: Sequence[str]) -> None:
     folder = run.plan.out if run.plan.out.is_dir() else run.plan.out.parent
     count = len(run.plan.times)
     frames = "1 frame" if count == 1 else f"{count} frames"
+    what = f"{frames} to " if EXPORT_FORMATS[run.plan.format].is_drawn else ""
     session.tell(
-        f"Exported {frames} to {run.plan.out.name}.",
+        f"Exported {what}{run.plan.out.name}.",
         tone="good",
         label="Open folder",
         action=do(open_folder, folder),
@@ -228,7 +240,8 @@ def _ask(session: Session, chosen: Callable[[Path], Action]) -> None:
     project = session.project
     if project is None or session.export is not None:
         return
-    suffixes = EXPORT_FORMATS[project.document.export.format].suffixes
+    settings = project.document.export
+    suffixes = EXPORT_FORMATS[settings.format].suffixes
     out = destination(project)
     if out is None:
         name = f"{project.name}{suffixes[0]}" if suffixes else f"{project.name} frames"
@@ -240,4 +253,5 @@ def _ask(session: Session, chosen: Callable[[Path], Action]) -> None:
         suffixes=suffixes,
         writes=True,
         chosen=chosen,
+        is_frame=FrameNames(pattern=settings.names, project=project.name).fits,
     )

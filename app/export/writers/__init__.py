@@ -1,18 +1,19 @@
 """The formats that exports are written in: each of them one module and one entry of a table.
 
-In: a plan, and its frames as straight-alpha pixels.
+In: a plan, and its frames as straight-alpha pixels, or its figures as shapes.
 Out: files that are whole or absent.
-Imports: `app.export.plan`, `app.storage`, Pillow; PyAV only for a video.
+Imports: `app.export.plan`, `app.export.moving_shape`, `app.storage`, Pillow; PyAV only for a video.
 """
 
 from app.export.writers.frame_writer import FrameWriter
 from app.export.writers.png import encode_png
 from app.export.writers.spritesheet import sheet_grid
-from app.export.writers.table import FILE_WRITERS, FOLDER_WRITERS, open_writer
+from app.export.writers.table import FILE_WRITERS, FOLDER_WRITERS, SHAPE_WRITERS, open_writer
 
 __all__ = [
     "FILE_WRITERS",
     "FOLDER_WRITERS",
+    "SHAPE_WRITERS",
     "FrameWriter",
     "encode_png",
     "open_writer",

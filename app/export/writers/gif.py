@@ -10,12 +10,10 @@ from typing import IO, Final
 import numpy as np
 from PIL import Image
 
-from app.errors import LissomError
 from app.export.plan import ExportPlan
 from app.export.writers.frame_writer import FrameWriter, duration
 from engine.arrays import Bytes
 
-FASTEST: Final = 50  # pictures a second: programs slow down those that last under 2/100 second
 OPAQUE_FROM: Final = 128  # levels of alpha; half of a pixel on a soft edge
 _LONGEST: Final = 65_535  # hundredths of a second of a frame
 _CLEAR: Final = 255  # the palette's index of the transparent pixels
@@ -43,11 +41,6 @@ class GifWriter(FrameWriter):
     """
 
     def __init__(self, file: IO[bytes], plan: ExportPlan) -> None:
-        if plan.fps > FASTEST:
-            raise LissomError(
-                f"a GIF shows at most {FASTEST} pictures a second, not {plan.fps:g}; choose fewer "
-                "frames per second for it, or apng or webp"
-            )
         self._file = file
         self._plan = plan
         self._count = 0

@@ -1,15 +1,17 @@
 """The writer of each format: one entry of a table each."""
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import closing, contextmanager
 from types import MappingProxyType
 from typing import IO, Final
 
 from app.errors import LissomError
+from app.export.moving_shape import MovingShape
 from app.export.plan import ExportPlan
 from app.export.writers.apng import ApngWriter
 from app.export.writers.frame_writer import FrameWriter
 from app.export.writers.gif import GifWriter
+from app.export.writers.glb import glb_file
 from app.export.writers.png import PngSequence
 from app.export.writers.spritesheet import SpritesheetWriter
 from app.export.writers.webp import WebpWriter
@@ -22,7 +24,8 @@ def _video(file: IO[bytes], plan: ExportPlan) -> FrameWriter:
     return VideoWriter(file, plan)
 
 
-# By the names of `EXPORT_FORMATS`: those of frames in a folder, and those of one file.
+# By the names of `EXPORT_FORMATS`: those of frames in a folder, those of frames in one file, and
+# those of shapes, which return the contents of their file.
 FOLDER_WRITERS: Final[Mapping[str, Callable[[ExportPlan], FrameWriter]]] = MappingProxyType(
     {"png": PngSequence}
 )
@@ -36,6 +39,9 @@ FILE_WRITERS: Final[Mapping[str, Callable[[IO[bytes], ExportPlan], FrameWriter]]
             "mp4": _video,
         }
     )
+)
+SHAPE_WRITERS: Final[Mapping[str, Callable[[Sequence[MovingShape], ExportPlan], bytes]]] = (
+    MappingProxyType({"glb": glb_file})
 )
 
 

@@ -10,12 +10,10 @@ from typing import IO, Final
 
 from PIL import Image
 
-from app.errors import LissomError
 from app.export.plan import ExportPlan
 from app.export.writers.frame_writer import FrameWriter, duration
 from engine.arrays import Bytes
 
-LARGEST: Final = 16_383  # pixels each way
 _ANIMATED, _ALPHA = 0x02, 0x10
 # Every frame replaces all of the one before it, transparent parts included.
 _NO_BLENDING: Final = 0x02
@@ -41,11 +39,6 @@ class WebpWriter(FrameWriter):
 
     def __init__(self, file: IO[bytes], plan: ExportPlan) -> None:
         self._size = plan.view.size
-        if max(self._size) > LARGEST:
-            raise LissomError(
-                f"a WebP holds at most {LARGEST:,} pixels each way, not {self._size[0]} × "
-                f"{self._size[1]}; choose a smaller size"
-            )
         self._file = file
         self._fps = plan.fps
         self._count = 0

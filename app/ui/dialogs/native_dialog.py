@@ -75,7 +75,7 @@ def _filters(suffixes: tuple[str, ...]) -> list[str]:
 
 def _follow(dialog: FileDialog, chosen: Path) -> Action:
     if dialog.wants_folder:
-        return do(choose, dialog, folder_within(chosen, dialog.name))
+        return do(choose, dialog, folder_within(chosen, dialog.name, dialog.is_frame))
     path = dialog.path_of(str(chosen))
     if path == chosen or not path.exists():
         return do(choose, dialog, path)

@@ -4,7 +4,8 @@ from collections.abc import Generator
 
 from app.editor import ExportRun, Session
 from app.editor.actions import exporting
-from app.export import Painter, export
+from app.export import Painter, ShapeExport, export
+from app.export_formats import EXPORT_FORMATS
 from app.render import Renderer
 
 BUDGET = 0.02  # seconds of each frame of the window
@@ -22,7 +23,7 @@ class Exporter:
     def __init__(self, renderer: Renderer) -> None:
         self._context = renderer.programs.context
         self._plan: object = None
-        self._painter: Painter | None = None
+        self._maker: Painter | ShapeExport | None = None
         self._steps: Generator[int] | None = None
 
     def go_on(self, session: Session) -> None:
@@ -42,15 +43,20 @@ class Exporter:
         """End the export that is under way; whole frames stay."""
         if self._steps is not None:
             self._steps.close()
-        if self._painter is not None:
-            self._painter.release()
-        self._steps = self._painter = self._plan = None
+        if isinstance(self._maker, Painter):
+            self._maker.release()
+        self._steps = self._maker = self._plan = None
 
     def _draw(self, session: Session, run: ExportRun) -> None:
-        if self._steps is None or self._painter is None:
-            painter = Painter(self._context, run.document, run.pictures, run.poses, run.plan)
-            self._plan, self._painter = run.plan, painter
-            self._steps = export(run.plan, painter.pose, painter.draw, waits=False)
+        if self._steps is None or self._maker is None:
+            self._plan = run.plan
+            if EXPORT_FORMATS[run.plan.format].is_drawn:
+                painter = Painter(self._context, run.document, run.pictures, run.poses, run.plan)
+                self._maker = painter
+                self._steps = export(run.plan, painter.pose, painter.draw, waits=False)
+            else:
+                self._maker = ShapeExport(run.document, run.pictures, run.poses, run.plan)
+                self._steps = self._maker.run(waits=False)
         begun = session.clock()
         drawn = run.done
         for done in self._steps:
@@ -59,6 +65,6 @@ class Exporter:
             if done == drawn or session.clock() - begun >= BUDGET:
                 return
             drawn = done
-        notices = self._painter.notices
+        notices = self._maker.notices
         self.release()
         exporting.finish(session, run, notices)

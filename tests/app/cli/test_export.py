@@ -148,6 +148,22 @@ def test_a_name_chooses_its_format(project, tmp_path):
     assert (tmp_path / "a.mp4").read_bytes()[4:8] == b"ftyp"
 
 
+def test_a_model_needs_no_graphics_and_tells_how_good_it_is(project, tmp_path, capsys, monkeypatch):
+    monkeypatch.setattr("app.cli.commands.export.create_context", None)
+    export(project, "--out", tmp_path / "{name}.glb", "--triangles", 600)
+    out = tmp_path / f"{project.stem}.glb"
+    assert out.read_bytes()[:4] == b"glTF"
+    said = capsys.readouterr().out
+    assert said.startswith(f"{out}: ")
+    assert "vertices within" in said
+
+
+def test_frames_are_named_as_one_likes(project, tmp_path):
+    export(project, "--out", tmp_path / "frames", "--frames", "2:4", "--names", "{name}_v2_##x")
+    names = sorted(path.name for path in (tmp_path / "frames").iterdir())
+    assert names == [f"{project.stem}_v2_0{number}x.png" for number in (2, 3, 4)]
+
+
 def test_notices_tell_what_the_person_should_know(project, tmp_path, capsys):
     out = tmp_path / "frames"
     export(project, "--out", out)
@@ -178,6 +194,17 @@ def test_notices_tell_what_the_person_should_know(project, tmp_path, capsys):
         (["--out", "frames", "--framing", "wide"], "canvas"),
         (["--out", "frames", "--variant", "cubic"], "metric"),
         (["--out", "no/frames"], "does not exist"),
+        (["--out", "walk.xyz"], "no format has names that end in .xyz"),
+        (["--out", "walk.obj", "--format", "gif"], "end in .gif"),
+        (["--out", "walk.glb", "--format", "gif"], "end in .gif"),
+        (["--out", "walk.glb", "--format", "png"], "named like a file"),
+        (["--out", "walk.glb", "--fps", "12"], "any rate"),
+        (["--out", "walk.glb", "--triangles", "5"], "100 to"),
+        (["--out", "walk.glb", "--tolerance", "0"], "0.001 to 100"),
+        (["--out", "walk.gif", "--fps", "60"], "50 pictures a second"),
+        (["--out", "walk.webp", "--size", "20000x9"], "16,383 pixels"),
+        (["--out", "frames", "--names", "frame"], "'#' for each digit"),
+        (["--out", "frames", "--names", "a/##"], "'#' for each digit"),
         (["--out", "a.mp4"], "background"),
         ([], "--out"),
     ],

@@ -1,6 +1,18 @@
+from pathlib import Path
+
 import pytest
 
-from app.export.destination import folder_within, replaced, suited
+from app.errors import LissomError
+from app.export.destination import (
+    FrameNames,
+    check_destination,
+    check_room,
+    folder_within,
+    replaced,
+    suited,
+)
+
+NAMES = FrameNames(pattern="frame_####", project="walk")
 
 
 @pytest.mark.parametrize(
@@ -27,16 +39,16 @@ def test_a_folder_that_is_there_keeps_its_name(tmp_path):
 
 
 def test_frames_do_not_lie_among_other_files(tmp_path):
-    assert folder_within(tmp_path, "walk frames") == tmp_path  # it is empty
+    assert folder_within(tmp_path, "walk frames", NAMES.fits) == tmp_path  # it is empty
     (tmp_path / "frame_0001.png").write_bytes(b"")
     (tmp_path / ".DS_Store").write_bytes(b"")
-    assert folder_within(tmp_path, "walk frames") == tmp_path  # it holds frames alone
+    assert folder_within(tmp_path, "walk frames", NAMES.fits) == tmp_path  # it holds frames alone
     (tmp_path / "letter.txt").write_bytes(b"")
     inner = tmp_path / "walk frames"
-    assert folder_within(tmp_path, "walk frames") == inner
+    assert folder_within(tmp_path, "walk frames", NAMES.fits) == inner
     inner.mkdir()
     (inner / "notes.txt").write_bytes(b"")
-    assert folder_within(inner, "walk frames") == inner  # it has the name
+    assert folder_within(inner, "walk frames", NAMES.fits) == inner  # it has the name
 
 
 def test_what_an_export_takes_the_place_of_is_known_before(tmp_path):
@@ -48,3 +60,31 @@ def test_what_an_export_takes_the_place_of_is_known_before(tmp_path):
     assert replaced(tmp_path / "walk.gif", "gif", frames) == []
     (tmp_path / "walk.gif").write_bytes(b"")
     assert replaced(tmp_path / "walk.gif", "gif", frames) == ["walk.gif"]
+
+
+def test_names_of_frames_are_found_again():
+    names = FrameNames(pattern="{name}.##_a", project="the walk")
+    assert names.of(8, 3) == [f"the walk.{n}_a.png" for n in ("08", "09", "10")]
+    assert names.of(99, 2) == ["the walk.099_a.png", "the walk.100_a.png"]
+    assert all(names.fits(name) for name in names.of(95, 10))
+    for other in (
+        "the walk.8_a.png",
+        "the walk.08_b.png",
+        "the walkx08_a.png",
+        "the walk.08_a.gif",
+    ):
+        assert not names.fits(other)
+
+
+def test_what_does_not_fit_on_the_disk_is_refused(tmp_path):
+    check_room(tmp_path / "a.gif", 1000)
+    with pytest.raises(LissomError, match="MB left"):
+        check_room(tmp_path / "a.gif", 10**18)
+
+
+def test_a_folder_that_may_not_be_written_to_is_refused(tmp_path, monkeypatch):
+    check_destination(tmp_path / "a.gif", "gif")
+    monkeypatch.setattr("os.access", lambda path, _: Path(path) != tmp_path)
+    for out, format_ in ((tmp_path / "a.gif", "gif"), (tmp_path / "frames", "png")):
+        with pytest.raises(LissomError, match="may not be written to"):
+            check_destination(out, format_)

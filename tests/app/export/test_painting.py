@@ -29,7 +29,9 @@ def document() -> Document:
 def plan_of(document: Document, poses: Poses, **settings: object) -> ExportPlan:
     settings_ = replace(document.export, **({"framing": "canvas"} | settings))
     return plan_export(
-        document, ExportRequest(out=Path("out"), settings=settings_), {0: KeptPoses(poses)}
+        document,
+        ExportRequest(out=Path("out"), settings=settings_, project="walk"),
+        {0: KeptPoses(poses)},
     )
 
 

@@ -29,7 +29,9 @@ def plan_of(
     fps: float | None = None,
     **settings: object,
 ) -> ExportPlan:
-    request = ExportRequest(out=out, settings=replace(document.export, **settings), fps=fps)
+    request = ExportRequest(
+        out=out, settings=replace(document.export, **settings), project="walk", fps=fps
+    )
     check_request(document, request)
     return plan_export(document, request, {0: KeptPoses(poses or Sliding(document, 0))})
 
@@ -170,6 +172,16 @@ def test_what_cannot_work_is_refused(document, tmp_path, out, settings, reason):
 def test_impossible_rates_are_refused(document, tmp_path, fps):
     with pytest.raises(LissomError, match="frames per second"):
         plan_of(document, tmp_path / "frames", fps=fps)
+
+
+def test_rates_and_sizes_that_a_format_cannot_hold_are_refused(document, tmp_path):
+    with pytest.raises(LissomError, match="50 pictures a second"):
+        plan_of(document, tmp_path / "a.gif", format="gif", fps=60.0)
+    with pytest.raises(LissomError, match=r"16,383 pixels each way.*smaller size"):
+        plan_of(document, tmp_path / "a.webp", format="webp", size=(16_384, 4))
+    wide = Sliding(document, 1700)
+    with pytest.raises(LissomError, match="16,383 pixels"):
+        plan_of(document, tmp_path / "a.webp", wide, format="webp")
 
 
 def test_any_name_without_the_end_of_another_format_will_do(document, tmp_path):

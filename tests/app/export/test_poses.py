@@ -30,7 +30,7 @@ def test_a_fitted_export_works_every_frame_out_once(gl, tmp_path):
     animation = Animation(clip_of(document, figure.id))
     counted = Counted(animation)
     poses = {figure.id: KeptPoses(counted)}
-    request = ExportRequest(out=tmp_path, settings=document.export)
+    request = ExportRequest(out=tmp_path, settings=document.export, project="walk")
     assert request.settings.framing == "fit"
     plan = plan_export(document, request, poses)
     painter = Painter(gl, document, {figure.id: BLOB}, poses, plan)
@@ -48,7 +48,7 @@ def test_an_extent_that_is_known_is_not_measured_again(tmp_path):
     (figure,) = document.figures
     counted = Counted(Animation(clip_of(document, figure.id)))
     poses = {figure.id: KeptPoses(counted)}
-    request = ExportRequest(out=tmp_path, settings=document.export)
+    request = ExportRequest(out=tmp_path, settings=document.export, project="walk")
     box = box_around(figure.domain.mesh.vertices)
     known = plan_export(document, request, poses, box)
     assert counted.asked == []

@@ -1,0 +1,135 @@
+"""A figure as other programs play it: a light textured mesh, and few shapes that it blends."""
+
+import math
+from collections.abc import Generator, Mapping
+from dataclasses import dataclass, replace
+from typing import Final
+
+import numpy as np
+
+from app.document import Document, Figure
+from app.export.bleeding import bled
+from app.export.plan import ExportPlan
+from app.export.poses import Poses
+from app.motion import box_around
+from engine.arrays import Bytes, Complexes, Floats, Integers, freeze
+from engine.domain.meshing import in_order_of, triangulate
+from engine.streaming import ShapeTargets, build_targets
+
+DEFAULT_TOLERANCE: Final = 0.5  # pixels
+MOST_TARGETS: Final = 8  # viewers of glTF need show no more
+_BORDER: Final = 2  # transparent pixels around a texture: readers repeat what is at its edge
+_CLOSE: Final = 0.5  # frames between the moments that are looked at first
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class MovingShape:
+    """A figure's mesh, picture and motion.
+
+    Parameters
+    ----------
+    name : str
+    texture : uint8, shape (h, w, 4)
+        Straight alpha, with colours where it is transparent; the part of the picture that the mesh
+        shows.
+    uv : float64, shape (v, 2)
+        u right, v up; [0, 1] spans the texture.
+    triangles : int32, shape (m, 3)
+        Counter-clockwise, in the order of painting.
+    motion : ShapeTargets
+        In pixels, y up; its times are seconds from the first frame on.
+    """
+
+    name: str
+    texture: Bytes
+    uv: Floats
+    triangles: Integers
+    motion: ShapeTargets
+
+
+def with_light_meshes(document: Document, triangles: int) -> Document:
+    """Return a document whose meshes have at most so many triangles, about."""
+    return replace(document, figures=tuple(_lighter(f, triangles) for f in document.figures))
+
+
+def _lighter(figure: Figure, triangles: int) -> Figure:
+    domain = figure.domain
+    if len(domain.mesh.triangles) <= triangles:
+        return figure
+    mesh = triangulate(domain.outline, triangles, holes=domain.loops[1:])
+    return replace(figure, domain=replace(domain, mesh=in_order_of(mesh, domain.mesh)))
+
+
+def moving_shapes(
+    document: Document,
+    pictures: Mapping[int, Bytes],
+    poses: Mapping[int, Poses],
+    plan: ExportPlan,
+) -> Generator[float, None, list[MovingShape]]:
+    """Find the shapes of every figure; yield how much of the work is done, from 0 to 1.
+
+    Parameters
+    ----------
+    document : Document
+        With the meshes that are exported.
+    pictures : mapping of int to uint8, shape (h, w, 4)
+        The figures' pictures, decoded, by their ids.
+    poses : mapping of int to Poses
+        The figures', by their ids.
+    plan : ExportPlan
+    """
+    first, last = plan.span
+    times = np.linspace(first, last, round((last - first) / _CLOSE) + 1).tolist()
+    tolerance, count = plan.shapes.tolerance, len(document.figures)
+    found = []
+    for index, figure in enumerate(document.figures):
+        steps = build_targets(
+            poses[figure.id].positions,
+            figure.domain.mesh.vertices,
+            times,
+            tolerance=DEFAULT_TOLERANCE if tolerance is None else tolerance,
+            most=MOST_TARGETS if tolerance is None else None,
+        )
+        motion = yield from _share(steps, (first, last), (index, count))
+        texture, uv = _cut_out(pictures[figure.id], figure.domain.mesh.vertices - figure.corner)
+        shape = MovingShape(
+            name=plan.out.stem if count == 1 else figure.name,
+            texture=texture,
+            uv=uv,
+            triangles=figure.domain.mesh.triangles,
+            motion=replace(motion, times=freeze((motion.times - first) / document.fps)),
+        )
+        found.append(shape)
+    return found
+
+
+def _share(
+    steps: Generator[float, None, ShapeTargets], frames: tuple[float, float], part: tuple[int, int]
+) -> Generator[float, None, ShapeTargets]:
+    """Take steps that tell which frame they are at, and yield what that is of the whole work."""
+    (first, last), (index, count) = frames, part
+    while True:
+        try:
+            frame = next(steps)
+        except StopIteration as stop:
+            motion: ShapeTargets = stop.value
+            return motion
+        yield (index + (frame - first) / max(last - first, 1)) / count
+
+
+def _cut_out(picture: Bytes, vertices: Complexes) -> tuple[Bytes, Floats]:
+    """Return the part of a picture that a mesh shows, with a border, and the places in it.
+
+    The vertices are in pixels from the lower left corner of the picture.
+    """
+    height, width, _ = picture.shape
+    box = box_around(vertices)
+    left, bottom = (math.floor(side) - _BORDER for side in (box.lower.real, box.lower.imag))
+    right, top = (math.ceil(side) + _BORDER for side in (box.upper.real, box.upper.imag))
+    texture = np.zeros((top - bottom, right - left, 4), dtype=np.uint8)
+    # The mesh may reach beyond the picture.
+    x0, x1, y0, y1 = max(left, 0), min(right, width), max(bottom, 0), min(top, height)
+    texture[top - y1 : top - y0, x0 - left : x1 - left] = picture[height - y1 : height - y0, x0:x1]
+    offsets = vertices - complex(left, bottom)
+    uv = np.column_stack([offsets.real / (right - left), offsets.imag / (top - bottom)])
+    return bled(texture), freeze(uv)

@@ -1,0 +1,120 @@
+"""Exports of shapes: nothing is drawn, and a few steps of the work are taken at a time."""
+
+import threading
+from collections.abc import Generator, Mapping
+from typing import IO, Final
+
+from app.document import Document
+from app.errors import LissomError
+from app.export.moving_shape import (
+    DEFAULT_TOLERANCE,
+    MOST_TARGETS,
+    MovingShape,
+    moving_shapes,
+)
+from app.export.plan import ExportPlan
+from app.export.poses import Poses
+from app.export.run import come, threads
+from app.export.writers import SHAPE_WRITERS
+from app.storage import write_atomically
+from engine.arrays import Bytes
+
+_BATCH: Final = 16  # steps between two looks at whether the export is still wanted
+
+
+class ShapeExport:
+    """An export of shapes.
+
+    Parameters
+    ----------
+    document : Document
+        With the meshes that are exported.
+    pictures : mapping of int to uint8, shape (h, w, 4)
+        The figures' pictures, decoded, by their ids.
+    poses : mapping of int to Poses
+        The figures', by their ids.
+    plan : ExportPlan
+    """
+
+    def __init__(
+        self,
+        document: Document,
+        pictures: Mapping[int, Bytes],
+        poses: Mapping[int, Poses],
+        plan: ExportPlan,
+    ) -> None:
+        self._plan = plan
+        self._work = moving_shapes(document, pictures, poses, plan)
+        self._share = 0.0
+        self.shapes: list[MovingShape] = []
+
+    def run(self, *, waits: bool = True) -> Generator[int]:
+        """Make what was planned, a part of it at each step.
+
+        Parameters
+        ----------
+        waits : bool
+            As in `export`.
+
+        Yields
+        ------
+        int
+            As how many of the plan's frames the work that is done may count.
+
+        Raises
+        ------
+        LissomError
+            If the motion fails somewhere, or the file cannot be written.
+
+        Notes
+        -----
+        Closing the iterator, or an exception, ends the export, and nothing of it stays.
+        """
+        total, stopped = len(self._plan.times), threading.Event()
+
+        def write(file: IO[bytes]) -> None:
+            file.write(SHAPE_WRITERS[self._plan.format](self.shapes, self._plan))
+            if stopped.is_set():
+                raise LissomError("the export was stopped")
+
+        with threads("shapes", 1) as worker:
+            try:
+                while not self.shapes:
+                    batch = worker.submit(self._advance)
+                    yield from come(batch, int(self._share * total), waits=waits)
+                    batch.result()
+                    yield int(self._share * total)
+                end = worker.submit(write_atomically, self._plan.out, write)
+                yield from come(end, total, waits=waits)
+                end.result()
+            except BaseException:
+                stopped.set()
+                raise
+        yield total
+
+    @property
+    def notices(self) -> tuple[str, ...]:
+        """What the person should know about the shapes that were found."""
+        wanted = self._plan.shapes.tolerance
+        found = []
+        for shape in self.shapes:
+            count, error = len(shape.motion.targets), shape.motion.error
+            if wanted is None and error > DEFAULT_TOLERANCE:
+                found.append(
+                    f"{count} shapes come within {error:.2g} pixels of the motion of {shape.name}; "
+                    "a tolerance of your own takes as many as it needs"
+                )
+            elif count > MOST_TARGETS:
+                found.append(
+                    f"{shape.name} has {count} shapes, and viewers of glTF need show only "
+                    f"{MOST_TARGETS}; a larger tolerance takes fewer"
+                )
+        return tuple(found)
+
+    def _advance(self) -> None:
+        for _ in range(_BATCH):
+            try:
+                self._share = next(self._work)
+            except StopIteration as stop:
+                self.shapes = stop.value
+                return

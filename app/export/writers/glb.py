@@ -1,0 +1,187 @@
+"""glTF 2.0 in one binary file: textured meshes, morph targets, and their weights in time.
+
+Source: https://registry.khronos.org/glTF/specs/2.0/glTF-2.0.html
+"""
+
+import json
+import struct
+from collections.abc import Sequence
+from importlib.metadata import version
+from typing import Any, Final
+
+import numpy as np
+import numpy.typing as npt
+
+from app.export.moving_shape import MovingShape
+from app.export.plan import ExportPlan
+from app.export.writers.png import encode_png
+from engine.arrays import Complexes
+
+PIXELS_PER_METRE: Final = 100  # as engines take sprites
+_LAYER: Final = 0.01  # metres from a figure to the one in front of it
+_UNLIT: Final = "KHR_materials_unlit"
+# As glTF numbers them.
+_UINT16, _UINT32, _FLOAT = 5123, 5125, 5126
+_VERTICES, _INDICES = 34962, 34963
+_LINEAR, _LINEAR_MIPMAPS, _CLAMP = 9729, 9987, 33071
+_MOST_UINT16: Final = 65_534  # the last number ends strips
+_COMPONENTS: Final = {"SCALAR": 1, "VEC2": 2, "VEC3": 3}
+
+
+def glb_file(shapes: Sequence[MovingShape], plan: ExportPlan) -> bytes:
+    """Return a glTF file of figures, the one behind all others first."""
+    asset = _Asset(plan)
+    for shape in shapes:
+        asset.add(shape)
+    return asset.file()
+
+
+class _Asset:
+    """A glTF file in the making: its JSON, and the one buffer that it describes."""
+
+    def __init__(self, plan: ExportPlan) -> None:
+        width, _ = plan.canvas
+        self._origin = complex(width / 2, 0)
+        self._binary = bytearray()
+        self._lists: dict[str, list[dict[str, Any]]] = {}
+        self._channels: list[dict[str, Any]] = []
+        self._samplers: list[dict[str, Any]] = []
+        self._plan = plan
+
+    def add(self, shape: MovingShape) -> None:
+        """Add a figure as a node with a mesh, a material and an animation."""
+        base, targets = shape.motion.base - self._origin, shape.motion.targets
+        weights = np.clip(shape.motion.weights, 0.0, 1.0)
+        primitive: dict[str, Any] = {
+            "attributes": {
+                "POSITION": self._places(base),
+                "TEXCOORD_0": self._numbers(shape.uv * (1, -1) + (0, 1), "VEC2", _VERTICES),
+            },
+            "indices": self._indices(shape),
+            "material": self._material(shape),
+        }
+        mesh: dict[str, Any] = {"name": shape.name, "primitives": [primitive]}
+        if len(targets):
+            primitive["targets"] = [{"POSITION": self._places(target)} for target in targets]
+            # Where nothing plays, the drawing is as it was drawn; a still shows its pose.
+            is_still = len(weights) == 1
+            mesh["weights"] = weights[0].tolist() if is_still else [0.0] * len(targets)
+            names = [f"shape {number}" for number in range(1, len(targets) + 1)]
+            mesh["extras"] = {"targetNames": names}
+        node = {"name": shape.name, "mesh": self._list("meshes", mesh)}
+        layer = len(self._lists.get("nodes", []))
+        if layer:
+            node["translation"] = [0.0, 0.0, _LAYER * layer]
+        number = self._list("nodes", node)
+        if len(targets) and len(weights) > 1:
+            times = self._numbers(shape.motion.times, "SCALAR", extent=True)
+            sampler = {"input": times, "output": self._numbers(weights.ravel(), "SCALAR")}
+            self._samplers.append(sampler | {"interpolation": "LINEAR"})
+            target = {"node": number, "path": "weights"}
+            self._channels.append({"sampler": len(self._samplers) - 1, "target": target})
+
+    def file(self) -> bytes:
+        """Return the whole file."""
+        name = self._plan.out.stem
+        content: dict[str, Any] = {
+            "asset": {
+                "version": "2.0",
+                "generator": f"Lissom {version('lissom')}",
+                "extras": {
+                    "pixelsPerMetre": PIXELS_PER_METRE,
+                    "origin": [self._origin.real, self._origin.imag],
+                },
+            },
+            "extensionsUsed": [_UNLIT],
+            "scene": 0,
+            "scenes": [{"name": name, "nodes": list(range(len(self._lists["nodes"])))}],
+            **self._lists,
+            "samplers": [
+                {
+                    "magFilter": _LINEAR,
+                    "minFilter": _LINEAR_MIPMAPS,
+                    "wrapS": _CLAMP,
+                    "wrapT": _CLAMP,
+                }
+            ],
+        }
+        if self._channels:
+            animation = {"name": name, "channels": self._channels, "samplers": self._samplers}
+            content["animations"] = [animation | {"extras": {"loop": self._plan.loop}}]
+        content["buffers"] = [{"byteLength": len(self._binary)}]
+        text = json.dumps(content, separators=(",", ":")).encode()
+        chunks = _chunk(b"JSON", text, b" ") + _chunk(b"BIN\0", bytes(self._binary), b"\0")
+        return struct.pack("<4sII", b"glTF", 2, 12 + len(chunks)) + chunks
+
+    def _list(self, kind: str, entry: dict[str, Any]) -> int:
+        """Add an entry to one of the lists of the file; return its number."""
+        entries = self._lists.setdefault(kind, [])
+        entries.append(entry)
+        return len(entries) - 1
+
+    def _view(self, data: bytes, target: int | None = None) -> int:
+        self._binary += b"\0" * (-len(self._binary) % 4)
+        view = {"buffer": 0, "byteOffset": len(self._binary), "byteLength": len(data)}
+        self._binary += data
+        return self._list("bufferViews", view if target is None else view | {"target": target})
+
+    def _numbers(
+        self,
+        values: npt.NDArray[np.float64],
+        kind: str,
+        target: int | None = None,
+        *,
+        extent: bool = False,
+    ) -> int:
+        singles = values.astype("<f4").reshape(-1, _COMPONENTS[kind])
+        entry: dict[str, Any] = {
+            "bufferView": self._view(singles.tobytes(), target),
+            "componentType": _FLOAT,
+            "count": len(singles),
+            "type": kind,
+        }
+        if extent:
+            entry["min"] = singles.min(axis=0).tolist()
+            entry["max"] = singles.max(axis=0).tolist()
+        return self._list("accessors", entry)
+
+    def _places(self, pixels: Complexes) -> int:
+        metres = pixels / PIXELS_PER_METRE
+        places = np.column_stack([metres.real, metres.imag, np.zeros(len(metres))])
+        return self._numbers(places, "VEC3", _VERTICES, extent=True)
+
+    def _indices(self, shape: MovingShape) -> int:
+        is_small = len(shape.uv) <= _MOST_UINT16
+        indices = shape.triangles.astype("<u2" if is_small else "<u4")
+        entry = {
+            "bufferView": self._view(indices.tobytes(), _INDICES),
+            "componentType": _UINT16 if is_small else _UINT32,
+            "count": indices.size,
+            "type": "SCALAR",
+        }
+        return self._list("accessors", entry)
+
+    def _material(self, shape: MovingShape) -> int:
+        picture = {
+            "name": shape.name,
+            "bufferView": self._view(encode_png(shape.texture)),
+            "mimeType": "image/png",
+        }
+        texture = self._list("textures", {"source": self._list("images", picture), "sampler": 0})
+        material = {
+            "name": shape.name,
+            "pbrMetallicRoughness": {
+                "baseColorTexture": {"index": texture},
+                "metallicFactor": 0.0,
+                "roughnessFactor": 1.0,
+            },
+            "alphaMode": "BLEND",
+            "doubleSided": True,
+            "extensions": {_UNLIT: {}},
+        }
+        return self._list("materials", material)
+
+
+def _chunk(kind: bytes, data: bytes, filler: bytes) -> bytes:
+    data += filler * (-len(data) % 4)
+    return struct.pack("<I", len(data)) + kind + data
