@@ -19,7 +19,7 @@ Equation map of *Bounded Distortion Harmonic Shape Interpolation* (Chien, Chen, 
     (2), (15)       continuous logarithm             engine.paths.complex_log.continue_logarithm
     Section 7.2     branch at the anchor             engine.paths.complex_log.root_sheets
     Section 4.1     harmonic in-betweens             engine.interpolation.IntegratedInbetweens
-    (3)             logarithmic blend of f_z         engine.interpolation.derivatives.blended_log_fz
+    (3)             logarithmic blend of f_z         engine.interpolation.derivatives.Passage
     (4), (5)        ν variant                        engine.interpolation.nu.NuBlend
     (6), (7)        η variant                        engine.interpolation.eta.EtaBlend
     (8), (16)-(18)  scaled η, largest ρ(t)           engine.interpolation.scaling.SharpScaling

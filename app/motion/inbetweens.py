@@ -187,14 +187,14 @@ class Animation:
         resting = resting_pose(self.clip, moment)
         if resting is not None:
             return self.sampler.samples(resting).positions
-        return self._inbetweens(moment.interval).frame(moment.weights).positions
+        return self._inbetweens(moment.interval).frame(moment.weight).positions
 
     def frame(self, frame: float) -> Frame:
         """Return positions and derivatives of the points at a frame."""
         moment = time_of(self.clip, frame)
         resting = resting_pose(self.clip, moment)
         if resting is None:
-            return self._inbetweens(moment.interval).frame(moment.weights)
+            return self._inbetweens(moment.interval).frame(moment.weight)
         positions = self.sampler.samples(resting).positions
         fz, fzbar = self.clip.figure.map_of(resting).derivatives(self.sampler.sites.points)
         return Frame(positions=positions, fz=fz, fzbar=fzbar, rho=None)

@@ -72,7 +72,7 @@ class Motion:
             return None
         if prepared.series is not None:
             return Streamed(prepared.series, prepared.distortions, moment.weight, triangles)
-        positions = prepared.inbetweens.frame(moment.weights).positions
+        positions = prepared.inbetweens.frame(moment.weight).positions
         return Placed(positions=positions, triangles=triangles)
 
     def positions(self, clip: Clip, frame: float) -> Complexes | None:

@@ -90,7 +90,7 @@ def certify_clip(clip: Clip, variant: Variant | None = None) -> Report:
         )
         reached = bound
         for t in np.linspace(0.0, 1.0, TIMES)[1:-1]:
-            frame = inbetweens.frame(np.array([1.0 - t, t]))
+            frame = inbetweens.frame(float(t))
             reached = reached.joined(Extremes.measured(frame.fz, frame.fzbar))
         reports.append(
             IntervalReport(

@@ -66,7 +66,7 @@ def measure_curves(clip: Clip, motion: Motion) -> Curves:
         end = keys[last].frame if last > first else keys[last].frame + period
         for share in np.linspace(0.0, 1.0, TIMES):
             t = keys[first].easing(float(share))
-            blended = inbetweens.frame(np.array([1.0 - t, t]))
+            blended = inbetweens.frame(t)
             frames.append(start + share * (end - start))
             ks.append(distortion.k(blended.fz, blended.fzbar))
             taus.append(distortion.tau(blended.fz, blended.fzbar))

@@ -7,22 +7,28 @@ Imports: `engine.paths`, `engine.dirichlet`, `engine.maps`.
 
 from engine.interpolation.inbetweens import Frame, Inbetweens, IntegratedInbetweens
 from engine.interpolation.keyframe_samples import KeyframeSamples, sample_keyframes
+from engine.interpolation.passing import Course, End, Joint, Tangent, tangent_length
 from engine.interpolation.preparation import Prepared, prepare, prepare_inbetweens
 from engine.interpolation.sites import Sites, prepare_sites
 from engine.interpolation.smooth_scaling import Scaling
 from engine.variant import Variant
 
 __all__ = [
+    "Course",
+    "End",
     "Frame",
     "Inbetweens",
     "IntegratedInbetweens",
+    "Joint",
     "KeyframeSamples",
     "Prepared",
     "Scaling",
     "Sites",
+    "Tangent",
     "Variant",
     "prepare",
     "prepare_inbetweens",
     "prepare_sites",
     "sample_keyframes",
+    "tangent_length",
 ]

@@ -2,11 +2,14 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Self
 
 import numpy as np
 
 from engine.arrays import Complexes, Floats, Integers
+from engine.errors import EngineError
 from engine.interpolation.keyframe_samples import KeyframeSamples
+from engine.interpolation.passing import Course
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -22,6 +25,62 @@ class Derivatives:
     gz: Complexes
 
 
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Passage:
+    """The keyframes that the in-betweens of two of them are blended of, and with which weights.
+
+    Build it with `Passage.of`.
+
+    Parameters
+    ----------
+    keyframes : tuple of KeyframeSamples, length q
+        The two, with the one before them and the one after them where the course asks for it.
+    sheets : int32, shape (q,)
+        Branch of each logarithm, from `root_sheets`.
+    course : Course
+    """
+
+    keyframes: tuple[KeyframeSamples, ...]
+    sheets: Integers
+    course: Course
+
+    @classmethod
+    def of(
+        cls, keyframes: Sequence[KeyframeSamples], sheets: Integers, course: Course | None = None
+    ) -> Self:
+        """Put keyframes and course together; by default two keyframes are blended linearly.
+
+        Raises
+        ------
+        EngineError
+            If there are not as many keyframes and sheets as the course weighs.
+        """
+        course = Course.straight() if course is None else course
+        if not len(keyframes) == len(sheets) == course.count:
+            wanted = {2: "two", 3: "three", 4: "four"}[course.count]
+            raise EngineError(
+                f"An interval of this course has {wanted} keyframes, not {len(keyframes)} with "
+                f"{len(sheets)} sheets."
+            )
+        return cls(keyframes=tuple(keyframes), sheets=sheets, course=course)
+
+    @property
+    def ends(self) -> tuple[KeyframeSamples, KeyframeSamples]:
+        """The keyframes at time 0 and at time 1."""
+        first = self.course.first
+        return self.keyframes[first], self.keyframes[first + 1]
+
+    def anchor_position(self, time: float) -> complex:
+        """Return the blended position of the anchor."""
+        return complex(self.course(time) @ [key.anchor_position for key in self.keyframes])
+
+    def log_fz(self, weights: Floats) -> tuple[Complexes, Complexes]:
+        """Return Σ w_i log f_z of the keyframes and its derivative, each (s,); Equation (3)."""
+        logarithm = weighted([key.log_fz for key in self.keyframes], weights)
+        logarithm.imag += 2 * np.pi * float(weights @ self.sheets)
+        return logarithm, weighted([key.log_fz_z for key in self.keyframes], weights)
+
+
 def weighted(arrays: Sequence[Complexes], weights: Floats) -> Complexes:
     """Return Σ w_i a_i; an array whose weight is 0 is not touched."""
     terms = [(a, w) for a, w in zip(arrays, weights, strict=True) if w != 0.0]
@@ -29,12 +88,3 @@ def weighted(arrays: Sequence[Complexes], weights: Floats) -> Complexes:
     for array, weight in terms[1:]:
         total += array * weight
     return total
-
-
-def blended_log_fz(
-    keyframes: Sequence[KeyframeSamples], sheets: Integers, weights: Floats
-) -> tuple[Complexes, Complexes]:
-    """Return Σ w_i log f_z of the keyframes and its derivative, each (s,); Equation (3)."""
-    logarithm = weighted([key.log_fz for key in keyframes], weights)
-    logarithm.imag += 2 * np.pi * float(weights @ sheets)
-    return logarithm, weighted([key.log_fz_z for key in keyframes], weights)

@@ -1,14 +1,12 @@
 """The η variants (Sections 5.1, 5.4 and 5.5)."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Self
 
 import numpy as np
 
-from engine.arrays import Complexes, Floats, Integers, freeze
-from engine.interpolation.derivatives import Derivatives, blended_log_fz, weighted
-from engine.interpolation.keyframe_samples import KeyframeSamples
+from engine.arrays import Complexes, Floats, freeze
+from engine.interpolation.derivatives import Derivatives, Passage, weighted
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -19,41 +17,35 @@ class EtaBlend:
 
     Parameters
     ----------
-    keyframes : tuple of KeyframeSamples
-    sheets : int32, shape (q,)
-        Branch of each logarithm, from `root_sheets`; another branch only turns the in-betweens.
+    passage : Passage
+        Another branch of its logarithms only turns the in-betweens.
     conj_eta, conj_eta_z : tuple of complex128, shape (s,)
         conj(η) = Φ' Ψ' of each keyframe, holomorphic, and its derivative.
     """
 
-    keyframes: tuple[KeyframeSamples, ...]
-    sheets: Integers
+    passage: Passage
     conj_eta: tuple[Complexes, ...]
     conj_eta_z: tuple[Complexes, ...]
 
     @classmethod
-    def of(cls, keyframes: Sequence[KeyframeSamples], sheets: Integers) -> Self:
+    def of(cls, passage: Passage) -> Self:
         """Work out η of the keyframes."""
         values, derivatives = [], []
-        for key in keyframes:
+        for key in passage.keyframes:
             squared = np.exp(2 * key.log_fz)
             values.append(freeze(key.nu * squared))
             derivatives.append(freeze((key.nu_z + 2 * key.nu * key.log_fz_z) * squared))
-        return cls(
-            keyframes=tuple(keyframes),
-            sheets=sheets,
-            conj_eta=tuple(values),
-            conj_eta_z=tuple(derivatives),
-        )
+        return cls(passage=passage, conj_eta=tuple(values), conj_eta_z=tuple(derivatives))
 
     @property
     def nbytes(self) -> int:
         """Memory beyond the keyframes' own, in bytes."""
         return sum(array.nbytes for array in (*self.conj_eta, *self.conj_eta_z))
 
-    def derivatives(self, weights: Floats) -> Derivatives:
+    def derivatives(self, time: float) -> Derivatives:
         """Blend f_z logarithmically and η linearly."""
-        return self.with_log_fz(*blended_log_fz(self.keyframes, self.sheets, weights), weights)
+        weights = self.passage.course(time)
+        return self.with_log_fz(*self.passage.log_fz(weights), weights)
 
     def with_log_fz(
         self, logarithm: Complexes, logarithm_z: Complexes, weights: Floats

@@ -1,26 +1,24 @@
-"""In-betweens of two keyframes by one variant, as functions of the weights."""
+"""In-betweens of two keyframes by one variant, as functions of time from one to the other."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Protocol, Self
 
 import numpy as np
 
-from engine.arrays import Complexes, Floats, freeze
-from engine.interpolation.derivatives import Derivatives, weighted
-from engine.interpolation.keyframe_samples import KeyframeSamples
+from engine.arrays import Complexes, freeze
+from engine.interpolation.derivatives import Derivatives, Passage, weighted
 from engine.interpolation.sites import Sites
 from engine.interpolation.smooth_scaling import Scaling
 
 
 class Blend(Protocol):
-    """A variant: how the derivatives of an in-between follow from the weights."""
+    """A variant: how the derivatives of an in-between follow from the keyframes and the time."""
 
     @property
     def nbytes(self) -> int:
         """Memory beyond the keyframes' own, in bytes."""
 
-    def derivatives(self, weights: Floats) -> Derivatives:
+    def derivatives(self, time: float) -> Derivatives:
         """Return the in-between's derivatives at the nodes of the paths."""
 
 
@@ -54,14 +52,14 @@ class IntegratedInbetweens:
     Parameters
     ----------
     sites : Sites
-    keyframes : tuple of KeyframeSamples, length 2
+    passage : Passage
     blend : Blend
     scale : Scaling or None
         None where Ψ is not scaled.
     """
 
     sites: Sites
-    keyframes: tuple[KeyframeSamples, ...]
+    passage: Passage
     blend: Blend
     scale: Scaling | None
 
@@ -70,58 +68,56 @@ class IntegratedInbetweens:
         """Memory beyond the sites' and the keyframes' own, in bytes."""
         return self.blend.nbytes + (0 if self.scale is None else self.scale.nbytes)
 
-    def rho(self, weights: Floats) -> float:
-        """Return ρ for the weights (2,); 1 where Ψ is not scaled."""
-        return 1.0 if self.scale is None else self.scale(float(weights[1]))
+    def rho(self, time: float) -> float:
+        """Return ρ; 1 where Ψ is not scaled."""
+        return 1.0 if self.scale is None else self.scale(time)
 
-    def parts(self, weights: Floats) -> tuple[Complexes, Complexes]:
+    def parts(self, time: float) -> tuple[Complexes, Complexes]:
         """Return Φ and conj(Ψ), each (m,), both 0 at the anchor and Ψ before its scaling.
 
-        f is the anchor's position + Φ + ρ conj(Ψ). Without ρ both parts are analytic in the
-        weights; ρ is smooth, but bends within a small part of the interval.
+        f is the anchor's position + Φ + ρ conj(Ψ). Without ρ both parts are analytic in time; ρ is
+        smooth, but bends within a small part of the interval.
         """
         # What the quadrature lacks of the keyframes is known, and blended like them: the keyframes
         # come out exactly, without a jump in time.
-        blended = self.blend.derivatives(weights)
+        blended = self.blend.derivatives(time)
+        keyframes, weights = self.passage.keyframes, self.passage.course(time)
         paths = self.sites.paths
         phi = paths.integrals(paths.step_integrals(blended.fz, blended.fzz))
-        phi += weighted([key.phi_error for key in self.keyframes], weights)
+        phi += weighted([key.phi_error for key in keyframes], weights)
         psi = paths.integrals(paths.step_integrals(blended.g, blended.gz))
-        psi += weighted([key.psi_error for key in self.keyframes], weights)
+        psi += weighted([key.psi_error for key in keyframes], weights)
         return phi, psi.conj()
 
-    def offsets(self, weights: Floats) -> Complexes:
+    def offsets(self, time: float) -> Complexes:
         """Return f − f(anchor) at the points, (m,)."""
-        return self._offsets(self.blend.derivatives(weights), weights, self.rho(weights))
+        return self._offsets(self.blend.derivatives(time), time, self.rho(time))
 
-    def anchor_position(self, weights: Floats) -> complex:
-        """Return the blended position of the anchor."""
-        return complex(weights @ [key.anchor_position for key in self.keyframes])
-
-    def frame(self, weights: Floats) -> Frame:
-        """Return the in-between for the weights (2,) of the keyframes."""
-        blended = self.blend.derivatives(weights)
-        rho = self.rho(weights)
+    def frame(self, time: float) -> Frame:
+        """Return the in-between at a time in [0, 1]."""
+        blended = self.blend.derivatives(time)
+        rho = self.rho(time)
         places = self.sites.paths.places
         return Frame(
-            positions=self.anchor_position(weights) + self._offsets(blended, weights, rho),
+            positions=self.passage.anchor_position(time) + self._offsets(blended, time, rho),
             fz=blended.fz[places],
             fzbar=rho * blended.g[places].conj(),
             rho=None if self.scale is None else rho,
         )
 
-    def _offsets(self, blended: Derivatives, weights: Floats, rho: float) -> Complexes:
+    def _offsets(self, blended: Derivatives, time: float, rho: float) -> Complexes:
         """Return what `parts` gives, added up; one sum along the paths serves both."""
+        keyframes, weights = self.passage.keyframes, self.passage.course(time)
         paths = self.sites.paths
         steps = paths.step_integrals(blended.fz, blended.fzz)
         conj_psi = paths.step_integrals(blended.g, blended.gz)
         np.conj(conj_psi, out=conj_psi)
         conj_psi *= rho
         steps += conj_psi
-        errors = weighted([key.psi_error for key in self.keyframes], weights)
+        errors = weighted([key.psi_error for key in keyframes], weights)
         np.conj(errors, out=errors)
         errors *= rho
-        errors += weighted([key.phi_error for key in self.keyframes], weights)
+        errors += weighted([key.phi_error for key in keyframes], weights)
         errors += paths.integrals(steps)
         return errors
 
@@ -132,23 +128,23 @@ class LinearInbetweens:
 
     Parameters
     ----------
-    keyframes : tuple of KeyframeSamples, length 2
+    passage : Passage
     fz, fzbar : tuple of complex128, shape (m,)
         Derivatives of each keyframe at the points.
     """
 
-    keyframes: tuple[KeyframeSamples, ...]
+    passage: Passage
     fz: tuple[Complexes, ...]
     fzbar: tuple[Complexes, ...]
 
     @classmethod
-    def of(cls, keyframes: Sequence[KeyframeSamples], sites: Sites) -> Self:
+    def of(cls, passage: Passage, sites: Sites) -> Self:
         """Work out the derivatives of the keyframes at the points."""
         places = sites.paths.places
-        fz = [np.exp(key.log_fz[places]) for key in keyframes]
-        g = [key.nu[places] * a for key, a in zip(keyframes, fz, strict=True)]
+        fz = [np.exp(key.log_fz[places]) for key in passage.keyframes]
+        g = [key.nu[places] * a for key, a in zip(passage.keyframes, fz, strict=True)]
         return cls(
-            keyframes=tuple(keyframes),
+            passage=passage,
             fz=tuple(map(freeze, fz)),
             fzbar=tuple(freeze(b.conj()) for b in g),
         )
@@ -158,23 +154,23 @@ class LinearInbetweens:
         """Memory beyond the sites' and the keyframes' own, in bytes."""
         return sum(array.nbytes for array in (*self.fz, *self.fzbar))
 
-    def offsets(self, weights: Floats) -> Complexes:
+    def offsets(self, time: float) -> Complexes:
         """Return f − f(anchor) at the points, (m,)."""
-        positions = weighted([key.positions for key in self.keyframes], weights)
-        return positions - self.anchor_position(weights)
+        return self._positions(time) - self.passage.anchor_position(time)
 
-    def anchor_position(self, weights: Floats) -> complex:
-        """Return the blended position of the anchor."""
-        return complex(weights @ [key.anchor_position for key in self.keyframes])
-
-    def frame(self, weights: Floats) -> Frame:
-        """Return the in-between for the weights (2,) of the keyframes."""
+    def frame(self, time: float) -> Frame:
+        """Return the in-between at a time in [0, 1]."""
+        weights = self.passage.course(time)
         return Frame(
-            positions=weighted([key.positions for key in self.keyframes], weights),
+            positions=self._positions(time),
             fz=weighted(self.fz, weights),
             fzbar=weighted(self.fzbar, weights),
             rho=None,
         )
+
+    def _positions(self, time: float) -> Complexes:
+        keyframes = self.passage.keyframes
+        return weighted([key.positions for key in keyframes], self.passage.course(time))
 
 
 Inbetweens = IntegratedInbetweens | LinearInbetweens

@@ -7,19 +7,18 @@ keyframes, is analytic in time, and takes few forms across the outline: as Σ_j 
 handful of Dirichlet problems serve every time.
 """
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Self
 
 import numpy as np
 import numpy.typing as npt
 
-from engine.arrays import Complexes, Floats, Integers, freeze
+from engine.arrays import Complexes, Floats, freeze
 from engine.chebyshev import PiecewiseSeries, nodes, to_coefficients
 from engine.dirichlet import Extension, ProjectedTransform
-from engine.interpolation.derivatives import Derivatives, blended_log_fz
+from engine.interpolation.derivatives import Derivatives, Passage
 from engine.interpolation.eta import EtaBlend
-from engine.interpolation.keyframe_samples import KeyframeSamples
+from engine.interpolation.passing import Course
 from engine.paths import IntegrationPaths
 
 DEGREE = 24  # of the series of a piece of time
@@ -35,10 +34,11 @@ class MetricBlend:
 
     log f_z is the logarithmic blend and a holomorphic residual,
 
-        log f_z^t = (1 − t) log f_z⁰ + t log f_z¹ + Σ c_j(t) H_j,
+        log f_z^t = Σ w_i(t) log f_z^i + Σ c_j(t) H_j,
 
-    where the real part of H_j on the outline is the mode U_j of the residual. It vanishes at both
-    keyframes, which come out exactly however coarsely the integral equation was solved.
+    with the weights of the interval's course, 1 − t and t between two keyframes; the real part of
+    H_j on the outline is the mode U_j of the residual. It vanishes at both keyframes, which come
+    out exactly however coarsely the integral equation was solved.
 
     Departs from the paper: Section 7.4 transforms ln |f_z^t| as a whole, with an integration
     constant for the whole shape. Here the constant is tied to the anchor: arg f_z is linear there.
@@ -46,7 +46,6 @@ class MetricBlend:
     Parameters
     ----------
     eta : EtaBlend
-        Of the two keyframes.
     series : PiecewiseSeries
         c_j.
     modes : complex128, shape (j, s)
@@ -63,21 +62,20 @@ class MetricBlend:
     @classmethod
     def of(
         cls,
-        keyframes: Sequence[KeyframeSamples],
-        sheets: Integers,
+        passage: Passage,
         paths: IntegrationPaths,
         transform: Extension | ProjectedTransform,
     ) -> Self:
         """Solve the Dirichlet problems of the residual between two keyframes."""
-        derivatives = [key.map.derivatives(transform.nodes) for key in keyframes]
+        derivatives = [key.map.derivatives(transform.nodes) for key in passage.keyframes]
         fz, fzbar = (np.array(column) for column in zip(*derivatives, strict=True))
-        real_parts, series = separate(OutlineMetric.of(fz, fzbar))
+        real_parts, series = separate(OutlineMetric.of(fz, fzbar), passage.course)
         modes, modes_z = transform.extend(real_parts)
         modes.imag -= modes[0].imag
         # Unbounded there; the steps beside these nodes are so short that it is not missed.
         modes_z[paths.cornered] = 0.0
         return cls(
-            eta=EtaBlend.of(keyframes, sheets),
+            eta=EtaBlend.of(passage),
             series=series,
             modes=freeze(np.ascontiguousarray(modes.T)),
             modes_z=freeze(modes_z.T.astype(np.complex64, order="C")),
@@ -89,10 +87,12 @@ class MetricBlend:
         arrays = (self.modes, self.modes_z, self.series.coefficients)
         return self.eta.nbytes + sum(array.nbytes for array in arrays)
 
-    def derivatives(self, weights: Floats) -> Derivatives:
+    def derivatives(self, time: float) -> Derivatives:
         """Blend the metric on the outline and η everywhere."""
-        logarithm, logarithm_z = blended_log_fz(self.eta.keyframes, self.eta.sheets, weights)
-        coefficients = self.series(float(weights[1]))
+        passage = self.eta.passage
+        weights = passage.course(time)
+        logarithm, logarithm_z = passage.log_fz(weights)
+        coefficients = self.series(time)
         # As reals: a complex product with real coefficients would do half its work on zeros.
         logarithm.view(np.float64)[:] += coefficients @ self.modes.view(np.float64)
         single = coefficients.astype(np.float32)
@@ -102,13 +102,13 @@ class MetricBlend:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class OutlineMetric:
-    """The metrics of two keyframes at points of the outline.
+    """The metrics of an interval's keyframes at points of the outline.
 
     Parameters
     ----------
-    log_modulus, trace : float64, shape (2, N)
+    log_modulus, trace : float64, shape (q, N)
         ln |f_z|, and 𝒜 = |f_z|² + |f_z̄|², half the trace of the metric tensor.
-    eta : complex128, shape (2, N)
+    eta : complex128, shape (q, N)
         η up to conjugation, which |f_z| does not see.
     """
 
@@ -118,20 +118,24 @@ class OutlineMetric:
 
     @classmethod
     def of(cls, fz: Complexes, fzbar: Complexes) -> "OutlineMetric":
-        """Work the metrics out from the derivatives (2, N)."""
+        """Work the metrics out from the derivatives (q, N)."""
         return cls(
             log_modulus=np.log(np.abs(fz)),
             trace=np.abs(fz) ** 2 + np.abs(fzbar) ** 2,
             eta=fz * fzbar.conj(),
         )
 
-    def residuals(self, times: Floats) -> Floats:
-        """Return ln |f_z| of the blended metric less the blend of the ln |f_z|, (N, times).
+    def residuals(self, weights: Floats) -> Floats:
+        """Return ln |f_z| of the blended metric less the blend of the ln |f_z|, (N, t).
 
         Departs from the paper: the bars of Equation (13) and the lines before it were lost; the
         product of its roots is |η|².
+
+        Parameters
+        ----------
+        weights : float64, shape (q, t)
+            Of the keyframes, at t times.
         """
-        weights = np.stack([1 - times, times])
         trace = self.trace.T @ weights
         twice_eta = 2 * np.abs(self.eta.T @ weights)
         # σ_a² = 𝒜 + 2|η| and σ_b² = 𝒜 − 2|η|, Equations (10) and (11); K² is their quotient,
@@ -144,8 +148,8 @@ class OutlineMetric:
         return residuals
 
 
-def separate(metric: OutlineMetric) -> tuple[Floats, PiecewiseSeries]:
-    """Write the residuals as a sum of products of functions on the outline and of time.
+def separate(metric: OutlineMetric, course: Course) -> tuple[Floats, PiecewiseSeries]:
+    """Write the residuals along a course as a sum of products of functions on the outline and time.
 
     Returns
     -------
@@ -159,7 +163,7 @@ def separate(metric: OutlineMetric) -> tuple[Floats, PiecewiseSeries]:
     while pending:
         start, end = pending.pop()
         times = start + (end - start) * (1 + x) / 2
-        coefficients = metric.residuals(times) @ to_coefficients(DEGREE).T
+        coefficients = metric.residuals(course.at(times)) @ to_coefficients(DEGREE).T
         rest = np.abs(coefficients[:, -LAST_TERMS:]).max()
         if rest <= TOLERANCE or end - start <= SHORTEST:
             breaks.append(end)

@@ -4,9 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from engine.arrays import Floats, Integers
-from engine.interpolation.derivatives import Derivatives, blended_log_fz, weighted
-from engine.interpolation.keyframe_samples import KeyframeSamples
+from engine.interpolation.derivatives import Derivatives, Passage, weighted
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -15,30 +13,29 @@ class NuBlend:
 
     Parameters
     ----------
-    keyframes : tuple of KeyframeSamples
-    sheets : int32, shape (q,)
-        Branch of each logarithm, from `root_sheets`. A change of one by a full turn changes the
-        shape of the in-betweens, not only how it turns.
+    passage : Passage
+        A change of one of its sheets by a full turn changes the shape of the in-betweens, not only
+        how it turns.
     """
 
-    keyframes: tuple[KeyframeSamples, ...]
-    sheets: Integers
+    passage: Passage
 
     @property
     def nbytes(self) -> int:
         """Memory beyond the keyframes' own, in bytes."""
         return 0
 
-    def derivatives(self, weights: Floats) -> Derivatives:
+    def derivatives(self, time: float) -> Derivatives:
         """Blend f_z logarithmically and ν linearly.
 
         Departs from the paper: Equation (5) lost its second bar; it reads
         f_z̄ = conj(ν) conj(f_z), that is Ψ' = ν Φ'.
         """
-        logarithm, logarithm_z = blended_log_fz(self.keyframes, self.sheets, weights)
+        keyframes, weights = self.passage.keyframes, self.passage.course(time)
+        logarithm, logarithm_z = self.passage.log_fz(weights)
         fz = np.exp(logarithm)
-        nu = weighted([key.nu for key in self.keyframes], weights)
-        nu_z = weighted([key.nu_z for key in self.keyframes], weights)
+        nu = weighted([key.nu for key in keyframes], weights)
+        nu_z = weighted([key.nu_z for key in keyframes], weights)
         nu_z += nu * logarithm_z
         nu_z *= fz
         logarithm_z *= fz

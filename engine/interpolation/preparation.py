@@ -9,6 +9,7 @@ import numpy.typing as npt
 from engine.arrays import Complexes, Integers
 from engine.dirichlet import Extension, HilbertTransform, ProjectedTransform
 from engine.errors import EngineError
+from engine.interpolation.derivatives import Passage
 from engine.interpolation.eta import EtaBlend
 from engine.interpolation.inbetweens import (
     Blend,
@@ -20,10 +21,11 @@ from engine.interpolation.inbetweens import (
 from engine.interpolation.keyframe_samples import KeyframeSamples, sample_keyframes
 from engine.interpolation.metric import MetricBlend
 from engine.interpolation.nu import NuBlend
+from engine.interpolation.passing import Course, Joint, Tangent, tangent_length
 from engine.interpolation.scaling import SharpScaling
 from engine.interpolation.sites import Sites, prepare_sites
 from engine.interpolation.smooth_scaling import Scaling
-from engine.maps import HarmonicMap
+from engine.maps import Bounds, HarmonicMap
 from engine.paths import root_sheets
 from engine.variant import Variant
 
@@ -40,14 +42,18 @@ class Prepared:
     variant : Variant
     sites : Sites
     keyframes : tuple of KeyframeSamples, length q
-    intervals : tuple of Inbetweens, length q − 1
-        One for each pair of neighbouring keyframes.
+    intervals : tuple of Inbetweens, length q − 1 or q
+        One for each pair of neighbouring keyframes; in a loop one more, from the last to the first.
+    tangents : tuple of float, length q
+        How much of its full velocity the motion has where it passes each keyframe, from 0, a stop,
+        to 1; 1 too where it does not pass.
     """
 
     variant: Variant
     sites: Sites
     keyframes: tuple[KeyframeSamples, ...]
     intervals: tuple[Inbetweens, ...]
+    tangents: tuple[float, ...]
 
     @property
     def nbytes(self) -> int:
@@ -56,7 +62,7 @@ class Prepared:
         return sum(part.nbytes for part in parts)
 
     def frame(self, time: float) -> Frame:
-        """Return the in-between at a time in [0, q − 1].
+        """Return the in-between at a time from 0 to the number of intervals.
 
         Raises
         ------
@@ -66,12 +72,11 @@ class Prepared:
         last = len(self.intervals)
         if not 0.0 <= time <= last:
             raise EngineError(
-                f"Time {time:g} is out of range: {last + 1} keyframes span the times from 0 to "
-                f"{last}."
+                f"Time {time:g} is out of range: {len(self.keyframes)} keyframes span the times "
+                f"from 0 to {last}."
             )
         interval = min(int(time), last - 1)
-        part = float(time) - interval
-        return self.intervals[interval].frame(np.array([1.0 - part, part]))
+        return self.intervals[interval].frame(float(time) - interval)
 
 
 def prepare(
@@ -84,6 +89,9 @@ def prepare(
     anchor: npt.ArrayLike | None = None,
     turns: npt.ArrayLike | None = None,
     transform: HilbertTransform | None = None,
+    through: bool = False,
+    loop: bool = False,
+    bounds: Bounds = Bounds(),
 ) -> Prepared:
     """Prepare the in-betweens of keyframes at points.
 
@@ -98,10 +106,18 @@ def prepare(
     variant : Variant or str
     triangles, anchor
         As in `prepare_sites`.
-    turns : int, shape (q − 1,), optional
+    turns : int, shape (q − 1,), or (q,) in a loop, optional
         Full turns between neighbouring keyframes beyond the shorter way.
     transform : HilbertTransform, optional
         For the metric variant: of this outline, where the caller has it already.
+    through : bool
+        Whether the velocity is continuous at keyframes between two others. The in-betweens of the
+        paper have a corner there.
+    loop : bool
+        Whether the last keyframe leads on to the first one, which is at time q again.
+    bounds : Bounds
+        What motion through keyframes obeys, as far as the variant can; keyframes beyond them widen
+        them for the intervals around.
 
     Raises
     ------
@@ -113,19 +129,43 @@ def prepare(
     _require_keyframes(maps)
     sites = prepare_sites(outline, maps[0].cage, points, triangles=triangles, anchor=anchor)
     samples = sample_keyframes(maps, sites)
-    sheets = root_sheets(np.array([key.anchor_fz for key in samples]), turns)
+    around = (*samples, samples[0]) if loop else samples
+    sheets = root_sheets(np.array([key.anchor_fz for key in around]), turns)
     extension: Extension | None = None
     if variant.needs_transform:
         transform = transform or HilbertTransform.on(sites.outline, sites.cage)
         _require_outline(transform.outline, sites)
         extension = transform.at(sites.paths.nodes)
-    intervals = tuple(
-        prepare_inbetweens(
-            variant, sites, samples[i : i + 2], sheets[i : i + 2], transform=extension
+    joint = Joint(1.0, 1.0)  # keyframes are at whole times
+    tangents: list[Tangent | None] = [
+        Tangent(joint, tangent_length(variant, three, joint, bounds, sites.boundary))
+        if through and three
+        else None
+        for three in _neighbourhoods(maps, loop=loop)
+    ]
+    intervals = []
+    for i in range(len(around) - 1):
+        ends = tangents[i], tangents[(i + 1) % len(maps)]
+        course = Course.between(*(1.0 if end is None else end for end in ends))
+        window = np.arange(course.count) + i - course.first
+        rounds, places = np.divmod(window, len(maps))
+        interval = prepare_inbetweens(
+            variant,
+            sites,
+            [samples[place] for place in places],
+            sheets[places] + rounds.astype(np.int32) * (sheets[-1] - sheets[0]),
+            transform=extension,
+            course=course,
+            bounds=bounds,
         )
-        for i in range(len(maps) - 1)
+        intervals.append(interval)
+    return Prepared(
+        variant=variant,
+        sites=sites,
+        keyframes=samples,
+        intervals=tuple(intervals),
+        tangents=tuple(1.0 if tangent is None else tangent.length for tangent in tangents),
     )
-    return Prepared(variant=variant, sites=sites, keyframes=samples, intervals=intervals)
 
 
 def prepare_inbetweens(
@@ -135,6 +175,8 @@ def prepare_inbetweens(
     sheets: Integers,
     *,
     transform: Extension | ProjectedTransform | None = None,
+    course: Course | None = None,
+    bounds: Bounds = Bounds(),
 ) -> Inbetweens:
     """Prepare the in-betweens of two neighbouring keyframes.
 
@@ -145,35 +187,42 @@ def prepare_inbetweens(
     ----------
     variant : Variant
     sites : Sites
-    keyframes : sequence of KeyframeSamples, length 2
-    sheets : int32, shape (2,)
+    keyframes : sequence of KeyframeSamples
+        The two; with the one before them, the one after them, or both, where the course has
+        tangents.
+    sheets : int32, one for each
         From `root_sheets`.
     transform : Extension or ProjectedTransform, optional
         Of the sites' outline, at the nodes of their paths; variants that `needs_transform` says so
         of need it. The second kind makes rough in-betweens.
+    course : Course, optional
+        By default the linear blend of the paper.
+    bounds : Bounds
+        That a scaled variant obeys along another course; the straight one obeys its keyframes' own.
 
     Raises
     ------
     EngineError
-        If there are not two keyframes, or the transform is missing or of another outline.
+        If there are not as many keyframes as the course asks for, or the transform is missing or of
+        another outline.
     """
-    first, second = _two(keyframes)
-    keys = (first, second)
+    passage = Passage.of(keyframes, sheets, course)
     scale: Scaling | None = None
     blend: Blend
     match variant:
         case Variant.LINEAR:
-            return LinearInbetweens.of(keys, sites)
+            return LinearInbetweens.of(passage, sites)
         case Variant.NU:
-            blend = NuBlend(keyframes=keys, sheets=sheets)
+            blend = NuBlend(passage=passage)
         case Variant.ETA:
-            blend = EtaBlend.of(keys, sheets)
+            blend = EtaBlend.of(passage)
         case Variant.SCALED_ETA:
-            blend = EtaBlend.of(keys, sheets)
-            scale = Scaling.of(SharpScaling.of([key.map for key in keys], sites.outline))
+            blend = EtaBlend.of(passage)
+            scaled = [key.map for key in passage.keyframes]
+            scale = Scaling.of(SharpScaling.of(scaled, sites.outline, passage.course, bounds))
         case Variant.METRIC:
-            blend = MetricBlend.of(keys, sheets, sites.paths, _matching(transform, sites))
-    return IntegratedInbetweens(sites=sites, keyframes=keys, blend=blend, scale=scale)
+            blend = MetricBlend.of(passage, sites.paths, _matching(transform, sites))
+    return IntegratedInbetweens(sites=sites, passage=passage, blend=blend, scale=scale)
 
 
 def _known(variant: Variant | str) -> Variant:
@@ -192,11 +241,15 @@ def _require_keyframes(maps: Sequence[HarmonicMap]) -> None:
             raise EngineError(f"Keyframe {i} has another cage than keyframe 0; they must share it.")
 
 
-def _two(keyframes: Sequence[KeyframeSamples]) -> tuple[KeyframeSamples, KeyframeSamples]:
-    if len(keyframes) != 2:
-        raise EngineError(f"An interval has two keyframes, not {len(keyframes)}.")
-    first, second = keyframes
-    return first, second
+def _neighbourhoods(
+    maps: Sequence[HarmonicMap], *, loop: bool
+) -> list[tuple[HarmonicMap, HarmonicMap, HarmonicMap] | None]:
+    """Return each map with its neighbours; None for an end, which has not both."""
+    last = len(maps) - 1
+    return [
+        (maps[i - 1], f, maps[(i + 1) % len(maps)]) if loop or 0 < i < last else None
+        for i, f in enumerate(maps)
+    ]
 
 
 def _matching(

@@ -8,7 +8,8 @@ import numpy as np
 
 from engine.arrays import Booleans, Complexes, Floats, Indices, freeze
 from engine.geometry import box_diagonal, sample_graded
-from engine.maps import HarmonicMap, evaluate
+from engine.interpolation.passing import Course
+from engine.maps import Bounds, HarmonicMap, evaluate
 
 # Segments between the samples of the outline, over the distance to the nearest cage vertex and over
 # the box diagonal. Interpolation between them is then right to 1e-7.
@@ -38,13 +39,13 @@ BESIDE_KEY = 0.24
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class PointSamples:
-    """What ρ depends on at some points, for both keyframes; `...` is any shape.
+    """What ρ depends on at some points, for q keyframes; `...` is any shape.
 
     Parameters
     ----------
-    log_modulus : float64, shape (2, ...)
+    log_modulus : float64, shape (q, ...)
         ln |f_z|.
-    conj_eta : complex128, shape (2, ...)
+    conj_eta : complex128, shape (q, ...)
     k, sigma_a, sigma_b : float64, shape (...)
         The larger k and sigma_a and the smaller sigma_b of the keyframes: Properties 5 to 7.
     """
@@ -57,7 +58,7 @@ class PointSamples:
 
     @classmethod
     def of(cls, fz: Complexes, g: Complexes) -> Self:
-        """Build the samples from f_z and conj(f_z̄), each (2, ...)."""
+        """Build the samples from f_z and conj(f_z̄), each (q, ...)."""
         a, b = np.abs(fz), np.abs(g)
         return cls(
             log_modulus=freeze(np.log(a)),
@@ -84,7 +85,7 @@ class PointSamples:
         k, sigma_a, sigma_b = (np.array([x]) for x in (worst.k, worst.sigma_a, worst.sigma_b))
         return replace(self, k=k, sigma_a=sigma_a, sigma_b=sigma_b)
 
-    def ratios(self, times: Floats) -> Floats:
+    def ratios(self, weights: Floats) -> Floats:
         """Return the largest scaling that each point allows at a time, Equations (16) to (18).
 
         Departs from the paper: in these equations and in the denominators of Section 7.3 the bars
@@ -92,16 +93,16 @@ class PointSamples:
 
         Parameters
         ----------
-        times : float64
-            In (0, 1), to be broadcast with the points' shape.
+        weights : float64, shape (q, ...)
+            Of the keyframes, each to be broadcast with the points' shape.
 
         Returns
         -------
         float64
             Of the common shape, at most `CEILING`.
         """
-        a = np.exp((1 - times) * self.log_modulus[0] + times * self.log_modulus[1])
-        b = np.abs((1 - times) * self.conj_eta[0] + times * self.conj_eta[1]) / a
+        a = np.exp(sum(w * value for w, value in zip(weights, self.log_modulus, strict=True)))
+        b = np.abs(sum(w * value for w, value in zip(weights, self.conj_eta, strict=True))) / a
         # ρ_k, ρ_a and ρ_b of Section 7.3 have the denominator |f_z̄| in common.
         room = np.minimum(self.k * a, np.minimum(self.sigma_a - a, a - self.sigma_b))
         ratios = np.full(room.shape, CEILING)
@@ -117,6 +118,15 @@ class Worst:
     sigma_a: float
     sigma_b: float
 
+    def widened(self, bounds: Bounds) -> "Worst":
+        """Return the looser of some bounds and these, with room for what `TOO_HIGH` takes off."""
+        room = 5 * TOO_HIGH
+        return Worst(
+            k=max(self.k * (1 + room), bounds.k),
+            sigma_a=max(self.sigma_a * (1 + room), bounds.sigma_a),
+            sigma_b=min(self.sigma_b * (1 - room), bounds.sigma_b),
+        )
+
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class SharpScaling:
@@ -129,23 +139,29 @@ class SharpScaling:
     vanishes. ρ would fall within a moment, and the shape jump. Beside a key (`BESIDE_KEY`) this ρ
     therefore comes by and by from the one for which the bounds are the worst of the outline. On the
     outline Properties 5 to 7 hold point by point away from the keys; Properties 5' to 7' always do.
+    Along a course that is not straight the given bounds take their place everywhere.
 
     Parameters
     ----------
+    course : Course
     curves : OutlineCurves
         f_z and conj(f_z̄) of the keyframes.
     samples : PointSamples
         At the outline's samples (p,), in order along it, its vertices among them.
     worst : Worst
+        Of the keyframes; with the given bounds, where the course is not straight.
     """
 
+    course: Course
     curves: "OutlineCurves"
     samples: PointSamples
     worst: Worst
 
     @classmethod
-    def of(cls, maps: Sequence[HarmonicMap], outline: Complexes) -> Self:
-        """Sample two keyframes along the outline (p,)."""
+    def of(
+        cls, maps: Sequence[HarmonicMap], outline: Complexes, course: Course, bounds: Bounds
+    ) -> Self:
+        """Sample the keyframes of a course along the outline (p,)."""
         cage = maps[0].cage
         longest = SEGMENT_PER_SIZE * box_diagonal(outline)
         points = sample_graded(outline, cage, ratio=SEGMENT_PER_DISTANCE, longest=longest)
@@ -153,7 +169,10 @@ class SharpScaling:
         first, second = evaluate(cage, coefficients, points, orders=(1, 2))
         curves = OutlineCurves.through(points, first.T, second.T)
         samples = PointSamples.of(*np.split(first.T, 2))
-        return cls(curves=curves, samples=samples, worst=_worst(curves, samples))
+        worst = _worst(curves, samples)
+        if not course.is_straight:
+            worst = worst.widened(bounds)
+        return cls(course=course, curves=curves, samples=samples, worst=worst)
 
     def __call__(self, times: Floats) -> Floats:
         """Return ρ in (0, 1] at times (s,) in (0, 1), in ascending order.
@@ -161,6 +180,8 @@ class SharpScaling:
         Times are taken in runs: of the samples, only those that are low at the ends of a run, or
         on the way to become so, are looked at in between.
         """
+        if not self.course.is_straight:
+            return self._minima(times, self.worst)
         rho = self._minima(times, None)
         share = looseness(times)
         loose = share > 0
@@ -174,14 +195,15 @@ class SharpScaling:
             return np.ones(0)
         samples = self.samples.bounded(worst)
         starts = np.arange(0, len(times), RUN)
-        at_ends = samples.ratios(times[np.append(starts, len(times) - 1), None])
+        at_ends = samples.ratios(self._weights(times[np.append(starts, len(times) - 1)]))
         lowest = np.full(len(times), CEILING)
         found = []
         for run, start in enumerate(starts):
             chosen = _low_samples(at_ends[run : run + 2])
             if len(chosen):
                 block = slice(start, start + RUN)
-                ratios = self.samples.at(chosen).bounded(worst).ratios(times[block, None])
+                weights = self._weights(times[block])
+                ratios = self.samples.at(chosen).bounded(worst).ratios(weights)
                 lowest[block] = ratios.min(axis=1)
                 when, which = np.nonzero(self._promising(chosen, ratios))
                 found.append((start + when, chosen[which]))
@@ -190,6 +212,10 @@ class SharpScaling:
             for part in np.array_split(np.arange(len(when)), 1 + len(when) // MANY):
                 self._refine(times, lowest, when[part], segment[part], worst)
         return np.minimum((1.0 - TOO_HIGH) * lowest, 1.0)
+
+    def _weights(self, times: Floats) -> Floats:
+        """Return the keyframes' weights at times (s,), to be broadcast with points: (q, s, 1)."""
+        return self.course.at(times[:, None])
 
     def _promising(self, chosen: Indices, ratios: Floats) -> Booleans:
         """Tell from which of some samples (c,) segments start that may hold a minimum, (s, c)."""
@@ -210,9 +236,10 @@ class SharpScaling:
         places are only cut finer, round after round: no parabola is fitted.
         """
         place, width = np.full(len(when), 0.5), 0.5
+        weights = self._weights(times)
         for _ in range(ROUNDS):
             places = _around(place, width)
-            found = self.curves.at(segment, places).bounded(worst).ratios(times[when, None])
+            found = self.curves.at(segment, places).bounded(worst).ratios(weights[:, when])
             best, rows = found.argmin(axis=1), np.arange(len(when))
             variation = np.abs(np.diff(found, axis=1)).max(axis=1, initial=0.0)
             np.minimum.at(lowest, when, found[rows, best])
@@ -232,8 +259,8 @@ class OutlineCurves:
     ----------
     places : complex128, shape (8, p)
         w of the four samples of each segment, each twice.
-    coefficients : complex128, shape (8, 4, p)
-        f_z of both keyframes and conj(f_z̄) of both.
+    coefficients : complex128, shape (8, 2 q, p)
+        f_z of the keyframes, and then conj(f_z̄) of them.
     """
 
     places: Complexes
@@ -241,7 +268,7 @@ class OutlineCurves:
 
     @classmethod
     def through(cls, points: Complexes, values: Complexes, derivatives: Complexes) -> Self:
-        """Interpolate functions (4, p) with their derivatives at points (p,)."""
+        """Interpolate functions (2 q, p) with their derivatives at points (p,)."""
         stencil = [np.roll(np.arange(len(points)), -step) for step in STENCIL]
         span = points[stencil[1]] - points
         places = np.repeat([(points[at] - points) / span for at in stencil], 2, axis=0)

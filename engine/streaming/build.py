@@ -9,7 +9,7 @@ import numpy as np
 from engine.arrays import Floats, Singles, freeze
 from engine.chebyshev import nodes, to_coefficients
 from engine.interpolation import Scaling
-from engine.streaming.channels import Channels, Sample, scales, weights_at
+from engine.streaming.channels import Channels, Sample, scales
 from engine.streaming.series import Series, SeriesPiece
 
 Result = TypeVar("Result")
@@ -85,7 +85,7 @@ class _Source:
         inbetweens = self.channels.inbetweens
         if scaled is None or not scales(inbetweens):
             return values
-        return values + (inbetweens.rho(weights_at(time)) - 1.0) * scaled
+        return values + (inbetweens.rho(time) - 1.0) * scaled
 
 
 def _prepare(channels: Channels) -> Generator[None, None, _Source]:

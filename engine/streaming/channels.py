@@ -46,22 +46,22 @@ class Positions:
     @classmethod
     def of(cls, inbetweens: Inbetweens, sites: Sites, *, relative: float = 1e-6) -> "Positions":
         """Allow an error of a part of the diameter, or what float32 can hold if that is more."""
-        largest = max(float(np.abs(key.positions).max()) for key in inbetweens.keyframes)
+        largest = max(float(np.abs(key.positions).max()) for key in inbetweens.passage.ends)
         tolerance = max(relative * sites.diameter, ROUNDING * largest)
         return cls(inbetweens=inbetweens, tolerance=tolerance)
 
     def sample(self, time: float) -> Sample:
         """Integrate along the paths; the keyframes are returned as they are."""
-        inbetweens, weights = self.inbetweens, weights_at(time)
+        inbetweens = self.inbetweens
         psi: Complexes | None = None
         if scales(inbetweens):
-            phi, psi = inbetweens.parts(weights)
+            phi, psi = inbetweens.parts(time)
             offsets = phi + psi
         else:
-            offsets = inbetweens.offsets(weights)
-        places = inbetweens.anchor_position(weights) + offsets
+            offsets = inbetweens.offsets(time)
+        places = inbetweens.passage.anchor_position(time) + offsets
         if time in (0.0, 1.0):
-            places = inbetweens.keyframes[int(time)].positions
+            places = inbetweens.passage.ends[int(time)].positions
         return Sample(_reals(places), None if psi is None else _reals(psi))
 
 
@@ -75,17 +75,17 @@ class Distortions:
     @classmethod
     def of(cls, inbetweens: Inbetweens, *, relative: float = 1e-5) -> "Distortions":
         """Allow an error of a part of the largest stretch of the two keyframes."""
-        frames = [inbetweens.frame(weights_at(time)) for time in (0.0, 1.0)]
+        frames = [inbetweens.frame(time) for time in (0.0, 1.0)]
         largest = max(float((np.abs(f.fz) + np.abs(f.fzbar)).max()) for f in frames)
         return cls(inbetweens=inbetweens, tolerance=relative * largest)
 
     def sample(self, time: float) -> Sample:
         """Blend the derivatives."""
-        inbetweens, weights = self.inbetweens, weights_at(time)
+        inbetweens = self.inbetweens
         if not scales(inbetweens):
-            frame = inbetweens.frame(weights)
+            frame = inbetweens.frame(time)
             return Sample(_reals(np.concatenate([frame.fz, frame.fzbar])), None)
-        blended, places = inbetweens.blend.derivatives(weights), inbetweens.sites.paths.places
+        blended, places = inbetweens.blend.derivatives(time), inbetweens.sites.paths.places
         fz, fzbar = blended.fz[places], blended.g[places].conj()
         values, scaled = np.concatenate([fz, fzbar]), np.concatenate([np.zeros_like(fz), fzbar])
         return Sample(_reals(values), _reals(scaled))
@@ -94,11 +94,6 @@ class Distortions:
 def scales(inbetweens: Inbetweens) -> TypeGuard[IntegratedInbetweens]:
     """Tell whether Ψ is scaled by a ρ."""
     return isinstance(inbetweens, IntegratedInbetweens) and inbetweens.scale is not None
-
-
-def weights_at(time: float) -> Floats:
-    """Return the weights (2,) of the two keyframes."""
-    return np.array([1.0 - time, time])
 
 
 def _reals(values: Complexes) -> Floats:

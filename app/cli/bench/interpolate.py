@@ -26,7 +26,7 @@ from engine.maps import HarmonicMap
 from engine.paths import root_sheets
 
 SIZES = (10_000, 50_000, 500_000)
-MIDDLE = np.array([0.6, 0.4])  # weights of the keyframes
+MIDDLE = 0.4  # of the interval
 INTEGRATED = (Variant.NU, Variant.ETA, Variant.SCALED_ETA, Variant.METRIC)
 
 

@@ -21,7 +21,7 @@ from app.render.gpu import (
 )
 from app.solving import load_pose_script, pose_document
 from app.storage import open_picture, sample_images
-from engine.arrays import Floats, Singles
+from engine.arrays import Singles
 from engine.domain.meshing import Mesh, triangulate
 from engine.interpolation import Inbetweens
 from engine.maps import distortion
@@ -98,7 +98,7 @@ def _frames(interval: Interval, series: dict[Variant, Series]) -> Table:
     out = np.empty(2 * count, dtype=np.float32)
     for variant in VARIANTS[1:]:
         played = _played(partial(_write, series[variant], out))
-        direct = measure(partial(interval.inbetweens(variant).offsets, np.array([0.4, 0.6])))
+        direct = measure(partial(interval.inbetweens(variant).offsets, 0.6))
         note = f"the direct path takes {direct / played:.0f} times as long"
         rows.append(Row(name=f"series, {variant}", seconds=played, note=note))
     triangles = len(interval.mesh.triangles)
@@ -133,7 +133,7 @@ def _heat(interval: Interval) -> Table:
             ),
             Row(
                 name=f"{variant}, direct path",
-                seconds=measure(partial(_direct_k, inbetweens, np.array([0.4, 0.6]))),
+                seconds=measure(partial(_direct_k, inbetweens, 0.6)),
             ),
         ]
     return Table(title="k of a frame, for the heat map", rows=tuple(rows))
@@ -144,8 +144,8 @@ def _streamed_k(series: Series, time: float) -> None:
     np.abs(fzbar) / np.abs(fz)
 
 
-def _direct_k(inbetweens: Inbetweens, weights: Floats) -> None:
-    frame = inbetweens.frame(weights)
+def _direct_k(inbetweens: Inbetweens, time: float) -> None:
+    frame = inbetweens.frame(time)
     distortion.k(frame.fz, frame.fzbar)
 
 

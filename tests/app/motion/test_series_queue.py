@@ -92,7 +92,7 @@ def test_distortions_are_built_while_they_are_shown(clip, prepared):
     motion, order = stream(prepared, clip, 0, heat=True)
     assert order == [(i, distortions) for i in range(3) for distortions in (False, True)]
     fz, fzbar = motion.vertices(clip, 4).derivatives
-    exact = prepared.inbetweens(clip, 0).frame(np.array([0.6, 0.4]))
+    exact = prepared.inbetweens(clip, 0).frame(0.4)
     assert_allclose(fz, exact.fz, rtol=0, atol=1e-4)
     assert_allclose(fzbar, exact.fzbar, rtol=0, atol=1e-4)
 

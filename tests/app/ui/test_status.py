@@ -54,7 +54,7 @@ def test_inbetweens_show_what_was_measured(window, bent):
     window.settle()
     window.frames(2)
     shown, *_ = facts(window)
-    halfway = bent.puppet.coarse.value.inbetweens(bent.clip, 0).frame(np.array([0.5, 0.5]))
+    halfway = bent.puppet.coarse.value.inbetweens(bent.clip, 0).frame(0.5)
     fz, fzbar = halfway.fz, halfway.fzbar
     values = {
         "Shear": distortion.k(fz, fzbar).max(),

@@ -79,7 +79,9 @@ def test_singularities_at_inward_corners_are_resolved():
 def metric_data(maps, points):
     """Return what the metric variant asks for: singular near the cage, and no one's real part."""
     columns = zip(*(f.derivatives(points) for f in maps), strict=True)
-    return OutlineMetric.of(*(np.array(column) for column in columns)).residuals(np.array([0.5]))
+    return OutlineMetric.of(*(np.array(column) for column in columns)).residuals(
+        np.array([[0.5], [0.5]])
+    )
 
 
 def solutions(shape, coarsenesses):

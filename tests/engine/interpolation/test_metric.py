@@ -6,6 +6,7 @@ from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
 from engine.interpolation.metric import OutlineMetric, separate
+from engine.interpolation.passing import Course
 
 
 def random_derivatives(seed, *, k=1.0, count=400):
@@ -45,7 +46,9 @@ def test_the_root_of_equation_13_has_the_blended_metric_tensor(seed, time):
     fz, fzbar = random_derivatives(seed, k=0.99)
     metric = OutlineMetric.of(fz, fzbar)
     weights = np.array([1 - time, time])
-    modulus = np.exp(metric.residuals(np.array([time]))[:, 0] + weights @ metric.log_modulus)
+    modulus = np.exp(
+        metric.residuals(np.array([[1 - time], [time]]))[:, 0] + weights @ metric.log_modulus
+    )
     # Any rotation has the same metric; f_z̄ follows from η, up to conjugation.
     other = (weights @ metric.eta).conj() / modulus
     found, first, second = (
@@ -60,9 +63,9 @@ def test_the_root_of_equation_13_has_the_blended_metric_tensor(seed, time):
 def test_the_residual_is_written_in_few_products_and_vanishes_at_the_keyframes():
     fz, fzbar = random_derivatives(2, k=0.7)
     metric = OutlineMetric.of(fz, fzbar)
-    modes, series = separate(metric)
+    modes, series = separate(metric, Course.straight())
     times = np.random.default_rng(0).random(30)
     found = np.array([modes @ series(time) for time in times]).T
-    assert_allclose(found, metric.residuals(times), rtol=0, atol=1e-8)
+    assert_allclose(found, metric.residuals(np.stack([1 - times, times])), rtol=0, atol=1e-8)
     for time in (0.0, 1.0):
         assert_allclose(series(time), 0, rtol=0, atol=1e-15)

@@ -46,12 +46,11 @@ def test_intervals_are_prepared_one_at_a_time_and_keyframes_shared(variant):
     transform = HilbertTransform.on(OUTLINE, CAGE).at(sites.paths.nodes)
     for i, pair in enumerate((keys[:2], keys[1:])):
         interval = prepare_inbetweens(variant, sites, pair, sheets[i : i + 2], transform=transform)
-        frame = interval.frame(np.array([0.6, 0.4]))
+        frame = interval.frame(0.4)
         expected = whole.frame(i + 0.4)
         assert_allclose(frame.positions, expected.positions, rtol=0, atol=1e-12)
-        weights = np.array([0.6, 0.4])
-        position = interval.anchor_position(weights)
-        assert_allclose(position + interval.offsets(weights), frame.positions, rtol=0, atol=1e-13)
+        position = interval.passage.anchor_position(0.4)
+        assert_allclose(position + interval.offsets(0.4), frame.positions, rtol=0, atol=1e-13)
         held = interval.nbytes
         # The keyframes' own arrays are not counted again.
         assert (held == 0) == (variant == Variant.NU)
@@ -61,10 +60,9 @@ def test_intervals_are_prepared_one_at_a_time_and_keyframes_shared(variant):
 @pytest.mark.parametrize("variant", ["nu", "eta", "scaled-eta", "metric"])
 def test_parts_add_up_to_the_positions(variant):
     piece = between(variant=variant).intervals[0]
-    weights = np.array([0.25, 0.75])
-    phi, conj_psi = piece.parts(weights)
-    positions = piece.anchor_position(weights) + phi + piece.rho(weights) * conj_psi
-    assert_allclose(positions, piece.frame(weights).positions, rtol=0, atol=1e-12)
+    phi, conj_psi = piece.parts(0.75)
+    positions = piece.passage.anchor_position(0.75) + phi + piece.rho(0.75) * conj_psi
+    assert_allclose(positions, piece.frame(0.75).positions, rtol=0, atol=1e-12)
 
 
 @pytest.mark.parametrize("variant", ["nu", "scaled-eta", "metric"])
@@ -194,7 +192,7 @@ def test_what_a_variant_needs_is_asked_for():
     sites = prepare_sites(OUTLINE, CAGE, POINTS)
     keys = sample_keyframes(MAPS, sites)
     sheets = root_sheets(np.array([key.anchor_fz for key in keys]))
-    with pytest.raises(EngineError, match="two keyframes, not 3"):
+    with pytest.raises(EngineError, match="two keyframes, not 3 with 3 sheets"):
         prepare_inbetweens(Variant.NU, sites, keys, sheets)
     for variant in Variant:
         if variant.needs_transform:
@@ -202,5 +200,5 @@ def test_what_a_variant_needs_is_asked_for():
                 prepare_inbetweens(variant, sites, keys[:2], sheets[:2])
         else:
             interval = prepare_inbetweens(variant, sites, keys[:2], sheets[:2])
-            frame = interval.frame(np.array([0.5, 0.5]))
+            frame = interval.frame(0.5)
             assert (frame.rho is not None) == variant.is_scaled

@@ -9,12 +9,14 @@ from numpy.testing import assert_allclose
 
 from engine.geometry.polygon import edges
 from engine.interpolation import prepare
+from engine.interpolation.passing import Course
 from engine.interpolation.scaling import BESIDE_KEY, PointSamples, SharpScaling
 from engine.interpolation.smooth_scaling import Scaling
-from engine.maps import distortion
+from engine.maps import Bounds, distortion
 from engine.maps.harmonic_map import HarmonicMap
 
 SHAPE = letter_l()
+STRAIGHT = Course.straight()
 
 
 def pair(seed, shape=SHAPE, **options):
@@ -22,11 +24,11 @@ def pair(seed, shape=SHAPE, **options):
 
 
 def sharp_rho(maps, times, shape=SHAPE):
-    return SharpScaling.of(maps, shape[0])(np.atleast_1d(times))
+    return SharpScaling.of(maps, shape[0], STRAIGHT, Bounds())(np.atleast_1d(times))
 
 
 def smooth_rho(maps, shape=SHAPE):
-    return Scaling.of(SharpScaling.of(maps, shape[0]))
+    return Scaling.of(SharpScaling.of(maps, shape[0], STRAIGHT, Bounds()))
 
 
 def grown(shape, k):
@@ -81,7 +83,7 @@ def test_no_valley_of_the_ratios_is_missed_however_many_there_are():
     ]
     times = np.linspace(0.25, 0.75, 7)
     dense = dense_samples((outline, cage), 500)
-    found = SharpScaling.of(maps, outline)(times)
+    found = SharpScaling.of(maps, outline, STRAIGHT, Bounds())(times)
     for time, rho in zip(times, found, strict=True):
         expected = ratios_by_the_book(maps, np.array([1 - time, time]), dense).min()
         assert rho <= min(1.0, expected) + 1e-9
@@ -111,7 +113,7 @@ def test_each_bound_is_just_reached_where_it_alone_counts(bound):
     samples = PointSamples(
         log_modulus=np.log([[1.0], [4.0]]), conj_eta=np.array([[8.0 + 0j], [8.0]]), **values
     )
-    (rho,) = samples.ratios(np.array([0.5]))
+    (rho,) = samples.ratios(np.array([[0.5], [0.5]]))
     reached = {"k": rho * 4 / 2, "sigma_a": 2 + rho * 4, "sigma_b": 2 - rho * 4}
     assert_allclose(reached[bound], limits[bound], rtol=1e-12, atol=0)
 
@@ -135,7 +137,7 @@ def test_conformal_keyframes_need_no_scaling():
 
 @pytest.mark.parametrize("seed", [25, 26, 27, 3, 11])
 def test_the_smooth_rho_is_never_above_the_sharp_one_and_seldom_below(seed):
-    sharp = SharpScaling.of(pair(seed), SHAPE[0])
+    sharp = SharpScaling.of(pair(seed), SHAPE[0], STRAIGHT, Bounds())
     smooth = Scaling.of(sharp)
     times = np.sort(
         np.concatenate([np.random.default_rng(0).random(300), 10.0 ** np.arange(-14, -1)])
@@ -190,7 +192,7 @@ def test_maps_of_very_different_size_keep_their_bounds_beside_the_keys():
         HarmonicMap(cage=cage, phi=scale * f.phi, psi=scale * f.psi)
         for scale, f in zip((20.0, 0.05), pair(4), strict=True)
     ]
-    smooth, sharp = smooth_rho(maps), SharpScaling.of(maps, SHAPE[0])
+    smooth, sharp = smooth_rho(maps), SharpScaling.of(maps, SHAPE[0], STRAIGHT, Bounds())
     times = np.sort(10.0 ** np.linspace(-9, -1, 60))
     assert np.all(np.array([smooth(time) for time in times]) <= sharp(times) * (1 + 1e-6))
     dense = dense_samples(SHAPE, 200)
@@ -205,7 +207,7 @@ def test_maps_of_very_different_size_keep_their_bounds_beside_the_keys():
 
 def test_the_smooth_rho_has_no_kinks():
     maps = grown(bar(), 0.3)
-    sharp = SharpScaling.of(maps, bar()[0])
+    sharp = SharpScaling.of(maps, bar()[0], STRAIGHT, Bounds())
     smooth = Scaling.of(sharp)
     # Second differences of a smooth function fall by 4 when the step is halved; at a kink by 2.
     falls = []
