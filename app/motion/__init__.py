@@ -7,6 +7,8 @@ Imports: `app.document`.
 
 from app.motion.extent import Box, box_around, extent_source, measure_extent, motion_box
 from app.motion.inbetweens import Animation, PoseSampler
+from app.motion.joints import HERE, HungAnimation, Joints, Placement
+from app.motion.paint_order import painted_triangles
 from app.motion.posable_mesh import PosableMesh
 from app.motion.prepared import Motion, prepare_motion
 from app.motion.series_queue import Build, next_build, with_series
@@ -14,11 +16,15 @@ from app.motion.shown_frame import Shown, show
 from app.motion.vertices import Placed, Streamed, Vertices
 
 __all__ = [
+    "HERE",
     "Animation",
     "Box",
     "Build",
+    "HungAnimation",
+    "Joints",
     "Motion",
     "Placed",
+    "Placement",
     "PosableMesh",
     "PoseSampler",
     "Shown",
@@ -29,6 +35,7 @@ __all__ = [
     "measure_extent",
     "motion_box",
     "next_build",
+    "painted_triangles",
     "prepare_motion",
     "show",
     "with_series",

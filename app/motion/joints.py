@@ -1,0 +1,242 @@
+"""Where figures that hang on others are, at any time (Section 7, "a user curve for the anchor")."""
+
+from collections.abc import Mapping
+from typing import NamedTuple
+
+import numpy as np
+
+from app.document import Attachment, Document, Figure, Pose, clip_of
+from app.errors import LissomError
+from app.motion.inbetweens import Animation, PoseSampler
+from engine.arrays import Complexes
+from engine.errors import EngineError
+from engine.geometry import box_diagonal, deepest_point
+
+# Newton steps towards the point of a parent that is at a place; each squares the error.
+MOST_STEPS = 20
+CLOSE = 1e-12  # of the figure's size
+MOST_STARTS = 2_000  # triangles among which the nearest one is where the search begins
+
+
+class Placement(NamedTuple):
+    """A rigid motion z ↦ factor · z + shift, the factor of modulus 1."""
+
+    factor: complex = 1.0 + 0j
+    shift: complex = 0j
+
+    def on(self, places: Complexes) -> Complexes:
+        """Return where places of the figure by itself are in the scene."""
+        if self == HERE:
+            return places
+        return self.factor * places + self.shift
+
+    def back(self, place: complex) -> complex:
+        """Return which place of the figure by itself is at a place of the scene."""
+        return (place - self.shift) * self.factor.conjugate()
+
+
+HERE = Placement()
+
+
+class Joint(NamedTuple):
+    """Where a point of a figure by itself is, and by what the figure turns there."""
+
+    place: complex
+    turn: complex  # of modulus 1
+
+
+class Joints:
+    """The joints of a document, at any time.
+
+    A figure hangs by its anchor: it is turned around it and moved, and nothing else, so that it is
+    exactly as distorted as by itself and the joint never opens.
+
+    Parameters
+    ----------
+    document : Document
+    siblings : mapping of int to PoseSampler
+        By the ids of figures; what they know of outlines is used again.
+
+    Raises
+    ------
+    EngineError
+        If a joint or an anchor lies outside its figure.
+    """
+
+    def __init__(
+        self, document: Document, siblings: Mapping[int, PoseSampler] | None = None
+    ) -> None:
+        self._document = document
+        self._points = _points(document)
+        self._animations: dict[int, Animation] = {}
+        self._siblings = siblings or {}
+
+    def placement(
+        self, figure: int, frame: float, poses: Mapping[int, Pose] | None = None
+    ) -> Placement:
+        """Return where a figure, by its id, is at a frame.
+
+        Parameters
+        ----------
+        figure : int
+        frame : float
+        poses : mapping of int to Pose, optional
+            Shown instead of what the figures with these ids have at the frame.
+        """
+        placement = HERE
+        chain = self._document.carriers(figure)
+        for child, parent in zip(chain[-2::-1], chain[:0:-1], strict=True):
+            joint = _require_attachment(child)
+            at = self._joint(parent, joint.at, frame, poses or {})
+            held = self._joint(child, _require_anchor(child), frame, poses or {})
+            factor = 1.0 + 0j
+            if joint.turns:
+                factor = placement.factor * at.turn * np.exp(-1j * joint.rest)
+            place = placement.factor * at.place + placement.shift
+            placement = Placement(complex(factor), complex(place - factor * held.place))
+        return placement
+
+    def hang(
+        self, child: int, parent: int, frame: float, *, place: complex | None = None, turns: bool
+    ) -> tuple[complex, Attachment]:
+        """Return the anchor and the joint by which a figure hangs so that nothing moves now.
+
+        Parameters
+        ----------
+        child, parent : int
+            Ids of figures.
+        frame : float
+            Where nothing moves.
+        place : complex, optional
+            Of the joint, in the scene; by default that of the child's anchor.
+        turns : bool
+            Whether the child turns with the parent.
+
+        Returns
+        -------
+        anchor : complex
+            Of the child.
+        joint : Attachment
+
+        Raises
+        ------
+        LissomError
+            If one of the two is not at that place.
+        """
+        document = self._document
+        own = document.figure(child)
+        here, there = self.placement(child, frame), self.placement(parent, frame)
+        if place is None:
+            anchor = deepest_point(own.domain.outline) if own.anchor is None else own.anchor
+            place = complex(here.on(np.array([self._at(own, anchor, frame).place]))[0])
+        else:
+            anchor = self._source(own, here.back(place), frame)
+        at = self._source(document.figure(parent), there.back(place), frame)
+        turn = np.angle(there.factor * self._at(document.figure(parent), at, frame).turn)
+        # With the parent's turn as it is now, the child is turned as it is now.
+        rest = float(turn - np.angle(here.factor)) if turns else 0.0
+        return anchor, Attachment(to=parent, at=at, turns=turns, rest=rest)
+
+    def _joint(
+        self, figure: Figure, place: complex, frame: float, poses: Mapping[int, Pose]
+    ) -> Joint:
+        if figure.id in poses:
+            return _joint_of(figure, poses[figure.id], place)
+        index = self._points[figure.id].index(place)
+        moved = self._animation(figure.id).frame(frame)
+        return _joint(moved.positions[index], moved.fz[index])
+
+    def _animation(self, figure: int) -> Animation:
+        if figure not in self._animations:
+            points = np.array(self._points[figure])
+            self._animations[figure] = self._animation_at(self._document.figure(figure), points)
+        return self._animations[figure]
+
+    def _animation_at(self, figure: Figure, points: Complexes) -> Animation:
+        sampler = PoseSampler(
+            figure.domain,
+            anchor=figure.anchor,
+            points=points,
+            sibling=self._siblings.get(figure.id),
+        )
+        return Animation(clip_of(self._document, figure.id), sampler=sampler)
+
+    def _at(self, figure: Figure, place: complex, frame: float) -> Joint:
+        moved = self._animation_at(figure, np.array([place])).frame(frame)
+        return _joint(moved.positions[0], moved.fz[0])
+
+    def _source(self, figure: Figure, place: complex, frame: float) -> complex:
+        """Return the point of a figure at rest that is at a place, in the figure's own terms."""
+        mesh = figure.domain.mesh
+        middles = mesh.vertices[mesh.triangles].mean(axis=1)
+        middles = middles[:: max(1, len(middles) // MOST_STARTS)]
+        moved = self._animation_at(figure, middles).frame(frame)
+        source = complex(middles[np.argmin(np.abs(moved.positions - place))])
+        size = box_diagonal(figure.domain.outline)
+        for _ in range(MOST_STEPS):
+            try:
+                at = self._animation_at(figure, np.array([source])).frame(frame)
+            except EngineError:
+                break  # outside
+            away = place - complex(at.positions[0])
+            if abs(away) <= CLOSE * size:
+                return source
+            fz, fzbar = complex(at.fz[0]), complex(at.fzbar[0])
+            area = abs(fz) ** 2 - abs(fzbar) ** 2
+            source += (fz.conjugate() * away - fzbar * away.conjugate()) / area
+        raise LissomError(
+            f"There is nothing of {figure.name!r} at ({place.real:.0f}, {place.imag:.0f}); a joint "
+            "must be on both figures."
+        )
+
+
+class HungAnimation:
+    """A figure's motion where its scene has it.
+
+    Parameters
+    ----------
+    animation : Animation
+        Of the figure by itself.
+    joints : Joints
+        Of the scene.
+    """
+
+    def __init__(self, animation: Animation, joints: Joints) -> None:
+        self._animation = animation
+        self._joints = joints
+
+    def positions(self, frame: float) -> Complexes:
+        """Return where the points (m,) are at a frame, which may lie between two numbers."""
+        placement = self._joints.placement(self._animation.clip.figure.id, frame)
+        return placement.on(self._animation.positions(frame))
+
+
+def _points(document: Document) -> dict[int, list[complex]]:
+    """Return the points of each figure by which it hangs, or others hang on it."""
+    points: dict[int, list[complex]] = {figure.id: [] for figure in document.figures}
+    for figure in document.figures:
+        if figure.attachment is not None:
+            points[figure.id].append(_require_anchor(figure))
+            points[figure.attachment.to].append(figure.attachment.at)
+    return points
+
+
+def _joint_of(figure: Figure, pose: Pose, place: complex) -> Joint:
+    f, at = figure.map_of(pose), np.array([place])
+    return _joint(f(at)[0], f.derivatives(at)[0][0])
+
+
+def _joint(position: complex, fz: complex) -> Joint:
+    return Joint(complex(position), complex(fz / abs(fz)))
+
+
+def _require_anchor(figure: Figure) -> complex:
+    if figure.anchor is None:
+        raise ValueError("a figure that is attached has an anchor")
+    return figure.anchor
+
+
+def _require_attachment(figure: Figure) -> Attachment:
+    if figure.attachment is None:
+        raise ValueError("only the last carrier hangs on nothing")
+    return figure.attachment
