@@ -2,6 +2,7 @@
 
 uniform sampler2D frame;   // premultiplied
 uniform vec3 tint;
+uniform float strength;   // of the tint; 0 leaves the colours as they are
 uniform float opacity;
 
 out vec4 colour;
@@ -11,5 +12,5 @@ const vec3 LUMA = vec3(0.299, 0.587, 0.114);
 void main() {
     vec4 drawing = texelFetch(frame, ivec2(gl_FragCoord.xy), 0);
     vec3 tinted = mix(tint * drawing.a, vec3(dot(drawing.rgb, LUMA)), 0.35);
-    colour = vec4(tinted, drawing.a) * opacity;
+    colour = vec4(mix(drawing.rgb, tinted, strength), drawing.a) * opacity;
 }

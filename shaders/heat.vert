@@ -9,9 +9,10 @@ out vec2 texture_uv;
 out float vertex_heat;
 
 vec2 vertex_position();
+vec2 placed(vec2 place);
 
 void main() {
     texture_uv = uv;
     vertex_heat = heat;
-    gl_Position = vec4(vertex_position() * view.xy + view.zw, 0.0, 1.0);
+    gl_Position = vec4(placed(vertex_position()) * view.xy + view.zw, 0.0, 1.0);
 }

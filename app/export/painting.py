@@ -6,12 +6,12 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from app.document import Document
+from app.document import Document, clip_of, is_visible
 from app.errors import EXPECTED_ERRORS, LissomError
 from app.export.framing import shown_box
 from app.export.plan import ExportPlan
 from app.export.poses import Poses
-from app.motion import Placed, box_around
+from app.motion import Placed, box_around, painted_triangles
 from app.render import TRANSPARENT, Backdrop, Colour, DrawnMesh, Renderer, Scene
 from app.render.gpu import (
     Context,
@@ -63,10 +63,12 @@ class Painter:
         plan: ExportPlan,
     ) -> None:
         self._context = context
-        self._poses = [poses[figure.id] for figure in document.figures]
+        self._clips = [clip_of(document, f.id) for f in document.figures if not f.reference]
+        figures = [clip.figure for clip in self._clips]
+        self._poses = [poses[figure.id] for figure in figures]
         self._view = plan.view
         self._background = Backdrop(colour=_colour(plan))
-        self._meshes = [figure.domain.mesh for figure in document.figures]
+        self._meshes = [figure.domain.mesh for figure in figures]
         self._reach = box_around(np.concatenate([mesh.vertices for mesh in self._meshes]))
         # The mesh has a margin around the drawing, which may lie off the canvas from the start.
         self._room = shown_box(plan.view).joined(self._reach)
@@ -85,7 +87,7 @@ class Painter:
             while context.error != _NO_ERROR:
                 pass
             self._drawn = []
-            for figure, mesh in zip(document.figures, self._meshes, strict=True):
+            for figure, mesh in zip(figures, self._meshes, strict=True):
                 texture = GpuPicture(context, pictures[figure.id])
                 owned.callback(texture.release)
                 gpu_mesh = GpuMesh(programs, texture, rest=mesh.vertices, triangles=mesh.triangles)
@@ -104,8 +106,11 @@ class Painter:
         """
         try:
             vertices = tuple(
-                Placed(positions=poses.positions(frame), triangles=mesh.triangles)
-                for poses, mesh in zip(self._poses, self._meshes, strict=True)
+                Placed(
+                    positions=poses.positions(frame),
+                    triangles=painted_triangles(mesh, clip, frame),
+                )
+                for poses, mesh, clip in zip(self._poses, self._meshes, self._clips, strict=True)
             )
         except EXPECTED_ERRORS as error:
             raise LissomError(f"frame {frame:g} cannot be drawn: {error}") from error
@@ -124,8 +129,12 @@ class Painter:
             If the frame cannot be drawn.
         """
         try:
-            drawn = zip(self._drawn, posed.vertices, strict=True)
-            meshes = tuple(mesh.pose(vertices) for mesh, vertices in drawn)
+            drawn = zip(self._drawn, posed.vertices, self._clips, strict=True)
+            meshes = tuple(
+                mesh.pose(vertices, opacity=clip.figure.opacity)
+                for mesh, vertices, clip in drawn
+                if is_visible(clip.figure, posed.frame)
+            )
             scene = Scene(background=self._background, meshes=meshes)
             self._renderer.draw(self._target, self._view, scene)
             pixels = self._target.read_straight_rgba()

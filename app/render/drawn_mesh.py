@@ -2,7 +2,7 @@
 
 import moderngl
 
-from app.motion import Streamed, Vertices
+from app.motion import HERE, Placement, Streamed, Vertices
 from app.render.gpu import GpuMesh, PosedMesh, PositionBuffer, SeriesBuffer, is_software, singles
 from engine.streaming import MOST_ROWS, Series
 
@@ -28,11 +28,24 @@ class DrawnMesh:
         self._series_pose: PosedMesh | None = None
         self._current: tuple[Vertices, PosedMesh] | None = None
 
-    def pose(self, vertices: Vertices) -> PosedMesh:
-        """Return the mesh with its vertices there and painted in their order; new ones go up."""
+    def pose(
+        self, vertices: Vertices, *, placement: Placement = HERE, opacity: float = 1.0
+    ) -> PosedMesh:
+        """Return the mesh with its vertices there and painted in their order; new ones go up.
+
+        Parameters
+        ----------
+        vertices : Vertices
+        placement : Placement
+            Where the figure hangs.
+        opacity : float
+        """
         if self._current is None or self._current[0] is not vertices:
             self._current = vertices, self._placed(vertices)
-        return self._current[1]
+        posed = self._current[1]
+        posed.place(*placement)
+        posed.opacity = opacity
+        return posed
 
     def release(self) -> None:
         """Let the poses go."""

@@ -12,10 +12,12 @@ from app.render.ramp import heat_ramp
 from app.render.scene import Backdrop, Colour, Ghost, Heat, Scene, Wireframe
 from app.render.view import View
 
+_MESH: Final = ("mesh.vert", "placed.glsl")
+_HEATED: Final = ("heat.vert", "placed.glsl")
 _BACKGROUND: Final = ShaderFiles(vertex=("screen.vert",), fragment=("background.frag",))
-_PICTURE: Final = ShaderFiles(vertex=("mesh.vert",), fragment=("picture.frag", "sample.glsl"))
-_HEAT: Final = ShaderFiles(vertex=("heat.vert",), fragment=("heat.frag", "sample.glsl"))
-_WIRE: Final = ShaderFiles(vertex=("mesh.vert",), geometry="wire.geom", fragment=("wire.frag",))
+_PICTURE: Final = ShaderFiles(vertex=_MESH, fragment=("picture.frag", "sample.glsl"))
+_HEAT: Final = ShaderFiles(vertex=_HEATED, fragment=("heat.frag", "sample.glsl"))
+_WIRE: Final = ShaderFiles(vertex=_MESH, geometry="wire.geom", fragment=("wire.frag",))
 _BORDER: Final = replace(_WIRE, geometry="border.geom")
 _GHOST: Final = ShaderFiles(vertex=("screen.vert",), fragment=("ghost.frag",))
 _PICTURE_UNIT, _RAMP_UNIT, _LAYER_UNIT = 0, 1, 0
@@ -51,7 +53,12 @@ class Renderer:
             self._draw_ghost(ghost, target, view)
         self._blend_over()
         for mesh in scene.meshes:
-            self._draw_mesh(mesh, view, scene.heat)
+            if mesh.opacity == 1:
+                self._draw_mesh(mesh, view, scene.heat)
+            else:
+                faint = Ghost(meshes=(mesh,), tint=None, opacity=mesh.opacity)
+                self._draw_ghost(faint, target, view, scene.heat)
+                self._blend_over()
         if scene.wireframe is not None:
             for mesh in scene.meshes:
                 self._draw_wireframe(mesh, view, scene.wireframe)
@@ -99,7 +106,9 @@ class Renderer:
         mesh.draw(_WIRE, uniforms)
         mesh.draw_border(_BORDER, uniforms)
 
-    def _draw_ghost(self, ghost: Ghost, target: RenderTarget, view: View) -> None:
+    def _draw_ghost(
+        self, ghost: Ghost, target: RenderTarget, view: View, heat: Heat | None = None
+    ) -> None:
         # On a layer of its own: limbs that overlap would shine through each other.
         wanted = (target.size, target.oversampling)
         if self._layer is None or (self._layer.size, self._layer.oversampling) != wanted:
@@ -109,10 +118,15 @@ class Renderer:
         self._layer.framebuffer.clear()
         self._blend_over()
         for mesh in ghost.meshes:
-            self._draw_mesh(mesh, view, None)
+            self._draw_mesh(mesh, view, heat)
         target.framebuffer.use()
         self._layer.texture.use(_LAYER_UNIT)
-        uniforms = {"frame": _LAYER_UNIT, "tint": ghost.tint, "opacity": ghost.opacity}
+        uniforms = {
+            "frame": _LAYER_UNIT,
+            "tint": ghost.tint or (0.0, 0.0, 0.0),
+            "strength": 0.0 if ghost.tint is None else 1.0,
+            "opacity": ghost.opacity,
+        }
         self.programs.draw_screen(_GHOST, uniforms)
 
     def _release_layer(self) -> None:

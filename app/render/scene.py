@@ -60,19 +60,19 @@ class Wireframe:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Ghost:
-    """Another frame of the drawing, laid under the current one: an onion skin.
+    """A drawing that shines through: another frame of it under the current one, an onion skin.
 
     Parameters
     ----------
     meshes : tuple of PosedMesh
         The drawing in that frame, the furthest first.
-    tint : tuple of float
-        Red, green and blue.
+    tint : tuple of float or None
+        Red, green and blue; None leaves the colours as they are.
     opacity : float
     """
 
     meshes: tuple[PosedMesh, ...]
-    tint: tuple[float, float, float]
+    tint: tuple[float, float, float] | None
     opacity: float
 
 

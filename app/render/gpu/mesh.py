@@ -147,10 +147,17 @@ class PosedMesh:
         Released after its poses.
     source : VertexSource
         For as many vertices as the mesh has.
+
+    Attributes
+    ----------
+    opacity : float
+        1 at first; below, the whole drawing shines through, but not its parts through each other.
     """
 
     def __init__(self, mesh: GpuMesh, source: VertexSource) -> None:
         self.picture = mesh.picture
+        self.opacity = 1.0
+        self._placement = (1.0, 0.0, 0.0, 0.0)
         self._mesh = mesh
         self._source = source
         self._triangles = mesh.triangles
@@ -177,17 +184,24 @@ class PosedMesh:
         self._order.write(_indices(triangles))
         self._triangles = triangles
 
+    def place(self, factor: complex, shift: complex) -> None:
+        """Draw every vertex z at factor · z + shift, the factor of modulus 1."""
+        self._placement = (factor.real, factor.imag, shift.real, shift.imag)
+
     def draw(self, files: ShaderFiles, uniforms: Mapping[str, object]) -> None:
         """Draw the triangles with a mesh program: its files, and the source's shader."""
         binding = self._bound(files, self._order)
-        set_uniforms(binding.program, {**uniforms, **self._source.uniforms})
+        set_uniforms(binding.program, {**uniforms, **self._own_uniforms()})
         binding.render(moderngl.TRIANGLES)
 
     def draw_border(self, files: ShaderFiles, uniforms: Mapping[str, object]) -> None:
         """Draw the edges of the border with a program of their own."""
         binding = self._bound(files, self._mesh.border)
-        set_uniforms(binding.program, {**uniforms, **self._source.uniforms})
+        set_uniforms(binding.program, {**uniforms, **self._own_uniforms()})
         binding.render(moderngl.LINES)
+
+    def _own_uniforms(self) -> Mapping[str, object]:
+        return {"placement": self._placement, **self._source.uniforms}
 
     def _bound(self, files: ShaderFiles, indices: moderngl.Buffer) -> moderngl.VertexArray:
         if files not in self._bindings:
