@@ -88,9 +88,10 @@ class Painter:
                 pass
             self._drawn = []
             for figure, mesh in zip(figures, self._meshes, strict=True):
+                rest = mesh.vertices - figure.corner
                 texture = GpuPicture(context, pictures[figure.id])
                 owned.callback(texture.release)
-                gpu_mesh = GpuMesh(programs, texture, rest=mesh.vertices, triangles=mesh.triangles)
+                gpu_mesh = GpuMesh(programs, texture, rest=rest, triangles=mesh.triangles)
                 owned.callback(gpu_mesh.release)
                 self._drawn.append(DrawnMesh(gpu_mesh, by_shader=False))
                 owned.callback(self._drawn[-1].release)

@@ -29,6 +29,7 @@ from app.storage.json_values import (
     as_point,
     without_repeats,
 )
+from app.storage.layers import OpenedScene, is_layered, layer_figure, open_layered, open_pictures
 from app.storage.opening import open_picture
 from app.storage.pictures import Picture, decode_picture, read_picture_file
 from app.storage.preferences import (
@@ -55,6 +56,7 @@ __all__ = [
     "SMALLEST_SCALE",
     "Autosave",
     "JsonObject",
+    "OpenedScene",
     "Origin",
     "Picture",
     "Preferences",
@@ -69,10 +71,14 @@ __all__ = [
     "decode_picture",
     "draw_thumbnail",
     "find_leftovers",
+    "is_layered",
+    "layer_figure",
     "load_leftover",
     "load_preferences",
     "load_project",
+    "open_layered",
     "open_picture",
+    "open_pictures",
     "read_arrays",
     "read_picture_file",
     "read_thumbnail",

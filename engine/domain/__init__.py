@@ -10,6 +10,7 @@ from engine.domain.build import (
     Domain,
     build_domain,
     mesh_inside,
+    rectangle_domain,
     texture_coordinates,
 )
 from engine.domain.validity import MOST_MESH_TRIANGLES, require_domain
@@ -20,6 +21,7 @@ __all__ = [
     "Domain",
     "build_domain",
     "mesh_inside",
+    "rectangle_domain",
     "require_domain",
     "texture_coordinates",
 ]

@@ -14,6 +14,8 @@ from engine.geometry import Hole, deepest_point
 
 FEWEST_TRIANGLES = 1_000
 MOST_TRIANGLES = 2_000_000
+# A picture that is never deformed is as good as any inside a cage so much larger.
+FRAME = 1.1
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -37,6 +39,15 @@ class Domain:
     cage: Complexes
     mesh: Mesh
     holes: tuple[Hole, ...] = ()
+
+    def moved(self, by: complex) -> "Domain":
+        """Return the domain elsewhere in the plane."""
+        mesh = Mesh(vertices=self.mesh.vertices + by, triangles=self.mesh.triangles)
+        holes = tuple(
+            Hole(outline=hole.outline + by, cage=hole.cage + by, centre=hole.centre + by)
+            for hole in self.holes
+        )
+        return Domain(outline=self.outline + by, cage=self.cage + by, mesh=mesh, holes=holes)
 
     @property
     def loops(self) -> tuple[Complexes, ...]:
@@ -100,6 +111,17 @@ def build_domain(
         holes=enclosure.holes,
     )
     return domain, subject.notices + enclosure.notices
+
+
+def rectangle_domain(width: float, height: float) -> Domain:
+    """Return the domain that is all of a picture of this size, in two triangles."""
+    corners = np.array([0, width, width + 1j * height, 1j * height])
+    middle = corners.mean()
+    return Domain(
+        outline=corners,
+        cage=middle + FRAME * (corners - middle),
+        mesh=Mesh(vertices=corners, triangles=np.array([[0, 1, 2], [0, 2, 3]], dtype=np.int32)),
+    )
 
 
 def mesh_inside(outline: Complexes, *holes: Complexes, triangles: int) -> Mesh:

@@ -1,5 +1,6 @@
 """Commands on the figures as layers: which there are, in what order, seen when, hung on what."""
 
+from collections.abc import Collection
 from dataclasses import replace
 
 import numpy as np
@@ -175,7 +176,11 @@ def free_identity(document: Document) -> int:
 
 def free_name(document: Document, name: str) -> str:
     """Return a name for a figure that no other one has: this one, or this one with a number."""
-    taken = {figure.name for figure in document.figures}
+    return numbered_name(name, {figure.name for figure in document.figures})
+
+
+def numbered_name(name: str, taken: Collection[str]) -> str:
+    """Return a name that is not taken: this one, or this one with a number."""
     number, free = 1, name
     while free in taken:
         number += 1

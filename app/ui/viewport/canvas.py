@@ -137,7 +137,7 @@ class _Drawing:
             self._meshes[mesh] = GpuMesh(
                 self._renderer.programs,
                 self._picture(figure),
-                rest=drawn.vertices,
+                rest=drawn.vertices - self.project.document.figure(figure).corner,
                 triangles=drawn.triangles,
             )
         return self._meshes[mesh]

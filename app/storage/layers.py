@@ -1,0 +1,153 @@
+"""From a drawing on layers, or several pictures, to figures of one scene."""
+
+from collections.abc import Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
+from pathlib import Path
+from typing import NamedTuple
+
+from app.document import Document, Figure, Meshing, PictureFile, layer_commands, new_figure
+from app.errors import LissomError
+from app.storage.pictures import (
+    Layer,
+    LayeredPicture,
+    Picture,
+    decode_picture,
+    read_openraster,
+    read_photoshop,
+    read_picture_file,
+)
+from engine.domain import build_domain, rectangle_domain
+from engine.errors import EngineError
+
+READERS = {".ora": read_openraster, ".psd": read_photoshop}
+# However many layers share the triangles, each gets so many.
+FEWEST_TRIANGLES = 4_000
+WORKERS = 2
+OPAQUE = 255
+
+
+class OpenedScene(NamedTuple):
+    """A new document, its decoded pictures by the ids of figures, and what was done, in words."""
+
+    document: Document
+    pictures: Mapping[int, Picture]
+    notices: tuple[str, ...]
+
+
+def is_layered(path: Path) -> bool:
+    """Tell whether a file's name is that of a drawing on layers."""
+    return path.suffix.lower() in READERS
+
+
+def open_layered(path: Path, meshing: Meshing) -> OpenedScene:
+    """Read a drawing on layers, and make each of them a figure.
+
+    A layer that is opaque all over, or on which no shape is found, becomes a still picture. All
+    layers together have the triangles that one picture would have.
+
+    Raises
+    ------
+    LissomError
+        If the file is missing, damaged, or holds no layers that can be used.
+    """
+    data = read_picture_file(path)
+    try:
+        drawing = READERS[path.suffix.lower()](data)
+    except LissomError as error:
+        raise LissomError(f"cannot open {path}: {error}") from error
+    return _scene(drawing, meshing, is_cut_out=True)
+
+
+def open_pictures(paths: Sequence[Path], meshing: Meshing) -> OpenedScene:
+    """Read several pictures, and make each of them a figure, the first one behind all others.
+
+    The canvas is as large as the largest of them; the others stand in its middle.
+
+    Raises
+    ------
+    LissomError
+        If one of the files is no picture.
+    """
+    layers: list[Layer] = []
+    taken: set[str] = set()
+    notices: list[str] = []
+    pictures = []
+    for path in paths:
+        data = read_picture_file(path)
+        pictures.append((path, data, decode_picture(data, str(path))))
+    size = (
+        max(picture.size[0] for _, _, picture in pictures),
+        max(picture.size[1] for _, _, picture in pictures),
+    )
+    for path, data, picture in pictures:
+        name = layer_commands.numbered_name(path.stem, taken)
+        taken.add(name)
+        corner = complex((size[0] - picture.size[0]) // 2, (size[1] - picture.size[1]) // 2)
+        layers.append(Layer(name=name, data=data, picture=picture, corner=corner))
+        notices += [f"{name}: {notice}" for notice in picture.notices]
+    drawing = LayeredPicture(size=size, layers=tuple(layers), notices=tuple(notices))
+    return _scene(drawing, meshing, is_cut_out=False)
+
+
+def layer_figure(
+    layer: Layer, identity: int, meshing: Meshing, *, is_cut_out: bool
+) -> tuple[Figure, tuple[str, ...]]:
+    """Return the figure of a layer, as it was drawn, and what was done, in words.
+
+    Parameters
+    ----------
+    layer : Layer
+    identity : int
+        The figure's id.
+    meshing : Meshing
+    is_cut_out : bool
+        Whether its transparency alone tells what is drawn. Then a layer that is opaque all over
+        becomes a still picture; else a plain background is taken off first.
+    """
+    picture = layer.picture
+    file = PictureFile(data=layer.data, suffix=picture.suffix, size=picture.size)
+    domain, still = rectangle_domain(*picture.size), True
+    notices: tuple[str, ...] = ("it stands still",)
+    if not (is_cut_out and (picture.rgba[..., 3] == OPAQUE).all()):
+        try:
+            domain, notices = build_domain(
+                picture.rgba,
+                triangles=meshing.triangles,
+                detail=meshing.detail,
+                tolerance=meshing.tolerance,
+                background="none" if is_cut_out else "auto",
+            )
+            still = False
+        except EngineError as error:
+            notices = (f"it stands still: {error}",)
+    figure = replace(
+        new_figure(file, domain.moved(layer.corner), meshing),
+        id=identity,
+        name=layer.name,
+        corner=layer.corner,
+        still=still,
+        hidden=not layer.visible,
+        opacity=layer.opacity,
+    )
+    return figure, tuple(f"{layer.name}: {notice}" for notice in notices)
+
+
+def _scene(drawing: LayeredPicture, meshing: Meshing, *, is_cut_out: bool) -> OpenedScene:
+    share = max(FEWEST_TRIANGLES, meshing.triangles // len(drawing.layers))
+    each = replace(meshing, triangles=min(meshing.triangles, share))
+    with ThreadPoolExecutor(WORKERS) as pool:
+        made = list(
+            pool.map(
+                lambda numbered: layer_figure(
+                    numbered[1], numbered[0], each, is_cut_out=is_cut_out
+                ),
+                enumerate(drawing.layers),
+            )
+        )
+    figures = tuple(figure for figure, _ in made)
+    if all(figure.still for figure in figures):
+        raise LissomError("none of its layers can be posed: there is no shape on any of them")
+    pictures = {index: layer.picture for index, layer in enumerate(drawing.layers)}
+    notices = [*drawing.notices, *(notice for _, told in made for notice in told)]
+    return OpenedScene(Document(figures=figures, size=drawing.size), pictures, tuple(notices))

@@ -1,0 +1,98 @@
+import numpy as np
+import pytest
+from layered import blob, openraster, png
+from PIL import Image
+
+from app.document.settings import Meshing
+from app.errors import LissomError
+from app.storage.layers import open_layered, open_pictures
+from app.storage.project_file import load_project, save_project
+from engine.domain import require_domain
+
+MESHING = Meshing(triangles=9_000)
+STACK = (
+    '<layer name="head" src="data/0.png" x="60" y="10" opacity="0.5"/>'
+    '<layer name="body" src="data/1.png" x="20" y="60" visibility="hidden"/>'
+    '<layer name="sky" src="data/2.png"/>'
+)
+
+
+@pytest.fixture
+def drawing(tmp_path):
+    path = tmp_path / "walk.ora"
+    sky = Image.new("RGBA", (200, 220), (120, 180, 250, 255))
+    path.write_bytes(openraster((200, 220), STACK, [blob(70, 50), blob(150, 140), sky]))
+    return path
+
+
+def test_every_layer_is_a_figure_where_it_is_on_the_canvas(drawing):
+    opened = open_layered(drawing, MESHING)
+    document = opened.document
+    _, body, head = document.figures
+    assert [figure.name for figure in document.figures] == ["sky", "body", "head"]
+    assert document.canvas == (200, 220)
+    assert head.corner == 60 + 160j
+    outline = head.domain.outline
+    assert abs(outline.mean() - (60 + 35 + 1j * (160 + 25))) < 2
+    assert body.corner == 20 + 20j
+    assert (body.hidden, head.hidden, head.opacity) == (True, False, 0.5)
+    for figure in document.figures:
+        require_domain(figure.domain)
+        rest = figure.domain.mesh.vertices
+        (key,) = figure.keys
+        np.testing.assert_allclose(figure.map_of(key.pose)(rest), rest, rtol=0, atol=1e-9)
+        assert opened.pictures[figure.id].size == figure.picture.size
+
+
+def test_a_layer_that_is_opaque_all_over_stands_still(drawing):
+    opened = open_layered(drawing, MESHING)
+    assert [figure.still for figure in opened.document.figures] == [True, False, False]
+    assert "sky: it stands still" in opened.notices
+
+
+def test_layers_share_the_triangles(drawing):
+    figures = open_layered(drawing, MESHING).document.figures
+    assert [len(figure.domain.mesh.triangles) for figure in figures[:1]] == [2]
+    for figure in figures[1:]:
+        assert figure.meshing.triangles == 4_000
+        assert abs(len(figure.domain.mesh.triangles) - 4_000) < 400
+
+
+def test_a_scene_of_layers_comes_back_from_its_file(drawing, tmp_path):
+    document = open_layered(drawing, MESHING).document
+    save_project(tmp_path / "a.lissom", document)
+    again = load_project(tmp_path / "a.lissom")
+    assert again.canvas == document.canvas
+    for one, other in zip(document.figures, again.figures, strict=True):
+        assert (one.name, one.corner, one.still, one.hidden, one.opacity) == (
+            other.name,
+            other.corner,
+            other.still,
+            other.hidden,
+            other.opacity,
+        )
+
+
+def test_several_pictures_become_layers_in_the_middle_of_the_largest(tmp_path):
+    for folder, size in (("a", (160, 120)), ("b", (60, 40))):
+        (tmp_path / folder).mkdir()
+        (tmp_path / folder / "figure.png").write_bytes(png(blob(*size)))
+    paths = [tmp_path / "a" / "figure.png", tmp_path / "b" / "figure.png"]
+    document = open_pictures(paths, MESHING).document
+    assert document.canvas == (160, 120)
+    assert [figure.name for figure in document.figures] == ["figure", "figure 2"]
+    assert [figure.corner for figure in document.figures] == [0, 50 + 40j]
+
+
+def test_bad_drawings_are_told_in_words(tmp_path):
+    for name, content in (("a.ora", b"?"), ("a.psd", b"?")):
+        (tmp_path / name).write_bytes(content)
+        with pytest.raises(LissomError, match=f"cannot open .*{name}: it is not a"):
+            open_layered(tmp_path / name, MESHING)
+    sky = Image.new("RGBA", (30, 20), (1, 2, 3, 255))
+    stack = '<layer name="sky" src="data/0.png"/>'
+    (tmp_path / "sky.ora").write_bytes(openraster((30, 20), stack, [sky]))
+    with pytest.raises(LissomError, match="none of its layers can be posed"):
+        open_layered(tmp_path / "sky.ora", MESHING)
+    with pytest.raises(LissomError, match="cannot read"):
+        open_layered(tmp_path / "none.ora", MESHING)
