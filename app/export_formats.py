@@ -119,6 +119,15 @@ EXPORT_FORMATS: Final[Mapping[str, ExportFormat]] = MappingProxyType(
             suffixes=(".glb",),
             is_drawn=False,
         ),
+        "html": ExportFormat(
+            label="Web page",
+            group="Engine and web",
+            use="For the web: one file that plays sharp at any size; needs a browser with WebGL 2.",
+            about="one page that plays the same shapes as glb by WebGL 2 and needs nothing else; "
+            "it fills its frame, is dragged to scrub and clicked to pause",
+            suffixes=(".html", ".htm"),
+            is_drawn=False,
+        ),
     }
 )
 

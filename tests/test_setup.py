@@ -32,6 +32,9 @@ for word in "$@"; do grep -qx "$word" "$MACHINE/installed" || exit 1; done
 SUDO = """
 [ "$1" = apt-get ] && exec "$@"
 """
+NPM = """
+echo "$@" > "$MACHINE/npm"
+"""
 PYTHON = """
 mkdir -p .venv/bin
 printf '#!/bin/sh\\necho "$@" > "$MACHINE/pip"\\n' > .venv/bin/pip
@@ -46,7 +49,8 @@ def machine(tmp_path):
         pytest.skip("needs bash")
     programs = tmp_path / "programs"
     programs.mkdir()
-    for name, text in {"apt-get": APT_GET, "dpkg": DPKG, "sudo": SUDO, "python3": PYTHON}.items():
+    texts = {"apt-get": APT_GET, "dpkg": DPKG, "sudo": SUDO, "python3": PYTHON, "npm": NPM}
+    for name, text in texts.items():
         (programs / name).write_text(f"#!/bin/sh{text}")
         (programs / name).chmod(0o755)
     (tmp_path / "checkout" / ".ci").mkdir(parents=True)
@@ -64,10 +68,12 @@ def machine(tmp_path):
     return run
 
 
-def test_a_bare_machine_gets_everything(machine):
-    known = NEEDED | TESTING | {"libosmesa6"}
+def test_a_bare_machine_gets_everything(machine, tmp_path):
+    known = NEEDED | TESTING | {"libosmesa6", "chromium"}
     assert machine(known=known) == NEEDED | {"libosmesa6"}
+    assert not (tmp_path / "npm").exists()
     assert machine("test", known=known) == known
+    assert (tmp_path / "npm").read_text().split()[-1] == "gltf-validator"
 
 
 def test_a_machine_whose_mesa_has_no_osmesa_gets_the_rest(machine):

@@ -12,6 +12,7 @@ from app.export.writers.apng import ApngWriter
 from app.export.writers.frame_writer import FrameWriter
 from app.export.writers.gif import GifWriter
 from app.export.writers.glb import glb_file
+from app.export.writers.html import html_page
 from app.export.writers.png import PngSequence
 from app.export.writers.spritesheet import SpritesheetWriter
 from app.export.writers.webp import WebpWriter
@@ -41,7 +42,7 @@ FILE_WRITERS: Final[Mapping[str, Callable[[IO[bytes], ExportPlan], FrameWriter]]
     )
 )
 SHAPE_WRITERS: Final[Mapping[str, Callable[[Sequence[MovingShape], ExportPlan], bytes]]] = (
-    MappingProxyType({"glb": glb_file})
+    MappingProxyType({"glb": glb_file, "html": html_page})
 )
 
 

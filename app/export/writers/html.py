@@ -1,0 +1,80 @@
+"""A page that plays figures by WebGL 2, with all that it needs in one file."""
+
+import base64
+import html
+import json
+from collections.abc import Sequence
+from importlib.metadata import version
+from pathlib import Path
+from string import Template
+from typing import Any, Final
+
+import numpy as np
+
+from app.export.framing import shown_box
+from app.export.moving_shape import MovingShape
+from app.export.plan import ExportPlan
+from app.export.writers.png import encode_png
+from app.storage import shader_source
+from engine.arrays import Complexes, Floats
+
+_PAGE: Final = Path(__file__).with_name("player.html")
+# What GLSL leaves open in browsers and settles elsewhere.
+_HEADER: Final = (
+    "#version 300 es\nprecision highp float;\nprecision highp int;\nprecision highp sampler2D;\n"
+)
+# The files of the renderer itself, for a drawing as it is.
+_VERTEX: Final = ("mesh.vert", "positions.glsl")
+_FRAGMENT: Final = ("picture.frag", "sample.glsl")
+
+
+def html_page(shapes: Sequence[MovingShape], plan: ExportPlan) -> bytes:
+    """Return a page of figures, the one behind all others first."""
+    box = shown_box(plan.view)
+    (first, last), colour = plan.span, plan.background
+    film = {
+        "box": [box.lower.real, box.lower.imag, box.upper.real, box.upper.imag],
+        "seconds": (last - first) / plan.fps,
+        "fps": plan.fps,
+        "loop": plan.loop,
+        "vertex": _HEADER + "\n".join(map(shader_source, _VERTEX)),
+        "fragment": _HEADER + "\n".join(map(shader_source, _FRAGMENT)),
+        "figures": [_packed(shape) for shape in shapes],
+    }
+    page = Template(_PAGE.read_text(encoding="utf-8")).substitute(
+        title=html.escape(plan.out.stem),
+        generator=f"Lissom {version('lissom')}",
+        background="transparent" if colour is None else f"rgb{colour}",
+        # Nothing in it may end the element that holds it.
+        film=json.dumps(film, separators=(",", ":")).replace("<", "\\u003c"),
+    )
+    return page.encode()
+
+
+def _packed(shape: MovingShape) -> dict[str, Any]:
+    """Return a figure as the page unpacks it: numbers one after the other, and a picture."""
+    motion = shape.motion
+    numbers = [
+        _pairs(motion.base),
+        shape.uv,
+        *map(_pairs, motion.targets),
+        motion.times,
+        motion.weights,
+    ]
+    data = b"".join(part.astype("<f4").tobytes() for part in numbers)
+    return {
+        "texture": f"data:image/png;base64,{_text(encode_png(shape.texture))}",
+        "data": _text(data + shape.triangles.astype("<u4").tobytes()),
+        "vertices": len(shape.uv),
+        "targets": len(motion.targets),
+        "times": len(motion.times),
+        "triangles": len(shape.triangles),
+    }
+
+
+def _pairs(points: Complexes) -> Floats:
+    return np.column_stack([points.real, points.imag])
+
+
+def _text(data: bytes) -> str:
+    return base64.b64encode(data).decode()

@@ -1,0 +1,200 @@
+"""The player in a real browser: what it shows, and how it is moved."""
+
+import base64
+import io
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from animations import moving_document
+from chromium import PROGRAM, Page, chromium
+from documents import altered
+from PIL import Image
+
+from app.document import Document, ExportSettings, FrameRange, clip_of
+from app.export import ExportRequest, KeptPoses, Painter, ShapeExport, plan_export
+from app.motion import Animation
+from app.render.gpu import create_context
+from app.storage import decode_picture
+from engine.arrays import Bytes
+
+if PROGRAM is None:
+    pytest.skip("Chromium is not installed", allow_module_level=True)
+
+SIZE = (240, 200)
+MOMENTS = (0.0, 0.11, 0.2)  # seconds
+# Levels, premultiplied, of any pixel and of the mean: textures of browsers have 8 bits.
+MOST, MEAN = 6, 0.3
+
+
+@pytest.fixture(scope="module")
+def browser(tmp_path_factory):
+    with chromium(tmp_path_factory.mktemp("profile")) as page:
+        yield page
+
+
+def two_blobs() -> Document:
+    """Two figures of which one lies over the other, in a loop."""
+    document = moving_document()
+    (figure,) = document.figures
+    above = replace(figure, id=1, name="above", keys=figure.keys[:1], corner=figure.corner)
+    return replace(document, figures=(figure, above), frames=FrameRange(0, 8), loop=True)
+
+
+def exported(document, out, **settings):
+    """Export a page; return how the renderer draws a frame of it."""
+    chosen = ExportSettings(format="html", size=SIZE, **settings)
+    request = ExportRequest(out=out, settings=chosen, project="walk")
+    poses = {f.id: KeptPoses(Animation(clip_of(document, f.id))) for f in document.figures}
+    pictures = {f.id: decode_picture(f.picture.data, "").rgba for f in document.figures}
+    plan = plan_export(document, request, poses)
+    list(ShapeExport(document, pictures, poses, plan).run())
+
+    def draw(gl, frame) -> Bytes:
+        painter = Painter(gl, document, pictures, poses, plan)
+        picture = painter.draw(painter.pose(frame))
+        painter.release()
+        return picture
+
+    return draw
+
+
+def opened(browser: Page, out, size=SIZE) -> Page:
+    browser.open(out, size)
+    browser.run(
+        "new Promise(done => { const look = () => lissom.ready ? done() : setTimeout(look, 5);"
+        " look(); })"
+    )
+    return browser
+
+
+def shown(page: Page, seconds: float) -> Bytes:
+    script = f"lissom.show({seconds}); document.querySelector('canvas').toDataURL()"
+    data = base64.b64decode(page.run(script).partition(",")[2])
+    with Image.open(io.BytesIO(data)) as image:
+        return np.asarray(image.convert("RGBA"))
+
+
+def premultiplied(picture: Bytes):
+    colours = picture.astype(np.float64)
+    colours[..., :3] *= colours[..., 3:] / 255
+    return colours
+
+
+def press(page: Page, kind: str, x: float, y: float = 100) -> None:
+    page.say(
+        "Input.dispatchMouseEvent",
+        type=kind,
+        x=x,
+        y=y,
+        button="left",
+        buttons=1,
+        clickCount=1,
+    )
+
+
+def test_the_browser_shows_what_the_renderer_draws(browser, tmp_path):
+    document, out = two_blobs(), tmp_path / "walk.html"
+    draw = exported(document, out)
+    page, gl = opened(browser, out), create_context()
+    page.run("lissom.pause()")
+    for seconds in MOMENTS:
+        found, wanted = shown(page, seconds), draw(gl, document.fps * seconds)
+        assert found.shape == wanted.shape
+        apart = np.abs(premultiplied(found) - premultiplied(wanted))
+        assert apart.max() <= MOST, seconds
+        assert apart.mean() <= MEAN, seconds
+        assert found[0, 0, 3] == 0
+    assert np.abs(premultiplied(shown(page, 0)) - premultiplied(found)).max() > 100
+    gl.release()
+    assert page.run("gl.getError()") == 0
+
+
+def test_it_fits_its_frame_whatever_that_is(browser, tmp_path):
+    out = tmp_path / "walk.html"
+    exported(moving_document(), out)
+    small = shown(opened(browser, out), 0.1)
+    high = shown(opened(browser, out, (120, 400)), 0.1)
+    assert high.shape == (400, 120, 4)
+    boxes = [np.argwhere(picture[..., 3] > 128) for picture in (small, high)]
+    (first, second) = (box.max(axis=0) - box.min(axis=0) for box in boxes)
+    assert np.abs(second - first / 2).max() <= 2
+    assert abs(boxes[1].mean(axis=0)[0] - 200) < 40
+
+
+def test_it_plays_and_is_paused_scrubbed_and_stepped(browser, tmp_path):
+    document, out = two_blobs(), tmp_path / "a <walk> & run.html"
+    exported(document, out)
+    page = opened(browser, out)
+    assert page.run("document.title") == "a <walk> & run"
+    assert page.run("lissom.playing")
+    page.run(
+        "new Promise(done => { const from = lissom.time, look = () =>"
+        " lissom.time != from ? done() : requestAnimationFrame(look); look(); })"
+    )
+    press(page, "mousePressed", 100)
+    press(page, "mouseReleased", 100)
+    assert not page.run("lissom.playing")
+    page.run("lissom.show(0.1)")
+    press(page, "mousePressed", 100)
+    press(page, "mouseMoved", 160)
+    quarter = 0.25 * 8 / document.fps
+    assert page.run("lissom.time") == pytest.approx(0.1 + quarter)
+    press(page, "mouseMoved", 280)  # a loop comes round
+    assert page.run("lissom.time") == pytest.approx(0.1 + 3 * quarter - 8 / document.fps)
+    press(page, "mouseReleased", 280)
+    assert not page.run("lissom.playing")
+    for key in ("ArrowRight", "ArrowRight", "ArrowLeft"):
+        page.say("Input.dispatchKeyEvent", type="keyDown", key=key)
+    stepped = 0.1 + 3 * quarter - 8 / document.fps + 1 / document.fps
+    assert page.run("lissom.time") == pytest.approx(stepped)
+    page.say("Input.dispatchKeyEvent", type="keyDown", key=" ")
+    assert page.run("lissom.playing")
+
+
+def test_it_stands_still_for_whom_motion_is_too_much(browser, tmp_path):
+    out = tmp_path / "walk.html"
+    exported(moving_document(), out, background="#102030")
+    feature = [{"name": "prefers-reduced-motion", "value": "reduce"}]
+    browser.say("Emulation.setEmulatedMedia", features=feature)
+    page = opened(browser, out)
+    assert not page.run("lissom.playing")
+    assert page.run("getComputedStyle(document.body).backgroundColor") == "rgb(16, 32, 48)"
+    page.say("Emulation.setEmulatedMedia", features=[])
+    page.run("lissom.play()")
+    assert page.run("lissom.playing")
+
+
+def test_what_plays_once_ends_and_plays_again(browser, tmp_path):
+    out = tmp_path / "walk.html"
+    exported(moving_document(), out)
+    page = opened(browser, out)
+    page.run(
+        "new Promise(done => { const look = () => lissom.playing ? requestAnimationFrame(look)"
+        " : done(); look(); })"
+    )
+    assert page.run("lissom.time") == page.run("lissom.seconds") == 0.25
+    page.run("lissom.play()")
+    assert page.run("lissom.time < lissom.seconds")
+
+
+def test_a_lost_context_comes_back(browser, tmp_path):
+    out = tmp_path / "walk.html"
+    exported(moving_document(), out)
+    page = opened(browser, out)
+    page.run("lissom.pause()")
+    before = shown(page, 0.1)
+    page.run(
+        "const lose = gl.getExtension('WEBGL_lose_context'); lose.loseContext();"
+        "new Promise(done => { canvas.addEventListener('webglcontextrestored', done);"
+        " setTimeout(() => lose.restoreContext(), 1); })"
+    )
+    assert (shown(page, 0.1) == before).all()
+
+
+def test_a_still_and_a_page_without_motion(browser, tmp_path):
+    document, out = moving_document(), tmp_path / "walk.html"
+    still = altered(document, keys=document.figures[0].keys[:1])
+    exported(still, out)
+    page = opened(browser, out)
+    assert shown(page, 3.0)[..., 3].max() == 255
