@@ -82,6 +82,11 @@ class Document:
         """Width and height of the scene in pixels."""
         return self.figures[0].picture.size if self.size is None else self.size
 
+    @property
+    def exported(self) -> tuple[Figure, ...]:
+        """The figures that exports show, from back to front."""
+        return tuple(each for each in self.figures if not (each.reference or each.hidden))
+
     def figure(self, identity: int) -> Figure:
         """Return the figure with this id."""
         for figure in self.figures:

@@ -80,9 +80,9 @@ def moving_shapes(
     """
     first, last = plan.span
     times = np.linspace(first, last, round((last - first) / _CLOSE) + 1).tolist()
-    tolerance, count = plan.shapes.tolerance, len(document.figures)
+    tolerance, count = plan.shapes.tolerance, len(document.exported)
     found = []
-    for index, figure in enumerate(document.figures):
+    for index, figure in enumerate(document.exported):
         steps = build_targets(
             poses[figure.id].positions,
             figure.domain.mesh.vertices,

@@ -63,8 +63,8 @@ class Painter:
         plan: ExportPlan,
     ) -> None:
         self._context = context
-        self._clips = [clip_of(document, f.id) for f in document.figures if not f.reference]
-        figures = [clip.figure for clip in self._clips]
+        figures = document.exported
+        self._clips = [clip_of(document, figure.id) for figure in figures]
         self._poses = [poses[figure.id] for figure in figures]
         self._view = plan.view
         self._background = Backdrop(colour=_colour(plan))

@@ -128,6 +128,8 @@ def check_request(document: Document, request: ExportRequest) -> None:
         format cannot be written.
     """
     settings = request.settings
+    if not document.exported:
+        raise LissomError("there is nothing to export: every layer is hidden or a reference")
     frames = _frames(document, settings)
     if frames.first not in document.frames or frames.last not in document.frames:
         raise LissomError(
@@ -198,7 +200,7 @@ def plan_export(
     settings = request.settings
     frames = _frames(document, settings)
     times = tuple(frame_times(document, frames, request.fps))
-    rest = np.concatenate([figure.domain.mesh.vertices for figure in document.figures])
+    rest = np.concatenate([figure.domain.mesh.vertices for figure in document.exported])
     if settings.framing == "fit" and extent is None:
         extent = motion_box(
             document,

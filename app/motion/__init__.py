@@ -7,7 +7,7 @@ Imports: `app.document`.
 
 from app.motion.extent import Box, box_around, extent_source, measure_extent, motion_box
 from app.motion.inbetweens import Animation, PoseSampler
-from app.motion.joints import HERE, HungAnimation, Joints, Placement
+from app.motion.joints import HERE, Joints, Placement, hung_animations
 from app.motion.paint_order import painted_triangles
 from app.motion.posable_mesh import PosableMesh
 from app.motion.prepared import Motion, prepare_motion
@@ -20,7 +20,6 @@ __all__ = [
     "Animation",
     "Box",
     "Build",
-    "HungAnimation",
     "Joints",
     "Motion",
     "Placed",
@@ -32,6 +31,7 @@ __all__ = [
     "Vertices",
     "box_around",
     "extent_source",
+    "hung_animations",
     "measure_extent",
     "motion_box",
     "next_build",

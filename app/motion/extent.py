@@ -7,6 +7,7 @@ import numpy as np
 
 from app.document import Document, FrameRange, clip_of, exported_frames, framed_frames
 from app.errors import LissomError
+from app.motion.joints import Joints
 from app.motion.prepared import Motion
 from engine.arrays import Complexes
 
@@ -36,7 +37,15 @@ def box_around(points: Complexes) -> Box:
 def extent_source(document: Document) -> tuple[object, ...]:
     """Return all of a document that its extent depends on; equal where the extent is."""
     motions = [
-        (figure.domain, figure.keys, figure.anchor, figure.variant) for figure in document.figures
+        (
+            figure.domain,
+            figure.keys,
+            figure.anchor,
+            figure.variant,
+            figure.attachment,
+            figure in document.exported,
+        )
+        for figure in document.figures
     ]
     frames = framed_frames(document, exported_frames(document))
     return (*motions, document.frames, document.loop, frames)
@@ -53,9 +62,14 @@ def measure_extent(document: Document, motions: Mapping[int, Motion]) -> Box:
     """
     clips = {figure: clip_of(document, figure) for figure in motions}
     frames = framed_frames(document, exported_frames(document))
-    box = motion_box(
-        document, frames, lambda figure, frame: motions[figure].positions(clips[figure], frame)
-    )
+    samplers = {figure: motion.sampler for figure, motion in motions.items()}
+    joints = Joints(document, {figure: each for figure, each in samplers.items() if each})
+
+    def place(figure: int, frame: int) -> Complexes | None:
+        positions = motions[figure].positions(clips[figure], frame)
+        return None if positions is None else joints.placement(figure, frame).on(positions)
+
+    box = motion_box(document, frames, place)
     if box is None:
         raise ValueError("the in-betweens are not prepared")
     return box
@@ -78,13 +92,15 @@ def motion_box(
     LissomError
         If a vertex is nowhere.
     """
+    if not document.exported:
+        return Box(0j, complex(*document.canvas))
     corners: list[complex] = []
     for frame in range(frames.first, frames.last + 1):
-        for figure in document.figures:
+        for figure in document.exported:
             positions = place(figure.id, frame)
             if positions is None:
                 return None
             corners += box_around(positions)
-        if not np.isfinite(corners[-2 * len(document.figures) :]).all():
+        if not np.isfinite(corners[-2 * len(document.exported) :]).all():
             raise LissomError(f"frame {frame} cannot be drawn: its points are not all finite")
     return box_around(np.array(corners))

@@ -1,6 +1,6 @@
 """Where figures that hang on others are, at any time (Section 7, "a user curve for the anchor")."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import NamedTuple
 
 import numpy as np
@@ -38,7 +38,7 @@ class Placement(NamedTuple):
 HERE = Placement()
 
 
-class Joint(NamedTuple):
+class Hinge(NamedTuple):
     """Where a point of a figure by itself is, and by what the figure turns there."""
 
     place: complex
@@ -139,9 +139,9 @@ class Joints:
 
     def _joint(
         self, figure: Figure, place: complex, frame: float, poses: Mapping[int, Pose]
-    ) -> Joint:
+    ) -> Hinge:
         if figure.id in poses:
-            return _joint_of(figure, poses[figure.id], place)
+            return _hinge_of(figure, poses[figure.id], place)
         index = self._points[figure.id].index(place)
         moved = self._animation(figure.id).frame(frame)
         return _joint(moved.positions[index], moved.fz[index])
@@ -161,7 +161,7 @@ class Joints:
         )
         return Animation(clip_of(self._document, figure.id), sampler=sampler)
 
-    def _at(self, figure: Figure, place: complex, frame: float) -> Joint:
+    def _at(self, figure: Figure, place: complex, frame: float) -> Hinge:
         moved = self._animation_at(figure, np.array([place])).frame(frame)
         return _joint(moved.positions[0], moved.fz[0])
 
@@ -211,6 +211,15 @@ class HungAnimation:
         return placement.on(self._animation.positions(frame))
 
 
+def hung_animations(
+    animations: Iterable[Animation], document: Document
+) -> dict[int, HungAnimation]:
+    """Return the animations of a document's figures, each where the scene has it, by their ids."""
+    own = {animation.clip.figure.id: animation for animation in animations}
+    joints = Joints(document, {identity: each.sampler for identity, each in own.items()})
+    return {identity: HungAnimation(each, joints) for identity, each in own.items()}
+
+
 def _points(document: Document) -> dict[int, list[complex]]:
     """Return the points of each figure by which it hangs, or others hang on it."""
     points: dict[int, list[complex]] = {figure.id: [] for figure in document.figures}
@@ -221,13 +230,13 @@ def _points(document: Document) -> dict[int, list[complex]]:
     return points
 
 
-def _joint_of(figure: Figure, pose: Pose, place: complex) -> Joint:
+def _hinge_of(figure: Figure, pose: Pose, place: complex) -> Hinge:
     f, at = figure.map_of(pose), np.array([place])
     return _joint(f(at)[0], f.derivatives(at)[0][0])
 
 
-def _joint(position: complex, fz: complex) -> Joint:
-    return Joint(complex(position), complex(fz / abs(fz)))
+def _joint(position: complex, fz: complex) -> Hinge:
+    return Hinge(complex(position), complex(fz / abs(fz)))
 
 
 def _require_anchor(figure: Figure) -> complex:

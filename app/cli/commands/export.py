@@ -24,7 +24,7 @@ from app.export import (
     with_light_meshes,
 )
 from app.export_formats import EXPORT_FORMATS, format_by_suffix
-from app.motion import Animation
+from app.motion import Animation, hung_animations
 from app.render.gpu import create_context
 from app.storage import decode_picture, load_project
 from engine.arrays import Bytes
@@ -102,10 +102,11 @@ def _film(
 
 
 def _poses(document: Document, arguments: argparse.Namespace) -> dict[int, KeptPoses]:
-    return {
-        figure.id: KeptPoses(Animation(clip_of(document, figure.id), arguments.variant))
-        for figure in document.figures
-    }
+    alone = [
+        Animation(clip_of(document, figure.id), arguments.variant) for figure in document.figures
+    ]
+    hung = hung_animations(alone, document)
+    return {figure: KeptPoses(animation) for figure, animation in hung.items()}
 
 
 def _settings(own: ExportSettings, arguments: argparse.Namespace, out: Path) -> ExportSettings:

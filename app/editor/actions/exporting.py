@@ -33,6 +33,7 @@ from app.motion import (
     Motion,
     PoseSampler,
     extent_source,
+    hung_animations,
 )
 
 PREPARING = "Preparing the export"
@@ -118,10 +119,12 @@ def start(session: Session, out: Path) -> None:
     box = extent.value if extent.follows(extent_source(document)) else None
 
     def work() -> ExportRun:
-        poses = {
-            figure.id: KeptPoses(_animation(clip_of(document, figure.id), motions[figure.id]))
+        alone = [
+            _animation(clip_of(document, figure.id), motions[figure.id])
             for figure in document.figures
-        }
+        ]
+        hung = hung_animations(alone, document)
+        poses = {figure: KeptPoses(animation) for figure, animation in hung.items()}
         plan = plan_export(document, request, poses, box)
         return ExportRun(document=document, pictures=pictures, poses=poses, plan=plan)
 
