@@ -1,4 +1,4 @@
-"""Array types shared by the whole engine, and the checks at its borders."""
+"""Array types shared by the whole engine, the checks at its borders, and ragged arrays."""
 
 from typing import TypeVar
 
@@ -36,6 +36,13 @@ def readonly(array: npt.NDArray[type_]) -> npt.NDArray[type_]:
     if not array.flags.writeable and array.flags.c_contiguous and array.base is None:
         return array
     return freeze(np.array(array, order="C"))
+
+
+def ragged(counts: Indices) -> tuple[Indices, Indices]:
+    """Return, for groups of these sizes one after the other, each entry's group and place in it."""
+    group = np.repeat(np.arange(len(counts)), counts)
+    place = np.arange(len(group)) - np.repeat(np.cumsum(counts) - counts, counts)
+    return group, place
 
 
 def as_points(values: npt.ArrayLike, name: str, *, at_least: int = 0) -> Complexes:

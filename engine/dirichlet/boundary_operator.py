@@ -11,7 +11,7 @@ import numpy as np
 from scipy.sparse import csr_array
 from scipy.spatial import cKDTree
 
-from engine.arrays import Complexes, Floats, Indices
+from engine.arrays import Complexes, Floats, Indices, ragged
 from engine.dirichlet.panels import NODES, Panels
 from engine.dirichlet.product_integration import is_near, near_distance, panel_weights
 from engine.geometry import as_xy
@@ -24,9 +24,9 @@ class BoundaryOperator:
     Parameters
     ----------
     nodes, differentials : complex128, shape (N,)
-    near : csr_array, complex, shape (N, N)
-        Entries of panels at the nodes near them, times 2π, with the imaginary part 1.
-    near_by_column : csr_array, complex, shape (N, N)
+    near : csr_array, float64, shape (N, N)
+        Entries of panels at the nodes near them, zeros among them.
+    near_by_column : csr_array, float64, shape (N, N)
         The transpose.
     """
 
@@ -54,7 +54,8 @@ class BoundaryOperator:
         entries = np.concatenate([entries, own])
         columns = pairs[:, 1:] * NODES + np.arange(NODES)
         row = np.repeat(pairs[:, 0], NODES)
-        near = csr_array((entries.ravel() + 1j, (row, columns.ravel())), shape=(size, size))
+        entries /= 2 * np.pi
+        near = csr_array((entries.ravel(), (row, columns.ravel())), shape=(size, size))
         return cls(
             nodes=nodes,
             differentials=panels.differentials().ravel(),
@@ -63,23 +64,36 @@ class BoundaryOperator:
         )
 
     def near_rows(self, columns: Indices) -> Indices:
-        """Return the nodes at which some columns are integrated exactly."""
-        return np.unique(self.near_by_column[columns].indices)
+        """Return the nodes at which some columns are integrated exactly, some more than once."""
+        return _chosen(self.near_by_column, columns)[2]
 
     def near_columns(self, rows: Indices) -> Indices:
-        """Return the columns that are integrated exactly at some nodes."""
-        return np.unique(self.near[rows].indices)
+        """Return the columns that are integrated exactly at some nodes, some more than once."""
+        return _chosen(self.near, rows)[2]
 
     def entries(self, rows: Indices, columns: Indices) -> Floats:
         """Return a part of the matrix (r, c)."""
+        # The plain kernel, Im dζ / (ζ − z), without complex division.
+        offset = self.nodes[columns] - self.nodes[rows, None]
+        x, y = offset.real, offset.imag
+        weights = self.differentials[columns] / (2 * np.pi)
         with np.errstate(divide="ignore", invalid="ignore"):
-            plain = self.differentials[columns] / (self.nodes[columns] - self.nodes[rows, None])
-        found: Floats = plain.imag.copy()
-        exact = self.near[rows][:, columns].toarray()
-        chosen = exact.imag != 0.0
-        found[chosen] = exact.real[chosen]
-        found /= 2 * np.pi
+            found: Floats = (weights.imag * x - weights.real * y) / (x * x + y * y)
+        place = np.full(len(self.nodes), -1)
+        place[columns] = np.arange(len(columns))
+        row, entry, column = _chosen(self.near, rows)
+        column = place[column]
+        there = column >= 0
+        found[row[there], column[there]] = self.near.data[entry[there]]
         return found
+
+
+def _chosen(matrix: csr_array, rows: Indices) -> tuple[Indices, Indices, Indices]:
+    """Return the entries of some rows: in which of these, their numbers, and their columns."""
+    starts = matrix.indptr[rows]
+    row, place = ragged(matrix.indptr[rows + 1] - starts)
+    entry = starts[row] + place
+    return row, entry, matrix.indices[entry]
 
 
 def _near_entries(panels: Panels, nodes: Complexes, power: int) -> tuple[Indices, Floats]:

@@ -17,13 +17,13 @@ import numpy as np
 from scipy.sparse import bsr_array
 from scipy.special import comb
 
-from engine.arrays import Complexes, Floats, Indices, freeze
-from engine.dirichlet.interactions import Interactions, interactions, ragged
+from engine.arrays import Complexes, Floats, Indices, freeze, ragged
+from engine.dirichlet.interactions import Interactions, interactions
 from engine.dirichlet.near_field import near_matrix
 from engine.dirichlet.panels import NODES, Panels
 
 TERMS = 20  # of expansions: they err by FAR^-TERMS = 1e-8 of the largest density at most
-BLOCK = 512  # pairs whose expansions are translated at a time, so that they stay in cache
+BLOCK = 256  # pairs whose expansions are translated at a time, so that they stay in cache
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -99,7 +99,7 @@ class CauchyIntegral:
         """
         squares, columns = self.acting.squares, densities.shape[1]
         near = (self.near @ densities).reshape(len(self.offsets), 2, 2, columns)
-        results = np.empty((2, len(self.offsets), columns), dtype=np.complex128)
+        results = np.empty((2, columns, len(self.offsets)), dtype=np.complex128)
         polynomials = self._taylor(densities)
         ranks = np.arange(1.0, TERMS)[:, None]
         slopes = np.zeros_like(polynomials)
@@ -115,8 +115,8 @@ class CauchyIntegral:
             for leaf in range(first, last + 1):
                 own = slice(starts[leaf] - block.start, ends[leaf] - block.start)
                 flat[own] += powers[:, own].T @ both[leaf]
-            results[:, squares.order[block]] = found.transpose(1, 0, 2)
-        return results[0], results[1]
+            results[:, :, squares.order[block]] = found.transpose(1, 2, 0)
+        return results[0].T, results[1].T
 
     def _taylor(self, densities: Floats) -> Complexes:
         """Return the polynomials (l, TERMS, j) of the leaves."""

@@ -13,7 +13,7 @@ from typing import NamedTuple, Self
 
 import numpy as np
 
-from engine.arrays import Booleans, Complexes, Floats, Indices
+from engine.arrays import Booleans, Complexes, Floats, Indices, ragged
 from engine.dirichlet.panels import Panels
 from engine.dirichlet.product_integration import near_distance
 from engine.dirichlet.quadtree import DEEPEST, Grid, Level, Squares
@@ -213,13 +213,6 @@ class _Search:
     def _opened(self, pairs: Pairs) -> Pairs:
         children, of = self._clusters.children(pairs.clusters)
         return Pairs(pairs.squares[of], children)
-
-
-def ragged(counts: Indices) -> tuple[Indices, Indices]:
-    """Return, for groups of these sizes one after the other, each entry's group and place in it."""
-    group = np.repeat(np.arange(len(counts)), counts)
-    place = np.arange(len(group)) - np.repeat(np.cumsum(counts) - counts, counts)
-    return group, place
 
 
 def _corners(places: Complexes) -> Floats:

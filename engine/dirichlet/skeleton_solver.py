@@ -14,6 +14,7 @@ from typing import Self
 
 import numpy as np
 import scipy.linalg
+from scipy.sparse import csc_array
 
 from engine.arrays import Floats, Indices, freeze
 from engine.dirichlet.boundary_operator import BoundaryOperator
@@ -21,8 +22,10 @@ from engine.dirichlet.panels import NODES
 
 LEAF = 6 * NODES  # nodes of a box of the lowest level, about
 SMALL = 600  # nodes that are solved for directly
-TOLERANCE = 1e-9  # of what a skeleton loses, relative to what acts
+# Of what a skeleton loses, relative to what acts; random sums lose a digit more.
+TOLERANCE = 1e-10
 CIRCLE = 2.0  # radius of the circle around a box, over the box's own
+SUMMED, SPARE = 6, 32  # random sums into which a row goes; sums beyond the number of columns
 ON_CIRCLE = 64  # points; what they miss falls like CIRCLE^(−half of them)
 
 
@@ -140,7 +143,7 @@ class _Active:
     def eliminated(self, surroundings: Floats, first: int) -> tuple[SkeletonBox, "_Active"]:
         """Find the skeleton, and eliminate the other nodes."""
         triangle, order = scipy.linalg.qr(
-            surroundings, mode="r", pivoting=True, overwrite_a=True, check_finite=False
+            _sketched(surroundings), mode="r", pivoting=True, overwrite_a=True, check_finite=False
         )
         sizes = np.abs(np.diagonal(triangle))
         rank = max(1, int(np.count_nonzero(sizes > TOLERANCE * sizes[0])))
@@ -171,6 +174,24 @@ class _Active:
             first=first, reduce=freeze(reduce), expand=freeze(expand), local=freeze(local)
         )
         return box, _Active(nodes=self.nodes[kept], block=inner + to_kept @ follow)
+
+
+def _sketched(rows: Floats) -> Floats:
+    """Return few random sums of many rows: their columns depend on each other as before.
+
+    Each row goes with a random sign into a few sums, of which there are hardly more than columns
+    (a sparse sign embedding; Martinsson and Tropp 2020, Section 9.2).
+    """
+    count, columns = rows.shape
+    sums = columns + SPARE
+    if count <= sums:
+        return rows
+    rng = np.random.default_rng(0)
+    into = rng.integers(sums, size=count * SUMMED)
+    signs = rng.choice([-1.0, 1.0], size=count * SUMMED)
+    sketch = csc_array((signs, into, np.arange(0, count * SUMMED + 1, SUMMED)), (sums, count))
+    sketched: Floats = sketch @ rows
+    return sketched
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

@@ -19,6 +19,7 @@ from engine.dirichlet import Extension, ProjectedTransform
 from engine.interpolation.derivatives import Derivatives, Passage
 from engine.interpolation.eta import EtaBlend
 from engine.interpolation.passing import Course
+from engine.maps import derivatives_of
 from engine.paths import IntegrationPaths
 
 DEGREE = 24  # of the series of a piece of time
@@ -67,8 +68,7 @@ class MetricBlend:
         transform: Extension | ProjectedTransform,
     ) -> Self:
         """Solve the Dirichlet problems of the residual between two keyframes."""
-        derivatives = [key.map.derivatives(transform.nodes) for key in passage.keyframes]
-        fz, fzbar = (np.array(column) for column in zip(*derivatives, strict=True))
+        fz, fzbar = derivatives_of([key.map for key in passage.keyframes], transform.nodes)
         real_parts, series = separate(OutlineMetric.of(fz, fzbar), passage.course)
         modes, modes_z = transform.extend(real_parts)
         modes.imag -= modes[0].imag

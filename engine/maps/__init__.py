@@ -10,7 +10,7 @@ from engine.maps.boundary import Boundary
 from engine.maps.bounds import Bounds, Limits
 from engine.maps.cauchy import cauchy_coordinates, cauchy_derivatives, evaluate
 from engine.maps.certificate import Certificate, certify, certify_segments, segment_enclosures
-from engine.maps.harmonic_map import HarmonicMap
+from engine.maps.harmonic_map import HarmonicMap, derivatives_of
 from engine.maps.span import Span
 
 __all__ = [
@@ -24,6 +24,7 @@ __all__ = [
     "cauchy_derivatives",
     "certify",
     "certify_segments",
+    "derivatives_of",
     "distortion",
     "evaluate",
     "segment_enclosures",

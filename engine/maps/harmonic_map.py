@@ -1,5 +1,6 @@
 """Planar harmonic maps f = Φ + conj(Ψ) with Φ and Ψ in the span of the Cauchy coordinates."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from typing import Self
 
@@ -146,3 +147,13 @@ class HarmonicMap:
         # The coordinates of the outer cage sum to 1: a constant is the same at all its vertices.
         phi[: len(self.cage)] += shift
         return replace(self, phi=phi, psi=factor.conjugate() * self.psi, logs=factor * self.logs)
+
+
+def derivatives_of(maps: Sequence[HarmonicMap], points: Complexes) -> tuple[Complexes, Complexes]:
+    """Return f_z and f_z̄ of maps in one span at points (m,), each (q, m).
+
+    The logarithms of the points serve all maps.
+    """
+    coefficients = np.hstack([f.coefficients for f in maps])
+    (first,) = maps[0].span.evaluate(coefficients, points, orders=(1,))
+    return first[:, ::2].T, first[:, 1::2].T.conj()
