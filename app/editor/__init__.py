@@ -13,15 +13,26 @@ from app.editor.project import PoseInProgress, Project, Puppet
 from app.editor.session import (
     BoxMark,
     CurveKind,
+    EntryMark,
     ExportRun,
     HeatMap,
+    Hint,
     Overlays,
     Session,
     SweepMark,
     Toast,
     ToolInHand,
 )
-from app.editor.timeline_view import Edge, EdgeDrag, KeyBox, KeyDrag, Scrub, Strip, TimeGesture
+from app.editor.timeline_view import (
+    Edge,
+    EdgeDrag,
+    KeyBox,
+    KeyDrag,
+    MarkerDrag,
+    Scrub,
+    Strip,
+    TimeGesture,
+)
 
 __all__ = [
     "Action",
@@ -30,12 +41,15 @@ __all__ = [
     "Dialog",
     "Edge",
     "EdgeDrag",
+    "EntryMark",
     "ExportRun",
     "FileDialog",
     "HeatMap",
+    "Hint",
     "Jobs",
     "KeyBox",
     "KeyDrag",
+    "MarkerDrag",
     "Overlays",
     "PoseInProgress",
     "Project",

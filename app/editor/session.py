@@ -42,6 +42,8 @@ class Toast:
     tone : str
     born : float
         The clock's seconds.
+    topic : str
+        What it is about: a later message about the same takes its place.
     details : str
         What the person may copy; empty where there is nothing to add.
     label, action
@@ -51,6 +53,7 @@ class Toast:
     text: str
     tone: Tone
     born: float
+    topic: str = ""
     details: str = ""
     label: str = ""
     action: Action | None = None
@@ -73,7 +76,16 @@ class SweepMark:
     swept: float
 
 
-Mark = BoxMark | SweepMark
+@dataclass(frozen=True, slots=True, kw_only=True)
+class EntryMark:
+    """What was typed during a drag, and the axis through a place that it keeps to, if any."""
+
+    place: complex
+    direction: complex | None
+    text: str
+
+
+Mark = BoxMark | SweepMark | EntryMark
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -84,11 +96,23 @@ class CopiedPose:
     pose: Pose
 
 
+@dataclass(frozen=True, slots=True)
+class Hint:
+    """What can be done with the pointer: how, which key is held for it, and to what end."""
+
+    how: str
+    what: str
+    key: Literal["", "ctrl", "shift", "alt"] = ""
+
+
 class ToolInHand(Protocol):
     """A tool that has the pointer in the viewport; places are of the plane."""
 
     def move(self, session: "Session", place: complex) -> None:
         """Follow the pointer to another place."""
+
+    def type(self, session: "Session", characters: str) -> None:
+        """Take what is typed meanwhile."""
 
     def end(self, session: "Session", place: complex) -> None:
         """End where the pointer is."""
@@ -99,6 +123,10 @@ class ToolInHand(Protocol):
     @property
     def marks(self) -> tuple[Mark, ...]:
         """What is drawn of it over the picture."""
+
+    @property
+    def ways(self) -> tuple[Hint, ...]:
+        """What can be done meanwhile."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -136,6 +164,7 @@ class Session:
     keeps_aspect: bool = True  # of an export whose size is entered
     curves: CurveKind = "relative"
     pointer: ToolInHand | None = None
+    snaps: bool = False  # whether what the pointer does goes in steps
     copied: CopiedPose | None = None
     space_used: bool = False  # Space was held to move the view
     hovered: int | None = None  # the handle under the pointer
@@ -158,12 +187,24 @@ class Session:
         text: str,
         *,
         tone: Tone = "info",
+        topic: str = "",
         details: str = "",
         label: str = "",
         action: Action | None = None,
     ) -> None:
         """Show a message; one that shows already starts its time again."""
-        self.toasts = [toast for toast in self.toasts if toast.text != text]
-        born = self.clock()
-        toast = Toast(text=text, tone=tone, born=born, details=details, label=label, action=action)
+        self.toasts = [
+            toast
+            for toast in self.toasts
+            if toast.text != text and not (topic == toast.topic != "")
+        ]
+        toast = Toast(
+            text=text,
+            tone=tone,
+            born=self.clock(),
+            topic=topic,
+            details=details,
+            label=label,
+            action=action,
+        )
         self.toasts.append(toast)

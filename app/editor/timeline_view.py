@@ -129,7 +129,18 @@ class Scrub:
     offset: float = 0.0
 
 
-TimeGesture = KeyDrag | EdgeDrag | KeyBox | Scrub
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class MarkerDrag:
+    """The pointer moves a marker from a frame in `before` to where it is `at` now."""
+
+    marker: int
+    at: int
+    start: float
+    before: Document
+    after: Document
+
+
+TimeGesture = KeyDrag | EdgeDrag | KeyBox | MarkerDrag | Scrub
 
 
 # By how many pixels handles, by their ids, fall short of their targets in each key's pose.

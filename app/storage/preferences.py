@@ -8,6 +8,7 @@ from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any, Literal
 
+from app.document import LINEAR, Easing
 from app.errors import LissomError
 from app.storage.files import write_atomically
 
@@ -32,6 +33,8 @@ class Preferences:
         Whether posing makes and changes keys by itself.
     backdrop : str
         What lies behind the drawing: "checker" or "#rrggbb".
+    easing : Easing
+        How time runs on the ways from new keys.
     ghosts_before, ghosts_after, ghost_step : int
         How many ghosts the onion skin shows, and how many frames apart.
     recent : tuple of Path
@@ -43,6 +46,7 @@ class Preferences:
     theme: ThemeName = "dark"
     scale: float = 1.0
     auto_key: bool = True
+    easing: Easing = LINEAR
     backdrop: str = CHECKER
     ghosts_before: int = 2
     ghosts_after: int = 2
@@ -85,7 +89,8 @@ def load_preferences(folder: Path) -> Preferences:
 def save_preferences(folder: Path, preferences: Preferences) -> None:
     """Write the preferences; where that fails, they are as before next time."""
     # Paths, alone or in a list, are what JSON does not know.
-    text = json.dumps(asdict(preferences), indent=1, default=str).encode()
+    content = {**asdict(preferences), "easing": preferences.easing.written()}
+    text = json.dumps(content, indent=1, default=str).encode()
     try:
         folder.mkdir(parents=True, exist_ok=True)
         write_atomically(folder / "preferences.json", lambda file: file.write(text))
@@ -109,6 +114,7 @@ def _understood(content: dict[str, Any]) -> Preferences:
         theme="light" if content.get("theme") == "light" else "dark",
         scale=float(number("scale", SMALLEST_SCALE, LARGEST_SCALE)),
         auto_key=content.get("auto_key") is not False,
+        easing=_easing(content.get("easing")),
         backdrop=backdrop if _COLOUR.fullmatch(backdrop) else CHECKER,
         ghosts_before=int(number("ghosts_before", 0, MOST_GHOSTS)),
         ghosts_after=int(number("ghosts_after", 0, MOST_GHOSTS)),
@@ -116,3 +122,10 @@ def _understood(content: dict[str, Any]) -> Preferences:
         recent=tuple(Path(path) for path in paths if isinstance(path, str))[:MOST_RECENT],
         folder=Path(folder) if isinstance(folder, str) else None,
     )
+
+
+def _easing(content: object) -> Easing:
+    try:
+        return Easing.parse(content)
+    except (LissomError, OverflowError):
+        return LINEAR

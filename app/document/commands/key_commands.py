@@ -18,17 +18,21 @@ def pose_key(figure: Figure, frame: int, pose: Pose) -> Figure:
 
 
 @figure_command("Insert key")
-def insert_key(figure: Figure, frame: int, pose: Pose, *, easing: Easing | None = None) -> Figure:
+def insert_key(figure: Figure, frame: int, pose: Pose, *, easing: Easing = LINEAR) -> Figure:
     """Insert a key at a frame that has none.
 
-    Without `easing` it takes that of the key before it, whose interval it divides. The animation
-    grows where the frame lies beyond its ends; so it does in all commands here.
+    A key that divides an interval takes its easing. Ways that are new get `easing`: that from a
+    new first or last key, and that from the key that was last, unless it was given one. The
+    animation grows where the frame lies beyond its ends; so it does in all commands here.
     """
-    if easing is None:
-        before = [key for key in figure.keys if key.frame < frame]
-        easing = before[-1].easing if before else LINEAR
-    key = Keyframe(frame=frame, pose=pose, easing=easing)
-    return _with_keys(figure, (*figure.keys, key))
+    keys = list(figure.keys)
+    before = [key for key in keys if key.frame < frame]
+    if frame > keys[-1].frame:
+        if keys[-1].easing == LINEAR:
+            keys[-1] = replace(keys[-1], easing=easing)
+    elif before:
+        easing = before[-1].easing
+    return _with_keys(figure, (*keys, Keyframe(frame=frame, pose=pose, easing=easing)))
 
 
 @figure_command("Move keys")

@@ -10,6 +10,7 @@ from app.document.queries.shortfall import Extremes, Shortfall, falls_short, fin
 from app.document.queries.timeline import (
     Clip,
     Moment,
+    changed_stretches,
     clip_of,
     closes,
     exported_frames,
@@ -26,6 +27,7 @@ __all__ = [
     "Front",
     "Moment",
     "Shortfall",
+    "changed_stretches",
     "clip_of",
     "closes",
     "exported_frames",

@@ -3,6 +3,7 @@
 from bisect import bisect_right
 from dataclasses import dataclass
 from fractions import Fraction
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -124,6 +125,39 @@ def resting_pose(clip: Clip, moment: Moment) -> Pose | None:
     if moment.weight == 1.0:
         return keys[(moment.interval + 1) % len(keys)].pose
     return None
+
+
+def changed_stretches(before: Document, after: Document) -> list[FrameRange]:
+    """Return where in time two documents differ: keys, the ways from them, and markers.
+
+    A change of everything that is shown, such as of handles or of a domain, is nowhere.
+    """
+    stretches: list[FrameRange] = []
+    others = {figure.id: figure for figure in before.figures}
+    for figure in after.figures:
+        other = others.get(figure.id)
+        if other is not None and other.keys is not figure.keys and _are_alike(other, figure):
+            stretches += _changed_keys(other, figure)
+    marks = set(before.markers) ^ set(after.markers)
+    return stretches + [FrameRange(marker.frame, marker.frame) for marker in marks]
+
+
+def _are_alike(figure: Figure, other: Figure) -> bool:
+    return figure.domain is other.domain and figure.handles == other.handles
+
+
+def _changed_keys(before: Figure, after: Figure) -> list[FrameRange]:
+    """Return the frames of the keys that differ, each up to the next one if only its way does."""
+    keys = {key.frame: key for key in before.keys}
+    following = dict(pairwise(key.frame for key in after.keys))
+    stretches = [FrameRange(frame, frame) for frame in keys.keys() - after.key_frames]
+    for key in after.keys:
+        old = keys.get(key.frame)
+        if old is None or old.pose is not key.pose:
+            stretches.append(FrameRange(key.frame, key.frame))
+        elif old is not key:
+            stretches.append(FrameRange(key.frame, following.get(key.frame, key.frame)))
+    return stretches
 
 
 def exported_frames(document: Document) -> FrameRange:

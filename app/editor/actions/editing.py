@@ -4,8 +4,15 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import Concatenate, ParamSpec
 
-from app.document import Command, key_commands
-from app.editor.actions import posing
+from app.document import (
+    Command,
+    Document,
+    FrameRange,
+    UnkeyedPose,
+    changed_stretches,
+    key_commands,
+)
+from app.editor.actions import playback, posing
 from app.editor.project import Project
 from app.editor.session import Session
 
@@ -58,12 +65,15 @@ def undo(session: Session) -> None:
         return
     pose = project.posing or project.settling
     posing.drop(session)
+    before, unkeyed, label = project.document, project.history.unkeyed, project.history.undo_label
     if pose is not None and pose.drag is None:
         # Nothing is to be seen of it yet but what its gesture did first.
         project.history.take_back(pose.gesture)
     else:
         project.history.undo()
+        _tell_step(session, "Undone", label)
     _forget_what_is_gone(project)
+    _go_to_change(session, project, before, unkeyed)
 
 
 def take_back(session: Session, gesture: object) -> None:
@@ -79,10 +89,35 @@ def take_back(session: Session, gesture: object) -> None:
 
 def redo(session: Session) -> None:
     """Do the step that was taken back again."""
-    if session.project:
+    project = session.project
+    if project:
         posing.drop(session)
-        session.project.history.redo()
-        _forget_what_is_gone(session.project)
+        before, unkeyed = project.document, project.history.unkeyed
+        _tell_step(session, "Done again", project.history.redo_label)
+        project.history.redo()
+        _forget_what_is_gone(project)
+        _go_to_change(session, project, before, unkeyed)
+
+
+def _tell_step(session: Session, what: str, label: str | None) -> None:
+    if label is not None:
+        session.tell(f"{what}: {label}", topic="undo")
+
+
+def _go_to_change(
+    session: Session, project: Project, before: Document, unkeyed: UnkeyedPose | None
+) -> None:
+    """Put a playhead that stands where something has changed, or as near to it as it is to be."""
+    if project.playhead.since is not None:
+        return
+    stretches = changed_stretches(before, project.document)
+    if project.history.unkeyed is not unkeyed:
+        poses = filter(None, (unkeyed, project.history.unkeyed))
+        stretches += [FrameRange(pose.frame, pose.frame) for pose in poses]
+    here = project.playhead.frame
+    if stretches and not any(here in stretch for stretch in stretches):
+        frames = (stretch.clamp(here) for stretch in stretches)
+        playback.seek(session, min(frames, key=lambda frame: abs(frame - here)))
 
 
 def select(session: Session, handles: frozenset[int]) -> None:

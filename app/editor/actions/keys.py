@@ -81,13 +81,31 @@ def paste_pose(session: Session) -> None:
         project.puppet.rig = rig = Rig.of(figure, project.puppet.rig)
         proven = certify(figure.map_of(pose), rig.deformer.boundary, figure.bounds)
         pose = replace(pose, certificate=proven)
-    posing.hold(project, frame, pose, gesture=object())
+    posing.hold(session, project, frame, pose, gesture=object())
     project.selected, project.chosen = frozenset(), frozenset({frame})
 
 
 def set_easing(session: Session, frames: frozenset[int], easing: Easing) -> None:
     """Set how time runs from the keys at these frames on."""
     editing.edit_figure(session, key_commands.set_easing, frames, easing)
+
+
+def ease(session: Session, easing: Easing) -> None:
+    """Set how time runs from the chosen keys on, or from the key at the playhead or before it."""
+    project = session.project
+    if project is None:
+        return
+    frames = project.chosen
+    if not frames:
+        here = playback.current_frame(session, project)
+        before = [frame for frame in project.figure.key_frames if frame <= here]
+        frames = frozenset({max(before, default=project.figure.keys[0].frame)})
+    set_easing(session, frames, easing)
+
+
+def ease_new_keys(session: Session, easing: Easing) -> None:
+    """Set how time runs from keys that will be made."""
+    session.preferences = replace(session.preferences, easing=easing)
 
 
 def set_turns(session: Session, frames: frozenset[int], turns: int) -> None:
@@ -158,6 +176,33 @@ def end_preview_here(session: Session) -> None:
     if project:
         frame = playback.current_frame(session, project)
         _set_preview(session, min(frame, project.document.played.first), frame)
+
+
+def add_marker(session: Session, frame: int) -> None:
+    """Mark a frame, unless it is marked already."""
+    project = session.project
+    if project is None:
+        return
+    if any(marker.frame == frame for marker in project.document.markers):
+        session.tell(f"Frame {frame} has a marker already. Double-click it to name it.")
+    else:
+        editing.edit(session, scene_commands.add_marker(frame))
+
+
+def mark_here(session: Session) -> None:
+    """Mark the frame at the playhead."""
+    if session.project:
+        add_marker(session, playback.current_frame(session, session.project))
+
+
+def rename_marker(session: Session, frame: int, name: str) -> None:
+    """Give a marker another name."""
+    editing.edit(session, scene_commands.rename_marker(frame, name))
+
+
+def delete_marker(session: Session, frame: int) -> None:
+    """Take a marker away."""
+    editing.edit(session, scene_commands.delete_marker(frame))
 
 
 def set_variant(session: Session, variant: Variant) -> None:

@@ -62,16 +62,31 @@ def step(session: Session, frames: int) -> None:
 
 def to_key(session: Session, direction: int) -> None:
     """Go to the next key (1) or the previous one (-1); at the ends stay."""
-    halt(session)
     if session.project:
-        frame = current_frame(session, session.project)
-        frames = [key.frame for key in session.project.figure.keys]
-        if direction > 0:
-            there = next((key for key in frames if key > frame), None)
-        else:
-            there = next((key for key in reversed(frames) if key < frame), None)
-        if there is not None:
-            seek(session, there)
+        _to_next(
+            session, session.project, [k.frame for k in session.project.figure.keys], direction
+        )
+
+
+def to_marker(session: Session, direction: int) -> None:
+    """Go to the next marker (1) or the previous one (-1); at the ends stay."""
+    if session.project:
+        frames = session.project.document.frames
+        marked = [marker.frame for marker in session.project.document.markers]
+        _to_next(
+            session, session.project, [frame for frame in marked if frame in frames], direction
+        )
+
+
+def _to_next(session: Session, project: Project, frames: list[int], direction: int) -> None:
+    halt(session)
+    here = current_frame(session, project)
+    if direction > 0:
+        there = next((frame for frame in frames if frame > here), None)
+    else:
+        there = next((frame for frame in reversed(frames) if frame < here), None)
+    if there is not None:
+        seek(session, there)
 
 
 def to_start(session: Session) -> None:

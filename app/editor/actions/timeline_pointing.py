@@ -20,6 +20,7 @@ from app.editor.timeline_view import (
     EdgeDrag,
     KeyBox,
     KeyDrag,
+    MarkerDrag,
     Scrub,
     Strip,
     TimeGesture,
@@ -66,6 +67,8 @@ def move(session: Session, frame: float) -> None:
             _drag_keys(session, project, drag, frame)
         case EdgeDrag() as drag:
             _drag_edge(session, project, drag, frame)
+        case MarkerDrag() as drag:
+            _drag_marker(session, project, drag, frame)
         case KeyBox() as box:
             low, high = sorted((box.start, frame))
             inside = {key for key in project.figure.key_frames if low <= key <= high}
@@ -93,6 +96,8 @@ def cancel(session: Session) -> None:
             editing.choose_keys(session, keys)
         case EdgeDrag(before=before, after=after) if session.project.document is after:
             _become(session, before, "Set preview range")
+        case MarkerDrag(before=before, after=after) if session.project.document is after:
+            _become(session, before, "Move marker")
         case KeyBox(keeps=keeps):
             editing.choose_keys(session, keeps)
     end(session)
@@ -145,6 +150,19 @@ def _drag_edge(session: Session, project: Project, drag: EdgeDrag, frame: float)
     command = _trim(drag, frame)
     _become(session, command(drag.before), command.label)
     project.timing.gesture = replace(drag, after=project.document)
+
+
+def _drag_marker(session: Session, project: Project, drag: MarkerDrag, frame: float) -> None:
+    if project.document is not drag.after:
+        end(session)
+        return
+    wanted = min(max(drag.marker + round(frame - drag.start), 0), LAST_FRAME)
+    others = {marker.frame for marker in drag.before.markers} - {drag.marker}
+    if wanted == drag.at or wanted in others:
+        return
+    command = scene_commands.move_marker(drag.marker, wanted)
+    _become(session, command(drag.before), command.label)
+    project.timing.gesture = replace(drag, at=wanted, after=project.document)
 
 
 def _trim(drag: EdgeDrag, pointed: float) -> Command:

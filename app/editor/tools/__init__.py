@@ -6,7 +6,8 @@ Imports: `app.editor.actions`.
 """
 
 from app.editor.tools import pointing
+from app.editor.tools.entry import ERASE
 from app.editor.tools.table import TOOLS
-from app.editor.tools.tool import Hint, Spot, Tool
+from app.editor.tools.tool import Spot, Tool
 
-__all__ = ["TOOLS", "Hint", "Spot", "Tool", "pointing"]
+__all__ = ["ERASE", "TOOLS", "Spot", "Tool", "pointing"]

@@ -4,8 +4,8 @@ from dataclasses import dataclass
 from typing import Self
 
 from app.editor.actions import posing
-from app.editor.session import Mark, Session
-from app.editor.tools.tool import Hint, Selection, Spot, take_back
+from app.editor.session import Hint, Mark, Session
+from app.editor.tools.tool import Selection, Spot, take_back
 
 
 @dataclass(slots=True, kw_only=True, eq=False)
@@ -40,6 +40,9 @@ class Anchoring:
     def move(self, session: Session, place: complex) -> None:
         """Leave it where it was set."""
 
+    def type(self, session: Session, characters: str) -> None:
+        """Take nothing."""
+
     def end(self, session: Session, place: complex) -> None:
         """Leave it where it was set."""
 
@@ -50,4 +53,9 @@ class Anchoring:
     @property
     def marks(self) -> tuple[Mark, ...]:
         """Nothing: the anchor is shown as it is."""
+        return ()
+
+    @property
+    def ways(self) -> tuple[Hint, ...]:
+        """Return what can be done until it ends."""
         return ()

@@ -15,8 +15,24 @@ def press(session: Session, spot: Spot) -> None:
 
 def move(session: Session, place: complex) -> None:
     """Follow the pointer to another place of the plane."""
+    _move(session, place, snaps=False)
+
+
+def move_in_steps(session: Session, place: complex) -> None:
+    """Follow the pointer; what is turned turns by round angles."""
+    _move(session, place, snaps=True)
+
+
+def _move(session: Session, place: complex, *, snaps: bool) -> None:
     if session.project and session.pointer:
+        session.snaps = snaps
         session.pointer.move(session, place)
+
+
+def type_in(session: Session, characters: str) -> None:
+    """Give what is typed during a drag to the tool in hand."""
+    if session.project and session.pointer:
+        session.pointer.type(session, characters)
 
 
 def end(session: Session, place: complex) -> None:

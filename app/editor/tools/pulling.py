@@ -1,14 +1,15 @@
 """Posing by hand: handles are added where the shape is pressed, and pulled."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Self
 
 from app.document import Target
 from app.editor.actions import editing, posing
 from app.editor.project import Project
-from app.editor.session import Mark, Session
-from app.editor.tools.tool import Hint, Selection, Spot, is_away, take_back
+from app.editor.session import EntryMark, Hint, Mark, Session
+from app.editor.tools.entry import Entry
+from app.editor.tools.tool import Selection, Spot, is_away, take_back
 
 
 @dataclass(slots=True, kw_only=True, eq=False)
@@ -22,13 +23,19 @@ class Pulling:
     before : Selection
     places : mapping of int to complex
         Those of the handles at the start, by id.
+    entry : Entry
+        What is typed meanwhile.
+    place : complex, optional
+        Where it is; None before it has moved.
     moved : bool
-        Whether it has gone farther than a click may.
+        Whether it has gone farther than a click may, or a way was typed.
     """
 
     start: complex
     before: Selection
     places: Mapping[int, complex]
+    entry: Entry = field(default_factory=Entry)
+    place: complex | None = None
     moved: bool = False
 
     @classmethod
@@ -62,14 +69,25 @@ class Pulling:
 
     def move(self, session: Session, place: complex) -> None:
         """Pull the handles as far as the pointer goes; each keeps the turn that it wishes."""
-        project = session.project
+        self.place = place
         self.moved = self.moved or is_away(session, self.start, place)
+        self._pull(session)
+
+    def type(self, session: Session, characters: str) -> None:
+        """Pull them as far as is typed, or along an axis."""
+        self.entry.take(characters)
+        self.moved = self.moved or self.entry.value is not None
+        self._pull(session)
+
+    def _pull(self, session: Session) -> None:
+        project = session.project
         if project is None or not self.moved:
             return
+        way = self.entry.way((self.start if self.place is None else self.place) - self.start)
         known = {handle.id for handle in project.figure.handles}
         turns = _wished_turns(project)
         wishes = {
-            identity: Target(position=start + place - self.start, rotation=turns.get(identity))
+            identity: Target(position=start + way, rotation=turns.get(identity))
             for identity, start in self.places.items()
             if identity in known
         }
@@ -86,8 +104,17 @@ class Pulling:
 
     @property
     def marks(self) -> tuple[Mark, ...]:
-        """Nothing: the handles show it."""
-        return ()
+        """What was typed; else nothing: the handles show it."""
+        entry = self.entry
+        if not (entry.text or entry.axis):
+            return ()
+        text = entry.words("px")
+        return (EntryMark(place=self.start, direction=entry.direction, text=text),)
+
+    @property
+    def ways(self) -> tuple[Hint, ...]:
+        """Return what can be done until it ends."""
+        return (Hint("type", "a number of pixels"), Hint("X or Y", "to keep to an axis"))
 
 
 def _selected_places(project: Project) -> dict[int, complex]:

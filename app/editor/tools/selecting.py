@@ -4,8 +4,8 @@ from dataclasses import dataclass
 from typing import Self
 
 from app.editor.actions import editing
-from app.editor.session import BoxMark, Mark, Session
-from app.editor.tools.tool import Hint, Selection, Spot, take_back
+from app.editor.session import BoxMark, Hint, Mark, Session
+from app.editor.tools.tool import Selection, Spot, take_back
 from app.motion import Box
 
 
@@ -55,6 +55,9 @@ class Selecting:
         """Span the box up to the pointer."""
         self.place = place
 
+    def type(self, session: Session, characters: str) -> None:
+        """Take nothing."""
+
     def end(self, session: Session, place: complex) -> None:
         """Select what is in the box."""
         project = session.project
@@ -79,3 +82,8 @@ class Selecting:
     def marks(self) -> tuple[Mark, ...]:
         """The box."""
         return (BoxMark(corner=self.start, opposite=self.place),) if self.has_box else ()
+
+    @property
+    def ways(self) -> tuple[Hint, ...]:
+        """Return what can be done until it ends."""
+        return ()

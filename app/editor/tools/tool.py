@@ -1,11 +1,11 @@
 """What a tool is: it takes a press, and then has the pointer until the button is let go."""
 
 from dataclasses import dataclass
-from typing import Literal, Protocol, Self
+from typing import Protocol, Self
 
 from app.editor.actions import editing
 from app.editor.project import Project
-from app.editor.session import Session, ToolInHand
+from app.editor.session import Hint, Session, ToolInHand
 
 CLICK = 3.0  # pixels of the screen that a click may wander
 
@@ -34,15 +34,6 @@ class Spot:
     ctrl: bool = False
     shift: bool = False
     alt: bool = False
-
-
-@dataclass(frozen=True, slots=True)
-class Hint:
-    """What can be done at a spot: how, which key is held for it, and to what end."""
-
-    how: str
-    what: str
-    key: Literal["", "ctrl", "shift", "alt"] = ""
 
 
 class Tool(ToolInHand, Protocol):

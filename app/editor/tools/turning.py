@@ -1,14 +1,18 @@
 """Turning the shape around a handle, by the ring around it or by a key."""
 
 import cmath
-from dataclasses import dataclass
+import math
+from dataclasses import dataclass, field
 from typing import Self
 
 from app.document import Target
 from app.editor.actions import editing, posing
-from app.editor.session import Mark, Session, SweepMark
-from app.editor.tools.tool import Hint, Selection, Spot, is_away, take_back
+from app.editor.project import Project
+from app.editor.session import EntryMark, Hint, Mark, Session, SweepMark
+from app.editor.tools.entry import Entry
+from app.editor.tools.tool import Selection, Spot, is_away, take_back
 
+STEP = math.radians(15.0)  # of turning in steps
 LEAST_ARM = 12.0  # pixels of the screen from a handle, within which a press has no direction
 
 
@@ -30,6 +34,8 @@ class Turning:
         Whether a click, which turns nothing, deletes the handle.
     swept : float
         By how much the pointer has turned it, in radians.
+    entry : Entry
+        How many degrees are typed meanwhile.
     moved : bool
     """
 
@@ -40,6 +46,7 @@ class Turning:
     turn: float
     deletes: bool
     swept: float = 0.0
+    entry: Entry = field(default_factory=Entry)
     moved: bool = False
 
     @classmethod
@@ -76,7 +83,7 @@ class Turning:
         )
 
     def move(self, session: Session, place: complex) -> None:
-        """Turn the shape as far as the pointer goes around the handle."""
+        """Turn the shape as far as the pointer goes around the handle, maybe in steps."""
         project = session.project
         if project is None or not (self.moved or is_away(session, self.start, place)):
             return
@@ -87,8 +94,21 @@ class Turning:
                 self.start = place
         self.moved = True
         swept = (place - self.centre) / (self.start - self.centre or 1)
-        if swept and self.handle in {handle.id for handle in project.figure.handles}:
-            self.swept = cmath.phase(swept)
+        if swept and self.entry.value is None:
+            angle = cmath.phase(swept)
+            self._turn(session, project, STEP * round(angle / STEP) if session.snaps else angle)
+
+    def type(self, session: Session, characters: str) -> None:
+        """Turn the shape by as many degrees as are typed."""
+        self.entry.take(characters)
+        self.entry.axis = ""
+        if session.project is not None and self.entry.value is not None:
+            self.moved = True
+            self._turn(session, session.project, math.radians(self.entry.value))
+
+    def _turn(self, session: Session, project: Project, swept: float) -> None:
+        if self.handle in {handle.id for handle in project.figure.handles}:
+            self.swept = swept
             target = Target(position=self.centre, rotation=self.turn + self.swept)
             posing.pull(session, {self.handle: target}, gesture=self)
 
@@ -105,5 +125,13 @@ class Turning:
 
     @property
     def marks(self) -> tuple[Mark, ...]:
-        """How far it is turned."""
-        return (SweepMark(handle=self.handle, turn=self.turn + self.swept, swept=self.swept),)
+        """How far it is turned, and what was typed."""
+        sweep = SweepMark(handle=self.handle, turn=self.turn + self.swept, swept=self.swept)
+        if not self.entry.text:
+            return (sweep,)
+        return (sweep, EntryMark(place=self.centre, direction=None, text=self.entry.words("°")))
+
+    @property
+    def ways(self) -> tuple[Hint, ...]:
+        """Return what can be done until it ends."""
+        return (Hint("turn", "by steps of 15°", "ctrl"), Hint("type", "a number of degrees"))

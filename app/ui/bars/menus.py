@@ -4,8 +4,9 @@ from collections.abc import Callable
 
 from imgui_bundle import imgui
 
+from app.document import PRESETS
 from app.editor import Action, Session, do
-from app.editor.actions import files
+from app.editor.actions import files, keys
 from app.ui.bars import backdrop_menu
 from app.ui.shortcuts import BINDINGS, bound_item
 from app.ui.style import Look
@@ -26,6 +27,19 @@ def draw_menus(session: Session, _: Look) -> list[Action]:
             if name in BELOW:
                 actions += BELOW[name](session)
         imgui.end_menu()
+    return actions
+
+
+def _new_keys(session: Session) -> list[Action]:
+    """Draw the menu of how time runs from keys that will be made."""
+    if not imgui.begin_menu("Easing of new keys"):
+        return []
+    actions = [
+        do(keys.ease_new_keys, preset)
+        for name, preset in PRESETS.items()
+        if imgui.menu_item(name.capitalize(), "", preset == session.preferences.easing)[0]
+    ]
+    imgui.end_menu()
     return actions
 
 
@@ -52,4 +66,5 @@ def _recent(session: Session) -> list[Action]:
 BELOW: dict[str, Callable[[Session], list[Action]]] = {
     "open": _recent,
     "smaller": backdrop_menu.draw,
+    "ease not": _new_keys,
 }

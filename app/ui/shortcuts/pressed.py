@@ -7,6 +7,7 @@ from app.editor.actions import playback, posing
 from app.ui.shortcuts.table import BINDINGS
 
 Key = imgui.Key
+CTRL = int(Key.mod_ctrl)
 ARROWS = {Key.left_arrow: -1, Key.right_arrow: 1, Key.up_arrow: 1j, Key.down_arrow: -1j}
 
 
@@ -18,10 +19,12 @@ def pressed(session: Session) -> list[Action]:
         return []
     actions = []
     for binding in BINDINGS.values():
+        # What is typed during a drag is for the tool in hand.
+        keys = [key for key in binding.keys if session.pointer is None or int(key) & CTRL]
         flags = imgui.InputFlags_.route_always
         if binding.repeats:
             flags |= imgui.InputFlags_.repeat
-        if any(imgui.shortcut(keys, flags) for keys in binding.keys) and binding.possible(session):
+        if any(imgui.shortcut(chord, flags) for chord in keys) and binding.possible(session):
             actions.append(binding.action)
     return actions + _nudges(session) + _space(session)
 

@@ -3,6 +3,7 @@
 from imgui_bundle import hello_imgui, imgui
 from imgui_bundle import icons_fontawesome_6 as icons
 
+from app.document import LINEAR, PRESETS
 from app.editor import Session, do
 from app.editor.actions import (
     editing,
@@ -36,6 +37,10 @@ def _no_handles_selected(session: Session) -> bool:
     return session.project is not None and not session.project.selected
 
 
+def _previews(session: Session) -> bool:
+    return session.project is not None and session.project.document.preview is not None
+
+
 def _undone(session: Session) -> str | None:
     return session.project.history.undo_label if session.project else None
 
@@ -50,7 +55,7 @@ def _reset_layout(_: Session) -> None:
 
 
 # Whole numbers: combined as members, these keys fail to form a flag in Python 3.11.2.
-CTRL, SHIFT = int(Key.mod_ctrl), int(Key.mod_shift)
+CTRL, SHIFT, ALT = int(Key.mod_ctrl), int(Key.mod_shift), int(Key.mod_alt)
 BINDINGS: dict[str, Binding] = {
     "open": Binding(
         label="Open…",
@@ -360,6 +365,37 @@ BINDINGS: dict[str, Binding] = {
     "preview end": Binding(
         label="End preview range here", action=do(keys.end_preview_here), menu="Time", keys=(Key.n,)
     ),
+    "preview none": Binding(
+        label="Play all frames",
+        action=do(keys.play_all),
+        menu="Time",
+        keys=(ALT | int(Key.p),),
+        hint="Clear the preview range",
+        possible=_previews,
+    ),
+    "marker": Binding(
+        label="Add marker",
+        action=do(keys.mark_here),
+        menu="Time",
+        keys=(Key.m,),
+        icon=icons.ICON_FA_BOOKMARK,
+        hint="Name this frame",
+        parted=True,
+    ),
+    "previous marker": Binding(
+        label="Previous marker",
+        action=do(playback.to_marker, -1),
+        menu="Time",
+        keys=(SHIFT | int(Key.page_up),),
+        repeats=True,
+    ),
+    "next marker": Binding(
+        label="Next marker",
+        action=do(playback.to_marker, 1),
+        menu="Time",
+        keys=(SHIFT | int(Key.page_down),),
+        repeats=True,
+    ),
     "fit time": Binding(
         label="Fit timeline",
         action=do(timeline_pointing.fit),
@@ -367,6 +403,34 @@ BINDINGS: dict[str, Binding] = {
         keys=(CTRL | int(Key.home),),
         icon=icons.ICON_FA_ARROWS_LEFT_RIGHT_TO_LINE,
         hint="Show all frames",
+    ),
+    "ease": Binding(
+        label="Ease in and out",
+        action=do(keys.ease, PRESETS["in-out"]),
+        menu="Keys",
+        keys=(Key.f9,),
+        hint="Let the ways from the chosen keys begin and end slowly",
+    ),
+    "ease in": Binding(
+        label="Ease in",
+        action=do(keys.ease, PRESETS["in"]),
+        menu="Keys",
+        keys=(SHIFT | int(Key.f9),),
+        hint="Let the ways from the chosen keys begin slowly",
+    ),
+    "ease out": Binding(
+        label="Ease out",
+        action=do(keys.ease, PRESETS["out"]),
+        menu="Keys",
+        keys=(CTRL | SHIFT | int(Key.f9),),
+        hint="Let the ways from the chosen keys end slowly",
+    ),
+    "ease not": Binding(
+        label="Linear",
+        action=do(keys.ease, LINEAR),
+        menu="Keys",
+        keys=(ALT | int(Key.f9),),
+        hint="Let time run evenly from the chosen keys on",
     ),
     "shortcuts": Binding(
         label="Keys and mouse",

@@ -73,6 +73,9 @@ def easing_popup(name: str, look: Look, project: Project, key: Keyframe) -> list
     if chosen is not None:
         actions.append(do(keys.set_easing, frames, chosen))
     actions += _turns(look, key, frames)
+    if imgui.button("Use for new keys"):
+        actions.append(do(keys.ease_new_keys, key.easing))
+    tip("Ways from keys that are made later begin like this one")
     imgui.end_popup()
     return actions
 

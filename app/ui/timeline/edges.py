@@ -4,6 +4,7 @@ from imgui_bundle import ImVec2, imgui
 
 from app.editor import Action, Edge, EdgeDrag, do
 from app.editor.actions import keys, timeline_pointing
+from app.ui.shortcuts import BINDINGS
 from app.ui.style import ink, tip
 from app.ui.timeline.track import PREVIEW, Track, in_hand, is_pressed, write_tag
 
@@ -51,7 +52,24 @@ def _preview_range(track: Track) -> list[Action]:
         where = "begins" if side > 0 else "ends"
         tip(f"Playback {where} here: drag, or double-click to play all frames")
     draw_list.pop_clip_rect()
-    return actions
+    return actions + (_clear(track, left, right) if is_part else [])
+
+
+def _clear(track: Track, left: float, right: float) -> list[Action]:
+    """Draw a cross that clears the preview range, near the end of what is seen of it."""
+    palette, draw_list, em = track.look.palette, imgui.get_window_draw_list(), track.look.em
+    x = min(right, track.right) - 3 * GRIP * em
+    y, half = track.top + (PREVIEW - 0.1) / 2 * em, 0.2 * em
+    if x - max(left, track.left) < 3 * GRIP * em or not track.shows(x - GRIP * em, x + GRIP * em):
+        return []
+    low, high = ImVec2(x - GRIP * em, track.top), ImVec2(x + GRIP * em, track.ruler_top)
+    clicked = track.button("clear preview", low, high)
+    colour = ink(palette.text, 1.0 if in_hand() else 0.7)
+    for side in (-1, 1):
+        start, end = ImVec2(x - half, y - side * half), ImVec2(x + half, y + side * half)
+        draw_list.add_line(start, end, colour, 0.12 * em)
+    tip("Clear the preview range: play all frames", BINDINGS["preview none"].keys_in_words)
+    return [do(keys.play_all)] if clicked else []
 
 
 def _edge(track: Track, edge: Edge, left: float, right: float, *, resizes: bool) -> list[Action]:

@@ -46,6 +46,8 @@ def track_menu(track: Track) -> list[Action]:
     frame = track.project.document.frames.clamp(round(track.frame(opened.x)))
     if imgui.menu_item_simple(f"Insert key at frame {frame}###Insert key"):
         actions.append(do(keys.insert_at, frame))
+    if imgui.menu_item_simple(f"Add marker at frame {frame}###Add marker"):
+        actions.append(do(keys.add_marker, frame))
     imgui.separator()
     actions += _time_items(track.look, track.project)
     imgui.end_popup()
@@ -88,10 +90,9 @@ def _time_items(look: Look, project: Project) -> list[Action]:
     if imgui.menu_item_simple("Copy first pose to last key", enabled=count > 1):
         actions.append(do(keys.match_ends))
     imgui.separator()
-    for name in ("preview start", "preview end"):
+    for name in ("preview start", "preview end", "preview none"):
         binding = BINDINGS[name]
-        if imgui.menu_item_simple(binding.label, binding.keys_in_words):
+        enabled = name != "preview none" or project.document.preview is not None
+        if imgui.menu_item_simple(binding.label, binding.keys_in_words, enabled=enabled):
             actions.append(binding.action)
-    if imgui.menu_item_simple("Play all frames", enabled=project.document.preview is not None):
-        actions.append(do(keys.play_all))
     return actions

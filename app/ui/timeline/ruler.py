@@ -14,7 +14,7 @@ MULTIPLES = (2, 5, 10, 30, 60, 120, 300, 600, 1800, 3600, 7200, 18000)
 
 def draw_ruler(track: Track, frame: int) -> list[Action]:
     """Draw frame numbers and seconds; a press there takes the playhead along."""
-    track.button("ruler", ImVec2(track.left, track.ruler_top), ImVec2(track.right, track.track_top))
+    track.button("ruler", ImVec2(track.left, track.ruler_top), ImVec2(track.right, track.marks_top))
     actions: list[Action] = []
     if is_pressed():
         actions += [
@@ -48,7 +48,7 @@ def _draw_ticks(track: Track, present: int) -> None:
     begin = max(int(track.frame(track.left)) // large * large, 0)
     text, dim, faint = ink(palette.text, 0.85), ink(palette.dim), ink(palette.dim, 0.5)
     grid = ink(palette.line, 0.55)
-    bottom = track.track_top - 0.2 * em
+    bottom = track.marks_top - 0.2 * em
     tag = _tag_width(track, present) / 2 + 0.2 * em
     covered = track.x(present) - tag, track.x(present) + tag
     for frame in range(begin, last + 1, small):

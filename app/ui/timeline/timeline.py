@@ -2,7 +2,7 @@
 
 from imgui_bundle import ImVec2, imgui
 
-from app.editor import Action, EdgeDrag, KeyDrag, Scrub, Session, do
+from app.editor import Action, EdgeDrag, KeyDrag, MarkerDrag, Scrub, Session, do
 from app.editor.actions import editing, playback, timeline_pointing
 from app.editor.tools import pointing
 from app.ui.shortcuts import with_key
@@ -11,6 +11,7 @@ from app.ui.timeline.bar import draw_bar
 from app.ui.timeline.edges import draw_edges
 from app.ui.timeline.intervals import draw_intervals
 from app.ui.timeline.keys import draw_box, draw_ground, draw_keys
+from app.ui.timeline.markers import draw_markers
 from app.ui.timeline.ruler import draw_overview, draw_playhead, draw_ruler
 from app.ui.timeline.track import Track, in_seconds, was_dragged
 
@@ -42,6 +43,7 @@ def _draw_track(track: Track, frame: int) -> list[Action]:
     actions += _navigate(track)
     actions += draw_intervals(track)
     actions += draw_edges(track)
+    actions += draw_markers(track)
     actions += draw_playhead(track, frame)
     actions += draw_keys(track)
     draw_box(track)
@@ -91,6 +93,8 @@ def _go_on(track: Track) -> list[Action]:
         # A click: the key alone, and its pose.
         alone = do(editing.choose_keys, frozenset({gesture.pressed}))
         return [do(timeline_pointing.end), alone, do(playback.scrub, gesture.pressed)]
+    if isinstance(gesture, MarkerDrag) and not goes_on:
+        return [do(timeline_pointing.end), do(playback.scrub, gesture.marker)]
     return [*moves, do(timeline_pointing.end)]
 
 
@@ -101,7 +105,7 @@ def _pull(track: Track) -> list[Action]:
     if not beyond:
         return []
     strip = track.strip.panned(PULL * beyond / track.look.em)
-    if isinstance(track.project.timing.gesture, KeyDrag | EdgeDrag):
+    if isinstance(track.project.timing.gesture, KeyDrag | EdgeDrag | MarkerDrag):
         return [do(timeline_pointing.look_at, strip)] if strip.frame(track.width / 2) > 0 else []
     return [
         do(timeline_pointing.look_at, strip.kept_near(track.project.document.frames, track.width))
@@ -127,10 +131,12 @@ def _hint(track: Track) -> str:
         seconds = in_seconds(gesture.by, track.project.document.fps)
         return f"{what} by {gesture.by:+d} frames, {seconds}: Esc takes it back"
     if gesture is not None:
-        return "Esc takes it back" if isinstance(gesture, EdgeDrag) else ""
+        return "Esc takes it back" if isinstance(gesture, EdgeDrag | MarkerDrag) else ""
     y = imgui.get_mouse_pos().y
     if y < track.ruler_top:
         return "Drag the ends of the preview range, double-click to play all frames"
+    if track.marks_top <= y < track.track_top:
+        return "Click a marker to go there, drag it to move it, double-click to name it"
     if y < track.track_top:
         return f"Drag to move the playhead, wheel to scroll, {with_key(CTRL, 'wheel')} to zoom"
     return (

@@ -6,6 +6,7 @@ from app.editor import Project, Strip
 from app.ui.style import Look, ink
 
 PREVIEW, RULER, OVERVIEW = 0.7, 1.55, 0.75  # em: heights of the bands above and below the track
+MARKS, SMALL_MARKS = 1.25, 0.7  # em: height of the band of markers, with their names or without
 BAR, BAR_SHARE = 3.6, 0.62  # em: height of intervals at most, and as a part of the track's
 CRAMPED, CRAMPED_SHARE = 5.5, 0.85  # em: below this height bars take more, and the overview goes
 ROUNDING = 0.4  # em
@@ -28,8 +29,10 @@ class Track:
         self.left, self.top = self.corner.x, self.corner.y
         self.right, self.bottom = self.left + self.size.x, self.top + self.size.y
         self.ruler_top = self.top + PREVIEW * look.em
-        self.track_top = self.ruler_top + RULER * look.em
         self.is_cramped = self.size.y < CRAMPED * look.em
+        marks = SMALL_MARKS if self.is_cramped else MARKS
+        self.marks_top = self.ruler_top + RULER * look.em
+        self.track_top = self.marks_top + bool(project.document.markers) * marks * look.em
         is_whole = self.is_cramped or project.timing.strip is None
         self.track_bottom = self.bottom - (0 if is_whole else OVERVIEW * look.em)
         self.middle = (self.track_top + self.track_bottom) / 2

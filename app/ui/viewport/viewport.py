@@ -4,14 +4,15 @@ import numpy as np
 from imgui_bundle import ImVec2, imgui
 from imgui_bundle import icons_fontawesome_6 as icons
 
-from app.editor import Action, BoxMark, Project, Session, SweepMark, do
+from app.editor import Action, BoxMark, EntryMark, Hint, Project, Session, SweepMark, do
 from app.editor.actions import posing, viewing
-from app.editor.tools import TOOLS, Hint, Spot, pointing
+from app.editor.tools import TOOLS, Spot, pointing
 from app.motion import Shown
 from app.render import View
 from app.ui.shortcuts import with_key
 from app.ui.style import Look, ink
 from app.ui.viewport.badges import draw_badges
+from app.ui.viewport.entry import draw_entry, typed
 from app.ui.viewport.ring import Ring, draw_ring
 from engine.geometry import contains
 
@@ -59,7 +60,7 @@ def draw(session: Session, look: Look, texture: int | None) -> list[Action]:
         actions.append(do(pointing.press, spot))
     actions += _navigate(canvas, over=over)
     actions += over_handles
-    actions += _go_on(session, canvas)
+    actions += _go_on(session, look, canvas)
     if hovered != session.hovered:
         actions.append(do(pointing.hover, hovered))
     if ring is not None:
@@ -217,7 +218,7 @@ def _menu(canvas: _Canvas, identity: int) -> list[Action]:
     return actions
 
 
-def _go_on(session: Session, canvas: _Canvas) -> list[Action]:
+def _go_on(session: Session, look: Look, canvas: _Canvas) -> list[Action]:
     """Follow the pointer in what it began; end it where the button is let go."""
     gesture = session.pointer
     if gesture is None:
@@ -231,16 +232,27 @@ def _go_on(session: Session, canvas: _Canvas) -> list[Action]:
             accent = imgui.get_style_color_vec4(imgui.Col_.nav_cursor)
             draw_list.add_rect_filled(low, high, ink(accent, 0.12))
             draw_list.add_rect(low, high, ink(accent, 0.8))
-    pointer, delta = canvas.pointer, imgui.get_io().mouse_delta
-    moves = [do(pointing.move, pointer)] if delta.x or delta.y else []
-    is_held = imgui.is_mouse_down(imgui.MouseButton_.left)
-    return moves if is_held else [*moves, do(pointing.end, pointer)]
+        elif isinstance(mark, EntryMark):
+            draw_entry(look, mark, canvas.point)
+    io, pointer = imgui.get_io(), canvas.pointer
+    actions: list[Action] = []
+    if io.mouse_delta.x or io.mouse_delta.y or io.key_ctrl != session.snaps:
+        move = pointing.move_in_steps if io.key_ctrl else pointing.move
+        actions.append(do(move, pointer))
+    characters = typed()
+    if characters:
+        actions.append(do(pointing.type_in, characters))
+    is_entered = any(map(imgui.is_key_pressed, (imgui.Key.enter, imgui.Key.keypad_enter)))
+    if is_entered or not imgui.is_mouse_down(imgui.MouseButton_.left):
+        actions.append(do(pointing.end, pointer))
+    return actions
 
 
 def _hint(session: Session, canvas: _Canvas, spot: Spot) -> str:
     """Return what can be done where the pointer is."""
     if session.pointer is not None:
-        return "Esc takes it back"
+        told = [f"{_how(hint)} {hint.what}" for hint in session.pointer.ways]
+        return _sentence([*told, "Esc takes it back"])
     if canvas.project.playhead.since is not None:
         return "Space stops"
     if not session.overlays.handles:
@@ -252,7 +264,11 @@ def _hint(session: Session, canvas: _Canvas, spot: Spot) -> str:
         return f"{names[spot.handle]}: {', '.join(told)}"
     if not (spot.on_shape or spot.on_ring):
         told += ["wheel to zoom", "middle drag to move the view"]
-    text = ", ".join(told)
+    return _sentence(told)
+
+
+def _sentence(parts: list[str]) -> str:
+    text = ", ".join(parts)
     return text[:1].upper() + text[1:]
 
 

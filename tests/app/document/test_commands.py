@@ -163,7 +163,11 @@ def test_posing_and_inserting_keys():
     assert frames_of(grown) == [0, 5, 10]
     assert grown.figures[0].key(5).easing == HOLD
     assert keys.insert_key(0, 15, pose)(document).figures[0].key(15).easing == LINEAR
-    assert keys.insert_key(0, 5, pose, easing=LINEAR)(document).figures[0].key(5).easing == LINEAR
+    eased = keys.insert_key(0, 15, pose, easing=HOLD)(document).figures[0]
+    assert [key.easing for key in eased.keys] == [HOLD, HOLD, HOLD]
+    chosen = keys.set_easing(0, {10}, PRESETS["in"])(document)
+    eased = keys.insert_key(0, 15, pose, easing=HOLD)(chosen).figures[0]
+    assert [key.easing for key in eased.keys] == [HOLD, PRESETS["in"], HOLD]
     assert keys.insert_key(0, 70, pose)(document).frames == FrameRange(0, 70)
 
 

@@ -8,6 +8,7 @@ from hypothesis import strategies as st
 from imgui_bundle import ImVec2, imgui
 from projects import project_of
 
+from app.document import exported_frames, key_commands
 from app.document.easing import HOLD, LINEAR, PRESETS
 from app.document.keyframe import Handle, Keyframe, Target
 from app.document.settings import FrameRange
@@ -469,3 +470,171 @@ def test_one_click_on_a_number_takes_what_is_typed(window, project, field):
         "fps": project.document.fps,
     }
     assert told[field] == 12
+
+
+def marks_of(project):
+    return [(marker.frame, marker.name) for marker in project.document.markers]
+
+
+def test_markers_are_made_named_dragged_and_deleted(window, project, play):
+    first = project.document
+    playback.scrub(window.session, 20)
+    play(lambda hand: hand.robot.key_press(int(window.Key.m)))
+    assert marks_of(project) == [(20, "Marker 1")]
+    # Another one on the same frame is explained.
+    play(lambda hand: hand.robot.key_press(int(window.Key.m)))
+    assert "has a marker already" in window.session.toasts[-1].text
+    window.session.toasts = []
+
+    def name(hand):
+        hand.robot.item_double_click("**/marker 20")
+        hand.robot.key_chars_replace_enter("beat")
+
+    play(name)
+    assert marks_of(project) == [(20, "beat")]
+
+    def drag(hand, frame, *frames):
+        # A marker is taken by its name, too, which is right of its frame.
+        beside = (hand.place(f"marker {frame}").x - hand.x(frame)) / (hand.x(1) - hand.x(0))
+        hand.drag(f"marker {frame}", *(beside + to for to in frames))
+
+    play(lambda hand: drag(hand, 20, 50, 33))
+    assert marks_of(project) == [(33, "beat")]
+
+    def drag_and_cancel(hand):
+        hand.press("marker 33")
+        hand.go_to(50, hand.place("marker 33").y)
+        hand.robot.key_press(int(window.Key.escape))
+        hand.robot.mouse_up(0)
+
+    play(drag_and_cancel)
+    assert marks_of(project) == [(33, "beat")]
+
+    def add_beside(hand):
+        hand.go_to(55)
+        hand.robot.mouse_click(1)
+        hand.robot.item_click("//$FOCUSED/###Add marker")
+
+    play(add_beside)
+    assert marks_of(project) == [(33, "beat"), (55, "Marker 2")]
+    # One marker is never dropped on another.
+    play(lambda hand: drag(hand, 55, 34, 33))
+    assert marks_of(project) == [(33, "beat"), (34, "Marker 2")]
+
+    def delete(hand):
+        hand.click("marker 33", 1)
+        hand.robot.item_click("//$FOCUSED/Delete")
+
+    play(delete)
+    assert marks_of(project) == [(34, "Marker 2")]
+    assert undo_all(window) == 6
+    assert project.document is first
+
+
+def test_markers_are_jumped_to(window, project, play):
+    for frame in (9, 40):
+        keys.add_marker(window.session, frame)
+    window.frames(2)
+
+    def here():
+        return playback.current_frame(window.session, project)
+
+    seen = []
+
+    def jump(hand):
+        for chord in 3 * (int(window.Key.mod_shift | window.Key.page_down),):
+            hand.robot.key_press(chord)
+            seen.append(here())
+        hand.robot.key_press(int(window.Key.mod_shift | window.Key.page_up))
+        seen.append(here())
+
+    play(jump)
+    assert seen == [9, 40, 40, 9]
+    play(lambda hand: hand.click("marker 40"))
+    assert here() == 40
+
+
+def test_the_preview_range_is_cleared_in_one_click_and_never_exported(window, project, play):
+    keys.start_preview_here(window.session)
+    playback.scrub(window.session, 40)
+    keys.end_preview_here(window.session)
+    window.frames(2)
+    assert project.document.preview == project.document.played == FrameRange(0, 40)
+    assert exported_frames(project.document) == FrameRange(0, 60)
+    play(lambda hand: hand.click("clear preview"))
+    assert project.document.preview is None
+    editing.undo(window.session)
+    window.frames(2)
+    play(lambda hand: hand.robot.key_press(int(window.Key.mod_alt | window.Key.p)))
+    assert project.document.preview is None
+
+
+def test_chosen_keys_are_eased_at_once(window, project, play):
+    def easings():
+        return [key.easing.name for key in project.figure.keys]
+
+    editing.choose_keys(window.session, frozenset({0, 12, 24}))
+    play(lambda hand: hand.robot.key_press(int(window.Key.f9)))
+    assert easings() == ["in-out", "in-out", "in-out", "linear"]
+    assert undo_all(window) == 1
+
+    def by_popup(hand):
+        hand.click("interval 12")
+        hand.robot.item_click("//$FOCUSED/hold")
+        hand.robot.key_press(int(window.Key.escape))
+
+    editing.choose_keys(window.session, frozenset({0, 12}))
+    play(by_popup)
+    assert easings() == ["hold", "hold", "linear", "linear"]
+    # Without a choice it is the way at the playhead.
+    editing.choose_keys(window.session, frozenset())
+    playback.scrub(window.session, 30)
+    play(lambda hand: hand.robot.key_press(int(window.Key.mod_shift | window.Key.f9)))
+    assert easings() == ["hold", "hold", "in", "linear"]
+
+
+def test_new_keys_get_the_easing_that_was_chosen_for_them(window, project, play):
+    def choose(hand):
+        hand.click("interval 24")
+        hand.robot.item_click("//$FOCUSED/Use for new keys")
+        hand.robot.key_press(int(window.Key.escape))
+
+    keys.set_easing(window.session, frozenset({24}), PRESETS["out"])
+    window.frames(2)
+    play(choose)
+    keys.insert_at(window.session, 60)
+    window.settle()
+    assert [key.easing.name for key in project.figure.keys][2:] == ["out", "out", "out"]
+    # A key that divides a way keeps how time runs there.
+    keys.insert_at(window.session, 6)
+    window.settle()
+    assert project.figure.key(6).easing == LINEAR
+
+
+def test_undo_and_redo_name_their_step_and_show_where_it_was(window, project):
+    session = window.session
+
+    def here():
+        return playback.current_frame(session, project)
+
+    keys.set_easing(session, frozenset({24}), HOLD)
+    editing.edit_figure(session, key_commands.move_keys, frozenset({12}), -2)
+    keys.set_fps(session, 12.0)
+    playback.scrub(session, 60)
+    for text, frame in (
+        ("Undone: Set frames per second", 60),
+        # From 10 back to 12, which is nearer.
+        ("Undone: Move keys", 12),
+        ("Undone: Set easing", 24),
+    ):
+        editing.undo(session)
+        assert [toast.text for toast in session.toasts] == [text]
+        assert here() == frame
+    playback.scrub(session, 30)
+    editing.redo(session)
+    # The way from 24 to 48 has changed, and the playhead is on it.
+    assert here() == 30
+    assert [toast.text for toast in session.toasts] == ["Done again: Set easing"]
+    editing.redo(session)
+    assert here() == 12
+    window.frames(2)

@@ -3,10 +3,10 @@
 from collections.abc import Callable
 from functools import partial
 
-from app.document import Clip, Pose, key_commands
+from app.document import Clip, Pose
 from app.editor.actions import playback
 from app.editor.actions.posing.pulling import drop
-from app.editor.actions.posing.steps import hold
+from app.editor.actions.posing.steps import hold, inserting
 from app.editor.failures import report
 from app.editor.jobs import Job
 from app.editor.project import Project
@@ -25,7 +25,7 @@ def insert_key(session: Session) -> None:
     frame = playback.current_frame(session, project)
     playback.halt(session)
     if project.unkeyed is not None:
-        hold(project, frame, project.unkeyed, gesture=object())
+        hold(session, project, frame, project.unkeyed, gesture=object())
     elif frame not in project.figure.key_frames:
         complaint = "The key could not be inserted"
         fit_pose(session, project, INSERTING, complaint, partial(_insert, session, project))
@@ -56,5 +56,5 @@ def fit_pose(
 
 def _insert(session: Session, project: Project, clip: Clip, frame: int, pose: Pose) -> None:
     if project is session.project and project.clip == clip:
-        project.history.do(key_commands.insert_key(project.active, frame, pose))
+        project.history.do(inserting(session, project, frame, pose))
         project.chosen = frozenset({frame})

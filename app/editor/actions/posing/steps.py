@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from app.document import Clip, Figure, Pose, Target, UnkeyedPose, key_commands
+from app.document import Clip, Command, Figure, Pose, Target, UnkeyedPose, key_commands
 from app.editor.failures import report
 from app.editor.jobs import Job
 from app.editor.project import PoseInProgress, Project
@@ -126,22 +126,28 @@ def _go_on(
 def _accept(session: Session, project: Project, pose: Pose, posing: PoseInProgress) -> None:
     """Put the solver's newest map into the document, or show it unkeyed."""
     if session.preferences.auto_key or posing is project.settling:
-        hold(project, posing.frame, pose, gesture=posing.gesture)
+        hold(session, project, posing.frame, pose, gesture=posing.gesture)
     else:
         unkeyed = UnkeyedPose(figure=project.active, frame=posing.frame, pose=pose)
         project.history.pose(unkeyed, gesture=posing.gesture)
 
 
-def hold(project: Project, frame: int, pose: Pose, gesture: object) -> None:
+def hold(session: Session, project: Project, frame: int, pose: Pose, gesture: object) -> None:
     """Let a key hold a pose; none is left there that no key holds."""
-    has_key = frame in project.figure.key_frames
-    command = (key_commands.pose_key if has_key else key_commands.insert_key)(
-        project.active, frame, pose
-    )
+    if frame in project.figure.key_frames:
+        command = key_commands.pose_key(project.active, frame, pose)
+    else:
+        command = inserting(session, project, frame, pose)
     project.history.do(command, gesture=gesture)
     unkeyed = project.history.unkeyed
     if unkeyed is not None and (unkeyed.figure, unkeyed.frame) == (project.active, frame):
         project.history.pose(None, gesture=gesture)
+
+
+def inserting(session: Session, project: Project, frame: int, pose: Pose) -> Command:
+    """Return the command that inserts a key as the person wants new ones."""
+    easing = session.preferences.easing
+    return key_commands.insert_key(project.active, frame, pose, easing=easing)
 
 
 def end(project: Project, posing: PoseInProgress) -> None:

@@ -238,3 +238,45 @@ def test_there_is_a_hint_wherever_something_can_be_done(session, spot):
         named = type(session.pointer)
         assert hint in named.hints(session, spot)
         pointing.cancel(session)
+
+
+def wish(session, identity=0):
+    settle(session)
+    return session.project.figure.keys[0].pose.targets[identity]
+
+
+def test_a_drag_goes_as_far_as_is_typed_whatever_the_pointer_does(session):
+    drag(session, AT_LEFT, LEFT + 3)
+    pointing.type_in(session, "4")
+    pointing.type_in(session, "0")
+    assert [mark.text for mark in session.pointer.marks] == ["40 px"]
+    pointing.move(session, LEFT + 6j)
+    assert wish(session).position == pytest.approx(LEFT + 40j)
+    pointing.type_in(session, "y")
+    assert [mark.text for mark in session.pointer.marks] == ["Y 40 px"]
+    assert wish(session).position == pytest.approx(LEFT - 40j)
+    pointing.end(session, LEFT)
+    assert wish(session).position == pytest.approx(LEFT - 40j)
+    editing.undo(session)
+    assert session.project.history.undo_label is None
+
+
+def test_a_handle_that_was_only_pressed_goes_where_it_is_typed_to(session):
+    drag(session, AT_LEFT)
+    for character in "x-5":
+        pointing.type_in(session, character)
+    pointing.end(session, LEFT)
+    assert wish(session).position == pytest.approx(LEFT - 5)
+
+
+def test_turning_takes_degrees_and_goes_in_steps(session):
+    drag(session, ON_RING, LEFT + 20 + 1j)
+    pointing.move_in_steps(session, LEFT + 20 * np.exp(1j * np.radians(38)))
+    assert wish(session).rotation == pytest.approx(np.radians(45))
+    pointing.move(session, LEFT + 20 * np.exp(1j * np.radians(38)))
+    assert wish(session).rotation == pytest.approx(np.radians(38))
+    pointing.type_in(session, "-12.5")
+    pointing.move(session, LEFT + 20j)
+    assert wish(session).rotation == pytest.approx(np.radians(-12.5))
+    pointing.end(session, LEFT + 20j)
+    assert wish(session).rotation == pytest.approx(np.radians(-12.5))

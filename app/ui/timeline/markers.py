@@ -1,0 +1,145 @@
+"""Markers: names of frames, in a band below the ruler."""
+
+from itertools import pairwise
+
+from imgui_bundle import ImVec2, imgui
+
+from app.document import Marker
+from app.editor import Action, MarkerDrag, TimeGesture, do
+from app.editor.actions import keys, playback, timeline_pointing
+from app.ui.shortcuts import BINDINGS
+from app.ui.style import SMALL, begin_tip, ink, shortened
+from app.ui.timeline.track import Track, in_hand, in_seconds, is_pressed, write_tag
+
+HALF, GRIP = 0.42, 0.6  # em: half the width of a flag, and of where the pointer takes it
+LEAST_NAME = 3.0  # em: with less room names are left out
+
+
+def draw_markers(track: Track) -> list[Action]:
+    """Draw the markers, and take what the pointer does to them."""
+    markers, em = track.project.document.markers, track.look.em
+    if not markers:
+        return []
+    actions: list[Action] = []
+    gesture = track.project.timing.gesture
+    low, high = ImVec2(track.left, track.marks_top), ImVec2(track.right, track.track_bottom)
+    draw_list = imgui.get_window_draw_list()
+    draw_list.push_clip_rect(low, high, intersect_with_current_clip_rect=True)
+    rooms = [track.x(after.frame) - track.x(marker.frame) for marker, after in pairwise(markers)]
+    for marker, room in zip(markers, [*rooms, track.size.x], strict=True):
+        x = track.x(marker.frame)
+        text = shortened(marker.name, room - 1.4 * em) if room > LEAST_NAME * em else ""
+        width = imgui.calc_text_size(text).x if text else 0.0
+        if not track.shows(x - GRIP * em, x + GRIP * em + width):
+            continue
+        name = f"marker {_origin(gesture, marker.frame)}"
+        end = x + max(GRIP * em, HALF * em + width)
+        track.button(
+            name, ImVec2(x - GRIP * em, track.marks_top), ImVec2(end, track.track_top), right=True
+        )
+        _draw(track, marker, x, text)
+        actions += _point(track, marker)
+        actions += _rename(track, marker) + _menu(marker)
+    draw_list.pop_clip_rect()
+    return actions
+
+
+def _origin(gesture: TimeGesture | None, frame: int) -> int:
+    """Return where a marker was before it was dragged, so that its button stays the same one."""
+    return gesture.marker if isinstance(gesture, MarkerDrag) and gesture.at == frame else frame
+
+
+def _draw(track: Track, marker: Marker, x: float, text: str) -> None:
+    palette, draw_list, em = track.look.palette, imgui.get_window_draw_list(), track.look.em
+    hot = in_hand()
+    colour = palette.accent if hot else palette.anchor
+    top, bottom = track.marks_top + 0.15 * em, track.track_top - 0.1 * em
+    waist = top + 0.55 * (bottom - top)
+    half = HALF * em
+    for point in (
+        ImVec2(x - half, top),
+        ImVec2(x + half, top),
+        ImVec2(x + half, waist),
+        ImVec2(x, bottom),
+        ImVec2(x - half, waist),
+    ):
+        draw_list.path_line_to(point)
+    draw_list.path_fill_convex(ink(colour))
+    begin, end = ImVec2(x, track.track_top), ImVec2(x, track.track_bottom)
+    draw_list.add_line(begin, end, ink(colour, 0.8 if hot else 0.35), 1.0)
+    if text and not track.is_cramped:
+        imgui.push_font(None, SMALL * imgui.get_style().font_size_base)
+        height = imgui.get_text_line_height()
+        place = ImVec2(x + half + 0.3 * em, (top + bottom - height) / 2)
+        draw_list.add_text(place, ink(palette.text if hot else palette.dim), text)
+        imgui.pop_font()
+    gesture = track.project.timing.gesture
+    if isinstance(gesture, MarkerDrag) and gesture.at == marker.frame != gesture.marker:
+        write_tag(track, x, f"{marker.frame}")
+
+
+def _point(track: Track, marker: Marker) -> list[Action]:
+    document = track.project.document
+    if imgui.is_item_hovered() and imgui.is_mouse_double_clicked(imgui.MouseButton_.left):
+        imgui.open_popup(f"name of marker {marker.frame}")
+        return [do(timeline_pointing.end)]
+    if is_pressed():
+        drag = MarkerDrag(
+            marker=marker.frame,
+            at=marker.frame,
+            start=track.pointed,
+            before=document,
+            after=document,
+        )
+        return [do(timeline_pointing.begin, drag, track.strip)]
+    if imgui.is_item_clicked(imgui.MouseButton_.right):
+        imgui.open_popup(f"menu of marker {marker.frame}")
+    if track.project.timing.gesture is None and begin_tip():
+        imgui.text_unformatted(marker.name)
+        imgui.same_line()
+        imgui.text_disabled(f"{marker.frame}, {in_seconds(marker.frame, document.fps)}")
+        imgui.text_disabled("Click to go there, drag to move it, double-click to name it")
+        imgui.end_tooltip()
+    return []
+
+
+def _rename(track: Track, marker: Marker) -> list[Action]:
+    """Draw the field for a marker's name, if it is open."""
+    if not imgui.begin_popup(f"name of marker {marker.frame}"):
+        return []
+    actions: list[Action] = []
+    if imgui.is_window_appearing():
+        imgui.set_keyboard_focus_here()
+    imgui.set_next_item_width(12 * track.look.em)
+    flags = imgui.InputTextFlags_.auto_select_all | imgui.InputTextFlags_.enter_returns_true
+    entered, name = imgui.input_text("##name", marker.name, flags)
+    if entered:
+        if name.strip():
+            actions.append(do(keys.rename_marker, marker.frame, name.strip()))
+        imgui.close_current_popup()
+    imgui.end_popup()
+    return actions
+
+
+def _menu(marker: Marker) -> list[Action]:
+    """Draw the menu of a marker, if it is open."""
+    name = f"menu of marker {marker.frame}"
+    asks = False
+    actions: list[Action] = []
+    if imgui.begin_popup(name):
+        if imgui.menu_item_simple("Go there", "Click"):
+            actions.append(do(playback.scrub, marker.frame))
+        asks = imgui.menu_item_simple("Rename…", "Double-click")
+        if imgui.menu_item_simple("Delete"):
+            actions.append(do(keys.delete_marker, marker.frame))
+        imgui.separator()
+        others = (BINDINGS["previous marker"], BINDINGS["next marker"])
+        actions += [
+            binding.action
+            for binding in others
+            if imgui.menu_item_simple(binding.label, binding.keys_in_words)
+        ]
+        imgui.end_popup()
+    if asks:
+        imgui.open_popup(f"name of marker {marker.frame}")
+    return actions
