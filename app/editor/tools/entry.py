@@ -11,7 +11,7 @@ LONGEST = 12  # digits
 
 
 @dataclass(slots=True)
-class Entry:
+class TypedWay:
     """A number that is being typed, and the axis that is kept to.
 
     Parameters

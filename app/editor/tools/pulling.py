@@ -8,7 +8,7 @@ from app.document import Target
 from app.editor.actions import editing, posing
 from app.editor.project import Project
 from app.editor.session import EntryMark, Hint, Mark, Session
-from app.editor.tools.entry import Entry
+from app.editor.tools.entry import TypedWay
 from app.editor.tools.tool import Selection, Spot, is_away, take_back
 
 
@@ -23,7 +23,7 @@ class Pulling:
     before : Selection
     places : mapping of int to complex
         Those of the handles at the start, by id.
-    entry : Entry
+    entry : TypedWay
         What is typed meanwhile.
     place : complex, optional
         Where it is; None before it has moved.
@@ -34,7 +34,7 @@ class Pulling:
     start: complex
     before: Selection
     places: Mapping[int, complex]
-    entry: Entry = field(default_factory=Entry)
+    entry: TypedWay = field(default_factory=TypedWay)
     place: complex | None = None
     moved: bool = False
 

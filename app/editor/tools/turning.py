@@ -9,7 +9,7 @@ from app.document import Target
 from app.editor.actions import editing, posing
 from app.editor.project import Project
 from app.editor.session import EntryMark, Hint, Mark, Session, SweepMark
-from app.editor.tools.entry import Entry
+from app.editor.tools.entry import TypedWay
 from app.editor.tools.tool import Selection, Spot, is_away, take_back
 
 STEP = math.radians(15.0)  # of turning in steps
@@ -34,7 +34,7 @@ class Turning:
         Whether a click, which turns nothing, deletes the handle.
     swept : float
         By how much the pointer has turned it, in radians.
-    entry : Entry
+    entry : TypedWay
         How many degrees are typed meanwhile.
     moved : bool
     """
@@ -46,7 +46,7 @@ class Turning:
     turn: float
     deletes: bool
     swept: float = 0.0
-    entry: Entry = field(default_factory=Entry)
+    entry: TypedWay = field(default_factory=TypedWay)
     moved: bool = False
 
     @classmethod

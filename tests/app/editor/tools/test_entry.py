@@ -2,7 +2,7 @@
 
 import pytest
 
-from app.editor.tools.entry import ERASE, Entry
+from app.editor.tools.entry import ERASE, TypedWay
 
 
 @pytest.mark.parametrize(
@@ -24,7 +24,7 @@ from app.editor.tools.entry import ERASE, Entry
     ],
 )
 def test_what_is_typed_makes_a_number(typed, value):
-    entry = Entry()
+    entry = TypedWay()
     for character in typed:
         entry.take(character)
     assert entry.value == value
@@ -47,6 +47,6 @@ def test_what_is_typed_makes_a_number(typed, value):
     ],
 )
 def test_a_way_is_as_long_as_was_typed_and_keeps_to_the_axis(typed, offset, way):
-    entry = Entry()
+    entry = TypedWay()
     entry.take(typed)
     assert entry.way(offset) == pytest.approx(way)
