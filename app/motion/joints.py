@@ -214,7 +214,7 @@ class HungAnimation:
 def hung_animations(
     animations: Iterable[Animation], document: Document
 ) -> dict[int, HungAnimation]:
-    """Return the animations of a document's figures, each where the scene has it, by their ids."""
+    """Return the animations of a document's figures where its scene has them, by their ids."""
     own = {animation.clip.figure.id: animation for animation in animations}
     joints = Joints(document, {identity: each.sampler for identity, each in own.items()})
     return {identity: HungAnimation(each, joints) for identity, each in own.items()}
