@@ -19,12 +19,12 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from engine.arrays import Complexes
+from engine.arrays import Complexes, Floats
 from engine.errors import EngineError
 
 TWO_PI_I = 2j * np.pi
-# Entries of one block of points × cage vertices: 16 bytes each, so that a few blocks stay in cache.
-BLOCK_ENTRIES = 1 << 17
+# Entries of one block of points × cage vertices: 8 bytes each, so that a few blocks stay in cache.
+BLOCK_ENTRIES = 1 << 16
 
 
 def edge_logarithms(cage: Complexes, points: Complexes) -> Complexes:
@@ -48,18 +48,9 @@ def edge_logarithms(cage: Complexes, points: Complexes) -> Complexes:
     EngineError
         If a point is a cage vertex.
     """
-    x = cage.real - points.real[:, None]
-    y = cage.imag - points.imag[:, None]
-    squared = x * x + y * y
-    if squared.size and squared.min() == 0.0:
-        raise EngineError(
-            "A point lies on a vertex of the cage; points must be strictly inside it."
-        )
-    log_squared = np.log(squared)
-    x_next, y_next = np.roll(x, -1, axis=1), np.roll(y, -1, axis=1)
+    x, y, squared = _offsets(cage, points)
     logarithms = np.empty(squared.shape, dtype=np.complex128)
-    logarithms.real = 0.5 * (np.roll(log_squared, -1, axis=1) - log_squared)
-    logarithms.imag = np.arctan2(x * y_next - y * x_next, x * x_next + y * y_next)
+    logarithms.real, logarithms.imag = _logarithms(x, y, squared)
     return logarithms
 
 
@@ -134,20 +125,61 @@ def evaluate(
     middle = cage.mean()
     offsets = coefficients - differences * (cage - middle)[:, None]
     results = [np.empty((len(points), coefficients.shape[1]), np.complex128) for _ in orders]
+    both = np.hstack([differences, offsets])
     for block in _blocks(len(points), len(cage)):
         z = points[block]
-        logarithms = edge_logarithms(cage, z) if 0 in orders or 1 in orders else None
+        x, y, squared = _offsets(cage, z)
+        found = {}
+        if 0 in orders:
+            slopes, rest = np.hsplit(_product(*_logarithms(x, y, squared), both), 2)
+            found = {0: rest + (z - middle)[:, None] * slopes, 1: slopes}
+        elif 1 in orders:
+            found = {1: _product(*_logarithms(x, y, squared), differences)}
+        if 2 in orders:
+            found[2] = _product(x / squared, -y / squared, jumps)
         for order, result in zip(orders, results, strict=True):
-            if logarithms is None or order == 2:
-                result[block] = (1.0 / (cage - z[:, None])) @ jumps
-            elif order == 1:
-                result[block] = logarithms @ differences
-            else:
-                result[block] = logarithms @ offsets + (z - middle)[:, None] * (
-                    logarithms @ differences
-                )
-            result[block] /= TWO_PI_I
+            result[block] = found[order] / TWO_PI_I
     return results
+
+
+def _offsets(cage: Complexes, points: Complexes) -> tuple[Floats, Floats, Floats]:
+    """Return x, y and x² + y² of B_j(z) = z_j − z for each point and vertex, (m, n)."""
+    x = cage.real - points.real[:, None]
+    y = cage.imag - points.imag[:, None]
+    squared = x * x + y * y
+    if squared.size and squared.min() == 0.0:
+        raise EngineError(
+            "A point lies on a vertex of the cage; points must be strictly inside it."
+        )
+    return x, y, squared
+
+
+def _logarithms(x: Floats, y: Floats, squared: Floats) -> tuple[Floats, Floats]:
+    """Return the real and the imaginary parts of ℓ_j(z), of offsets (m, n)."""
+    log_squared = np.log(squared)
+    x_next, y_next = _following(x), _following(y)
+    ratio = _following(log_squared)
+    ratio -= log_squared
+    ratio *= 0.5
+    cross, dot = x * y_next, x * x_next
+    cross -= y * x_next
+    dot += y * y_next
+    return ratio, np.arctan2(cross, dot, out=cross)
+
+
+def _following(values: Floats) -> Floats:
+    """Return what belongs to the next vertex; as `np.roll` does, but faster."""
+    following = np.empty_like(values)
+    following[:, :-1], following[:, -1] = values[:, 1:], values[:, 0]
+    return following
+
+
+def _product(real: Floats, imaginary: Floats, coefficients: Complexes) -> Complexes:
+    """Return the product of a matrix (m, n), by its two parts, with coefficients (n, q)."""
+    parts = np.ascontiguousarray(coefficients).view(np.float64)
+    product: Complexes = (real @ parts).view(np.complex128)
+    product += 1j * (imaginary @ parts).view(np.complex128)
+    return product
 
 
 def _blocks(points: int, vertices: int) -> Iterator[slice]:

@@ -10,14 +10,16 @@ from dataclasses import dataclass
 
 import numpy as np
 import shapely
+from scipy import ndimage
 
-from engine.arrays import Booleans, Complexes, Indices, Integers
+from engine.arrays import Booleans, Complexes, Indices, Integers, ragged
 from engine.domain.meshing import Mesh
 from engine.errors import EngineError
 from engine.geometry import as_xy, box_diagonal, constrained_delaunay, loop_ends
 from engine.paths.spanning_tree import breadth_first_parents
 
 CELL = 1 / 50  # longest edge of the triangles between scattered points, over the box diagonal
+MOST_CELLS = 2000  # over the box diagonal, by which segments near the boundary are looked for
 NEIGHBOURS = 64  # mesh vertices that are tried for a straight way to the anchor
 ON_OUTLINE = 1e-9  # distance, over the size of the shape, at which a point counts as on the outline
 
@@ -136,18 +138,53 @@ def scattered_network(
 def _crosses(loops: Sequence[Complexes], starts: Complexes, ends: Complexes) -> Booleans:
     """Tell for each segment whether it leaves the region by more than rounding."""
     tolerance = 2 * ON_OUTLINE * box_diagonal(loops[0])
-    segments = shapely.linestrings(np.stack([as_xy(starts), as_xy(ends)], axis=1))
+    # Nearly all segments stay away from the boundary; only the others need the exact test.
+    near = np.flatnonzero(_near_boundary(loops, starts, ends))
+    segments = shapely.linestrings(np.stack([as_xy(starts[near]), as_xy(ends[near])], axis=1))
     corners = np.concatenate(loops)
     sides = shapely.linestrings(np.stack([as_xy(corners), as_xy(loop_ends(loops))], axis=1))
     touching, _ = shapely.STRtree(sides).query(segments, predicate="dwithin", distance=tolerance)
     touching = np.unique(touching)
-    # Nearly all segments stay away from the boundary; only the others need the exact test.
     area = shapely.Polygon(as_xy(loops[0]), [as_xy(hole) for hole in loops[1:]])
     room = area.buffer(tolerance, join_style="mitre")
     shapely.prepare(room)
     crosses = np.zeros(len(starts), dtype=np.bool_)
-    crosses[touching] = ~shapely.covers(room, segments[touching])
+    crosses[near[touching]] = ~shapely.covers(room, segments[touching])
     return crosses
+
+
+def _near_boundary(loops: Sequence[Complexes], starts: Complexes, ends: Complexes) -> Booleans:
+    """Tell which segments may come near the boundary, by cells that are as large as most are long.
+
+    A segment that is no longer than a cell stays in the cells around its start; the boundary, by
+    points a cell apart, in those around them.
+    """
+    lengths = np.abs(ends - starts)
+    cell = max(2 * float(np.median(lengths)), box_diagonal(loops[0]) / MOST_CELLS)
+    boundary = np.concatenate([_dense(loop, cell) for loop in loops])
+    corner = complex(
+        min(boundary.real.min(), starts.real.min()), min(boundary.imag.min(), starts.imag.min())
+    )
+
+    def cells(points: Complexes) -> tuple[Indices, Indices]:
+        place = (points - corner) / cell
+        return place.real.astype(np.intp), place.imag.astype(np.intp)
+
+    size = np.max([*map(np.max, (*cells(boundary), *cells(starts)))]) + 1
+    marked = np.zeros((size, size), dtype=np.bool_)
+    marked[cells(boundary)] = True
+    marked = ndimage.binary_dilation(marked, np.ones((5, 5), dtype=np.bool_))
+    near: Booleans = marked[cells(starts)] | (lengths > cell)
+    return near
+
+
+def _dense(loop: Complexes, spacing: float) -> Complexes:
+    """Return points along a closed polygon, no farther apart than `spacing`."""
+    sides = np.roll(loop, -1) - loop
+    side, place = ragged(np.ceil(np.abs(sides) / spacing).astype(np.intp) + 1)
+    counts = np.bincount(side)
+    points: Complexes = loop[side] + sides[side] * (place / counts[side])
+    return points
 
 
 def _sides(triangles: Indices) -> tuple[Indices, Indices]:
