@@ -3,18 +3,21 @@
 import math
 from collections.abc import Generator, Mapping
 from dataclasses import dataclass, replace
-from typing import Final
+from typing import Final, TypeVar
 
 import numpy as np
 
-from app.document import Document, Figure
+from app.document import Document, Figure, clip_of, is_visible
+from app.errors import LissomError
 from app.export.bleeding import bled
 from app.export.plan import ExportPlan
 from app.export.poses import Poses
-from app.motion import box_around
+from app.motion import box_around, painted_triangles
 from engine.arrays import Bytes, Complexes, Floats, Integers, freeze
 from engine.domain.meshing import in_order_of, triangulate
 from engine.streaming import ShapeTargets, build_targets
+
+Value = TypeVar("Value")
 
 DEFAULT_TOLERANCE: Final = 0.5  # pixels
 MOST_TARGETS: Final = 8  # viewers of glTF need show no more
@@ -34,16 +37,20 @@ class MovingShape:
         shows.
     uv : float64, shape (v, 2)
         u right, v up; [0, 1] spans the texture.
-    triangles : int32, shape (m, 3)
-        Counter-clockwise, in the order of painting.
+    orders : tuple of (float, int32 of shape (m, 3))
+        The triangles, counter-clockwise, in the order of painting, and from when on they are
+        painted so.
+    sights : tuple of (float, bool)
+        From when on the figure is seen, or is not.
     motion : ShapeTargets
-        In pixels, y up; its times are seconds from the first frame on.
+        In pixels, y up; its times, like all others, are seconds from the first frame on.
     """
 
     name: str
     texture: Bytes
     uv: Floats
-    triangles: Integers
+    orders: tuple[tuple[float, Integers], ...]
+    sights: tuple[tuple[float, bool], ...]
     motion: ShapeTargets
 
 
@@ -77,34 +84,62 @@ def moving_shapes(
     poses : mapping of int to Poses
         The figures', by their ids.
     plan : ExportPlan
+
+    Raises
+    ------
+    LissomError
+        If nothing is seen, or the motion fails somewhere.
     """
     first, last = plan.span
     times = np.linspace(first, last, round((last - first) / _CLOSE) + 1).tolist()
-    tolerance, count = plan.shapes.tolerance, len(document.exported)
+    tolerance = plan.shapes.tolerance
+    numbers = range(first, last + 1)
+    clips = [
+        clip_of(document, figure.id)
+        for figure in document.exported
+        if any(is_visible(figure, frame) for frame in numbers)
+    ]
+    if not clips:
+        raise LissomError("no figure is seen in these frames; there is nothing to export")
     found = []
-    for index, figure in enumerate(document.exported):
+    for index, clip in enumerate(clips):
+        figure, mesh = clip.figure, clip.figure.domain.mesh
         steps = build_targets(
             poses[figure.id].positions,
-            figure.domain.mesh.vertices,
+            mesh.vertices,
             times,
             tolerance=DEFAULT_TOLERANCE if tolerance is None else tolerance,
             most=MOST_TARGETS if tolerance is None else None,
         )
-        motion = yield from _share(steps, (first, last), (index, count))
-        texture, uv = _cut_out(pictures[figure.id], figure.domain.mesh.vertices - figure.corner)
+        motion = yield from _share(steps, plan.span, (index, len(clips)))
+        texture, uv = _cut_out(pictures[figure.id], mesh.vertices - figure.corner)
+        # The figure may shine through itself where it lies over itself; nothing else can be said.
+        texture[..., 3] = np.rint(figure.opacity * texture[..., 3])
+        orders = [(frame, painted_triangles(mesh, clip, frame)) for frame in numbers]
+        sights = [(frame, is_visible(figure, frame)) for frame in numbers]
         shape = MovingShape(
-            name=plan.out.stem if count == 1 else figure.name,
-            texture=texture,
+            name=plan.out.stem if len(document.figures) == 1 else figure.name,
+            texture=bled(texture),
             uv=uv,
-            triangles=figure.domain.mesh.triangles,
+            orders=tuple(((n - first) / document.fps, order) for n, order in _changes(orders)),
+            sights=tuple(((n - first) / document.fps, seen) for n, seen in _changes(sights)),
             motion=replace(motion, times=freeze((motion.times - first) / document.fps)),
         )
         found.append(shape)
     return found
 
 
+def _changes(values: list[tuple[int, Value]]) -> list[tuple[int, Value]]:
+    """Return the first of each run of values that are the same object."""
+    return [
+        pair
+        for index, pair in enumerate(values)
+        if not index or pair[1] is not values[index - 1][1]
+    ]
+
+
 def _share(
-    steps: Generator[float, None, ShapeTargets], frames: tuple[float, float], part: tuple[int, int]
+    steps: Generator[float, None, ShapeTargets], frames: tuple[int, int], part: tuple[int, int]
 ) -> Generator[float, None, ShapeTargets]:
     """Take steps that tell which frame they are at, and yield what that is of the whole work."""
     (first, last), (index, count) = frames, part
@@ -132,4 +167,4 @@ def _cut_out(picture: Bytes, vertices: Complexes) -> tuple[Bytes, Floats]:
     texture[top - y1 : top - y0, x0 - left : x1 - left] = picture[height - y1 : height - y0, x0:x1]
     offsets = vertices - complex(left, bottom)
     uv = np.column_stack([offsets.real / (right - left), offsets.imag / (top - bottom)])
-    return bled(texture), freeze(uv)
+    return texture, freeze(uv)

@@ -80,7 +80,7 @@ class ExportPlan:
         The frame of the timeline, whole or between two, that each picture shows.
     first : int
         Number of the first picture; the next ones count on from there, whatever the rate.
-    span : tuple of float
+    span : tuple of int
         The frames of the timeline from which and to which shapes move; in a loop the last one is
         the first one again.
     fps : float
@@ -103,7 +103,7 @@ class ExportPlan:
     background: tuple[int, int, int] | None
     times: tuple[float, ...]
     first: int
-    span: tuple[float, float]
+    span: tuple[int, int]
     fps: float
     canvas: tuple[int, int]
     loop: bool

@@ -109,6 +109,11 @@ class ShapeExport:
                     f"{shape.name} has {count} shapes, and viewers of glTF need show only "
                     f"{MOST_TARGETS}; a larger tolerance takes fewer"
                 )
+            if len(shape.orders) > 1 and self._plan.format == "glb":
+                found.append(
+                    f"what lies in front of what changes in {shape.name}; a glTF model keeps what "
+                    "is so at first"
+                )
         return tuple(found)
 
     def _advance(self) -> None:

@@ -15,7 +15,7 @@ import numpy.typing as npt
 from app.export.moving_shape import MovingShape
 from app.export.plan import ExportPlan
 from app.export.writers.png import encode_png
-from engine.arrays import Complexes
+from engine.arrays import Complexes, Floats
 
 PIXELS_PER_METRE: Final = 100  # as engines take sprites
 _LAYER: Final = 0.01  # metres from a figure to the one in front of it
@@ -74,11 +74,15 @@ class _Asset:
             node["translation"] = [0.0, 0.0, _LAYER * layer]
         number = self._list("nodes", node)
         if len(targets) and len(weights) > 1:
-            times = self._numbers(shape.motion.times, "SCALAR", extent=True)
-            sampler = {"input": times, "output": self._numbers(weights.ravel(), "SCALAR")}
-            self._samplers.append(sampler | {"interpolation": "LINEAR"})
-            target = {"node": number, "path": "weights"}
-            self._channels.append({"sampler": len(self._samplers) - 1, "target": target})
+            values = self._numbers(weights.ravel(), "SCALAR")
+            self._animate(number, "weights", shape.motion.times, (values, "LINEAR"))
+        if len(shape.sights) > 1 or not shape.sights[0][1]:
+            moments, seen = (
+                np.array(column, dtype=np.float64) for column in zip(*shape.sights, strict=True)
+            )
+            # What has no size is not seen.
+            values = self._numbers(np.repeat(seen, 3), "VEC3")
+            self._animate(number, "scale", moments, (values, "STEP"))
 
     def file(self) -> bytes:
         """Return the whole file."""
@@ -112,6 +116,14 @@ class _Asset:
         text = json.dumps(content, separators=(",", ":")).encode()
         chunks = _chunk(b"JSON", text, b" ") + _chunk(b"BIN\0", bytes(self._binary), b"\0")
         return struct.pack("<4sII", b"glTF", 2, 12 + len(chunks)) + chunks
+
+    def _animate(self, node: int, path: str, times: Floats, output: tuple[int, str]) -> None:
+        values, interpolation = output
+        moments = self._numbers(times, "SCALAR", extent=True)
+        sampler = {"input": moments, "output": values, "interpolation": interpolation}
+        self._samplers.append(sampler)
+        target = {"node": node, "path": path}
+        self._channels.append({"sampler": len(self._samplers) - 1, "target": target})
 
     def _list(self, kind: str, entry: dict[str, Any]) -> int:
         """Add an entry to one of the lists of the file; return its number."""
@@ -152,7 +164,9 @@ class _Asset:
 
     def _indices(self, shape: MovingShape) -> int:
         is_small = len(shape.uv) <= _MOST_UINT16
-        indices = shape.triangles.astype("<u2" if is_small else "<u4")
+        # There is one order for all times.
+        _, triangles = shape.orders[0]
+        indices = triangles.astype("<u2" if is_small else "<u4")
         entry = {
             "bufferView": self._view(indices.tobytes(), _INDICES),
             "componentType": _UINT16 if is_small else _UINT32,

@@ -24,7 +24,7 @@ _HEADER: Final = (
     "#version 300 es\nprecision highp float;\nprecision highp int;\nprecision highp sampler2D;\n"
 )
 # The files of the renderer itself, for a drawing as it is.
-_VERTEX: Final = ("mesh.vert", "positions.glsl")
+_VERTEX: Final = ("mesh.vert", "positions.glsl", "placed.glsl")
 _FRAGMENT: Final = ("picture.frag", "sample.glsl")
 
 
@@ -62,13 +62,16 @@ def _packed(shape: MovingShape) -> dict[str, Any]:
         motion.weights,
     ]
     data = b"".join(part.astype("<f4").tobytes() for part in numbers)
+    data += b"".join(order.astype("<u4").tobytes() for _, order in shape.orders)
     return {
         "texture": f"data:image/png;base64,{_text(encode_png(shape.texture))}",
-        "data": _text(data + shape.triangles.astype("<u4").tobytes()),
+        "data": _text(data),
         "vertices": len(shape.uv),
         "targets": len(motion.targets),
         "times": len(motion.times),
-        "triangles": len(shape.triangles),
+        "triangles": len(shape.orders[0][1]),
+        "orders": [seconds for seconds, _ in shape.orders],
+        "sights": shape.sights,
     }
 
 

@@ -17,7 +17,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 from PIL import Image
 from pygltflib import GLTF2
 
-from app.document import HOLD, ExportSettings, FrameRange, ShapeDetail, clip_of
+from app.document import HOLD, ExportSettings, FrameRange, ShapeDetail, Switch, clip_of
 from app.errors import LissomError
 from app.export import (
     ExportRequest,
@@ -278,6 +278,32 @@ def test_every_figure_is_a_node_with_a_motion_of_its_own(tmp_path):
 def still():
     document = moving_document()
     return altered(document, keys=document.figures[0].keys[1:])
+
+
+def test_figures_are_seen_when_and_as_much_as_they_should(tmp_path, monkeypatch):
+    document, out = two_figures(), tmp_path / "two.glb"
+    first, second = document.figures
+    switched = replace(second, switches=(Switch(0, visible=False), Switch(4, visible=True)))
+    monkeypatch.setattr(
+        "app.export.moving_shape.painted_triangles",
+        lambda mesh, _, n: mesh.triangles if n < 3 else mesh.triangles[::-1],
+    )
+    faint = replace(first, opacity=0.5)
+    _, maker = exported(replace(document, figures=(faint, switched)), out)
+    structure_of(out)
+    gltf = read(out)
+    (channel,) = (c for c in gltf.animations[0].channels if c.target.path == "scale")
+    sampler = gltf.animations[0].samplers[channel.sampler]
+    assert (channel.target.node, sampler.interpolation) == (1, "STEP")
+    assert_allclose(values(gltf, sampler.input).ravel(), [0, 4 / document.fps], atol=1e-6)
+    assert_array_equal(values(gltf, sampler.output), [[0, 0, 0], [1, 1, 1]])
+    assert maker.shapes[0].texture[..., 3].max() == 128
+    assert ["glTF model keeps" in notice for notice in maker.notices] == [True, True]
+    unseen = tuple(replace(figure, hidden=True) for figure in document.figures)
+    exported(replace(document, figures=(first, unseen[1])), out)
+    assert [node.name for node in read(out).nodes] == ["figure"]
+    with pytest.raises(LissomError, match="no figure is seen"):
+        exported(replace(document, figures=unseen), out)
 
 
 def test_a_still_shows_its_pose_without_an_animation(tmp_path):

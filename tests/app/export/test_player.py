@@ -11,7 +11,7 @@ from chromium import PROGRAM, Page, chromium
 from documents import altered
 from PIL import Image
 
-from app.document import Document, ExportSettings, FrameRange, clip_of
+from app.document import Document, ExportSettings, FrameRange, Switch, clip_of
 from app.export import ExportRequest, KeptPoses, Painter, ShapeExport, plan_export
 from app.motion import Animation
 from app.render.gpu import create_context
@@ -34,10 +34,11 @@ def browser(tmp_path_factory):
 
 
 def two_blobs() -> Document:
-    """Two figures of which one lies over the other, in a loop."""
+    """Two figures of which one lies over the other until it is hidden, in a loop."""
     document = moving_document()
     (figure,) = document.figures
-    above = replace(figure, id=1, name="above", keys=figure.keys[:1], corner=figure.corner)
+    switches = (Switch(0, visible=True), Switch(3, visible=False))
+    above = replace(figure, id=1, name="above", keys=figure.keys[:1], switches=switches)
     return replace(document, figures=(figure, above), frames=FrameRange(0, 8), loop=True)
 
 
@@ -190,6 +191,20 @@ def test_a_lost_context_comes_back(browser, tmp_path):
         " setTimeout(() => lose.restoreContext(), 1); })"
     )
     assert (shown(page, 0.1) == before).all()
+
+
+def test_what_lies_in_front_changes_when_it_should(browser, tmp_path, monkeypatch):
+    document, out = moving_document(), tmp_path / "walk.html"
+    first = document.figures[0].domain.mesh.triangles
+    then = first[::-1].copy()
+    monkeypatch.setattr(
+        "app.export.moving_shape.painted_triangles", lambda _, __, n: first if n < 3 else then
+    )
+    exported(document, out)
+    page = opened(browser, out)
+    for frame, order in ((0, first), (2.9, first), (3, then), (1, first)):
+        page.run(f"lissom.pause(); lissom.show({frame / document.fps + 1e-6})")
+        assert page.run("[...figures[0].order.slice(0, 3)]") == order[0].tolist()
 
 
 def test_a_still_and_a_page_without_motion(browser, tmp_path):
