@@ -299,7 +299,8 @@ def test_figures_are_seen_when_and_as_much_as_they_should(tmp_path, monkeypatch)
     assert_array_equal(values(gltf, sampler.output), [[0, 0, 0], [1, 1, 1]])
     assert maker.shapes[0].texture[..., 3].max() == 128
     assert ["glTF model keeps" in notice for notice in maker.notices] == [True, True]
-    unseen = tuple(replace(figure, hidden=True) for figure in document.figures)
+    off = (Switch(0, visible=False),)
+    unseen = tuple(replace(figure, switches=off) for figure in document.figures)
     exported(replace(document, figures=(first, unseen[1])), out)
     assert [node.name for node in read(out).nodes] == ["figure"]
     with pytest.raises(LissomError, match="no figure is seen"):
