@@ -188,6 +188,16 @@ class Figure:
                 return handle
         raise LissomError(f"There is no handle with the id {identity}.")
 
+    def together_with(self, identity: int) -> frozenset[int]:
+        """Return the ids of the handles that are taken together with one, its own among them."""
+        groups = {handle.id: handle.group for handle in self.handles}
+        own = groups.get(identity)
+        return frozenset({identity, *(i for i, group in groups.items() if own and group == own)})
+
+    def is_locked(self, identity: int) -> bool:
+        """Tell whether there is a handle with this id that is locked."""
+        return any(handle.locked for handle in self.handles if handle.id == identity)
+
     def key(self, frame: int) -> Keyframe:
         """Return the key at this frame."""
         for key in self.keys:

@@ -11,6 +11,9 @@ from engine.arrays import Complexes, as_points
 from engine.maps import Certificate
 
 HEAVIEST = 1e6
+# A locked handle pulls so many times as strongly: a free one that is dragged as far as the limits
+# let it moves it by less than a tenth of a pixel.
+LOCK = 1e4
 MOST_TURNS = 20
 NO_FRONTS: Mapping[int, float] = MappingProxyType({})
 
@@ -34,6 +37,10 @@ class Handle:
         in its usual order. Keys may say otherwise.
     extent : float, optional
         How far around it that holds, in pixels; None is the usual part of the drawing.
+    locked : bool
+        Whether it holds its place: it is not dragged, and hardly gives in to others.
+    group : str
+        Those of one group are taken together; "" is none.
     """
 
     id: int
@@ -42,6 +49,8 @@ class Handle:
     weight: float = 1.0
     front: float = 0.0
     extent: float | None = None
+    locked: bool = False
+    group: str = ""
     unknown: Unknown = field(default_factory=lambda: NOTHING, repr=False, hash=False)
 
     def __post_init__(self) -> None:
@@ -59,6 +68,11 @@ class Handle:
             f"The extent of handle {self.name!r} must be above 0 and at most {FARTHEST:,.0f} "
             f"pixels, not {self.extent}.",
         )
+
+    @property
+    def pull(self) -> float:
+        """How strongly it pulls when a pose is solved."""
+        return self.weight * (LOCK if self.locked else 1.0)
 
 
 def require_front(front: float) -> None:

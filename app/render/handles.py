@@ -18,7 +18,7 @@ class HandleMark:
         Where the handle is, in the plane.
     wish : complex, optional
         Where it should be, if it is out of reach within the bounds.
-    anchor, selected, hovered : bool
+    anchor, selected, hovered, locked : bool
     """
 
     place: complex
@@ -26,6 +26,7 @@ class HandleMark:
     anchor: bool = False
     selected: bool = False
     hovered: bool = False
+    locked: bool = False
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -35,6 +36,7 @@ class HandleStyle:
     normal: Colour = (0.16, 0.42, 0.95, 1.0)
     selected: Colour = (1.00, 0.66, 0.10, 1.0)
     anchor: Colour = (0.05, 0.80, 0.90, 1.0)
+    locked: Colour = (0.33, 0.36, 0.42, 1.0)
     wish: Colour = (1.00, 0.33, 0.18, 1.0)
     rim: Colour = (1.00, 1.00, 1.00, 1.0)
     halo: Colour = (1.00, 1.00, 1.00, 0.55)
@@ -100,7 +102,8 @@ def _wish(wish: complex, scale: float, style: HandleStyle) -> list[Disc]:
 def _pin(mark: HandleMark, scale: float, style: HandleStyle) -> list[Disc]:
     radius = style.radius * scale * (1.25 if mark.hovered else 1.0)
     rim_width = style.rim_width * scale
-    body = style.anchor if mark.anchor else style.selected if mark.selected else style.normal
+    usual = style.locked if mark.locked else style.normal
+    body = style.anchor if mark.anchor else style.selected if mark.selected else usual
     discs = []
     if mark.hovered:
         halo = radius + (4.0 if mark.selected else 2.5) * rim_width
@@ -116,6 +119,8 @@ def _pin(mark: HandleMark, scale: float, style: HandleStyle) -> list[Disc]:
     )
     if mark.anchor:
         discs.append(Disc(centre=mark.place, radius=0.35 * radius, fill=style.rim))
+    elif mark.locked and mark.selected:
+        discs.append(Disc(centre=mark.place, radius=0.45 * radius, fill=style.locked))
     return discs
 
 

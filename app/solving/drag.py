@@ -47,7 +47,7 @@ class Rig:
             else Handles.place(
                 boundary,
                 np.array([handle.position for handle in figure.handles], dtype=np.complex128),
-                [handle.weight for handle in figure.handles],
+                [handle.pull for handle in figure.handles],
             )
         )
         return cls(

@@ -358,6 +358,10 @@ def _write_handle(handle: Handle) -> Json:
         known["front"] = handle.front
     if handle.extent is not None:
         known["extent"] = handle.extent
+    if handle.locked:
+        known["locked"] = True
+    if handle.group:
+        known["group"] = handle.group
     return _with_unknown(known, handle.unknown)
 
 
@@ -370,8 +374,11 @@ def _read_handle(content: object, where: str) -> Handle:
         weight=as_number(fields["weight"], f"{where}.weight"),
         front=as_number(fields.get("front", 0.0), f"{where}.front"),
         extent=_read_optional(fields.get("extent"), f"{where}.extent", as_number),
+        locked=as_flag(fields.get("locked", False), f"{where}.locked"),
+        group=as_text(fields.get("group", ""), f"{where}.group"),
     )
-    known = {"front": None, "extent": None, **_write_handle(handle)}
+    optional = dict.fromkeys(("front", "extent", "locked", "group"))
+    known = {**optional, **_write_handle(handle)}
     return replace(handle, unknown=_unknown_of(fields, known))
 
 

@@ -1,7 +1,8 @@
 """From pixels to a domain (Section 7; Chen and Weber 2015).
 
 In: a picture, uint8 (h, w, 4).
-Out: a `Domain`: outline, cage and triangulation in the picture's pixels, y up.
+Out: a `Domain`: outline, cage and triangulation in the picture's pixels, y up; and where handles
+are useful in it.
 Imports: `engine.geometry`.
 """
 
@@ -13,6 +14,7 @@ from engine.domain.build import (
     rectangle_domain,
     texture_coordinates,
 )
+from engine.domain.medial_axis import suggest_handles
 from engine.domain.validity import MOST_MESH_TRIANGLES, require_domain
 
 __all__ = [
@@ -23,5 +25,6 @@ __all__ = [
     "mesh_inside",
     "rectangle_domain",
     "require_domain",
+    "suggest_handles",
     "texture_coordinates",
 ]

@@ -154,8 +154,10 @@ def _random_handle_command(rng: np.random.Generator, document: Document) -> Comm
         commands += [
             handle_commands.move_handle(0, handle.id, inside(rng)),
             handle_commands.rename_handle(0, handle.id, f"name {rng.integers(3)}"),
-            handle_commands.weigh_handle(0, handle.id, float(rng.integers(1, 3))),
+            handle_commands.weigh_handles(0, {handle.id}, float(rng.integers(1, 3))),
             handle_commands.remove_handles(0, {handle.id}),
+            handle_commands.lock_handles(0, {handle.id}, locked=bool(rng.integers(2))),
+            handle_commands.group_handles(0, {handle.id}, ("", "arms", "é")[rng.integers(3)]),
         ]
     return commands[rng.integers(len(commands))]
 

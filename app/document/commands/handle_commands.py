@@ -1,8 +1,9 @@
 """Commands on handles. None of them changes a map: whatever is shown stays as it is."""
 
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import replace
 from functools import partial
+from typing import Any
 
 import numpy as np
 
@@ -29,11 +30,20 @@ def add_handle(
     """
     handle = Handle(
         id=figure.next_handle,
-        name=_free_name(figure) if name is None else name,
+        name=free_name(figure) if name is None else name,
         position=position,
         weight=weight,
     )
     return _with_poses(figure, partial(_follow, figure, handle), (*figure.handles, handle))
+
+
+@figure_command("Add handles")
+def add_handles(figure: Figure, handles: Sequence[Handle]) -> Figure:
+    """Add several handles at once; their ids are given anew, from `figure.next_handle` on."""
+    for number, handle in enumerate(handles, start=figure.next_handle):
+        added = replace(handle, id=number)
+        figure = _with_poses(figure, partial(_follow, figure, added), (*figure.handles, added))
+    return figure
 
 
 @figure_command("Move handle")
@@ -42,7 +52,7 @@ def move_handle(figure: Figure, identity: int, position: complex) -> Figure:
     if figure.handle(identity).position == position:
         return figure
     handle = replace(figure.handle(identity), position=position)
-    handles = _with_handle(figure, handle).handles
+    handles = tuple(handle if handle.id == other.id else other for other in figure.handles)
     return _with_poses(figure, partial(_follow, figure, handle), handles)
 
 
@@ -68,22 +78,36 @@ def remove_handles(figure: Figure, identities: Collection[int]) -> Figure:
 @figure_command("Rename handle")
 def rename_handle(figure: Figure, identity: int, name: str) -> Figure:
     """Give a handle another name."""
-    if figure.handle(identity).name == name:
-        return figure
-    return _with_handle(figure, replace(figure.handle(identity), name=name))
+    return _with_handles(figure, {identity}, name=name)
 
 
 @figure_command("Set handle weight")
-def weigh_handle(figure: Figure, identity: int, weight: float) -> Figure:
-    """Let a handle pull more or less strongly in poses that are solved from now on."""
-    if figure.handle(identity).weight == weight:
-        return figure
-    return _with_handle(figure, replace(figure.handle(identity), weight=weight))
+def weigh_handles(figure: Figure, identities: Collection[int], weight: float) -> Figure:
+    """Let handles pull more or less strongly in poses that are solved from now on."""
+    return _with_handles(figure, identities, weight=weight)
 
 
-def _with_handle(figure: Figure, changed: Handle) -> Figure:
-    handles = tuple(changed if handle.id == changed.id else handle for handle in figure.handles)
-    return replace(figure, handles=handles)
+@figure_command("Lock or unlock handles")
+def lock_handles(figure: Figure, identities: Collection[int], *, locked: bool) -> Figure:
+    """Let handles hold their places, or not any more."""
+    return _with_handles(figure, identities, locked=locked)
+
+
+@figure_command("Group handles")
+def group_handles(figure: Figure, identities: Collection[int], group: str) -> Figure:
+    """Let handles be taken together under a name; "" parts them from others."""
+    return _with_handles(figure, identities, group=group.strip())
+
+
+def _with_handles(figure: Figure, identities: Collection[int], **changes: Any) -> Figure:
+    """Return the figure with some fields of some handles changed, itself if they have them."""
+    for identity in identities:
+        figure.handle(identity)
+    handles = tuple(
+        replace(handle, **changes) if handle.id in identities else handle
+        for handle in figure.handles
+    )
+    return figure if handles == figure.handles else replace(figure, handles=handles)
 
 
 def _with_poses(
@@ -108,9 +132,10 @@ def _follow(figure: Figure, handle: Handle, pose: Pose) -> Pose:
     return replace(pose, targets={**pose.targets, handle.id: target})
 
 
-def _free_name(figure: Figure) -> str:
+def free_name(figure: Figure, after: int = 0) -> str:
+    """Return a name that no handle has, for the next handle but `after`."""
     taken = {handle.name for handle in figure.handles}
-    number = figure.next_handle + 1
+    number = figure.next_handle + 1 + after
     while f"handle {number}" in taken:
         number += 1
     return f"handle {number}"

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import replace
+from itertools import count
 from typing import Concatenate, ParamSpec
 
 from app.document import (
@@ -10,7 +11,9 @@ from app.document import (
     FrameRange,
     UnkeyedPose,
     changed_stretches,
+    handle_commands,
     key_commands,
+    pairs_by_name,
 )
 from app.editor.actions import playback, posing
 from app.editor.project import Project
@@ -132,6 +135,47 @@ def select_all(session: Session) -> None:
     """Select every handle."""
     if session.project:
         select(session, frozenset(handle.id for handle in session.project.figure.handles))
+
+
+def select_mirrored(session: Session) -> None:
+    """Select the partners of the selected handles on the other side, as their names tell."""
+    project = session.project
+    if project:
+        pairs = pairs_by_name(project.figure.handles)
+        partners = frozenset(pairs[handle] for handle in project.selected if handle in pairs)
+        if partners:
+            select(session, partners)
+        else:
+            session.tell(
+                "No partner was found by name. Names tell the side as in “hand.L” and “hand.R”, "
+                "“foot_l” and “foot_r”, or “left ear” and “right ear”."
+            )
+
+
+def lock(session: Session) -> None:
+    """Lock the selected handles, or unlock them if all are locked."""
+    project = session.project
+    if project and project.selected:
+        chosen = [handle for handle in project.figure.handles if handle.id in project.selected]
+        locked = not all(handle.locked for handle in chosen)
+        edit_figure(session, handle_commands.lock_handles, project.selected, locked=locked)
+
+
+def group(session: Session) -> None:
+    """Let the selected handles be taken together."""
+    project = session.project
+    if project and len(project.selected) > 1:
+        taken = {handle.group for handle in project.figure.handles}
+        name = next(f"group {n}" for n in count(1) if f"group {n}" not in taken)
+        edit_figure(session, handle_commands.group_handles, project.selected, name)
+
+
+def ungroup(session: Session) -> None:
+    """Part the groups that the selected handles belong to."""
+    project = session.project
+    if project:
+        fellows = frozenset[int]().union(*map(project.figure.together_with, project.selected))
+        edit_figure(session, handle_commands.group_handles, fellows, "")
 
 
 def choose_keys(session: Session, frames: frozenset[int]) -> None:

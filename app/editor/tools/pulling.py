@@ -42,6 +42,8 @@ class Pulling:
     def hints(cls, session: Session, spot: Spot) -> tuple[Hint, ...]:
         """Tell that handles are dragged, and that a click adds one."""
         if spot.handle is not None:
+            if session.project and session.project.figure.is_locked(spot.handle):
+                return (Hint("click", "to select; it is locked"),)
             return (Hint("drag", "to pose"),)
         if spot.on_shape and session.overlays.handles and not spot.on_ring:
             return (Hint("click", "to add a handle"),)
@@ -57,8 +59,8 @@ class Pulling:
         if spot.handle is not None:
             if spot.alt:
                 return None
-            is_selected = spot.handle in project.selected
-            editing.select(session, project.selected if is_selected else frozenset({spot.handle}))
+            if spot.handle not in project.selected:
+                editing.select(session, project.figure.together_with(spot.handle))
             return cls(start=spot.place, before=before, places=_selected_places(project))
         if not spot.on_shape or not session.overlays.handles:
             return None
@@ -124,7 +126,7 @@ def _selected_places(project: Project) -> dict[int, complex]:
     return {
         handle.id: complex(place)
         for handle, place in zip(shown.clip.figure.handles, shown.handle_places, strict=True)
-        if handle.id in project.selected
+        if handle.id in project.selected and not handle.locked
     }
 
 

@@ -46,7 +46,10 @@ class Selecting:
             return None
         before = Selection.of(project)
         if spot.handle is not None:
-            editing.select(session, project.selected ^ {spot.handle})
+            fellows = project.figure.together_with(spot.handle)
+            is_selected = spot.handle in project.selected
+            chosen = project.selected - fellows if is_selected else project.selected | fellows
+            editing.select(session, chosen)
         return cls(
             start=spot.place, place=spot.place, before=before, adds=spot.shift, has_box=has_box
         )

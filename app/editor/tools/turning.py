@@ -50,11 +50,14 @@ class Turning:
     moved: bool = False
 
     @classmethod
-    def hints(cls, session: Session, spot: Spot) -> tuple[Hint, ...]:  # noqa: ARG003 - as a tool's
+    def hints(cls, session: Session, spot: Spot) -> tuple[Hint, ...]:
         """Tell how the shape is turned."""
         if spot.on_ring:
             return (Hint("drag", "to turn the shape around the handle"),)
-        return () if spot.handle is None else (Hint("drag", "to turn", "alt"),)
+        project = session.project
+        if project is None or spot.handle is None or project.figure.is_locked(spot.handle):
+            return ()
+        return (Hint("drag", "to turn", "alt"),)
 
     @classmethod
     def press(cls, session: Session, spot: Spot) -> Self | None:
@@ -69,7 +72,7 @@ class Turning:
         before = Selection.of(project)
         handle = spot.handle if is_by_key else next(iter(project.selected))
         identities = [handle.id for handle in shown.clip.figure.handles]
-        if handle is None or handle not in identities:
+        if handle is None or handle not in identities or project.figure.is_locked(handle):
             return None
         editing.select(session, frozenset({handle}))
         index = identities.index(handle)

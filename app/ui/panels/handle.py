@@ -1,6 +1,7 @@
 """The handles: their names, weights and wishes, and the anchor."""
 
 import math
+from collections.abc import Sequence
 from dataclasses import replace
 
 from imgui_bundle import ImVec2, imgui
@@ -16,7 +17,7 @@ from app.document import (
 )
 from app.editor import Action, Project, Session, do
 from app.editor.actions import editing, posing
-from app.ui.shortcuts import with_key
+from app.ui.shortcuts import bound_text_button, with_key
 from app.ui.style import (
     FILL,
     Look,
@@ -25,7 +26,9 @@ from app.ui.style import (
     heading,
     icon_button,
     label,
+    main_button,
     number,
+    segments,
     shortened,
     slider,
     small,
@@ -34,6 +37,8 @@ from app.ui.style import (
 
 CTRL = int(imgui.Key.mod_ctrl)
 MOST_ROWS = 5.5
+# In words: the weights that they stand for.
+HOLDS = {"Soft": 0.1, "Normal": 1.0, "Firm": 10.0}
 WEIGHTS = Scale(left=0.01, right=100.0, logarithmic=True)
 
 
@@ -45,16 +50,20 @@ def draw(session: Session, look: Look) -> list[Action]:
     figure = project.figure
     if not figure.handles:
         heading(look, "Handles")
-        small(look, "There are none yet. Click on the drawing to add one, then drag it.")
-        return []
+        small(look, "There are none yet. Click on the drawing to add one, then drag it, or:")
+        text = f"{icons.ICON_FA_WAND_MAGIC_SPARKLES}  Suggest handles###suggest"
+        is_pressed = main_button(look, text, FILL)
+        tip("Put handles at the tips of limbs and in the middle of the body")
+        return [do(posing.suggest_handles)] if is_pressed else []
     actions = _heading_with_delete(look, project)
     actions += _list(look, project)
     chosen = [handle for handle in figure.handles if handle.id in project.selected]
     if len(chosen) == 1:
-        actions += _details(look, project, chosen[0])
+        actions += _details(session, look, project, chosen[0])
     elif chosen:
         heading(look, f"{len(chosen)} handles")
         small(look, "Dragging one of them moves them all; arrows nudge them.")
+        actions += _hold(session, look, chosen)
     else:
         small(look, "Select a handle to see its settings.")
     heading(look, "Anchor")
@@ -63,7 +72,16 @@ def draw(session: Session, look: Look) -> list[Action]:
 
 def _heading_with_delete(look: Look, project: Project) -> list[Action]:
     heading(look, "Handles", framed=True)
-    at_end(1.15 * imgui.get_frame_height())
+    actions: list[Action] = []
+    at_end(2 * 1.15 * imgui.get_frame_height() + imgui.get_style().item_inner_spacing.x)
+    if icon_button(
+        look,
+        icons.ICON_FA_WAND_MAGIC_SPARKLES,
+        "suggest",
+        "Put handles at the tips of limbs and in the middle of the body",
+    ):
+        actions.append(do(posing.suggest_handles))
+    imgui.same_line(0, imgui.get_style().item_inner_spacing.x)
     if icon_button(
         look,
         icons.ICON_FA_TRASH,
@@ -72,8 +90,8 @@ def _heading_with_delete(look: Look, project: Project) -> list[Action]:
         keys="Del",
         enabled=bool(project.selected),
     ):
-        return [do(posing.remove_handles, project.selected)]
-    return []
+        actions.append(do(posing.remove_handles, project.selected))
+    return actions
 
 
 def _list(look: Look, project: Project) -> list[Action]:
@@ -96,16 +114,18 @@ def _list(look: Look, project: Project) -> list[Action]:
             keeps = imgui.get_io().key_shift or imgui.get_io().key_ctrl
             actions.append(do(editing.select, project.selected ^ chosen if keeps else chosen))
         imgui.same_line(0.8 * look.em)
-        icon = icons.ICON_FA_ANCHOR if is_anchor else icons.ICON_FA_CIRCLE_DOT
+        usual = icons.ICON_FA_LOCK if handle.locked else icons.ICON_FA_CIRCLE_DOT
+        icon = icons.ICON_FA_ANCHOR if is_anchor else usual
         imgui.text_colored(palette.anchor if is_anchor else palette.dim, icon)
         imgui.same_line(2.6 * look.em)
-        text = f"{lags[handle.id]:.0f} px" if handle.id in lags else ""
+        lag = f"{lags[handle.id]:.0f} px" if handle.id in lags else ""
+        text = lag or handle.group
         beside = imgui.calc_text_size(text).x + 0.6 * look.em
         room = imgui.get_content_region_avail().x - beside
         imgui.text_unformatted(shortened(handle.name, room))
         if text:
             at_end(beside - 0.3 * look.em)
-            imgui.text_colored(palette.warning, text)
+            imgui.text_colored(palette.warning if lag else palette.dim, text)
     imgui.end_child()
     return actions
 
@@ -118,7 +138,7 @@ def _shortfall(project: Project) -> Shortfall:
     return find_shortfall(shown.clip.figure, shown.pose)
 
 
-def _details(look: Look, project: Project, handle: Handle) -> list[Action]:
+def _details(session: Session, look: Look, project: Project, handle: Handle) -> list[Action]:
     actions: list[Action] = []
     heading(look, shortened(handle.name, 0.9 * imgui.get_content_region_avail().x))
     label(look, "Name")
@@ -127,12 +147,7 @@ def _details(look: Look, project: Project, handle: Handle) -> list[Action]:
         actions.append(
             do(editing.edit_figure, handle_commands.rename_handle, handle.id, name.strip())
         )
-    label(look, "Weight")
-    hint = "How strongly it pulls, relative to the others"
-    weighed = slider(look, "weight", handle.weight, WEIGHTS, hint=hint)
-    if weighed is not None:
-        weight = float(f"{weighed.value:.3g}")
-        actions.append(do(editing.edit_figure, handle_commands.weigh_handle, handle.id, weight))
+    actions += _hold(session, look, [handle])
     placed = _point(
         look,
         project,
@@ -143,6 +158,36 @@ def _details(look: Look, project: Project, handle: Handle) -> list[Action]:
     if placed is not None:
         actions.append(do(editing.edit_figure, handle_commands.move_handle, handle.id, placed))
     return actions + _wish(look, project, handle)
+
+
+def _hold(session: Session, look: Look, chosen: Sequence[Handle]) -> list[Action]:
+    """Draw how firmly the selected handles hold, and what is done with all of them at once."""
+    actions: list[Action] = []
+    identities = frozenset(handle.id for handle in chosen)
+    weights = {handle.weight for handle in chosen}
+    label(look, "Hold")
+    weight = weights.pop() if len(weights) == 1 else math.nan
+    word = next((word for word, value in HOLDS.items() if value == weight), "")
+    taken = segments(look, "hold", [(word, word) for word in HOLDS], word)
+    tip("How firmly it holds against the others where not all can have their way")
+    if taken is not None:
+        weigh = handle_commands.weigh_handles
+        actions.append(do(editing.edit_figure, weigh, identities, HOLDS[taken]))
+    label(look, "")
+    hint = "How strongly it pulls, relative to the others: 1 is normal"
+    weighed = slider(look, "weight", chosen[0].weight, WEIGHTS, hint=hint)
+    if weighed is not None:
+        weigh, value = handle_commands.weigh_handles, float(f"{weighed.value:.3g}")
+        actions.append(do(editing.edit_figure, weigh, identities, value))
+    names = ["pin here", "lock", "group" if len(chosen) > 1 else "mirror", "mirrored"]
+    if any(handle.group for handle in chosen):
+        names[2] = "ungroup"
+    half = ImVec2((imgui.get_content_region_avail().x - imgui.get_style().item_spacing.x) / 2, 0)
+    for index, name in enumerate(names):
+        if index % 2:
+            imgui.same_line()
+        actions += bound_text_button(session, name, half)
+    return actions
 
 
 def _wish(look: Look, project: Project, handle: Handle) -> list[Action]:

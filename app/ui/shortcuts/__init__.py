@@ -10,7 +10,7 @@ from app.ui.shortcuts.gestures import GESTURES
 from app.ui.shortcuts.keys import MODIFIERS, in_words, with_key
 from app.ui.shortcuts.pressed import ARROWS, pressed
 from app.ui.shortcuts.table import BINDINGS
-from app.ui.shortcuts.widgets import bound_button, bound_item
+from app.ui.shortcuts.widgets import bound_button, bound_item, bound_text_button
 
 __all__ = [
     "ARROWS",
@@ -20,6 +20,7 @@ __all__ = [
     "Binding",
     "bound_button",
     "bound_item",
+    "bound_text_button",
     "in_words",
     "pressed",
     "with_key",

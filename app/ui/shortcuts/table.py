@@ -41,6 +41,30 @@ def _previews(session: Session) -> bool:
     return session.project is not None and session.project.document.preview is not None
 
 
+def _several(session: Session) -> bool:
+    return session.project is not None and len(session.project.selected) > 1
+
+
+def _some(session: Session) -> bool:
+    return session.project is not None and bool(session.project.selected)
+
+
+def _grouped(session: Session) -> bool:
+    project = session.project
+    return project is not None and any(
+        handle.group for handle in project.figure.handles if handle.id in project.selected
+    )
+
+
+def _all_locked(session: Session) -> bool:
+    project = session.project
+    return (
+        project is not None
+        and bool(project.selected)
+        and all(map(project.figure.is_locked, project.selected))
+    )
+
+
 def _undone(session: Session) -> str | None:
     return session.project.history.undo_label if session.project else None
 
@@ -157,6 +181,70 @@ BINDINGS: dict[str, Binding] = {
         keys=(Key.delete, Key.backspace),
         icon=icons.ICON_FA_TRASH,
         possible=_edits,
+    ),
+    "suggest handles": Binding(
+        label="Suggest handles",
+        action=do(posing.suggest_handles),
+        menu="Handles",
+        icon=icons.ICON_FA_WAND_MAGIC_SPARKLES,
+        hint="Put handles at the tips of limbs and in the middle of the body",
+    ),
+    "pin here": Binding(
+        label="Pin here",
+        action=do(posing.pin_here),
+        menu="Handles",
+        keys=(Key.p,),
+        icon=icons.ICON_FA_THUMBTACK,
+        hint="Let the selected handles stay where they are in this frame",
+        possible=_some,
+        parted=True,
+    ),
+    "lock": Binding(
+        label="Lock",
+        action=do(editing.lock),
+        menu="Handles",
+        keys=(SHIFT | int(Key.l),),
+        icon=icons.ICON_FA_LOCK,
+        hint="Locked handles hold their places and are not dragged",
+        possible=_some,
+        active=_all_locked,
+    ),
+    "group": Binding(
+        label="Group",
+        action=do(editing.group),
+        menu="Handles",
+        keys=(CTRL | int(Key.g),),
+        icon=icons.ICON_FA_OBJECT_GROUP,
+        hint="Select and drag these handles together from now on",
+        possible=_several,
+        parted=True,
+    ),
+    "ungroup": Binding(
+        label="Ungroup",
+        action=do(editing.ungroup),
+        menu="Handles",
+        keys=(CTRL | SHIFT | int(Key.g),),
+        icon=icons.ICON_FA_OBJECT_UNGROUP,
+        hint="Let each of these handles be dragged alone",
+        possible=_grouped,
+    ),
+    "mirror": Binding(
+        label="Mirror",
+        action=do(posing.mirror_handles),
+        menu="Handles",
+        icon=icons.ICON_FA_LEFT_RIGHT,
+        hint="Add partners on the other side, named by .L and .R or left and right",
+        possible=_some,
+        parted=True,
+    ),
+    "mirrored": Binding(
+        label="Select partners",
+        action=do(editing.select_mirrored),
+        menu="Handles",
+        keys=(SHIFT | int(Key.m),),
+        icon=icons.ICON_FA_RIGHT_LEFT,
+        hint="Select the handles on the other side that have the same names",
+        possible=_some,
     ),
     "fit": Binding(
         label="Fit pose",

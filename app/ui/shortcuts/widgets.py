@@ -1,10 +1,12 @@
 """Menu entries and buttons of what the table names."""
 
-from imgui_bundle import imgui
+from imgui_bundle import ImVec2, imgui
 
 from app.editor import Action, Session
 from app.ui.shortcuts.table import BINDINGS
-from app.ui.style import Look, icon_button
+from app.ui.style import Look, icon_button, tip
+
+PRESSED = imgui.Col_.button_active
 
 
 def bound_item(session: Session, name: str) -> list[Action]:
@@ -17,6 +19,21 @@ def bound_item(session: Session, name: str) -> list[Action]:
         binding.possible(session),
     )
     return [binding.action] if clicked else []
+
+
+def bound_text_button(session: Session, name: str, size: ImVec2) -> list[Action]:
+    """Draw the button of a named action with its icon and its words."""
+    binding = BINDINGS[name]
+    is_active = binding.is_active(session)
+    imgui.begin_disabled(not binding.possible(session))
+    if is_active:
+        imgui.push_style_color(imgui.Col_.button, imgui.get_style_color_vec4(PRESSED))
+    is_pressed = imgui.button(f"{binding.icon}  {binding.label}###{name}", size)
+    if is_active:
+        imgui.pop_style_color()
+    imgui.end_disabled()
+    tip(binding.hint or binding.label, binding.keys_in_words)
+    return [binding.action] if is_pressed else []
 
 
 def bound_button(session: Session, look: Look, name: str, icon: str = "") -> list[Action]:

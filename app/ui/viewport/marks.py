@@ -59,6 +59,7 @@ def mark_all(
                 anchor=handle.position == figure.anchor,
                 selected=handle.id in project.selected,
                 hovered=handle.id == session.hovered,
+                locked=handle.locked,
             )
         )
     handle_lines, discs = mark_handles(marks, scale=scale, style=style)

@@ -1,11 +1,14 @@
 """The drawing, and everything that the pointer does to it."""
 
+from functools import partial
+
 import numpy as np
 from imgui_bundle import ImVec2, imgui
 from imgui_bundle import icons_fontawesome_6 as icons
 
+from app.document import handle_commands
 from app.editor import Action, BoxMark, EntryMark, Hint, Project, Session, SweepMark, do
-from app.editor.actions import posing, viewing
+from app.editor.actions import editing, posing, viewing
 from app.editor.tools import TOOLS, Spot, pointing
 from app.motion import Shown
 from app.render import View
@@ -130,6 +133,8 @@ def _ring(session: Session, canvas: _Canvas) -> Ring | None:
     held = next((m for m in gesture.marks if isinstance(m, SweepMark)), None) if gesture else None
     if not session.overlays.handles or project.playhead.since is not None:
         return None
+    if any(project.figure.is_locked(handle) for handle in project.selected):
+        return None
     if len(project.selected) != 1 or not (gesture is None or held is not None):
         return None
     handles = canvas.shown.clip.figure.handles
@@ -208,6 +213,10 @@ def _menu(canvas: _Canvas, identity: int) -> list[Action]:
     if item("Delete", icons.ICON_FA_TRASH, with_key(ALT, "click")):
         actions.append(do(posing.remove_handles, frozenset({identity})))
     is_anchor = handle.position == canvas.project.figure.anchor
+    if item("Unlock" if handle.locked else "Lock", icons.ICON_FA_LOCK):
+        command = handle_commands.lock_handles
+        chosen = frozenset({identity})
+        actions.append(do(editing.edit_figure, partial(command, locked=not handle.locked), chosen))
     label = "Automatic anchor" if is_anchor else "Make it the anchor"
     if item(label, icons.ICON_FA_ANCHOR, with_key(CTRL, "click")):
         actions.append(do(posing.anchor_at, identity))

@@ -151,7 +151,7 @@ def test_moving_a_handle_moves_its_targets_along_the_maps():
 def test_naming_and_weighing_handles():
     document = animated(0)
     assert handles.rename_handle(0, 1, "Fuß")(document).figures[0].handle(1).name == "Fuß"
-    assert handles.weigh_handle(0, 1, 3.0)(document).figures[0].handle(1).weight == 3.0
+    assert handles.weigh_handles(0, {1}, 3.0)(document).figures[0].handle(1).weight == 3.0
 
 
 def test_posing_and_inserting_keys():
@@ -273,7 +273,7 @@ def test_bounds_and_a_new_domain_come_with_solved_poses():
         handles.move_handle(0, 0, animated(0).figures[0].handle(0).position),
         handles.remove_handles(0, ()),
         handles.rename_handle(0, 0, "handle 1"),
-        handles.weigh_handle(0, 0, 1.0),
+        handles.weigh_handles(0, {0}, 1.0),
         keys.move_keys(0, {0}, 0),
         keys.move_keys(0, (), 4),
         keys.copy_keys(0, (), 4),
@@ -323,8 +323,8 @@ OTHER_CAGE = random_pose(np.random.default_rng(0), DOCUMENT, disc_domain(13))
         (handles.rename_handle(0, 7, "x"), "no handle with the id 7"),
         (handles.rename_handle(0, 0, "handle 2"), "name 'handle 2'"),
         (handles.rename_handle(0, 0, ""), "needs a name"),
-        (handles.weigh_handle(0, 0, float("inf")), "weight"),
-        (handles.weigh_handle(0, 0, float("nan")), "weight"),
+        (handles.weigh_handles(0, {0}, float("inf")), "weight"),
+        (handles.weigh_handles(0, {0}, float("nan")), "weight"),
         (keys.pose_key(0, 5, POSE), "no key at frame 5"),
         (keys.pose_key(0, 0, replace(POSE, targets={})), "one target for each handle"),
         (keys.pose_key(0, 0, OTHER_CAGE), "cage of 13 vertices, not of 12"),

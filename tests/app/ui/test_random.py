@@ -316,13 +316,19 @@ class Walk:
         if not handles:
             return
         handle = self.choice(handles)
-        match self.rng.integers(5):
+        match self.rng.integers(8):
+            case 7:
+                self.act(self.choice((posing.suggest_handles, posing.mirror_handles)))
+            case 6:
+                self.act(posing.pin_here)
+            case 5:
+                self.act(self.choice((editing.lock, editing.group, editing.ungroup)))
             case 0:
                 name = self.choice(("paw", "tail", "x", f"{self.rng.integers(99)}"))
                 self.edit(handle_commands.rename_handle(0, handle.id, name))
             case 1:
                 weight = float(10 ** self.rng.uniform(-2, 2))
-                self.edit(handle_commands.weigh_handle(0, handle.id, weight))
+                self.edit(handle_commands.weigh_handles(0, {handle.id}, weight))
             case 2:
                 outline = self.document.figures[0].domain.mesh.vertices
                 self.edit(handle_commands.move_handle(0, handle.id, complex(self.choice(outline))))

@@ -241,7 +241,7 @@ def test_other_changes_leave_the_solver_at_work(window, bent):
 
 def test_bounds_and_places_that_change_end_the_pull(window, bent):
     for command in (
-        handle_commands.weigh_handle(0, 1, 3.0),
+        handle_commands.weigh_handles(0, {1}, 3.0),
         handle_commands.move_handle(0, 1, bent.document.figures[0].handle(1).position - 30),
     ):
         posing.wish(window.session, {1: Target(position=place_of(bent, 1) - 20j)})

@@ -8,8 +8,10 @@ Imports: `app.editor`, `app.document`, `app.motion`, `app.solving`.
 from app.editor.actions.posing.handles import (
     add_handle,
     anchor_at,
+    mirror_handles,
     put_anchor,
     remove_handles,
+    suggest_handles,
 )
 from app.editor.actions.posing.inserting import INSERTING, fit_pose, insert_key
 from app.editor.actions.posing.pulling import (
@@ -17,6 +19,7 @@ from app.editor.actions.posing.pulling import (
     free_turn,
     let_go,
     nudge,
+    pin_here,
     pull,
     pull_again,
     settle,
@@ -36,12 +39,15 @@ __all__ = [
     "hold",
     "insert_key",
     "let_go",
+    "mirror_handles",
     "nudge",
+    "pin_here",
     "pull",
     "pull_again",
     "put_anchor",
     "remove_handles",
     "retargeted",
     "settle",
+    "suggest_handles",
     "wish",
 ]

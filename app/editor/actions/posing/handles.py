@@ -4,12 +4,25 @@ from dataclasses import replace
 
 import numpy as np
 
-from app.document import Command, figure_commands, handle_commands
+from app.document import (
+    Command,
+    Handle,
+    figure_commands,
+    handle_commands,
+    mirrored_name,
+    pairs_by_name,
+)
+from app.editor.action import do
 from app.editor.actions.posing.pulling import drop
 from app.editor.actions.posing.steps import retargeted
 from app.editor.project import Project
 from app.editor.session import Session
 from app.motion import Shown
+from engine import domain as domains
+from engine.domain import Domain
+from engine.geometry import box_diagonal, contains
+
+NEAR = 0.05  # of the diagonal: so near to a handle there is no other one suggested
 
 
 def add_handle(session: Session, place: complex, *, gesture: object | None = None) -> None:
@@ -35,6 +48,84 @@ def remove_handles(
     command = handle_commands.remove_handles(project.active, identities)
     _change_handles(project, command, gesture or object())
     project.selected -= identities
+
+
+def suggest_handles(session: Session) -> None:
+    """Put handles at the tips of limbs and in the middle of the body, but where there are some."""
+    project = session.project
+    if project is None:
+        return
+    figure = project.figure
+    places = domains.suggest_handles(figure.domain.loops)
+    near = NEAR * box_diagonal(figure.domain.outline)
+    taken = np.array([handle.position for handle in figure.handles], dtype=np.complex128)
+    free = [place for place in places if not (np.abs(taken - place) < near).any()]
+    if not free:
+        session.tell("There are handles already where Lissom would put them.")
+        return
+    drop(session)
+    handles = [
+        Handle(id=0, name=handle_commands.free_name(figure, number), position=complex(place))
+        for number, place in enumerate(free)
+    ]
+    gesture = object()
+    _change_handles(project, handle_commands.add_handles(project.active, handles), gesture)
+    added = {handle.id for handle in project.figure.handles} - {h.id for h in figure.handles}
+    project.selected = project.chosen = frozenset()
+    count = len(added)
+    session.tell(
+        f"{count} handle{'s were' if count > 1 else ' was'} added. Drag one to pose.",
+        label="Take back",
+        action=do(_take_suggestions_back, project, frozenset(added), gesture),
+    )
+
+
+def _take_suggestions_back(
+    session: Session, project: Project, added: frozenset[int], gesture: object
+) -> None:
+    """Remove the handles that were suggested; what was done since stays."""
+    if session.project is not project:
+        return
+    drop(session)
+    project.history.take_back(gesture)
+    remaining = added & {handle.id for handle in project.figure.handles}
+    if remaining:
+        remove_handles(session, remaining)
+    project.selected -= added
+
+
+def mirror_handles(session: Session) -> None:
+    """Give each selected handle a partner on the other side of the mirror axis, named so."""
+    project = session.project
+    if project is None:
+        return
+    figure, pairs = project.figure, pairs_by_name(project.figure.handles)
+    alone = [handle for handle in figure.handles if handle.id in project.selected - pairs.keys()]
+    gesture, outside = object(), 0
+    partners: list[Handle] = []
+    for handle in alone:
+        place = complex(2 * figure.axis - handle.position.real, handle.position.imag)
+        if place == handle.position or not _is_inside(figure.domain, place):
+            outside += 1
+            continue
+        name = handle.name
+        if mirrored_name(name) is None:
+            name += ".L" if handle.position.real < figure.axis else ".R"
+            command = handle_commands.rename_handle(project.active, handle.id, name)
+            project.history.do(command, gesture=gesture)
+        partners.append(replace(handle, name=mirrored_name(name) or name, position=place))
+    if partners:
+        drop(session)
+        _change_handles(project, handle_commands.add_handles(project.active, partners), gesture)
+    if outside:
+        session.tell("The other side of the mirror axis is beside the drawing there.")
+    elif not partners:
+        session.tell("Every selected handle has its partner on the other side already.")
+
+
+def _is_inside(domain: Domain, place: complex) -> bool:
+    outline, *holes = domain.loops
+    return bool(contains(outline, np.array([place]), holes=holes)[0])
 
 
 def _change_handles(project: Project, command: Command, gesture: object) -> None:

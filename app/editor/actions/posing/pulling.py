@@ -52,6 +52,25 @@ def drop(session: Session) -> None:
         session.project.posing = session.project.settling = None
 
 
+def pin_here(session: Session) -> None:
+    """Let the selected handles be wanted where they are, wherever they were wanted before."""
+    project = session.project
+    shown = project.puppet.shown if project else None
+    if project is None or shown is None or not project.selected:
+        return
+    wishes = wishes_of(project)
+    places = zip(shown.clip.figure.handles, shown.handle_places, strict=True)
+    pull(
+        session,
+        {
+            handle.id: replace(wishes[handle.id], position=complex(place))
+            for handle, place in places
+            if handle.id in project.selected
+        },
+    )
+    let_go(session)
+
+
 def nudge(session: Session, step: complex) -> None:
     """Move the selected handles by a few pixels of the picture."""
     project = session.project
@@ -59,11 +78,13 @@ def nudge(session: Session, step: complex) -> None:
         return
     targets = project.posing.targets if project.posing else wishes_of(project)
     moved = {
-        identity: replace(targets[identity], position=targets[identity].position + step)
-        for identity in project.selected
+        handle.id: replace(targets[handle.id], position=targets[handle.id].position + step)
+        for handle in project.figure.handles
+        if handle.id in project.selected and not handle.locked
     }
-    pull(session, moved)
-    let_go(session)
+    if moved:
+        pull(session, moved)
+        let_go(session)
 
 
 def wish(session: Session, wishes: Mapping[int, Target]) -> None:

@@ -1,0 +1,183 @@
+"""Handles that are suggested, locked, grouped, mirrored and pinned, through the widgets."""
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from app.document.keyframe import Target
+from app.editor.actions import editing, playback, posing
+
+
+@pytest.fixture
+def play(window):
+    """A function that lets the robot play in the tab of handles."""
+
+    def act(body):
+        def within(robot):
+            robot.set_ref("//Handle")
+            body(robot)
+
+        window.show_tab("Handle")
+        window.run(within)
+        window.settle()
+
+    return act
+
+
+def places(project):
+    return dict(
+        zip(
+            (handle.id for handle in project.figure.handles),
+            map(complex, project.puppet.shown.handle_places),
+            strict=True,
+        )
+    )
+
+
+def drag(window, start, end, *, key=None):
+    def act(robot):
+        robot.mouse_move_to_pos(window.point(start))
+        if key is not None:
+            robot.key_down(int(key))
+        robot.mouse_down(0)
+        robot.mouse_move_to_pos(window.point((start + end) / 2))
+        robot.mouse_move_to_pos(window.point(end))
+        robot.mouse_up(0)
+        if key is not None:
+            robot.key_up(int(key))
+
+    window.run(act)
+    window.settle()
+
+
+def click(window, place, key=None):
+    def act(robot):
+        robot.mouse_move_to_pos(window.point(place))
+        if key is not None:
+            robot.key_down(int(key))
+        robot.mouse_click(0)
+        if key is not None:
+            robot.key_up(int(key))
+
+    window.run(act)
+
+
+def test_handles_are_suggested_and_taken_back_by_a_click(window, bar, play):
+    posing.remove_handles(window.session, frozenset({0, 1}))
+    window.frames(2)
+    before = bar.document
+    play(lambda robot: robot.item_click("**/###suggest"))
+    width, height = bar.document.canvas
+    found = sorted(handle.position.real / width for handle in bar.figure.handles)
+    assert_allclose(found, [0.06, 0.5, 0.94], rtol=0, atol=0.06)
+    assert_allclose(
+        [handle.position.imag for handle in bar.figure.handles], height / 2, rtol=0, atol=20
+    )
+    assert bar.history.undo_label == "Add handles"
+    window.run(lambda robot: robot.item_click("**/Take back"))
+    assert bar.document is before
+
+
+def test_suggestions_are_taken_back_after_other_steps(window, bar, play):
+    play(lambda robot: robot.item_click("**/###suggest"))
+    suggested = {handle.id for handle in bar.figure.handles} - {0, 1}
+    assert len(suggested) == 1, "there are handles at both ends already"
+    editing.select(window.session, frozenset({0}))
+    editing.lock(window.session)
+    window.run(lambda robot: robot.item_click("**/Take back"))
+    assert [(handle.id, handle.locked) for handle in bar.figure.handles] == [(0, True), (1, False)]
+
+
+def test_a_locked_handle_is_not_dragged_and_holds_its_place(window, bar, play):
+    editing.select(window.session, frozenset({0}))
+    play(lambda robot: robot.item_click("**/###lock"))
+    assert bar.figure.handle(0).locked
+    playback.seek(window.session, 24)
+    window.settle()
+    before = bar.document
+    start = places(bar)[0]
+    drag(window, start, start + 60j)
+    drag(window, start, start + 60j, key=window.Key.mod_alt)
+    posing.nudge(window.session, 5j)
+    window.settle()
+    assert bar.document is before, "neither dragged nor turned, nudged or deleted"
+    assert bar.selected == {0}, "but selected"
+    other = places(bar)[1]
+    # Far beyond the limits: a free handle would be drawn along.
+    drag(window, other, other + 0.4 * bar.document.canvas[0])
+    posing.wish(window.session, {1: Target(position=4 * other)})
+    window.settle()
+    figure = bar.figure
+    lags = figure.lags(figure.key(24).pose)
+    assert lags[0] < 0.5
+    assert lags[1] > 50
+    play(lambda robot: robot.item_click("**/###handle 0"))
+    play(lambda robot: robot.item_click("**/###lock"))
+    assert not bar.figure.handle(0).locked
+
+
+def test_a_group_is_taken_together(window, bar, play):
+    editing.select_all(window.session)
+    play(lambda robot: robot.item_click("**/###group"))
+    assert {handle.group for handle in bar.figure.handles} == {"group 1"}
+    editing.select(window.session, frozenset())
+    playback.seek(window.session, 24)
+    window.settle()
+    before = places(bar)
+    drag(window, before[0], before[0] + 40j)
+    assert bar.selected == {0, 1}
+    moved = places(bar)
+    assert_allclose([moved[i] - before[i] for i in (0, 1)], 40j, rtol=0, atol=2)
+    click(window, moved[1], window.Key.mod_shift)
+    assert bar.selected == frozenset()
+    click(window, moved[1])
+    assert bar.selected == {0, 1}
+    play(lambda robot: robot.item_click("**/###ungroup"))
+    assert {handle.group for handle in bar.figure.handles} == {""}
+    click(window, moved[1])
+    assert bar.selected == {0, 1}, "what is selected stays so, to be dragged"
+    editing.select(window.session, frozenset())
+    click(window, moved[1])
+    assert bar.selected == {1}
+
+
+def test_how_firmly_handles_hold_is_said_in_words(window, bar, play):
+    editing.select_all(window.session)
+    play(lambda robot: robot.item_click("**/hold/###Firm"))
+    assert {handle.weight for handle in bar.figure.handles} == {10.0}
+    editing.select(window.session, frozenset({1}))
+    play(lambda robot: robot.item_click("**/hold/###Soft"))
+    assert [handle.weight for handle in bar.figure.handles] == [10.0, 0.1]
+
+
+def test_pinned_handles_are_wanted_where_they_are(window, bent, play):
+    width, height = bent.document.canvas
+    posing.wish(window.session, {1: Target(position=complex(3 * width, 0.5 * height))})
+    window.settle()
+    figure = bent.figure
+    assert max(figure.lags(figure.key(24).pose).values()) > 20
+    before = places(bent)
+    editing.select_all(window.session)
+    play(lambda robot: robot.item_click("**/###pin here"))
+    figure = bent.figure
+    assert max(figure.lags(figure.key(24).pose).values()) < 1.0
+    after = places(bent)
+    assert_allclose([after[i] for i in (0, 1)], [before[i] for i in (0, 1)], rtol=0, atol=1.0)
+
+
+def test_partners_are_made_and_found_by_their_names(window, bar, play):
+    posing.remove_handles(window.session, frozenset({1}))
+    editing.select(window.session, frozenset({0}))
+    window.frames(2)
+    play(lambda robot: robot.item_click("**/###mirror"))
+    one, other = bar.figure.handles
+    assert (one.name, other.name) == ("handle 1.L", "handle 1.R")
+    axis = bar.document.canvas[0] / 2
+    assert_allclose(other.position, 2 * axis - one.position.conjugate(), rtol=0, atol=6)
+    editing.undo(window.session)
+    assert [handle.name for handle in bar.figure.handles] == ["handle 1"], "one step"
+    editing.redo(window.session)
+    editing.select(window.session, frozenset({one.id}))
+    play(lambda robot: robot.item_click("**/###mirrored"))
+    assert bar.selected == {other.id}
+    np.testing.assert_equal(len(bar.figure.handles), 2)
