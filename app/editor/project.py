@@ -10,7 +10,7 @@ from app.document import Clip, Document, Figure, History, Meshing, Playhead, Pos
 from app.editor.action import Action
 from app.editor.derived import Derived
 from app.editor.timeline_view import Timing
-from app.motion import Box, Build, Motion, PosableMesh, Shown
+from app.motion import Box, Build, Joints, Motion, PosableMesh, Shown
 from app.render import View, fit_view
 from app.reports import Curves
 from app.solving import Drag, Renewal, Rig
@@ -130,6 +130,8 @@ class Project:
         Where the next export goes: where the last one went, or was told to.
     replaceable : Path, optional
         Where exports may take the place of other files: the person agreed, or they are an export's.
+    joints : Derived
+        Of the figures that hang on others; None where nothing does.
     extent : Derived
         Of the motion; it is measured while the settings of an export are shown.
     to_save : tuple, optional
@@ -158,6 +160,9 @@ class Project:
     renewal: Renewal | None = None
     export_to: Path | None = None
     replaceable: Path | None = None
+    joints: Derived[tuple[object, ...], Joints | None] = field(
+        default_factory=lambda: Derived(None)
+    )
     extent: Derived[tuple[object, ...], Box | None] = field(default_factory=lambda: Derived(None))
     to_save: tuple[Path, Action | None] | None = None
     moved_at: float = -inf

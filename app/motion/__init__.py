@@ -7,12 +7,12 @@ Imports: `app.document`.
 
 from app.motion.extent import Box, box_around, extent_source, measure_extent, motion_box
 from app.motion.inbetweens import Animation, PoseSampler
-from app.motion.joints import HERE, Joints, Placement, hung_animations
+from app.motion.joints import HERE, Joints, Placement, hung_animations, joints_source
 from app.motion.paint_order import painted_triangles
 from app.motion.posable_mesh import PosableMesh
 from app.motion.prepared import Motion, prepare_motion
 from app.motion.series_queue import Build, next_build, with_series
-from app.motion.shown_frame import Shown, show
+from app.motion.shown_frame import Shown, hang_shown, show
 from app.motion.vertices import Placed, Streamed, Vertices
 
 __all__ = [
@@ -31,7 +31,9 @@ __all__ = [
     "Vertices",
     "box_around",
     "extent_source",
+    "hang_shown",
     "hung_animations",
+    "joints_source",
     "measure_extent",
     "motion_box",
     "next_build",

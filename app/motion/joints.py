@@ -1,6 +1,6 @@
 """Where figures that hang on others are, at any time (Section 7, "a user curve for the anchor")."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -45,6 +45,28 @@ class Hinge(NamedTuple):
     turn: complex  # of modulus 1
 
 
+def along(chain: Sequence[Figure], hinge: Callable[[Figure, complex], Hinge]) -> Placement:
+    """Return where a figure is that hangs on a chain of others.
+
+    Parameters
+    ----------
+    chain : sequence of Figure
+        The figure, the one that it hangs on, and so on.
+    hinge : callable
+        Returns how a point of a figure is moved and turned, the figure by itself.
+    """
+    placement = HERE
+    for child, parent in zip(chain[-2::-1], chain[:0:-1], strict=True):
+        joint = _require_attachment(child)
+        at, held = hinge(parent, joint.at), hinge(child, _require_anchor(child))
+        factor = 1.0 + 0j
+        if joint.turns:
+            factor = placement.factor * at.turn * np.exp(-1j * joint.rest)
+        place = placement.factor * at.place + placement.shift
+        placement = Placement(complex(factor), complex(place - factor * held.place))
+    return placement
+
+
 class Joints:
     """The joints of a document, at any time.
 
@@ -56,6 +78,15 @@ class Joints:
     document : Document
     siblings : mapping of int to PoseSampler
         By the ids of figures; what they know of outlines is used again.
+    earlier : Joints, optional
+        Of an earlier document; what is still true of it is used again.
+
+    Attributes
+    ----------
+    points : dict of int to list of complex
+        Of each figure, those by which it hangs, or others hang on it.
+    animations : dict of int to Animation
+        Of figures at these points, where they were asked for.
 
     Raises
     ------
@@ -64,12 +95,18 @@ class Joints:
     """
 
     def __init__(
-        self, document: Document, siblings: Mapping[int, PoseSampler] | None = None
+        self,
+        document: Document,
+        siblings: Mapping[int, PoseSampler] | None = None,
+        earlier: "Joints | None" = None,
     ) -> None:
         self._document = document
-        self._points = _points(document)
-        self._animations: dict[int, Animation] = {}
+        self.points = _points(document)
+        self.animations: dict[int, Animation] = {}
         self._siblings = siblings or {}
+        self._placements: dict[tuple[int, float], Placement] = {}
+        if earlier is not None:
+            self._take_over(earlier)
 
     def placement(
         self, figure: int, frame: float, poses: Mapping[int, Pose] | None = None
@@ -83,18 +120,26 @@ class Joints:
         poses : mapping of int to Pose, optional
             Shown instead of what the figures with these ids have at the frame.
         """
-        placement = HERE
         chain = self._document.carriers(figure)
-        for child, parent in zip(chain[-2::-1], chain[:0:-1], strict=True):
-            joint = _require_attachment(child)
-            at = self._joint(parent, joint.at, frame, poses or {})
-            held = self._joint(child, _require_anchor(child), frame, poses or {})
-            factor = 1.0 + 0j
-            if joint.turns:
-                factor = placement.factor * at.turn * np.exp(-1j * joint.rest)
-            place = placement.factor * at.place + placement.shift
-            placement = Placement(complex(factor), complex(place - factor * held.place))
-        return placement
+        if len(chain) == 1:
+            return HERE
+        if poses:
+            return self._work_out(chain, frame, poses)
+        if (figure, frame) not in self._placements:
+            self._placements[figure, frame] = self._work_out(chain, frame, {})
+        return self._placements[figure, frame]
+
+    def prepare(self) -> "Joints":
+        """Work out what all frames need, so that asking for one takes no time."""
+        for figure in self._document.figures:
+            for frame in range(self._document.frames.first, self._document.frames.last + 1):
+                self.placement(figure.id, frame)
+        return self
+
+    def _work_out(
+        self, chain: tuple[Figure, ...], frame: float, poses: Mapping[int, Pose]
+    ) -> Placement:
+        return along(chain, lambda figure, place: self._joint(figure, place, frame, poses))
 
     def hang(
         self, child: int, parent: int, frame: float, *, place: complex | None = None, turns: bool
@@ -142,15 +187,27 @@ class Joints:
     ) -> Hinge:
         if figure.id in poses:
             return _hinge_of(figure, poses[figure.id], place)
-        index = self._points[figure.id].index(place)
+        index = self.points[figure.id].index(place)
         moved = self._animation(figure.id).frame(frame)
         return _joint(moved.positions[index], moved.fz[index])
 
+    def _take_over(self, earlier: "Joints") -> None:
+        for identity, before in earlier.animations.items():
+            if identity not in self.points:
+                continue
+            clip, sampler = clip_of(self._document, identity), before.sampler
+            if (
+                clip.figure.domain is sampler.domain
+                and clip.figure.anchor == sampler.anchor
+                and self.points[identity] == earlier.points[identity]
+            ):
+                self.animations[identity] = Animation(clip, sampler=sampler)
+
     def _animation(self, figure: int) -> Animation:
-        if figure not in self._animations:
-            points = np.array(self._points[figure])
-            self._animations[figure] = self._animation_at(self._document.figure(figure), points)
-        return self._animations[figure]
+        if figure not in self.animations:
+            points = np.array(self.points[figure])
+            self.animations[figure] = self._animation_at(self._document.figure(figure), points)
+        return self.animations[figure]
 
     def _animation_at(self, figure: Figure, points: Complexes) -> Animation:
         sampler = PoseSampler(
@@ -209,6 +266,15 @@ class HungAnimation:
         """Return where the points (m,) are at a frame, which may lie between two numbers."""
         placement = self._joints.placement(self._animation.clip.figure.id, frame)
         return placement.on(self._animation.positions(frame))
+
+
+def joints_source(document: Document) -> tuple[object, ...]:
+    """Return all of a document that its joints depend on; empty where nothing hangs."""
+    hung = [figure for figure in document.figures if figure.attachment is not None]
+    carriers = [
+        clip_of(document, each.id) for child in hung for each in document.carriers(child.id)
+    ]
+    return tuple(carriers)
 
 
 def hung_animations(

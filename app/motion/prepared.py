@@ -12,6 +12,7 @@ from typing import NamedTuple
 
 from app.document import Clip, Pose, Variant, intervals, resting_pose, time_of
 from app.motion.inbetweens import PoseSampler
+from app.motion.paint_order import painted_triangles
 from app.motion.posable_mesh import PosableMesh
 from app.motion.vertices import Placed, Streamed, Vertices
 from engine.arrays import Complexes
@@ -64,7 +65,8 @@ class Motion:
     def vertices(self, clip: Clip, frame: float) -> Vertices | None:
         """Return where the vertices are at a frame; None where that is not prepared."""
         moment = time_of(clip, frame)
-        resting, triangles = resting_pose(clip, moment), self.mesh.domain.mesh.triangles
+        resting = resting_pose(clip, moment)
+        triangles = painted_triangles(self.mesh.domain.mesh, clip, frame)
         if resting is not None:
             return Placed(positions=self.mesh.posed(resting), triangles=triangles)
         prepared = self._prepared(clip, moment.interval)

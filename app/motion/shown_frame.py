@@ -1,10 +1,13 @@
 """What is on the screen: which pose of a figure, on which mesh."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from app.document import Clip, Pose, resting_pose, time_of
+from app.document import Clip, Document, Pose, resting_pose, time_of
+from app.motion.joints import HERE, Hinge, Joints, Placement, along
+from app.motion.paint_order import painted_triangles
 from app.motion.posable_mesh import AttachedPoints, PosableMesh
 from app.motion.prepared import Motion
 from app.motion.vertices import Placed, Streamed, Vertices
@@ -26,6 +29,8 @@ class Shown:
         The mesh's.
     handles : AttachedPoints
         Of the figure's handles in the mesh.
+    placement : Placement
+        Where the figure is in the scene; all else is where it is by itself.
     is_current : bool
         Whether it shows what it should, and not an earlier state or a rough one while that is being
         prepared.
@@ -38,6 +43,7 @@ class Shown:
     vertices: Vertices
     handles: AttachedPoints
     is_current: bool
+    placement: Placement = HERE
 
     @property
     def positions(self) -> Complexes:
@@ -49,6 +55,17 @@ class Shown:
         """f_z and f_z̄ at the vertices, each (v,)."""
         streamed = self.vertices.derivatives if isinstance(self.vertices, Streamed) else None
         return self.mesh.derivatives(self.positions) if streamed is None else streamed
+
+    def hinge(self, place: complex) -> Hinge:
+        """Return about where a point of the figure is by itself, and by what it is turned there.
+
+        As exact as the triangles are small.
+        """
+        rest = self.mesh.domain.mesh.vertices
+        found = self.mesh.locate(np.array([place]), rest)
+        positions = self.positions
+        turn = found.turns(rest, positions)[0]
+        return Hinge(complex(found.on(positions)[0]), complex(np.exp(1j * turn)))
 
     @property
     def handle_places(self) -> Complexes:
@@ -92,7 +109,8 @@ def show(
             return earlier if earlier.frame == frame else replace(earlier, frame=frame)
         if pose is not None:
             vertices: Vertices | None = Placed(
-                positions=mesh.posed(pose), triangles=mesh.domain.mesh.triangles
+                positions=mesh.posed(pose),
+                triangles=painted_triangles(mesh.domain.mesh, clip, frame),
             )
         else:
             vertices = motion.vertices(clip, frame)
@@ -119,6 +137,38 @@ def show(
     )
 
 
+def hang_shown(
+    document: Document,
+    shown: Mapping[int, Shown],
+    joints: Joints | None,
+    poses: Mapping[int, Pose],
+) -> dict[int, Shown]:
+    """Return what is drawn of each figure, where its scene has it.
+
+    Parameters
+    ----------
+    document : Document
+    shown : mapping of int to Shown
+        By the ids of figures.
+    joints : Joints or None
+        Of the document; without them places are as exact as the triangles are small.
+    poses : mapping of int to Pose
+        Shown though the document does not have them.
+    """
+    hung = {}
+    for identity, each in shown.items():
+        chain = document.carriers(identity)
+        if len(chain) == 1:
+            placement = HERE
+        elif joints is None:
+            placement = along(chain, lambda figure, place: shown[figure.id].hinge(place))
+        else:
+            placement = joints.placement(identity, each.frame, poses)
+        same = placement == each.placement
+        hung[identity] = each if same else replace(each, placement=placement)
+    return hung
+
+
 def _is_same(earlier: Shown, clip: Clip, frame: int, pose: Pose | None, mesh: PosableMesh) -> bool:
     return (
         earlier.is_current
@@ -126,6 +176,7 @@ def _is_same(earlier: Shown, clip: Clip, frame: int, pose: Pose | None, mesh: Po
         and earlier.mesh is mesh
         and earlier.pose is pose
         and (earlier.frame == frame or pose is not None)
+        and earlier.vertices.triangles is painted_triangles(mesh.domain.mesh, clip, frame)
     )
 
 

@@ -15,6 +15,8 @@ from engine.maps import Boundary, Bounds, HarmonicMap, certify
 # A pose that the present bounds do not allow is the start of a drag back into them: its own
 # distortion is allowed, and this much more of what is left.
 LEEWAY = 0.02
+# How strongly a joint holds; handles usually weigh 1.
+PIN = 10.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -25,7 +27,8 @@ class Rig:
     ----------
     figure : Figure
     deformer : Deformer
-        For all of the figure's handles, in their order.
+        For all of the figure's handles, in their order, and for its anchor where it hangs by that:
+        a joint holds like a pin.
     """
 
     figure: Figure
@@ -44,10 +47,14 @@ class Rig:
             if earlier is not None
             and earlier.deformer.boundary is boundary
             and earlier.figure.handles == figure.handles
+            and _pins(earlier.figure) == _pins(figure)
             else Handles.place(
                 boundary,
-                np.array([handle.position for handle in figure.handles], dtype=np.complex128),
-                [handle.pull for handle in figure.handles],
+                np.array(
+                    [*(handle.position for handle in figure.handles), *_pins(figure)],
+                    dtype=np.complex128,
+                ),
+                [*(handle.pull for handle in figure.handles), *(PIN for _ in _pins(figure))],
             )
         )
         return cls(
@@ -55,9 +62,9 @@ class Rig:
             deformer=Deformer(boundary=boundary, handles=handles, bounds=figure.bounds),
         )
 
-    def wish(self, targets: Mapping[int, Target]) -> Wish:
+    def wish(self, targets: Mapping[int, Target], pins: tuple[Target, ...]) -> Wish:
         """Return where handles are wanted, as the deformer takes it."""
-        wanted = [targets[handle.id] for handle in self.figure.handles]
+        wanted = [*(targets[handle.id] for handle in self.figure.handles), *pins]
         return self.deformer.handles.wish(
             np.array([target.position for target in wanted], dtype=np.complex128),
             [np.nan if target.rotation is None else target.rotation for target in wanted],
@@ -88,11 +95,14 @@ class Drag:
     deformer : Deformer
         Its bounds are the figure's, or as much wider as the pose at the start asked for.
     state : State
+    pins : tuple of Target
+        What is held still.
     """
 
     rig: Rig
     deformer: Deformer
     state: State
+    pins: tuple[Target, ...] = ()
 
     @classmethod
     def begin(cls, rig: Rig, pose: Pose) -> Self:
@@ -104,7 +114,12 @@ class Drag:
             If the pose folds.
         """
         deformer = rig.within_bounds_of(pose)
-        return cls(rig=rig, deformer=deformer, state=deformer.start(rig.figure.map_of(pose)))
+        return cls(
+            rig=rig,
+            deformer=deformer,
+            state=deformer.start(rig.figure.map_of(pose)),
+            pins=pins_of(rig.figure, pose),
+        )
 
     @property
     def is_over(self) -> bool:
@@ -113,13 +128,13 @@ class Drag:
 
     def towards(self, targets: Mapping[int, Target], steps: int) -> "Drag":
         """Return the drag after some steps towards the targets, or fewer if it comes to rest."""
-        wish = self.rig.wish(targets)
+        wish = self.rig.wish(targets, self.pins)
         state = self.state
         for _ in range(steps):
             state = self.deformer.step(state, wish)
             if state.status.is_final:
                 break
-        return Drag(rig=self.rig, deformer=self.deformer, state=state)
+        return Drag(rig=self.rig, deformer=self.deformer, state=state, pins=self.pins)
 
     def pose(self, targets: Mapping[int, Target]) -> Pose:
         """Return where the drag is, as a pose with these wishes."""
@@ -129,6 +144,20 @@ class Drag:
             psi=self.state.map.psi,
             certificate=self.state.certificate,
         )
+
+
+def pins_of(figure: Figure, pose: Pose) -> tuple[Target, ...]:
+    """Return where a pose has what a drag holds still: the anchor of a figure that hangs."""
+    places = figure.map_of(pose)(np.array(_pins(figure), dtype=np.complex128))
+    return tuple(Target(position=complex(place)) for place in places)
+
+
+def _pins(figure: Figure) -> tuple[complex, ...]:
+    """Return the points of a figure that are held where they are."""
+    anchor = figure.anchor
+    if figure.attachment is None or anchor is None:
+        return ()
+    return () if any(handle.position == anchor for handle in figure.handles) else (anchor,)
 
 
 def pose_at(rig: Rig, clip: Clip, frame: float, sibling: PoseSampler | None = None) -> Pose:

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from app.document import Command, Figure, Meshing, Pose, figure_commands
-from app.solving.drag import Rig, fit_map
+from app.solving.drag import Rig, fit_map, pins_of
 from engine.arrays import Bytes
 from engine.domain import Domain, build_domain
 from engine.errors import EngineError
@@ -143,7 +143,9 @@ def _solved(renewal: Renewal, rig: Rig, pose: Pose) -> Pose:
     except EngineError:
         # It folds over the new cage: from the drawing at rest every pose can be reached.
         state = rig.deformer.start()
-    state, _ = rig.deformer.settle(state, rig.wish(pose.targets), at_most=MOST_STEPS)
+    state, _ = rig.deformer.settle(
+        state, rig.wish(pose.targets, pins_of(renewal.before, pose)), at_most=MOST_STEPS
+    )
     certificate = certify(state.map, boundary, bounds)
     if renewal.domain is None and not certificate.certified:
         return replace(pose, certificate=certify(first, boundary, bounds))

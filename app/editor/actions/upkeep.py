@@ -14,10 +14,13 @@ from app.editor.session import Session
 from app.editor.timeline_view import measure_shortfalls
 from app.motion import (
     Build,
+    Joints,
     Motion,
     PosableMesh,
     PoseSampler,
     extent_source,
+    hang_shown,
+    joints_source,
     measure_extent,
     next_build,
     prepare_motion,
@@ -29,6 +32,7 @@ from app.reports import measure_curves
 STILL = 0.15  # seconds after which the playhead is taken to stay where it is
 SKETCHING, REFINING, STREAMING = "In-betweens", "Finer in-betweens", "Smooth playback"
 MEASURING, SPANNING = "Measuring", "Measuring the motion"
+HANGING = "Joints"
 
 
 def maintain(session: Session) -> None:
@@ -89,6 +93,7 @@ def missing(session: Session, project: Project) -> Iterator[Derivation[Any, Any]
         if not _has_fine(clip, puppet) and not puppet.fine.has_failed(clip):
             yield _refine(clip, puppet)
             return
+    yield from _hang(project)
     for clip, puppet in movable:
         yield from _stream(session, project, clip, puppet)
     if len(movable) == len(clips):
@@ -103,6 +108,23 @@ def _sketch(clip: Clip, puppet: Puppet, *, roughly: bool = False) -> Derivation[
         source=clip,
         work=lambda: _coarse_motion(clip, earlier, roughly=roughly),
         complaint="The in-betweens of these keys cannot be made",
+    )
+
+
+def _hang(project: Project) -> Iterator[Derivation[Any, Any]]:
+    """Yield the joints of what hangs."""
+    document, joints = project.document, project.joints
+    source, earlier = joints_source(document), joints.value
+    if not source or joints.follows(source) or joints.has_failed(source):
+        return
+    samplers = {figure: puppet.coarse.value.sampler for figure, puppet in project.puppets.items()}
+    siblings = {figure: sampler for figure, sampler in samplers.items() if sampler is not None}
+    yield Derivation(
+        kind=HANGING,
+        into=joints,
+        source=source,
+        work=lambda: Joints(document, siblings, earlier).prepare(),
+        complaint="The joints cannot be followed between the keys",
     )
 
 
@@ -193,12 +215,19 @@ def _fit_motion(session: Session, project: Project) -> None:
 def _show(session: Session, project: Project) -> None:
     """Settle what is drawn in the next frame."""
     frame = playback.current_frame(session, project)
+    source, poses = joints_source(project.document), {}
+    shown = {}
     for figure, puppet in project.puppets.items():
         if puppet.shown is not None and puppet.shown.frame != frame:
             project.moved_at = session.clock()
         pose = project.unkeyed if figure == project.active else None
         motions = _motions(session, project, puppet)
-        puppet.shown = show(clip_of(project.document, figure), frame, pose, motions, puppet.shown)
+        shown[figure] = show(clip_of(project.document, figure), frame, pose, motions, puppet.shown)
+        if pose is not None:
+            poses[figure] = pose
+    joints = project.joints.value if project.joints.follows(source) else None
+    for figure, hung in hang_shown(project.document, shown, joints, poses).items():
+        project.puppets[figure].shown = hung
 
 
 def _motions(session: Session, project: Project, puppet: Puppet) -> tuple[Motion, ...]:

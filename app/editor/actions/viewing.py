@@ -31,7 +31,9 @@ def fit_pose(session: Session) -> None:
     """Show all figures as they are in this frame, whole."""
     if session.project:
         shown = [puppet.shown for puppet in session.project.puppets.values()]
-        boxes = [box_around(each.positions) for each in shown if each is not None]
+        boxes = [
+            box_around(each.placement.on(each.positions)) for each in shown if each is not None
+        ]
         if boxes:
             look_at(session, reduce(Box.joined, boxes))
 
@@ -48,11 +50,11 @@ def fit_selection(session: Session) -> None:
     if project is None or project.puppet.shown is None:
         return
     shown = project.puppet.shown
-    box = box_around(shown.positions)
+    box = box_around(shown.placement.on(shown.positions))
     selected = [handle.id in project.selected for handle in shown.clip.figure.handles]
     if any(selected):
         room = AROUND_HANDLES * abs(box.upper - box.lower) * (1 + 1j)
-        box = box_around(shown.handle_places[selected])
+        box = box_around(shown.placement.on(shown.handle_places[selected]))
         box = Box(box.lower - room, box.upper + room)
     look_at(session, box)
 

@@ -4,7 +4,7 @@ from collections.abc import Collection
 
 import numpy as np
 
-from app.document import time_of
+from app.document import is_visible, time_of
 from app.editor import HeatMap, Project, Puppet, Session
 from app.motion import PosableMesh, Shown, Vertices
 from app.render import (
@@ -201,8 +201,10 @@ def _scene(session: Session, project: Project, shown: Shown, drawing: _Drawing) 
     # In the order of the document: what comes later is in front.
     for figure in project.document.figures:
         shows = project.puppets[figure.id].shown
-        if shows is not None:
-            pose = drawing.drawn_mesh(figure.id, shows.mesh).pose(shows.vertices)
+        if shows is not None and is_visible(figure, shows.frame):
+            pose = drawing.drawn_mesh(figure.id, shows.mesh).pose(
+                shows.vertices, placement=shows.placement, opacity=figure.opacity
+            )
             poses.append(pose)
             if overlays.heat_map != "none":
                 drawing.heat(pose, shows, overlays.heat_map)
@@ -253,6 +255,10 @@ def _ghosts(
             vertices = motion.vertices(known, frame)
             if vertices is None or time_of(known, frame) == time_of(known, shown.frame):
                 continue
-            pose = drawing.drawn_mesh(project.active, motion.mesh, number).pose(vertices)
+            placement = shown.placement
+            if project.joints.value is not None and known is project.clip:
+                placement = project.joints.value.placement(project.active, frame)
+            drawn = drawing.drawn_mesh(project.active, motion.mesh, number)
+            pose = drawn.pose(vertices, placement=placement)
             ghosts.append(Ghost(meshes=(pose,), tint=tint, opacity=GHOST_OPACITY / step**0.5))
     return tuple(ghosts)

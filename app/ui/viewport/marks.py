@@ -1,5 +1,7 @@
 """What marks the drawing in the viewport: handles, anchor, outline, cage and export frame."""
 
+from functools import partial
+
 import numpy as np
 from imgui_bundle import ImVec4, imgui
 
@@ -42,6 +44,7 @@ def mark_all(
         lines.append(_cage(shown, palette, scale))
     if session.export_frame is not None:
         lines.append(_frame(session.export_frame, palette, scale))
+    on = partial(_on, shown)
     if not session.overlays.handles or project.playhead.since is not None:
         return tuple(lines), ()
     style = HandleStyle()
@@ -54,8 +57,8 @@ def mark_all(
         lags = wish is not None and falls_short(figure, abs(wish.position - place))
         marks.append(
             HandleMark(
-                place=complex(place),
-                wish=wish.position if lags and wish is not None else None,
+                place=on(complex(place)),
+                wish=on(wish.position) if lags and wish is not None else None,
                 anchor=handle.position == figure.anchor,
                 selected=handle.id in project.selected,
                 hovered=handle.id == session.hovered,
@@ -64,7 +67,7 @@ def mark_all(
         )
     handle_lines, discs = mark_handles(marks, scale=scale, style=style)
     anchor = find_anchor(project, shown)
-    below = () if anchor is None else mark_anchor(anchor, scale=scale, style=style)
+    below = () if anchor is None else mark_anchor(on(anchor), scale=scale, style=style)
     return (*lines, *handle_lines), (*below, *discs)
 
 
@@ -80,10 +83,20 @@ def find_anchor(project: Project, shown: Shown) -> complex | None:
     return complex(found.on(shown.positions)[0])
 
 
+def _on(shown: Shown, place: complex) -> complex:
+    """Return where a place of the figure by itself is in the scene."""
+    return complex(shown.placement.on(np.array([place]))[0])
+
+
 def _outline(shown: Shown, palette: Palette, scale: float) -> Line:
     """Return the outline, moved with the shape."""
     points = shown.positions[: len(shown.mesh.domain.outline)]
-    return Line(points=points, colour=plain(palette.accent), width=1.5 * scale, closed=True)
+    return Line(
+        points=shown.placement.on(points),
+        colour=plain(palette.accent),
+        width=1.5 * scale,
+        closed=True,
+    )
 
 
 def _cage(shown: Shown, palette: Palette, scale: float) -> Line:

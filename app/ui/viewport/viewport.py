@@ -97,15 +97,26 @@ class _Canvas:
 
     @property
     def pointer(self) -> complex:
-        """The place of the plane under the pointer."""
+        """The place under the pointer, as the figure is by itself."""
         mouse = imgui.get_mouse_pos()
         return self.place(complex(mouse.x, mouse.y))
 
+    @property
+    def pixel(self) -> complex:
+        """The pixel of the picture under the pointer."""
+        mouse = imgui.get_mouse_pos()
+        return (complex(mouse.x, mouse.y) - self._corner) * self.density
+
     def place(self, point: complex) -> complex:
+        """Return the place under a point of the screen, as the figure is by itself."""
+        return self.shown.placement.back(self._plane(point))
+
+    def _plane(self, point: complex) -> complex:
         return self.view.to_plane((point - self._corner) * self.density)
 
     def point(self, place: complex) -> ImVec2:
-        pixel = self.view.to_pixels(np.array([place]))[0] / self.density + self._corner
+        on_plane = self.shown.placement.on(np.array([place]))
+        pixel = self.view.to_pixels(on_plane)[0] / self.density + self._corner
         return ImVec2(pixel.real, pixel.imag)
 
     def is_on_shape(self, place: complex) -> bool:
@@ -165,8 +176,7 @@ def _navigate(canvas: _Canvas, *, over: bool) -> list[Action]:
         return [*actions, do(viewing.look_from, view.panned(delta))] if delta else actions
     if over and io.mouse_wheel:
         scale = min(max(view.scale * ZOOM_STEP**io.mouse_wheel, SMALLEST_ZOOM), LARGEST_ZOOM)
-        pixel = view.to_pixels(np.array([canvas.pointer]))[0]
-        return [do(viewing.look_from, view.zoomed(scale / view.scale, complex(pixel)))]
+        return [do(viewing.look_from, view.zoomed(scale / view.scale, canvas.pixel))]
     return []
 
 
