@@ -19,7 +19,7 @@ from app.document.easing import HOLD, LINEAR, PRESETS, Easing
 from app.document.figure import Figure, PictureFile, new_figure
 from app.document.handle_pairs import mirrored_name, pairs_by_name
 from app.document.history import History, UnkeyedPose
-from app.document.keyframe import MOST_TURNS, Handle, KeptPose, Keyframe, Pose, Target
+from app.document.keyframe import MOST_TURNS, Handle, KeptPose, Keyframe, Passing, Pose, Target
 from app.document.layering import Attachment, Switch
 from app.document.model import Document
 from app.document.playhead import Playhead
@@ -29,6 +29,7 @@ from app.document.queries import (
     Front,
     Moment,
     Shortfall,
+    Transit,
     changed_stretches,
     clip_of,
     closes,
@@ -42,6 +43,7 @@ from app.document.queries import (
     is_visible,
     resting_pose,
     time_of,
+    transits,
 )
 from app.document.settings import (
     FRAME_NAMES,
@@ -95,6 +97,7 @@ __all__ = [
     "Marker",
     "Meshing",
     "Moment",
+    "Passing",
     "PictureFile",
     "Playhead",
     "Pose",
@@ -103,6 +106,7 @@ __all__ = [
     "Shortfall",
     "Switch",
     "Target",
+    "Transit",
     "UnkeyedPose",
     "Unknown",
     "Variant",
@@ -130,4 +134,5 @@ __all__ = [
     "scene_commands",
     "stretch_of",
     "time_of",
+    "transits",
 ]

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from math import inf
 from reprlib import repr as shortened
 from typing import Self
 
@@ -63,6 +64,17 @@ class Easing:
                 high = middle
         return min(1.0, _bezier(y1, y2, high))
 
+    @property
+    def paces(self) -> tuple[float, float]:
+        """How fast time runs at the start and at the end, from 0, at rest, to infinity; 1 is even.
+
+        A hold has no pace, and 0 at both.
+        """
+        if self.curve is None:
+            return 0.0, 0.0
+        x1, y1, x2, y2 = self.curve
+        return _pace((x1, y1), (x2, y2)), _pace((1.0 - x2, 1.0 - y2), (1.0 - x1, 1.0 - y1))
+
     def reversed(self) -> Self:
         """Return the easing of the interval played backwards; a hold stays a hold."""
         if self.curve is None:
@@ -97,6 +109,16 @@ class Easing:
         """Return what `parse` reads back as this easing."""
         name = self.name
         return name if self.curve is None or name != "custom" else list(self.curve)
+
+
+def _pace(first: tuple[float, float], second: tuple[float, float]) -> float:
+    """Return the slope of a curve at (0, 0), from its control points."""
+    for x, y in (first, second):
+        if x > 0.0:
+            return y / x
+        if y > 0.0:
+            return inf
+    return 1.0
 
 
 def _bezier(first: float, second: float, parameter: float) -> float:

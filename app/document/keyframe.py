@@ -3,10 +3,11 @@
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from enum import StrEnum
 from types import MappingProxyType
 
 from app.document.checks import FARTHEST, NOTHING, Unknown, require, require_place
-from app.document.easing import LINEAR, Easing
+from app.document.easing import HOLD, LINEAR, Easing
 from engine.arrays import Complexes, as_points
 from engine.maps import Certificate
 
@@ -16,6 +17,19 @@ HEAVIEST = 1e6
 LOCK = 1e4
 MOST_TURNS = 20
 NO_FRONTS: Mapping[int, float] = MappingProxyType({})
+
+
+class Passing(StrEnum):
+    """How the motion passes a key; the values are the names in files.
+
+    Through at one velocity, where it comes from one key and goes on to another; in a corner, coming
+    and going straight; or with a stop. To hold is to have no motion until the next key.
+    """
+
+    THROUGH = "through"
+    CORNER = "corner"
+    STOP = "stop"
+    HOLD = "hold"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -161,6 +175,8 @@ class Keyframe:
     pose : Pose
     easing : Easing
         How time runs until the next key.
+    passing : Passing
+        How the motion passes the pose, other than by a hold, which is an easing.
     turns : int
         Whole turns, counter-clockwise, that the anchor makes on the way beyond the shorter way.
     fronts : mapping of int to float
@@ -170,6 +186,7 @@ class Keyframe:
     frame: int
     pose: Pose
     easing: Easing = LINEAR
+    passing: Passing = Passing.THROUGH
     turns: int = 0
     fronts: Mapping[int, float] = field(default_factory=lambda: NO_FRONTS)
     unknown: Unknown = field(default_factory=lambda: NOTHING, repr=False, hash=False)
@@ -179,6 +196,17 @@ class Keyframe:
             abs(self.turns) <= MOST_TURNS,
             f"There may be {MOST_TURNS} whole turns on the way to a key, not {self.turns}.",
         )
+        require(
+            self.passing in (Passing.THROUGH, Passing.CORNER, Passing.STOP),
+            "A key is passed through, in a corner or with a stop, not "
+            f"{str(self.passing)!r}; to hold is an easing.",
+        )
+        object.__setattr__(self, "passing", Passing(self.passing))
         object.__setattr__(self, "fronts", MappingProxyType(dict(self.fronts)))
         for front in self.fronts.values():
             require_front(front)
+
+    @property
+    def shown_passing(self) -> Passing:
+        """How the motion passes the key, by a hold too."""
+        return Passing.HOLD if self.easing == HOLD else self.passing

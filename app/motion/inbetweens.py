@@ -5,20 +5,24 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from app.document import Clip, Pose, Variant, intervals, resting_pose, time_of
+from app.document import Clip, Pose, Transit, Variant, resting_pose, time_of, transits
 from engine.arrays import Complexes
 from engine.dirichlet import Extension, HilbertTransform, ProjectedTransform
 from engine.domain import Domain
 from engine.interpolation import (
+    Course,
     Frame,
     Inbetweens,
+    Joint,
     KeyframeSamples,
     Sites,
+    Tangent,
     prepare_inbetweens,
     prepare_sites,
     sample_keyframes,
+    tangent_length,
 )
-from engine.maps import HarmonicMap
+from engine.maps import Bounds, HarmonicMap
 from engine.paths import root_sheets
 
 
@@ -63,7 +67,8 @@ class PoseSampler:
         )
         self._lock = threading.RLock()
         self._samples: dict[Pose, KeyframeSamples] = {}
-        self._inbetweens: dict[tuple[Pose, Pose, int, Variant, bool], Inbetweens] = {}
+        self._inbetweens: dict[tuple[object, ...], tuple[tuple[Pose, ...], Inbetweens]] = {}
+        self._lengths: dict[tuple[object, ...], tuple[tuple[Pose, ...], float]] = {}
         self._sibling = sibling
         self._transform: HilbertTransform | None = None
         self._extension: Extension | None = None
@@ -106,7 +111,10 @@ class PoseSampler:
         with self._lock:
             self._samples = {p: s for p, s in self._samples.items() if p in wanted}
             self._inbetweens = {
-                key: kept for key, kept in self._inbetweens.items() if wanted.issuperset(key[:2])
+                key: kept for key, kept in self._inbetweens.items() if wanted.issuperset(kept[0])
+            }
+            self._lengths = {
+                key: kept for key, kept in self._lengths.items() if wanted.issuperset(kept[0])
             }
 
     def samples(self, pose: Pose) -> KeyframeSamples:
@@ -120,23 +128,88 @@ class PoseSampler:
     def inbetweens(
         self, first: Pose, second: Pose, variant: Variant, *, turns: int = 0, rough: bool = False
     ) -> Inbetweens:
-        """Return the in-betweens of two poses, with whole turns beyond the shorter way.
+        """Return the in-betweens of two poses alone, with whole turns beyond the shorter way.
 
         Rough ones are ready much sooner where the variant needs the transform, and are right to
         some thousandths of the drawing's size; of other variants they are the exact ones.
         """
+        return self._prepared((first, second), (turns,), Course.straight(), variant, rough=rough)
+
+    def inbetweens_of(
+        self, transit: Transit, bounds: Bounds, variant: Variant, *, rough: bool = False
+    ) -> Inbetweens:
+        """Return the in-betweens of a clip's interval.
+
+        Parameters
+        ----------
+        transit : Transit
+        bounds : Bounds
+            That the motion through keys obeys.
+        variant : Variant
+        rough : bool
+            As in `inbetweens`.
+        """
+        poses = tuple(key.pose for key in transit.keys)
+        if not transit.is_joined:
+            return self._prepared(poses, transit.turns, Course.straight(), variant, rough=rough)
+        lengths = self.lengths(transit, bounds, variant)
+        ends = [
+            Tangent(end, length) if isinstance(end, Joint) else end
+            for end, length in zip((transit.start, transit.end), lengths, strict=True)
+        ]
+        course = Course.between(*ends)
+        return self._prepared(poses, transit.turns, course, variant, bounds=bounds, rough=rough)
+
+    def lengths(self, transit: Transit, bounds: Bounds, variant: Variant) -> tuple[float, float]:
+        """Return how much of its full velocity the motion has at both keys of an interval.
+
+        From 0, a stop, to 1, which it is too where the motion does not pass through.
+        """
+        poses = [key.pose for key in transit.keys]
+        return (
+            self._length(poses[:3], transit.start, bounds, variant),
+            self._length(poses[-3:], transit.end, bounds, variant),
+        )
+
+    def _length(
+        self, poses: Sequence[Pose], joint: Joint | float, bounds: Bounds, variant: Variant
+    ) -> float:
+        if not isinstance(joint, Joint):
+            return 1.0
         with self._lock:
-            key = (first, second, turns, variant, rough)
+            key = (*poses, joint, bounds, variant)
+            if key not in self._lengths:
+                maps = [self.samples(pose).map for pose in poses]
+                length = tangent_length(variant, maps, joint, bounds, self.sites.boundary)
+                self._lengths[key] = tuple(poses), length
+            return self._lengths[key][1]
+
+    def _prepared(
+        self,
+        poses: tuple[Pose, ...],
+        turns: tuple[int, ...],
+        course: Course,
+        variant: Variant,
+        *,
+        bounds: Bounds | None = None,
+        rough: bool,
+    ) -> Inbetweens:
+        controls = None if course.controls is None else course.controls.tobytes()
+        key = (poses, turns, controls, bounds, variant, rough)
+        with self._lock:
             if key not in self._inbetweens:
-                pair = [self.samples(first), self.samples(second)]
-                self._inbetweens[key] = prepare_inbetweens(
+                samples = [self.samples(pose) for pose in poses]
+                inbetweens = prepare_inbetweens(
                     variant,
                     self.sites,
-                    pair,
-                    root_sheets(np.array([sample.anchor_fz for sample in pair]), [turns]),
+                    samples,
+                    root_sheets(np.array([sample.anchor_fz for sample in samples]), turns),
                     transform=self._transform_for(variant, rough=rough),
+                    course=course,
+                    bounds=bounds or Bounds(),
                 )
-            return self._inbetweens[key]
+                self._inbetweens[key] = poses, inbetweens
+            return self._inbetweens[key][1]
 
     def _transform_for(
         self, variant: Variant, *, rough: bool
@@ -200,8 +273,5 @@ class Animation:
         return Frame(positions=positions, fz=fz, fzbar=fzbar, rho=None)
 
     def _inbetweens(self, interval: int) -> Inbetweens:
-        first, second = intervals(self.clip)[interval]
-        keys = self.clip.keys
-        return self.sampler.inbetweens(
-            keys[first].pose, keys[second].pose, self.variant, turns=keys[first].turns
-        )
+        transit = transits(self.clip)[interval]
+        return self.sampler.inbetweens_of(transit, self.clip.figure.bounds, self.variant)

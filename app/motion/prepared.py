@@ -10,28 +10,30 @@ from dataclasses import dataclass
 from types import MappingProxyType
 from typing import NamedTuple
 
-from app.document import Clip, Pose, Variant, intervals, resting_pose, time_of
+from app.document import Clip, Pose, intervals, resting_pose, time_of, transits
 from app.motion.inbetweens import PoseSampler
 from app.motion.paint_order import painted_triangles
 from app.motion.posable_mesh import PosableMesh
 from app.motion.vertices import Placed, Streamed, Vertices
 from engine.arrays import Complexes
-from engine.interpolation import Inbetweens
+from engine.interpolation import Inbetweens, Joint
 from engine.streaming import Series
 
-# By what two poses' in-betweens are known: the maps alone, since handles may come and go.
-Pair = tuple[int, int, int, int, int, Variant]
+# By what the in-betweens of two keys are known: the maps, their own and those of the keys around
+# that the motion passes through, since handles may come and go; turns, joints, bounds and variant.
+Pair = tuple[object, ...]
 
 
 class PreparedInterval(NamedTuple):
-    """The in-betweens of two poses, which it keeps alive so that their identities stay theirs.
+    """The in-betweens of some poses, which it keeps alive so that their identities stay theirs.
 
-    The series of the positions and of f_z and f_z̄ are None until they are built.
+    `lengths` tells how much of its full velocity the motion has at both ends. The series of the
+    positions and of f_z and f_z̄ are None until they are built.
     """
 
-    first: Pose
-    second: Pose
+    poses: tuple[Pose, ...]
     inbetweens: Inbetweens
+    lengths: tuple[float, float]
     is_rough: bool = False
     series: Series | None = None
     distortions: Series | None = None
@@ -106,6 +108,23 @@ class Motion:
             raise ValueError(f"the in-betweens of interval {interval} are not prepared")
         return prepared.inbetweens
 
+    def lengths(self, clip: Clip) -> Mapping[int, float] | None:
+        """Return how much of its full velocity the motion has at keys, by their frames.
+
+        From 0, a stop, to 1; of those that it passes through. None where that is not known.
+        """
+        found: dict[int, float] = {}
+        for interval, transit in enumerate(transits(clip)):
+            prepared = self._prepared(clip, interval)
+            if prepared is None:
+                return None
+            first = int(isinstance(transit.start, Joint))
+            ends, keys = (transit.start, transit.end), transit.keys[first : first + 2]
+            for end, key, length in zip(ends, keys, prepared.lengths, strict=True):
+                if isinstance(end, Joint):
+                    found[key.frame] = length
+        return found
+
     def _prepared(self, clip: Clip, interval: int) -> PreparedInterval | None:
         if clip.figure.anchor != self.clip.figure.anchor:
             return None
@@ -140,10 +159,11 @@ def prepare_motion(
     ready: dict[Pair, PreparedInterval] = {}
     made = 0
     rough = roughly and clip.figure.variant.needs_transform
-    for interval, (first, last) in enumerate(intervals(clip)):
+    figure = clip.figure
+    for interval, transit in enumerate(transits(clip)):
         pair = pair_of(clip, interval)
         if pair in ready:
-            # The same two poses again: copied keys, or a loop that goes to and fro.
+            # The same poses again: copied keys, or a loop that goes to and fro.
             continue
         if pair in known:
             ready[pair] = known[pair]
@@ -154,19 +174,18 @@ def prepare_motion(
         sampler = sampler or PoseSampler(
             earlier.mesh.domain, anchor=clip.figure.anchor, sibling=sibling
         )
-        key, following = clip.keys[first], clip.keys[last]
-        inbetweens = sampler.inbetweens(
-            key.pose, following.pose, clip.figure.variant, turns=key.turns, rough=rough
-        )
-        ready[pair] = PreparedInterval(key.pose, following.pose, inbetweens, is_rough=rough)
+        inbetweens = sampler.inbetweens_of(transit, figure.bounds, figure.variant, rough=rough)
+        lengths = sampler.lengths(transit, figure.bounds, figure.variant)
+        poses = tuple(key.pose for key in transit.keys)
+        ready[pair] = PreparedInterval(poses, inbetweens, lengths, is_rough=rough)
     if sampler is not None:
-        sampler.keep_only([pose for prepared in ready.values() for pose in prepared[:2]])
+        sampler.keep_only([pose for prepared in ready.values() for pose in prepared.poses])
     return Motion(mesh=earlier.mesh, clip=clip, sampler=sampler, ready=MappingProxyType(ready))
 
 
 def pair_of(clip: Clip, interval: int) -> Pair:
     """Return by what the in-betweens of one of a clip's intervals are known."""
-    first, last = intervals(clip)[interval]
-    key, pose = clip.keys[first], clip.keys[last].pose
-    maps = id(key.pose.phi), id(key.pose.psi), id(pose.phi), id(pose.psi)
-    return *maps, key.turns, clip.figure.variant
+    transit = transits(clip)[interval]
+    maps = [identity for key in transit.keys for identity in (id(key.pose.phi), id(key.pose.psi))]
+    joined = (transit.start, transit.end, clip.figure.bounds) if transit.is_joined else ()
+    return *maps, *transit.turns, *joined, clip.figure.variant

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from app.document import Clip, Extremes, Variant, intervals
+from app.document import Clip, Extremes, Variant, intervals, transits
 from app.motion import Animation
 from engine.maps import Boundary, Certificate, certify
 
@@ -78,16 +78,14 @@ def certify_clip(clip: Clip, variant: Variant | None = None) -> Report:
     )
     animation = Animation(clip, variant, points=boundary.points)
     reports = []
-    for first, last in intervals(clip):
+    for (first, last), transit in zip(intervals(clip), transits(clip), strict=True):
         poses = clip.keys[first].pose, clip.keys[last].pose
         ends = [
             Extremes.measured(*clip.figure.map_of(pose).derivatives(boundary.points))
             for pose in poses
         ]
         bound = ends[0].joined(ends[1])
-        inbetweens = animation.sampler.inbetweens(
-            *poses, animation.variant, turns=clip.keys[first].turns
-        )
+        inbetweens = animation.sampler.inbetweens_of(transit, clip.figure.bounds, animation.variant)
         reached = bound
         for t in np.linspace(0.0, 1.0, TIMES)[1:-1]:
             frame = inbetweens.frame(float(t))

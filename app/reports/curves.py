@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
-from app.document import Clip, Extremes, intervals
+from app.document import Clip, Extremes, intervals, transits
 from app.motion import Motion
 from app.storage import write_atomically
 from engine.arrays import Floats
@@ -60,12 +60,13 @@ def measure_curves(clip: Clip, motion: Motion) -> Curves:
     keys = clip.keys
     period = clip.period
     frames, ks, taus, extremes = [], [], [], []
-    for interval, (first, last) in enumerate(intervals(clip)):
+    pairs = zip(intervals(clip), transits(clip), strict=True)
+    for interval, ((first, last), transit) in enumerate(pairs):
         inbetweens = motion.inbetweens(clip, interval)
         start = keys[first].frame
         end = keys[last].frame if last > first else keys[last].frame + period
         for share in np.linspace(0.0, 1.0, TIMES):
-            t = keys[first].easing(float(share))
+            t = transit.weight(keys[first].easing(float(share)))
             blended = inbetweens.frame(t)
             frames.append(start + share * (end - start))
             ks.append(distortion.k(blended.fz, blended.fzbar))

@@ -7,14 +7,14 @@ from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
-from app.document import LAST_FRAME, LINEAR, NATURAL, VARIANTS, Easing, Variant
+from app.document import HOLD, LAST_FRAME, LINEAR, NATURAL, VARIANTS, Easing, Passing, Variant
 from app.errors import LissomError
 from app.storage import JsonObject, as_flag, as_number, as_object, as_point, without_repeats
 from engine.maps import Bounds
 
 SCHEMA = 1
 FIELDS = ("schema", "fps", "loop", "variant", "bounds", "anchor", "handles", "keys")
-KEY_FIELDS = ("frame", "targets", "ease")
+KEY_FIELDS = ("frame", "targets", "ease", "passing")
 BOUND_FIELDS = ("k", "sigma_a", "sigma_b")
 
 
@@ -25,6 +25,7 @@ class PoseKey:
     frame: int
     targets: Mapping[str, complex]
     ease: Easing = LINEAR
+    passing: Passing = Passing.THROUGH
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -138,8 +139,27 @@ def _key(content: object, index: int, handles: Mapping[str, complex]) -> PoseKey
             raise LissomError(
                 f"{where} names the handle {name!r}, but the handles are {', '.join(handles)}"
             )
+    ease, passing = _passage(key, where)
+    return PoseKey(frame=frame, targets=targets, ease=ease, passing=passing)
+
+
+def _passage(key: JsonObject, where: str) -> tuple[Easing, Passing]:
+    """Return how time runs after a key, and how the motion passes it.
+
+    By default it passes through, or with an easing of its own in a corner.
+    """
     ease = Easing.parse(key["ease"]) if "ease" in key else LINEAR
-    return PoseKey(frame=frame, targets=targets, ease=ease)
+    default = Passing.CORNER if "ease" in key else Passing.THROUGH
+    word = key.get("passing", default)
+    if word not in list(Passing):
+        raise LissomError(
+            f"{where}.passing must be one of {', '.join(Passing)}, not {json.dumps(word)}"
+        )
+    if word != Passing.HOLD:
+        return ease, Passing(word)
+    if "ease" in key and ease != HOLD:
+        raise LissomError(f"{where} holds its pose, so that it has nothing to ease; leave out ease")
+    return HOLD, default
 
 
 def _object(content: object, where: str, fields: tuple[str, ...]) -> JsonObject:

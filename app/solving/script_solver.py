@@ -63,7 +63,7 @@ def pose_document(
         progress(f"solving the key at frame {key.frame}")
         pose, notice = _solve(rig, pose, key)
         notices += notice
-        keys.append(Keyframe(frame=key.frame, pose=pose, easing=key.ease))
+        keys.append(Keyframe(frame=key.frame, pose=pose, easing=key.ease, passing=key.passing))
     posed = replace(
         document,
         figures=(*document.figures[:-1], replace(figure, keys=tuple(keys))),

@@ -21,6 +21,7 @@ from app.document import (
     Keyframe,
     Marker,
     Meshing,
+    Passing,
     PictureFile,
     Pose,
     ShapeDetail,
@@ -386,6 +387,7 @@ def _write_key(key: Keyframe) -> Json:
     known: Json = {
         "frame": key.frame,
         "easing": key.easing.written(),
+        "passing": key.passing,
         "turns": key.turns,
         "targets": _write_targets(key.pose),
     }
@@ -402,6 +404,8 @@ def _read_key(
         frame=as_whole(fields["frame"], f"{where}.frame"),
         pose=pose(_read_targets(fields)),
         easing=Easing.parse(fields["easing"]),
+        # Projects from before there were passings have a corner at every key.
+        passing=cast(Passing, as_text(fields.get("passing", Passing.CORNER), f"{where}.passing")),
         turns=as_whole(fields["turns"], f"{where}.turns"),
         fronts=_read_fronts(fields.get("fronts", []), f"{where}.fronts"),
     )

@@ -21,7 +21,7 @@ from app.document.commands import (
 )
 from app.document.easing import HOLD, PRESETS, Easing
 from app.document.figure import PictureFile, new_figure
-from app.document.keyframe import Handle, KeptPose, Keyframe, Pose, Target
+from app.document.keyframe import Handle, KeptPose, Keyframe, Passing, Pose, Target
 from app.document.layering import Attachment, Switch
 from app.document.model import Document
 from app.document.settings import (
@@ -183,6 +183,7 @@ def _random_key_command(rng: np.random.Generator, document: Document) -> Command
         key_commands.match_ends(0),
         key_commands.set_easing(0, frames, easing),
         key_commands.set_turns(0, frames, int(rng.integers(-1, 2))),
+        key_commands.set_passing(0, frames, Passing(rng.choice(list(Passing)))),
     ]
     return commands[rng.integers(len(commands))]
 

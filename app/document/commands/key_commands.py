@@ -5,9 +5,9 @@ from collections.abc import Collection, Iterable
 from dataclasses import replace
 
 from app.document.commands.command import figure_command
-from app.document.easing import LINEAR, Easing
+from app.document.easing import HOLD, LINEAR, Easing
 from app.document.figure import Figure
-from app.document.keyframe import Keyframe, Pose
+from app.document.keyframe import Keyframe, Passing, Pose
 from app.errors import LissomError
 
 
@@ -111,6 +111,21 @@ def set_easing(figure: Figure, frames: Collection[int], easing: Easing) -> Figur
     if not keys:
         return figure
     return _exchange(figure, {key.frame: replace(key, easing=easing) for key in keys})
+
+
+@figure_command("Set passing")
+def set_passing(figure: Figure, frames: Collection[int], passing: Passing) -> Figure:
+    """Set how the motion passes the keys at some frames; one that held its pose does no longer."""
+    changed = {}
+    for key in _keys_at(figure, frames):
+        if key.shown_passing is passing:
+            continue
+        if passing is Passing.HOLD:
+            changed[key.frame] = replace(key, easing=HOLD)
+        else:
+            easing = LINEAR if key.easing == HOLD else key.easing
+            changed[key.frame] = replace(key, easing=easing, passing=passing)
+    return _exchange(figure, changed) if changed else figure
 
 
 @figure_command("Set turns")

@@ -5,21 +5,19 @@ Out: answers; nothing is changed.
 Imports: the values of `app.document`.
 """
 
+from app.document.queries.clips import Clip, clip_of, closes, intervals
 from app.document.queries.fronts import Front, fronts_at, is_visible
 from app.document.queries.shortfall import Extremes, Shortfall, falls_short, find_shortfall
 from app.document.queries.timeline import (
-    Clip,
     Moment,
     changed_stretches,
-    clip_of,
-    closes,
     exported_frames,
     frame_times,
     framed_frames,
-    intervals,
     resting_pose,
     time_of,
 )
+from app.document.queries.transits import Transit, transits
 
 __all__ = [
     "Clip",
@@ -27,6 +25,7 @@ __all__ = [
     "Front",
     "Moment",
     "Shortfall",
+    "Transit",
     "changed_stretches",
     "clip_of",
     "closes",
@@ -40,4 +39,5 @@ __all__ = [
     "is_visible",
     "resting_pose",
     "time_of",
+    "transits",
 ]

@@ -3,7 +3,7 @@
 from typing import NamedTuple
 
 from app.document.figure import Figure
-from app.document.queries.timeline import Clip
+from app.document.queries.clips import Clip
 from engine.geometry import box_diagonal
 
 # Of the drawing's diagonal: how far a depth reaches that is given no extent.

@@ -1,75 +1,35 @@
 """Which two keys a moment lies between, and how far it is from one to the other."""
 
 from bisect import bisect_right
-from dataclasses import dataclass
 from fractions import Fraction
 from itertools import pairwise
 from typing import NamedTuple
 
-import numpy as np
-
 from app.document.figure import Figure
-from app.document.keyframe import Keyframe, Pose
+from app.document.keyframe import Pose
 from app.document.model import Document
+from app.document.queries.clips import Clip, clip_of, closes
+from app.document.queries.transits import transits
 from app.document.settings import FrameRange
 from app.errors import LissomError
-from engine.arrays import Floats
 
 # Pixels: a handle at rest is where the identity takes it, up to rounding.
 SAME_PLACE = 1e-6
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Clip:
-    """A figure in the time of its scene: all that its motion follows from.
-
-    Clips are equal where the motion is.
-
-    Parameters
-    ----------
-    figure : Figure
-    frames : FrameRange
-        Of the scene.
-    loop : bool
-    """
-
-    figure: Figure
-    frames: FrameRange
-    loop: bool
-
-    @property
-    def keys(self) -> tuple[Keyframe, ...]:
-        """The figure's keys."""
-        return self.figure.keys
-
-    @property
-    def period(self) -> int:
-        """How many frames a loop takes until it comes round."""
-        return self.frames.last - self.frames.first
-
-
-def clip_of(document: Document, figure: int) -> Clip:
-    """Return the clip of the figure with this id."""
-    return Clip(figure=document.figure(figure), frames=document.frames, loop=document.loop)
-
-
 class Moment(NamedTuple):
-    """A blend of key `interval` and the key after it (the first one after the last).
+    """A place between key `interval` and the key after it (the first one after the last).
 
     Parameters
     ----------
     interval : int
     weight : float
-        Of the later key, in [0, 1].
+        How far it is from the former, 0, to the latter, 1: the time of the interval's in-betweens.
+        Where these blend the two keys alone, it is the weight of the latter.
     """
 
     interval: int
     weight: float
-
-    @property
-    def weights(self) -> Floats:
-        """Of both keys, float64 (2,); they sum to 1."""
-        return np.array([1.0 - self.weight, self.weight])
 
 
 def time_of(clip: Clip, frame: float) -> Moment:
@@ -100,21 +60,8 @@ def time_of(clip: Clip, frame: float) -> Moment:
         frame = frame if frame > last else frame + period
     else:
         return Moment(0, 0.0) if frame < first else Moment(len(keys) - 2, 1.0)
-    return Moment(index, keys[index].easing((frame - start) / (end - start)))
-
-
-def closes(clip: Clip) -> bool:
-    """Tell whether there are frames that blend the last key into the first one."""
-    between = clip.keys[-1].frame - clip.keys[0].frame
-    period = clip.period
-    return clip.loop and 0 < between < period
-
-
-def intervals(clip: Clip) -> tuple[tuple[int, int], ...]:
-    """Return the indices of the two keys of each interval, in the order of `Moment.interval`."""
-    count = len(clip.keys)
-    pairs = tuple((index, index + 1) for index in range(count - 1))
-    return (*pairs, (count - 1, 0)) if closes(clip) else pairs
+    share = keys[index].easing((frame - start) / (end - start))
+    return Moment(index, transits(clip)[index].weight(share))
 
 
 def resting_pose(clip: Clip, moment: Moment) -> Pose | None:

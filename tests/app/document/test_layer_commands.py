@@ -8,8 +8,8 @@ from numpy.testing import assert_allclose
 from app.document import handle_commands as handles
 from app.document import layer_commands as layers
 from app.document.layering import Attachment, Switch
+from app.document.queries.clips import clip_of
 from app.document.queries.fronts import fronts_at, is_visible
-from app.document.queries.timeline import clip_of
 from app.errors import LissomError
 
 

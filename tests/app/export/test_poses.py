@@ -3,7 +3,7 @@ from animations import BLOB, moving_document, still_document
 from documents import altered
 from numpy.testing import assert_array_equal
 
-from app.document.queries.timeline import clip_of
+from app.document.queries.clips import clip_of
 from app.document.settings import FrameRange
 from app.export.painting import Painter
 from app.export.plan import ExportRequest, plan_export

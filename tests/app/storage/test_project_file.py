@@ -20,6 +20,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from app.document.commands import handle_commands, key_commands
+from app.document.keyframe import Passing
 from app.errors import LissomError
 from app.storage.archive import MIMETYPE
 from app.storage.project_file import load_project, load_thumbnail, save_project
@@ -109,7 +110,8 @@ def test_a_stored_file_of_schema_1_opens():
         library=(),
         mirror=None,
         handles=tuple(replace(handle, front=0.0, extent=None) for handle in figure.handles),
-        keys=tuple(replace(key, fronts={}) for key in figure.keys),
+        # Keys of that time have corners.
+        keys=tuple(replace(key, fronts={}, passing=Passing.CORNER) for key in figure.keys),
         **as_layer,
     )
     assert not differences(load_project(STORED), first)
@@ -323,7 +325,7 @@ def test_every_field_is_needed(tmp_path, members):
     known = json.loads(members["project.json"].replace(b'"nested"', b'"colour"'))
     kept = {"colour", "nested", "list", "tau", "extension", "quality", "visible", "app_version"}
     # What is as usual is not written.
-    kept |= {"size", "front", "extent", "fronts", *USUAL_LAYER}
+    kept |= {"size", "front", "extent", "fronts", "passing", *USUAL_LAYER}
     kept |= {"names", "sheet", "shapes"}  # of exports; earlier versions did not write them
     missing = [way for way in ways(known) if way[-1] not in kept]
     assert len(missing) > 60

@@ -9,7 +9,7 @@ from documents import altered
 
 from app.document import RUBBERY, Extremes
 from app.document.keyframe import Target
-from app.document.queries.timeline import clip_of
+from app.document.queries.clips import clip_of
 from app.editor.actions import editing, playback, posing
 from app.errors import LissomError
 from app.motion.prepared import Motion, prepare_motion

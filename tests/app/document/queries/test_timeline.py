@@ -12,17 +12,10 @@ from numpy.testing import assert_allclose
 from app.document.commands.handle_commands import add_handle
 from app.document.commands.key_commands import pose_key
 from app.document.easing import HOLD, PRESETS
-from app.document.keyframe import Keyframe
+from app.document.keyframe import Keyframe, Passing
 from app.document.playhead import Playhead
-from app.document.queries.timeline import (
-    Moment,
-    clip_of,
-    closes,
-    exported_frames,
-    frame_times,
-    intervals,
-    time_of,
-)
+from app.document.queries.clips import clip_of, closes, intervals
+from app.document.queries.timeline import Moment, exported_frames, frame_times, time_of
 from app.document.settings import FrameRange
 from app.errors import LissomError
 
@@ -31,7 +24,9 @@ EMPTY = disc_document()
 
 def keyed(*frames, last=48, first=0, easing=PRESETS["linear"], **settings):
     pose = EMPTY.figures[0].keys[0].pose
-    keys = tuple(Keyframe(frame=frame, pose=pose, easing=easing) for frame in frames)
+    keys = tuple(
+        Keyframe(frame=frame, pose=pose, easing=easing, passing=Passing.CORNER) for frame in frames
+    )
     return altered(EMPTY, keys=keys, frames=FrameRange(first, last), **settings)
 
 

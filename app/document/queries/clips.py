@@ -1,0 +1,56 @@
+"""A figure in the time of its scene, and the intervals between its keys."""
+
+from dataclasses import dataclass
+
+from app.document.figure import Figure
+from app.document.keyframe import Keyframe
+from app.document.model import Document
+from app.document.settings import FrameRange
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Clip:
+    """A figure in the time of its scene: all that its motion follows from.
+
+    Clips are equal where the motion is.
+
+    Parameters
+    ----------
+    figure : Figure
+    frames : FrameRange
+        Of the scene.
+    loop : bool
+    """
+
+    figure: Figure
+    frames: FrameRange
+    loop: bool
+
+    @property
+    def keys(self) -> tuple[Keyframe, ...]:
+        """The figure's keys."""
+        return self.figure.keys
+
+    @property
+    def period(self) -> int:
+        """How many frames a loop takes until it comes round."""
+        return self.frames.last - self.frames.first
+
+
+def clip_of(document: Document, figure: int) -> Clip:
+    """Return the clip of the figure with this id."""
+    return Clip(figure=document.figure(figure), frames=document.frames, loop=document.loop)
+
+
+def closes(clip: Clip) -> bool:
+    """Tell whether there are frames that blend the last key into the first one."""
+    between = clip.keys[-1].frame - clip.keys[0].frame
+    period = clip.period
+    return clip.loop and 0 < between < period
+
+
+def intervals(clip: Clip) -> tuple[tuple[int, int], ...]:
+    """Return the indices of the two keys of each interval, in the order of `Moment.interval`."""
+    count = len(clip.keys)
+    pairs = tuple((index, index + 1) for index in range(count - 1))
+    return (*pairs, (count - 1, 0)) if closes(clip) else pairs

@@ -1,0 +1,111 @@
+"""Motion through the keys of a clip: its velocity, and what a changed key has prepared again."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from animations import moving_document
+from documents import altered
+from numpy.testing import assert_allclose
+
+from app.document.commands import key_commands
+from app.document.easing import LINEAR, PRESETS, Easing
+from app.document.keyframe import Keyframe, Passing
+from app.document.queries.clips import clip_of
+from app.document.settings import FrameRange
+from app.motion.inbetweens import Animation
+from app.motion.posable_mesh import PosableMesh
+from app.motion.prepared import Motion, pair_of, prepare_motion
+from app.motion.series_queue import Build, with_series
+from engine.maps import Bounds
+
+TURNS = (1.0, np.exp(0.3j), np.exp(-0.4j), np.exp(0.2j), np.exp(0.5j), np.exp(-0.1j), np.exp(0.1j))
+
+
+def row(count, *, loop=False, **settings):
+    """Return a document with keys 10 frames apart, between others of which the motion passes."""
+    document = moving_document(10)
+    last = document.figures[0].keys[-1]
+    keys = tuple(
+        Keyframe(frame=10 * i, pose=replace(last.pose, phi=turn * last.pose.phi))
+        for i, turn in enumerate(TURNS[:count])
+    )
+    frames = FrameRange(0, 10 * (count if loop else count - 1))
+    settings = {"variant": "nu", "bounds": Bounds(k=0.9, sigma_a=9, sigma_b=0.1)} | settings
+    return altered(document, keys=keys, frames=frames, loop=loop, **settings)
+
+
+def prepared(document, earlier=None):
+    clip = clip_of(document, 0)
+    return prepare_motion(
+        clip, earlier or Motion.at_rest(clip, PosableMesh.coarse(clip.figure.domain))
+    )
+
+
+def jump(animation, frame):
+    """Return the change of velocity at a frame, and the velocity, in the widest sense."""
+    e = 1e-4
+
+    def velocity(sign):
+        p = [animation.positions(frame + sign * s * e) for s in (0, 1, 2)]
+        return sign * (-3 * p[0] + 4 * p[1] - p[2]) / (2 * e)
+
+    after, before = velocity(1), velocity(-1)
+    return np.abs(after - before).max(), np.abs(after).max()
+
+
+@pytest.mark.parametrize("easing", [LINEAR, PRESETS["in-out"], Easing((0.3, 0.1, 0.6, 0.9))])
+def test_keys_are_passed_at_one_velocity_whatever_the_easings(easing):
+    document = row(4, loop=True)
+    document = key_commands.set_easing(0, {10}, easing)(document)
+    animation = Animation(clip_of(document, 0), points=document.figures[0].domain.outline)
+    speeds = [jump(animation, frame) for frame in (0.0, 10.0, 20.0, 30.0)]
+    largest = max(speed for _, speed in speeds)
+    assert max(change for change, _ in speeds) < 1e-5 * largest
+    cornered = key_commands.set_passing(0, {20}, Passing.CORNER)(document)
+    animation = Animation(clip_of(cornered, 0), points=document.figures[0].domain.outline)
+    assert jump(animation, 20.0)[0] > 0.1 * largest
+
+
+def test_what_is_shown_is_what_the_clip_moves_like():
+    document = row(4)
+    clip, motion = clip_of(document, 0), prepared(document)
+    build = Build(motion, pair_of(clip, 1), distortions=False)
+    while build.series is None:
+        build.advance()
+    streamed = with_series(motion, build, clip, 13)
+    animation = Animation(clip, sampler=motion.sampler)
+    for frame in (10, 12.5, 17, 20):
+        assert_allclose(
+            streamed.vertices(clip, frame).positions, animation.positions(frame), rtol=0, atol=1e-2
+        )
+
+
+def test_a_key_that_changes_has_four_intervals_prepared_again():
+    document = row(7)
+    motion = prepared(document)
+    pose = document.figures[0].key(20).pose
+    posed = key_commands.pose_key(0, 30, replace(pose, phi=1.01 * pose.phi))(document)
+    again = prepared(posed, motion)
+    clip, changed = clip_of(document, 0), clip_of(posed, 0)
+    kept = [
+        again.ready[pair_of(changed, i)] is motion.ready.get(pair_of(clip, i)) for i in range(6)
+    ]
+    assert kept == [True, False, False, False, False, True]
+    # Corners and stops blend two keys alike, at another pace.
+    every = document.figures[0].key_frames
+    cornered, stopped = (
+        prepared(key_commands.set_passing(0, every, passing)(document))
+        for passing in (Passing.CORNER, Passing.STOP)
+    )
+    assert stopped.ready.keys() == cornered.ready.keys()
+
+
+def test_how_much_of_their_velocity_keys_keep_is_told():
+    document = row(4)
+    assert prepared(document).lengths(clip_of(document, 0)) == {10: 1.0, 20: 1.0}
+    tight = altered(document, bounds=Bounds(k=0.01, sigma_a=1.01, sigma_b=0.99))
+    lengths = prepared(tight).lengths(clip_of(tight, 0))
+    assert lengths.keys() == {10, 20}
+    assert max(lengths.values()) < 0.01
+    assert prepared(tight).lengths(clip_of(document, 0)) is None
