@@ -1,4 +1,4 @@
-// Two colours in squares, or one colour where both are the same.
+// Two colours in squares.
 
 uniform vec4 light;     // premultiplied
 uniform vec4 dark;

@@ -1,5 +1,6 @@
 """The pictures of an export, drawn by the renderer that the window draws with."""
 
+import math
 from collections.abc import Mapping
 from contextlib import ExitStack
 from typing import Final, NamedTuple
@@ -138,12 +139,28 @@ class Painter:
             )
             scene = Scene(background=self._background, meshes=meshes)
             self._renderer.draw(self._target, self._view, scene)
-            pixels = self._target.read_straight_rgba()
+            pixels = self._read(posed)
         except (*EXPECTED_ERRORS, GlError) as error:
             raise LissomError(f"frame {posed.frame:g} cannot be drawn: {error}") from error
         # OpenGL goes on after an error, with pictures that are black or of another frame.
         if self._context.error != _NO_ERROR:
             raise LissomError(f"frame {posed.frame:g} cannot be drawn: OpenGL failed; try again")
+        return pixels
+
+    def _read(self, posed: PosedFrame) -> Bytes:
+        """Read the frame back: the part where the figures are, since the rest has one colour."""
+        width, height = self._view.size
+        pixels = np.empty((height, width, 4), dtype=np.uint8)
+        pixels[:] = np.rint(255 * np.array(self._background.colour))
+        vertices = np.concatenate([placed.positions for placed in posed.vertices])
+        box = box_around(self._view.to_pixels(vertices))
+        # Two pixels more: none that a triangle touches is left out.
+        left, top = (max(0, math.floor(side) - 2) for side in _sides(box.lower))
+        right, bottom = (math.ceil(side) + 2 for side in _sides(box.upper))
+        right, bottom = min(width, right), min(height, bottom)
+        if left < right and top < bottom:
+            part = (left, top, right - left, bottom - top)
+            pixels[top:bottom, left:right] = self._target.read_straight_rgba(part)
         return pixels
 
     @property
@@ -156,6 +173,10 @@ class Painter:
     def release(self) -> None:
         """Let everything go."""
         self._owned.close()
+
+
+def _sides(corner: complex) -> tuple[float, float]:
+    return corner.real, corner.imag
 
 
 def _colour(plan: ExportPlan) -> Colour:

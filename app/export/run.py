@@ -13,7 +13,9 @@ from engine.arrays import Bytes
 T = TypeVar("T")
 
 ENCODERS: Final = 2  # threads
-AHEAD: Final = 4  # frames that are posed but not yet drawn, or drawn but not yet written
+AHEAD: Final = 4  # frames that are posed but not yet drawn
+# Frames that are drawn but not yet written: as many as these bytes hold, and no more than that.
+QUEUED_BYTES, MOST_QUEUED = 2**26, 8
 
 
 def export(
@@ -52,7 +54,7 @@ def export(
     -----
     Closing the iterator, or an exception, ends the export: PNG frames that are written stay, each
     of them whole, and of any other format nothing stays. The memory does not grow with the number
-    of frames (that of a sprite sheet does with its size).
+    of frames (that of a sprite sheet does with its size), nor with how slowly they are encoded.
     """
     with (
         open_writer(plan) as writer,
@@ -61,13 +63,15 @@ def export(
         threads("writer", 1) as writers,
         _stopped_early(writer),
     ):
+        width, height = plan.view.size
+        queued = min(max(1, QUEUED_BYTES // (4 * width * height)), MOST_QUEUED)
         times = iter(plan.times)
         posed: deque[Future[T]] = deque()
         written: deque[Future[None]] = deque()
         for index in range(len(plan.times)):
             while len(posed) <= AHEAD and (time := next(times, None)) is not None:
                 posed.append(poses.submit(pose, time))
-            while len(written) > AHEAD or (written and written[0].done()):
+            while len(written) >= queued or (written and written[0].done()):
                 yield from come(written[0], index, waits=waits)
                 written.popleft().result()
             yield from come(posed[0], index, waits=waits)

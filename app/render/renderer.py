@@ -69,13 +69,15 @@ class Renderer:
         self._context.blend_func = (moderngl.ONE, moderngl.ONE_MINUS_SRC_ALPHA)
 
     def _draw_background(self, background: Backdrop, view: View, samples: int) -> None:
+        if background.checks is None:
+            self._context.fbo.clear(*_premultiplied(background.colour))
+            return
         self._context.enable_only(moderngl.NOTHING)
         width, height = view.size
         origin_x, origin_y = view.transform[2:]
-        checks = background.colour if background.checks is None else background.checks
         uniforms = {
             "light": _premultiplied(background.colour),
-            "dark": _premultiplied(checks),
+            "dark": _premultiplied(background.checks),
             "origin": ((origin_x + 1) / 2 * width * samples, (origin_y + 1) / 2 * height * samples),
             "square": background.square * samples,
         }

@@ -4,17 +4,15 @@ Source: https://www.w3.org/TR/png-3/#apng-frame-based-animation
 """
 
 import struct
-import zlib
 from collections.abc import Iterator
 from fractions import Fraction
 from typing import IO, Final
 
 from app.export.plan import ExportPlan
 from app.export.writers.frame_writer import FrameWriter
-from app.export.writers.png import encode_png
+from app.export.writers.png import SIGNATURE, chunk, encode_png
 from engine.arrays import Bytes
 
-_SIGNATURE: Final = b"\x89PNG\r\n\x1a\n"
 # A frame lasts a fraction of two numbers of 16 bits, in seconds; with some room for rounding.
 _LARGEST: Final = 65_000
 # Every frame replaces all of the one before it, transparent parts included.
@@ -45,7 +43,7 @@ class ApngWriter(FrameWriter):
         chunks = list(_chunks(encoded))
         is_first = not self._started
         if is_first:
-            self._start([chunk for chunk in chunks if chunk[0] in {b"IHDR", b"sRGB"}])
+            self._start([each for each in chunks if each[0] in {b"IHDR", b"sRGB"}])
         self._write(b"fcTL", self._frame_control())
         for kind, data in chunks:
             if kind == b"IDAT":
@@ -58,9 +56,9 @@ class ApngWriter(FrameWriter):
 
     def _start(self, chunks: list[tuple[bytes, bytes]]) -> None:
         self._started = True
-        self._file.write(_SIGNATURE)
-        for chunk in chunks:
-            self._write(*chunk)
+        self._file.write(SIGNATURE)
+        for each in chunks:
+            self._write(*each)
         plays = 0 if self._plan.loop else 1  # 0 goes on for ever
         self._write(b"acTL", struct.pack(">II", len(self._plan.times), plays))
 
@@ -80,13 +78,12 @@ class ApngWriter(FrameWriter):
         return number
 
     def _write(self, kind: bytes, data: bytes) -> None:
-        check = zlib.crc32(kind + data)
-        self._file.write(struct.pack(">I", len(data)) + kind + data + struct.pack(">I", check))
+        self._file.write(chunk(kind, data))
 
 
 def _chunks(png: bytes) -> Iterator[tuple[bytes, bytes]]:
     """Yield the kind and the data of each chunk of a PNG file."""
-    start = len(_SIGNATURE)
+    start = len(SIGNATURE)
     while start < len(png):
         (length,) = struct.unpack_from(">I", png, start)
         yield png[start + 4 : start + 8], png[start + 8 : start + 8 + length]

@@ -10,6 +10,8 @@ from app.render.gpu.context import largest_size
 from app.render.gpu.programs import Programs, ShaderFiles
 from engine.arrays import Bytes
 
+Rectangle = tuple[int, int, int, int]
+
 _STRAIGHT: Final = ShaderFiles(vertex=("screen.vert",), fragment=("straight.frag",))
 
 
@@ -48,17 +50,26 @@ class RenderTarget:
         self._programs = programs
         self._straight: moderngl.Framebuffer | None = None
 
-    def read_straight_rgba(self) -> Bytes:
-        """Return the frame, uint8 (h, w, 4), with straight alpha and its first row on top."""
+    def read_straight_rgba(self, part: Rectangle | None = None) -> Bytes:
+        """Return the frame, uint8 (h, w, 4), with straight alpha and its first row on top.
+
+        Parameters
+        ----------
+        part : tuple of int, optional
+            Left, top, width and height, in pixels of the frame, of what is wanted of it.
+        """
+        left, top, width, height = part or (0, 0, *self.size)
         context = self._programs.context
         if self._straight is None:
             self._straight = context.framebuffer([context.renderbuffer(self.size, 4)])
         self._straight.use()
+        # Its first row is the lowest one of OpenGL.
+        self._straight.scissor = (left, top, width, height)
         context.enable_only(moderngl.NOTHING)
         self.texture.use(0)
         self._programs.draw_screen(_STRAIGHT, {"frame": 0, "samples": self.oversampling})
-        pixels = np.empty((self.size[1], self.size[0], 4), dtype=np.uint8)
-        self._straight.read_into(pixels, components=4)
+        pixels = np.empty((height, width, 4), dtype=np.uint8)
+        self._straight.read_into(pixels, (left, top, width, height), components=4)
         return pixels
 
     def release(self) -> None:

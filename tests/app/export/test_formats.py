@@ -16,7 +16,7 @@ from app.document import FRAME_NAMES, ShapeDetail, SheetLayout
 from app.errors import LissomError
 from app.export.destination import FrameNames
 from app.export.plan import ExportPlan
-from app.export.run import AHEAD, export
+from app.export.run import MOST_QUEUED, export
 from app.export.writers import FILE_WRITERS, FOLDER_WRITERS, SHAPE_WRITERS, table
 from app.export.writers.png import PngSequence
 from app.export.writers.spritesheet import SpritesheetWriter, sheet_grid
@@ -351,17 +351,23 @@ def test_a_frame_that_cannot_be_written_is_an_error(tmp_path):
         run(plan)
 
 
-def test_drawing_waits_for_the_encoders(tmp_path, monkeypatch):
+@pytest.mark.parametrize(
+    ("frames_in_the_bytes", "queued"), [(0.5, 1), (3.2, 3), (1000, MOST_QUEUED)]
+)
+def test_drawing_waits_for_the_encoders(tmp_path, monkeypatch, frames_in_the_bytes, queued):
+    plan = plan_for(tmp_path / "frames", "png", times=tuple(map(float, range(200))))
+    size = 4 * plan.view.size[0] * plan.view.size[1]
+    monkeypatch.setattr("app.export.run.QUEUED_BYTES", int(frames_in_the_bytes * size))
     drawn: list[float] = []
     others_are_done = threading.Event()
     drawn_meanwhile = []
 
     def encode(_self: PngSequence, index: int, _frame: Bytes) -> bytes:
+        if index == queued - 1:
+            others_are_done.set()
         if index == 0:
             others_are_done.wait()
             drawn_meanwhile.append(len(drawn))
-        if index == AHEAD:
-            others_are_done.set()
         return b""
 
     def counted(time: float) -> Bytes:
@@ -369,5 +375,5 @@ def test_drawing_waits_for_the_encoders(tmp_path, monkeypatch):
         return draw(time)
 
     monkeypatch.setattr(PngSequence, "encode", encode)
-    run(plan_for(tmp_path / "frames", "png", times=tuple(map(float, range(200)))), counted)
-    assert drawn_meanwhile == [AHEAD + 1]
+    run(plan, counted)
+    assert drawn_meanwhile == [queued]

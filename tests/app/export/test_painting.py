@@ -108,6 +108,13 @@ def test_a_background_is_opaque_and_shines_through_soft_edges(gl, document):
     assert np.abs(frame[..., :3] - blend)[SEEN].max() <= 1
 
 
+def test_where_the_drawing_is_not_the_frame_has_its_background(gl, document):
+    with drawing(gl, document, Sliding(document, 5000), background="#0a14fa") as draw:
+        assert_array_equal(np.unique(draw(10).reshape(-1, 4), axis=0), [[10, 20, 250, 255]])
+    with drawing(gl, document, Sliding(document, 5000)) as draw:
+        assert not draw(10).any()
+
+
 def test_a_smaller_frame_is_the_picture_made_smaller(gl, document):
     frame = still(gl, document, size=(40, 30))
     blocks = BLOB.reshape(30, 3, 40, 3, 4) / 255
