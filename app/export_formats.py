@@ -34,6 +34,8 @@ class ExportFormat:
         Whether it holds pictures; else it holds shapes, and plays at any rate.
     largest : int, optional
         Pixels of a picture each way, at most.
+    is_even : bool
+        Whether the sides of its pictures are even.
     fastest : float, optional
         Pictures a second, at most.
     library, remedy : str
@@ -49,6 +51,7 @@ class ExportFormat:
     is_transparent: bool = True
     is_drawn: bool = True
     largest: int | None = None
+    is_even: bool = False
     fastest: float | None = None
     library: str = ""
     remedy: str = ""
@@ -97,6 +100,28 @@ EXPORT_FORMATS: Final[Mapping[str, ExportFormat]] = MappingProxyType(
             about="H.264 video; needs a background colour and pip install 'lissom[video]'",
             suffixes=(".mp4",),
             is_transparent=False,
+            largest=16_384,
+            is_even=True,
+            library="av",
+            remedy=VIDEO,
+        ),
+        "webm": ExportFormat(
+            label="WebM video",
+            group="Video",
+            use="For browsers: small, with soft transparency; few editors read it.",
+            about="VP9 video, with its transparency unless there is a background colour",
+            suffixes=(".webm",),
+            largest=16_384,
+            library="av",
+            remedy=VIDEO,
+        ),
+        "mov": ExportFormat(
+            label="ProRes video",
+            group="Video",
+            use="For video editors: nearly exact, with transparency; large files.",
+            about="ProRes 4444 video, with its transparency (straight alpha) unless there is a "
+            "background colour",
+            suffixes=(".mov",),
             largest=16_384,
             library="av",
             remedy=VIDEO,

@@ -141,6 +141,12 @@ def check_request(document: Document, request: ExportRequest) -> None:
     check_destination(request.out, name)
     if settings.size is not None and format_.is_drawn:
         _check_size(name, settings.size)
+        if format_.is_even and any(side % 2 for side in settings.size):
+            width, height = (side + side % 2 for side in settings.size)
+            raise LissomError(
+                f"{name} keeps colours in blocks of 2 × 2 pixels, and {settings.size[0]} × "
+                f"{settings.size[1]} has an odd side; choose {width} × {height}"
+            )
     if request.fps is not None and not format_.is_drawn:
         raise LissomError(f"{name} plays at any rate; leave the frames per second out")
     fps = document.fps if request.fps is None else request.fps
@@ -226,7 +232,7 @@ def plan_export(
         _check_size(plan.format, plan.view.size)
         width, height = plan.view.size
         check_room(plan.out, int(LEAST * width * height * len(times)))
-    return replace(plan, notices=_left_frames(plan))
+    return replace(plan, notices=(*_left_frames(plan), *_added_pixels(plan)))
 
 
 def _check_size(name: str, size: tuple[int, int]) -> None:
@@ -254,6 +260,15 @@ def _colour(background: str) -> tuple[int, int, int] | None:
         return None
     red, green, blue = bytes.fromhex(background[1:])
     return red, green, blue
+
+
+def _added_pixels(plan: ExportPlan) -> tuple[str, ...]:
+    """Tell of rows and columns that a format of even sides needs."""
+    width, height = plan.view.size
+    if not EXPORT_FORMATS[plan.format].is_even or (width % 2 == height % 2 == 0):
+        return ()
+    even = f"{width + width % 2} × {height + height % 2}"
+    return (f"{plan.format} needs even sides: the frames got background, to {even} pixels",)
 
 
 def _left_frames(plan: ExportPlan) -> tuple[str, ...]:

@@ -20,7 +20,7 @@ from app.storage import atomic_file
 
 
 def _video(file: IO[bytes], plan: ExportPlan) -> FrameWriter:
-    from app.export.writers.mp4 import VideoWriter  # noqa: PLC0415 - slow, and needs an extra
+    from app.export.writers.video import VideoWriter  # noqa: PLC0415 - slow, and needs an extra
 
     return VideoWriter(file, plan)
 
@@ -38,6 +38,8 @@ FILE_WRITERS: Final[Mapping[str, Callable[[IO[bytes], ExportPlan], FrameWriter]]
             "webp": WebpWriter,
             "spritesheet": SpritesheetWriter,
             "mp4": _video,
+            "webm": _video,
+            "mov": _video,
         }
     )
 )

@@ -9,13 +9,11 @@ from pathlib import Path
 import av
 import numpy as np
 import pytest
+from exports import FRAMES, at_once, draw, plan_for, run
 from numpy.testing import assert_allclose, assert_array_equal
 from PIL import Image, ImageSequence
 
-from app.document import FRAME_NAMES, ShapeDetail, SheetLayout
 from app.errors import LissomError
-from app.export.destination import FrameNames
-from app.export.plan import ExportPlan
 from app.export.run import MOST_QUEUED, export
 from app.export.writers import FILE_WRITERS, FOLDER_WRITERS, SHAPE_WRITERS, table
 from app.export.writers.png import PngSequence
@@ -24,48 +22,7 @@ from app.export_formats import EXPORT_FORMATS
 from app.render.view import canvas_view
 from engine.arrays import Bytes
 
-SIZE = (37, 22)
-FRAMES = 7
 DRAWN = [name for name, format_ in EXPORT_FORMATS.items() if format_.is_drawn]
-
-
-def plan_for(out: Path, format_: str, **changes: object) -> ExportPlan:
-    values: dict[str, object] = {
-        "out": out,
-        "format": format_,
-        "view": canvas_view(SIZE),
-        "background": None,
-        "times": tuple(float(number) for number in range(FRAMES)),
-        "first": 0,
-        "span": (0.0, FRAMES - 1.0),
-        "fps": 24.0,
-        "canvas": SIZE,
-        "loop": True,
-        "frame_names": FrameNames(pattern=FRAME_NAMES, project="walk"),
-        "sheet": SheetLayout(trimmed=False, padding=0),
-        "shapes": ShapeDetail(),
-    }
-    return ExportPlan(**(values | changes))  # type: ignore[arg-type]
-
-
-def draw(time: float, size: tuple[int, int] = SIZE) -> Bytes:
-    """A disc with a soft edge and a gradient that moves to the right."""
-    y, x = np.mgrid[: size[1], : size[0]]
-    edge = 8.5 - np.hypot(x - 8 - 2 * time, y - 10)
-    frame = np.zeros((size[1], size[0], 4), dtype=np.uint8)
-    frame[..., 3] = np.clip(128 + 60 * edge, 0, 255)
-    frame[..., 0], frame[..., 1], frame[..., 2] = 40 + 5 * x, 200 - 6 * y, 90
-    frame[frame[..., 3] == 0] = 0
-    return frame
-
-
-def at_once(time: float) -> float:
-    """Poses that take no time: the time itself."""
-    return time
-
-
-def run(plan: ExportPlan, drawing=draw) -> None:
-    assert list(export(plan, at_once, drawing)) == list(range(1, len(plan.times) + 1))
 
 
 def rgba_frames(path: Path) -> list[Bytes]:

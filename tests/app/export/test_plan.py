@@ -184,6 +184,19 @@ def test_rates_and_sizes_that_a_format_cannot_hold_are_refused(document, tmp_pat
         plan_of(document, tmp_path / "a.webp", wide, format="webp")
 
 
+def test_odd_sides_are_refused_where_they_are_asked_for_and_told_where_they_came(
+    document, tmp_path
+):
+    white = {"format": "mp4", "background": "#ffffff"}
+    with pytest.raises(LissomError, match="choose 102 × 80"):
+        plan_of(document, tmp_path / "a.mp4", size=(101, 80), **white)
+    assert plan_of(document, tmp_path / "a.mp4", size=(102, 80), **white).notices == ()
+    wide = replace(document, size=(121, 90))
+    (notice,) = plan_of(wide, tmp_path / "a.mp4", framing="canvas", **white).notices
+    assert "122 × 90" in notice
+    assert plan_of(wide, tmp_path / "a.webm", framing="canvas", format="webm").notices == ()
+
+
 def test_any_name_without_the_end_of_another_format_will_do(document, tmp_path):
     for name in ("name", "v1.2", "a.GIF"):
         assert plan_of(document, tmp_path / name, format="gif").out == tmp_path / name
