@@ -1,7 +1,7 @@
 """Values that are worked out behind the scenes: what they follow from, and whether that failed."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Generic, TypeVar
 
 Source = TypeVar("Source")
@@ -19,11 +19,17 @@ class Derived(Generic[Source, Value]):
         What it was derived from; None before the first one.
     failure : Source, optional
         What none could be derived from: that is not tried again.
+    remembers : int
+        How many earlier values are kept for when their sources come back, as by undo.
+    earlier : list of tuple
+        Those, with their sources, the newest last.
     """
 
     value: Value
     source: Source | None = None
     failure: Source | None = None
+    remembers: int = 0
+    earlier: list[tuple[Source, Value]] = field(default_factory=list)
 
     def follows(self, source: Source) -> bool:
         """Tell whether the value is that of a source."""
@@ -35,7 +41,18 @@ class Derived(Generic[Source, Value]):
 
     def take(self, source: Source, value: Value) -> None:
         """Hold the value of a source."""
+        if self.remembers and self.source is not None:
+            self.earlier = [*self.earlier, (self.source, self.value)][-self.remembers :]
         self.source, self.value = source, value
+
+    def recall(self, source: Source) -> None:
+        """Hold the value of a source again, if it is remembered."""
+        if self.follows(source):
+            return
+        for known, value in self.earlier:
+            if known == source:
+                self.take(source, value)
+                return
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

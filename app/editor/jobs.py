@@ -1,7 +1,8 @@
 """Worker threads for long computations; of each kind only the newest job counts.
 
-There are two: one for what the person waits for, such as the pose under the hand, and one for all
-that may take a second, such as in-betweens. The first is never kept waiting by the second.
+There are three: one for what the person waits for, such as the pose under the hand, one for
+exports, and one for what is shown and may take a second, such as in-betweens. None keeps another
+waiting.
 """
 
 import atexit
@@ -10,7 +11,9 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
-from typing import Any
+from typing import Any, Literal, get_args
+
+LaneName = Literal["hand", "export", "display"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -27,15 +30,16 @@ class Job:
         Takes the result, on the main thread.
     failed : callable
         Takes the exception that ended `work`, on the main thread.
-    urgent : bool
-        Runs on the thread for what the person waits for.
+    lane : str
+        On which thread it runs: that for what is under the "hand", for an "export", or for what is
+        to be on "display".
     """
 
     kind: str
     work: Callable[[], Any]
     done: Callable[[Any], None]
     failed: Callable[[Exception], None]
-    urgent: bool = False
+    lane: LaneName = "display"
 
 
 @dataclass(slots=True, eq=False)
@@ -68,18 +72,17 @@ class Jobs:
         self._is_closed = False
         # The end of the program takes BLAS away, and a thread that is in it crashes.
         atexit.register(self.close)
-        self._lanes = {True: _Lane(), False: _Lane()}  # by whether they are for urgent jobs
+        self._lanes = {name: _Lane() for name in get_args(LaneName)}
 
     def put(self, job: Job) -> None:
         """Queue a job in place of an unfinished one of its kind."""
         with self._condition:
             self._forget(job.kind)
             self._waiting.append(job)
-            lane = self._lanes[job.urgent]
+            lane = self._lanes[job.lane]
             if lane.thread is None:
-                name = "urgent jobs" if job.urgent else "jobs"
-                work = partial(self._work, lane, urgent=job.urgent)
-                lane.thread = threading.Thread(target=work, name=name, daemon=True)
+                work = partial(self._work, lane, job.lane)
+                lane.thread = threading.Thread(target=work, name=job.lane, daemon=True)
                 lane.thread.start()
             self._condition.notify_all()
 
@@ -149,10 +152,10 @@ class Jobs:
             if lane.running is not None and lane.running.kind == kind:
                 lane.is_stale = True
 
-    def _work(self, lane: _Lane, *, urgent: bool) -> None:
+    def _work(self, lane: _Lane, name: LaneName) -> None:
         while True:
             with self._condition:
-                while (job := self._next(urgent=urgent)) is None:
+                while (job := self._next(name)) is None:
                     if self._is_closed:
                         return
                     self._condition.wait()
@@ -165,8 +168,8 @@ class Jobs:
                 lane.running = None
                 self._condition.notify_all()
 
-    def _next(self, *, urgent: bool) -> Job | None:
-        return next((job for job in self._waiting if job.urgent == urgent), None)
+    def _next(self, lane: LaneName) -> Job | None:
+        return next((job for job in self._waiting if job.lane == lane), None)
 
 
 def _attempt(job: Job) -> Callable[[], None]:

@@ -18,6 +18,7 @@ from app.storage import Origin, Picture
 from engine.maps import Bounds
 
 OPAQUE = 255
+EXTENTS = 32  # of the motion, which are remembered for undo and redo
 FIT_MARGIN = 0.08  # of the viewport, left free around what is fitted into it
 
 
@@ -133,7 +134,7 @@ class Project:
     joints : Derived
         Of the figures that hang on others; None where nothing does.
     extent : Derived
-        Of the motion; it is measured while the settings of an export are shown.
+        Of the motion; where the settings of an export are shown it is measured first, else last.
     to_save : tuple, optional
         Where to save it, and what to do then, as soon as its pose has settled.
     moved_at : float
@@ -163,7 +164,9 @@ class Project:
     joints: Derived[tuple[object, ...], Joints | None] = field(
         default_factory=lambda: Derived(None)
     )
-    extent: Derived[tuple[object, ...], Box | None] = field(default_factory=lambda: Derived(None))
+    extent: Derived[tuple[object, ...], Box | None] = field(
+        default_factory=lambda: Derived(None, remembers=EXTENTS)
+    )
     to_save: tuple[Path, Action | None] | None = None
     moved_at: float = -inf
     autosaved: Document | None = None

@@ -66,6 +66,8 @@ class PoseSampler:
             anchor=anchor,
         )
         self._lock = threading.RLock()
+        # Of its own, so that a sibling waits for the transform alone.
+        self._transform_lock = threading.RLock()
         self._samples: dict[Pose, KeyframeSamples] = {}
         self._inbetweens: dict[tuple[object, ...], tuple[tuple[Pose, ...], Inbetweens]] = {}
         self._lengths: dict[tuple[object, ...], tuple[tuple[Pose, ...], float]] = {}
@@ -77,7 +79,7 @@ class PoseSampler:
     @property
     def transform(self) -> HilbertTransform:
         """The Hilbert transform of the outline, worked out when it is asked for first."""
-        with self._lock:
+        with self._transform_lock:
             if self._transform is None:
                 self._transform = (
                     HilbertTransform.on(self.domain.outline, self.domain.cage)
@@ -90,7 +92,7 @@ class PoseSampler:
     @property
     def extension(self) -> Extension:
         """The transform at the nodes of the paths, prepared when it is asked for first."""
-        with self._lock:
+        with self._transform_lock:
             if self._extension is None:
                 self._extension = self.transform.at(self.sites.paths.nodes)
             return self._extension

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from app.document import Clip, Document, Pose, resting_pose, time_of
+from app.document import Clip, Document, Pose, intervals, resting_pose, time_of
 from app.motion.joints import HERE, Hinge, Joints, Placement, along
 from app.motion.paint_order import painted_triangles
 from app.motion.posable_mesh import AttachedPoints, PosableMesh
@@ -97,7 +97,8 @@ def show(
     motions : tuple of Motion
         Where to look for it, the preferred one first; at least one.
     earlier : Shown, optional
-        What was drawn before; it stays while nothing better is prepared.
+        What was drawn before. Where nothing is prepared yet, the two keys are blended roughly, so
+        that what is shown is never the pose of another key.
     """
     if pose is None:
         pose = resting_pose(clip, time_of(clip, frame))
@@ -129,12 +130,37 @@ def show(
         raise ValueError("none of the motions is of the figure's domain")
     if earlier.mesh.source is not clip.figure.domain:
         return replace(earlier, is_current=False)
-    return replace(
-        earlier,
+    if earlier.clip == clip and earlier.frame == frame and not earlier.is_current:
+        return earlier
+    mesh = motions[-1].mesh if motions[-1].mesh.source is clip.figure.domain else earlier.mesh
+    triangles = painted_triangles(mesh.domain.mesh, clip, frame)
+    return Shown(
         clip=clip,
-        handles=_locate(clip, earlier.mesh, earlier),
+        frame=frame,
+        pose=None,
+        mesh=mesh,
+        vertices=Placed(positions=_between_keys(clip, frame, mesh), triangles=triangles),
+        handles=_locate(clip, mesh, earlier),
         is_current=False,
     )
+
+
+def _between_keys(clip: Clip, frame: int, mesh: PosableMesh) -> Complexes:
+    """Return roughly where the vertices are between two keys, at once: (v,).
+
+    The similarity that is nearest to the way from key to key is run through evenly, and what it
+    leaves is blended.
+    """
+    moment = time_of(clip, frame)
+    first, last = intervals(clip)[moment.interval]
+    start, end = (mesh.posed(clip.keys[index].pose) for index in (first, last))
+    middle, goal = start.mean(), end.mean()
+    spokes, turned = start - middle, end - goal
+    factor = complex(np.vdot(spokes, turned) / np.vdot(spokes, spokes)) or 1.0
+    rest = turned / factor - spokes
+    blended = factor**moment.weight * (spokes + moment.weight * rest)
+    places: Complexes = middle + moment.weight * (goal - middle) + blended
+    return places
 
 
 def hang_shown(

@@ -135,6 +135,7 @@ def start(session: Session, out: Path) -> None:
     session.jobs.put(
         Job(
             kind=PREPARING,
+            lane="export",
             work=work,
             done=done,
             failed=lambda error: report(session, "The export could not begin", error),

@@ -66,7 +66,7 @@ def write(session: Session, path: Path, then: Action | None) -> None:
             work=work,
             done=done,
             failed=lambda error: report(session, "The project was not saved", error),
-            urgent=True,
+            lane="hand",
         )
     )
 
@@ -130,7 +130,7 @@ def write_preferences(session: Session) -> None:
             work=lambda: save_preferences(folder, preferences),
             done=lambda _: None,
             failed=lambda error: report(session, "The preferences cannot be kept", error),
-            urgent=True,
+            lane="hand",
         )
     )
 

@@ -31,6 +31,7 @@ from app.reports import measure_curves
 
 STILL = 0.15  # seconds after which the playhead is taken to stay where it is
 SKETCHING, REFINING, STREAMING = "In-betweens", "Finer in-betweens", "Smooth playback"
+MOST_UNASKED = 1000  # frames whose extent is measured before anybody asks
 MEASURING, SPANNING = "Measuring", "Measuring the motion"
 HANGING = "Joints"
 
@@ -41,6 +42,7 @@ def maintain(session: Session) -> None:
     if project is None:
         return
     posing.settle(session)
+    project.extent.recall(extent_source(project.document))
     for derivation in missing(session, project):
         derive(session, derivation)
     shortfalls, figure = project.timing.shortfalls, project.figure
@@ -90,6 +92,10 @@ def missing(session: Session, project: Project) -> Iterator[Derivation[Any, Any]
         if not puppet.coarse.value.knows(clip):
             yield _sketch(clip, puppet)
             return
+    is_awaited = session.export_frame is not None or project.awaits_extent
+    if is_awaited and len(movable) == len(clips):
+        yield from _span(project)
+    for clip, puppet in movable:
         if not _has_fine(clip, puppet) and not puppet.fine.has_failed(clip):
             yield _refine(clip, puppet)
             return
@@ -97,7 +103,10 @@ def missing(session: Session, project: Project) -> Iterator[Derivation[Any, Any]
     for clip, puppet in movable:
         yield from _stream(session, project, clip, puppet)
     if len(movable) == len(clips):
-        yield from _measure(session, project)
+        yield from _measure(project)
+        shown = document.frames
+        if shown.last - shown.first < MOST_UNASKED:
+            yield from _span(project)
 
 
 def _sketch(clip: Clip, puppet: Puppet, *, roughly: bool = False) -> Derivation[Clip, Motion]:
@@ -178,7 +187,7 @@ def _take_series(
         puppet.fine.value = with_series(puppet.fine.value, build, clip, frame)
 
 
-def _measure(session: Session, project: Project) -> Iterator[Derivation[Any, Any]]:
+def _measure(project: Project) -> Iterator[Derivation[Any, Any]]:
     """Yield what is measured of the in-betweens."""
     clip, motion, curves = project.clip, project.puppet.coarse.value, project.curves
     if intervals(clip) and not (curves.follows(clip) or curves.has_failed(clip)):
@@ -189,8 +198,10 @@ def _measure(session: Session, project: Project) -> Iterator[Derivation[Any, Any
             work=lambda: measure_curves(clip, motion),
             complaint="The distortion could not be measured",
         )
-    if session.export_frame is None and not project.awaits_extent:
-        return
+
+
+def _span(project: Project) -> Iterator[Derivation[Any, Any]]:
+    """Yield the measurement of where the motion reaches."""
     document, extent = project.document, project.extent
     source = extent_source(document)
     motions = {figure: puppet.coarse.value for figure, puppet in project.puppets.items()}

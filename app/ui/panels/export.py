@@ -10,11 +10,12 @@ from app.editor import Action, Project, Session, do
 from app.editor.actions import exporting
 from app.export import frame_view, missing, shown_box
 from app.export_formats import EXPORT_FORMATS
-from app.motion import Box, box_around
+from app.motion import Box, box_around, extent_source
 from app.render import View
 from app.ui.shortcuts import BINDINGS
 from app.ui.style import (
     FILL,
+    SMALL,
     Look,
     heading,
     icon_button,
@@ -30,6 +31,9 @@ BACKGROUNDS = (("transparent", "Transparent"), ("colour", "Colour"))
 FRAMINGS = (("fit", "All motion"), ("canvas", "Canvas"))
 RANGES = (("all", "All frames"), ("own", "From – to"))
 WHITE = "#ffffff"
+MEASURES = "Measuring where the motion reaches…"
+LEAVES = "The motion leaves the frame; “All motion” shows all of it."
+KEEPS = "All of the motion is in the frame."
 LARGEST = 65_535
 PREVIEW, LARGEST_PREVIEW = 3.2, 6.0  # em: at least and at most
 
@@ -268,6 +272,21 @@ def _preview(
         "Blue: what the export shows, as in the viewport. Grey: the picture's canvas.\n"
         "Orange: where the motion reaches."
     )
-    is_left = not frame.contains(motion, slack=1.0)
-    if is_left and project.extent.value is not None:
-        small(look, "The motion leaves the frame; “All motion” shows all of it.")
+    is_known = project.extent.follows(extent_source(project.document))
+    if not is_known and not project.extent.has_failed(extent_source(project.document)):
+        note = MEASURES
+    else:
+        note = LEAVES if not frame.contains(motion, slack=1.0) else KEEPS
+    _note(look, note)
+
+
+def _note(look: Look, text: str) -> None:
+    """Write one of the notes, in the room that the longest of them takes."""
+    imgui.push_font(None, SMALL * imgui.get_style().font_size_base)
+    width = imgui.get_content_region_avail().x
+    room = max(imgui.calc_text_size(note, wrap_width=width).y for note in (MEASURES, LEAVES, KEEPS))
+    imgui.pop_font()
+    top = imgui.get_cursor_pos_y()
+    small(look, text)
+    imgui.set_cursor_pos_y(top + room + imgui.get_style().item_spacing.y)
+    imgui.dummy(ImVec2(0, 0))

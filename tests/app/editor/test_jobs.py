@@ -7,13 +7,13 @@ import pytest
 from app.editor.jobs import Job, Jobs
 
 
-def job(kind, work, results, *, urgent=False):
+def job(kind, work, results, *, lane="display"):
     return Job(
         kind=kind,
         work=work,
         done=lambda result: results.append((kind, result)),
         failed=lambda error: results.append((kind, error)),
-        urgent=urgent,
+        lane=lane,
     )
 
 
@@ -110,11 +110,12 @@ def test_result_may_make_the_next_one_stale():
     assert results == []
 
 
-def test_urgent_jobs_do_not_wait_for_others(busy):
+@pytest.mark.parametrize("lane", ["hand", "export"])
+def test_urgent_jobs_do_not_wait_for_others(busy, lane):
     jobs, _ = busy
     results, ready = [], threading.Event()
     jobs.put(job("in-betweens", lambda: 1, results))
-    jobs.put(job("pose", ready.set, results, urgent=True))
+    jobs.put(job("pose", ready.set, results, lane=lane))
     assert ready.wait(10)
     while "pose" in jobs.kinds:
         jobs.deliver()
@@ -130,9 +131,9 @@ def test_urgent_jobs_come_one_after_the_other():
         begun.set()
         gate.wait(10)
 
-    jobs.put(job("pose", wait, results, urgent=True))
+    jobs.put(job("pose", wait, results, lane="hand"))
     assert begun.wait(10)
-    jobs.put(job("save", lambda: 1, results, urgent=True))
+    jobs.put(job("save", lambda: 1, results, lane="hand"))
     assert jobs.kinds == ("pose", "save")
     gate.set()
     assert jobs.settle()
@@ -171,7 +172,7 @@ def test_closing_waits_for_what_runs_and_drops_what_waits():
 
     jobs.put(job("factors", finish, []))
     jobs.put(job("in-betweens", lambda: results.append("waited"), []))
-    jobs.put(job("pose", int, [], urgent=True))
+    jobs.put(job("pose", int, [], lane="hand"))
     assert begun.wait(10)
     closing = threading.Thread(target=jobs.close)
     closing.start()

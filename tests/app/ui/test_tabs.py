@@ -360,6 +360,46 @@ def test_frame_of_the_export_shows_only_with_its_tab(window, project, tab):
     assert window.session.export_frame is None
 
 
+def note_of_the_frame(window, project):
+    """Where the motion reaches, and which places of the panel stand below the note."""
+    where = {}
+
+    def look(robot):
+        robot.set_ref("//Export")
+        where["start"] = robot.item_info("**/###start").rect_full.min.y
+
+    window.run(look)
+    source = extent_source(project.document)
+    return project.extent.follows(source), where["start"]
+
+
+def test_extent_follows_undo_and_redo_at_once(window, project, tab):
+    tab("Export", lambda _: None)
+    first = project.extent.value
+    known, place = note_of_the_frame(window, project)
+    assert known
+    posing.wish(window.session, {1: Target(position=CENTRE + 2.5 * RADIUS)})
+    window.frames(1)
+    known, waiting = note_of_the_frame(window, project)
+    window.settle()
+    second = project.extent.value
+    assert second.upper.real > first.upper.real + 5
+    known, after = note_of_the_frame(window, project)
+    assert known
+    assert place == waiting == after, "the panel does not jump when its note changes"
+    editing.undo(window.session)
+    window.frames(2)
+    assert project.extent.value == first
+    editing.redo(window.session)
+    window.frames(2)
+    assert project.extent.value == second
+    editing.undo(window.session)
+    tab("Handle", lambda _: None)
+    editing.edit_figure(window.session, key_commands.move_keys, {24}, 3)
+    window.settle()
+    assert project.extent.follows(extent_source(project.document)), "where the tab is hidden, too"
+
+
 def test_export_is_started_repeated_and_told(window, project, tab, tmp_path):
     session = window.session
     exporting.set_export(session, replace(project.document.export, size=(80, 60)))

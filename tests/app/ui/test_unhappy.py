@@ -25,6 +25,7 @@ from app.editor.actions import (
     upkeep,
     viewing,
 )
+from app.editor.derived import Derived
 from app.editor.timeline_view import KeyBox
 from app.motion.extent import Box, extent_source
 from app.storage.assets import sample_images
@@ -512,6 +513,7 @@ WAITING = {
     "Measuring the motion": (
         "app.editor.actions.upkeep.measure_extent",
         lambda session: (
+            setattr(session.project, "extent", Derived(None)),
             exporting.show_frame(session, Box(0j, 1 + 1j)),
             upkeep.maintain(session),
         ),
@@ -526,6 +528,35 @@ WAITING = {
         lambda session: keys.insert_at(session, 12),
     ),
 }
+
+
+def test_what_is_shown_after_an_edit_lies_between_the_new_keys(window, bent, monkeypatch):
+    """Never the pose of the key that was changed, however long in-betweens take."""
+    with held_up(monkeypatch, "app.editor.actions.upkeep.prepare_motion"):
+        width, height = bent.document.canvas
+        posing.wish(window.session, {1: Target(position=complex(0.85 * width, 0.1 * height))})
+        while "Posing" in window.session.jobs.kinds:
+            window.frames(1)
+        mesh, keys = bent.puppet.shown.mesh, bent.figure.keys
+        first, last = (mesh.posed(key.pose) for key in keys)
+        playback.seek(window.session, 12)
+        window.frames(1)
+        shown = bent.puppet.shown
+        assert not shown.is_current
+        places = shown.positions if shown.mesh is mesh else None
+        assert places is not None
+        tip = int(np.argmax(np.abs(last - first)))
+        assert abs(places[tip] - first[tip]) < 0.7 * abs(last[tip] - first[tip])
+        assert abs(places[tip] - last[tip]) < 0.7 * abs(last[tip] - first[tip])
+        earlier = shown
+        window.frames(2)
+        assert bent.puppet.shown is earlier, "nothing is worked out again while it waits"
+        sketch = places.copy()
+    window.settle()
+    assert bent.puppet.shown.is_current
+    exact = bent.puppet.shown.positions
+    if bent.puppet.shown.mesh is mesh:
+        assert np.abs(exact - sketch).max() < 0.2 * np.abs(last - first).max()
 
 
 @pytest.mark.parametrize("kind", WAITING)

@@ -49,7 +49,7 @@ def fit_pose(
             work=lambda: pose_at(rig, clip, frame, sibling),
             done=lambda pose: take(clip, frame, pose),
             failed=lambda error: report(session, complaint, error),
-            urgent=True,
+            lane="hand",
         )
     )
 

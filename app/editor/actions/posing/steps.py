@@ -49,7 +49,7 @@ def follow(session: Session, project: Project, posing: PoseInProgress) -> None:
             work=partial(_take_steps, posing.drag, begin, targets, _pace(posing), session.clock),
             done=partial(_go_on, session, project, posing, targets),
             failed=failed,
-            urgent=True,
+            lane="hand",
         )
     )
 
