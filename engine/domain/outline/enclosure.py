@@ -207,10 +207,11 @@ def _best_fit(field: DistanceField, margin: float, diagonal: float) -> _Fit:
 def _told(draft: _Draft, area: int) -> tuple[str, ...]:
     """Return, in words, what a draft makes of a subject of `area` cells."""
     notices = []
-    if draft.curve.fused >= LEAST_FUSED:
+    fused = draft.curve.fused()
+    if fused >= LEAST_FUSED:
         notices.append(
             "limbs too close together for outlines of their own are fused and move as one, along "
-            f"{draft.curve.fused:.0%} of the edge"
+            f"{fused:.0%} of the edge"
         )
     if draft.widening > 1:
         notices.append(f"margin widened {draft.widening:.1f} times for an outline of few vertices")

@@ -66,15 +66,24 @@ class MarginCurve:
     enclosed : float
         Area that the curve encloses, or leaves out of a hole, because it closes on itself, in
         cells.
-    fused : float
-        Share of the mask's own outline that the curve leaves far inside, because what lies opposite
-        is too close.
+    skin : complex128, shape (s,)
+        The mask's own outline.
+    deep : float
+        How far from the curve a point of the skin is lost.
     """
 
     points: Complexes
     margins: Floats
     enclosed: float
-    fused: float
+    skin: Complexes
+    deep: float
+
+    def fused(self) -> float:
+        """Return how much of the skin is left far inside, since what lies opposite is too close."""
+        shell = shapely.LinearRing(as_xy(self.points))
+        shapely.prepare(shell)
+        followed = shapely.dwithin(shell, shapely.points(as_xy(self.skin)), self.deep)
+        return 1 - float(np.mean(followed))
 
 
 def distance_field(mask: Booleans) -> DistanceField:
@@ -124,14 +133,12 @@ def curve_at_margin(
     ring, enclosed = _largest_ring(field.distance - level, hole=hole)
     ring, pockets = _without_slits(ring, SLIT * closing)
     _, nearest = tree.query(as_xy(ring))
-    shell = shapely.LinearRing(as_xy(ring))
-    shapely.prepare(shell)
-    followed = shapely.dwithin(shell, shapely.points(as_xy(skin)), DEEP * margin)
     return MarginCurve(
         points=ring,
         margins=margins[nearest],
         enclosed=enclosed + pockets,
-        fused=1 - float(np.mean(followed)),
+        skin=skin,
+        deep=DEEP * margin,
     )
 
 

@@ -125,7 +125,11 @@ def test_a_polygon_that_cuts_corners_is_fitted_again(claimed: float) -> None:
     # Tolerances follow from the margins; too large ones must not leave out any corner.
     circle = 100 * regular_polygon(700)
     curve = MarginCurve(
-        points=1.01 * circle, margins=np.full(700, claimed), enclosed=0.0, fused=0.0
+        points=1.01 * circle,
+        margins=np.full(700, claimed),
+        enclosed=0.0,
+        skin=circle,
+        deep=1.0,
     )
     polygon = fit_polygon(Candidates.on(curve, 283.0), circle[::5])
     assert polygon is not None
@@ -140,7 +144,9 @@ def test_a_polygon_that_crosses_itself_is_fitted_again(narrowest: float, wave: f
     middle = x + 1j * wave * np.sin(x / 6)
     frame = [100 + 50j, -20 + 50j, -20 - 50j, 100 - 50j]
     points = np.concatenate([middle + 0.5j * gap, frame, (middle - 0.5j * gap)[::-1]])
-    curve = MarginCurve(points=points, margins=np.full(len(points), 11.0), enclosed=0.0, fused=0.0)
+    curve = MarginCurve(
+        points=points, margins=np.full(len(points), 11.0), enclosed=0.0, skin=points, deep=1.0
+    )
     polygon = fit_polygon(Candidates.on(curve, 200.0), np.array([-10 + 0j]))
     assert polygon is not None
     assert is_simple(polygon)
@@ -150,7 +156,9 @@ def test_a_polygon_that_turns_back_is_fitted_again() -> None:
     # The end of a slit of width 1: one vertex would be sharper than 20 degrees.
     slit = [50 + 0.5j, 0 + 0.5j, 0 - 0.5j, 50 - 0.5j]
     points = np.array([50 + 50j, -50 + 50j, -50 - 50j, 50 - 50j, *slit[::-1]])
-    curve = MarginCurve(points=points, margins=np.full(len(points), 2.0), enclosed=0.0, fused=0.0)
+    curve = MarginCurve(
+        points=points, margins=np.full(len(points), 2.0), enclosed=0.0, skin=points, deep=1.0
+    )
     polygon = fit_polygon(Candidates.on(curve, 141.0), np.array([-10 + 0j]))
     assert polygon is not None
     along = edges(polygon)
