@@ -28,6 +28,8 @@ class ExportFormat:
     suffixes : tuple of str
         That its file names end in, the usual one first; none where every frame is a file of its
         own, in a folder.
+    data_suffix : str
+        That the name of a file of data beside it ends in; empty where there is none.
     is_transparent : bool
         Whether it keeps what is transparent; one that does not needs a background.
     is_drawn : bool
@@ -48,6 +50,7 @@ class ExportFormat:
     use: str
     about: str
     suffixes: tuple[str, ...] = ()
+    data_suffix: str = ""
     is_transparent: bool = True
     is_drawn: bool = True
     largest: int | None = None
@@ -129,9 +132,12 @@ EXPORT_FORMATS: Final[Mapping[str, ExportFormat]] = MappingProxyType(
         "spritesheet": ExportFormat(
             label="Sprite sheet",
             group="Engine and web",
-            use="For 2D engines: all frames in one PNG; a fixed rate and size.",
-            about="all frames in one PNG, row by row; how many is told on standard output",
+            use="For 2D engines: all frames in one PNG, with data; a fixed rate and size.",
+            about="all frames in one PNG, row by row, and beside it a JSON that tells where each "
+            "is, as TexturePacker writes it, with durations and tags as in Aseprite; tags are made "
+            "of the timeline's markers. Frames are trimmed and 2 pixels apart by default",
             suffixes=(".png",),
+            data_suffix=".json",
             largest=16_384,
         ),
         "glb": ExportFormat(

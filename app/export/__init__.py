@@ -5,7 +5,7 @@ Out: PNG frames, animated pictures, sprite sheets, video, models.
 Imports: `app.render`, `app.motion`, `app.storage`.
 """
 
-from app.export.destination import PROJECT, FrameNames, folder_within, suited
+from app.export.destination import PROJECT, FrameNames, data_file, folder_within, suited
 from app.export.framing import frame_view, shown_box
 from app.export.moving_shape import with_light_meshes
 from app.export.painting import Painter
@@ -32,6 +32,7 @@ __all__ = [
     "Poses",
     "ShapeExport",
     "check_request",
+    "data_file",
     "encode_png",
     "export",
     "folder_within",

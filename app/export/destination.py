@@ -63,6 +63,8 @@ def check_destination(out: Path, name: str) -> None:
     suffixes = EXPORT_FORMATS[name].suffixes
     if suffixes:
         check_writable(out)
+        if EXPORT_FORMATS[name].data_suffix:
+            check_writable(data_file(out))
         ending = out.suffix.lower()
         if ending not in suffixes and (ending in _all_suffixes() or _ENDING.fullmatch(ending)):
             raise LissomError(
@@ -109,6 +111,13 @@ def check_room(out: Path, needed: int) -> None:
         )
 
 
+def data_file(out: Path) -> Path:
+    """Return where the data of a sprite sheet go: beside it."""
+    is_ending = out.suffix.lower() in EXPORT_FORMATS["spritesheet"].suffixes
+    name = out.stem if is_ending else out.name
+    return out.with_name(f"{name}{EXPORT_FORMATS['spritesheet'].data_suffix}")
+
+
 def suited(out: Path, name: str) -> Path:
     """Return a path with the ending of a format, in place of that of another one.
 
@@ -144,7 +153,8 @@ def folder_within(chosen: Path, name: str, is_frame: Callable[[str], bool]) -> P
 def replaced(out: Path, name: str, frames: list[str]) -> list[str]:
     """Return the names of the files that an export would take the place of."""
     if EXPORT_FORMATS[name].suffixes:
-        return [out.name] if out.exists() else []
+        files = [out, data_file(out)] if EXPORT_FORMATS[name].data_suffix else [out]
+        return [file.name for file in files if file.exists()]
     return [frame for frame in frames if (out / frame).exists()]
 
 

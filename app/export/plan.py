@@ -1,10 +1,11 @@
 """What an export will make, settled and checked before the first frame is drawn."""
 
 import importlib.util
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Final
+from typing import Final, NamedTuple
 
 import numpy as np
 
@@ -63,6 +64,14 @@ class ExportRequest:
         return FrameNames(pattern=self.settings.names, project=self.project)
 
 
+class Tag(NamedTuple):
+    """A name for some pictures of an export, from the index of the first to that of the last."""
+
+    name: str
+    first: int
+    last: int
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ExportPlan:
     """What an export makes.
@@ -91,6 +100,8 @@ class ExportPlan:
         Whether an animation plays for ever, or once.
     frame_names : FrameNames
         Of the pictures, where each is a file of its own.
+    tags : tuple of Tag
+        Parts of the motion, from marker to marker; all of it where there is none.
     sheet : SheetLayout
     shapes : ShapeDetail
     notices : tuple of str
@@ -108,6 +119,7 @@ class ExportPlan:
     canvas: tuple[int, int]
     loop: bool
     frame_names: FrameNames
+    tags: tuple[Tag, ...]
     sheet: SheetLayout
     shapes: ShapeDetail
     notices: tuple[str, ...] = ()
@@ -225,6 +237,7 @@ def plan_export(
         fps=document.fps if request.fps is None else request.fps,
         loop=document.loop,
         frame_names=request.names,
+        tags=_tags(document, request, times),
         sheet=settings.sheet,
         shapes=settings.shapes,
     )
@@ -247,6 +260,16 @@ def _check_size(name: str, size: tuple[int, int]) -> None:
 
 def _frames(document: Document, settings: ExportSettings) -> FrameRange:
     return settings.frames or exported_frames(document)
+
+
+def _tags(document: Document, request: ExportRequest, times: tuple[float, ...]) -> tuple[Tag, ...]:
+    found = []
+    ends = [*(marker.frame for marker in document.markers[1:]), math.inf]
+    for marker, end in zip(document.markers, ends, strict=False):
+        inside = [index for index, time in enumerate(times) if marker.frame <= time < end]
+        if inside:
+            found.append(Tag(marker.name, inside[0], inside[-1]))
+    return tuple(found) or (Tag(request.project, 0, len(times) - 1),)
 
 
 def _end(document: Document, settings: ExportSettings, frames: FrameRange) -> int:

@@ -6,7 +6,7 @@ import numpy as np
 
 from app.document import FRAME_NAMES, ShapeDetail, SheetLayout
 from app.export.destination import FrameNames
-from app.export.plan import ExportPlan
+from app.export.plan import ExportPlan, Tag
 from app.export.run import export
 from app.render.view import canvas_view
 from engine.arrays import Bytes
@@ -28,6 +28,7 @@ def plan_for(out: Path, format_: str, **changes: object) -> ExportPlan:
         "canvas": SIZE,
         "loop": True,
         "frame_names": FrameNames(pattern=FRAME_NAMES, project="walk"),
+        "tags": (Tag("walk", 0, FRAMES - 1),),
         "sheet": SheetLayout(trimmed=False, padding=0),
         "shapes": ShapeDetail(),
     }

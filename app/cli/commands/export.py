@@ -18,6 +18,7 @@ from app.export import (
     Painter,
     ShapeExport,
     check_request,
+    data_file,
     export,
     plan_export,
     sheet_grid,
@@ -119,8 +120,18 @@ def _settings(own: ExportSettings, arguments: argparse.Namespace, out: Path) -> 
         "frames": None if arguments.frames is None else FrameRange(*arguments.frames),
         "names": arguments.names,
     }
+    sheet = {
+        "trimmed": arguments.trim,
+        "padding": arguments.padding,
+        "power_of_two": arguments.power_of_two,
+    }
     shapes = {"triangles": arguments.triangles, "tolerance": arguments.tolerance}
-    return replace(own, **_known(given), shapes=replace(own.shapes, **_known(shapes)))
+    return replace(
+        own,
+        **_known(given),
+        sheet=replace(own.sheet, **_known(sheet)),
+        shapes=replace(own.shapes, **_known(shapes)),
+    )
 
 
 def _known(given: dict[str, Any]) -> dict[str, Any]:
@@ -156,8 +167,10 @@ def _summary_of_frames(plan: ExportPlan) -> str:
         names = dict.fromkeys((plan.names[0], plan.names[-1]))
         return f"{text}, {' to '.join(names)}"
     if plan.format == "spritesheet":
+        if plan.sheet.trimmed:
+            return f"{text}, trimmed, as {data_file(plan.out).name} tells"
         columns, rows = sheet_grid(plan)
-        return f"{text} in {columns} columns and {rows} rows"
+        return f"{text} in {columns} columns and {rows} rows, as {data_file(plan.out).name} tells"
     return f"{text}, {plan.fps:g} a second"
 
 

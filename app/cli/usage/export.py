@@ -68,6 +68,19 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="how far a model may be from the motion, in pixels, with as many shapes as that takes "
         "(default: 0.5, with 8 shapes at most)",
     )
+    parser.add_argument(
+        "--trim",
+        action=argparse.BooleanOptionalAction,
+        help="keep only what is seen of a frame on a sprite sheet (default: the project's, yes)",
+    )
+    parser.add_argument(
+        "--padding", metavar="N", type=int, help="pixels between frames of a sprite sheet"
+    )
+    parser.add_argument(
+        "--power-of-two",
+        action=argparse.BooleanOptionalAction,
+        help="let the sides of a sprite sheet be powers of two",
+    )
     add_variant_option(parser)
     parser.add_argument("--format", choices=tuple(EXPORT_FORMATS), help="what to write")
 

@@ -8,9 +8,16 @@ Imports: `app.export.plan`, `app.export.moving_shape`, `app.storage`, Pillow; Py
 from app.export.writers.frame_writer import FrameWriter
 from app.export.writers.png import encode_png
 from app.export.writers.spritesheet import sheet_grid
-from app.export.writers.table import FILE_WRITERS, FOLDER_WRITERS, SHAPE_WRITERS, open_writer
+from app.export.writers.table import (
+    DATA_WRITERS,
+    FILE_WRITERS,
+    FOLDER_WRITERS,
+    SHAPE_WRITERS,
+    open_writer,
+)
 
 __all__ = [
+    "DATA_WRITERS",
     "FILE_WRITERS",
     "FOLDER_WRITERS",
     "SHAPE_WRITERS",

@@ -1,27 +1,55 @@
-"""All frames side by side in one PNG, row by row."""
+"""All frames side by side in one PNG, row by row, and where each of them is in a JSON beside it.
+
+The JSON is that of TexturePacker ("hash"), with the durations and tags of Aseprite:
+https://www.aseprite.org/docs/cli/#sheet
+"""
 
 import io
+import json
 import math
 import threading
-from typing import IO, Any, Final, cast
+from collections.abc import Sequence
+from importlib.metadata import version
+from typing import IO, Any, Final, NamedTuple, cast
 
 import numpy as np
 
 from app.errors import LissomError
 from app.export.plan import ExportPlan
-from app.export.writers.frame_writer import FrameWriter
+from app.export.writers.frame_writer import FrameWriter, duration
 from app.export.writers.png import save_png
 from engine.arrays import Bytes
 
 LARGEST: Final = 16_384  # pixels each way: what graphics cards hold, and a gigabyte at most
+_WIDTHS: Final = np.geomspace(0.7, 2.5, 24)  # of the side of a square of the frames' area
+
+
+class _Cell(NamedTuple):
+    """What is kept of a frame, and the place of its upper left corner in the frame."""
+
+    pixels: Bytes
+    left: int
+    top: int
+
+    @property
+    def size(self) -> tuple[int, int]:
+        return self.pixels.shape[1], self.pixels.shape[0]
+
+
+class _Sheet(NamedTuple):
+    """The size of a sheet, and the upper left corners of what lies on it."""
+
+    size: tuple[int, int]
+    corners: tuple[tuple[int, int], ...]
 
 
 class SpritesheetWriter(FrameWriter):
-    """Collects the frames and writes the sheet in the end.
+    """Collects the frames, and writes the sheet and its data in the end.
 
     Parameters
     ----------
-    file : binary file
+    file, data : binary file
+        For the PNG and for the JSON.
     plan : ExportPlan
 
     Raises
@@ -30,23 +58,41 @@ class SpritesheetWriter(FrameWriter):
         If the sheet would be too large.
     """
 
-    def __init__(self, file: IO[bytes], plan: ExportPlan) -> None:
-        self._file = file
+    def __init__(self, file: IO[bytes], data: IO[bytes], plan: ExportPlan) -> None:
+        if not plan.sheet.trimmed:
+            sheet_grid(plan)
+        self._file, self._data = file, data
+        self._plan = plan
         self._stopped = threading.Event()
-        self._width, self._height = plan.view.size
-        self._columns, rows = sheet_grid(plan)
-        self._sheet = np.zeros((rows * self._height, self._columns * self._width, 4), np.uint8)
+        self._cells: dict[int, _Cell] = {}
 
     def encode(self, index: int, frame: Bytes) -> bytes:
-        """Put the frame in its place."""
-        row, column = divmod(index, self._columns)
-        top, left = row * self._height, column * self._width
-        self._sheet[top : top + self._height, left : left + self._width] = frame
+        """Keep what is seen of the frame."""
+        self._cells[index] = _trimmed(frame) if self._plan.sheet.trimmed else _Cell(frame, 0, 0)
+        if sum(cell.pixels.size for cell in list(self._cells.values())) > 4 * LARGEST**2:
+            raise _too_large(self._plan)
         return b""
 
     def finish(self) -> None:
-        """Write the sheet."""
-        save_png(self._sheet, cast(IO[bytes], _Stoppable(self._file, self._stopped)))
+        """Write the sheet and its data."""
+        plan, layout = self._plan, self._plan.sheet
+        cells = [self._cells[index] for index in range(len(plan.times))]
+        if layout.trimmed:
+            kept, places = _different(cells)
+            sheet = _packed([cell.size for cell in kept], plan)
+        else:
+            kept, places = cells, list(range(len(cells)))
+            columns, _ = sheet_grid(plan)
+            wide = columns * (plan.view.size[0] + layout.padding) + layout.padding
+            sheet = _rows([cell.size for cell in kept], wide, plan)
+        width, height = sheet.size
+        pixels = np.zeros((height, width, 4), dtype=np.uint8)
+        for cell, (left, top) in zip(kept, sheet.corners, strict=True):
+            wide, high = cell.size
+            pixels[top : top + high, left : left + wide] = cell.pixels
+        save_png(pixels, cast(IO[bytes], _Stoppable(self._file, self._stopped)))
+        corners = [sheet.corners[place] for place in places]
+        self._data.write(_data(plan, sheet.size, cells, corners))
 
     def stop(self) -> None:
         """End the writing of the sheet, which may take seconds."""
@@ -67,20 +113,123 @@ class _Stoppable(io.BufferedIOBase):
 
 
 def sheet_grid(plan: ExportPlan) -> tuple[int, int]:
-    """Return the columns and rows of a sheet that is nearly a square.
+    """Return the columns and rows of a sheet of equal cells that is nearly a square.
 
     Raises
     ------
     LissomError
         If it would be too large.
     """
-    (width, height), count = plan.view.size, len(plan.times)
-    most = min(LARGEST // width, count)
+    count, padding = len(plan.times), plan.sheet.padding
+    width, height = (side + padding for side in plan.view.size)
+    room = LARGEST - padding
+    most = min(room // width, count)
     columns = max(1, min(most, math.ceil(math.sqrt(count * height / width))))
     rows = math.ceil(count / columns)
-    if max(columns * width, rows * height) > LARGEST:
-        raise LissomError(
-            f"{count} frames of {width} × {height} pixels do not fit on a sheet of {LARGEST:,} × "
-            f"{LARGEST:,}; choose fewer frames or a smaller size"
-        )
+    if max(columns * width, rows * height) > room:
+        raise _too_large(plan)
     return math.ceil(count / rows), rows  # without columns that stay empty
+
+
+def _too_large(plan: ExportPlan) -> LissomError:
+    width, height = plan.view.size
+    return LissomError(
+        f"{len(plan.times)} frames of {width} × {height} pixels do not fit on a sheet of "
+        f"{LARGEST:,} × {LARGEST:,}; choose fewer frames or a smaller size"
+    )
+
+
+def _trimmed(frame: Bytes) -> _Cell:
+    """Return what is seen of a frame; one pixel where nothing is."""
+    seen = frame[..., 3] > 0
+    if not seen.any():
+        return _Cell(frame[:1, :1].copy(), 0, 0)
+    rows, columns = np.flatnonzero(seen.any(axis=1)), np.flatnonzero(seen.any(axis=0))
+    top, left = int(rows[0]), int(columns[0])
+    return _Cell(frame[top : rows[-1] + 1, left : columns[-1] + 1].copy(), left, top)
+
+
+def _different(cells: Sequence[_Cell]) -> tuple[list[_Cell], list[int]]:
+    """Return the cells without repeats, and which of them stands for each."""
+    numbers: dict[tuple[tuple[int, int], bytes], int] = {}
+    kept: list[_Cell] = []
+    places = []
+    for cell in cells:
+        number = numbers.setdefault((cell.size, cell.pixels.tobytes()), len(kept))
+        if number == len(kept):
+            kept.append(cell)
+        places.append(number)
+    return kept, places
+
+
+def _packed(sizes: Sequence[tuple[int, int]], plan: ExportPlan) -> _Sheet:
+    """Return the smallest of some sheets of rows."""
+    padding = plan.sheet.padding
+    widest = max(width for width, _ in sizes) + 2 * padding
+    if plan.sheet.power_of_two:
+        widths = [2**power for power in range((widest - 1).bit_length(), LARGEST.bit_length())]
+    else:
+        side = math.sqrt(sum((width + padding) * (height + padding) for width, height in sizes))
+        widths = sorted({min(max(widest, round(part * side)), LARGEST) for part in _WIDTHS})
+    sheets = [_rows(sizes, width, plan) for width in widths]
+    fitting = [sheet for sheet in sheets if max(sheet.size) <= LARGEST]
+    if not fitting:
+        raise _too_large(plan)
+    return min(fitting, key=lambda sheet: (math.prod(sheet.size), max(sheet.size)))
+
+
+def _rows(sizes: Sequence[tuple[int, int]], most: int, plan: ExportPlan) -> _Sheet:
+    """Lay cells side by side in rows of at most so many pixels, in their order."""
+    padding = plan.sheet.padding
+    left = top = padding
+    row_height = right = 0
+    corners = []
+    for width, height in sizes:
+        if left > padding and left + width + padding > most:
+            left, top, row_height = padding, top + row_height + padding, 0
+        corners.append((left, top))
+        left += width + padding
+        row_height, right = max(row_height, height), max(right, left)
+    size = right, top + row_height + padding
+    if plan.sheet.power_of_two:
+        size = 1 << (size[0] - 1).bit_length(), 1 << (size[1] - 1).bit_length()
+    return _Sheet(size, tuple(corners))
+
+
+def _data(
+    plan: ExportPlan,
+    size: tuple[int, int],
+    cells: Sequence[_Cell],
+    corners: Sequence[tuple[int, int]],
+) -> bytes:
+    frames = {}
+    for index, (name, cell, corner) in enumerate(zip(plan.names, cells, corners, strict=True)):
+        frames[name] = {
+            "frame": _box(corner, cell.size),
+            "rotated": False,
+            "trimmed": cell.size != plan.view.size,
+            "spriteSourceSize": _box((cell.left, cell.top), cell.size),
+            "sourceSize": _size(plan.view.size),
+            "duration": duration(index, plan.fps, per_second=1000),
+        }
+    meta = {
+        "app": "Lissom",
+        "version": version("lissom"),
+        "image": plan.out.name,
+        "format": "RGBA8888",
+        "size": _size(size),
+        "scale": "1",
+        "frameTags": [
+            {"name": tag.name, "from": tag.first, "to": tag.last, "direction": "forward"}
+            for tag in plan.tags
+        ],
+    }
+    return json.dumps({"frames": frames, "meta": meta}, indent=1).encode()
+
+
+def _box(corner: tuple[int, int], size: tuple[int, int]) -> dict[str, int]:
+    return {"x": corner[0], "y": corner[1], **_size(size)}
+
+
+def _size(size: tuple[int, int]) -> dict[str, int]:
+    return {"w": size[0], "h": size[1]}

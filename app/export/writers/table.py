@@ -6,6 +6,7 @@ from types import MappingProxyType
 from typing import IO, Final
 
 from app.errors import LissomError
+from app.export.destination import data_file
 from app.export.moving_shape import MovingShape
 from app.export.plan import ExportPlan
 from app.export.writers.apng import ApngWriter
@@ -36,12 +37,15 @@ FILE_WRITERS: Final[Mapping[str, Callable[[IO[bytes], ExportPlan], FrameWriter]]
             "apng": ApngWriter,
             "gif": GifWriter,
             "webp": WebpWriter,
-            "spritesheet": SpritesheetWriter,
             "mp4": _video,
             "webm": _video,
             "mov": _video,
         }
     )
+)
+# Those of frames in one file with another one of data beside it.
+DATA_WRITERS: Final[Mapping[str, Callable[[IO[bytes], IO[bytes], ExportPlan], FrameWriter]]] = (
+    MappingProxyType({"spritesheet": SpritesheetWriter})
 )
 SHAPE_WRITERS: Final[Mapping[str, Callable[[Sequence[MovingShape], ExportPlan], bytes]]] = (
     MappingProxyType({"glb": glb_file, "html": html_page})
@@ -65,6 +69,13 @@ def open_writer(plan: ExportPlan) -> Iterator[FrameWriter]:
         except OSError as error:
             raise LissomError(f"cannot make the folder {plan.out}: {error.strerror}") from error
         with closing(FOLDER_WRITERS[plan.format](plan)) as writer:
+            yield writer
+    elif plan.format in DATA_WRITERS:
+        with (
+            atomic_file(data_file(plan.out)) as data,
+            atomic_file(plan.out) as file,
+            closing(DATA_WRITERS[plan.format](file, data, plan)) as writer,
+        ):
             yield writer
     else:
         with (

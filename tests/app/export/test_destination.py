@@ -88,3 +88,12 @@ def test_a_folder_that_may_not_be_written_to_is_refused(tmp_path, monkeypatch):
     for out, format_ in ((tmp_path / "a.gif", "gif"), (tmp_path / "frames", "png")):
         with pytest.raises(LissomError, match="may not be written to"):
             check_destination(out, format_)
+
+
+def test_the_data_of_a_sheet_are_asked_about_too(tmp_path):
+    (tmp_path / "walk.json").write_bytes(b"precious")
+    assert replaced(tmp_path / "walk.png", "spritesheet", []) == ["walk.json"]
+    assert replaced(tmp_path / "walk.png", "apng", []) == []
+    (tmp_path / "run.json").mkdir()
+    with pytest.raises(LissomError, match="is a folder"):
+        check_destination(tmp_path / "run.png", "spritesheet")

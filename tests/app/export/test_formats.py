@@ -15,7 +15,7 @@ from PIL import Image, ImageSequence
 
 from app.errors import LissomError
 from app.export.run import MOST_QUEUED, export
-from app.export.writers import FILE_WRITERS, FOLDER_WRITERS, SHAPE_WRITERS, table
+from app.export.writers import DATA_WRITERS, FILE_WRITERS, FOLDER_WRITERS, SHAPE_WRITERS, table
 from app.export.writers.png import PngSequence
 from app.export.writers.spritesheet import SpritesheetWriter, sheet_grid
 from app.export_formats import EXPORT_FORMATS
@@ -33,7 +33,7 @@ def rgba_frames(path: Path) -> list[Bytes]:
 def test_every_format_of_the_table_has_a_writer():
     files = {name for name, format_ in EXPORT_FORMATS.items() if format_.suffixes}
     assert SHAPE_WRITERS.keys() == EXPORT_FORMATS.keys() - DRAWN
-    assert FILE_WRITERS.keys() == files - SHAPE_WRITERS.keys()
+    assert FILE_WRITERS.keys() | DATA_WRITERS.keys() == files - SHAPE_WRITERS.keys()
     assert FOLDER_WRITERS.keys() == EXPORT_FORMATS.keys() - files
 
 
@@ -78,7 +78,7 @@ def test_the_thread_that_draws_never_waits_for_others_unless_it_may(tmp_path, mo
         def finish(self) -> None:
             held(0)
 
-    monkeypatch.setattr(table, "FILE_WRITERS", {"spritesheet": Held})
+    monkeypatch.setattr(table, "DATA_WRITERS", {"spritesheet": Held})
     plan = plan_for(tmp_path / "out", "spritesheet")
     steps = export(plan, held, draw, waits=False)
     stops = []

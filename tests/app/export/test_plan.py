@@ -8,7 +8,7 @@ from animations import BLOB, Sliding, still_document
 from numpy.testing import assert_allclose
 
 from app.document.model import Document
-from app.document.settings import ExportSettings, FrameRange
+from app.document.settings import ExportSettings, FrameRange, Marker
 from app.errors import LissomError
 from app.export.plan import ExportPlan, ExportRequest, check_request, plan_export
 from app.export.poses import KeptPoses, Poses
@@ -182,6 +182,18 @@ def test_rates_and_sizes_that_a_format_cannot_hold_are_refused(document, tmp_pat
     wide = Sliding(document, 1700)
     with pytest.raises(LissomError, match="16,383 pixels"):
         plan_of(document, tmp_path / "a.webp", wide, format="webp")
+
+
+def test_tags_go_from_marker_to_marker(document, tmp_path):
+    sheet = {"format": "spritesheet"}
+    assert plan_of(document, tmp_path / "a.png", **sheet).tags == (("walk", 0, 10),)
+    marked = replace(
+        document, markers=tuple(Marker(frame=n, name=name) for n, name in ((2, "a"), (6, "b")))
+    )
+    assert plan_of(marked, tmp_path / "a.png", **sheet).tags == (("a", 2, 5), ("b", 6, 10))
+    some = plan_of(marked, tmp_path / "a.png", frames=FrameRange(7, 9), **sheet)
+    assert some.tags == (("b", 0, 2),)
+    assert plan_of(marked, tmp_path / "a.png", fps=12.0, **sheet).tags[1] == ("b", 3, 5)
 
 
 def test_odd_sides_are_refused_where_they_are_asked_for_and_told_where_they_came(
