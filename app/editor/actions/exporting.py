@@ -21,6 +21,7 @@ from app.export import (
     FrameNames,
     KeptPoses,
     check_request,
+    data_file,
     plan_export,
     replaced_files,
     suited,
@@ -54,7 +55,8 @@ def export_to(session: Session, out: Path) -> None:
     project = session.project
     if project is not None:
         project.export_to = out
-        if EXPORT_FORMATS[project.document.export.format].suffixes:
+        format_ = EXPORT_FORMATS[project.document.export.format]
+        if format_.suffixes and not (format_.data_suffix and data_file(out).exists()):
             # The dialog has asked already whether it is to be replaced.
             project.replaceable = out
 
