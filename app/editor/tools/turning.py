@@ -57,7 +57,8 @@ class Turning:
         project = session.project
         if project is None or spot.handle is None or project.figure.is_locked(spot.handle):
             return ()
-        return (Hint("drag", "to turn", "alt"),)
+        # Of both gestures the one that no window manager takes for itself, as many do Alt+drag.
+        return (Hint("drag its ring", "to turn"),)
 
     @classmethod
     def press(cls, session: Session, spot: Spot) -> Self | None:

@@ -24,10 +24,12 @@ from app.ui.panels import deform, distortion, domain, export, handle
 from app.ui.timeline import timeline
 from app.ui.viewport import Canvas, viewport
 from app.ui.window.exporter import Exporter
+from app.ui.window.modifiers import release_stuck_modifiers
 from app.ui.window.shell import Shell
 from app.ui.window.title import NAME, window_title
 
 SIZE = (1280, 800)
+APPLICATION = "lissom"  # the name of its desktop entry
 ICON_SIDES = (16, 32, 64)  # pixels
 # Where the display of X11 or Wayland is named.
 DISPLAYS = ("DISPLAY", "WAYLAND_DISPLAY")
@@ -48,6 +50,14 @@ def _show_icon() -> None:
     images = [(*picture.shape[:2], picture.tolist()) for picture in pictures]
     window = glfw_utils.glfw_window_hello_imgui()
     glfw.set_window_icon(window, len(images), images)  # type: ignore[arg-type]  # tuples of theirs
+
+
+def _name_application() -> None:
+    """Tell the desktop whose window it will be, so that it finds its entry in the menu."""
+    glfw.init()
+    glfw.window_hint_string(glfw.WAYLAND_APP_ID, APPLICATION)
+    glfw.window_hint_string(glfw.X11_INSTANCE_NAME, APPLICATION)
+    glfw.window_hint_string(glfw.X11_CLASS_NAME, NAME)
 
 
 class Window:
@@ -95,10 +105,14 @@ class Window:
         calls.enqueue_post_init(self._accept_files)
         calls.enqueue_post_init(_show_icon)
         calls.pre_new_frame = hello_imgui.sequence_functions(self._rename, calls.pre_new_frame)
+        calls.pre_new_frame = hello_imgui.sequence_functions(
+            release_stuck_modifiers, calls.pre_new_frame
+        )
         params.ini_folder_type = hello_imgui.IniFolderType.absolute_path
         params.ini_filename = str(self.session.folder / "window.ini")
         params.app_window_params.window_geometry.size = SIZE
         params.app_window_params.restore_previous_geometry = True
+        _name_application()
         try:
             hello_imgui.manual_render.setup_from_runner_params(params)
         except RuntimeError as error:

@@ -1,5 +1,7 @@
 """The real window, on a real X server without a screen, moved by real X events."""
 
+import ctypes
+import ctypes.util
 import os
 import select
 import shutil
@@ -67,7 +69,7 @@ class Person:
         self._home = home
         self.settings = home / ".config" / "lissom"
         # No programs for file dialogs on this path, and nobody else's settings.
-        self._environment = {
+        self.environment = {
             "DISPLAY": display,
             "HOME": str(home),
             "PATH": str(home),
@@ -80,7 +82,7 @@ class Person:
         """Start Lissom, and wait for its window and for something to show at a place."""
         with subprocess.Popen(
             [sys.executable, "-m", "app", *map(str, arguments)],
-            env=self._environment,
+            env=self.environment,
             cwd=Path(__file__).parents[3],
             stderr=subprocess.PIPE,
             text=True,
@@ -195,6 +197,25 @@ def bar(window):
     return window.open(BAR)
 
 
+@contextmanager
+def grabbed_keyboard(display):
+    """Take the keyboard from all windows, as a window manager does while it acts on a key."""
+    x11 = ctypes.CDLL(ctypes.util.find_library("X11"))
+    x11.XOpenDisplay.restype = ctypes.c_void_p
+    x11.XDefaultRootWindow.restype = ctypes.c_ulong
+    server = ctypes.c_void_p(x11.XOpenDisplay(display.encode()))
+    root = ctypes.c_ulong(x11.XDefaultRootWindow(server))
+    now = ctypes.c_ulong(0)
+    try:
+        assert x11.XGrabKeyboard(server, root, 0, 1, 1, now) == 0
+        x11.XSync(server, 0)
+        yield
+    finally:
+        x11.XUngrabKeyboard(server, now)
+        x11.XSync(server, 0)
+        x11.XCloseDisplay(server)
+
+
 def place_of(window, bar, share):
     width, height = bar.puppet.picture.size
     point = window.point(complex(share.real * width, (0.5 + share.imag) * height))
@@ -248,5 +269,61 @@ def test_a_person_animates_a_drawing_and_finds_it_again(window, bar, person, tmp
     assert last.imag > 1.2 * height
     menu = 90 + NEAR, 60 + NEAR
     with person.starts(sign=menu) as process:
+        # By this the desktop's entry knows its windows.
+        assert person.tell("search", "--onlyvisible", "--class", "^Lissom$").strip()
         assert person.geometry() == (90, 60, 1100, 700)
         person.quit(process)
+
+
+WATCH = """
+import time
+from imgui_bundle import glfw_utils
+import glfw
+from app.ui.window import modifiers
+
+def tell(*words):
+    print(*words, flush=True)
+
+glfw.init()
+window = glfw.create_window(400, 300, "watch", None, None)
+modifiers.glfw_utils = type("Ours", (), {"glfw_window_hello_imgui": staticmethod(lambda: window)})
+tell(glfw.get_x11_window(window))
+while True:
+    order = input()
+    for _ in range(10):
+        time.sleep(0.01)
+        glfw.poll_events()
+    if order == "mend":
+        modifiers.release_stuck_modifiers()
+        glfw.poll_events()
+    tell(glfw.get_key(window, glfw.KEY_LEFT_ALT))
+"""
+
+
+def test_a_key_that_was_let_go_unseen_is_not_held(person):
+    """As after Alt+F4 and Cancel, where a window manager had the keyboard."""
+    with subprocess.Popen(
+        [sys.executable, "-c", WATCH],
+        env=person.environment,
+        cwd=Path(__file__).parents[3],
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        text=True,
+    ) as watch:
+
+        def ask(order):
+            watch.stdin.write(f"{order}\n")
+            watch.stdin.flush()
+            return int(watch.stdout.readline())
+
+        window = int(watch.stdout.readline())
+        ask("look")
+        person.tell("windowfocus", "--sync", window)
+        person.tell("keydown", "alt")
+        until(lambda: ask("mend") == 1, "the key, which is held")
+        with grabbed_keyboard(person.display):
+            ask("look")
+            person.tell("keyup", "alt")
+        assert ask("look") == 1, "GLFW does not see that it was let go"
+        until(lambda: ask("mend") == 0, "that it was let go")
+        watch.kill()
