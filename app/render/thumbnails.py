@@ -27,15 +27,18 @@ class Thumbnails:
         self._context = context
         self._textures: dict[Path, moderngl.Texture | None] = {}
         self._fresh = True
+        self.is_behind = False  # whether more were asked for in this frame than were read
 
     def begin_frame(self) -> None:
         """Allow one more file to be read: one a frame, so that the window opens at once."""
-        self._fresh = True
+        self._fresh, self.is_behind = True, False
 
     def get(self, path: Path) -> Thumbnail | None:
         """Return a file's thumbnail; None while it is not read, or where it has none."""
-        if path not in self._textures and self._fresh:
-            self._textures[path] = self._read(path)
+        if path not in self._textures:
+            if self._fresh:
+                self._textures[path] = self._read(path)
+            self.is_behind |= not self._fresh
             self._fresh = False
         texture = self._textures.get(path)
         return None if texture is None else Thumbnail(texture.glo, texture.size)

@@ -10,7 +10,7 @@ from app.editor import Action, Session, do
 from app.editor.actions import files
 from app.render import Thumbnail
 from app.ui.shortcuts import BINDINGS
-from app.ui.style import LARGE, SMALL, TITLE, Look, ink, main_button
+from app.ui.style import LARGE, SMALL, TITLE, Look, ink, main_button, show_picture
 
 Look_up = Callable[[Path], Thumbnail | None]
 CARD, GAP, ROW = 11.5, 1.0, 2.5  # em
@@ -110,23 +110,17 @@ def _card(look: Look, sample: files.SampleFile, image: Thumbnail | None) -> bool
     foot = 2.3 * look.em
     if image is not None:
         place = ImVec2(corner.x + 0.7 * look.em, corner.y + 0.7 * look.em)
-        _show(image, place, ImVec2(size.x - 1.4 * look.em, size.y - foot - 0.8 * look.em))
+        show_picture(
+            image.texture,
+            image.size,
+            place,
+            ImVec2(size.x - 1.4 * look.em, size.y - foot - 0.8 * look.em),
+        )
     text = ImVec2(corner.x + 0.9 * look.em, opposite.y - foot + 0.45 * look.em)
     draw_list.add_text(text, ink(palette.text), sample.name)
     end = ImVec2(opposite.x - 0.9 * look.em - imgui.calc_text_size(sample.what).x, text.y)
     draw_list.add_text(end, ink(palette.dim), sample.what)
     return pressed
-
-
-def _show(image: Thumbnail, corner: ImVec2, room: ImVec2) -> None:
-    """Draw a picture as large as there is room for it, in the middle."""
-    scale = min(room.x / image.size[0], room.y / image.size[1])
-    width, height = scale * image.size[0], scale * image.size[1]
-    x = corner.x + (room.x - width) / 2
-    y = corner.y + (room.y - height) / 2
-    imgui.get_window_draw_list().add_image(
-        imgui.ImTextureRef(image.texture), ImVec2(x, y), ImVec2(x + width, y + height)
-    )
 
 
 def _recent(session: Session, look: Look, thumbnail: Look_up) -> list[Action]:
@@ -160,7 +154,7 @@ def _row(look: Look, path: Path, index: int, image: Thumbnail | None, *, is_ther
     if image is None:
         _write(icons.ICON_FA_CLOCK_ROTATE_LEFT, corner.x + em, corner.y + 0.5 * size.y)
     else:
-        _show(image, corner, ImVec2(3 * em, size.y))
+        show_picture(image.texture, image.size, corner, ImVec2(3 * em, size.y))
     _write(path.name, corner.x + 3.6 * em, corner.y + 0.3 * size.y)
     imgui.push_font(None, SMALL * imgui.get_style().font_size_base)
     imgui.push_style_color(imgui.Col_.text, look.palette.dim)

@@ -9,7 +9,7 @@ from app.editor import Action, Session, do
 from app.editor.actions import files, keys
 from app.ui.bars import backdrop_menu
 from app.ui.shortcuts import BINDINGS, bound_item
-from app.ui.style import Look
+from app.ui.style import Look, tip
 
 
 def draw_menus(session: Session, _: Look) -> list[Action]:
@@ -57,7 +57,7 @@ def _recent(session: Session) -> list[Action]:
         if imgui.menu_item(f"{path.name}###recent {index}", note, False)[0]:  # noqa: FBT003
             actions.append(do(files.open_recent, path))
         imgui.pop_style_color()
-        imgui.set_item_tooltip(str(path))
+        tip(str(path))
     imgui.end_menu()
     return actions
 

@@ -4,7 +4,7 @@ from imgui_bundle import ImVec2, imgui
 
 from app.editor import Action, Dialog, FileDialog, Question, Session, ShortcutSheet, do
 from app.editor.actions import answer, browse, close_dialog, use_own_dialogs
-from app.ui.dialogs.file_browser import FileBrowser
+from app.ui.dialogs.file_browser import FileBrowser, LookUp
 from app.ui.dialogs.native_dialog import NativeDialog
 from app.ui.shortcuts import BINDINGS, GESTURES
 from app.ui.style import Look, heading, main_button
@@ -19,7 +19,7 @@ class Dialogs:
         self._browser = FileBrowser()
         self._native: NativeDialog | None = None
 
-    def draw(self, session: Session, look: Look) -> list[Action]:
+    def draw(self, session: Session, look: Look, thumbnail: LookUp) -> list[Action]:
         """Draw the open dialog, if there is one."""
         self._follow_session(session)
         dialog = session.dialog
@@ -40,7 +40,7 @@ class Dialogs:
         imgui.pop_style_var()
         if not visible:
             return [do(close_dialog)]
-        actions = self._contents(dialog, session, look)
+        actions = self._contents(dialog, session, look, thumbnail)
         if not open_ or imgui.is_key_pressed(imgui.Key.escape):
             actions.append(do(close_dialog))
         if any(action.verb not in GOING_ON for action in actions):
@@ -62,14 +62,16 @@ class Dialogs:
         if self._native is None and isinstance(dialog, FileDialog):
             self._native = NativeDialog(dialog, session.clock())
 
-    def _contents(self, dialog: Dialog, session: Session, look: Look) -> list[Action]:
+    def _contents(
+        self, dialog: Dialog, session: Session, look: Look, thumbnail: LookUp
+    ) -> list[Action]:
         match dialog:
             case Question():
                 return _question(dialog, look)
             case FileDialog() if self._native is not None:
                 return [*_waiting(look), *self._native.poll(session.clock())]
             case FileDialog():
-                return self._browser.draw(dialog, look)
+                return self._browser.draw(dialog, session, look, thumbnail)
             case ShortcutSheet():
                 _shortcuts(look)
                 return []

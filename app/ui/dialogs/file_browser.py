@@ -8,14 +8,20 @@ from typing import Any
 from imgui_bundle import ImVec2, imgui
 from imgui_bundle import icons_fontawesome_6 as icons
 
-from app.editor import Action, FileDialog, do
+from app.editor import Action, FileDialog, Session, do
 from app.editor.actions import browse, choose, close_dialog
+from app.render import Thumbnail
 from app.ui.dialogs.folder_listing import Entry, Listing, read_folder
+from app.ui.dialogs.places import Place, recent_places, usual_places
 from app.ui.shortcuts import in_words
-from app.ui.style import Look, icon_button, main_button, small
+from app.ui.style import Look, icon_button, ink, main_button, shortened, show_picture, small, tip
 
-WIDTH, HEIGHT = 42.0, 22.0  # em, where the window has room for them
-SIZE, CHANGED, BUTTON = 5.5, 9.5, 7.0  # em
+LookUp = Callable[[Path], Thumbnail | None]
+WIDTH, HEIGHT = 52.0, 24.0  # em, where the window has room for them
+PLACES, SIZE, CHANGED, BUTTON = 10.0, 5.5, 9.5, 7.0  # em
+ROW = 1.9  # em
+LARGEST_SHOWN = 20_000_000  # bytes: what takes longer to read is shown by an icon
+PLACE_FLAGS = imgui.SelectableFlags_.no_auto_close_popups
 SEPARATOR = "/"
 UP = int(imgui.Key.mod_alt) | int(imgui.Key.up_arrow)
 NAME_FIELD = "##file name"
@@ -43,18 +49,28 @@ class FileBrowser:
     """The browser; it reads a folder again only when that has changed."""
 
     def __init__(self) -> None:
+        self._usual: tuple[Place, ...] = ()
+        self._recent: tuple[Place, ...] = ()
         self._listing: Listing | None = None
         self._order = (0, False)  # column, and whether downwards
         self._entries: list[Entry] = []  # of the listing, in this order
 
-    def draw(self, dialog: FileDialog, look: Look) -> list[Action]:
+    def draw(
+        self, dialog: FileDialog, session: Session, look: Look, thumbnail: LookUp
+    ) -> list[Action]:
         """Draw the browser in the dialog's window."""
         room = imgui.get_main_viewport().size
         size = ImVec2(min(WIDTH * look.em, 0.85 * room.x), min(HEIGHT * look.em, 0.52 * room.y))
         appears = imgui.is_window_appearing()
-        now = _places(dialog, look, size.x)
+        if appears:
+            self._usual, self._recent = usual_places(), recent_places(session.preferences.recent)
+        now = _way(dialog, look, size.x)
         now, by_key = self._step(now)
-        now, is_accepted = self._list(now, look, size, shows_marked=by_key or appears)
+        now = self._places(now, look, size.y)
+        imgui.same_line()
+        side = PLACES * look.em + imgui.get_style().item_spacing.x
+        room = ImVec2(size.x - side, size.y)
+        now, is_accepted = self._list(now, look, thumbnail, room, shows_marked=by_key or appears)
         now = _name_field(now, size.x, is_new=appears, is_set=now.name != dialog.name)
         is_accepted |= any(imgui.is_key_pressed(key, repeat=False) for key in ENTER)
         folder, path = _folder_meant(now), _path_meant(now)
@@ -91,8 +107,35 @@ class FileBrowser:
             index = 0 if down else len(names) - 1
         return _mark(dialog, self._entries[min(max(index, 0), len(names) - 1)]), True
 
+    def _places(self, dialog: FileDialog, look: Look, height: float) -> FileDialog:
+        """Draw the person's own folders, and those of the files that were open last."""
+        imgui.begin_child("places", ImVec2(PLACES * look.em, height))
+        for title, places in (("Places", self._usual), ("Recent", self._recent)):
+            if not places:
+                continue
+            small(look, title)
+            for index, place in enumerate(places):
+                is_here = place.folder == dialog.folder
+                if imgui.selectable(f"###{title} {index}", is_here, PLACE_FLAGS)[0]:
+                    dialog = _enter(dialog, place.folder)
+                tip(str(place.folder))
+                imgui.same_line(0.3 * look.em)
+                imgui.text_colored(look.palette.dim, place.icon)
+                imgui.same_line(2.0 * look.em)
+                room = imgui.get_content_region_avail().x
+                imgui.text_unformatted(shortened(place.name, room))
+            imgui.dummy(ImVec2(0, 0.4 * look.em))
+        imgui.end_child()
+        return dialog
+
     def _list(
-        self, dialog: FileDialog, look: Look, size: ImVec2, *, shows_marked: bool
+        self,
+        dialog: FileDialog,
+        look: Look,
+        thumbnail: LookUp,
+        size: ImVec2,
+        *,
+        shows_marked: bool,
     ) -> tuple[FileDialog, bool]:
         """Draw the entries; return what is marked then, and whether it was double-clicked."""
         is_opened = False
@@ -114,7 +157,7 @@ class FileBrowser:
         while clipper.step():
             for index in range(clipper.display_start, clipper.display_end):
                 entry = self._entries[index]
-                if _row(entry, look, is_marked=index == marked):
+                if _row(entry, look, thumbnail, is_marked=index == marked):
                     dialog = _mark(dialog, entry)
                     is_opened = imgui.is_mouse_double_clicked(imgui.MouseButton_.left)
                 if index == marked and shows_marked:
@@ -142,7 +185,7 @@ class FileBrowser:
         self._entries = sorted(entries, key=lambda entry: not entry.is_folder)
 
 
-def _places(dialog: FileDialog, look: Look, width: float) -> FileDialog:
+def _way(dialog: FileDialog, look: Look, width: float) -> FileDialog:
     """Draw the ways out of the folder: up, home, and the folders that it is in."""
     start = imgui.get_cursor_pos_x()
     if icon_button(look, icons.ICON_FA_ARROW_UP, "up", "The folder above", keys=in_words(UP)):
@@ -174,23 +217,35 @@ def _places(dialog: FileDialog, look: Look, width: float) -> FileDialog:
     return dialog
 
 
-def _row(entry: Entry, look: Look, *, is_marked: bool) -> bool:
+def _row(entry: Entry, look: Look, thumbnail: LookUp, *, is_marked: bool) -> bool:
     """Draw an entry; return whether it was clicked."""
     imgui.table_next_row()
     imgui.table_next_column()
-    palette = look.palette
-    icon = icons.ICON_FA_FOLDER if entry.is_folder else icons.ICON_FA_FILE
-    imgui.text_colored(palette.accent if entry.is_folder else palette.dim, icon)
-    imgui.same_line(1.8 * look.em)
-    name = entry.path.name
-    clicked, _ = imgui.selectable(f"{name}###entry {name}", is_marked, ROW_FLAGS)
+    palette, em = look.palette, look.em
+    name, height = entry.path.name, ROW * em
+    corner = imgui.get_cursor_screen_pos()
+    clicked, _ = imgui.selectable(f"###entry {name}", is_marked, ROW_FLAGS, ImVec2(0, height))
+    middle = corner.y + (height - imgui.get_text_line_height()) / 2
+    draw_list = imgui.get_window_draw_list()
+    image = None if entry.is_folder or entry.size > LARGEST_SHOWN else thumbnail(entry.path)
+    if image is not None:
+        show_picture(image.texture, image.size, corner, ImVec2(2 * em, height))
+    else:
+        icon = icons.ICON_FA_FOLDER if entry.is_folder else icons.ICON_FA_FILE
+        colour = ink(palette.accent if entry.is_folder else palette.dim)
+        inset = (2 * em - imgui.calc_text_size(icon).x) / 2
+        draw_list.add_text(ImVec2(corner.x + inset, middle), colour, icon)
+    left = corner.x + 2.5 * em
+    room = corner.x + imgui.get_column_width() - left - 0.5 * em
+    draw_list.add_text(ImVec2(left, middle), ink(palette.text), shortened(name, room))
     imgui.table_next_column()
     size = entry.size_in_words
     at_end = imgui.get_content_region_avail().x - imgui.calc_text_size(size).x
-    imgui.set_cursor_pos_x(imgui.get_cursor_pos_x() + max(at_end, 0))
-    imgui.text_disabled(size)
-    imgui.table_next_column()
-    imgui.text_disabled(entry.changed_in_words)
+    for text, inset in ((size, max(at_end, 0)), (entry.changed_in_words, 0)):
+        place = imgui.get_cursor_screen_pos()
+        draw_list.add_text(ImVec2(place.x + inset, middle), ink(palette.dim), text)
+        if text is size:
+            imgui.table_next_column()
     return clicked
 
 

@@ -30,6 +30,7 @@ from app.ui.style.widgets import (
     main_button,
     segments,
     shortened,
+    show_picture,
     small,
     tip,
 )
@@ -59,6 +60,7 @@ __all__ = [
     "number",
     "segments",
     "shortened",
+    "show_picture",
     "slider",
     "small",
     "tip",

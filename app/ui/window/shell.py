@@ -180,7 +180,7 @@ class Shell:
         self._docking.draw_tabs()
         if session.project is None:
             self._part("The welcome view", partial(welcome.draw, thumbnail=self._thumbnail))()
-        self._part("The dialog", self._dialogs.draw)()
+        self._part("The dialog", partial(self._dialogs.draw, thumbnail=self._thumbnail))()
         self._part("The messages", toasts.draw)()
         held = imgui.internal.get_active_id()
         self._actions.append(do(editing.hold, held or int(imgui.is_mouse_down(LEFT))))

@@ -13,7 +13,7 @@ from PIL import Image
 
 import glfw  # isort: skip
 
-from app.editor import Action, Session, do
+from app.editor import Action, FileDialog, Session, do
 from app.editor.actions import files
 from app.errors import LissomError
 from app.render import Renderer, Textures, Thumbnail, Thumbnails
@@ -206,9 +206,13 @@ class Window:
     def _begin_frame(self) -> None:
         if self._thumbnails is None:
             return
+        if self._thumbnails.is_behind:
+            # There are more to be read.
+            hello_imgui.request_refresh()
         self._thumbnails.begin_frame()
-        if self.session.project is not None:
-            # Only the welcome view shows them, and by its return files may have been saved anew.
+        if self.session.project is not None and not isinstance(self.session.dialog, FileDialog):
+            # Only the welcome view and the file browser show them, and until the next time files
+            # may have been saved anew.
             self._thumbnails.release()
 
     def _thumbnail(self, path: Path) -> Thumbnail | None:

@@ -1,15 +1,19 @@
 """Our own file browser, through its widgets."""
 
 import os
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
 import pytest
+from PIL import Image
 
 from app.editor.action import do
 from app.editor.actions import viewing
 from app.editor.dialogs import FileDialog
+from app.storage.assets import sample_images
 from app.ui.dialogs.folder_listing import Entry, read_folder
+from app.ui.dialogs.places import recent_places, usual_places
 from app.ui.style.theme import PALETTES
 
 
@@ -321,3 +325,39 @@ def test_escape_and_cancel_close_it(window, show, chosen):
 def test_sizes_in_words(tmp_path, size, words):
     entry = Entry(path=tmp_path, is_folder=False, size=size, changed=0.0)
     assert entry.size_in_words == words
+
+
+def test_places_and_recent_folders_are_one_click_away(window, show, folder, monkeypatch, listed):
+    home = folder.parent / "home"
+    (home / "Bilder").mkdir(parents=True)
+    (home / "Desktop").mkdir()
+    (home / "Bilder" / "seal.png").write_bytes(b"")
+    settings = home / ".config"
+    settings.mkdir()
+    (settings / "user-dirs.dirs").write_text('XDG_PICTURES_DIR="$HOME/Bilder"\n', encoding="utf-8")
+    monkeypatch.setattr("pathlib.Path.home", lambda: home)
+    monkeypatch.setenv("XDG_CONFIG_HOME", str(settings))
+    recent = (folder / "drawings" / "cow.png", folder / "drawings" / "b.png", home / "no" / "c.png")
+    session = window.session
+    session.preferences = replace(session.preferences, recent=recent)
+    assert [place.name for place in usual_places()] == ["Home", "Desktop", "Bilder"]
+    assert [place.folder for place in recent_places(recent)] == [folder / "drawings"]
+    show()
+    window.run(lambda robot: robot.item_click("//###dialog/**/###Places 2"))
+    assert session.dialog.folder == home / "Bilder"
+    assert listed("seal.png")
+    window.run(lambda robot: robot.item_click("//###dialog/**/###Recent 0"))
+    assert session.dialog.folder == folder / "drawings"
+
+
+def test_pictures_and_projects_show_as_they_are(window, show, folder):
+    """Red, green: seen in the list beside their names; also while a project is open."""
+    window.open(sample_images() / "bar.png")
+    for name, colour in (("bat.png", (255, 0, 0)), ("Ant.PNG", (0, 255, 0))):
+        Image.new("RGB", (40, 40), colour).save(folder / name, format="PNG")
+    show()
+    window.frames(6)
+    picture = np.asarray(window.picture()).astype(int)[..., :3]
+    for colour in ((255, 0, 0), (0, 255, 0)):
+        seen = (np.abs(picture - colour).max(axis=2) < 30).sum()
+        assert seen > 100
