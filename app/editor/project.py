@@ -6,7 +6,18 @@ from math import inf
 from pathlib import Path
 from typing import Self
 
-from app.document import Clip, Document, Figure, History, Meshing, Playhead, Pose, Target, clip_of
+from app.document import (
+    Clip,
+    Document,
+    Figure,
+    History,
+    Meshing,
+    PictureFile,
+    Playhead,
+    Pose,
+    Target,
+    clip_of,
+)
 from app.editor.action import Action
 from app.editor.derived import Derived
 from app.editor.timeline_view import Timing
@@ -111,6 +122,8 @@ class Project:
         where.
     puppets : dict of int to Puppet
         One for each figure, by its id.
+    pictures : dict of PictureFile to Picture
+        Those that are decoded, of layers that come back by undo among them.
     active : int
         The id of the figure whose handles and keys are shown and changed.
     posing : PoseInProgress, optional
@@ -152,6 +165,7 @@ class Project:
     path: Path | None
     puppets: dict[int, Puppet]
     active: int
+    pictures: dict[PictureFile, Picture] = field(default_factory=dict)
     is_recovered: bool = False
     posing: PoseInProgress | None = None
     settling: PoseInProgress | None = None

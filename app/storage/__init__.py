@@ -29,9 +29,16 @@ from app.storage.json_values import (
     as_point,
     without_repeats,
 )
-from app.storage.layers import OpenedScene, is_layered, layer_figure, open_layered, open_pictures
+from app.storage.layers import (
+    OpenedScene,
+    is_layered,
+    layer_figure,
+    open_layered,
+    open_pictures,
+    still_figure,
+)
 from app.storage.opening import open_picture
-from app.storage.pictures import Picture, decode_picture, read_picture_file
+from app.storage.pictures import Layer, Picture, decode_picture, read_picture_file
 from app.storage.preferences import (
     CHECKER,
     LARGEST_GHOST_STEP,
@@ -56,6 +63,7 @@ __all__ = [
     "SMALLEST_SCALE",
     "Autosave",
     "JsonObject",
+    "Layer",
     "OpenedScene",
     "Origin",
     "Picture",
@@ -88,6 +96,7 @@ __all__ = [
     "save_project",
     "settings_folder",
     "shader_source",
+    "still_figure",
     "without_repeats",
     "write_arrays",
     "write_atomically",

@@ -133,6 +133,23 @@ def layer_figure(
     return figure, tuple(f"{layer.name}: {notice}" for notice in notices)
 
 
+def still_figure(figure: Figure) -> Figure:
+    """Return the figure as a picture that stands still where it was drawn."""
+    domain = rectangle_domain(*figure.picture.size).moved(figure.corner)
+    return replace(
+        new_figure(figure.picture, domain, figure.meshing),
+        id=figure.id,
+        name=figure.name,
+        corner=figure.corner,
+        still=True,
+        reference=figure.reference,
+        locked=figure.locked,
+        hidden=figure.hidden,
+        switches=figure.switches,
+        opacity=figure.opacity,
+    )
+
+
 def _scene(drawing: LayeredPicture, meshing: Meshing, *, is_cut_out: bool) -> OpenedScene:
     share = max(FEWEST_TRIANGLES, meshing.triangles // len(drawing.layers))
     each = replace(meshing, triangles=min(meshing.triangles, share))

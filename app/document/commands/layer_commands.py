@@ -26,6 +26,12 @@ def add_figure(document: Document, figure: Figure, index: int | None = None) -> 
     return replace(document, figures=tuple(figures), size=document.canvas)
 
 
+@command("Replace layer")
+def replace_figure(document: Document, identity: int, figure: Figure) -> Document:
+    """Put another figure with the same id in a figure's place; others hang on it as before."""
+    return document.with_figure(replace(figure, id=identity))
+
+
 @command("Duplicate layer")
 def duplicate_figure(document: Document, identity: int) -> Document:
     """Put a copy of a figure in front of it."""

@@ -11,13 +11,15 @@ from app.document import (
     FrameRange,
     UnkeyedPose,
     changed_stretches,
+    clip_of,
     handle_commands,
     key_commands,
     pairs_by_name,
 )
 from app.editor.actions import playback, posing
-from app.editor.project import Project
+from app.editor.project import Project, Puppet
 from app.editor.session import Session
+from app.storage import decode_picture
 
 Arguments = ParamSpec("Arguments")
 
@@ -202,8 +204,31 @@ def _posed(project: Project) -> tuple[object, ...]:
     return (poses, figure.handles, figure.bounds, figure.domain)
 
 
+def follow_figures(project: Project) -> None:
+    """Let the window have the figures that the document has, and no others."""
+    document = project.document
+    gone = project.puppets.keys() - {figure.id for figure in document.figures}
+    for identity in gone:
+        del project.puppets[identity]
+    for figure in document.figures:
+        puppet = project.puppets.get(figure.id)
+        if puppet is not None and puppet.coarse.value.clip.figure.picture is figure.picture:
+            project.pictures[figure.picture] = puppet.picture
+            continue
+        if figure.picture not in project.pictures:
+            decoded = decode_picture(figure.picture.data, figure.name)
+            project.pictures[figure.picture] = decoded
+        picture = project.pictures[figure.picture]
+        project.puppets[figure.id] = Puppet.of(clip_of(document, figure.id), picture)
+    if project.active not in project.puppets:
+        posable = [figure.id for figure in document.figures if not figure.still]
+        project.active = (posable or [figure.id for figure in document.figures])[-1]
+        project.selected = project.chosen = frozenset()
+
+
 def _forget_what_is_gone(project: Project) -> None:
     document = project.document
+    follow_figures(project)
     project.selected &= {handle.id for handle in project.figure.handles}
     project.chosen &= project.figure.key_frames
     if project.playhead.frame not in document.frames:

@@ -16,12 +16,16 @@ from app.editor.jobs import Job
 from app.editor.project import Project, Puppet
 from app.editor.session import Session
 from app.storage import (
+    OpenedScene,
     Origin,
     decode_picture,
     find_leftovers,
+    is_layered,
     load_leftover,
     load_project,
+    open_layered,
     open_picture,
+    open_pictures,
     remove_leftover,
     sample_images,
 )
@@ -30,7 +34,8 @@ PICTURES = (
     *(".png", ".jpg", ".jpeg", ".gif", ".webp", ".bmp", ".tif", ".tiff", ".ppm", ".tga", ".ico"),
     ".avif",
 )
-OPENABLE = (PROJECT, *PICTURES)
+LAYERED = (".ora", ".psd")
+OPENABLE = (PROJECT, *PICTURES, *LAYERED)
 OPENING = "Opening"
 LOOK = 2.0  # seconds between two looks at whether files are still there
 
@@ -120,10 +125,26 @@ def open_file(session: Session, path: Path) -> None:
     )
 
 
+def open_together(session: Session, paths: Sequence[Path]) -> None:
+    """Read several pictures on the worker, and open them as the layers of one scene."""
+    meshing = session.meshing
+    session.jobs.put(
+        Job(
+            kind=f"{OPENING} {len(paths)} pictures",
+            work=lambda: _scene(open_pictures(paths, meshing)),
+            done=lambda opened: saving.unless_unsaved(session, do(show, paths[0], opened)),
+            failed=lambda error: report(session, "The pictures cannot be opened", error),
+        )
+    )
+
+
 def open_dropped(session: Session, paths: Sequence[Path]) -> None:
-    """Open the first picture or project of what was dropped on the window."""
+    """Open what was dropped on the window: a project or a drawing, or several as layers."""
     usable = [path for path in paths if path.suffix.lower() in OPENABLE and not path.is_dir()]
-    if usable:
+    pictures = [path for path in usable if path.suffix.lower() in PICTURES]
+    if len(pictures) > 1:
+        open_together(session, pictures)
+    elif usable:
         if len(paths) > 1:
             session.tell(f"Opened {usable[0].name}; only one file at a time.")
         open_file(session, usable[0])
@@ -144,7 +165,7 @@ def show(session: Session, path: Path, opened: Opened) -> None:
         name=path.stem,
         history=History(opened.document, saved=True),
         puppets=opened.puppets,
-        active=opened.document.figures[-1].id,
+        active=_foremost(opened.document),
         path=path if is_project else None,
     )
     if not is_sample:
@@ -155,7 +176,25 @@ def show(session: Session, path: Path, opened: Opened) -> None:
         session.tell(sentence(notice))
 
 
+def _foremost(document: Document) -> int:
+    """Return the figure that is posed first: the one in front, stills aside."""
+    return next(
+        (figure.id for figure in reversed(document.figures) if not figure.still),
+        document.figures[-1].id,
+    )
+
+
+def _scene(opened: OpenedScene) -> Opened:
+    puppets = {
+        identity: Puppet.of(clip_of(opened.document, identity), picture)
+        for identity, picture in opened.pictures.items()
+    }
+    return Opened(opened.document, puppets, opened.notices)
+
+
 def _read(path: Path, meshing: Meshing) -> Opened:
+    if is_layered(path):
+        return _scene(open_layered(path, meshing))
     is_project = path.suffix.lower() == PROJECT
     return _read_project(path) if is_project else _read_picture(path, meshing)
 
@@ -225,7 +264,7 @@ def show_recovered(session: Session, path: Path, opened: Opened, origin: Origin)
         name=origin.name,
         history=History(opened.document, saved=False),
         puppets=opened.puppets,
-        active=opened.document.figures[-1].id,
+        active=_foremost(opened.document),
         path=origin.path,
         is_recovered=True,
     )

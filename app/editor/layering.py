@@ -1,0 +1,229 @@
+"""What a person does with layers: choosing, ordering, hiding, hanging one on another."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import TypeVar
+
+import numpy as np
+
+from app.document import Attachment, Figure, is_visible, layer_commands
+from app.editor.actions import editing, playback, posing
+from app.editor.failures import report, sentence
+from app.editor.jobs import Job
+from app.editor.project import Project
+from app.editor.session import Session
+from app.motion import Joints
+from app.storage import (
+    Layer,
+    Picture,
+    decode_picture,
+    layer_figure,
+    read_picture_file,
+    still_figure,
+)
+from engine.geometry import contains
+
+T = TypeVar("T")
+ADDING, HANGING = "Adding a layer", "Hanging a layer"
+
+
+def choose(session: Session, identity: int) -> None:
+    """Let a figure be the one whose handles and keys are shown and changed."""
+    project = session.project
+    if project is None or identity == project.active:
+        return
+    posing.drop(session)
+    project.active = identity
+    project.selected = project.chosen = frozenset()
+    project.meshing = project.drafted_bounds = None
+    session.hovered = None
+
+
+def figure_at(project: Project, place: complex, *, below: int | None = None) -> int | None:
+    """Return the figure that is seen in front at a place of the scene, None where there is none.
+
+    Still, hidden and locked ones are passed through.
+
+    Parameters
+    ----------
+    project : Project
+    place : complex
+    below : int, optional
+        Where that figure is there, too, the next one behind it is returned, or at last the first.
+    """
+    found = [each.id for each in reversed(project.document.figures) if _is_at(project, each, place)]
+    if below in found:
+        return found[(found.index(below) + 1) % len(found)]
+    return found[0] if found else None
+
+
+def _is_at(project: Project, figure: Figure, place: complex) -> bool:
+    shown = project.puppets[figure.id].shown
+    if shown is None or figure.still or figure.locked or not is_visible(figure, shown.frame):
+        return False
+    outline = shown.positions[: len(shown.mesh.domain.outline)]
+    return bool(contains(outline, np.array([shown.placement.back(place)]))[0])
+
+
+def rename(session: Session, identity: int, name: str) -> None:
+    """Give a layer another name."""
+    if session.project and name.strip():
+        editing.edit(session, layer_commands.rename_figure(identity, name))
+
+
+def move(session: Session, identity: int, index: int) -> None:
+    """Put a layer at an index in the order from back to front."""
+    editing.edit(session, layer_commands.move_figure(identity, index))
+
+
+def show(session: Session, identity: int) -> None:
+    """Hide a layer, or show it again."""
+    if session.project:
+        hidden = session.project.document.figure(identity).hidden
+        editing.edit(session, layer_commands.set_hidden(identity, hidden=not hidden))
+
+
+def lock(session: Session, identity: int) -> None:
+    """Let clicks on the drawing pass through a layer, or stop at it again."""
+    if session.project:
+        locked = session.project.document.figure(identity).locked
+        editing.edit(session, layer_commands.set_locked(identity, locked=not locked))
+
+
+def refer(session: Session, identity: int) -> None:
+    """Leave a layer out of exports, or take it in again."""
+    if session.project:
+        reference = session.project.document.figure(identity).reference
+        editing.edit(session, layer_commands.set_reference(identity, reference=not reference))
+
+
+def fade(session: Session, identity: int, opacity: float) -> None:
+    """Set how opaque a layer is."""
+    editing.edit(session, layer_commands.set_opacity(identity, opacity))
+
+
+def switch_here(session: Session, identity: int) -> None:
+    """Show or hide a layer from the present frame on: the other way than it is there."""
+    project = session.project
+    if project:
+        frame = playback.current_frame(session, project)
+        figure = project.document.figure(identity)
+        visible = not is_visible(figure, frame)
+        editing.edit(session, layer_commands.switch_at(identity, frame, visible=visible))
+
+
+def unswitch_here(session: Session, identity: int) -> None:
+    """Take back that a layer is shown or hidden from the present frame on."""
+    project = session.project
+    if project:
+        frame = playback.current_frame(session, project)
+        editing.edit(session, layer_commands.switch_at(identity, frame, visible=None))
+
+
+def duplicate(session: Session, identity: int) -> None:
+    """Put a copy of a layer in front of it, and choose it."""
+    project = session.project
+    if project is None:
+        return
+    free = layer_commands.free_identity(project.document)
+    editing.edit(session, layer_commands.duplicate_figure(identity))
+    choose(session, free)
+
+
+def remove(session: Session, identity: int) -> None:
+    """Delete a layer."""
+    editing.edit(session, layer_commands.remove_figure(identity))
+
+
+def stand_still(session: Session, identity: int) -> None:
+    """Make a layer a still picture, without handles and keys."""
+    if session.project:
+        figure = session.project.document.figure(identity)
+        editing.edit(session, layer_commands.replace_figure(identity, still_figure(figure)))
+
+
+def add(session: Session, paths: Sequence[Path]) -> None:
+    """Add pictures as layers in front of all others."""
+    project = session.project
+    if project is None:
+        return
+    meshing = session.meshing
+
+    def work() -> list[tuple[Figure, Picture, tuple[str, ...]]]:
+        made = []
+        for path in paths:
+            data = read_picture_file(path)
+            picture = decode_picture(data, path.name)
+            layer = Layer(name=path.stem, data=data, picture=picture)
+            figure, notices = layer_figure(layer, 0, meshing, is_cut_out=False)
+            made.append((figure, picture, picture.notices + notices))
+        return made
+
+    def done(made: list[tuple[Figure, Picture, tuple[str, ...]]]) -> None:
+        if session.project is not project:
+            return
+        gesture = object()
+        for figure, picture, notices in made:
+            identity = layer_commands.free_identity(project.document)
+            project.pictures[figure.picture] = picture
+            command = layer_commands.add_figure(replace(figure, id=identity))
+            project.history.do(command, gesture=gesture)
+            editing.follow_figures(project)
+            choose(session, identity)
+            for notice in notices:
+                session.tell(sentence(notice))
+
+    _put(session, ADDING, work, done, "The layer cannot be added")
+
+
+def hang(session: Session, child: int, parent: int, *, turns: bool = True) -> None:
+    """Hang a layer by its anchor on the one under it; nothing moves at the present frame."""
+    project = session.project
+    if project is None:
+        return
+    posing.drop(session)
+    document, frame = project.document, playback.current_frame(session, project)
+    samplers = {figure: puppet.coarse.value.sampler for figure, puppet in project.puppets.items()}
+    siblings = {figure: sampler for figure, sampler in samplers.items() if sampler is not None}
+
+    def done(joint: tuple[complex, Attachment]) -> None:
+        if session.project is project and project.document is document:
+            editing.edit(session, layer_commands.attach(child, *joint))
+
+    _put(
+        session,
+        HANGING,
+        lambda: Joints(document, siblings).hang(child, parent, frame, turns=turns),
+        done,
+        "The layers cannot be joined",
+    )
+
+
+def let_hang(session: Session, child: int) -> None:
+    """Let a layer hang on nothing any more; nothing moves at the present frame."""
+    project = session.project
+    shown = project.puppets[child].shown if project else None
+    if project and shown is not None:
+        editing.edit(session, layer_commands.detach(child, *shown.placement))
+
+
+def turn_with(session: Session, child: int, *, turns: bool) -> None:
+    """Let a layer turn with the one that it hangs on, or keep its own turn; nothing moves now."""
+    project = session.project
+    joint = project.document.figure(child).attachment if project else None
+    if joint is not None and turns != joint.turns:
+        hang(session, child, joint.to, turns=turns)
+
+
+def _put(
+    session: Session, kind: str, work: Callable[[], T], done: Callable[[T], None], complaint: str
+) -> None:
+    session.jobs.put(
+        Job(
+            kind=kind,
+            work=work,
+            done=done,
+            failed=lambda error: report(session, complaint, error),
+        )
+    )
