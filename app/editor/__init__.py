@@ -5,6 +5,7 @@ Out: a `Session`: the document, what is shown of it, and what is under way.
 Imports: every room below but the command line and the panels.
 """
 
+from app.editor import layering
 from app.editor.action import Action, do
 from app.editor.dialogs import Dialog, FileDialog, Question, ShortcutSheet
 from app.editor.failures import sentence
@@ -64,5 +65,6 @@ __all__ = [
     "Toast",
     "ToolInHand",
     "do",
+    "layering",
     "sentence",
 ]

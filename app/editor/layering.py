@@ -8,7 +8,9 @@ from typing import TypeVar
 import numpy as np
 
 from app.document import Attachment, Figure, is_visible, layer_commands
-from app.editor.actions import editing, playback, posing
+from app.editor.action import do
+from app.editor.actions import editing, files, playback, posing
+from app.editor.dialogs import FileDialog, Question
 from app.editor.failures import report, sentence
 from app.editor.jobs import Job
 from app.editor.project import Project
@@ -177,7 +179,35 @@ def add(session: Session, paths: Sequence[Path]) -> None:
     _put(session, ADDING, work, done, "The layer cannot be added")
 
 
-def hang(session: Session, child: int, parent: int, *, turns: bool = True) -> None:
+def ask(session: Session) -> None:
+    """Ask for a picture that becomes another layer."""
+    session.dialog = FileDialog(
+        title="Add a picture as a layer",
+        folder=session.usual_folder,
+        suffixes=files.PICTURES,
+        writes=False,
+        chosen=lambda path: do(add, [path]),
+    )
+
+
+def drop(session: Session, paths: Sequence[Path]) -> None:
+    """Open what was dropped on the window; ask whether pictures are to join the open scene."""
+    pictures = [path for path in paths if path.suffix.lower() in files.PICTURES]
+    if session.project is None or not pictures or len(pictures) < len(paths):
+        files.open_dropped(session, paths)
+        return
+    what = pictures[0].name if len(pictures) == 1 else f"{len(pictures)} pictures"
+    session.dialog = Question(
+        title=f"Add {what} to this scene?",
+        text="A new layer lies in front of the others and shares their timeline.",
+        answers=(
+            ("New layer" if len(pictures) == 1 else "New layers", do(add, pictures)),
+            ("New scene", do(files.open_dropped, pictures)),
+        ),
+    )
+
+
+def hang(session: Session, child: int, parent: int, turns: bool = True) -> None:  # noqa: FBT001, FBT002 - of an action
     """Hang a layer by its anchor on the one under it; nothing moves at the present frame."""
     project = session.project
     if project is None:
@@ -208,12 +238,12 @@ def let_hang(session: Session, child: int) -> None:
         editing.edit(session, layer_commands.detach(child, *shown.placement))
 
 
-def turn_with(session: Session, child: int, *, turns: bool) -> None:
+def turn_with(session: Session, child: int, turns: bool) -> None:  # noqa: FBT001 - of an action
     """Let a layer turn with the one that it hangs on, or keep its own turn; nothing moves now."""
     project = session.project
     joint = project.document.figure(child).attachment if project else None
     if joint is not None and turns != joint.turns:
-        hang(session, child, joint.to, turns=turns)
+        hang(session, child, joint.to, turns)
 
 
 def _put(

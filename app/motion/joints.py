@@ -10,7 +10,7 @@ from app.errors import LissomError
 from app.motion.inbetweens import Animation, PoseSampler
 from engine.arrays import Complexes
 from engine.errors import EngineError
-from engine.geometry import box_diagonal, deepest_point
+from engine.geometry import box_diagonal, contains, deepest_point
 
 # Newton steps towards the point of a parent that is at a place; each squares the error.
 MOST_STEPS = 20
@@ -153,7 +153,8 @@ class Joints:
         frame : float
             Where nothing moves.
         place : complex, optional
-            Of the joint, in the scene; by default that of the child's anchor.
+            Of the joint, in the scene; by default that of the child's anchor, or, where the parent
+            is not there, the middle of where the two overlap.
         turns : bool
             Whether the child turns with the parent.
 
@@ -172,7 +173,7 @@ class Joints:
         own = document.figure(child)
         here, there = self.placement(child, frame), self.placement(parent, frame)
         if place is None:
-            anchor = deepest_point(own.domain.outline) if own.anchor is None else own.anchor
+            anchor = self._common_point(own, document.figure(parent), frame)
             place = complex(here.on(np.array([self._at(own, anchor, frame).place]))[0])
         else:
             anchor = self._source(own, here.back(place), frame)
@@ -222,6 +223,23 @@ class Joints:
         moved = self._animation_at(figure, np.array([place])).frame(frame)
         return _joint(moved.positions[0], moved.fz[0])
 
+    def _common_point(self, child: Figure, parent: Figure, frame: float) -> complex:
+        """Return the point of a figure at rest that is its anchor, or else in the parent, too."""
+        mesh = child.domain.mesh
+        middles = mesh.vertices[mesh.triangles].mean(axis=1)
+        middles = middles[:: max(1, len(middles) // MOST_STARTS)]
+        anchor = deepest_point(child.domain.outline) if child.anchor is None else child.anchor
+        points = np.array([anchor, *middles])
+        here, there = (self.placement(each.id, frame) for each in (child, parent))
+        places = here.on(self._animation_at(child, points).frame(frame).positions)
+        border = there.on(self._animation_at(parent, parent.domain.outline).frame(frame).positions)
+        common = contains(border, places)
+        if common[0] or not common.any():
+            return anchor
+        middle = places[common].mean()
+        nearest = np.argmin(np.where(common, np.abs(places - middle), np.inf))
+        return complex(points[nearest])
+
     def _source(self, figure: Figure, place: complex, frame: float) -> complex:
         """Return the point of a figure at rest that is at a place, in the figure's own terms."""
         mesh = figure.domain.mesh
@@ -243,7 +261,7 @@ class Joints:
             source += (fz.conjugate() * away - fzbar * away.conjugate()) / area
         raise LissomError(
             f"There is nothing of {figure.name!r} at ({place.real:.0f}, {place.imag:.0f}); a joint "
-            "must be on both figures."
+            "must be on both layers: let them overlap, or put the anchor there."
         )
 
 

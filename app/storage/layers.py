@@ -108,7 +108,7 @@ def layer_figure(
     picture = layer.picture
     file = PictureFile(data=layer.data, suffix=picture.suffix, size=picture.size)
     domain, still = rectangle_domain(*picture.size), True
-    notices: tuple[str, ...] = ("it stands still",)
+    notices: tuple[str, ...] = ("it is opaque all over, and stands still",)
     if not (is_cut_out and (picture.rgba[..., 3] == OPAQUE).all()):
         try:
             domain, notices = build_domain(

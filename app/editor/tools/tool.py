@@ -23,6 +23,9 @@ class Spot:
     on_ring : bool
         Whether it is on the ring around the selected handle.
     on_shape : bool
+        Whether it is on the figure that is posed.
+    figure : int, optional
+        The figure that is seen there; with Alt held the next one behind the one that is posed.
     ctrl, shift, alt : bool
         Which keys are held.
     """
@@ -31,6 +34,7 @@ class Spot:
     handle: int | None = None
     on_ring: bool = False
     on_shape: bool = False
+    figure: int | None = None
     ctrl: bool = False
     shift: bool = False
     alt: bool = False

@@ -19,6 +19,8 @@ from app.render import (
 )
 from app.ui.style import Palette, interface_scale
 
+FAINT = 3.0  # pixels: the radius of a handle of another layer
+
 
 def pixel_scale(session: Session) -> float:
     """Return how many pixels of the picture a pixel of the design takes."""
@@ -67,8 +69,9 @@ def mark_all(
         )
     handle_lines, discs = mark_handles(marks, scale=scale, style=style)
     anchor = find_anchor(project, shown)
+    faint = _others(project, scale)
     below = () if anchor is None else mark_anchor(on(anchor), scale=scale, style=style)
-    return (*lines, *handle_lines), (*below, *discs)
+    return (*lines, *handle_lines), (*faint, *below, *discs)
 
 
 def find_anchor(project: Project, shown: Shown) -> complex | None:
@@ -81,6 +84,16 @@ def find_anchor(project: Project, shown: Shown) -> complex | None:
         return None
     found = shown.mesh.locate(np.array([rest]), shown.mesh.domain.mesh.vertices)
     return complex(found.on(shown.positions)[0])
+
+
+def _others(project: Project, scale: float) -> tuple[Disc, ...]:
+    """Return faint marks of the handles of the figures that are not posed."""
+    return tuple(
+        Disc(centre=complex(place), radius=FAINT * scale, fill=(1.0, 1.0, 1.0, 0.35))
+        for figure, puppet in project.puppets.items()
+        if figure != project.active and puppet.shown is not None
+        for place in puppet.shown.placement.on(puppet.shown.handle_places)
+    )
 
 
 def _on(shown: Shown, place: complex) -> complex:

@@ -7,7 +7,7 @@ from imgui_bundle import ImVec2, imgui
 from imgui_bundle import icons_fontawesome_6 as icons
 
 from app.document import handle_commands
-from app.editor import Action, BoxMark, EntryMark, Hint, Project, Session, SweepMark, do
+from app.editor import Action, BoxMark, EntryMark, Hint, Project, Session, SweepMark, do, layering
 from app.editor.actions import editing, posing, viewing
 from app.editor.tools import TOOLS, Spot, pointing
 from app.motion import Shown
@@ -119,6 +119,14 @@ class _Canvas:
         pixel = self.view.to_pixels(on_plane)[0] / self.density + self._corner
         return ImVec2(pixel.real, pixel.imag)
 
+    def figure(self, *, through: bool) -> int | None:
+        """The figure under the pointer, or, `through` the one that is posed, the next behind it."""
+        if len(self.project.document.figures) == 1:
+            return None
+        mouse = imgui.get_mouse_pos()
+        below = self.project.active if through else None
+        return layering.figure_at(self.project, self._plane(complex(mouse.x, mouse.y)), below=below)
+
     def is_on_shape(self, place: complex) -> bool:
         outline = self.shown.positions[: len(self.shown.mesh.domain.outline)]
         return bool(contains(outline, np.array([place]))[0])
@@ -132,6 +140,7 @@ def _spot(canvas: _Canvas, handle: int | None, *, on_ring: bool) -> Spot:
         handle=handle,
         on_ring=on_ring,
         on_shape=canvas.is_on_shape(place),
+        figure=canvas.figure(through=io.key_alt),
         ctrl=io.key_ctrl,
         shift=io.key_shift,
         alt=io.key_alt,

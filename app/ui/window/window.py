@@ -13,14 +13,13 @@ from PIL import Image
 
 import glfw  # isort: skip
 
-from app.editor import Action, FileDialog, Session, do
-from app.editor.actions import files
+from app.editor import Action, FileDialog, Session, do, layering
 from app.errors import LissomError
 from app.render import Renderer, Textures, Thumbnail, Thumbnails
 from app.render.gpu import is_software
 from app.storage import app_icon
 from app.ui.panel import Panel
-from app.ui.panels import deform, distortion, domain, export, handle
+from app.ui.panels import deform, distortion, domain, export, handle, layers
 from app.ui.timeline import timeline
 from app.ui.viewport import Canvas, viewport
 from app.ui.window.exporter import Exporter
@@ -159,6 +158,7 @@ class Window:
                 draw=lambda session, look: viewport.draw(session, look, self._texture),
             ),
             Panel(title="Timeline", icon=icons.ICON_FA_FILM, place="bottom", draw=timeline.draw),
+            Panel(title="Layers", icon=icons.ICON_FA_LAYER_GROUP, place="side", draw=layers.draw),
             Panel(title="Handle", icon=icons.ICON_FA_CIRCLE_DOT, place="side", draw=handle.draw),
             Panel(title="Deform", icon=icons.ICON_FA_SLIDERS, place="side", draw=deform.draw),
             Panel(
@@ -195,7 +195,7 @@ class Window:
             glfw.set_window_title(glfw_utils.glfw_window_hello_imgui(), title)
 
     def _take_dropped(self, _: object, paths: list[str]) -> None:
-        self.ask(do(files.open_dropped, [Path(path) for path in paths]))
+        self.ask(do(layering.drop, [Path(path) for path in paths]))
 
     def _release(self) -> None:
         self._shell.release()

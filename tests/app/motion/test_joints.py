@@ -141,6 +141,18 @@ def test_detaching_moves_nothing_at_the_present_frame():
     assert_allclose(seen(loose, 2, frame), seen(document, 2, frame), rtol=0, atol=1e-9)
 
 
+def test_without_a_common_anchor_layers_are_joined_where_they_overlap():
+    document = layers.detach(2, 1, 0)(chain())
+    figure = document.figure(2)
+    apart = replace(figure, anchor=CENTRE - 80)
+    keys = tuple(replace(k, pose=bent(figure, 0, 0, 130)) for k in figure.keys)
+    document = document.with_figure(replace(apart, keys=keys))
+    anchor, joint = Joints(document).hang(2, 0, 0, turns=True)
+    assert anchor.real < CENTRE.real
+    hung = layers.attach(2, anchor, joint)(document)
+    assert_allclose(seen(hung, 2, 0), seen(document, 2, 0), rtol=0, atol=1e-8)
+
+
 def test_a_joint_must_be_on_both_figures():
     document = layers.detach(2, 1, 0)(chain())
     with pytest.raises(LissomError, match=r"nothing of '2' at \(5000, 0\)"):
