@@ -192,7 +192,9 @@ def ask(session: Session) -> None:
 
 def drop(session: Session, paths: Sequence[Path]) -> None:
     """Open what was dropped on the window; ask whether pictures are to join the open scene."""
-    pictures = [path for path in paths if path.suffix.lower() in files.PICTURES]
+    pictures = [
+        path for path in paths if path.suffix.lower() in files.PICTURES and not path.is_dir()
+    ]
     if session.project is None or not pictures or len(pictures) < len(paths):
         files.open_dropped(session, paths)
         return

@@ -68,12 +68,38 @@ def test_a_dropped_project_opens(window, project, drop, tmp_path):
     assert window.session.preferences.recent[0] == path
 
 
-def test_of_several_dropped_files_the_first_opens(window, drop, tmp_path):
+def test_several_dropped_pictures_become_layers(window, drop, tmp_path):
     notes = tmp_path / "notes.txt"
     notes.write_bytes(b"")
     drop(notes, RING, BAR)
+    project = window.session.project
+    assert [figure.name for figure in project.document.figures] == ["ring", "bar"]
+    assert project.figure.name == "bar"
+
+
+def test_of_other_dropped_files_the_first_that_can_be_opened_opens(window, drop, tmp_path):
+    notes = tmp_path / "notes.txt"
+    notes.write_bytes(b"")
+    drop(notes, RING)
     assert window.session.project.name == "ring"
     assert "Opened ring.png; only one file at a time." in texts(window)
+
+
+def test_a_picture_dropped_on_a_scene_may_become_a_layer(window, project, drop):
+    drop(RING)
+    assert isinstance(window.session.dialog, Question)
+    window.run(lambda robot: robot.item_click("//###dialog/New layer"))
+    window.settle()
+    assert window.session.project is project
+    assert [figure.name for figure in project.document.figures] == ["figure", "ring"]
+    assert project.figure.name == "ring"
+    window.act(editing.undo)
+    window.settle()
+    assert len(project.document.figures) == 1
+    assert project.figure.name == "figure"
+    window.act(editing.redo)
+    window.settle()
+    assert set(project.puppets) == {figure.id for figure in project.document.figures}
 
 
 def test_a_dropped_thing_that_cannot_be_opened_is_named(window, project, drop, tmp_path):
@@ -93,12 +119,13 @@ def test_a_dropped_thing_that_cannot_be_opened_is_named(window, project, drop, t
 
 def test_changes_are_asked_about_before_a_dropped_file_opens(window, project, drop):
     change(window, project)
-    drop(RING)
-    assert isinstance(window.session.dialog, Question)
-    window.run(lambda robot: robot.item_click("//###dialog/Cancel"))
-    assert window.session.project is project
-    drop(RING)
-    window.run(lambda robot: robot.item_click("//###dialog/Don't save"))
+    for answer in ("Cancel", "Don't save"):
+        drop(RING)
+        window.run(lambda robot: robot.item_click("//###dialog/New scene"))
+        window.settle()
+        assert isinstance(window.session.dialog, Question)
+        assert window.session.project is project
+        window.run(lambda robot, answer=answer: robot.item_click(f"//###dialog/{answer}"))
     window.settle()
     assert window.session.project.name == "ring"
 
