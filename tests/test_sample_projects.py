@@ -22,11 +22,11 @@ def test_four_creatures_move():
 @pytest.mark.parametrize("name", NAMES)
 def test_a_sample_is_what_its_script_says(name):
     document = load_project(SAMPLES / f"{name}.lissom")
-    script = load_pose_script(SAMPLES / f"{name}.json")
+    (script,) = load_pose_script(SAMPLES / f"{name}.json").figures
     assert document.figures[0].picture.data == (SAMPLES / f"{name}.png").read_bytes()
-    assert {
-        handle.name: handle.position for handle in document.figures[0].handles
-    } == script.handles
+    assert {handle.name: handle.position for handle in document.figures[0].handles} == {
+        name: handle.at for name, handle in script.handles.items()
+    }
     assert [key.frame for key in document.figures[0].keys] == [key.frame for key in script.keys]
     assert [key.easing for key in document.figures[0].keys] == [key.ease for key in script.keys]
     assert document.figures[0].bounds == script.bounds

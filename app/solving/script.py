@@ -2,19 +2,33 @@
 
 import json
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
 from app.document import HOLD, LAST_FRAME, LINEAR, NATURAL, VARIANTS, Easing, Passing, Variant
 from app.errors import LissomError
-from app.storage import JsonObject, as_flag, as_number, as_object, as_point, without_repeats
+from app.storage import (
+    JsonObject,
+    as_flag,
+    as_list,
+    as_number,
+    as_object,
+    as_point,
+    as_text,
+    as_whole,
+    without_repeats,
+)
 from engine.maps import Bounds
 
 SCHEMA = 1
-FIELDS = ("schema", "fps", "loop", "variant", "bounds", "anchor", "handles", "keys")
-KEY_FIELDS = ("frame", "targets", "ease", "passing")
+SCENE_FIELDS = ("schema", "fps", "loop", "variant", "bounds")
+OWN_FIELDS = ("anchor", "handles", "keys")
+FIGURE_FIELDS = ("layer", "variant", "bounds", *OWN_FIELDS, "attach", "visible")
+HANDLE_FIELDS = ("at", "front", "extent")
+JOINT_FIELDS = ("to", "at", "turn")
+KEY_FIELDS = ("frame", "targets", "ease", "passing", "front")
 BOUND_FIELDS = ("k", "sigma_a", "sigma_b")
 
 
@@ -26,22 +40,51 @@ class PoseKey:
     targets: Mapping[str, complex]
     ease: Easing = LINEAR
     passing: Passing = Passing.THROUGH
+    fronts: Mapping[str, float] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ScriptHandle:
+    """One handle: where it is in the picture, and what is painted in front around it."""
+
+    at: complex
+    front: float = 0.0
+    extent: float | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ScriptJoint:
+    """The layer that a figure hangs on, and where on the canvas the joint is at rest."""
+
+    to: str
+    at: complex
+    turns: bool = True
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FigureScript:
+    """The animation of one figure, in pixels of the canvas with y up.
+
+    The defaults are those of the file format. `layer` is None where the script has but one figure.
+    """
+
+    layer: str | None = None
+    handles: Mapping[str, ScriptHandle]
+    keys: tuple[PoseKey, ...]
+    variant: Variant = Variant.METRIC
+    bounds: Bounds = NATURAL.bounds
+    anchor: complex | None = None
+    attach: ScriptJoint | None = None
+    visible: tuple[tuple[int, bool], ...] = ()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PoseScript:
-    """A whole animation over one picture, in pixels of the picture with y up.
+    """A whole animation."""
 
-    The defaults are those of the file format.
-    """
-
-    handles: Mapping[str, complex]
-    keys: tuple[PoseKey, ...]
+    figures: tuple[FigureScript, ...]
     fps: float = 24.0
     loop: bool = False
-    variant: Variant = Variant.METRIC
-    bounds: Bounds = NATURAL.bounds
-    anchor: complex | None = None
 
 
 def load_pose_script(path: Path) -> PoseScript:
@@ -79,51 +122,112 @@ def parse_pose_script(content: object) -> PoseScript:
         If a field is unknown, missing or of the wrong kind, a key names an unknown handle, or the
         frames are out of order.
     """
-    script = _object(content, "the script", FIELDS)
+    read = as_object(content, "the script")
+    own = ("figures",) if "figures" in read else OWN_FIELDS
+    script = _object(content, "the script", (*SCENE_FIELDS, *own))
     schema = script.get("schema")
     if schema != SCHEMA or isinstance(schema, bool):
         raise LissomError(f"schema must be {SCHEMA}, not {json.dumps(schema)}")
+    times: dict[str, Any] = {}
+    if "fps" in script:
+        times["fps"] = as_number(script["fps"], "fps")
+    if "loop" in script:
+        times["loop"] = as_flag(script["loop"], "loop")
+    usual = _options(script, "")
+    if "figures" not in script:
+        return PoseScript(figures=(_figure(script, "", usual),), **times)
+    figures = []
+    for index, entry in enumerate(as_list(script["figures"], "figures")):
+        where = f"figures[{index}]."
+        fields = _object(entry, where[:-1], FIGURE_FIELDS)
+        figures.append(_figure(fields, where, usual))
+    layers = [figure.layer for figure in figures]
+    for layer in layers:
+        if layers.count(layer) > 1:
+            raise LissomError(f"two figures are of the layer {layer!r}")
+    if not figures:
+        raise LissomError("figures must be a list of at least one figure")
+    return PoseScript(figures=tuple(figures), **times)
+
+
+def _figure(script: JsonObject, where: str, usual: Mapping[str, Any]) -> FigureScript:
+    """Return what a script says of one figure; `where` begins the names of its fields."""
+    own: dict[str, Any] = {**usual, **_options(script, where)}
+    if where:
+        own["layer"] = as_text(script["layer"], f"{where}layer")
     for name in ("handles", "keys"):
         if name not in script:
-            raise LissomError(f"{name} is missing")
+            raise LissomError(f"{where}{name} is missing")
     handles = {
-        name: as_point(place, f"handle {name!r}")
-        for name, place in as_object(script["handles"], "handles").items()
+        name: _handle(handle, f"{where}handle {name!r}")
+        for name, handle in as_object(script["handles"], f"{where}handles").items()
     }
     keys = script["keys"]
     if not isinstance(keys, list) or not keys:
-        raise LissomError("keys must be a list of at least one key")
-    parsed = tuple(_key(key, index, handles) for index, key in enumerate(keys))
+        raise LissomError(f"{where}keys must be a list of at least one key")
+    parsed = tuple(_key(key, f"{where}keys[{index}]", handles) for index, key in enumerate(keys))
     for before, after in pairwise(parsed):
         if after.frame <= before.frame:
-            raise LissomError(f"keys are out of order: frame {after.frame} after {before.frame}")
-    return PoseScript(handles=handles, keys=parsed, **_options(script))
+            raise LissomError(
+                f"{where}keys are out of order: frame {after.frame} after {before.frame}"
+            )
+    if script.get("anchor") is not None:
+        own["anchor"] = as_point(script["anchor"], f"{where}anchor")
+    if script.get("attach") is not None:
+        own["attach"] = _joint(script["attach"], f"{where}attach")
+    visible = as_list(script.get("visible", []), f"{where}visible")
+    own["visible"] = tuple(
+        _switch(switch, f"{where}visible[{index}]") for index, switch in enumerate(visible)
+    )
+    return FigureScript(handles=handles, keys=parsed, **own)
 
 
-def _options(script: Mapping[str, Any]) -> dict[str, Any]:
+def _handle(content: object, where: str) -> ScriptHandle:
+    if isinstance(content, list):
+        return ScriptHandle(at=as_point(content, where))
+    handle = _object(content, where, HANDLE_FIELDS)
+    extent = handle.get("extent")
+    return ScriptHandle(
+        at=as_point(handle["at"], f"{where}.at"),
+        front=as_number(handle.get("front", 0.0), f"{where}.front"),
+        extent=None if extent is None else as_number(extent, f"{where}.extent"),
+    )
+
+
+def _joint(content: object, where: str) -> ScriptJoint:
+    joint = _object(content, where, JOINT_FIELDS)
+    return ScriptJoint(
+        to=as_text(joint["to"], f"{where}.to"),
+        at=as_point(joint["at"], f"{where}.at"),
+        turns=as_flag(joint.get("turn", True), f"{where}.turn"),
+    )
+
+
+def _switch(content: object, where: str) -> tuple[int, bool]:
+    pair = as_list(content, where)
+    if len(pair) != 2:
+        raise LissomError(f"{where} must be a frame and true or false, not {json.dumps(pair)}")
+    return as_whole(pair[0], where), as_flag(pair[1], where)
+
+
+def _options(script: Mapping[str, Any], where: str) -> dict[str, Any]:
     """Return those of the optional settings that the script gives."""
     options: dict[str, Any] = {}
-    if "fps" in script:
-        options["fps"] = as_number(script["fps"], "fps")
-    if "loop" in script:
-        options["loop"] = as_flag(script["loop"], "loop")
     if "variant" in script:
         if script["variant"] not in VARIANTS:
             raise LissomError(
-                f"variant must be one of {', '.join(VARIANTS)}, not {json.dumps(script['variant'])}"
+                f"{where}variant must be one of {', '.join(VARIANTS)}, not "
+                f"{json.dumps(script['variant'])}"
             )
         options["variant"] = Variant(script["variant"])
     if "bounds" in script:
-        bounds = _object(script["bounds"], "bounds", BOUND_FIELDS)
-        given = {name: as_number(value, f"bounds.{name}") for name, value in bounds.items()}
+        bounds = _object(script["bounds"], f"{where}bounds", BOUND_FIELDS)
+        given = {name: as_number(value, f"{where}bounds.{name}") for name, value in bounds.items()}
         options["bounds"] = replace(NATURAL.bounds, **given)
-    if script.get("anchor") is not None:
-        options["anchor"] = as_point(script["anchor"], "anchor")
     return options
 
 
-def _key(content: object, index: int, handles: Mapping[str, complex]) -> PoseKey:
-    where = f"keys[{index}]"
+def _key(content: object, where: str, handles: Mapping[str, ScriptHandle]) -> PoseKey:
     key = _object(content, where, KEY_FIELDS)
     frame = key.get("frame")
     if not isinstance(frame, int) or isinstance(frame, bool) or not 0 <= frame <= LAST_FRAME:
@@ -134,13 +238,17 @@ def _key(content: object, index: int, handles: Mapping[str, complex]) -> PoseKey
         name: as_point(place, f"{where}.targets.{name}")
         for name, place in as_object(key.get("targets", {}), f"{where}.targets").items()
     }
-    for name in targets:
+    fronts = {
+        name: as_number(front, f"{where}.front.{name}")
+        for name, front in as_object(key.get("front", {}), f"{where}.front").items()
+    }
+    for name in (*targets, *fronts):
         if name not in handles:
             raise LissomError(
                 f"{where} names the handle {name!r}, but the handles are {', '.join(handles)}"
             )
     ease, passing = _passage(key, where)
-    return PoseKey(frame=frame, targets=targets, ease=ease, passing=passing)
+    return PoseKey(frame=frame, targets=targets, ease=ease, passing=passing, fronts=fronts)
 
 
 def _passage(key: JsonObject, where: str) -> tuple[Easing, Passing]:

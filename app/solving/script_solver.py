@@ -1,19 +1,28 @@
 """From a new document and a pose script to an animation, solved as the window would solve it."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 
+import numpy as np
+
 from app.document import (
+    Attachment,
     Document,
+    Figure,
     FrameRange,
     Keyframe,
     Pose,
+    Switch,
     Target,
     find_shortfall,
     handle_commands,
+    layer_commands,
 )
+from app.errors import LissomError
 from app.solving.drag import Drag, Rig
-from app.solving.script import PoseKey, PoseScript
+from app.solving.script import FigureScript, PoseKey, PoseScript
+from app.storage import still_figure
+from engine.geometry import contains
 
 # A drag that is not at rest by then creeps along a bound.
 MOST_STEPS = 1500
@@ -23,15 +32,16 @@ STEPS_AT_ONCE = 25
 def pose_document(
     document: Document, script: PoseScript, progress: Callable[[str], None]
 ) -> tuple[Document, tuple[str, ...]]:
-    """Give the figure in front of a new document the handles and keys of a script.
+    """Give the figures of a new document the handles, keys and joints of a script.
 
     Each key is solved by a drag from the key before, the first one from the drawing as it is. A
-    handle that a key does not name keeps its target of the key before.
+    handle that a key does not name keeps its target of the key before. A script of one figure is
+    for the one in front; of one with several, layers that it does not name stand still.
 
     Parameters
     ----------
     document : Document
-        With a picture in front as it was drawn, as `open_picture` gives it.
+        As it was drawn: `open_picture` and `open_layered` give it.
     script : PoseScript
     progress : callable
         Told in words what is being solved.
@@ -45,33 +55,95 @@ def pose_document(
     Raises
     ------
     LissomError, EngineError
-        If a handle or the anchor lies outside the shape.
+        If a layer is not there or hangs on itself, or a handle, a joint or the anchor lies outside
+        its shape.
     """
-    identity = document.figures[-1].id
-    for name, place in script.handles.items():
-        document = handle_commands.add_handle(identity, place, name=name)(document)
-    figure = replace(
-        document.figure(identity),
-        variant=script.variant,
-        bounds=script.bounds,
-        anchor=script.anchor,
+    named = _by_figure(document, script)
+    last = max(part.keys[-1].frame for part in script.figures)
+    document = replace(document, frames=FrameRange(0, last), fps=script.fps, loop=script.loop)
+    for identity, part in named.items():
+        document = _prepared(document, identity, part)
+    if script.figures[0].layer is not None:
+        for figure in document.figures:
+            if figure.id not in named and not figure.still:
+                document = document.with_figure(still_figure(figure))
+    notices: list[str] = []
+    for identity, part in named.items():
+        figure, told = _posed(document.figure(identity), part, progress)
+        document = document.with_figure(figure)
+        notices += told
+    return document, tuple(notices)
+
+
+def _by_figure(document: Document, script: PoseScript) -> dict[int, FigureScript]:
+    """Return what the script says of the figures, by their ids."""
+    names = {figure.name: figure for figure in document.figures}
+    named = {}
+    for part in script.figures:
+        if part.layer is None:
+            figure = next((f for f in reversed(document.figures) if not f.still), None)
+        else:
+            figure = _layer(names, part.layer)
+        if figure is None or figure.still:
+            raise LissomError(f"the layer {part.layer!r} stands still: there is no shape on it")
+        named[figure.id] = part
+    return named
+
+
+def _layer(names: Mapping[str, Figure], layer: str) -> Figure:
+    if layer not in names:
+        raise LissomError(f"there is no layer {layer!r}; the layers are {', '.join(names)}")
+    return names[layer]
+
+
+def _prepared(document: Document, identity: int, part: FigureScript) -> Document:
+    """Return the document with a figure's handles, settings and joint."""
+    for name, handle in part.handles.items():
+        added = document.figure(identity).next_handle
+        document = handle_commands.add_handle(identity, handle.at, name=name)(document)
+        document = layer_commands.set_front(identity, added, handle.front, handle.extent)(document)
+    switches = tuple(Switch(frame, visible) for frame, visible in part.visible)
+    document = document.with_figure(
+        replace(
+            document.figure(identity),
+            variant=part.variant,
+            bounds=part.bounds,
+            anchor=part.anchor,
+            switches=switches,
+        )
     )
+    if part.attach is None:
+        return document
+    parent = _layer({figure.name: figure for figure in document.figures}, part.attach.to)
+    if not contains(parent.domain.outline, np.array([part.attach.at]))[0]:
+        raise LissomError(
+            f"{part.layer!r} is attached at ({part.attach.at.real:g}, {part.attach.at.imag:g}), "
+            f"which is not on {parent.name!r}"
+        )
+    anchor = part.attach.at if part.anchor is None else part.anchor
+    joint = Attachment(to=parent.id, at=part.attach.at, turns=part.attach.turns)
+    return layer_commands.attach(identity, anchor, joint)(document)
+
+
+def _posed(
+    figure: Figure, part: FigureScript, progress: Callable[[str], None]
+) -> tuple[Figure, list[str]]:
     rig = Rig.of(figure)
     pose = figure.keys[0].pose
+    whose = "" if part.layer is None else f"{part.layer}, "
+    identities = {handle.name: handle.id for handle in figure.handles}
     keys, notices = [], []
-    for key in script.keys:
-        progress(f"solving the key at frame {key.frame}")
-        pose, notice = _solve(rig, pose, key)
-        notices += notice
-        keys.append(Keyframe(frame=key.frame, pose=pose, easing=key.ease, passing=key.passing))
-    posed = replace(
-        document,
-        figures=(*document.figures[:-1], replace(figure, keys=tuple(keys))),
-        frames=FrameRange(0, keys[-1].frame),
-        fps=script.fps,
-        loop=script.loop,
-    )
-    return posed, tuple(notices)
+    for key in part.keys:
+        progress(f"solving {whose}the key at frame {key.frame}")
+        pose, told = _solve(rig, pose, key)
+        notices += [f"{whose}{notice}" for notice in told]
+        fronts = {identities[name]: front for name, front in key.fronts.items()}
+        keys.append(
+            Keyframe(
+                frame=key.frame, pose=pose, easing=key.ease, passing=key.passing, fronts=fronts
+            )
+        )
+    return replace(figure, keys=tuple(keys)), notices
 
 
 def _solve(rig: Rig, start: Pose, key: PoseKey) -> tuple[Pose, list[str]]:

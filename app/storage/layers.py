@@ -6,8 +6,12 @@ from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple
 
+import numpy as np
+from PIL import Image
+
 from app.document import Document, Figure, Meshing, PictureFile, layer_commands, new_figure
 from app.errors import LissomError
+from app.storage.opening import OpenedPicture
 from app.storage.pictures import (
     Layer,
     LayeredPicture,
@@ -17,6 +21,7 @@ from app.storage.pictures import (
     read_photoshop,
     read_picture_file,
 )
+from engine.arrays import Bytes, readonly
 from engine.domain import build_domain, rectangle_domain
 from engine.errors import EngineError
 
@@ -88,6 +93,27 @@ def open_pictures(paths: Sequence[Path], meshing: Meshing) -> OpenedScene:
         notices += [f"{name}: {notice}" for notice in picture.notices]
     drawing = LayeredPicture(size=size, layers=tuple(layers), notices=tuple(notices))
     return _scene(drawing, meshing, is_cut_out=False)
+
+
+def as_scene(opened: OpenedPicture) -> OpenedScene:
+    """Return a picture as a scene of one figure."""
+    document, picture, notices = opened
+    return OpenedScene(document, {document.figures[0].id: picture}, notices)
+
+
+def flattened(opened: OpenedScene) -> Bytes:
+    """Return all layers that are seen as one picture, uint8 (h, w, 4) with straight alpha."""
+    canvas = opened.document.canvas
+    flat = Image.new("RGBA", canvas)
+    for figure in opened.document.exported:
+        layer = Image.fromarray(opened.pictures[figure.id].rgba)
+        layer.putalpha(layer.getchannel("A").point(lambda a, o=figure.opacity: round(o * a)))
+        corner, height = figure.corner, layer.height
+        place = round(corner.real), round(canvas[1] - corner.imag - height)
+        moved = Image.new("RGBA", canvas)
+        moved.paste(layer, place)
+        flat = Image.alpha_composite(flat, moved)
+    return readonly(np.asarray(flat))
 
 
 def layer_figure(

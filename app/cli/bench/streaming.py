@@ -81,7 +81,9 @@ def _giraffe() -> Document:
     folder = sample_images()
     document = open_picture(folder / "giraffe.png", Meshing(triangles=1000)).document
     script = load_pose_script(folder / "giraffe.json")
-    posed, _ = pose_document(document, replace(script, keys=script.keys[:2]), lambda _: None)
+    (figure,) = script.figures
+    short = replace(script, figures=(replace(figure, keys=figure.keys[:2]),))
+    posed, _ = pose_document(document, short, lambda _: None)
     return posed
 
 

@@ -3,6 +3,8 @@
 import argparse
 import json
 import math
+from collections.abc import Mapping
+from typing import Any
 
 from app.document import clip_of
 from app.reports import Report, certify_clip
@@ -12,14 +14,30 @@ from app.storage import load_project
 def run(arguments: argparse.Namespace) -> int:
     """Print the report of a project."""
     document = load_project(arguments.project)
-    clip = clip_of(document, document.figures[0].id)
-    report = certify_clip(clip, arguments.variant)
-    print(_as_json(report) if arguments.json else _as_table(report))
-    return 0 if report.certified else 1
+    reports = {
+        figure.name: certify_clip(clip_of(document, figure.id), arguments.variant)
+        for figure in document.figures
+        if not figure.still
+    }
+    print(_as_json(reports) if arguments.json else _as_tables(reports))
+    return 0 if all(report.certified for report in reports.values()) else 1
 
 
-def _as_json(report: Report) -> str:
-    content = {
+def _as_json(reports: Mapping[str, Report]) -> str:
+    blocks = {name: _block(report) for name, report in reports.items()}
+    (first, *others) = blocks.values()
+    content = {"figures": blocks} if others else first
+    return json.dumps(content, indent=2)
+
+
+def _as_tables(reports: Mapping[str, Report]) -> str:
+    if len(reports) == 1:
+        return "".join(map(_as_table, reports.values()))
+    return "\n\n".join(f"{name}\n{_as_table(report)}" for name, report in reports.items())
+
+
+def _block(report: Report) -> dict[str, Any]:
+    return {
         "certified": report.certified,
         "keys": [
             {
@@ -45,7 +63,6 @@ def _as_json(report: Report) -> str:
             for interval in report.intervals
         ],
     }
-    return json.dumps(content, indent=2)
 
 
 def _finite(value: float) -> float | None:

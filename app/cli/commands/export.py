@@ -34,6 +34,8 @@ from engine.arrays import Bytes
 def run(arguments: argparse.Namespace) -> int:
     """Export a project."""
     document = load_project(arguments.project)
+    if arguments.figure is not None:
+        document = _alone(document, arguments.figure)
     name = arguments.project.stem
     out = arguments.out.with_name(arguments.out.name.replace(PROJECT, name))
     request = ExportRequest(
@@ -54,6 +56,17 @@ def run(arguments: argparse.Namespace) -> int:
         summary = _film(light, pictures, request, arguments)
     print(summary)
     return 0
+
+
+def _alone(document: Document, name: str) -> Document:
+    """Return a document of which only one figure is seen; it hangs where it hung."""
+    names = [figure.name for figure in document.figures]
+    if name not in names:
+        raise LissomError(f"there is no layer {name!r}; the layers are {', '.join(names)}")
+    figures = tuple(
+        replace(figure, hidden=figure.name != name, reference=False) for figure in document.figures
+    )
+    return replace(document, figures=figures, size=document.canvas)
 
 
 def _draw(

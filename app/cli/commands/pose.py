@@ -5,7 +5,16 @@ import argparse
 from app.cli.console import StatusLine, notice
 from app.document import Meshing
 from app.solving import load_pose_script, pose_document
-from app.storage import check_writable, draw_thumbnail, open_picture, save_project
+from app.storage import (
+    as_scene,
+    check_writable,
+    draw_thumbnail,
+    flattened,
+    is_layered,
+    open_layered,
+    open_picture,
+    save_project,
+)
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -13,7 +22,10 @@ def run(arguments: argparse.Namespace) -> int:
     check_writable(arguments.out)
     script = load_pose_script(arguments.script)
     meshing = Meshing(triangles=arguments.triangles, detail=arguments.detail)
-    opened = open_picture(arguments.picture, meshing)
+    if is_layered(arguments.picture):
+        opened = open_layered(arguments.picture, meshing)
+    else:
+        opened = as_scene(open_picture(arguments.picture, meshing))
     for message in opened.notices:
         notice(message)
     status = StatusLine()
@@ -21,7 +33,11 @@ def run(arguments: argparse.Namespace) -> int:
     status.clear()
     for message in lags:
         notice(message)
-    save_project(arguments.out, document, thumbnail=draw_thumbnail(opened.picture.rgba))
-    figure = document.figures[-1]
-    print(f"{arguments.out}: {len(figure.keys)} keys, {len(figure.handles)} handles")
+    picture = flattened(opened)
+    save_project(arguments.out, document, thumbnail=draw_thumbnail(picture))
+    posed = [figure for figure in document.figures if not figure.still]
+    keys = sum(len(figure.keys) for figure in posed)
+    handles = sum(len(figure.handles) for figure in posed)
+    layers = "" if len(document.figures) == 1 else f"{len(document.figures)} layers, "
+    print(f"{arguments.out}: {layers}{keys} keys, {handles} handles")
     return 0

@@ -81,6 +81,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         action=argparse.BooleanOptionalAction,
         help="let the sides of a sprite sheet be powers of two",
     )
+    parser.add_argument("--figure", metavar="NAME", help="export this layer alone")
     add_variant_option(parser)
     parser.add_argument("--format", choices=tuple(EXPORT_FORMATS), help="what to write")
 

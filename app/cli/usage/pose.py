@@ -21,6 +21,23 @@ of a Bézier curve); it leads to the next key. A handle that a key does not name
 the key before, at first its place in the picture. Each key is solved by a drag from the key before;
 where the bounds hold a handle back, the key is kept and a notice says by how much.
 
+A handle may say what is painted in front around it, from -1 (behind) to 1, and how far around, in
+pixels: {"at": [120, 880], "front": 0.5, "extent": 60}; a key with "front": {"nose": 1} says it from
+there on.
+
+DRAWING may have layers (OpenRaster .ora, or .psd where psd-tools is installed). Coordinates are
+pixels of the canvas then, and a script of several figures has, instead of anchor, handles and keys:
+
+   "figures": [{"layer": "body", "handles": {}, "keys": [{"frame": 0}]},
+               {"layer": "arm", "handles": {"hand": [310, 240]},
+                "keys": [{"frame": 0}, {"frame": 12, "targets": {"hand": [300, 330]}}],
+                "attach": {"to": "body", "at": [200, 260], "turn": true},
+                "visible": [[0, true], [40, false]]}]
+
+Each may have a variant, bounds and an anchor of its own. What is attached hangs by its anchor, or
+where none is given by that point, and is posed as if its parent were at rest. Layers that no entry
+names stand still.
+
 examples:
   lissom pose giraffe.png nod.json --out nod.lissom
   lissom pose giraffe.png nod.json --out nod.lissom --triangles 20000 --detail fine
@@ -30,7 +47,7 @@ examples:
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the options of `lissom pose`."""
     parser.epilog = EPILOG
-    parser.add_argument("picture", metavar="PICTURE", type=input_file, help="the drawing")
+    parser.add_argument("picture", metavar="DRAWING", type=input_file, help="the drawing")
     parser.add_argument("script", metavar="SCRIPT.json", type=input_file, help="handles and keys")
     parser.add_argument(
         "--out", metavar="PROJECT.lissom", type=Path, required=True, help="where to write"

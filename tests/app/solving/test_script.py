@@ -5,7 +5,7 @@ import pytest
 
 from app.document.easing import PRESETS
 from app.errors import LissomError
-from app.solving.script import load_pose_script, parse_pose_script
+from app.solving.script import ScriptHandle, ScriptJoint, load_pose_script, parse_pose_script
 from engine.maps.bounds import Bounds
 
 WHOLE = {
@@ -42,10 +42,12 @@ def test_a_whole_script_is_read(tmp_path):
     path = tmp_path / "wave.json"
     path.write_text(json.dumps(WHOLE), encoding="utf-8-sig")
     script = load_pose_script(path)
-    assert (script.fps, script.loop, script.variant) == (12.5, True, "scaled-eta")
+    assert (script.fps, script.loop) == (12.5, True)
+    (script,) = script.figures
+    assert (script.layer, script.variant) == (None, "scaled-eta")
     assert script.bounds == Bounds(k=0.7, sigma_a=4.0, sigma_b=0.25)
     assert script.anchor == 10 + 20.5j
-    assert script.handles == {"nose": 1 + 2j, "hoof": 3 + 4j}
+    assert script.handles == {"nose": ScriptHandle(at=1 + 2j), "hoof": ScriptHandle(at=3 + 4j)}
     assert [key.frame for key in script.keys] == [0, 24, 30]
     assert script.keys[1].targets == {"nose": 5 + 6j}
     assert script.keys[1].ease == PRESETS["in-out"]
@@ -54,7 +56,9 @@ def test_a_whole_script_is_read(tmp_path):
 
 def test_what_is_left_out_has_its_documented_default():
     script = parse_pose_script({"schema": 1, "handles": {}, "keys": [{"frame": 3}]})
-    assert (script.fps, script.loop, script.variant) == (24.0, False, "metric")
+    assert (script.fps, script.loop) == (24.0, False)
+    (script,) = script.figures
+    assert (script.variant, script.attach, script.visible) == ("metric", None, ())
     assert script.bounds == Bounds(k=0.5, sigma_a=2.0, sigma_b=0.5)
     assert script.anchor is None
     assert script.keys[0].ease == PRESETS["linear"]
@@ -99,6 +103,59 @@ def test_what_is_left_out_has_its_documented_default():
 def test_whatever_a_script_cannot_say_is_refused(path, value, message):
     with pytest.raises(ValueError if "bound on" in message else LissomError, match=message):
         parse_pose_script(changed(path, value))
+
+
+ARM = {
+    "layer": "arm",
+    "handles": {"hand": {"at": [7, 8], "front": 0.5, "extent": 60}, "elbow": [5, 6]},
+    "keys": [{"frame": 0}, {"frame": 9, "front": {"hand": -1}}],
+    "attach": {"to": "body", "at": [3, 4], "turn": False},
+    "visible": [[0, True], [12, False]],
+    "variant": "nu",
+}
+BODY = {"layer": "body", "handles": {}, "keys": [{"frame": 0}]}
+SCENE = {"schema": 1, "fps": 8, "bounds": {"k": 0.7}, "figures": [BODY, ARM]}
+
+
+def test_a_script_of_several_figures():
+    script = parse_pose_script(SCENE)
+    body, arm = script.figures
+    assert (script.fps, body.layer, arm.layer) == (8, "body", "arm")
+    # What the scene says holds for all figures that say nothing else.
+    assert (body.variant, arm.variant) == ("metric", "nu")
+    assert body.bounds == arm.bounds == Bounds(k=0.7, sigma_a=2.0, sigma_b=0.5)
+    assert arm.handles["hand"] == ScriptHandle(at=7 + 8j, front=0.5, extent=60.0)
+    assert arm.keys[1].fronts == {"hand": -1.0}
+    assert arm.attach == ScriptJoint(to="body", at=3 + 4j, turns=False)
+    assert arm.visible == ((0, True), (12, False))
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"layer": 5}, r"figures\[0\].layer must be a text"),
+        ({"colour": 1}, r"figures\[0\] has an unknown field 'colour'"),
+        ({"keys": []}, r"figures\[0\].keys must be a list of at least one"),
+        ({"keys": [{"frame": 0, "front": {"toe": 1}}]}, r"keys\[0\] names the handle 'toe'"),
+        ({"handles": {"hand": {"front": 1}}}, "lacks the field 'at'"),
+        ({"handles": {"hand": {"at": [1, 2], "depth": 1}}}, "unknown field 'depth'"),
+        ({"attach": {"to": "body"}}, "lacks the field 'at'"),
+        ({"visible": [[0]]}, "a frame and true or false"),
+        ({"visible": [[0.5, True]]}, "whole number"),
+    ],
+)
+def test_whatever_a_figure_cannot_say_is_refused(change, message):
+    with pytest.raises(LissomError, match=message):
+        parse_pose_script({**SCENE, "figures": [{**ARM, **change}]})
+
+
+def test_figures_have_layers_of_their_own():
+    with pytest.raises(LissomError, match="two figures are of the layer 'arm'"):
+        parse_pose_script({**SCENE, "figures": [ARM, ARM]})
+    with pytest.raises(LissomError, match="at least one figure"):
+        parse_pose_script({**SCENE, "figures": []})
+    with pytest.raises(LissomError, match="unknown field 'handles'"):
+        parse_pose_script({**SCENE, "handles": {}})
 
 
 @pytest.mark.parametrize(

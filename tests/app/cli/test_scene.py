@@ -1,0 +1,151 @@
+"""A drawing on layers, from its script to frames, as a person does it in a shell."""
+
+import json
+
+import numpy as np
+import pytest
+from layered import openraster
+from PIL import Image, ImageDraw
+
+from app.cli.main import main
+from app.document import is_visible
+from app.motion import Joints
+from app.storage.project_file import load_project
+
+WIDTH, HEIGHT = 240, 200
+STACK = "".join(
+    f'<layer name="{name}" src="data/{index}.png"/>'
+    for index, name in enumerate(("patch", "arm", "body", "wall"))
+)
+SCRIPT = {
+    "schema": 1,
+    "figures": [
+        {
+            "layer": "body",
+            "handles": {"foot": [80, 40], "head": {"at": [80, 160], "front": 0.5, "extent": 30}},
+            "keys": [
+                {"frame": 0},
+                {"frame": 8, "targets": {"head": [100, 158]}, "front": {"head": -1}},
+            ],
+        },
+        {
+            "layer": "arm",
+            "handles": {"hand": [190, 120]},
+            "keys": [{"frame": 0}, {"frame": 8, "targets": {"hand": [180, 150]}}],
+            "attach": {"to": "body", "at": [95, 120]},
+        },
+        {
+            "layer": "patch",
+            "handles": {},
+            "keys": [{"frame": 0}],
+            "attach": {"to": "arm", "at": [180, 120], "turn": False},
+            "visible": [[0, True], [4, False]],
+        },
+    ],
+}
+
+
+def painted(shape, box, colour):
+    image = Image.new("RGBA", (WIDTH, HEIGHT))
+    getattr(ImageDraw.Draw(image), shape)(box, fill=colour)
+    return image
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("scene")
+    pictures = [
+        painted("ellipse", (170, 70, 192, 92), (250, 250, 0, 255)),
+        painted("rectangle", (85, 70, 200, 90), (200, 40, 40, 255)),
+        painted("rectangle", (60, 25, 110, 180), (40, 40, 200, 255)),
+        painted("rectangle", (0, 0, WIDTH, HEIGHT), (220, 230, 220, 255)),
+    ]
+    (folder / "man.ora").write_bytes(openraster((WIDTH, HEIGHT), STACK, pictures))
+    (folder / "man.json").write_text(json.dumps(SCRIPT))
+    return folder
+
+
+@pytest.fixture(scope="module")
+def project(folder):
+    out = folder / "man.lissom"
+    arguments = [str(folder / "man.ora"), str(folder / "man.json"), "--out", str(out)]
+    assert main(["pose", *arguments, "--triangles", "4000"]) == 0
+    return out
+
+
+def test_a_script_poses_the_layers_that_it_names(project):
+    document = load_project(project)
+    wall, body, arm, patch = document.figures
+    assert [figure.name for figure in document.figures] == ["wall", "body", "arm", "patch"]
+    assert (wall.still, body.still) == (True, False)
+    assert document.canvas == (WIDTH, HEIGHT)
+    assert (arm.attachment.to, arm.attachment.at, arm.anchor) == (body.id, 95 + 120j, 95 + 120j)
+    assert [is_visible(patch, frame) for frame in (3, 4)] == [True, False]
+    head = body.handles[1]
+    assert (head.front, head.extent, dict(body.keys[1].fronts)) == (0.5, 30.0, {head.id: -1.0})
+    # The joint of a joint is closed, and the patch keeps its own turn.
+    joints = Joints(document)
+    at = np.array([patch.attachment.at])
+    arm_place = joints.placement(arm.id, 8).on(arm.map_of(arm.keys[1].pose)(at))
+    own = joints.placement(patch.id, 8)
+    assert own.factor == 1
+    assert abs(own.on(patch.map_of(patch.keys[0].pose)(at))[0] - arm_place[0]) < 1e-9 * WIDTH
+
+
+def test_certify_tells_of_each_figure(project, capsys):
+    assert main(["certify", str(project), "--json"]) == 0
+    figures = json.loads(capsys.readouterr().out)["figures"]
+    assert set(figures) == {"body", "arm", "patch"}
+    assert all(block["certified"] for block in figures.values())
+    assert main(["certify", str(project)]) == 0
+    assert "\narm\n" in capsys.readouterr().out
+
+
+def frame(project, name, *options):
+    out = project.parent / name
+    assert main(["export", str(project), "--out", str(out), *options]) == 0
+    return np.asarray(Image.open(min(out.glob("*.png")))).astype(int)
+
+
+def test_export_draws_the_scene_or_one_figure_of_it(project):
+    options = ("--frames", "2:2", "--framing", "canvas")
+    whole = frame(project, "whole", *options)
+    assert whole.shape == (HEIGHT, WIDTH, 4)
+    assert (whole[..., 3] == 255).all()
+    assert abs(whole[5, 5, :3] - (220, 230, 220)).max() <= 2
+    # Yellow in front of red in front of blue.
+    assert abs(whole[..., :3] - (250, 250, 0)).max(axis=2).min() <= 2
+    alone = frame(project, "alone", *options, "--figure", "patch")
+    seen = alone[..., 3] > 128
+    assert 200 < seen.sum() < 600
+    assert abs(alone[seen][:, :3] - (250, 250, 0)).max() <= 40
+    gone = frame(project, "gone", "--frames", "5:5", "--framing", "canvas", "--figure", "patch")
+    assert not gone[..., 3].any()
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ({"layer": "leg"}, "there is no layer 'leg'; the layers are wall, body, arm, patch"),
+        ({"layer": "wall"}, "'wall' stands still"),
+        ({"attach": {"to": "leg", "at": [1, 2]}}, "there is no layer 'leg'"),
+        ({"attach": {"to": "body", "at": [1, 2]}}, "which is not on 'body'"),
+        ({"attach": {"to": "arm", "at": [180, 120]}}, "would hang on itself"),
+    ],
+)
+def test_what_a_drawing_does_not_have_is_told(folder, change, words, capsys):
+    script = {**SCRIPT, "figures": [{**SCRIPT["figures"][1], **change}]}
+    path = folder / "bad.json"
+    path.write_text(json.dumps(script))
+    arguments = [str(folder / "man.ora"), str(path), "--out", str(folder / "bad.lissom")]
+    with pytest.raises(SystemExit):
+        main(["pose", *arguments, "--triangles", "4000"])
+    assert words in capsys.readouterr().err
+    assert not (folder / "bad.lissom").exists()
+
+
+def test_a_figure_that_is_not_there_is_told(project, folder, capsys):
+    arguments = ["export", str(project), "--out", str(folder / "no"), "--figure", "leg"]
+    with pytest.raises(SystemExit):
+        main(arguments)
+    assert "the layers are wall, body, arm, patch" in capsys.readouterr().err
