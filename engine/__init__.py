@@ -27,7 +27,6 @@ Equation map of *Bounded Distortion Harmonic Shape Interpolation* (Chien, Chen, 
     (9)-(13)        metric on the outline, Lemma 7   engine.interpolation.metric.OutlineMetric
     Section 6       metric variant                   engine.interpolation.metric.MetricBlend
     Section 7.4     Hilbert transform                engine.dirichlet.hilbert.HilbertTransform
-    Section 7.4     its fit in the cage's own space  engine.dirichlet.projected.ProjectedTransform
     Section 7       spanning tree from the anchor    engine.paths.spanning_tree.SpanningTree
     Section 7       quadrature along its edges       engine.paths.integration_paths.IntegrationPaths
 

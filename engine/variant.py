@@ -17,10 +17,7 @@ class Variant(StrEnum):
 
     @property
     def needs_transform(self) -> bool:
-        """Whether it needs the Hilbert transform of the outline.
-
-        Its in-betweens have a rough form, by a transform that is ready at once.
-        """
+        """Whether it needs the Hilbert transform of the outline."""
         return self is Variant.METRIC
 
     @property

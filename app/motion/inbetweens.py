@@ -7,7 +7,7 @@ import numpy as np
 
 from app.document import Clip, Pose, Transit, Variant, resting_pose, time_of, transits
 from engine.arrays import Complexes
-from engine.dirichlet import Extension, HilbertTransform, ProjectedTransform
+from engine.dirichlet import Extension, HilbertTransform
 from engine.domain import Domain
 from engine.interpolation import (
     Course,
@@ -74,7 +74,6 @@ class PoseSampler:
         self._sibling = sibling
         self._transform: HilbertTransform | None = None
         self._extension: Extension | None = None
-        self._quick_transform: ProjectedTransform | None = None
 
     @property
     def transform(self) -> HilbertTransform:
@@ -97,16 +96,6 @@ class PoseSampler:
                 self._extension = self.transform.at(self.sites.paths.nodes)
             return self._extension
 
-    @property
-    def quick_transform(self) -> ProjectedTransform:
-        """What stands in for the transform in rough in-betweens."""
-        with self._lock:
-            if self._quick_transform is None:
-                self._quick_transform = ProjectedTransform.on(
-                    self.domain.outline, self.domain.cage, self.sites.paths.nodes
-                )
-            return self._quick_transform
-
     def keep_only(self, poses: Sequence[Pose]) -> None:
         """Forget what was kept for other poses."""
         wanted = set(poses)
@@ -128,18 +117,12 @@ class PoseSampler:
             return self._samples[pose]
 
     def inbetweens(
-        self, first: Pose, second: Pose, variant: Variant, *, turns: int = 0, rough: bool = False
+        self, first: Pose, second: Pose, variant: Variant, *, turns: int = 0
     ) -> Inbetweens:
-        """Return the in-betweens of two poses alone, with whole turns beyond the shorter way.
+        """Return the in-betweens of two poses alone, with whole turns beyond the shorter way."""
+        return self._prepared((first, second), (turns,), Course.straight(), variant)
 
-        Rough ones are ready much sooner where the variant needs the transform, and are right to
-        some thousandths of the drawing's size; of other variants they are the exact ones.
-        """
-        return self._prepared((first, second), (turns,), Course.straight(), variant, rough=rough)
-
-    def inbetweens_of(
-        self, transit: Transit, bounds: Bounds, variant: Variant, *, rough: bool = False
-    ) -> Inbetweens:
+    def inbetweens_of(self, transit: Transit, bounds: Bounds, variant: Variant) -> Inbetweens:
         """Return the in-betweens of a clip's interval.
 
         Parameters
@@ -148,19 +131,17 @@ class PoseSampler:
         bounds : Bounds
             That the motion through keys obeys.
         variant : Variant
-        rough : bool
-            As in `inbetweens`.
         """
         poses = tuple(key.pose for key in transit.keys)
         if not transit.is_joined:
-            return self._prepared(poses, transit.turns, Course.straight(), variant, rough=rough)
+            return self._prepared(poses, transit.turns, Course.straight(), variant)
         lengths = self.lengths(transit, bounds, variant)
         ends = [
             Tangent(end, length) if isinstance(end, Joint) else end
             for end, length in zip((transit.start, transit.end), lengths, strict=True)
         ]
         course = Course.between(*ends)
-        return self._prepared(poses, transit.turns, course, variant, bounds=bounds, rough=rough)
+        return self._prepared(poses, transit.turns, course, variant, bounds=bounds)
 
     def lengths(self, transit: Transit, bounds: Bounds, variant: Variant) -> tuple[float, float]:
         """Return how much of its full velocity the motion has at both keys of an interval.
@@ -194,10 +175,9 @@ class PoseSampler:
         variant: Variant,
         *,
         bounds: Bounds | None = None,
-        rough: bool,
     ) -> Inbetweens:
         controls = None if course.controls is None else course.controls.tobytes()
-        key = (poses, turns, controls, bounds, variant, rough)
+        key = (poses, turns, controls, bounds, variant)
         with self._lock:
             if key not in self._inbetweens:
                 samples = [self.samples(pose) for pose in poses]
@@ -206,19 +186,12 @@ class PoseSampler:
                     self.sites,
                     samples,
                     root_sheets(np.array([sample.anchor_fz for sample in samples]), turns),
-                    transform=self._transform_for(variant, rough=rough),
+                    transform=self.extension if variant.needs_transform else None,
                     course=course,
                     bounds=bounds or Bounds(),
                 )
                 self._inbetweens[key] = poses, inbetweens
             return self._inbetweens[key][1]
-
-    def _transform_for(
-        self, variant: Variant, *, rough: bool
-    ) -> Extension | ProjectedTransform | None:
-        if not variant.needs_transform:
-            return None
-        return self.quick_transform if rough else self.extension
 
 
 class Animation:

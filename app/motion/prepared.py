@@ -34,7 +34,6 @@ class PreparedInterval(NamedTuple):
     poses: tuple[Pose, ...]
     inbetweens: Inbetweens
     lengths: tuple[float, float]
-    is_rough: bool = False
     series: Series | None = None
     distortions: Series | None = None
 
@@ -84,22 +83,12 @@ class Motion:
         vertices = self.vertices(clip, frame)
         return None if vertices is None else vertices.positions
 
-    def knows(self, clip: Clip, *, roughly: bool = False) -> bool:
-        """Tell whether all in-betweens of a clip are prepared, if only roughly."""
+    def knows(self, clip: Clip) -> bool:
+        """Tell whether all in-betweens of a clip are prepared."""
         if clip.figure.domain is not self.mesh.source:
             return False
-        every = [self._prepared(clip, interval) for interval in range(len(intervals(clip)))]
-        return all(
-            prepared is not None and (roughly or not prepared.is_rough) for prepared in every
-        )
-
-    def is_rough(self, clip: Clip, frame: float) -> bool:
-        """Tell whether what is prepared of a frame is rough."""
-        moment = time_of(clip, frame)
-        if resting_pose(clip, moment) is not None:
-            return False
-        prepared = self._prepared(clip, moment.interval)
-        return prepared is not None and prepared.is_rough
+        every = range(len(intervals(clip)))
+        return all(self._prepared(clip, interval) is not None for interval in every)
 
     def inbetweens(self, clip: Clip, interval: int) -> Inbetweens:
         """Return the in-betweens of one of a clip's intervals, which must be prepared."""
@@ -136,7 +125,6 @@ def prepare_motion(
     earlier: Motion,
     sibling: PoseSampler | None = None,
     *,
-    roughly: bool = False,
     at_most: int | None = None,
 ) -> Motion:
     """Return the motion of a clip with its in-betweens; on the worker thread.
@@ -148,8 +136,6 @@ def prepare_motion(
         On the same mesh; what it prepared is used again.
     sibling : PoseSampler, optional
         What it knows of the same outline and cage is used again.
-    roughly : bool
-        Whether rough in-betweens are enough.
     at_most : int, optional
         How many intervals to prepare; the others stay as they are. By default all.
     """
@@ -158,7 +144,6 @@ def prepare_motion(
         sampler, sibling, known = None, earlier.sampler or sibling, {}
     ready: dict[Pair, PreparedInterval] = {}
     made = 0
-    rough = roughly and clip.figure.variant.needs_transform
     figure = clip.figure
     for interval, transit in enumerate(transits(clip)):
         pair = pair_of(clip, interval)
@@ -167,17 +152,16 @@ def prepare_motion(
             continue
         if pair in known:
             ready[pair] = known[pair]
-        is_enough = pair in known and (roughly or not known[pair].is_rough)
-        if is_enough or made == at_most:
+        if pair in known or made == at_most:
             continue
         made += 1
         sampler = sampler or PoseSampler(
             earlier.mesh.domain, anchor=clip.figure.anchor, sibling=sibling
         )
-        inbetweens = sampler.inbetweens_of(transit, figure.bounds, figure.variant, rough=rough)
+        inbetweens = sampler.inbetweens_of(transit, figure.bounds, figure.variant)
         lengths = sampler.lengths(transit, figure.bounds, figure.variant)
         poses = tuple(key.pose for key in transit.keys)
-        ready[pair] = PreparedInterval(poses, inbetweens, lengths, is_rough=rough)
+        ready[pair] = PreparedInterval(poses, inbetweens, lengths)
     if sampler is not None:
         sampler.keep_only([pose for prepared in ready.values() for pose in prepared.poses])
     return Motion(mesh=earlier.mesh, clip=clip, sampler=sampler, ready=MappingProxyType(ready))

@@ -32,7 +32,7 @@ class Shown:
     placement : Placement
         Where the figure is in the scene; all else is where it is by itself.
     is_current : bool
-        Whether it shows what it should, and not an earlier state or a rough one while that is being
+        Whether it shows what it should, and not an earlier or a rough one while that is being
         prepared.
     """
 
@@ -124,7 +124,7 @@ def show(
                 mesh=mesh,
                 vertices=vertices,
                 handles=handles,
-                is_current=pose is not None or not motion.is_rough(clip, frame),
+                is_current=True,
             )
     if earlier is None:
         raise ValueError("none of the motions is of the figure's domain")

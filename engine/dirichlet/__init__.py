@@ -6,6 +6,5 @@ Imports: `engine.maps`, `engine.geometry`.
 """
 
 from engine.dirichlet.hilbert import Extension, HilbertTransform
-from engine.dirichlet.projected import ProjectedTransform
 
-__all__ = ["Extension", "HilbertTransform", "ProjectedTransform"]
+__all__ = ["Extension", "HilbertTransform"]

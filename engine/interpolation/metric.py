@@ -15,7 +15,7 @@ import numpy.typing as npt
 
 from engine.arrays import Complexes, Floats, freeze
 from engine.chebyshev import PiecewiseSeries, nodes, to_coefficients
-from engine.dirichlet import Extension, ProjectedTransform
+from engine.dirichlet import Extension
 from engine.interpolation.derivatives import Derivatives, Passage
 from engine.interpolation.eta import EtaBlend
 from engine.interpolation.passing import Course
@@ -65,7 +65,7 @@ class MetricBlend:
         cls,
         passage: Passage,
         paths: IntegrationPaths,
-        transform: Extension | ProjectedTransform,
+        transform: Extension,
     ) -> Self:
         """Solve the Dirichlet problems of the residual between two keyframes."""
         fz, fzbar = derivatives_of([key.map for key in passage.keyframes], transform.nodes)

@@ -7,7 +7,7 @@ import numpy as np
 import numpy.typing as npt
 
 from engine.arrays import Complexes, Integers
-from engine.dirichlet import Extension, HilbertTransform, ProjectedTransform
+from engine.dirichlet import Extension, HilbertTransform
 from engine.errors import EngineError
 from engine.interpolation.derivatives import Passage
 from engine.interpolation.eta import EtaBlend
@@ -174,7 +174,7 @@ def prepare_inbetweens(
     keyframes: Sequence[KeyframeSamples],
     sheets: Integers,
     *,
-    transform: Extension | ProjectedTransform | None = None,
+    transform: Extension | None = None,
     course: Course | None = None,
     bounds: Bounds = Bounds(),
 ) -> Inbetweens:
@@ -192,9 +192,9 @@ def prepare_inbetweens(
         tangents.
     sheets : int32, one for each
         From `root_sheets`.
-    transform : Extension or ProjectedTransform, optional
+    transform : Extension, optional
         Of the sites' outline, at the nodes of their paths; variants that `needs_transform` says so
-        of need it. The second kind makes rough in-betweens.
+        of need it.
     course : Course, optional
         By default the linear blend of the paper.
     bounds : Bounds
@@ -252,9 +252,7 @@ def _neighbourhoods(
     ]
 
 
-def _matching(
-    transform: Extension | ProjectedTransform | None, sites: Sites
-) -> Extension | ProjectedTransform:
+def _matching(transform: Extension | None, sites: Sites) -> Extension:
     """Refuse a transform of another domain, whose in-betweens would be wrong without a word."""
     if transform is None:
         raise EngineError("The metric variant needs a Hilbert transform of the outline.")

@@ -80,18 +80,14 @@ def missing(session: Session, project: Project) -> Iterator[Derivation[Any, Any]
     clips = [(clip_of(document, figure), puppet) for figure, puppet in project.puppets.items()]
     movable = [(clip, puppet) for clip, puppet in clips if not puppet.coarse.has_failed(clip)]
     for clip, puppet in movable:
-        if not puppet.coarse.value.knows(clip, roughly=True):
-            # Where nobody sees them before the hand rests, they are not to hold up what follows it.
+        if not puppet.coarse.value.knows(clip):
+            # Where nobody sees them before the hand rests, they are not worked out for each move.
             if session.overlays.onion or posing.POSING not in session.jobs.kinds:
-                yield _sketch(clip, puppet, roughly=True)
+                yield _sketch(clip, puppet, whole=project.is_posing)
             return
     if project.is_posing:
         # What follows takes longer than the hand stays where it is.
         return
-    for clip, puppet in movable:
-        if not puppet.coarse.value.knows(clip):
-            yield _sketch(clip, puppet)
-            return
     is_awaited = session.export_frame is not None or project.awaits_extent
     if is_awaited and len(movable) == len(clips):
         yield from _span(project)
@@ -109,13 +105,13 @@ def missing(session: Session, project: Project) -> Iterator[Derivation[Any, Any]
             yield from _span(project)
 
 
-def _sketch(clip: Clip, puppet: Puppet, *, roughly: bool = False) -> Derivation[Clip, Motion]:
+def _sketch(clip: Clip, puppet: Puppet, *, whole: bool) -> Derivation[Clip, Motion]:
     earlier = puppet.coarse.value
     return Derivation(
         kind=SKETCHING,
         into=puppet.coarse,
         source=clip,
-        work=lambda: _coarse_motion(clip, earlier, roughly=roughly),
+        work=lambda: _coarse_motion(clip, earlier, whole=whole),
         complaint="The in-betweens of these keys cannot be made",
     )
 
@@ -256,12 +252,13 @@ def _has_fine(clip: Clip, puppet: Puppet) -> bool:
     return is_own or (fine is not None and fine.knows(clip))
 
 
-def _coarse_motion(clip: Clip, earlier: Motion, *, roughly: bool) -> Motion:
+def _coarse_motion(clip: Clip, earlier: Motion, *, whole: bool) -> Motion:
     domain = clip.figure.domain
     if earlier.mesh.source is not domain:
         earlier = Motion.at_rest(clip, PosableMesh.coarse(domain))
-    # Exact ones an interval at a time: the next drag is not to wait for its ghosts.
-    return prepare_motion(clip, earlier, roughly=roughly, at_most=None if roughly else 1)
+    # An interval at a time, so that what is wanted next need not wait long; all at once where the
+    # hand has changed those around one key, and the ghosts are to stay together.
+    return prepare_motion(clip, earlier, at_most=None if whole else 1)
 
 
 def _fine_motion(clip: Clip, earlier: Motion | None, sibling: PoseSampler | None) -> Motion:

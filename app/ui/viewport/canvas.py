@@ -242,7 +242,7 @@ def _ghosts(
     if project.playhead.since is not None:
         return ()
     # While the hand moves, in-betweens come a moment later: until then the last ones stay.
-    known = project.clip if motion.knows(project.clip, roughly=True) else motion.clip
+    known = project.clip if motion.knows(project.clip) else motion.clip
     ghosts = []
     sides = ((-1, choice.ghosts_before, GHOST_BEFORE), (1, choice.ghosts_after, GHOST_AFTER))
     number = 0

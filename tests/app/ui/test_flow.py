@@ -228,8 +228,7 @@ def test_inbetweens_follow_a_drag_before_the_hand_lets_go(window, bar):
             robot.yield_()
         halfway.update(
             grab=bar.posing,
-            rough=bar.puppet.coarse.value.is_rough(bar.clip, 12),
-            known=bar.puppet.coarse.value.knows(bar.clip, roughly=True),
+            known=bar.puppet.coarse.value.knows(bar.clip),
             positions=bar.puppet.coarse.value.positions(bar.clip, 12),
         )
         robot.mouse_up(0)
@@ -238,11 +237,9 @@ def test_inbetweens_follow_a_drag_before_the_hand_lets_go(window, bar):
     assert None not in ghosts
     assert halfway["grab"] is not None
     assert halfway["known"]
-    assert halfway["rough"]
     assert np.abs(halfway["positions"] - before).max() > 40
     window.settle()
     assert bar.puppet.coarse.value.knows(bar.clip)
-    assert not bar.puppet.coarse.value.is_rough(bar.clip, 12)
     exact = bar.puppet.coarse.value.positions(bar.clip, 12)
     np.testing.assert_allclose(
         halfway["positions"], exact, rtol=0, atol=0.01 * bar.puppet.picture.size[0]

@@ -417,7 +417,7 @@ def test_poses_that_follow_each_other_twice_are_prepared_once(window, bent):
     editing.edit(window.session, key_commands.copy_keys(0, {0, 24}, 48))
     window.settle()
     assert frames_of(bent) == [0, 24, 48, 72]
-    # None of it is known of this one, and at first only roughly.
+    # None of it is known of this one.
     keys.set_variant(window.session, "metric")
     for _ in range(20):
         window.frames()
