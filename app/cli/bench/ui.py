@@ -7,12 +7,14 @@ import tempfile
 import time
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 from imgui_bundle import ImVec2
 
 import app
+from app.cli.bench import idle
 from app.cli.bench.start import MARKS
 from app.cli.bench.table import Row, Table
 from app.document import Meshing, Target, clip_of
@@ -34,12 +36,16 @@ PATIENCE = 120.0  # seconds that anything may take
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Extent:
-    """How much is measured: repeats of the start and of opening, frames, moves of the pointer."""
+    """How much is measured: repeats of the start and of opening, frames, moves of the pointer.
+
+    And for how many seconds the window is left alone.
+    """
 
     triangles: int = 100_000
     repeats: int = 3
     frames: int = 60
     moves: int = 100
+    idle: float = 10.0
 
 
 def tables(extent: Extent | None = None) -> Iterator[Table]:
@@ -54,6 +60,8 @@ def tables(extent: Extent | None = None) -> Iterator[Table]:
         stage.settle()
         yield from _frames(stage, extent)
         yield _latency(stage, extent)
+        yield _release(stage, extent)
+    yield idle.table(extent.idle)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -364,10 +372,57 @@ class _Drag:
         shown = self._project.puppet.shown
         return shown.pose.targets[self.handle] if shown and shown.pose else None
 
+    def let_go(self) -> None:
+        """Let go of the handle where it is."""
+        self._stage.mouse(self._point, down=False)
+
     def end(self) -> None:
         """Let go, and wait until everything rests."""
-        self._stage.mouse(self._point, down=False)
+        self.let_go()
         self._stage.settle()
+
+
+def _release(stage: _Driver, extent: Extent) -> Table:
+    """Measure from letting a handle go to a pose that rests, and to the in-betweens around it."""
+    times: list[list[float]] = []
+    for number in range(extent.repeats):
+        drag = _Drag(stage)
+        for move in range(10):
+            drag.move(20 * number + move)
+            stage.refresh()
+        let_go = time.perf_counter()
+        drag.let_go()
+        stage.refresh()
+        marks = []
+        for is_done in (_rests, _is_exact, _is_fine):
+            stage.until(partial(is_done, stage.project))
+            marks.append(time.perf_counter() - let_go)
+        times.append(marks)
+        stage.settle()
+    names = (
+        "until the pose rests",
+        "until its in-betweens are exact, as they are drawn while it moves",
+        "until they are exact in full detail",
+    )
+    rows = (
+        _row(name, column) for name, column in zip(names, zip(*times, strict=True), strict=True)
+    )
+    return Table(title="From the release of a handle", rows=tuple(rows))
+
+
+def _rests(project: Project) -> bool:
+    return not project.is_posing
+
+
+def _is_exact(project: Project) -> bool:
+    return project.puppet.coarse.value.knows(project.clip)
+
+
+def _is_fine(project: Project) -> bool:
+    coarse, fine = project.puppet.coarse.value, project.puppet.fine.value
+    if coarse.mesh.domain is project.figure.domain:
+        return _is_exact(project)
+    return fine is not None and fine.knows(project.clip)
 
 
 def _latency(stage: _Driver, extent: Extent) -> Table:
