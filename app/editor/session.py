@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Literal, Protocol
 
-from app.document import Document, Figure, Meshing, Pose
+from app.document import Document, Figure, Keyframe, Meshing
 from app.editor.action import Action
 from app.editor.dialogs import Dialog
 from app.editor.jobs import Jobs
@@ -29,6 +29,7 @@ class Overlays:
     outline: bool = False
     cage: bool = False
     onion: bool = False
+    mirror: bool = False  # the axis at which poses are flipped
     heat_map: HeatMap = "none"
 
 
@@ -89,11 +90,11 @@ Mark = BoxMark | SweepMark | EntryMark
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class CopiedPose:
-    """A pose to be pasted, and the figure as it was when it was copied."""
+class CopiedKeys:
+    """Keys to be pasted, or a pose as the only one, and the figure as it was then."""
 
     figure: Figure
-    pose: Pose
+    keys: tuple[Keyframe, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -165,7 +166,7 @@ class Session:
     curves: CurveKind = "relative"
     pointer: ToolInHand | None = None
     snaps: bool = False  # whether what the pointer does goes in steps
-    copied: CopiedPose | None = None
+    copied: CopiedKeys | None = None
     space_used: bool = False  # Space was held to move the view
     hovered: int | None = None  # the handle under the pointer
     hint: str = ""  # about what is under the pointer

@@ -1,7 +1,7 @@
 """Commands on keys: posing, inserting, and moving them about in time."""
 
 from collections import Counter
-from collections.abc import Collection, Iterable
+from collections.abc import Collection, Iterable, Sequence
 from dataclasses import replace
 
 from app.document.commands.command import figure_command
@@ -25,14 +25,25 @@ def insert_key(figure: Figure, frame: int, pose: Pose, *, easing: Easing = LINEA
     new first or last key, and that from the key that was last, unless it was given one. The
     animation grows where the frame lies beyond its ends; so it does in all commands here.
     """
-    keys = list(figure.keys)
-    before = [key for key in keys if key.frame < frame]
-    if frame > keys[-1].frame:
-        if keys[-1].easing == LINEAR:
-            keys[-1] = replace(keys[-1], easing=easing)
-    elif before:
-        easing = before[-1].easing
-    return _with_keys(figure, (*keys, Keyframe(frame=frame, pose=pose, easing=easing)))
+    return _inserted(figure, frame, pose, easing)
+
+
+@figure_command("Paste pose")
+def put_keys(figure: Figure, keys: Sequence[Keyframe], easing: Easing) -> Figure:
+    """Let keys be at their frames, in place of others that are there.
+
+    Of one alone only its pose is taken, to the key at its frame or to a new one, as if inserted.
+    """
+    if len(keys) > 1:
+        others = {key.frame: key for key in figure.keys} | {key.frame: key for key in keys}
+        return _with_keys(figure, others.values())
+    (key,) = keys
+    if key.frame not in figure.key_frames:
+        return _inserted(figure, key.frame, key.pose, easing)
+    old = figure.key(key.frame)
+    if old.pose is key.pose:
+        return figure
+    return _exchange(figure, {key.frame: replace(old, pose=key.pose)})
 
 
 @figure_command("Move keys")
@@ -135,6 +146,17 @@ def set_turns(figure: Figure, frames: Collection[int], turns: int) -> Figure:
     if not keys:
         return figure
     return _exchange(figure, {key.frame: replace(key, turns=turns) for key in keys})
+
+
+def _inserted(figure: Figure, frame: int, pose: Pose, easing: Easing) -> Figure:
+    keys = list(figure.keys)
+    before = [key for key in keys if key.frame < frame]
+    if frame > keys[-1].frame:
+        if keys[-1].easing == LINEAR:
+            keys[-1] = replace(keys[-1], easing=easing)
+    elif before:
+        easing = before[-1].easing
+    return _with_keys(figure, (*keys, Keyframe(frame=frame, pose=pose, easing=easing)))
 
 
 def _keys_at(figure: Figure, frames: Iterable[int]) -> list[Keyframe]:

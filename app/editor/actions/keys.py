@@ -1,25 +1,18 @@
 """What is done with keys as a whole, and the settings of time beside them."""
 
 from dataclasses import replace
-from functools import partial
 
 from app.document import (
-    Clip,
     Command,
     Easing,
     FrameRange,
-    Pose,
     Variant,
     figure_commands,
     key_commands,
     scene_commands,
 )
 from app.editor.actions import editing, playback, posing
-from app.editor.session import CopiedPose, Session
-from app.solving import Rig
-from engine.maps import certify
-
-COPYING = "Copying a pose"
+from app.editor.session import Session
 
 
 def retime(session: Session, command: Command) -> None:
@@ -38,51 +31,6 @@ def insert_at(session: Session, frame: int) -> None:
     """Put the playhead on a frame, and hold what is shown there in a key."""
     playback.scrub(session, frame)
     posing.insert_key(session)
-
-
-def copy_pose(session: Session) -> None:
-    """Copy the pose of the one key that is chosen, or else what is shown."""
-    project = session.project
-    if project is None or project.puppet.shown is None:
-        return
-    pose = project.unkeyed or project.puppet.shown.pose
-    if len(project.chosen) == 1:
-        pose = project.figure.key(next(iter(project.chosen))).pose
-    if pose is not None:
-        session.copied = CopiedPose(project.figure, pose)
-    else:
-        posing.fit_pose(
-            session, project, COPYING, "The pose could not be copied", partial(_copy, session)
-        )
-
-
-def _copy(session: Session, clip: Clip, _: int, pose: Pose) -> None:
-    session.copied = CopiedPose(clip.figure, pose)
-
-
-def can_paste(session: Session) -> bool:
-    """Tell whether the pose that was copied is one of the figure that is posed now."""
-    project, copied = session.project, session.copied
-    return (
-        project is not None and copied is not None and copied.figure.domain is project.figure.domain
-    )
-
-
-def paste_pose(session: Session) -> None:
-    """Let a key at the present frame hold the pose that was copied."""
-    project, copied = session.project, session.copied
-    if project is None or copied is None or not can_paste(session):
-        return
-    posing.drop(session)
-    playback.halt(session)
-    frame, figure = playback.current_frame(session, project), project.figure
-    pose = posing.retargeted(figure, copied.pose)
-    if figure.bounds != copied.figure.bounds:
-        project.puppet.rig = rig = Rig.of(figure, project.puppet.rig)
-        proven = certify(figure.map_of(pose), rig.deformer.boundary, figure.bounds)
-        pose = replace(pose, certificate=proven)
-    posing.hold(session, project, frame, pose, gesture=object())
-    project.selected, project.chosen = frozenset(), frozenset({frame})
 
 
 def set_easing(session: Session, frames: frozenset[int], easing: Easing) -> None:

@@ -20,6 +20,8 @@ class Spot:
         In the plane.
     handle : int, optional
         The one under it.
+    on_axis : bool
+        Whether it is on the grip of the axis at which poses are flipped.
     on_ring : bool
         Whether it is on the ring around the selected handle.
     on_shape : bool
@@ -32,6 +34,7 @@ class Spot:
 
     place: complex
     handle: int | None = None
+    on_axis: bool = False
     on_ring: bool = False
     on_shape: bool = False
     figure: int | None = None

@@ -16,6 +16,7 @@ from app.editor.actions import (
     timeline_pointing,
     viewing,
 )
+from app.editor.poses import copying, flipping, library
 from app.ui.shortcuts.binding import Binding, always
 
 Key = imgui.Key
@@ -151,21 +152,53 @@ BINDINGS: dict[str, Binding] = {
     ),
     "copy pose": Binding(
         label="Copy pose",
-        action=do(keys.copy_pose),
+        action=do(copying.copy),
         menu="Edit",
         keys=(CTRL | int(Key.c),),
         icon=icons.ICON_FA_COPY,
-        hint="Copy the pose of the chosen key, or the one that is shown",
+        hint="Copy the chosen keys, or the pose that is shown",
         parted=True,
     ),
     "paste pose": Binding(
         label="Paste pose",
-        action=do(keys.paste_pose),
+        action=do(copying.paste),
         menu="Edit",
         keys=(CTRL | int(Key.v),),
         icon=icons.ICON_FA_PASTE,
         hint="Put the copied pose in a key at this frame",
-        possible=keys.can_paste,
+        possible=copying.can_paste,
+    ),
+    "paste flipped": Binding(
+        label="Paste flipped",
+        action=do(flipping.paste),
+        menu="Edit",
+        keys=(CTRL | SHIFT | int(Key.v),),
+        hint="Put the copied pose in a key at this frame, left and right exchanged",
+        possible=copying.can_paste,
+    ),
+    "paste on selected": Binding(
+        label="Paste on selected handles",
+        action=do(copying.paste_on_selected),
+        menu="Edit",
+        keys=(CTRL | ALT | int(Key.v),),
+        hint="Move only the selected handles to where they were in the copied pose",
+        possible=copying.can_paste_on_selected,
+    ),
+    "flip on selected": Binding(
+        label="Paste flipped on selected handles",
+        action=do(flipping.paste_on_selected),
+        menu="Edit",
+        keys=(CTRL | ALT | SHIFT | int(Key.v),),
+        hint="Move only the selected handles, to where their partners were",
+        possible=copying.can_paste_on_selected,
+    ),
+    "keep pose": Binding(
+        label="Keep pose",
+        action=do(library.keep),
+        menu="Edit",
+        keys=(SHIFT | int(Key.k),),
+        icon=icons.ICON_FA_PLUS,
+        hint="Put this pose into the library of poses",
     ),
     "select all": Binding(
         label="Select all handles",
@@ -326,6 +359,14 @@ BINDINGS: dict[str, Binding] = {
         hint="Show the poses before and after",
         active=lambda session: session.overlays.onion,
         in_bar=True,
+    ),
+    "mirror axis": Binding(
+        label="Mirror axis",
+        action=do(viewing.toggle, "mirror"),
+        menu="View",
+        keys=(SHIFT | int(Key.m),),
+        hint="Show where flipped poses are mirrored",
+        active=lambda session: session.overlays.mirror,
     ),
     "theme": Binding(
         label="Light or dark",

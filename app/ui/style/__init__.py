@@ -21,6 +21,7 @@ from app.ui.style.theme import (
 )
 from app.ui.style.widgets import (
     FILL,
+    POSE_PAYLOAD,
     TOAST,
     at_end,
     begin_tip,
@@ -41,6 +42,7 @@ __all__ = [
     "FONT_SIZE",
     "LARGE",
     "PALETTES",
+    "POSE_PAYLOAD",
     "SMALL",
     "TITLE",
     "TOAST",

@@ -9,6 +9,7 @@ from app.ui.style.theme import SMALL, Look
 LABEL_WIDTH = 6.2  # em
 FILL = -imgui.FLT_MIN  # as a width: the rest of the line
 TOAST = "##toast"  # begins the names of the windows of messages
+POSE_PAYLOAD = "pose of the library"  # what is dragged from there to the timeline
 TIP_ROOM = (28.0, 8.0)  # em: width and height that hardly any tooltip exceeds
 
 

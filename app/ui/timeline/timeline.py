@@ -8,6 +8,7 @@ from app.editor.tools import pointing
 from app.ui.shortcuts import with_key
 from app.ui.style import Look
 from app.ui.timeline.bar import draw_bar
+from app.ui.timeline.dropping import draw_dropped
 from app.ui.timeline.edges import draw_edges
 from app.ui.timeline.intervals import draw_intervals
 from app.ui.timeline.keys import draw_box, draw_ground, draw_keys
@@ -49,6 +50,7 @@ def _draw_track(track: Track, frame: int) -> list[Action]:
     draw_box(track)
     actions += draw_overview(track, frame)
     actions += _go_on(track)
+    actions += draw_dropped(track)
     actions += _follow(track, frame)
     if imgui.is_window_hovered() or track.project.timing.gesture is not None:
         actions.append(do(pointing.explain, _hint(track)))

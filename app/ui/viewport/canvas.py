@@ -1,6 +1,7 @@
 """What the viewport shows: the drawing, its ghosts, and all that marks it."""
 
 from collections.abc import Collection
+from functools import partial
 
 import numpy as np
 
@@ -20,11 +21,13 @@ from app.render.gpu import GpuMesh, GpuPicture, PosedMesh, RenderTarget
 from app.ui.style import PALETTES
 from app.ui.viewport.backdrop import background, measure_brightness
 from app.ui.viewport.marks import mark_all, pixel_scale, plain
+from app.ui.viewport.pose_pictures import PosePictures
 from engine.arrays import Floats
 from engine.maps import distortion
 
 GHOST_BEFORE, GHOST_AFTER = (0.93, 0.36, 0.36), (0.30, 0.62, 0.98)
 GHOST_OPACITY = 0.38
+SMALL_PICTURE = -1  # number of the poses that are drawn for the library; ghosts count from 1
 
 
 class Canvas:
@@ -41,6 +44,7 @@ class Canvas:
         self._retired: RenderTarget | None = None
         self._drawing: _Drawing | None = None
         self._drawn: tuple[object, ...] = ()
+        self.pose_pictures = PosePictures(renderer)
 
     @property
     def texture(self) -> int | None:
@@ -56,11 +60,14 @@ class Canvas:
         """Draw the project of a session as it is shown now."""
         project = session.project
         if project is None or project.puppet.shown is None:
+            self.pose_pictures.release()
             return
         self._fit_target(session.screen)
         if self._drawing is None or self._drawing.project is not project:
             self._forget_drawing()
             self._drawing = _Drawing(self._renderer, project)
+        posable = partial(self._drawing.drawn_mesh, project.active, number=SMALL_PICTURE)
+        self.pose_pictures.draw(session, project, posable)
         inputs = _inputs(session, project)
         if self._target is not None and inputs != self._drawn:
             scene = _scene(session, project, project.puppet.shown, self._drawing)
@@ -69,6 +76,7 @@ class Canvas:
 
     def release(self) -> None:
         """Let everything go."""
+        self.pose_pictures.release()
         self._forget_drawing()
         for target in filter(None, (self._target, self._retired)):
             target.release()

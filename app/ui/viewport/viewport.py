@@ -1,6 +1,8 @@
 """The drawing, and everything that the pointer does to it."""
 
+from dataclasses import replace
 from functools import partial
+from typing import NamedTuple
 
 import numpy as np
 from imgui_bundle import ImVec2, imgui
@@ -9,6 +11,7 @@ from imgui_bundle import icons_fontawesome_6 as icons
 from app.document import handle_commands
 from app.editor import Action, BoxMark, EntryMark, Hint, Project, Session, SweepMark, do, layering
 from app.editor.actions import editing, posing, viewing
+from app.editor.poses import flipping
 from app.editor.tools import TOOLS, Spot, pointing
 from app.motion import Shown
 from app.render import View
@@ -16,6 +19,7 @@ from app.ui.shortcuts import with_key
 from app.ui.style import Look, ink
 from app.ui.viewport.badges import draw_badges
 from app.ui.viewport.entry import draw_entry, typed
+from app.ui.viewport.mirror_axis import axis_grip, draw_axis
 from app.ui.viewport.ring import Ring, draw_ring
 from engine.geometry import contains
 
@@ -52,13 +56,15 @@ def draw(session: Session, look: Look, texture: int | None) -> list[Action]:
     # Before the canvas: what comes first gets the pointer. Were they laid over it, a press in the
     # frame in which the pointer arrives would be the canvas's, or nobody's.
     hovered, pressed, over_handles = _handles(session, look, canvas)
+    axis = _axis(session, look, canvas)
+    pressed = pressed or axis.is_pressed
     imgui.set_cursor_screen_pos(corner)
     imgui.invisible_button("canvas", room, _ANY_BUTTON)
     on_canvas = imgui.is_item_hovered()
     over = imgui.is_window_hovered() or imgui.is_item_active()
     ring = _ring(session, canvas)
     on_ring = ring is not None and on_canvas and hovered is None and ring.is_pointed(look)
-    spot = _spot(canvas, hovered, on_ring=on_ring)
+    spot = replace(_spot(canvas, hovered, on_ring=on_ring), on_axis=axis.is_hot)
     if pressed or _is_canvas_pressed():
         actions.append(do(pointing.press, spot))
     actions += _navigate(canvas, over=over)
@@ -66,9 +72,11 @@ def draw(session: Session, look: Look, texture: int | None) -> list[Action]:
     actions += _go_on(session, look, canvas)
     if hovered != session.hovered:
         actions.append(do(pointing.hover, hovered))
+    if axis.x is not None:
+        draw_axis(look, axis.x, hot=axis.is_hot)
     if ring is not None:
         draw_ring(look, ring, is_pointed=on_ring and session.pointer is None)
-    hint = _hint(session, canvas, spot) if on_canvas or hovered is not None else ""
+    hint = _hint(session, canvas, spot) if on_canvas or hovered is not None or axis.is_hot else ""
     if hint != session.hint:
         actions.append(do(pointing.explain, hint))
     actions += draw_badges(look, project, corner, room)
@@ -145,6 +153,21 @@ def _spot(canvas: _Canvas, handle: int | None, *, on_ring: bool) -> Spot:
         shift=io.key_shift,
         alt=io.key_alt,
     )
+
+
+class _Axis(NamedTuple):
+    """Where the axis is on the screen at which poses are flipped, if it is shown, and its grip."""
+
+    x: float | None = None
+    is_hot: bool = False
+    is_pressed: bool = False
+
+
+def _axis(session: Session, look: Look, canvas: _Canvas) -> _Axis:
+    if not flipping.shows_axis(session):
+        return _Axis()
+    x = canvas.point(complex(canvas.project.figure.axis)).x
+    return _Axis(x, *axis_grip(look, x))
 
 
 def _ring(session: Session, canvas: _Canvas) -> Ring | None:

@@ -27,6 +27,7 @@ from app.editor.actions import (
     timeline_pointing,
     viewing,
 )
+from app.editor.poses import copying, flipping, library
 from app.editor.timeline_view import Strip
 from app.export_formats import EXPORT_FORMATS
 from app.storage.project_file import load_project, save_project
@@ -408,6 +409,42 @@ class Walk:
     def cancel_solving(self) -> None:
         self.act(rebuilding.cancel)
 
+    def copy_and_paste(self) -> None:
+        verbs = (copying.copy, copying.paste, copying.paste_on_selected)
+        if len(self.document.figures[0].keys) < MOST_KEYS:
+            verb = self.choice((*verbs, flipping.paste, flipping.paste_on_selected))
+            self.act(verb)
+
+    def use_library(self) -> None:
+        figure = self.document.figures[0]
+        if len(figure.library) < 3:
+            self.act(library.keep)
+        elif self.chance(0.2):
+            self.act(library.delete, self.choice(figure.library).name)
+        for kept in self.document.figures[0].library[:1]:
+            match self.rng.integers(4):
+                case 0:
+                    self.act(library.rename, kept.name, f"pose {self.rng.integers(99)}")
+                case 1 if len(figure.keys) < MOST_KEYS:
+                    self.act(library.apply_at, kept.name, int(self.rng.integers(LAST)))
+                case 2:
+                    self.act(library.blend, kept.name, float(self.rng.random() * 1.2))
+                    self.act(library.end_blend)
+                case 3:
+                    middle = float(self.rng.uniform(0, 160))
+                    self.act(flipping.place_axis, self.choice((None, middle)))
+
+    def change_markers(self) -> None:
+        self.act(keys.mark_here)
+        marker = self.choice(self.document.markers)
+        match self.rng.integers(3):
+            case 0:
+                self.act(keys.rename_marker, marker.frame, f"m {self.rng.integers(99)}")
+            case 1:
+                self.act(keys.delete_marker, marker.frame)
+            case 2:
+                self.act(playback.to_marker, int(self.choice((-1, 1))))
+
     def change_time(self) -> None:
         match self.rng.integers(9):
             case 0:
@@ -529,6 +566,9 @@ ALL = (
     (Walk.solve_again, 0.1),
     (Walk.rebuild, 0.2),
     (Walk.cancel_solving, 0.2),
+    (Walk.copy_and_paste, 3),
+    (Walk.use_library, 2),
+    (Walk.change_markers, 1),
     (Walk.change_time, 4),
     (Walk.look_at_time, 1),
     (Walk.change_onion_skin, 1),

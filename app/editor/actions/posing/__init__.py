@@ -24,13 +24,15 @@ from app.editor.actions.posing.pulling import (
     pull_again,
     settle,
     wish,
+    wishes_of,
 )
-from app.editor.actions.posing.steps import POSING, STEPS, hold, retargeted
+from app.editor.actions.posing.steps import POSING, STEPS, accept, hold, retargeted
 
 __all__ = [
     "INSERTING",
     "POSING",
     "STEPS",
+    "accept",
     "add_handle",
     "anchor_at",
     "drop",
@@ -50,4 +52,5 @@ __all__ = [
     "settle",
     "suggest_handles",
     "wish",
+    "wishes_of",
 ]

@@ -115,7 +115,11 @@ def _go_on(
     if posing.targets is targets:
         posing.steps += steps.taken
     posing.drag = steps.drag
-    _accept(session, project, steps.drag.pose(targets), posing)
+    pose = steps.drag.pose(targets)
+    if posing is project.settling:
+        hold(session, project, posing.frame, pose, gesture=posing.gesture)
+    else:
+        accept(session, project, posing.frame, pose, gesture=posing.gesture)
     rests = steps.drag.is_over and posing.targets == targets
     if not rests and posing.steps < MOST_STEPS:
         follow(session, project, posing)
@@ -123,13 +127,13 @@ def _go_on(
         end(project, posing)
 
 
-def _accept(session: Session, project: Project, pose: Pose, posing: PoseInProgress) -> None:
-    """Put the solver's newest map into the document, or show it unkeyed."""
-    if session.preferences.auto_key or posing is project.settling:
-        hold(session, project, posing.frame, pose, gesture=posing.gesture)
+def accept(session: Session, project: Project, frame: int, pose: Pose, gesture: object) -> None:
+    """Put a pose that is new into the document, or show it unkeyed."""
+    if session.preferences.auto_key:
+        hold(session, project, frame, pose, gesture=gesture)
     else:
-        unkeyed = UnkeyedPose(figure=project.active, frame=posing.frame, pose=pose)
-        project.history.pose(unkeyed, gesture=posing.gesture)
+        unkeyed = UnkeyedPose(figure=project.active, frame=frame, pose=pose)
+        project.history.pose(unkeyed, gesture=gesture)
 
 
 def hold(session: Session, project: Project, frame: int, pose: Pose, gesture: object) -> None:

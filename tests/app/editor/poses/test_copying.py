@@ -5,13 +5,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from animations import moving_document
+from invariants import check_pose
 from projects import project_of
 
-from app.document.commands import figure_commands, handle_commands
+from app.document import HOLD
+from app.document.commands import figure_commands, handle_commands, key_commands
 from app.document.settings import NATURAL
 from app.editor import Jobs, Session
-from app.editor.actions import editing, keys, playback, posing
+from app.editor.actions import editing, playback, posing
 from app.editor.actions.upkeep import maintain
+from app.editor.poses import copying
 from app.storage import Preferences
 from engine.maps import Boundary, certify
 
@@ -44,13 +47,13 @@ def go(session, frame):
 
 def test_a_pose_is_pasted_at_another_frame_as_one_step(session):
     project, before = session.project, session.project.document
-    assert not keys.can_paste(session)
+    assert not copying.can_paste(session)
     go(session, 6)
-    keys.copy_pose(session)
+    copying.copy(session)
     bent = project.figure.key(6).pose
     for frame, frames in ((3, {0, 3, 6}), (0, {0, 6})):
         go(session, frame)
-        keys.paste_pose(session)
+        copying.paste(session)
         assert project.figure.key_frames == frames
         pose = project.figure.key(frame).pose
         assert (pose.phi is bent.phi, pose.psi is bent.psi) == (True, True)
@@ -62,20 +65,55 @@ def test_a_pose_is_pasted_at_another_frame_as_one_step(session):
 
 def test_the_one_chosen_key_is_copied_wherever_the_playhead_is(session):
     editing.choose_keys(session, frozenset({6}))
-    keys.copy_pose(session)
-    assert session.copied.pose is session.project.figure.key(6).pose
+    copying.copy(session)
+    assert session.copied.keys == (session.project.figure.key(6),)
+    editing.choose_keys(session, frozenset())
+    copying.copy(session)
+    assert session.copied.keys[0].pose is session.project.figure.key(0).pose
+
+
+def test_several_keys_are_pasted_with_their_ways_and_distances(session):
+    project = session.project
+    editing.edit_figure(session, key_commands.set_easing, {0}, HOLD)
+    before = project.document
     editing.choose_keys(session, frozenset({0, 6}))
-    keys.copy_pose(session)
-    assert session.copied.pose is session.project.figure.key(0).pose
+    copying.copy(session)
+    go(session, 4)
+    copying.paste(session)
+    assert project.figure.key_frames == {0, 4, 6, 10}
+    assert project.chosen == {4, 10}
+    assert project.figure.key(4).pose is project.figure.key(0).pose
+    assert project.figure.key(4).easing == HOLD
+    assert project.figure.key(10).pose is project.figure.key(6).pose
+    assert project.history.undo_label == "Paste keys"
+    editing.undo(session)
+    assert project.document is before
+
+
+def test_only_the_selected_handles_take_what_was_copied(session):
+    project = session.project
+    editing.edit(session, handle_commands.add_handle(0, 40 + 45j))
+    go(session, 6)
+    copying.copy(session)
+    bent = project.figure.key(6).pose.targets
+    go(session, 0)
+    assert not copying.can_paste_on_selected(session)
+    editing.select(session, frozenset({1}))
+    copying.paste_on_selected(session)
+    settle(session)
+    targets = project.figure.key(0).pose.targets
+    assert targets[1].position == bent[1].position
+    assert targets[0].position == pytest.approx(60 + 45j, abs=1e-9)
+    check_pose(project.figure, project.figure.key(0).pose)
 
 
 def test_an_in_between_is_copied_as_the_nearest_pose(session):
     go(session, 3)
     between = session.project.puppet.shown.positions
-    keys.copy_pose(session)
+    copying.copy(session)
     settle(session)
     go(session, 0)
-    keys.paste_pose(session)
+    copying.paste(session)
     settle(session)
     size = np.ptp(between.real)
     np.testing.assert_allclose(
@@ -86,10 +124,10 @@ def test_an_in_between_is_copied_as_the_nearest_pose(session):
 def test_a_pose_is_pasted_with_the_handles_of_now(session):
     project = session.project
     go(session, 6)
-    keys.copy_pose(session)
+    copying.copy(session)
     editing.edit(session, handle_commands.add_handle(0, 40 + 45j))
     editing.edit(session, handle_commands.remove_handles(0, frozenset({0})))
-    keys.paste_pose(session)
+    copying.paste(session)
     pose = project.figure.key(6).pose
     assert set(pose.targets) == {1}
     assert project.figure.lags(pose)[1] == pytest.approx(0.0, abs=1e-9)
@@ -98,11 +136,11 @@ def test_a_pose_is_pasted_with_the_handles_of_now(session):
 def test_a_pose_is_proven_against_the_limits_of_now(session):
     project = session.project
     go(session, 6)
-    keys.copy_pose(session)
+    copying.copy(session)
     tighter = replace(NATURAL.bounds, sigma_a=1.01)
     editing.edit_figure(session, figure_commands.set_bounds, tighter)
     go(session, 3)
-    keys.paste_pose(session)
+    copying.paste(session)
     figure = project.figure
     pose = figure.key(3).pose
     boundary = Boundary.sample(figure.domain.outline, figure.domain.cage)
@@ -111,12 +149,12 @@ def test_a_pose_is_proven_against_the_limits_of_now(session):
 
 
 def test_a_pose_of_another_shape_cannot_be_pasted(session):
-    keys.copy_pose(session)
+    copying.copy(session)
     session.project = project_of(moving_document(), PICTURE, "other")
     before = session.project.document
     settle(session)
-    assert not keys.can_paste(session)
-    keys.paste_pose(session)
+    assert not copying.can_paste(session)
+    copying.paste(session)
     assert session.project.document is before
 
 
@@ -124,17 +162,17 @@ def test_a_pose_that_no_key_holds_is_copied_and_gives_way_to_a_pasted_one(sessio
     project = session.project
     session.preferences = Preferences(auto_key=False)
     go(session, 6)
-    keys.copy_pose(session)
+    copying.copy(session)
     go(session, 0)
     editing.select(session, frozenset({0}))
     posing.nudge(session, 4j)
     settle(session)
     unkeyed = project.unkeyed
     assert unkeyed is not None
-    keys.paste_pose(session)
+    copying.paste(session)
     assert project.unkeyed is None
     editing.undo(session)
     assert project.unkeyed is unkeyed
     project.chosen = frozenset()
-    keys.copy_pose(session)
-    assert session.copied.pose is unkeyed
+    copying.copy(session)
+    assert session.copied.keys[0].pose is unkeyed

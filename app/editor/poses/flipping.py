@@ -1,0 +1,108 @@
+"""Pasting what was copied flipped, and again where the axis has been moved."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from app.document import Keyframe, Pose, pose_commands
+from app.editor.actions import playback
+from app.editor.failures import report
+from app.editor.jobs import Job
+from app.editor.poses import copying, putting
+from app.editor.project import Flip, Project
+from app.editor.session import Session
+from app.solving import Rig, flip_poses, flipped_targets
+
+FLIPPING = "Flipping"
+
+
+def paste(session: Session) -> None:
+    """Let keys hold what was copied, mirrored at the figure's axis."""
+    project, copied = session.project, session.copied
+    if project is None or copied is None or not copying.can_paste(session):
+        return
+    frame = putting.stand_at_frame(session, project)
+    keys = putting.fitted(project, copied.keys, copied.figure.bounds)
+    _flip(session, project, frame, keys, gesture=object())
+
+
+def paste_on_selected(session: Session) -> None:
+    """Let the selected handles go where their partners were, and the shape follow."""
+    project, copied = session.project, session.copied
+    if project is None or copied is None or not copying.can_paste_on_selected(session):
+        return
+    (key, *_) = putting.fitted(project, copied.keys, copied.figure.bounds)
+    figure = project.figure
+    copying.pull_selected(session, flipped_targets(figure, key.pose, figure.axis))
+
+
+def is_fresh(project: Project) -> bool:
+    """Tell whether what was flipped last is still what the chosen keys hold."""
+    flip = project.flip
+    if flip is None or project.chosen != flip.frames or project.active != flip.figure:
+        return False
+    return all(
+        project.figure.key(frame).pose is pose
+        for frame, pose in zip(sorted(flip.frames), flip.poses, strict=True)
+    )
+
+
+def shows_axis(session: Session) -> bool:
+    """Tell whether the axis is shown: after a flip, and as long as the person wants to see it."""
+    project = session.project
+    if project is None or project.playhead.since is not None:
+        return False
+    return session.overlays.mirror or is_fresh(project)
+
+
+def move_axis(session: Session, x: float | None, gesture: object) -> None:
+    """Put the axis elsewhere, or in the middle."""
+    if session.project:
+        command = pose_commands.set_mirror(session.project.active, x)
+        session.project.history.do(command, gesture=gesture)
+
+
+def flip_again(session: Session, gesture: object) -> None:
+    """Flip once more what was flipped last, at the axis of now."""
+    project = session.project
+    if project is not None and project.flip is not None and is_fresh(project):
+        flip = project.flip
+        _flip(session, project, min(flip.frames), flip.keys, gesture=gesture)
+
+
+def place_axis(session: Session, x: float | None) -> None:
+    """Put the axis elsewhere, or in the middle, and flip again what was flipped last."""
+    gesture = object()
+    move_axis(session, x, gesture)
+    flip_again(session, gesture)
+
+
+def _flip(
+    session: Session, project: Project, frame: int, keys: Sequence[Keyframe], gesture: object
+) -> None:
+    figure = project.figure
+    rig, axis = Rig.of(figure, project.puppet.rig), figure.axis
+
+    def done(poses: list[Pose]) -> None:
+        now = project.figure
+        if session.project is not project or now.id != figure.id:
+            return
+        if now.domain is not figure.domain or now.handles != figure.handles:
+            session.tell("The pose was not flipped: the shape or its handles changed. Paste again.")
+            return
+        flipped = [replace(key, pose=pose) for key, pose in zip(keys, poses, strict=True)]
+        putting.put(session, project, frame, flipped, label="Paste flipped", gesture=gesture)
+        project.flip = Flip(
+            figure=figure.id, keys=tuple(keys), frames=project.chosen, poses=tuple(poses)
+        )
+        if playback.current_frame(session, project) != frame:
+            playback.seek(session, frame)
+
+    session.jobs.put(
+        Job(
+            kind=FLIPPING,
+            work=lambda: flip_poses(rig, [key.pose for key in keys], axis),
+            done=done,
+            failed=lambda error: report(session, "The pose could not be flipped", error),
+            urgent=True,
+        )
+    )

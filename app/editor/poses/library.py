@@ -1,0 +1,121 @@
+"""The figure's library: poses under names, which are put on the timeline or blended in."""
+
+from collections.abc import Mapping
+from dataclasses import replace
+from functools import partial
+
+from app.document import Figure, Keyframe, Pose, Target, pose_commands
+from app.editor.actions import editing, playback, posing
+from app.editor.poses import putting
+from app.editor.project import Blend, Project
+from app.editor.session import Session
+
+KEEPING = "Keeping a pose"
+
+
+def keep(session: Session) -> None:
+    """Put the pose of the chosen key into the library, or else the one that is shown."""
+    project = session.project
+    if project is None or project.puppet.shown is None:
+        return
+    keys = putting.shown_keys(project)
+    if keys:
+        _keep(session, project, project.figure, keys)
+    else:
+        complaint = "The pose could not be kept"
+        take = partial(_keep, session, project)
+        putting.find_pose(session, project, KEEPING, complaint, take)
+
+
+def _keep(session: Session, project: Project, figure: Figure, keys: tuple[Keyframe, ...]) -> None:
+    if session.project is not project or figure.domain is not project.figure.domain:
+        return
+    for key in putting.fitted(project, keys, figure.bounds):
+        editing.edit(session, pose_commands.keep_pose(project.active, key.pose))
+    project.kept = project.figure.library[-1].name
+
+
+def apply(session: Session, name: str) -> None:
+    """Let a key at the present frame hold a pose of the library."""
+    project = session.project
+    if project is not None:
+        _put(session, project, name, putting.stand_at_frame(session, project))
+
+
+def apply_at(session: Session, name: str, frame: int) -> None:
+    """Let a key at a frame hold a pose of the library, and go there."""
+    project = session.project
+    if project is not None and frame >= 0:
+        putting.stand_at_frame(session, project)
+        _put(session, project, name, frame)
+        playback.seek(session, frame)
+
+
+def _put(session: Session, project: Project, name: str, frame: int) -> None:
+    pose = project.figure.kept_pose(name).pose
+    project.kept = name
+    putting.put(session, project, frame, [Keyframe(frame=0, pose=pose)], label="Use pose")
+
+
+def blend(session: Session, name: str, share: float) -> None:
+    """Mix a pose of the library into the one that is shown, as it was when this began.
+
+    Parameters
+    ----------
+    session : Session
+    name : str
+    share : float
+        Of the pose in the library: 0 changes nothing, 1 is that pose itself. Between them the
+        handles are on the way, and the shape follows within its limits.
+    """
+    project = session.project
+    if project is None or project.puppet.shown is None:
+        return
+    pose = project.figure.kept_pose(name).pose
+    if project.blend is None or project.blend.name != name:
+        playback.halt(session)
+        frame = playback.current_frame(session, project)
+        wishes = posing.wishes_of(project)
+        project.blend = Blend(name=name, frame=frame, wishes=wishes, gesture=object())
+    begun = project.blend = replace(project.blend, share=share)
+    if share >= 1.0:
+        posing.drop(session)
+        posing.accept(session, project, begun.frame, pose, gesture=begun.gesture)
+    else:
+        posing.pull(session, _mixed(begun.wishes, pose, share), gesture=begun.gesture)
+
+
+def end_blend(session: Session) -> None:
+    """Let the pose be as it is mixed now."""
+    if session.project:
+        session.project.blend = None
+        posing.let_go(session)
+
+
+def _mixed(wishes: Mapping[int, Target], pose: Pose, share: float) -> Mapping[int, Target]:
+    return {
+        identity: _between(wishes[identity], target, share)
+        for identity, target in pose.targets.items()
+        if identity in wishes
+    }
+
+
+def _between(one: Target, other: Target, share: float) -> Target:
+    position = (1 - share) * one.position + share * other.position
+    if one.rotation is None or other.rotation is None:
+        rotation = one.rotation if share < 0.5 else other.rotation
+    else:
+        rotation = (1 - share) * one.rotation + share * other.rotation
+    return Target(position=position, rotation=rotation)
+
+
+def rename(session: Session, name: str, to: str) -> None:
+    """Give a pose of the library another name."""
+    if session.project:
+        editing.edit_figure(session, pose_commands.rename_pose, name, to)
+        session.project.kept = to
+
+
+def delete(session: Session, name: str) -> None:
+    """Take a pose out of the library; keys that were made of it stay."""
+    editing.edit_figure(session, pose_commands.delete_pose, name)

@@ -1,0 +1,93 @@
+"""Poses on the timeline: what is pasted, flipped or taken from the library."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from functools import partial
+
+from app.document import Clip, Figure, Keyframe, Pose, key_commands
+from app.editor.actions import playback, posing
+from app.editor.project import Project
+from app.editor.session import Session
+from app.solving import Rig
+from engine.maps import Bounds, certify
+
+Take = Callable[[Figure, tuple[Keyframe, ...]], None]
+
+
+def put(
+    session: Session,
+    project: Project,
+    frame: int,
+    keys: Sequence[Keyframe],
+    *,
+    label: str = "Paste pose",
+    gesture: object | None = None,
+) -> None:
+    """Let keys at a frame, and as much later as they were copied, hold poses; choose them."""
+    gesture = gesture or object()
+    moved = [replace(key, frame=frame + key.frame - keys[0].frame) for key in keys]
+    easing = session.preferences.easing
+    command = key_commands.put_keys(project.active, moved, easing)
+    project.history.do(replace(command, label=label), gesture=gesture)
+    frames = frozenset(key.frame for key in moved)
+    unkeyed = project.history.unkeyed
+    if unkeyed is not None and unkeyed.figure == project.active and unkeyed.frame in frames:
+        project.history.pose(None, gesture=gesture)
+    project.selected, project.chosen = frozenset(), frames
+
+
+def stand_at_frame(session: Session, project: Project) -> int:
+    """End what moves, and return the present frame."""
+    posing.drop(session)
+    playback.halt(session)
+    return playback.current_frame(session, project)
+
+
+def fitted(project: Project, keys: Sequence[Keyframe], bounds: Bounds) -> list[Keyframe]:
+    """Return keys with poses that have the handles of now, and are proven for its limits.
+
+    Parameters
+    ----------
+    project : Project
+    keys : sequence of Keyframe
+        Of the figure that is posed, or of an earlier state of it.
+    bounds : Bounds
+        Those that it had then.
+    """
+    figure = project.figure
+    return [replace(key, pose=_fitted(project, figure, key.pose, bounds)) for key in keys]
+
+
+def _fitted(project: Project, figure: Figure, pose: Pose, bounds: Bounds) -> Pose:
+    if pose.targets.keys() != {handle.id for handle in figure.handles}:
+        pose = posing.retargeted(figure, pose)
+    if figure.bounds == bounds:
+        return pose
+    project.puppet.rig = rig = Rig.of(figure, project.puppet.rig)
+    proven = certify(figure.map_of(pose), rig.deformer.boundary, figure.bounds)
+    return replace(pose, certificate=proven)
+
+
+def shown_keys(project: Project) -> tuple[Keyframe, ...]:
+    """Return the keys that are chosen, or else one with the pose that is shown.
+
+    There are none where an in-between is shown.
+    """
+    if project.chosen:
+        return tuple(project.figure.key(frame) for frame in sorted(project.chosen))
+    shown = project.puppet.shown
+    pose = project.unkeyed or (shown.pose if shown is not None else None)
+    return () if pose is None else (_as_key(pose),)
+
+
+def find_pose(session: Session, project: Project, kind: str, complaint: str, take: Take) -> None:
+    """Let the worker find the pose that is nearest to the in-between that is shown."""
+    posing.fit_pose(session, project, kind, complaint, partial(_take_fitted, take))
+
+
+def _take_fitted(take: Take, clip: Clip, _: int, pose: Pose) -> None:
+    take(clip.figure, (_as_key(pose),))
+
+
+def _as_key(pose: Pose) -> Keyframe:
+    return Keyframe(frame=0, pose=pose)

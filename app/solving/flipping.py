@@ -1,0 +1,132 @@
+"""Flipped poses: what the left side does, the right side does, and the other way round."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from app.document import Figure, Handle, Pose, Target, pairs_by_name
+from app.solving.drag import Drag, Rig, fit_map
+from engine.arrays import Booleans, Complexes
+from engine.errors import EngineError
+from engine.geometry import box_diagonal, contains
+from engine.maps import HarmonicMap, certify
+
+MOST_STEPS = 600  # for one pose
+# Of the shape's diagonal: handles that mirror each other this nearly are pairs without names.
+NEAR = 0.03
+# Of a shape that counts as symmetric, the part at least that lies on its own mirror image.
+SYMMETRIC = 0.9
+
+
+def flip_poses(rig: Rig, poses: Sequence[Pose], axis: float) -> list[Pose]:
+    """Return poses mirrored at an upright axis, solved within the bounds of the rig's figure.
+
+    Parameters
+    ----------
+    rig : Rig
+    poses : sequence of Pose
+        Of the rig's figure.
+    axis : float
+        Where it crosses the picture, in pixels from the left.
+    """
+    return [_flip(rig, pose, axis) for pose in poses]
+
+
+def flipped_targets(figure: Figure, pose: Pose, axis: float) -> Mapping[int, Target]:
+    """Return where a flipped pose wants each handle.
+
+    A flipped pose would be R ∘ f ∘ R, with R(z) = 2a − conj(z) the reflection, were the drawing its
+    own mirror image. It hardly ever is: R takes a handle h to a place beside its partner p. What
+    the pose does at p it does, mirrored, to R(p), and it takes h along as a rigid body would:
+
+        R(f(p)) + u (h − R(p)),  u = conj(f_z(p) / |f_z(p)|)
+
+    So the drawing at rest stays at rest whatever its pairs are, a shape that is turned as a whole
+    is turned the other way, and flipping twice changes nothing.
+
+    Partners are told by the names of handles, then by their places; on a symmetric shape a handle
+    without either does what the shape does at its mirror image, and else it mirrors itself.
+    """
+    shape = figure.map_of(pose)
+    partners = _partners(figure, axis)
+    is_symmetric = _is_symmetric(figure, axis)
+    targets = {}
+    for handle in figure.handles:
+        partner = partners.get(handle.id)
+        place, target = handle.position, pose.targets[handle.id]
+        if partner is not None:
+            place, target = partner.position, pose.targets[partner.id]
+        elif is_symmetric and _is_on(figure, np.array([_reflect(place, axis)]))[0]:
+            place = _reflect(place, axis)
+            target = replace(target, position=complex(shape(np.array([place]))[0]), rotation=None)
+        (fz,), _ = shape.derivatives(np.array([place]))
+        turned = complex(np.conj(fz) / abs(fz))
+        beside = handle.position - _reflect(place, axis)
+        targets[handle.id] = replace(
+            pose.targets[handle.id],
+            position=_reflect(target.position, axis) + turned * beside,
+            rotation=None if target.rotation is None else -target.rotation,
+        )
+    return targets
+
+
+def _flip(rig: Rig, pose: Pose, axis: float) -> Pose:
+    deformer = rig.deformer
+    targets = flipped_targets(rig.figure, pose, axis)
+    state = deformer.start()
+    if _is_symmetric(rig.figure, axis):
+        try:
+            state = deformer.resume(_flipped_map(rig, pose, axis))
+        except EngineError:
+            # It folds: from the drawing at rest every pose can be reached.
+            state = deformer.start()
+    state, _ = deformer.settle(state, rig.wish(targets), at_most=MOST_STEPS)
+    flipped = Drag(rig=rig, deformer=deformer, state=state).pose(targets)
+    # Steps that walk into the bounds are proven for wider ones.
+    proven = certify(state.map, deformer.boundary, deformer.bounds)
+    return replace(flipped, certificate=proven)
+
+
+def _flipped_map(rig: Rig, pose: Pose, axis: float) -> HarmonicMap:
+    """Return the map that is nearest to R ∘ f ∘ R, with which the solver begins."""
+    figure, boundary = rig.figure, rig.deformer.boundary
+    mirrored = _reflected(boundary.points, axis)
+    inside = contains(figure.domain.cage, mirrored)
+    shape, points = figure.map_of(pose), mirrored[inside]
+    fz, fzbar = shape.derivatives(points)
+    places = _reflected(shape(points), axis)
+    # (R ∘ f ∘ R)_z = conj(f_z) at R(z), and likewise for z̄.
+    return fit_map(boundary, fz.conj(), fzbar.conj(), places, inside=inside)
+
+
+def _partners(figure: Figure, axis: float) -> Mapping[int, Handle]:
+    """Return the handle on the other side for each that has one, which may be itself."""
+    handles = {handle.id: handle for handle in figure.handles}
+    partners = {one: handles[other] for one, other in pairs_by_name(figure.handles).items()}
+    near = NEAR * box_diagonal(figure.domain.outline)
+    alone = [handle for handle in figure.handles if handle.id not in partners]
+    for handle in alone:
+        mirrored = _reflect(handle.position, axis)
+        nearest = min(alone, key=lambda other: abs(other.position - mirrored))
+        if abs(nearest.position - mirrored) < near:
+            partners[handle.id] = nearest
+    return partners
+
+
+def _is_symmetric(figure: Figure, axis: float) -> bool:
+    mirrored = _reflected(figure.domain.mesh.vertices, axis)
+    return bool(_is_on(figure, mirrored).mean() >= SYMMETRIC)
+
+
+def _is_on(figure: Figure, points: Complexes) -> Booleans:
+    outline, *holes = figure.domain.loops
+    return contains(outline, points, holes=holes)
+
+
+def _reflected(points: Complexes, axis: float) -> Complexes:
+    return 2 * axis - points.conj()
+
+
+def _reflect(place: complex, axis: float) -> complex:
+    return 2 * axis - place.conjugate()

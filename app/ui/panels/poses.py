@@ -1,0 +1,213 @@
+"""The library of poses: pictures that are clicked, dragged onto the timeline or blended in."""
+
+from collections.abc import Callable
+
+from imgui_bundle import ImVec2, imgui
+from imgui_bundle import icons_fontawesome_6 as icons
+
+from app.document import KeptPose, Pose
+from app.editor import Action, Project, Session, do
+from app.editor.actions import viewing
+from app.editor.poses import flipping, library
+from app.ui.shortcuts import BINDINGS, bound_button
+from app.ui.style import (
+    POSE_PAYLOAD,
+    SMALL,
+    Look,
+    Scale,
+    at_end,
+    heading,
+    ink,
+    label,
+    number,
+    shortened,
+    small,
+    tip,
+    track,
+)
+
+TILE, LEAST_GAP = 6.6, 0.6  # em: side of a picture, and between two
+SHARES = Scale(left=0.0, right=1.0)
+Pictures = Callable[[Pose, int], int | None]
+
+
+def draw(session: Session, look: Look, pictures: Pictures) -> list[Action]:
+    """Draw the poses that are kept, and where poses are flipped.
+
+    Parameters
+    ----------
+    session : Session
+    look : Look
+    pictures : callable
+        Returns the texture of a pose, of a number of pixels each way.
+    """
+    project = session.project
+    if project is None or project.puppet.shown is None:
+        return []
+    heading(look, "Poses", framed=True)
+    at_end(1.15 * imgui.get_frame_height())
+    actions = bound_button(session, look, "keep pose")
+    if project.figure.library:
+        actions += _tiles(look, project, pictures)
+        small(
+            look,
+            "Click a pose to use it at this frame, drag it onto the timeline, or drag the bar "
+            "below it to blend it in.",
+        )
+    else:
+        small(look, "Keep a pose to use it again: here, at other frames, or blended in.")
+    heading(look, "Flip")
+    return actions + _flip(session, look, project)
+
+
+def _tiles(look: Look, project: Project, pictures: Pictures) -> list[Action]:
+    actions: list[Action] = []
+    room, em = imgui.get_content_region_avail().x, look.em
+    side = TILE * em
+    columns = max(1, int((room + LEAST_GAP * em) // (side + LEAST_GAP * em)))
+    gap = (room - columns * side) / max(columns - 1, 1)
+    left = imgui.get_cursor_pos_x()
+    for index, kept in enumerate(project.figure.library):
+        if index % columns:
+            imgui.same_line(left + (index % columns) * (side + gap))
+        imgui.begin_group()
+        imgui.push_id(kept.name)
+        actions += _tile(look, project, kept, index, pictures)
+        actions += _blend(look, project, kept, side)
+        actions += _rename(look, project, kept)
+        imgui.pop_id()
+        imgui.end_group()
+    return actions
+
+
+def _tile(
+    look: Look, project: Project, kept: KeptPose, index: int, pictures: Pictures
+) -> list[Action]:
+    palette, draw_list, em = look.palette, imgui.get_window_draw_list(), look.em
+    actions: list[Action] = []
+    low = imgui.get_cursor_screen_pos()
+    size = ImVec2(TILE * em, (TILE + 1.1) * em)
+    if imgui.invisible_button(f"pose {kept.name}", size):
+        actions.append(do(library.apply, kept.name))
+    hot = imgui.is_item_hovered()
+    high = ImVec2(low.x + TILE * em, low.y + TILE * em)
+    draw_list.add_rect_filled(low, high, ink(palette.desk), 0.4 * em)
+    density = imgui.get_io().display_framebuffer_scale.x or 1.0
+    texture = pictures(kept.pose, round(TILE * em * density))
+    if texture is not None:
+        _show(texture, low, high, 0.4 * em)
+    is_picked = kept.name == project.kept
+    if hot or is_picked:
+        draw_list.add_rect(low, high, ink(palette.accent, 1.0 if hot else 0.6), 0.4 * em, 1.5)
+    imgui.push_font(None, SMALL * imgui.get_style().font_size_base)
+    text = shortened(kept.name, TILE * em)
+    x = (low.x + high.x - imgui.calc_text_size(text).x) / 2
+    colour = palette.text if hot or is_picked else palette.dim
+    draw_list.add_text(ImVec2(x, high.y + 0.15 * em), ink(colour), text)
+    imgui.pop_font()
+    if imgui.begin_drag_drop_source():
+        imgui.set_drag_drop_payload_py_id(POSE_PAYLOAD, index)
+        corner = imgui.get_cursor_screen_pos()
+        imgui.dummy(ImVec2(TILE * em / 2, TILE * em / 2))
+        if texture is not None:
+            _show(texture, corner, imgui.get_item_rect_max(), 0.2 * em)
+        imgui.end_drag_drop_source()
+    tip(f"{kept.name}: click to use it at this frame, right click for more")
+    return actions + _menu(kept)
+
+
+def _show(texture: int, low: ImVec2, high: ImVec2, rounding: float) -> None:
+    imgui.get_window_draw_list().add_image_rounded(
+        imgui.ImTextureRef(texture),
+        low,
+        high,
+        ImVec2(0, 1),
+        ImVec2(1, 0),
+        imgui.IM_COL32(255, 255, 255, 255),
+        rounding,
+    )
+
+
+def _blend(look: Look, project: Project, kept: KeptPose, width: float) -> list[Action]:
+    begun = project.blend
+    share = begun.share if begun is not None and begun.name == kept.name else 0.0
+    # Near the name above it.
+    imgui.set_cursor_pos_y(imgui.get_cursor_pos_y() - 0.5 * look.em)
+    moved = track(look, "blend", share, SHARES, width, colour=look.palette.accent)
+    told = f"{100 * share:.0f}% blended in" if share else "Drag to blend it into the present pose"
+    tip(told)
+    if moved is None:
+        return []
+    actions = [do(library.blend, kept.name, moved.value)]
+    return [*actions, do(library.end_blend)] if moved.is_final else actions
+
+
+def _menu(kept: KeptPose) -> list[Action]:
+    actions: list[Action] = []
+    asks = False
+    if imgui.begin_popup_context_item("menu"):
+        if imgui.menu_item_simple("Use at this frame", "Click"):
+            actions.append(do(library.apply, kept.name))
+        asks = imgui.menu_item_simple("Rename…")
+        if imgui.menu_item_simple("Delete"):
+            actions.append(do(library.delete, kept.name))
+        imgui.end_popup()
+    if asks:
+        imgui.open_popup("name")
+    return actions
+
+
+def _rename(look: Look, project: Project, kept: KeptPose) -> list[Action]:
+    """Draw the field for a pose's name, if it is open."""
+    if not imgui.begin_popup("name"):
+        return []
+    actions: list[Action] = []
+    if imgui.is_window_appearing():
+        imgui.set_keyboard_focus_here()
+    imgui.set_next_item_width(12 * look.em)
+    flags = imgui.InputTextFlags_.auto_select_all | imgui.InputTextFlags_.enter_returns_true
+    entered, name = imgui.input_text("##name", kept.name, flags)
+    taken = {other.name for other in project.figure.library if other is not kept}
+    if name.strip() in taken:
+        small(look, "Another pose has this name.")
+    elif entered:
+        if name.strip():
+            actions.append(do(library.rename, kept.name, name.strip()))
+        imgui.close_current_popup()
+    imgui.end_popup()
+    return actions
+
+
+def _flip(session: Session, look: Look, project: Project) -> list[Action]:
+    actions: list[Action] = []
+    figure, binding = project.figure, BINDINGS["paste flipped"]
+    width = imgui.get_content_region_avail().x
+    imgui.begin_disabled(not binding.possible(session))
+    if imgui.button(f"{icons.ICON_FA_PASTE}  {binding.label}###flip", ImVec2(width, 0)):
+        actions.append(binding.action)
+    imgui.end_disabled()
+    tip(binding.hint, binding.keys_in_words)
+    label(look, "Axis")
+    if imgui.checkbox("##axis", session.overlays.mirror)[0]:
+        actions.append(do(viewing.toggle, "mirror"))
+    tip("Show in the viewport where poses are flipped; drag it by its grip")
+    imgui.same_line()
+    button = 6 * look.em
+    gap = imgui.get_style().item_inner_spacing.x
+    imgui.set_next_item_width(imgui.get_content_region_avail().x - button - gap)
+    placed = number("axis x", figure.axis, "%.1f")
+    tip("In pixels from the left edge")
+    if placed is not None:
+        actions.append(do(flipping.place_axis, placed))
+    imgui.same_line(0, gap)
+    imgui.begin_disabled(figure.mirror is None)
+    if imgui.button("Middle", ImVec2(button, 0)):
+        actions.append(do(flipping.place_axis, None))
+    imgui.end_disabled()
+    tip("Put the axis in the middle of the pairs of handles, or of the shape")
+    small(
+        look,
+        "Handles are pairs by their names, such as “paw.L” and “paw.R” or “left ear” and "
+        "“right ear”, or by their places.",
+    )
+    return actions
