@@ -10,7 +10,7 @@ from app.editor.action import Action, do
 from app.editor.dialogs import Dialog, FileDialog, Question, ShortcutSheet
 from app.editor.failures import sentence
 from app.editor.jobs import Jobs
-from app.editor.project import Blend, Flip, PoseInProgress, Project, Puppet
+from app.editor.project import Flip, PoseBlend, PoseInProgress, Project, Puppet
 from app.editor.session import (
     BoxMark,
     CurveKind,
@@ -37,7 +37,6 @@ from app.editor.timeline_view import (
 
 __all__ = [
     "Action",
-    "Blend",
     "BoxMark",
     "CurveKind",
     "Dialog",
@@ -54,6 +53,7 @@ __all__ = [
     "KeyDrag",
     "MarkerDrag",
     "Overlays",
+    "PoseBlend",
     "PoseInProgress",
     "Project",
     "Puppet",

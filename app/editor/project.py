@@ -14,3 +14,277 @@ from app.document import (
     Keyframe,
     Meshing,
     PictureFile,
+    Playhead,
+    Pose,
+    Target,
+    clip_of,
+)
+from app.editor.action import Action
+from app.editor.derived import Derived
+from app.editor.timeline_view import Timing
+from app.motion import Box, Build, Joints, Motion, PosableMesh, Shown
+from app.render import View, fit_view
+from app.reports import Curves
+from app.solving import Drag, Renewal, Rig
+from app.storage import Origin, Picture
+from engine.maps import Bounds
+
+OPAQUE = 255
+EXTENTS = 32  # of the motion, which are remembered for undo and redo
+FIT_MARGIN = 0.08  # of the viewport, left free around what is fitted into it
+
+
+@dataclass(slots=True, kw_only=True, eq=False)
+class PoseInProgress:
+    """A pose that the solver is on its way to.
+
+    Parameters
+    ----------
+    frame : int
+        Where the pose belongs.
+    targets : mapping
+        What is wished now, for every handle.
+    start : Pose, optional
+        Where it began; None where that is an in-between, which the worker has to find a map for.
+    gesture : object
+        What is one step of undo together.
+    drag : Drag, optional
+        How far the solver has followed; None until its first steps are done.
+    is_held : bool
+        Whether the person still pulls.
+    steps : int
+        Newton steps towards the present wish.
+    """
+
+    frame: int
+    targets: Mapping[int, Target]
+    start: Pose | None
+    gesture: object
+    drag: Drag | None = None
+    is_held: bool = True
+    steps: int = 0
+
+    @property
+    def is_at_rest(self) -> bool:
+        """Whether the solver has found the pose, and moves nothing any more."""
+        return self.drag is not None and self.drag.is_over
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Flip:
+    """What was flipped last: keys as they were copied, and the poses that took their place.
+
+    Parameters
+    ----------
+    figure : int
+        The id of their figure.
+    keys : tuple of Keyframe
+    frames : frozenset of int
+        Where the flipped ones are.
+    poses : tuple of Pose
+    """
+
+    figure: int
+    keys: tuple[Keyframe, ...]
+    frames: frozenset[int]
+    poses: tuple[Pose, ...]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class PoseBlend:
+    """A pose of the library that is mixed into the one at a frame, as one step of undo.
+
+    Parameters
+    ----------
+    name : str
+    frame : int
+    wishes : mapping of int to Target
+        Those of the pose at the frame, before it began.
+    gesture : object
+    share : float
+        Of the pose in the library.
+    """
+
+    name: str
+    frame: int
+    wishes: Mapping[int, Target]
+    gesture: object
+    share: float = 0.0
+
+
+@dataclass(slots=True, kw_only=True, eq=False)
+class Puppet:
+    """A figure as a window has it.
+
+    Parameters
+    ----------
+    picture : Picture
+        Decoded.
+    is_opaque : bool
+        Whether it has no transparency, so that its background was found by its colour.
+    coarse, fine : Derived
+        Its motion on a coarse mesh and on its own, which may not be there yet.
+    shown : Shown, optional
+        None before the first frame of the window.
+    rig : Rig, optional
+        For the poses to come; None before the first of them.
+    build : Derived
+        The series that the worker makes when it has nothing else to do.
+    """
+
+    picture: Picture
+    is_opaque: bool
+    coarse: Derived[Clip, Motion]
+    fine: Derived[Clip, Motion | None] = field(default_factory=lambda: Derived(None))
+    shown: Shown | None = None
+    rig: Rig | None = None
+    build: Derived[Clip, Build | None] = field(default_factory=lambda: Derived(None))
+
+    @classmethod
+    def of(cls, clip: Clip, picture: Picture) -> Self:
+        """Return a figure as the window has it at first: its keys are shown; in-betweens follow."""
+        return cls(
+            picture=picture,
+            is_opaque=bool((picture.rgba[..., 3] == OPAQUE).all()),
+            coarse=Derived(Motion.at_rest(clip, PosableMesh.coarse(clip.figure.domain))),
+        )
+
+
+@dataclass(slots=True, kw_only=True, eq=False)
+class Project:
+    """The document that is open, and how the person looks at it.
+
+    Parameters
+    ----------
+    name : str
+        Of the picture or the project, without its suffix.
+    path : Path, optional
+        Of the project file; None for a new one.
+    is_recovered : bool
+        Whether it is unsaved work of an earlier time, which is not saved before the person has seen
+        where.
+    puppets : dict of int to Puppet
+        One for each figure, by its id.
+    pictures : dict of PictureFile to Picture
+        Those that are decoded, of layers that come back by undo among them.
+    active : int
+        The id of the figure whose handles and keys are shown and changed.
+    posing : PoseInProgress, optional
+        Of the pose that is shown.
+    settling : PoseInProgress, optional
+        Let go at a frame that the playhead has left since; the solver brings that pose to rest.
+    camera : View, optional
+        None fits the picture into the viewport.
+    curves : Derived
+        Distortion over time, of the active figure.
+    meshing : Meshing, optional
+        What the domain will be rebuilt with; None as long as that is what it has.
+    drafted_bounds : Bounds, optional
+        What the person drags them to.
+    renewal : Renewal, optional
+        Keys that are being solved again.
+    export_to : Path, optional
+        Where the next export goes: where the last one went, or was told to.
+    replaceable : Path, optional
+        Where exports may take the place of other files: the person agreed, or they are an export's.
+    joints : Derived
+        Of the figures that hang on others; None where nothing does.
+    extent : Derived
+        Of the motion; where the settings of an export are shown it is measured first, else last.
+    to_save : tuple, optional
+        Where to save it, and what to do then, as soon as its pose has settled.
+    moved_at : float
+        The clock's seconds when the playhead was last seen to move.
+    autosaved : Document, optional
+        The one that the autosave holds, from the time `autosaved_at` on.
+    gesture : object, optional
+        Commands given while it lasts make one step of undo together.
+    held : int
+        The widget whose gesture that is.
+    """
+
+    name: str
+    history: History
+    path: Path | None
+    puppets: dict[int, Puppet]
+    active: int
+    pictures: dict[PictureFile, Picture] = field(default_factory=dict)
+    is_recovered: bool = False
+    posing: PoseInProgress | None = None
+    settling: PoseInProgress | None = None
+    curves: Derived[Clip, Curves | None] = field(default_factory=lambda: Derived(None))
+    meshing: Meshing | None = None
+    drafted_bounds: Bounds | None = None
+    renewal: Renewal | None = None
+    export_to: Path | None = None
+    replaceable: Path | None = None
+    joints: Derived[tuple[object, ...], Joints | None] = field(
+        default_factory=lambda: Derived(None)
+    )
+    extent: Derived[tuple[object, ...], Box | None] = field(
+        default_factory=lambda: Derived(None, remembers=EXTENTS)
+    )
+    to_save: tuple[Path, Action | None] | None = None
+    moved_at: float = -inf
+    autosaved: Document | None = None
+    autosaved_at: float = 0.0
+    playhead: Playhead = field(default_factory=Playhead)
+    timing: Timing = field(default_factory=Timing)
+    selected: frozenset[int] = frozenset()  # ids of handles
+    chosen: frozenset[int] = frozenset()  # frames of keys
+    camera: View | None = None
+    flip: Flip | None = None
+    blend: PoseBlend | None = None
+    kept: str | None = None  # the pose of the library that is picked
+    awaits_extent: bool = False  # whether the camera fits the motion once that is measured
+    gesture: object | None = None
+    held: int = 0
+
+    @property
+    def document(self) -> Document:
+        """The document as it is now."""
+        return self.history.document
+
+    @property
+    def origin(self) -> Origin:
+        """What is kept with its changes, so that they are found again under their name."""
+        return Origin(self.name, self.path)
+
+    @property
+    def figure(self) -> Figure:
+        """The figure that is posed, as it is now."""
+        return self.document.figure(self.active)
+
+    @property
+    def clip(self) -> Clip:
+        """The figure that is posed, in the time of its scene."""
+        return clip_of(self.document, self.active)
+
+    @property
+    def puppet(self) -> Puppet:
+        """The figure that is posed, as the window has it."""
+        return self.puppets[self.active]
+
+    @property
+    def unkeyed(self) -> Pose | None:
+        """The pose that is shown though no key holds it; None where there is none at this frame."""
+        unkeyed = self.history.unkeyed
+        if unkeyed is None or unkeyed.figure != self.active or self.playhead.since is not None:
+            return None
+        return unkeyed.pose if unkeyed.frame == self.playhead.frame else None
+
+    @property
+    def is_posing(self) -> bool:
+        """Whether a pose is on its way, be it the one that is shown or not."""
+        return self.posing is not None or self.settling is not None
+
+    def view(self, screen: tuple[int, int]) -> View:
+        """Return what the viewport shows on a screen of this size in pixels."""
+        if self.camera is not None:
+            return replace(self.camera, size=screen)
+        return view_around(Box(0j, complex(*self.document.canvas)), screen)
+
+
+def view_around(box: Box, screen: tuple[int, int]) -> View:
+    """Return the view of a box on a screen of this size in pixels, with some room around it."""
+    return fit_view(*box, screen, margin=FIT_MARGIN * min(screen))

@@ -62,6 +62,11 @@ class Rig:
             deformer=Deformer(boundary=boundary, handles=handles, bounds=figure.bounds),
         )
 
+    @property
+    def pins(self) -> tuple[complex, ...]:
+        """The points of the figure that a drag holds where they are."""
+        return _pins(self.figure)
+
     def wish(self, targets: Mapping[int, Target], pins: tuple[Target, ...]) -> Wish:
         """Return where handles are wanted, as the deformer takes it."""
         wanted = [*(targets[handle.id] for handle in self.figure.handles), *pins]

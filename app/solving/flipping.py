@@ -60,20 +60,33 @@ def flipped_targets(figure: Figure, pose: Pose, axis: float) -> Mapping[int, Tar
         elif is_symmetric and _is_on(figure, np.array([_reflect(place, axis)]))[0]:
             place = _reflect(place, axis)
             target = replace(target, position=complex(shape(np.array([place]))[0]), rotation=None)
-        (fz,), _ = shape.derivatives(np.array([place]))
-        turned = complex(np.conj(fz) / abs(fz))
-        beside = handle.position - _reflect(place, axis)
+        position = _flipped(shape, axis, place, target.position, handle.position)
         targets[handle.id] = replace(
             pose.targets[handle.id],
-            position=_reflect(target.position, axis) + turned * beside,
+            position=position,
             rotation=None if target.rotation is None else -target.rotation,
         )
     return targets
 
 
+def _flipped(
+    shape: HarmonicMap, axis: float, place: complex, wished: complex, point: complex
+) -> complex:
+    """Return where a point goes that does, mirrored, what a place does that is wished somewhere."""
+    (fz,), _ = shape.derivatives(np.array([place]))
+    turned = complex(np.conj(fz) / abs(fz))
+    return _reflect(wished, axis) + turned * (point - _reflect(place, axis))
+
+
 def _flip(rig: Rig, pose: Pose, axis: float) -> Pose:
     deformer = rig.deformer
     targets = flipped_targets(rig.figure, pose, axis)
+    shape = rig.figure.map_of(pose)
+    joints = zip(rig.pins, shape(np.array(rig.pins, dtype=np.complex128)), strict=True)
+    pins = tuple(
+        Target(position=_flipped(shape, axis, joint, complex(there), joint))
+        for joint, there in joints
+    )
     state = deformer.start()
     if _is_symmetric(rig.figure, axis):
         try:
@@ -81,8 +94,8 @@ def _flip(rig: Rig, pose: Pose, axis: float) -> Pose:
         except EngineError:
             # It folds: from the drawing at rest every pose can be reached.
             state = deformer.start()
-    state, _ = deformer.settle(state, rig.wish(targets), at_most=MOST_STEPS)
-    flipped = Drag(rig=rig, deformer=deformer, state=state).pose(targets)
+    state, _ = deformer.settle(state, rig.wish(targets, pins), at_most=MOST_STEPS)
+    flipped = Drag(rig=rig, deformer=deformer, state=state, pins=pins).pose(targets)
     # Steps that walk into the bounds are proven for wider ones.
     proven = certify(state.map, deformer.boundary, deformer.bounds)
     return replace(flipped, certificate=proven)

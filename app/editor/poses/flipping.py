@@ -103,6 +103,6 @@ def _flip(
             work=lambda: flip_poses(rig, [key.pose for key in keys], axis),
             done=done,
             failed=lambda error: report(session, "The pose could not be flipped", error),
-            urgent=True,
+            lane="hand",
         )
     )

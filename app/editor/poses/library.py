@@ -7,7 +7,7 @@ from functools import partial
 from app.document import Figure, Keyframe, Pose, Target, pose_commands
 from app.editor.actions import editing, playback, posing
 from app.editor.poses import putting
-from app.editor.project import Blend, Project
+from app.editor.project import PoseBlend, Project
 from app.editor.session import Session
 
 KEEPING = "Keeping a pose"
@@ -76,7 +76,7 @@ def blend(session: Session, name: str, share: float) -> None:
         playback.halt(session)
         frame = playback.current_frame(session, project)
         wishes = posing.wishes_of(project)
-        project.blend = Blend(name=name, frame=frame, wishes=wishes, gesture=object())
+        project.blend = PoseBlend(name=name, frame=frame, wishes=wishes, gesture=object())
     begun = project.blend = replace(project.blend, share=share)
     if share >= 1.0:
         posing.drop(session)

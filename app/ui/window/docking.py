@@ -54,7 +54,10 @@ class Docking:
         shown = hello_imgui.get_runner_params().docking_params.dockable_windows
         windows = self._windows()
         nodes = [None if window is None else window.dock_node for window in windows]
-        places = ((node.id_, node.size.x) if node is not None else None for node in nodes)
+        places = [
+            None if node is None else (node.id_, node.size.x, node.selected_tab_id)
+            for node in nodes
+        ]
         tabs = (imgui.get_font_size(), *places)
         if tabs != self._tabs:
             self._tabs = tabs
@@ -90,7 +93,10 @@ class Docking:
         node: imgui.internal.DockNode,
         nodes: Sequence[imgui.internal.DockNode | None],
     ) -> str:
-        """Return the fullest of the panel's labels with which all tabs beside it fit."""
+        """Return the fullest of the panel's labels with which all tabs beside it fit.
+
+        Where not all titles do, the tab in front has its own, and the others are icons.
+        """
         together = [
             other
             for other, its in zip(self._panels, nodes, strict=True)
@@ -104,7 +110,19 @@ class Docking:
             texts = [other.labels[number].split("###")[0] for other in together]
             if sum(imgui.calc_text_size(text).x + around for text in texts) <= room:
                 return panel.labels[number]
-        return panel.labels[-1]
+        fronts = [other for other in together if self._is_in_front(other)]
+        texts = [
+            (title if other in fronts else icon).split("###")[0]
+            for other in together
+            for title, icon in [other.labels[1:]]
+        ]
+        fits = sum(imgui.calc_text_size(text).x + around for text in texts) <= room
+        return panel.labels[1] if fits and panel in fronts else panel.labels[-1]
+
+    def _is_in_front(self, panel: Panel) -> bool:
+        window = imgui.internal.find_window_by_name(panel.label)
+        node = None if window is None else window.dock_node
+        return window is not None and node is not None and node.selected_tab_id == window.tab_id
 
 
 def _splits(room: ImVec2, em: float) -> list[hello_imgui.DockingSplit]:
