@@ -1,5 +1,230 @@
 """The window: the session, what is drawn with OpenGL, and the loop around them."""
 
+import io
+import os
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+from imgui_bundle import glfw_utils, hello_imgui  # before glfw: it brings the library itself
+from imgui_bundle import icons_fontawesome_6 as icons
+from PIL import Image
+
+import glfw  # isort: skip
+
+from app.document import Pose
+from app.editor import Action, FileDialog, Session, do, layering
+from app.errors import LissomError
+from app.render import Renderer, Textures, Thumbnail, Thumbnails
+from app.render.gpu import is_software
+from app.storage import app_icon
+from app.ui.panel import Panel
+from app.ui.panels import deform, distortion, domain, export, handle, layers, poses
+from app.ui.timeline import timeline
+from app.ui.viewport import Canvas, viewport
+from app.ui.window.exporter import Exporter
+from app.ui.window.modifiers import release_stuck_modifiers
+from app.ui.window.shell import Shell
+from app.ui.window.title import NAME, window_title
+
+SIZE = (1280, 800)
+APPLICATION = "lissom"  # the name of its desktop entry
+ICON_SIDES = (16, 32, 64)  # pixels
+# Where the display of X11 or Wayland is named.
+DISPLAYS = ("DISPLAY", "WAYLAND_DISPLAY")
 
 
+def has_display() -> bool:
+    """Tell whether there is a screen for the window, as far as the environment says."""
+    return sys.platform != "linux" or any(map(os.environ.get, DISPLAYS))
 
+
+def _show_icon() -> None:
+    """Give the window its icon, on the systems whose windows bring one."""
+    if glfw.get_platform() not in {glfw.PLATFORM_X11, glfw.PLATFORM_WIN32}:
+        return
+    with Image.open(io.BytesIO(app_icon())) as icon:
+        pictures = [np.asarray(icon.resize((side, side))) for side in ICON_SIDES]
+    # As lists, which glfw takes apart much faster than arrays.
+    images = [(*picture.shape[:2], picture.tolist()) for picture in pictures]
+    window = glfw_utils.glfw_window_hello_imgui()
+    glfw.set_window_icon(window, len(images), images)  # type: ignore[arg-type]  # tuples of theirs
+
+
+def _name_application() -> None:
+    """Tell the desktop whose window it will be, so that it finds its entry in the menu."""
+    glfw.init()
+    glfw.window_hint_string(glfw.WAYLAND_APP_ID, APPLICATION)
+    glfw.window_hint_string(glfw.X11_INSTANCE_NAME, APPLICATION)
+    glfw.window_hint_string(glfw.X11_CLASS_NAME, NAME)
+
+
+class Window:
+    """Owner of the OpenGL objects of one window.
+
+    Parameters
+    ----------
+    session : Session
+    connect : callable
+        Returns a renderer for the window's OpenGL context, once ImGui has made it.
+    """
+
+    def __init__(self, session: Session, connect: Callable[[], Renderer]) -> None:
+        self.session = session
+        self._connect = connect
+        self._thumbnails: Thumbnails | None = None
+        self._canvas: Canvas | None = None
+        self._exporter: Exporter | None = None
+        self._renderer: Renderer | None = None
+        self._shell = Shell(session, self._panels(), self._thumbnail)
+        self._title = NAME
+
+    def runner_params(self) -> hello_imgui.RunnerParams:
+        """Return the parameters to run the window with."""
+        params = self._shell.runner_params()
+        calls = params.callbacks
+        calls.enqueue_post_init(self._start)
+        calls.before_imgui_render = hello_imgui.sequence_functions(
+            calls.before_imgui_render, self.draw_canvas
+        )
+        calls.pre_new_frame = hello_imgui.sequence_functions(self._begin_frame, calls.pre_new_frame)
+        return params
+
+    def run(self) -> None:
+        """Show the window on the screen until the person closes it.
+
+        Raises
+        ------
+        LissomError
+            If there is no screen that it can be opened on.
+        """
+        params = self.runner_params()
+        params.app_window_params.window_title = self._title
+        calls = params.callbacks
+        calls.enqueue_post_init(self._accept_files)
+        calls.enqueue_post_init(_show_icon)
+        calls.pre_new_frame = hello_imgui.sequence_functions(self._rename, calls.pre_new_frame)
+        calls.pre_new_frame = hello_imgui.sequence_functions(
+            release_stuck_modifiers, calls.pre_new_frame
+        )
+        params.ini_folder_type = hello_imgui.IniFolderType.absolute_path
+        params.ini_filename = str(self.session.folder / "window.ini")
+        params.app_window_params.window_geometry.size = SIZE
+        params.app_window_params.restore_previous_geometry = True
+        _name_application()
+        try:
+            hello_imgui.manual_render.setup_from_runner_params(params)
+        except RuntimeError as error:
+            raise LissomError(
+                f"the window cannot be opened ({error}): check the display and its OpenGL driver "
+                "with 'lissom doctor'; the command line works without them"
+            ) from error
+        try:
+            while not params.app_shall_exit:
+                hello_imgui.manual_render.render()
+        finally:
+            self._release()
+            hello_imgui.manual_render.tear_down()
+
+    def ask(self, action: Action) -> None:
+        """Do something in the next frame, as if a panel had asked for it."""
+        self._shell.ask(action)
+
+    def textures(self) -> Textures:
+        """Return the textures that the panels show, by their OpenGL names."""
+        textures = [] if self._thumbnails is None else self._thumbnails.textures()
+        if self._canvas is not None and self._canvas.target is not None:
+            textures.append(self._canvas.target.texture)
+            textures += [target.texture for target in self._canvas.pose_pictures.targets]
+        return {texture.glo: texture for texture in textures}
+
+    def draw_canvas(self) -> None:
+        """Draw the viewport's picture, and go on with an export; once a frame."""
+        if self._canvas is None or self._renderer is None:
+            return
+        self._canvas.draw(self.session)
+        if self._exporter is not None:
+            self._exporter.go_on(self.session)
+        # ImGui draws to whatever is bound, and that is to be the screen.
+        screen = self._renderer.programs.context.screen
+        if screen is not None:
+            screen.use()
+
+    def _panels(self) -> list[Panel]:
+        return [
+            Panel(
+                title="Viewport",
+                icon=icons.ICON_FA_IMAGE,
+                place="MainDockSpace",
+                draw=lambda session, look: viewport.draw(session, look, self._texture),
+            ),
+            Panel(title="Timeline", icon=icons.ICON_FA_FILM, place="bottom", draw=timeline.draw),
+            Panel(title="Layers", icon=icons.ICON_FA_LAYER_GROUP, place="side", draw=layers.draw),
+            Panel(title="Handle", icon=icons.ICON_FA_CIRCLE_DOT, place="side", draw=handle.draw),
+            Panel(
+                title="Poses",
+                icon=icons.ICON_FA_PERSON_RUNNING,
+                place="side",
+                draw=lambda session, look: poses.draw(session, look, self._pose_picture),
+            ),
+            Panel(title="Deform", icon=icons.ICON_FA_SLIDERS, place="side", draw=deform.draw),
+            Panel(
+                title="Distortion",
+                icon=icons.ICON_FA_CHART_LINE,
+                place="side",
+                draw=distortion.draw,
+            ),
+            Panel(title="Mesh", icon=icons.ICON_FA_SHAPES, place="side", draw=domain.draw),
+            Panel(title="Export", icon=icons.ICON_FA_FILE_EXPORT, place="side", draw=export.draw),
+        ]
+
+    @property
+    def _texture(self) -> int | None:
+        return self._canvas.texture if self._canvas else None
+
+    def _pose_picture(self, pose: Pose, side: int) -> int | None:
+        return self._canvas.pose_pictures.get(pose, side) if self._canvas else None
+
+    def _start(self) -> None:
+        renderer = self._renderer = self._connect()
+        self.session.full_detail = not is_software(renderer.programs.context)
+        self._canvas = Canvas(renderer)
+        self._exporter = Exporter(renderer)
+        self._thumbnails = Thumbnails(renderer.programs.context)
+
+    def _accept_files(self) -> None:
+        """Open what is dropped on the window."""
+        window = glfw_utils.glfw_window_hello_imgui()
+        glfw.set_drop_callback(window, self._take_dropped)  # type: ignore[arg-type]  # a list of paths
+
+    def _rename(self) -> None:
+        """Name the window after what is open."""
+        title = window_title(self.session)
+        if title != self._title:
+            self._title = title
+            glfw.set_window_title(glfw_utils.glfw_window_hello_imgui(), title)
+
+    def _take_dropped(self, _: object, paths: list[str]) -> None:
+        self.ask(do(layering.drop, [Path(path) for path in paths]))
+
+    def _release(self) -> None:
+        self._shell.release()
+        for owner in (self._exporter, self._canvas, self._thumbnails, self._renderer):
+            if owner is not None:
+                owner.release()
+
+    def _begin_frame(self) -> None:
+        if self._thumbnails is None:
+            return
+        if self._thumbnails.is_behind:
+            # There are more to be read.
+            hello_imgui.request_refresh()
+        self._thumbnails.begin_frame()
+        if self.session.project is not None and not isinstance(self.session.dialog, FileDialog):
+            # Only the welcome view and the file browser show them, and until the next time files
+            # may have been saved anew.
+            self._thumbnails.release()
+
+    def _thumbnail(self, path: Path) -> Thumbnail | None:
+        return self._thumbnails.get(path) if self._thumbnails else None

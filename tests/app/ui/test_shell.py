@@ -88,22 +88,24 @@ def test_docked_panels_leave_room_in_a_small_window(window):
 
 
 @pytest.mark.parametrize(
-    ("size", "scale", "words"),
+    ("size", "scale", "has_title"),
     [
-        ((1280, 800), 1.0, "Handle"),
-        ((2560, 1440), 2.0, "Handle"),
-        ((1280, 800), 2.0, ""),
-        ((900, 640), 2.0, ""),
+        ((1280, 800), 1.0, True),
+        ((2560, 1440), 2.0, True),
+        ((1280, 800), 1.5, True),
+        ((1280, 800), 2.0, True),
     ],
 )
-def test_all_tabs_fit(window, size, scale, words):
+def test_all_tabs_fit_and_the_one_in_front_has_its_title(window, size, scale, has_title):
     window.open(sample_images() / "ring.png")
     window.resize(size, scale)
-    window.frames(3)
-    bar = _docked("Handle").tab_bar
-    assert len(bar.tabs) == 5
-    assert bar.width_all_tabs_ideal <= bar.bar_rect.get_width()
-    assert words in imgui.internal.find_window_by_name("###Handle").name.split("###")[0]
+    for title in ("Handle", "Mesh"):
+        window.show_tab(title)
+        bar = _docked(title).tab_bar
+        assert len(bar.tabs) == 7
+        assert bar.width_all_tabs_ideal <= bar.bar_rect.get_width()
+        name = imgui.internal.find_window_by_name(f"###{title}").name.split("###")[0]
+        assert name == title if has_title else len(name) == 1
     window.resize((1280, 800))
 
 
