@@ -93,7 +93,6 @@ def test_docked_panels_leave_room_in_a_small_window(window):
         ((1280, 800), 1.0, True),
         ((2560, 1440), 2.0, True),
         ((1280, 800), 1.5, True),
-        ((1280, 800), 2.0, True),
     ],
 )
 def test_all_tabs_fit_and_the_one_in_front_has_its_title(window, size, scale, has_title):
