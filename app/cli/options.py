@@ -53,8 +53,8 @@ def add_meshing_options(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def add_background_options(parser: argparse.ArgumentParser) -> None:
-    """Declare what of a picture is its subject: `background`, `tolerance` and `mask`."""
+def add_cut_out_options(parser: argparse.ArgumentParser) -> None:
+    """Declare what of a picture is its subject: `background`, `mask`, `tolerance`, `holes`."""
     either = parser.add_mutually_exclusive_group()
     either.add_argument(
         "--background",
@@ -76,6 +76,12 @@ def add_background_options(parser: argparse.ArgumentParser) -> None:
         type=int,
         default=DEFAULT_TOLERANCE,
         help="levels by which the background may vary, 0 to 255 (default: %(default)s)",
+    )
+    parser.add_argument(
+        "--holes",
+        choices=HOLES,
+        default=HOLES[0],
+        help="whether large holes stay holes (default: %(default)s)",
     )
 
 

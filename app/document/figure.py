@@ -14,13 +14,14 @@ from app.document.keyframe import Handle, KeptPose, Keyframe, Pose
 from app.document.layering import Attachment, Switch, require_in_order
 from app.document.settings import NATURAL, VARIANTS, Meshing
 from app.errors import LissomError
-from engine.domain import Domain
+from engine.domain import CutOut, Domain
 from engine.geometry import box_diagonal, contains
 from engine.maps import Bounds, Certificate, HarmonicMap
 from engine.variant import Variant
 
 # Handles may sit on the outline itself, where rounding decides on which side they are.
 ON_OUTLINE = 1e-9
+AUTOMATIC = CutOut()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -64,6 +65,10 @@ class Figure:
     domain : Domain
     meshing : Meshing
         What the domain was built with.
+    cut_out : CutOut
+        What tells the subject from the rest of the picture.
+    is_stale : bool
+        Whether the domain is still that of an earlier cut-out.
     handles : tuple of Handle
     next_handle : int
         The id that the next handle will get.
@@ -108,6 +113,8 @@ class Figure:
     picture: PictureFile
     domain: Domain
     meshing: Meshing
+    cut_out: CutOut = AUTOMATIC
+    is_stale: bool = False
     handles: tuple[Handle, ...] = ()
     next_handle: int = 0
     keys: tuple[Keyframe, ...]
@@ -140,6 +147,11 @@ class Figure:
         require(
             not self.still or (len(self.keys) == 1 and not self.handles),
             f"{self.name!r} is a still picture: it has neither handles nor a second key.",
+        )
+        mask = self.cut_out.mask
+        require(
+            mask is None or mask.size == self.picture.size,
+            "The mask has another size than the picture; give one of the same width and height.",
         )
         self._check_handles()
         self._check_keys()
@@ -289,11 +301,17 @@ class Figure:
         )
 
 
-def new_figure(picture: PictureFile, domain: Domain, meshing: Meshing) -> Figure:
+def new_figure(
+    picture: PictureFile, domain: Domain, meshing: Meshing, cut_out: CutOut = AUTOMATIC
+) -> Figure:
     """Return the figure of a picture just opened: one key at frame 0, as it was drawn."""
     identity = HarmonicMap.identity(domain.cage)
     undistorted = Certificate(k=0.0, sigma_a=1.0, sigma_b=1.0, winding=0, certified=True)
     pose = Pose(targets={}, phi=identity.phi, psi=identity.psi, certificate=undistorted)
     return Figure(
-        picture=picture, domain=domain, meshing=meshing, keys=(Keyframe(frame=0, pose=pose),)
+        picture=picture,
+        domain=domain,
+        meshing=meshing,
+        cut_out=cut_out,
+        keys=(Keyframe(frame=0, pose=pose),),
     )

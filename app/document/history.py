@@ -105,6 +105,19 @@ class History:
         """Hold a pose outside of all keys in place of the one that is held so, or none any more."""
         self._go_on(Step(self.document, unkeyed, "Pose"), gesture)
 
+    def complete(self, command: Command) -> None:
+        """Run a command that belongs to the last step; what can be done again stays so.
+
+        The pose that no key holds is let go.
+        """
+        step = self._steps[self._now]
+        document = command(step.document)
+        if document is step.document:
+            return
+        self._steps[self._now] = Step(document, None, step.label)
+        for index in range(max(self._now - 1, 0), min(self._now + 1, len(self._steps) - 1)):
+            self._held[index] = _held_only_by(self._steps[index], self._steps[index + 1])
+
     def take_back(self, gesture: object) -> None:
         """Undo what a gesture did last, as if it had never begun; if it did nothing, stay."""
         if gesture is None or gesture is not self._gesture:
@@ -178,12 +191,17 @@ def _figure_held_only_by(old: Figure, new: Figure | None) -> int:
     held = 0
     if new is None or old.picture is not new.picture:
         held += len(old.picture.data)
+    if new is None or old.cut_out.mask is not new.cut_out.mask:
+        held += old.cut_out.nbytes
+    elif old.cut_out is not new.cut_out:
+        kept = {id(stroke) for stroke in new.cut_out.strokes}
+        held += sum(s.points.nbytes for s in old.cut_out.strokes if id(s) not in kept)
     if new is None or old.domain is not new.domain:
         mesh = old.domain.mesh
         arrays = (old.domain.outline, old.domain.cage, mesh.vertices, mesh.triangles)
         held += sum(array.nbytes for array in arrays)
-    kept = () if new is None else new.poses
-    poses, maps = {id(pose) for pose in kept}, {id(pose.phi) for pose in kept}
+    later = () if new is None else new.poses
+    poses, maps = {id(pose) for pose in later}, {id(pose.phi) for pose in later}
     for pose in old.poses:
         if id(pose) not in poses:
             held += POSE_BYTES

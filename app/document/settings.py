@@ -229,11 +229,10 @@ class ExportSettings:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Meshing:
-    """What the domain was built with: the parameters of `engine.domain.build.build_domain`."""
+    """How closely the domain follows its subject: as `engine.domain.build.build_domain` has it."""
 
     detail: Detail = "normal"
     triangles: int = 100_000
-    tolerance: int = 18
 
     def __post_init__(self) -> None:
         details = get_args(Detail)
@@ -241,8 +240,4 @@ class Meshing:
         require(
             0 < self.triangles <= MOST_TRIANGLES,
             f"There must be 1 to {MOST_TRIANGLES:,} triangles, not {self.triangles}.",
-        )
-        require(
-            0 <= self.tolerance <= 255,
-            f"The tolerance is between 0 and 255 levels, not {self.tolerance}.",
         )

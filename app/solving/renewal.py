@@ -117,10 +117,11 @@ def _with_domain(renewal: Renewal, picture: Bytes, meshing: Meshing) -> Renewal:
         picture,
         triangles=meshing.triangles,
         detail=meshing.detail,
-        tolerance=meshing.tolerance,
+        cut_out=renewal.before.cut_out,
     )
-    rest = HarmonicMap.identity(domain.cage)
     before = renewal.before
+    domain = domain.moved(before.corner)
+    rest = HarmonicMap.identity(domain.cage)
     keys = tuple(
         replace(key, pose=replace(key.pose, phi=rest.phi, psi=rest.psi)) for key in before.keys
     )

@@ -42,8 +42,15 @@ from app.storage.layers import (
     open_pictures,
     still_figure,
 )
-from app.storage.opening import open_picture
-from app.storage.pictures import Layer, Picture, decode_picture, read_picture_file
+from app.storage.opening import Cut, cut_picture, open_picture
+from app.storage.pictures import (
+    Layer,
+    Picture,
+    decode_mask,
+    decode_picture,
+    encode_mask,
+    read_picture_file,
+)
 from app.storage.preferences import (
     CHECKER,
     LARGEST_GHOST_STEP,
@@ -67,6 +74,7 @@ __all__ = [
     "SECONDS",
     "SMALLEST_SCALE",
     "Autosave",
+    "Cut",
     "JsonObject",
     "Layer",
     "OpenedScene",
@@ -85,8 +93,11 @@ __all__ = [
     "as_whole",
     "atomic_file",
     "check_writable",
+    "cut_picture",
+    "decode_mask",
     "decode_picture",
     "draw_thumbnail",
+    "encode_mask",
     "find_leftovers",
     "flattened",
     "is_layered",

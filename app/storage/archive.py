@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from app.errors import LissomError
-from engine.arrays import Complexes, Integers, readonly
+from engine.arrays import Bytes, Complexes, Integers, readonly
 
 MIMETYPE = b"application/x-lissom"
 MOST_MEMBERS = 65_535
@@ -121,6 +121,11 @@ class Archive:
         """Return an array of triangles, int32 (m, 3), of which there are at most `most`."""
         array = self._array(name, np.dtype("<i4"), columns=3, most=most)
         return readonly(array.astype(np.int32, copy=False).reshape(-1, 3))
+
+    def bytes(self, name: str, *, most: int) -> Bytes:
+        """Return an array uint8 (n,) of at most `most`."""
+        array = self._array(name, np.dtype("|u1"), columns=1, most=most)
+        return readonly(array.astype(np.uint8, copy=False))
 
     def _array(
         self, name: str, dtype: np.dtype[Any], *, columns: int, most: int

@@ -11,7 +11,7 @@ from PIL import Image
 
 from app.document import Document, Figure, Meshing, PictureFile, layer_commands, new_figure
 from app.errors import LissomError
-from app.storage.opening import OpenedPicture
+from app.storage.opening import OpenedPicture, cut_picture
 from app.storage.pictures import (
     Layer,
     LayeredPicture,
@@ -22,7 +22,7 @@ from app.storage.pictures import (
     read_picture_file,
 )
 from engine.arrays import Bytes, readonly
-from engine.domain import build_domain, rectangle_domain
+from engine.domain import CutOut, build_domain, rectangle_domain
 from engine.errors import EngineError
 
 READERS = {".ora": read_openraster, ".psd": read_photoshop}
@@ -30,6 +30,7 @@ READERS = {".ora": read_openraster, ".psd": read_photoshop}
 FEWEST_TRIANGLES = 4_000
 WORKERS = 2
 OPAQUE = 255
+WHOLE = CutOut(background="none")  # only what is transparent is left out
 
 
 class OpenedScene(NamedTuple):
@@ -106,7 +107,7 @@ def flattened(opened: OpenedScene) -> Bytes:
     canvas = opened.document.canvas
     flat = Image.new("RGBA", canvas)
     for figure in opened.document.exported:
-        layer = Image.fromarray(opened.pictures[figure.id].rgba)
+        layer = Image.fromarray(cut_picture(opened.pictures[figure.id], figure.cut_out).texture)
         layer.putalpha(layer.getchannel("A").point(lambda a, o=figure.opacity: round(o * a)))
         corner, height = figure.corner, layer.height
         place = round(corner.real), round(canvas[1] - corner.imag - height)
@@ -133,6 +134,7 @@ def layer_figure(
     """
     picture = layer.picture
     file = PictureFile(data=layer.data, suffix=picture.suffix, size=picture.size)
+    cut_out = WHOLE if is_cut_out else CutOut()
     domain, still = rectangle_domain(*picture.size), True
     notices: tuple[str, ...] = ("it is opaque all over, and stands still",)
     if not (is_cut_out and (picture.rgba[..., 3] == OPAQUE).all()):
@@ -141,14 +143,13 @@ def layer_figure(
                 picture.rgba,
                 triangles=meshing.triangles,
                 detail=meshing.detail,
-                tolerance=meshing.tolerance,
-                background="none" if is_cut_out else "auto",
+                cut_out=cut_out,
             )
             still = False
         except EngineError as error:
             notices = (f"it stands still: {error}",)
     figure = replace(
-        new_figure(file, domain.moved(layer.corner), meshing),
+        new_figure(file, domain.moved(layer.corner), meshing, WHOLE if still else cut_out),
         id=identity,
         name=layer.name,
         corner=layer.corner,

@@ -1,11 +1,15 @@
-"""From a picture file to a new document."""
+"""From a picture file to a new document, and from a picture to what is painted on its mesh."""
 
 from pathlib import Path
 from typing import NamedTuple
 
 from app.document import Document, Meshing, PictureFile, new_figure
 from app.storage.pictures import Picture, decode_picture, read_picture_file
-from engine.domain import build_domain
+from engine.arrays import Booleans, Bytes, freeze
+from engine.domain import CutOut, build_domain, subject_mask, texture
+from engine.errors import EngineError
+
+AUTOMATIC = CutOut()
 
 
 class OpenedPicture(NamedTuple):
@@ -16,7 +20,22 @@ class OpenedPicture(NamedTuple):
     notices: tuple[str, ...]
 
 
-def open_picture(path: Path, meshing: Meshing) -> OpenedPicture:
+class Cut(NamedTuple):
+    """What is left of a picture that was cut out.
+
+    Parameters
+    ----------
+    kept : bool, shape (h, w)
+        The pixels of the subject.
+    texture : uint8, shape (h, w, 4)
+        What is painted on the mesh; straight alpha.
+    """
+
+    kept: Booleans
+    texture: Bytes
+
+
+def open_picture(path: Path, meshing: Meshing, cut_out: CutOut = AUTOMATIC) -> OpenedPicture:
     """Read a picture, find its outline, and return the document that shows it as it was drawn.
 
     Raises
@@ -27,11 +46,18 @@ def open_picture(path: Path, meshing: Meshing) -> OpenedPicture:
     data = read_picture_file(path)
     picture = decode_picture(data, str(path))
     domain, remedies = build_domain(
-        picture.rgba,
-        triangles=meshing.triangles,
-        detail=meshing.detail,
-        tolerance=meshing.tolerance,
+        picture.rgba, triangles=meshing.triangles, detail=meshing.detail, cut_out=cut_out
     )
     file = PictureFile(data=data, suffix=picture.suffix, size=picture.size)
-    document = Document(figures=(new_figure(file, domain, meshing),))
+    document = Document(figures=(new_figure(file, domain, meshing, cut_out),))
     return OpenedPicture(document, picture, picture.notices + remedies)
+
+
+def cut_picture(picture: Picture, cut_out: CutOut) -> Cut:
+    """Cut the subject out of a picture; where there is none, all of it stays."""
+    try:
+        subject = subject_mask(picture.rgba, cut_out)
+    except EngineError:
+        # Of a project that was saved before a cut-out that cannot be was changed again.
+        return Cut(freeze(picture.rgba[..., 3] > 0), picture.rgba)
+    return Cut(subject.mask, texture(picture.rgba, subject))

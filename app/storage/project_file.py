@@ -2,9 +2,9 @@
 
 A project is a zip file: `mimetype` (first, not packed), `project.json`, `thumbnail.png`, and for
 each figure, under `figures/` and its id, the picture byte for byte as `source.*`, the arrays of the
-domain, and phi and psi of each key under `keys/` and of the library's poses under `poses/`. The
-maps are stored, not solved again, so that another solver never changes an animation. Fields and
-members that this version does not know are handed on.
+domain, what was cut out by hand, and phi and psi of each key under `keys/` and of the library's
+poses under `poses/`. The maps are stored, not solved again, so that another solver never changes an
+animation. Fields and members that this version does not know are handed on.
 
 A file is input like any other, whoever wrote it. What it would unpack to is known, and limited,
 before anything is; pictures and domains are checked; and what holds of a map is not written but
@@ -21,6 +21,8 @@ from math import isfinite
 from pathlib import Path
 from types import MappingProxyType
 
+import numpy as np
+
 from app.document import Document, Figure, PictureFile
 from app.errors import EXPECTED_ERRORS, LissomError
 from app.storage.archive import MEBIBYTE, Archive, array_member, write_archive
@@ -29,7 +31,7 @@ from app.storage.json_values import JsonObject, as_object, as_text, as_whole, wi
 from app.storage.pictures import stored_size
 from app.storage.project_json import SCHEMA, read_document, read_size, write_document
 from engine.arrays import Complexes, as_points
-from engine.domain import MOST_MESH_TRIANGLES, Domain, require_domain
+from engine.domain import MOST_MESH_TRIANGLES, MOST_STROKE_POINTS, Domain, Mask, require_domain
 from engine.domain.meshing import Mesh
 from engine.domain.outline import LARGEST_OUTLINE
 
@@ -139,6 +141,12 @@ def _figure_members(figure: Figure) -> dict[str, bytes]:
         f"{folder}/vertices.npy": array_member(mesh.vertices),
         f"{folder}/triangles.npy": array_member(mesh.triangles),
     }
+    cut_out = figure.cut_out
+    if cut_out.mask is not None:
+        members[f"{folder}/mask.npy"] = array_member(cut_out.mask.bits)
+    if cut_out.strokes:
+        points = np.concatenate([stroke.points for stroke in cut_out.strokes])
+        members[f"{folder}/strokes.npy"] = array_member(points)
     keys = [key.pose for key in figure.keys]
     for name, poses in ((KEYS, keys), (POSES, [kept.pose for kept in figure.library])):
         for index, pose in enumerate(poses):
@@ -196,6 +204,13 @@ class _Parts:
         )
         require_domain(domain)
         return domain
+
+    def mask(self, figure: int, size: tuple[int, int]) -> Mask:
+        most = -(-size[0] * size[1] // 8)
+        return Mask(bits=self._archive.bytes(f"{_folder(figure)}/mask.npy", most=most), size=size)
+
+    def strokes(self, figure: int) -> Complexes:
+        return self._archive.points(f"{_folder(figure)}/strokes.npy", most=MOST_STROKE_POINTS)
 
     def coefficients(self, figure: int, key: int) -> tuple[Complexes, Complexes]:
         return self._coefficients(*_coefficient_members(figure, KEYS, key))

@@ -5,7 +5,9 @@ from dataclasses import asdict, replace
 from functools import partial
 from importlib.metadata import version
 from types import MappingProxyType
-from typing import Any, Protocol, TypeVar, cast
+from typing import Any, Literal, Protocol, TypeVar, cast
+
+import numpy as np
 
 from app.document import (
     FRAME_NAMES,
@@ -44,8 +46,9 @@ from app.storage.json_values import (
     shown,
 )
 from engine.arrays import Complexes
-from engine.domain import Domain
+from engine.domain import CutOut, Domain, Mask, Stroke
 from engine.domain.outline import Detail
+from engine.domain.picture import Holes
 from engine.maps import Boundary, Bounds, HarmonicMap, certify
 
 SCHEMA = 2
@@ -73,6 +76,12 @@ class FigureParts(Protocol):
 
     def domain(self, figure: int) -> Domain:
         """Return the domain."""
+
+    def mask(self, figure: int, size: tuple[int, int]) -> Mask:
+        """Return the mask of its cut-out."""
+
+    def strokes(self, figure: int) -> Complexes:
+        """Return the points of all strokes of its cut-out."""
 
     def coefficients(self, figure: int, key: int) -> tuple[Complexes, Complexes]:
         """Return phi and psi of the key with this index."""
@@ -176,7 +185,8 @@ def _write_figure(figure: Figure) -> Json:
         "domain": {
             "detail": figure.meshing.detail,
             "triangles": figure.meshing.triangles,
-            "tolerance": figure.meshing.tolerance,
+            **_write_cut_out(figure.cut_out),
+            "stale": figure.is_stale,
         },
         "handles": [_write_handle(handle) for handle in figure.handles],
         "next_handle": figure.next_handle,
@@ -264,6 +274,7 @@ def _read_figure(fields: JsonObject, parts: FigureParts) -> Figure:
     bounds = _read_bounds(as_object(fields["bounds"], f"{where}.bounds"))
     picture = parts.picture(identity, as_object(fields["picture"], f"{where}.picture"))
     domain = parts.domain(identity)
+    meshing = as_object(fields["domain"], f"{where}.domain")
     boundary = Boundary.sample(domain.outline, domain.cage)
 
     def pose(phi: Complexes, psi: Complexes, targets: Mapping[int, Target]) -> Pose:
@@ -274,7 +285,9 @@ def _read_figure(fields: JsonObject, parts: FigureParts) -> Figure:
         id=identity,
         picture=picture,
         domain=domain,
-        meshing=_read_meshing(as_object(fields["domain"], f"{where}.domain")),
+        meshing=_read_meshing(meshing),
+        cut_out=_read_cut_out(meshing, identity, picture, parts),
+        is_stale=as_flag(meshing.get("stale", False), f"{meshing.where}.stale"),
         handles=tuple(
             _read_handle(handle, f"{where}.handles[{i}]") for i, handle in enumerate(handles)
         ),
@@ -313,7 +326,63 @@ def _read_meshing(content: JsonObject) -> Meshing:
     return Meshing(
         detail=cast(Detail, as_text(content["detail"], f"{content.where}.detail")),
         triangles=as_whole(content["triangles"], f"{content.where}.triangles"),
-        tolerance=as_whole(content["tolerance"], f"{content.where}.tolerance"),
+    )
+
+
+def _write_cut_out(cut_out: CutOut) -> Json:
+    background = cut_out.background
+    return {
+        "tolerance": cut_out.tolerance,
+        "background": list(background) if isinstance(background, tuple) else background,
+        "mask": cut_out.mask is not None,
+        "strokes": [
+            {"points": len(stroke.points), "radius": stroke.radius, "keeps": stroke.keeps}
+            for stroke in cut_out.strokes
+        ],
+        "holes": cut_out.holes,
+        "swapped": [_write_point(point) for point in cut_out.swapped],
+    }
+
+
+def _read_cut_out(
+    content: JsonObject, figure: int, picture: PictureFile, parts: FigureParts
+) -> CutOut:
+    """Read a cut-out; files of before there was more of it than the tolerance have no more."""
+    where = content.where
+    strokes = [
+        as_object(stroke, f"{where}.strokes[{i}]")
+        for i, stroke in enumerate(as_list(content.get("strokes", []), f"{where}.strokes"))
+    ]
+    has_mask = as_flag(content.get("mask", False), f"{where}.mask")
+    points = parts.strokes(figure) if strokes else np.empty(0, dtype=np.complex128)
+    counts = [as_whole(stroke["points"], f"{stroke.where}.points") for stroke in strokes]
+    if min(counts, default=1) < 1 or sum(counts) != len(points):
+        raise LissomError(f"{where}.strokes do not have as many points as there are")
+    ways = np.split(points, np.cumsum(counts)[:-1]) if counts else []
+    background = content.get("background", "auto")
+    return CutOut(
+        tolerance=as_whole(content["tolerance"], f"{where}.tolerance"),
+        # Checked there.
+        background=cast(
+            "Literal['auto', 'none']",
+            tuple(as_whole(level, f"{where}.background") for level in background)
+            if isinstance(background, list)
+            else as_text(background, f"{where}.background"),
+        ),
+        mask=parts.mask(figure, picture.size) if has_mask else None,
+        strokes=tuple(
+            Stroke(
+                points=way,
+                radius=as_number(stroke["radius"], f"{stroke.where}.radius"),
+                keeps=as_flag(stroke["keeps"], f"{stroke.where}.keeps"),
+            )
+            for stroke, way in zip(strokes, ways, strict=True)
+        ),
+        holes=cast(Holes, as_text(content.get("holes", "fill"), f"{where}.holes")),
+        swapped=tuple(
+            as_point(point, f"{where}.swapped[{i}]")
+            for i, point in enumerate(as_list(content.get("swapped", []), f"{where}.swapped"))
+        ),
     )
 
 

@@ -1,8 +1,8 @@
 """From pixels to a domain (Section 7; Chen and Weber 2015).
 
-In: a picture, uint8 (h, w, 4).
-Out: a `Domain`: outline, cage and triangulation in the picture's pixels, y up; and where handles
-are useful in it.
+In: a picture, uint8 (h, w, 4), and what tells its subject from the rest.
+Out: a `Domain`: outlines, cages and triangulation in the picture's pixels, y up; the texture that
+    is painted on it, and where handles are useful in it.
 Imports: `engine.geometry`.
 """
 
@@ -12,19 +12,28 @@ from engine.domain.build import (
     build_domain,
     mesh_inside,
     rectangle_domain,
+    texture,
     texture_coordinates,
 )
 from engine.domain.medial_axis import suggest_handles
+from engine.domain.picture import MOST_STROKE_POINTS, CutOut, Mask, Stroke, Subject, subject_mask
 from engine.domain.validity import MOST_MESH_TRIANGLES, require_domain
 
 __all__ = [
     "MOST_MESH_TRIANGLES",
+    "MOST_STROKE_POINTS",
     "MOST_TRIANGLES",
+    "CutOut",
     "Domain",
+    "Mask",
+    "Stroke",
+    "Subject",
     "build_domain",
     "mesh_inside",
     "rectangle_domain",
     "require_domain",
     "suggest_handles",
+    "subject_mask",
+    "texture",
     "texture_coordinates",
 ]

@@ -1,19 +1,19 @@
 """From pixels to a domain: outline, cage and triangulation (Section 7; Chen and Weber 2015)."""
 
 from dataclasses import dataclass
-from typing import Literal
 
 import numpy as np
 
-from engine.arrays import Booleans, Bytes, Complexes, Floats
+from engine.arrays import Bytes, Complexes, Floats
 from engine.domain.meshing import Mesh, triangulate, with_limbs_on_top
-from engine.domain.outline import Detail, Holes, enclose
-from engine.domain.picture import BackgroundColour, subject_mask
+from engine.domain.outline import Detail, enclose
+from engine.domain.picture import CutOut, Subject, matted, subject_mask
 from engine.errors import EngineError
 from engine.geometry import Hole, deepest_point
 
 FEWEST_TRIANGLES = 1_000
 MOST_TRIANGLES = 2_000_000
+AUTOMATIC = CutOut()
 # A picture that is never deformed is as good as any inside a cage so much larger.
 FRAME = 1.1
 
@@ -65,10 +65,7 @@ def build_domain(
     *,
     triangles: int,
     detail: Detail,
-    tolerance: int = 18,
-    background: Literal["auto", "none"] | BackgroundColour = "auto",
-    mask: Booleans | None = None,
-    holes: Holes = "fill",
+    cut_out: CutOut = AUTOMATIC,
 ) -> tuple[Domain, tuple[str, ...]]:
     """Find the subject of a picture and build its domain.
 
@@ -80,10 +77,8 @@ def build_domain(
         How many triangles to aim at, 1,000 to 2,000,000.
     detail : Detail
         How closely the outline follows the subject.
-    tolerance, background, mask
-        How the subject is told from what is around it, as `subject_mask` has it.
-    holes : {"fill", "keep"}
-        Whether large holes of the subject stay holes.
+    cut_out : CutOut
+        What tells the subject from the rest of the picture.
 
     Returns
     -------
@@ -101,8 +96,8 @@ def build_domain(
             f"The number of triangles must be between {FEWEST_TRIANGLES:,} and "
             f"{MOST_TRIANGLES:,}, not {triangles:,}."
         )
-    subject = subject_mask(rgba, tolerance=tolerance, background=background, mask=mask)
-    enclosure = enclose(subject.mask, detail=detail, holes=holes)
+    subject = subject_mask(rgba, cut_out)
+    enclosure = enclose(subject.mask, detail=detail, holes=cut_out.holes, swapped=cut_out.swapped)
     loops = [hole.outline for hole in enclosure.holes]
     domain = Domain(
         outline=enclosure.outline,
@@ -128,6 +123,15 @@ def mesh_inside(outline: Complexes, *holes: Complexes, triangles: int) -> Mesh:
     """Triangulate the inside of an outline, in an order that paints limbs over the body."""
     mesh = triangulate(outline, triangles, holes=holes)
     return with_limbs_on_top(mesh, deepest_point(outline, holes))
+
+
+def texture(rgba: Bytes, subject: Subject) -> Bytes:
+    """Return the picture (h, w, 4) of a subject as it is painted on its domain's mesh.
+
+    That is the picture itself, with its own transparency; but what was taken out of it is
+    transparent, and edges are free of its colour.
+    """
+    return matted(rgba, subject.mask) if subject.cut else rgba
 
 
 def texture_coordinates(points: Complexes, image_size: tuple[int, int]) -> Floats:

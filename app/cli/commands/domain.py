@@ -1,11 +1,11 @@
 """`lissom domain`: picture → outline, cage and triangulation."""
 
 import argparse
-from pathlib import Path
 
 import numpy as np
 
 from app.cli.console import notice
+from app.cli.cut_out import read_cut_out
 from app.reports import draw_preview
 from app.storage import (
     check_writable,
@@ -14,10 +14,8 @@ from app.storage import (
     write_arrays,
     write_atomically,
 )
-from engine.arrays import Booleans, Complexes
+from engine.arrays import Complexes
 from engine.domain import build_domain, texture_coordinates
-
-HALF = 128  # levels
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -30,10 +28,7 @@ def run(arguments: argparse.Namespace) -> int:
         picture.rgba,
         triangles=arguments.triangles,
         detail=arguments.detail,
-        tolerance=arguments.tolerance,
-        background=arguments.background,
-        mask=None if arguments.mask is None else _mask(arguments.mask),
-        holes=arguments.holes,
+        cut_out=read_cut_out(arguments),
     )
     for message in (*picture.notices, *remedies):
         notice(message)
@@ -63,13 +58,6 @@ def run(arguments: argparse.Namespace) -> int:
         f"{sum(map(len, domain.cages))} vertices{kept}, {len(mesh.triangles):,} triangles"
     )
     return 0
-
-
-def _mask(path: Path) -> Booleans:
-    """Return where a picture is light, and not transparent."""
-    rgba = decode_picture(read_picture_file(path), str(path)).rgba
-    light: Booleans = rgba[..., :3].mean(axis=2) >= HALF
-    return light & (rgba[..., 3] >= HALF)
 
 
 def _joined(polygons: list[Complexes]) -> Complexes:

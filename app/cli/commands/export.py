@@ -27,7 +27,7 @@ from app.export import (
 from app.export_formats import EXPORT_FORMATS, format_by_suffix
 from app.motion import Animation, hung_animations
 from app.render.gpu import create_context
-from app.storage import decode_picture, load_project
+from app.storage import cut_picture, decode_picture, load_project
 from engine.arrays import Bytes
 
 
@@ -45,8 +45,9 @@ def run(arguments: argparse.Namespace) -> int:
         fps=arguments.fps,
     )
     check_request(document, request)
+    source = f"the picture of {arguments.project}"
     pictures = {
-        figure.id: decode_picture(figure.picture.data, f"the picture of {arguments.project}").rgba
+        figure.id: cut_picture(decode_picture(figure.picture.data, source), figure.cut_out).texture
         for figure in document.figures
     }
     if EXPORT_FORMATS[request.settings.format].is_drawn:

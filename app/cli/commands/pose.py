@@ -3,6 +3,7 @@
 import argparse
 
 from app.cli.console import StatusLine, notice
+from app.cli.cut_out import read_cut_out
 from app.document import Meshing
 from app.solving import load_pose_script, pose_document
 from app.storage import (
@@ -22,10 +23,11 @@ def run(arguments: argparse.Namespace) -> int:
     check_writable(arguments.out)
     script = load_pose_script(arguments.script)
     meshing = Meshing(triangles=arguments.triangles, detail=arguments.detail)
+    cut_out = read_cut_out(arguments)
     if is_layered(arguments.picture):
         opened = open_layered(arguments.picture, meshing)
     else:
-        opened = as_scene(open_picture(arguments.picture, meshing))
+        opened = as_scene(open_picture(arguments.picture, meshing, cut_out))
     for message in opened.notices:
         notice(message)
     status = StatusLine()

@@ -3,12 +3,7 @@
 import argparse
 from pathlib import Path
 
-from app.cli.options import (
-    HOLES,
-    add_background_options,
-    add_meshing_options,
-    input_file,
-)
+from app.cli.options import add_cut_out_options, add_meshing_options, input_file
 
 EPILOG = """\
 The picture may be a PNG, JPEG, GIF, WebP, AVIF, TIFF, BMP, TGA, PPM or ICO. Transparent pixels are
@@ -46,13 +41,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--out", metavar="DOMAIN.npz", type=Path, required=True, help="where to write"
     )
     add_meshing_options(parser)
-    add_background_options(parser)
-    parser.add_argument(
-        "--holes",
-        choices=HOLES,
-        default=HOLES[0],
-        help="whether large holes stay holes in the mesh (default: %(default)s)",
-    )
+    add_cut_out_options(parser)
     parser.add_argument(
         "--preview",
         metavar="PREVIEW.png",

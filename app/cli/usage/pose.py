@@ -3,7 +3,7 @@
 import argparse
 from pathlib import Path
 
-from app.cli.options import add_meshing_options, input_file
+from app.cli.options import add_cut_out_options, add_meshing_options, input_file
 
 EPILOG = """\
 SCRIPT.json is an animation as a small text. Coordinates are pixels of the picture with the origin
@@ -41,6 +41,7 @@ names stand still.
 examples:
   lissom pose giraffe.png nod.json --out nod.lissom
   lissom pose giraffe.png nod.json --out nod.lissom --triangles 20000 --detail fine
+  lissom pose photo.jpg nod.json --out nod.lissom --mask mask.png
 """
 
 
@@ -53,3 +54,4 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--out", metavar="PROJECT.lissom", type=Path, required=True, help="where to write"
     )
     add_meshing_options(parser)
+    add_cut_out_options(parser)

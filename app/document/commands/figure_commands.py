@@ -8,7 +8,7 @@ from app.document.figure import Figure
 from app.document.keyframe import Pose
 from app.document.settings import Meshing
 from app.errors import LissomError
-from engine.domain import Domain
+from engine.domain import CutOut, Domain, Stroke
 from engine.maps import Bounds
 from engine.variant import Variant
 
@@ -42,6 +42,21 @@ def set_bounds(figure: Figure, bounds: Bounds, poses: Sequence[Pose] | None = No
     return figure if bounds == figure.bounds else replace(figure, bounds=bounds)
 
 
+@figure_command("Brush")
+def brush(figure: Figure, stroke: Stroke) -> Figure:
+    """Keep or remove a part of the picture; the domain stays until it is replaced."""
+    strokes = (*figure.cut_out.strokes, stroke)
+    return replace(figure, cut_out=replace(figure.cut_out, strokes=strokes), is_stale=True)
+
+
+@figure_command("Change cut-out")
+def set_cut_out(figure: Figure, cut_out: CutOut) -> Figure:
+    """Set what tells the subject from its picture; the domain stays until it is replaced."""
+    if cut_out == figure.cut_out:
+        return figure
+    return replace(figure, cut_out=cut_out, is_stale=True)
+
+
 @figure_command("Rebuild domain")
 def replace_domain(
     figure: Figure, domain: Domain, meshing: Meshing, poses: Sequence[Pose]
@@ -52,14 +67,15 @@ def replace_domain(
     ----------
     figure : Figure
     domain : Domain
-        It must contain every handle and the anchor.
+        That of the figure's cut-out; it must contain every handle and the anchor.
     meshing : Meshing
         What it was built with.
     poses : sequence of Pose
         One for each of the figure's, solved again over the new cage.
     """
     unknown = {name: value for name, value in figure.unknown.items() if name != "domain"}
-    return replace(_posed(figure, poses, domain), meshing=meshing, unknown=unknown)
+    posed = _posed(figure, poses, domain)
+    return replace(posed, meshing=meshing, is_stale=False, unknown=unknown)
 
 
 def _posed(figure: Figure, poses: Sequence[Pose], domain: Domain | None = None) -> Figure:

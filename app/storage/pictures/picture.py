@@ -14,7 +14,8 @@ from PIL import Image, ImageFile, ImageOps, UnidentifiedImageError
 
 from app.errors import LissomError
 from app.storage.pictures.colour import to_srgb
-from engine.arrays import Bytes, Floats, readonly
+from engine.arrays import Booleans, Bytes, Floats, readonly
+from engine.domain import Mask
 
 # PostScript and PDF are left out on purpose: Pillow would run an interpreter for them.
 FORMATS = {
@@ -45,6 +46,7 @@ DECODER_ERRORS = (
     zlib.error,
 )
 EXIF_ORIENTATION = 0x0112
+HALF = 128  # levels: of a mask, what is lighter is kept
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -97,6 +99,26 @@ def decode_picture(data: bytes, name: str) -> Picture:
         raise LissomError(f"{name} is empty")
     with _told(name):
         return _decode(data)
+
+
+def decode_mask(data: bytes, name: str) -> Mask:
+    """Decode a mask: what is light, and not transparent, is kept.
+
+    Raises
+    ------
+    LissomError
+        As `decode_picture`.
+    """
+    rgba = decode_picture(data, name).rgba
+    light: Booleans = rgba[..., :3].mean(axis=2) >= HALF
+    return Mask.of(light & (rgba[..., 3] >= HALF))
+
+
+def encode_mask(mask: Mask) -> bytes:
+    """Return a mask as a black and white PNG picture."""
+    file = io.BytesIO()
+    Image.fromarray(mask.kept).save(file, "PNG", optimize=True)
+    return file.getvalue()
 
 
 def stored_size(data: bytes, name: str) -> tuple[int, int]:

@@ -5,6 +5,6 @@ Out: an `Enclosure`: an outline and a cage of as many vertices, strictly apart.
 Imports: `engine.domain.picture`, `engine.geometry`.
 """
 
-from engine.domain.outline.enclosure import LARGEST_OUTLINE, Detail, Enclosure, Holes, enclose
+from engine.domain.outline.enclosure import LARGEST_OUTLINE, Detail, Enclosure, enclose
 
-__all__ = ["LARGEST_OUTLINE", "Detail", "Enclosure", "Holes", "enclose"]
+__all__ = ["LARGEST_OUTLINE", "Detail", "Enclosure", "enclose"]

@@ -1,21 +1,21 @@
 """From the mask of a subject to its outline, a polygon of few edges, and the cage around it."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
 
-from engine.arrays import Booleans, Complexes, readonly
+from engine.arrays import Booleans, Complexes, Indices, readonly
 from engine.domain.outline.cage import offset_cage
 from engine.domain.outline.fitting import Candidates, fit_polygon
 from engine.domain.outline.holes import trace_hole
 from engine.domain.outline.margin import DistanceField, MarginCurve, curve_at_margin, distance_field
-from engine.domain.picture import WholePiece, join_parts, working_grid
+from engine.domain.picture import Holes, WholePiece, join_parts, working_grid
 from engine.errors import EngineError
 from engine.geometry import Hole, require_holes
 
 Detail = Literal["coarse", "normal", "fine"]
-Holes = Literal["fill", "keep"]
 MARGINS: dict[Detail, float] = {"coarse": 0.012, "normal": 0.006, "fine": 0.003}  # of the diagonal
 LEAST_MARGIN = 0.8  # pixels of an enlarged subject: enough to straighten staircases
 # Of the diagonal: a cage that is closer makes boundary spikes, a farther one bad conditioning.
@@ -76,7 +76,9 @@ class _Fit:
     draft: _Draft
 
 
-def enclose(mask: Booleans, *, detail: Detail, holes: Holes = "fill") -> Enclosure:
+def enclose(
+    mask: Booleans, *, detail: Detail, holes: Holes = "fill", swapped: Sequence[complex] = ()
+) -> Enclosure:
     """Find the outline of a subject, and the cage around it.
 
     Parameters
@@ -89,6 +91,8 @@ def enclose(mask: Booleans, *, detail: Detail, holes: Holes = "fill") -> Enclosu
     holes : {"fill", "keep"}
         Whether holes stay holes into which a disc fits that is 2.4 % of the diagonal wide: the
         largest first, as long as all loops together have few vertices.
+    swapped : sequence of complex
+        Points in holes that are treated the other way, in pixels of the picture, y up.
 
     Returns
     -------
@@ -105,10 +109,10 @@ def enclose(mask: Booleans, *, detail: Detail, holes: Holes = "fill") -> Enclosu
     piece = join_parts(grid.mask, grid.diagonal)
     margin = max(MARGINS[detail] * grid.diagonal, LEAST_MARGIN * max(1.0, 1 / grid.cell))
     fit = _best_fit(distance_field(piece.mask), margin, grid.diagonal)
-    kept: dict[int, Hole] = {}
-    crowded: list[int] = []
-    if holes == "keep":
-        kept, crowded = _kept_holes(piece, fit, margin, grid.diagonal)
+    others = piece.numbers_at(grid.to_cells(np.array(swapped, dtype=np.complex128)))
+    every = np.arange(1, len(piece.hole_areas) + 1)
+    wanted = np.setdiff1d(every, others) if holes == "keep" else np.intersect1d(every, others)
+    kept, crowded = _kept_holes(piece, wanted, fit, margin, grid.diagonal)
     filled = np.setdiff1d(np.arange(1, len(piece.hole_areas) + 1), [*kept, *crowded])
     return Enclosure(
         outline=readonly(grid.to_picture(fit.outline)),
@@ -131,16 +135,16 @@ def enclose(mask: Booleans, *, detail: Detail, holes: Holes = "fill") -> Enclosu
 
 
 def _kept_holes(
-    piece: WholePiece, fit: _Fit, margin: float, diagonal: float
+    piece: WholePiece, wanted: Indices, fit: _Fit, margin: float, diagonal: float
 ) -> tuple[dict[int, Hole], list[int]]:
-    """Trace the holes that are large enough, as many as there are vertices for.
+    """Trace those of the wanted holes that are large enough, as many as there are vertices for.
 
     Return them by their numbers, and the numbers of those for which there are none left.
     """
     kept: dict[int, Hole] = {}
     room = MOST_VERTICES - len(fit.outline)
     crowded: list[int] = []
-    for number in range(1, len(piece.hole_areas) + 1):
+    for number in map(int, wanted):
         hole = trace_hole(
             piece.holes,
             number,

@@ -6,9 +6,8 @@ import numpy as np
 from scipy import ndimage
 
 from engine.arrays import Booleans, Bytes
+from engine.domain.picture.cut_out import BackgroundColour
 from engine.domain.picture.grid import block_factor, reduce_blocks, repeat_blocks
-
-BackgroundColour = tuple[int, int, int]  # red, green, blue, each 0 to 255
 
 WORKING_SIDE = 1400  # pixels: larger pictures are flooded in blocks
 COLOUR_BIN = 16  # levels: how finely colours are told apart when the border votes

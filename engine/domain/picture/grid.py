@@ -41,6 +41,10 @@ class WorkingGrid:
         """Return points of the grid in the picture's pixels."""
         return self.origin + self.cell * points
 
+    def to_cells(self, points: Complexes) -> Complexes:
+        """Return points of the picture, y up, in cells."""
+        return (points - self.origin) / self.cell
+
 
 def working_grid(mask: Booleans) -> WorkingGrid:
     """Cut the subject out of its mask, first row on top, and bring it to a size to work with.

@@ -1,12 +1,13 @@
 """From a picture to the mask of its subject."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Literal
 
 import numpy as np
 
 from engine.arrays import Booleans, Bytes, readonly
-from engine.domain.picture.background import BackgroundColour, flood_background
+from engine.domain.picture.background import flood_background
+from engine.domain.picture.cut_out import BackgroundColour, CutOut, Mask, Stroke, paint
 from engine.errors import EngineError
 
 VISIBLE_ALPHA = 8  # of 255: what is fainter may be left out, what is not must be kept
@@ -15,6 +16,7 @@ OPAQUE_SHARE = 0.998  # visible pixels from which on the picture counts as opaqu
 SMALLEST_SIDE = 8  # pixels
 LEAST_AGREEMENT = 0.80  # of the border with the background's colour
 SUBJECT_SHARES = (0.01, 0.97)  # of the picture, between which a removed background is believed
+AUTOMATIC = CutOut()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -25,93 +27,94 @@ class Subject:
     ----------
     mask : bool, shape (h, w)
         True on the subject, first row on top.
+    cut : bool
+        Whether something was removed that the picture itself shows.
     notices : tuple of str
         What had to be done to the picture, in words.
     """
 
     mask: Booleans
+    cut: bool
     notices: tuple[str, ...]
 
 
-def subject_mask(
-    rgba: Bytes,
-    *,
-    tolerance: int = 18,
-    background: Literal["auto", "none"] | BackgroundColour = "auto",
-    mask: Booleans | None = None,
-) -> Subject:
+def subject_mask(rgba: Bytes, cut_out: CutOut = AUTOMATIC) -> Subject:
     """Find the subject of a picture: what is not transparent, or stands on a plain background.
 
     Parameters
     ----------
     rgba : uint8, shape (h, w, 4)
         Straight alpha, first row on top.
-    tolerance : int
-        Levels, 0 to 255, by which the background of an opaque picture may vary.
-    background : {"auto", "none"} or tuple of int
-        Whether a background is removed from an opaque picture: where most of its border has one
-        colour, never, or what has this colour, be it opaque or not.
-    mask : bool, shape (h, w), optional
-        True where the picture shows the subject; then nothing is looked for.
+    cut_out : CutOut
+        What tells it from the rest.
 
     Returns
     -------
     Subject
-        Every pixel with alpha ≥ 8 belongs to it, except a removed background.
+        Every pixel with alpha ≥ 8 belongs to it, except a removed background, and what is removed
+        by hand.
 
     Raises
     ------
     EngineError
         If the picture is empty, fully transparent, or its subject is under 8 pixels across; if a
-        mask has another size, or a colour levels that are none.
+        mask has another size.
     """
     if rgba.ndim != 3 or rgba.shape[2] != 4 or rgba.dtype != np.uint8:
         raise EngineError(f"A picture must be uint8 (h, w, 4), not {rgba.dtype} {rgba.shape}.")
-    if not 0 <= tolerance <= 255:
-        raise EngineError(f"The tolerance must be between 0 and 255 levels, not {tolerance}.")
     if rgba.size == 0:
         raise EngineError("The picture has no pixels; give one with a drawing.")
+    present = rgba[..., 3] > 0
     visible = rgba[..., 3] >= VISIBLE_ALPHA
-    count = np.count_nonzero(visible)
-    if count == 0:
+    if not visible.any():
         raise EngineError("The picture is fully transparent; give one with a visible drawing.")
     notices: tuple[str, ...] = ()
-    if mask is not None:
-        subject = _masked(rgba[..., 3] > 0, mask)
-    elif isinstance(background, tuple):
-        subject, notices = _without_colour(rgba, tolerance, background)
-    elif count >= OPAQUE_SHARE * visible.size:
-        if background == "none":
-            subject = visible
-        else:
-            subject, notices = _without_background(rgba[..., :3], tolerance)
-            subject &= visible
-    else:
+    if cut_out.mask is not None:
+        subject = _masked(present, cut_out.mask)
+    elif isinstance(cut_out.background, tuple):
+        subject, notices = _without_colour(rgba, cut_out.tolerance, cut_out.background)
+    elif np.count_nonzero(visible) < OPAQUE_SHARE * visible.size:
         subject, notices = _without_transparency(rgba[..., 3], visible)
+    elif cut_out.background == "none":
+        subject = visible
+    else:
+        subject, notices = _without_background(rgba[..., :3], cut_out.tolerance)
+        subject &= visible
+    if cut_out.strokes:
+        subject = _brushed(subject, cut_out.strokes) & present
     _require_size(subject)
-    return Subject(mask=readonly(subject), notices=notices)
+    cut = bool((visible & ~subject).any())
+    return Subject(mask=readonly(subject), cut=cut, notices=notices)
 
 
-def _masked(visible: Booleans, mask: Booleans) -> Booleans:
+def _masked(visible: Booleans, mask: Mask) -> Booleans:
     """Return what a mask keeps of a picture."""
-    if mask.shape != visible.shape:
+    if mask.size != visible.shape[::-1]:
         height, width = visible.shape
         raise EngineError(
-            f"The mask has {mask.shape[1]} × {mask.shape[0]} pixels and the picture "
+            f"The mask has {mask.size[0]} × {mask.size[1]} pixels and the picture "
             f"{width} × {height}; give a mask of the picture's size."
         )
-    subject: Booleans = visible & mask
+    subject: Booleans = visible & mask.kept
     if not subject.any():
         raise EngineError("The mask keeps nothing of the picture; make white what is to be kept.")
     return subject
+
+
+def _brushed(subject: Booleans, strokes: Sequence[Stroke]) -> Booleans:
+    """Return a mask with strokes drawn over it."""
+    kept = subject.copy()
+    for stroke in strokes:
+        paint(kept, stroke)
+    if not kept.any():
+        raise EngineError("The brush has removed all of the picture; keep a part of it.")
+    return kept
 
 
 def _without_colour(
     rgba: Bytes, tolerance: int, colour: BackgroundColour
 ) -> tuple[Booleans, tuple[str, ...]]:
     """Return what is left where a colour has flooded the picture from its border."""
-    if not all(0 <= level <= 255 for level in colour):
-        raise EngineError(f"The levels of a background's colour are 0 to 255, not {colour}.")
     visible = rgba[..., 3] > 0
     rgb = np.where(visible[..., None], rgba[..., :3], np.array(colour, dtype=np.uint8))
     flooded = flood_background(rgb, tolerance, colour).mask & visible

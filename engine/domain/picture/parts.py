@@ -40,6 +40,15 @@ class WholePiece:
     hole_areas: Floats
     notices: tuple[str, ...]
 
+    def numbers_at(self, points: Complexes) -> Indices:
+        """Return the numbers of the holes that points (n,) are in, in cells, y along the rows."""
+        rows, columns = np.floor(points.imag), np.floor(points.real)
+        height, width = self.holes.shape
+        inside = (rows >= 0) & (rows < height) & (columns >= 0) & (columns < width)
+        rows, columns = rows[inside].astype(np.intp), columns[inside].astype(np.intp)
+        found = np.unique(self.holes[rows, columns])
+        return found[found > 0].astype(np.intp)
+
     def told_filled(self, numbers: Sequence[int] | Indices, reason: str = "") -> tuple[str, ...]:
         """Return a notice, in words, that holes with these numbers are filled, if there are any."""
         if not len(numbers):
@@ -96,6 +105,15 @@ def join_parts(mask: Booleans, diagonal: float) -> WholePiece:
     return WholePiece(
         mask=mask | (holes > 0), holes=holes, hole_areas=hole_areas, notices=tuple(notices)
     )
+
+
+def without_specks(mask: Booleans) -> Booleans:
+    """Return a mask without its specks: what is no part of a subject."""
+    labels, count = ndimage.label(mask, np.ones((3, 3)))
+    areas = np.bincount(labels.ravel(), minlength=count + 1)
+    kept = areas >= SPECK * areas[1:].sum()
+    kept[0] = False
+    return np.asarray(kept[labels])
 
 
 def _counted(number: int, noun: str) -> str:

@@ -1,0 +1,200 @@
+"""How a subject is told from its picture: by its background's colour, by a mask, and by hand."""
+
+from dataclasses import dataclass, field
+from math import sqrt
+from typing import Literal, Self
+
+import numpy as np
+
+from engine.arrays import Booleans, Bytes, Complexes, as_points, readonly
+from engine.errors import EngineError
+
+BackgroundColour = tuple[int, int, int]  # red, green, blue, each 0 to 255
+Holes = Literal["fill", "keep"]
+
+LARGEST_RADIUS = 4096.0  # pixels of a stroke
+FARTHEST = 1e5  # pixels from the picture's corner that a stroke may go
+# Of all strokes together: points, and rows of pixels of the discs that they are drawn as, which
+# take a minute.
+MOST_STROKE_POINTS, MOST_ROWS = 1_000_000, 1e9
+AT_ONCE = 1 << 20  # rows that are drawn at once
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Mask:
+    """Which pixels of a picture are kept, eight to a byte.
+
+    Parameters
+    ----------
+    bits : uint8, shape (ceil(w h / 8),)
+        Row after row, first row on top, the first pixel in the highest bit; set where it is kept.
+    size : tuple of int
+        Width and height in pixels.
+    """
+
+    bits: Bytes
+    size: tuple[int, int]
+
+    def __post_init__(self) -> None:
+        width, height = self.size
+        if self.bits.shape != (-(-width * height // 8),):
+            raise EngineError(
+                f"A mask of {width} × {height} pixels is not of {self.bits.size} bytes."
+            )
+
+    @classmethod
+    def of(cls, kept: Booleans) -> Self:
+        """Return the mask of the pixels (h, w) that are kept."""
+        return cls(bits=readonly(np.packbits(kept)), size=(kept.shape[1], kept.shape[0]))
+
+    @property
+    def kept(self) -> Booleans:
+        """The pixels (h, w) that are kept."""
+        width, height = self.size
+        flat = np.unpackbits(self.bits, count=width * height)
+        return flat.view(np.bool_).reshape(height, width)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Stroke:
+    """A stroke of a round brush.
+
+    Parameters
+    ----------
+    points : complex128, shape (n,)
+        The way of its centre, in pixels of the picture, y up; at least one.
+    radius : float
+        In pixels.
+    keeps : bool
+        Whether what it covers belongs to the subject, or does not.
+    """
+
+    points: Complexes
+    radius: float
+    keeps: bool
+    rows: float = field(init=False, repr=False)  # of pixels of the discs that it is drawn as
+
+    def __post_init__(self) -> None:
+        points = as_points(self.points, "stroke", at_least=1)
+        object.__setattr__(self, "points", points)
+        if not 0 < self.radius <= LARGEST_RADIUS:
+            raise EngineError(
+                f"The radius of a brush is above 0 and at most {LARGEST_RADIUS:g} pixels, not "
+                f"{self.radius:g}."
+            )
+        if max(np.abs(points.real).max(), np.abs(points.imag).max()) > FARTHEST:
+            raise EngineError(
+                f"A stroke goes farther from the picture than {FARTHEST:,.0f} pixels."
+            )
+        discs = len(points) + np.abs(np.diff(points)).sum() / _spacing(self.radius)
+        object.__setattr__(self, "rows", float(discs * (2 * self.radius + 3)))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CutOut:
+    """What tells a subject from its picture.
+
+    Parameters
+    ----------
+    tolerance : int
+        Levels, 0 to 255, by which the background of an opaque picture may vary.
+    background : {"auto", "none"} or tuple of int
+        Whether a background is removed from an opaque picture: where most of its border has one
+        colour, never, or what has this colour, be it opaque or not.
+    mask : Mask, optional
+        What is kept instead; then no background is looked for.
+    strokes : tuple of Stroke
+        What is kept and removed by hand after that, one stroke over the other.
+    holes : {"fill", "keep"}
+        Whether large holes of the subject stay holes.
+    swapped : tuple of complex
+        Points in those that are treated the other way, in pixels of the picture, y up.
+    """
+
+    tolerance: int = 18
+    background: Literal["auto", "none"] | BackgroundColour = "auto"
+    mask: Mask | None = None
+    strokes: tuple[Stroke, ...] = ()
+    holes: Holes = "fill"
+    swapped: tuple[complex, ...] = ()
+
+    def __post_init__(self) -> None:
+        if not 0 <= self.tolerance <= 255:
+            raise EngineError(
+                f"The tolerance must be between 0 and 255 levels, not {self.tolerance}."
+            )
+        if isinstance(self.background, tuple):
+            levels = self.background
+            if len(levels) != 3 or not all(0 <= level <= 255 for level in levels):
+                raise EngineError(
+                    f"The levels of a background's colour are three of 0 to 255, not {levels}."
+                )
+        elif self.background not in {"auto", "none"}:
+            raise EngineError(
+                f"The background is 'auto', 'none' or a colour, not {self.background!r}."
+            )
+        if self.holes not in {"fill", "keep"}:
+            raise EngineError(f"Holes are one of 'fill' and 'keep', not {self.holes!r}.")
+        points = sum(len(stroke.points) for stroke in self.strokes)
+        if points > MOST_STROKE_POINTS or sum(stroke.rows for stroke in self.strokes) > MOST_ROWS:
+            raise EngineError("There are too many strokes; save the mask and load it instead.")
+
+    @property
+    def is_by_hand(self) -> bool:
+        """Whether there is a mask or a stroke."""
+        return self.mask is not None or bool(self.strokes)
+
+    @property
+    def nbytes(self) -> int:
+        """Bytes of its arrays."""
+        mask = 0 if self.mask is None else self.mask.bits.nbytes
+        return mask + sum(stroke.points.nbytes for stroke in self.strokes)
+
+
+def paint(kept: Booleans, stroke: Stroke) -> None:
+    """Draw a stroke on the pixels (h, w) that are kept, first row on top, in place.
+
+    A pixel belongs to it whose centre is within its radius of its way, up to a quarter of a pixel.
+    """
+    centres = _close_together(stroke.points, stroke.radius)
+    centres = centres.real + 1j * (len(kept) - centres.imag)
+    at_once = max(1, int(AT_ONCE / (2 * stroke.radius + 3)))
+    for start in range(0, len(centres), at_once):
+        _paint_discs(kept, centres[start : start + at_once], stroke)
+
+
+def _paint_discs(kept: Booleans, centres: Complexes, stroke: Stroke) -> None:
+    """Draw discs around centres, y down."""
+    height, width = kept.shape
+    reach = int(np.ceil(stroke.radius)) + 1
+    rows = np.floor(centres.imag).astype(np.int64)[:, None] + np.arange(-reach, reach + 1)
+    square = stroke.radius**2 - (rows + 0.5 - centres.imag[:, None]) ** 2
+    half = np.sqrt(np.maximum(square, 0))
+    first = np.ceil(centres.real[:, None] - half - 0.5).astype(np.int64).clip(0, width)
+    last = np.floor(centres.real[:, None] + half - 0.5).astype(np.int64).clip(-1, width - 1)
+    hit = (square >= 0) & (last >= first) & (rows >= 0) & (rows < height)
+    if not hit.any():
+        return
+    rows, first, last = rows[hit], first[hit], last[hit]
+    top, left, right = rows.min(), first.min(), last.max() + 1
+    shape = (int(rows.max() - top) + 1, int(right - left) + 1)
+    # Where more spans have begun than ended, the discs cover the row.
+    starts = np.bincount((rows - top) * shape[1] + first - left, minlength=shape[0] * shape[1])
+    ends = np.bincount((rows - top) * shape[1] + last + 1 - left, minlength=shape[0] * shape[1])
+    covered = np.cumsum((starts - ends).reshape(shape), axis=1)[:, :-1] > 0
+    kept[top : top + shape[0], left:right][covered] = stroke.keeps
+
+
+def _spacing(radius: float) -> float:
+    """Return how far apart discs may be that leave a quarter of a pixel between them."""
+    # Two circles whose centres are s apart meet s² / 8 r within their common tangent.
+    return sqrt(2 * max(radius, 0.5))
+
+
+def _close_together(points: Complexes, radius: float) -> Complexes:
+    """Return points along the way that are no farther apart than discs may be."""
+    along = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(points)))])
+    count = int(np.ceil(along[-1] / _spacing(radius))) + 1
+    places = np.union1d(along, np.linspace(0, along[-1], count))
+    between: Complexes = np.interp(places, along, points)
+    return between
