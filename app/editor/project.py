@@ -26,7 +26,8 @@ from app.motion import Box, Build, Joints, Motion, PosableMesh, Shown
 from app.render import View, fit_view
 from app.reports import Curves
 from app.solving import Drag, Renewal, Rig
-from app.storage import Origin, Picture
+from app.storage import Cut, Origin, Picture, cut_picture
+from engine.domain import CutOut
 from engine.maps import Bounds
 
 OPAQUE = 255
@@ -130,11 +131,14 @@ class Puppet:
         For the poses to come; None before the first of them.
     build : Derived
         The series that the worker makes when it has nothing else to do.
+    cut : Derived
+        What is left of the picture, as the newest cut-out has it.
     """
 
     picture: Picture
     is_opaque: bool
     coarse: Derived[Clip, Motion]
+    cut: Derived[CutOut, Cut]
     fine: Derived[Clip, Motion | None] = field(default_factory=lambda: Derived(None))
     shown: Shown | None = None
     rig: Rig | None = None
@@ -147,6 +151,7 @@ class Puppet:
             picture=picture,
             is_opaque=bool((picture.rgba[..., 3] == OPAQUE).all()),
             coarse=Derived(Motion.at_rest(clip, PosableMesh.coarse(clip.figure.domain))),
+            cut=Derived(cut_picture(picture, clip.figure.cut_out), clip.figure.cut_out),
         )
 
 
@@ -183,6 +188,13 @@ class Project:
         What the person drags them to.
     renewal : Renewal, optional
         Keys that are being solved again.
+    stale : tuple, optional
+        The figure whose domain is older than its cut-out, and the clock's seconds when it was first
+        seen.
+    unbuildable : Figure, optional
+        One whose cut-out is known to give no domain that it can have.
+    brush : float, optional
+        Its radius in pixels of the picture; None as long as nobody has chosen it.
     export_to : Path, optional
         Where the next export goes: where the last one went, or was told to.
     replaceable : Path, optional
@@ -216,6 +228,9 @@ class Project:
     meshing: Meshing | None = None
     drafted_bounds: Bounds | None = None
     renewal: Renewal | None = None
+    stale: tuple[Figure, float] | None = None
+    unbuildable: Figure | None = None
+    brush: float | None = None
     export_to: Path | None = None
     replaceable: Path | None = None
     joints: Derived[tuple[object, ...], Joints | None] = field(

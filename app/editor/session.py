@@ -17,6 +17,7 @@ from engine.arrays import Bytes
 
 HeatMap = Literal["none", "k", "sigma_a", "sigma_b"]
 CurveKind = Literal["relative", "absolute"]
+CutTool = Literal["keep", "remove", "pick", "holes"]
 Tone = Literal["info", "good", "error"]
 
 
@@ -86,7 +87,16 @@ class EntryMark:
     text: str
 
 
-Mark = BoxMark | SweepMark | EntryMark
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class StrokeMark:
+    """A stroke of the brush, in the plane, that is not done yet."""
+
+    points: tuple[complex, ...]
+    radius: float
+    keeps: bool
+
+
+Mark = BoxMark | SweepMark | EntryMark | StrokeMark
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -165,6 +175,7 @@ class Session:
     keeps_aspect: bool = True  # of an export whose size is entered
     curves: CurveKind = "relative"
     pointer: ToolInHand | None = None
+    cutting: CutTool | None = None  # what is in hand that cuts out; None poses
     snaps: bool = False  # whether what the pointer does goes in steps
     copied: CopiedKeys | None = None
     space_used: bool = False  # Space was held to move the view

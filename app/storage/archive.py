@@ -135,9 +135,8 @@ class Archive:
         content = self.read(name, largest=LARGEST_NPY_HEADER + most * row)
         start = 10 + int.from_bytes(content[8:10], "little")
         shape = "," if columns == 1 else f", {columns}"
-        pattern = (
-            rf"{{'descr': '{dtype.str}', 'fortran_order': False, 'shape': \((\d+){shape}\), }} *\n"
-        )
+        kind = re.escape(dtype.str)
+        pattern = rf"{{'descr': '{kind}', 'fortran_order': False, 'shape': \((\d+){shape}\), }} *\n"
         match = re.fullmatch(pattern.encode(), content[10:start])
         if not content.startswith(NPY_MAGIC) or match is None:
             raise LissomError(f"its {name} is not an array {dtype.name} (n{shape})")

@@ -1,12 +1,13 @@
 """From a picture file to a new document, and from a picture to what is painted on its mesh."""
 
+from dataclasses import dataclass
 from pathlib import Path
 from typing import NamedTuple
 
 from app.document import Document, Meshing, PictureFile, new_figure
 from app.storage.pictures import Picture, decode_picture, read_picture_file
 from engine.arrays import Booleans, Bytes, freeze
-from engine.domain import CutOut, build_domain, subject_mask, texture
+from engine.domain import CutOut, HoleMap, build_domain, find_holes, subject_mask, texture
 from engine.errors import EngineError
 
 AUTOMATIC = CutOut()
@@ -20,7 +21,8 @@ class OpenedPicture(NamedTuple):
     notices: tuple[str, ...]
 
 
-class Cut(NamedTuple):
+@dataclass(frozen=True, slots=True, eq=False)
+class Cut:
     """What is left of a picture that was cut out.
 
     Parameters
@@ -29,10 +31,13 @@ class Cut(NamedTuple):
         The pixels of the subject.
     texture : uint8, shape (h, w, 4)
         What is painted on the mesh; straight alpha.
+    holes : HoleMap, optional
+        None where the subject has too many parts.
     """
 
     kept: Booleans
     texture: Bytes
+    holes: HoleMap | None
 
 
 def open_picture(path: Path, meshing: Meshing, cut_out: CutOut = AUTOMATIC) -> OpenedPicture:
@@ -59,5 +64,9 @@ def cut_picture(picture: Picture, cut_out: CutOut) -> Cut:
         subject = subject_mask(picture.rgba, cut_out)
     except EngineError:
         # Of a project that was saved before a cut-out that cannot be was changed again.
-        return Cut(freeze(picture.rgba[..., 3] > 0), picture.rgba)
-    return Cut(subject.mask, texture(picture.rgba, subject))
+        return Cut(freeze(picture.rgba[..., 3] > 0), picture.rgba, None)
+    try:
+        holes = find_holes(subject.mask)
+    except EngineError:
+        holes = None
+    return Cut(subject.mask, texture(picture.rgba, subject), holes)

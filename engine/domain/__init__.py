@@ -16,6 +16,7 @@ from engine.domain.build import (
     texture_coordinates,
 )
 from engine.domain.medial_axis import suggest_handles
+from engine.domain.outline import HoleMap, find_holes
 from engine.domain.picture import MOST_STROKE_POINTS, CutOut, Mask, Stroke, Subject, subject_mask
 from engine.domain.validity import MOST_MESH_TRIANGLES, require_domain
 
@@ -25,15 +26,17 @@ __all__ = [
     "MOST_TRIANGLES",
     "CutOut",
     "Domain",
+    "HoleMap",
     "Mask",
     "Stroke",
     "Subject",
     "build_domain",
+    "find_holes",
     "mesh_inside",
     "rectangle_domain",
     "require_domain",
-    "suggest_handles",
     "subject_mask",
+    "suggest_handles",
     "texture",
     "texture_coordinates",
 ]

@@ -35,6 +35,7 @@ from app.document.settings import (
 from app.export_formats import EXPORT_FORMATS
 from engine.domain.build import Domain
 from engine.domain.meshing.mesh import Mesh
+from engine.domain.picture.cut_out import CutOut, Mask, Stroke
 from engine.maps.bounds import Bounds
 from engine.maps.certificate import Certificate
 
@@ -226,8 +227,15 @@ def _random_settings_command(rng: np.random.Generator, document: Document) -> Co
         figure_commands.set_bounds(0, bounds),
         figure_commands.set_bounds(0, bounds, poses),
         figure_commands.replace_domain(0, domain, Meshing(detail="fine"), again),
+        figure_commands.brush(0, _random_stroke(rng)),
+        figure_commands.set_cut_out(0, CutOut(tolerance=int(rng.integers(5)))),
     ]
     return commands[rng.integers(len(commands))]
+
+
+def _random_stroke(rng: np.random.Generator) -> Stroke:
+    way = np.array([inside(rng) for _ in range(rng.integers(1, 5))])
+    return Stroke(points=way, radius=float(rng.uniform(1, 30)), keeps=bool(rng.integers(2)))
 
 
 def _random_export(rng: np.random.Generator) -> ExportSettings:
@@ -237,6 +245,22 @@ def _random_export(rng: np.random.Generator) -> ExportSettings:
         background=["transparent", "#12aBef"][rng.integers(2)],
         framing=FRAMINGS[rng.integers(2)],
         frames=None if rng.random() < 0.5 else FrameRange(2, int(rng.integers(2, 50))),
+    )
+
+
+def hand_made_cut_out() -> CutOut:
+    """A cut-out with something other than the default in every field."""
+    kept = np.random.default_rng(0).random((200, 200)) < 0.5
+    return CutOut(
+        tolerance=7,
+        background=(250, 0, 3),
+        mask=Mask.of(kept),
+        strokes=(
+            Stroke(points=np.array([10 + 20j, 1 / 3 + 0j]), radius=2.5, keeps=True),
+            Stroke(points=np.array([-5.0 + 199j]), radius=40.0, keeps=False),
+        ),
+        holes="keep",
+        swapped=(100 + 1 / 3j, 3j),
     )
 
 
@@ -276,7 +300,9 @@ def full_document() -> Document:
     figure = dataclasses.replace(
         empty.figures[0],
         id=0,
-        meshing=Meshing(detail="coarse", triangles=2_000, tolerance=7),
+        meshing=Meshing(detail="coarse", triangles=2_000),
+        cut_out=hand_made_cut_out(),
+        is_stale=True,
         handles=handles,
         next_handle=9,
         keys=(

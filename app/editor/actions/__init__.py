@@ -6,11 +6,11 @@ Imports: `app.editor`, and the rooms that do the work.
 """
 
 from app.editor.actions import (
+    cutting,
     editing,
     exporting,
     files,
     keys,
-    measuring,
     playback,
     posing,
     rebuilding,
@@ -36,12 +36,12 @@ __all__ = [
     "browse",
     "choose",
     "close_dialog",
+    "cutting",
     "dismiss",
     "editing",
     "exporting",
     "files",
     "keys",
-    "measuring",
     "playback",
     "posing",
     "rebuilding",

@@ -98,7 +98,7 @@ def start(session: Session, out: Path) -> None:
         return
     posing.drop(session)
     document = project.document
-    pictures = {figure: puppet.picture.rgba for figure, puppet in project.puppets.items()}
+    pictures = {figure: puppet.cut.value.texture for figure, puppet in project.puppets.items()}
     request = ExportRequest(out=out, settings=document.export, project=project.name)
     check_request(document, request)
     if not EXPORT_FORMATS[document.export.format].is_drawn:

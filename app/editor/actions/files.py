@@ -160,7 +160,7 @@ def show(session: Session, path: Path, opened: Opened) -> None:
     is_sample = path.parent == sample_images()
     is_project = path.suffix.lower() == PROJECT and not is_sample
     session.autosave.forget()
-    session.pointer = None
+    session.pointer = session.cutting = None
     session.project = Project(
         name=path.stem,
         history=History(opened.document, saved=True),
@@ -259,7 +259,7 @@ def throw_away(session: Session, path: Path) -> None:
 
 def show_recovered(session: Session, path: Path, opened: Opened, origin: Origin) -> None:
     """Make unsaved work the project of the window, under its own name and unsaved."""
-    session.pointer = None
+    session.pointer = session.cutting = None
     session.project = Project(
         name=origin.name,
         history=History(opened.document, saved=False),

@@ -12,6 +12,7 @@ from app.solving import Renewal, go_on
 from engine.maps import Bounds
 
 RENEWING = "Solving the keys"
+REST = 0.5  # seconds after which a brush is taken to rest
 
 
 def draft_bounds(session: Session, bounds: Bounds) -> None:
@@ -75,11 +76,36 @@ def rebuild(session: Session) -> None:
         _begin(session, Renewal(before=figure, bounds=figure.bounds, meshing=meshing))
 
 
+def keep_up(session: Session) -> None:
+    """Rebuild a domain whose cut-out has changed as soon as the brush rests; once a frame."""
+    project = session.project
+    if project is None:
+        return
+    stale = next((f for f in project.document.figures if f.is_stale and not f.still), None)
+    if stale is None or stale is project.unbuildable:
+        project.stale = None
+        return
+    if project.stale is None or project.stale[0] is not stale:
+        project.stale = stale, session.clock()
+    is_busy = session.pointer is not None or project.is_posing or project.renewal is not None
+    if not is_busy and session.clock() - project.stale[1] >= REST:
+        renewal = Renewal(before=stale, bounds=stale.bounds, meshing=stale.meshing)
+        _go_on(session, project, renewal)
+
+
+def _catches_up(renewal: Renewal) -> bool:
+    """Tell whether a domain is rebuilt only because its cut-out has changed."""
+    return renewal.before.is_stale and renewal.meshing == renewal.before.meshing
+
+
 def cancel(session: Session) -> None:
     """Give up what is being solved or rebuilt."""
     session.jobs.drop(RENEWING)
-    if session.project:
-        session.project.renewal = None
+    project = session.project
+    if project:
+        if project.renewal is not None and _catches_up(project.renewal):
+            project.unbuildable = project.renewal.before
+        project.renewal = None
 
 
 def _begin(session: Session, renewal: Renewal) -> None:
@@ -93,6 +119,8 @@ def _go_on(session: Session, project: Project, renewal: Renewal) -> None:
         return
     if renewal.before not in project.document.figures:
         project.renewal = None
+        if _catches_up(renewal):
+            return  # and begins anew
         session.tell("The keys were not posed again: the project changed meanwhile. Start again.")
         return
     if renewal.is_over:
@@ -104,6 +132,8 @@ def _go_on(session: Session, project: Project, renewal: Renewal) -> None:
     def failed(error: Exception) -> None:
         project.renewal = None
         builds = renewal.meshing is not None
+        if builds:
+            project.unbuildable = renewal.before
         report(session, f"The {'mesh was' if builds else 'limits were'} not changed", error)
 
     session.jobs.put(
@@ -118,13 +148,17 @@ def _go_on(session: Session, project: Project, renewal: Renewal) -> None:
 
 def _accept(session: Session, project: Project, renewal: Renewal) -> None:
     project.renewal = None
-    gesture = object()
-    project.history.do(renewal.command, gesture=gesture)
-    if renewal.domain is not None:
-        project.history.pose(None, gesture=gesture)
-        project.meshing = None
-    for notice in renewal.notices:
-        session.tell(sentence(notice))
+    if _catches_up(renewal):
+        project.history.complete(renewal.command)
+    else:
+        gesture = object()
+        project.history.do(renewal.command, gesture=gesture)
+        if renewal.domain is not None:
+            project.history.pose(None, gesture=gesture)
+            project.meshing = None
+    for number, notice in enumerate(renewal.notices):
+        # After every stroke: what was said of the one before is no news any more.
+        session.tell(sentence(notice), topic=f"rebuilt {number}")
     if renewal.outside:
         poses = "pose" if len(renewal.outside) == 1 else "poses"
         session.tell(

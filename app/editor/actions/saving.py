@@ -9,7 +9,14 @@ from app.editor.failures import report
 from app.editor.jobs import Job
 from app.editor.project import Project
 from app.editor.session import Session
-from app.storage import SECONDS, draw_thumbnail, save_preferences, save_project
+from app.reports import draw_curves, write_curves
+from app.storage import (
+    SECONDS,
+    draw_thumbnail,
+    save_preferences,
+    save_project,
+    write_atomically,
+)
 
 PROJECT = ".lissom"
 SAVING, AUTOSAVING, WRITING = "Saving", "Autosaving", "Saving preferences"
@@ -46,10 +53,10 @@ def write(session: Session, path: Path, then: Action | None) -> None:
         project.to_save = (path, then)
         return
     document = project.document
-    picture = project.puppets[document.figures[0].id].picture
+    texture = project.puppets[document.figures[0].id].cut.value.texture
 
     def work() -> None:
-        save_project(path, document, thumbnail=draw_thumbnail(picture.rgba))
+        save_project(path, document, thumbnail=draw_thumbnail(texture))
 
     def done(_: None) -> None:
         project.history.mark_saved(document)
@@ -68,6 +75,43 @@ def write(session: Session, path: Path, then: Action | None) -> None:
             failed=lambda error: report(session, "The project was not saved", error),
             lane="hand",
         )
+    )
+
+
+def ask_curves_csv(session: Session) -> None:
+    """Ask where to save the curves of the distortion as numbers."""
+    _ask_curves(session, ".csv")
+
+
+def ask_curves_png(session: Session) -> None:
+    """Ask where to save the curves of the distortion as a picture."""
+    _ask_curves(session, ".png")
+
+
+def save_curves(session: Session, path: Path) -> None:
+    """Save the curves as a picture, or as numbers if the name does not end in .png."""
+    curves = session.project.curves.value if session.project else None
+    if curves is None:
+        return
+    if path.suffix.lower() == ".png":
+        picture = draw_curves(curves)
+        write_atomically(path, lambda file: file.write(picture))
+    else:
+        write_curves(path, curves)
+    session.tell(f"Saved {path.name}.", tone="good")
+
+
+def _ask_curves(session: Session, suffix: str) -> None:
+    project = session.project
+    if project is None:
+        return
+    session.dialog = FileDialog(
+        title="Save the curves",
+        folder=session.usual_folder,
+        name=f"{project.name} distortion{suffix}",
+        suffixes=(suffix,),
+        writes=True,
+        chosen=lambda path: do(save_curves, path),
     )
 
 
@@ -92,7 +136,7 @@ def close(session: Session) -> None:
 
 def give_up(session: Session) -> None:
     """Close the project, whatever it holds."""
-    session.project = session.pointer = None
+    session.project = session.pointer = session.cutting = None
     session.autosave.forget()
 
 

@@ -5,7 +5,7 @@ from functools import partial
 from typing import Any
 
 from app.document import Clip, clip_of, intervals
-from app.editor.actions import playback, posing, viewing
+from app.editor.actions import playback, posing, rebuilding, viewing
 from app.editor.derived import Derivation
 from app.editor.failures import report
 from app.editor.jobs import Job
@@ -28,10 +28,13 @@ from app.motion import (
     with_series,
 )
 from app.reports import measure_curves
+from app.storage import Cut, cut_picture
+from engine.domain import CutOut
 
 STILL = 0.15  # seconds after which the playhead is taken to stay where it is
 SKETCHING, REFINING, STREAMING = "In-betweens", "Finer in-betweens", "Smooth playback"
 MOST_UNASKED = 1000  # frames whose extent is measured before anybody asks
+CUTTING = "Cutting out"
 MEASURING, SPANNING = "Measuring", "Measuring the motion"
 HANGING = "Joints"
 
@@ -43,6 +46,7 @@ def maintain(session: Session) -> None:
         return
     posing.settle(session)
     project.extent.recall(extent_source(project.document))
+    rebuilding.keep_up(session)
     for derivation in missing(session, project):
         derive(session, derivation)
     shortfalls, figure = project.timing.shortfalls, project.figure
@@ -77,6 +81,7 @@ def derive(session: Session, derivation: Derivation[Any, Any]) -> None:
 def missing(session: Session, project: Project) -> Iterator[Derivation[Any, Any]]:
     """Yield what the worker is to derive next: what is missed most, of any figure."""
     document = project.document
+    yield from _cut(project)
     clips = [(clip_of(document, figure), puppet) for figure, puppet in project.puppets.items()]
     movable = [(clip, puppet) for clip, puppet in clips if not puppet.coarse.has_failed(clip)]
     for clip, puppet in movable:
@@ -103,6 +108,20 @@ def missing(session: Session, project: Project) -> Iterator[Derivation[Any, Any]
         shown = document.frames
         if shown.last - shown.first < MOST_UNASKED:
             yield from _span(project)
+
+
+def _cut(project: Project) -> Iterator[Derivation[CutOut, Cut]]:
+    """Yield what is to be cut out of pictures anew."""
+    for figure in project.document.figures:
+        cut = project.puppets[figure.id].cut
+        if not (cut.follows(figure.cut_out) or cut.has_failed(figure.cut_out)):
+            yield Derivation(
+                kind=CUTTING,
+                into=cut,
+                source=figure.cut_out,
+                work=partial(cut_picture, project.puppets[figure.id].picture, figure.cut_out),
+                complaint="The picture cannot be cut out so",
+            )
 
 
 def _sketch(clip: Clip, puppet: Puppet, *, whole: bool) -> Derivation[Clip, Motion]:

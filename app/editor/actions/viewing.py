@@ -9,7 +9,7 @@ from app.document import Meshing
 from app.editor.action import Action
 from app.editor.dialogs import Dialog, FileDialog, ShortcutSheet
 from app.editor.project import view_around
-from app.editor.session import HeatMap, Session, Toast
+from app.editor.session import CurveKind, HeatMap, Session, Toast
 from app.motion import Box, box_around
 from app.render import View
 from app.storage import LARGEST_GHOST_STEP, LARGEST_SCALE, MOST_GHOSTS, SMALLEST_SCALE, ThemeName
@@ -89,6 +89,11 @@ def show_heat_map(session: Session, heat_map: HeatMap) -> None:
 def toggle_heat_map(session: Session) -> None:
     """Show the conformal distortion, or no distortion."""
     show_heat_map(session, "k" if session.overlays.heat_map == "none" else "none")
+
+
+def show_curves(session: Session, kind: CurveKind) -> None:
+    """Show the curves of the distortion relative to the keys, or as they are."""
+    session.curves = kind
 
 
 def set_ghosts(session: Session, before: int, after: int, step: int) -> None:

@@ -7,7 +7,7 @@ Imports: `app.editor.actions`.
 
 from app.editor.tools import pointing
 from app.editor.tools.entry import ERASE
-from app.editor.tools.table import TOOLS
+from app.editor.tools.table import TOOLS, tools_of
 from app.editor.tools.tool import Spot, Tool
 
-__all__ = ["ERASE", "TOOLS", "Spot", "Tool", "pointing"]
+__all__ = ["ERASE", "TOOLS", "Spot", "Tool", "pointing", "tools_of"]

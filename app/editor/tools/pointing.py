@@ -1,7 +1,7 @@
 """The pointer in the viewport, from press to release: the tool that takes the press has it."""
 
 from app.editor.session import Session
-from app.editor.tools.table import TOOLS
+from app.editor.tools.table import tools_of
 from app.editor.tools.tool import Spot
 
 
@@ -9,7 +9,7 @@ def press(session: Session, spot: Spot) -> None:
     """Give a press to the first tool that takes it."""
     if session.project is None or session.project.puppet.shown is None:
         return
-    gestures = (tool.press(session, spot) for tool in TOOLS)
+    gestures = (tool.press(session, spot) for tool in tools_of(session))
     session.pointer = next((gesture for gesture in gestures if gesture is not None), None)
 
 

@@ -43,16 +43,31 @@ class GpuPicture:
             )
         self.size = (width, height)
         self._texture = context.texture(self.size, 4, dtype="f2")
-        rows = max(1, _BLOCK // width)
-        for top in range(0, height, rows):
-            block = _premultiply(straight[top : top + rows])[::-1]
-            bottom = height - top - len(block)
-            self._texture.write(block.tobytes(), viewport=(0, bottom, width, len(block)))
-        self._texture.build_mipmaps()
+        self._written: Bytes | None = None
+        self.write(straight)
         self._sampler = context.sampler(
             filter=(moderngl.LINEAR_MIPMAP_LINEAR, moderngl.LINEAR),
             border_color=(0.0, 0.0, 0.0, 0.0),
         )
+
+    def write(self, straight: Bytes) -> None:
+        """Upload another picture of the same size; only rows that differ are."""
+        if straight is self._written:
+            return
+        height, width, _ = straight.shape
+        changed = np.ones(height, dtype=np.bool_)
+        if self._written is not None:
+            changed = (straight != self._written).any(axis=(1, 2))
+        self._written = straight
+        if not changed.any():
+            return
+        first, last = np.flatnonzero(changed)[[0, -1]]
+        rows = max(1, _BLOCK // width)
+        for top in range(first, last + 1, rows):
+            block = _premultiply(straight[top : min(top + rows, last + 1)])[::-1]
+            bottom = height - top - len(block)
+            self._texture.write(block.tobytes(), viewport=(0, int(bottom), width, len(block)))
+        self._texture.build_mipmaps()
 
     @contextmanager
     def bound(self, unit: int) -> Iterator[None]:

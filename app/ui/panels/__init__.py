@@ -5,6 +5,6 @@ Out: actions.
 Imports: `app.ui.style`, `app.ui.shortcuts`, `app.ui.viewport`.
 """
 
-from app.ui.panels import deform, distortion, domain, export, handle, layers, poses
+from app.ui.panels import cut_out, deform, distortion, domain, export, handle, layers, poses
 
-__all__ = ["deform", "distortion", "domain", "export", "handle", "layers", "poses"]
+__all__ = ["cut_out", "deform", "distortion", "domain", "export", "handle", "layers", "poses"]

@@ -8,7 +8,7 @@ from imgui_bundle import ImVec2, ImVec4, imgui, implot
 from imgui_bundle import icons_fontawesome_6 as icons
 
 from app.editor import Action, CurveKind, HeatMap, Project, Session, do
-from app.editor.actions import measuring, playback, viewing
+from app.editor.actions import playback, saving, viewing
 from app.motion import Shown
 from app.render import heat_ramp
 from app.reports import TIMES, Curves, broken_lines
@@ -153,7 +153,7 @@ def _over_time(session: Session, look: Look, project: Project) -> list[Action]:
     actions: list[Action] = []
     match segments(look, "curves", KINDS, session.curves):
         case "relative" | "absolute" as kind:
-            actions.append(do(measuring.show_curves, kind))
+            actions.append(do(viewing.show_curves, kind))
     curves = project.curves.value
     if curves is None:
         small(look, "Measuring…")
@@ -171,10 +171,10 @@ def _over_time(session: Session, look: Look, project: Project) -> list[Action]:
     half = ImVec2((imgui.get_content_region_avail().x - gap) / 2, 0)
     imgui.begin_disabled(is_stale)
     if imgui.button(f"{icons.ICON_FA_IMAGE}  Save as PNG…###png", half):
-        actions.append(do(measuring.ask_png))
+        actions.append(do(saving.ask_curves_png))
     imgui.same_line()
     if imgui.button(f"{icons.ICON_FA_TABLE}  Save as CSV…###csv", half):
-        actions.append(do(measuring.ask_csv))
+        actions.append(do(saving.ask_curves_csv))
     imgui.end_disabled()
     return actions
 

@@ -25,7 +25,6 @@ from engine.domain.meshing import Mesh
 
 DETAILS = (("coarse", "Coarse"), ("normal", "Normal"), ("fine", "Fine"))
 TRIANGLES = Scale(left=2_000, right=1_000_000, logarithmic=True)
-TOLERANCES = Scale(left=0, right=120)
 SHOWN: tuple[tuple[OverlayName, str, str], ...] = (
     ("outline", "Outline", "The edge of the shape, which moves with the drawing"),
     ("cage", "Cage", "The polygon around the drawing at rest that moves every point inside"),
@@ -45,7 +44,7 @@ def draw(session: Session, look: Look) -> list[Action]:
     heading(look, "Rebuild")
     figure = project.figure
     draft = project.meshing or figure.meshing
-    chosen = _settings(look, project, draft)
+    chosen = _settings(look, draft)
     if chosen != draft:
         actions.append(do(viewing.draft_meshing, chosen))
     imgui.dummy(ImVec2(0, 0.2 * look.em))
@@ -102,7 +101,7 @@ def _smallest_angle(mesh: Mesh) -> float:
     return float(mesh.smallest_angles().min())
 
 
-def _settings(look: Look, project: Project, draft: Meshing) -> Meshing:
+def _settings(look: Look, draft: Meshing) -> Meshing:
     label(look, "Outline")
     match segments(look, "detail", DETAILS, draft.detail):
         case "coarse" | "normal" | "fine" as detail:
@@ -114,10 +113,4 @@ def _settings(look: Look, project: Project, draft: Meshing) -> Meshing:
     if entered is not None:
         digits = 0 if entered.is_final and entered.value < 10_000 else -3
         draft = replace(draft, triangles=int(round(entered.value, digits)))
-    if project.puppet.is_opaque:
-        label(look, "Tolerance")
-        hint = "How far the background may vary in colour, 0 to 255"
-        entered = slider(look, "tolerance", draft.tolerance, TOLERANCES, text="%.0f", hint=hint)
-        if entered is not None:
-            draft = replace(draft, tolerance=round(entered.value))
     return draft

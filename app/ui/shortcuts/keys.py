@@ -21,6 +21,8 @@ KEY_NAMES = {
     "Delete": "Del",
     "Equal": "+",
     "Minus": "−",
+    "LeftBracket": "[",
+    "RightBracket": "]",
 }
 
 

@@ -6,6 +6,7 @@ from imgui_bundle import icons_fontawesome_6 as icons
 from app.document import LINEAR, PRESETS
 from app.editor import Session, do
 from app.editor.actions import (
+    cutting,
     editing,
     exporting,
     files,
@@ -64,6 +65,10 @@ def _all_locked(session: Session) -> bool:
         and bool(project.selected)
         and all(map(project.figure.is_locked, project.selected))
     )
+
+
+def _brushes(session: Session) -> bool:
+    return session.cutting in {"keep", "remove"}
 
 
 def _undone(session: Session) -> str | None:
@@ -206,6 +211,47 @@ BINDINGS: dict[str, Binding] = {
         menu="Edit",
         keys=(CTRL | int(Key.a),),
         parted=True,
+    ),
+    "cut out": Binding(
+        label="Cut out",
+        action=do(cutting.toggle),
+        menu="Edit",
+        keys=(Key.x,),
+        icon=icons.ICON_FA_SCISSORS,
+        hint="Say by a brush what of the picture is kept and removed",
+        possible=lambda session: session.project is not None and session.cutting is None,
+        active=lambda session: session.cutting is not None,
+        parted=True,
+    ),
+    "swap brush": Binding(
+        label="Swap keep and remove",
+        action=do(cutting.swap_brush),
+        menu="Edit",
+        keys=(Key.x,),
+        possible=_brushes,
+    ),
+    "smaller brush": Binding(
+        label="Smaller brush",
+        action=do(cutting.shrink_brush),
+        menu="Edit",
+        keys=(Key.left_bracket,),
+        possible=_brushes,
+        repeats=True,
+    ),
+    "larger brush": Binding(
+        label="Larger brush",
+        action=do(cutting.enlarge_brush),
+        menu="Edit",
+        keys=(Key.right_bracket,),
+        possible=_brushes,
+        repeats=True,
+    ),
+    "stop cutting": Binding(
+        label="Stop cutting out",
+        action=do(cutting.take_up, None),
+        menu="Edit",
+        keys=(Key.escape,),
+        possible=lambda session: session.cutting is not None and session.pointer is None,
     ),
     "delete": Binding(
         label="Delete",

@@ -20,6 +20,7 @@ from app.render import (
 from app.render.gpu import GpuMesh, GpuPicture, PosedMesh, RenderTarget
 from app.ui.style import PALETTES
 from app.ui.viewport.backdrop import background, measure_brightness
+from app.ui.viewport.cut_view import CutView, mark_holes
 from app.ui.viewport.marks import mark_all, pixel_scale, plain
 from app.ui.viewport.pose_pictures import PosePictures
 from engine.arrays import Floats
@@ -107,9 +108,10 @@ class _Drawing:
         self._meshes: dict[PosableMesh, GpuMesh] = {}
         self._drawn_meshes: dict[tuple[PosableMesh, int], DrawnMesh] = {}
         self._heated: dict[PosedMesh, tuple[Vertices, HeatMap]] = {}
+        self._cut_view: CutView | None = None
         # Of the picture behind all others: what the backdrop must differ from.
         (first, *_) = project.document.figures
-        self.brightness = measure_brightness(project.puppets[first.id].picture.rgba)
+        self.brightness = measure_brightness(project.puppets[first.id].cut.value.texture)
 
     def drawn_mesh(self, figure: int, mesh: PosableMesh, number: int = 0) -> DrawnMesh:
         """Return the poses of a figure's mesh with this number, 0 for the drawing itself."""
@@ -126,6 +128,11 @@ class _Drawing:
             pose.write_heat(measure(shown, heat_map).astype(np.float32))
             self._heated[pose] = wanted
 
+    def refresh(self) -> None:
+        """Bring the pictures up to what is cut out of them now."""
+        for figure, picture in self._pictures.items():
+            picture.write(self.project.puppets[figure].cut.value.texture)
+
     def keep_only(self, meshes: Collection[PosableMesh]) -> None:
         """Let the buffers of other meshes go."""
         for mesh, number in [key for key in self._drawn_meshes if key[0] not in meshes]:
@@ -134,7 +141,20 @@ class _Drawing:
         for mesh in [mesh for mesh in self._meshes if mesh not in meshes]:
             self._meshes.pop(mesh).release()
 
+    def cut_view(self) -> CutView:
+        """Return what is drawn of the active figure while it is cut out."""
+        if self._cut_view is None or self._cut_view.figure != self.project.active:
+            self._forget_cut_view()
+            self._cut_view = CutView(self._renderer, self.project, self.project.active)
+        return self._cut_view
+
+    def _forget_cut_view(self) -> None:
+        if self._cut_view is not None:
+            self._cut_view.release()
+            self._cut_view = None
+
     def release(self) -> None:
+        self._forget_cut_view()
         self.keep_only(())
         for picture in self._pictures.values():
             picture.release()
@@ -152,7 +172,7 @@ class _Drawing:
 
     def _picture(self, figure: int) -> GpuPicture:
         if figure not in self._pictures:
-            pixels = self.project.puppets[figure].picture.rgba
+            pixels = self.project.puppets[figure].cut.value.texture
             self._pictures[figure] = GpuPicture(self._renderer.programs.context, pixels)
         return self._pictures[figure]
 
@@ -161,6 +181,7 @@ def _inputs(session: Session, project: Project) -> tuple[object, ...]:
     """Return all that the picture depends on: while it stays the same, so does the picture."""
     return (
         *(puppet.shown for puppet in project.puppets.values()),
+        *(puppet.cut.value for puppet in project.puppets.values()),
         project.puppet.coarse.value
         if session.overlays.onion
         else project.puppet.coarse.value.sampler,
@@ -169,6 +190,8 @@ def _inputs(session: Session, project: Project) -> tuple[object, ...]:
         project.view(session.screen),
         project.playhead.since is None,
         session.hovered,
+        session.cutting,
+        project.figure.cut_out if session.cutting else None,
         session.overlays,
         session.export_frame,
         session.preferences,
@@ -205,6 +228,14 @@ def _scene(session: Session, project: Project, shown: Shown, drawing: _Drawing) 
     overlays = session.overlays
     puppets = project.puppets.values()
     drawing.keep_only({mesh for puppet in puppets for mesh in _meshes(puppet)})
+    drawing.refresh()
+    if session.cutting is not None:
+        scale = pixel_scale(session)
+        return Scene(
+            background=background(session.preferences.backdrop, palette, drawing.brightness, scale),
+            meshes=drawing.cut_view().meshes(),
+            discs=mark_holes(project, palette, scale) if session.cutting == "holes" else (),
+        )
     poses = []
     # In the order of the document: what comes later is in front.
     for figure in project.document.figures:

@@ -9,15 +9,27 @@ from imgui_bundle import ImVec2, imgui
 from imgui_bundle import icons_fontawesome_6 as icons
 
 from app.document import handle_commands
-from app.editor import Action, BoxMark, EntryMark, Hint, Project, Session, SweepMark, do, layering
+from app.editor import (
+    Action,
+    BoxMark,
+    EntryMark,
+    Hint,
+    Project,
+    Session,
+    StrokeMark,
+    SweepMark,
+    do,
+    layering,
+)
 from app.editor.actions import editing, posing, viewing
 from app.editor.poses import flipping
-from app.editor.tools import TOOLS, Spot, pointing
+from app.editor.tools import Spot, pointing, tools_of
 from app.motion import Shown
 from app.render import View
 from app.ui.shortcuts import with_key
 from app.ui.style import Look, ink
 from app.ui.viewport.badges import draw_badges
+from app.ui.viewport.cut_view import draw_brush, draw_stroke
 from app.ui.viewport.entry import draw_entry, typed
 from app.ui.viewport.mirror_axis import axis_grip, draw_axis
 from app.ui.viewport.ring import Ring, draw_ring
@@ -79,6 +91,11 @@ def draw(session: Session, look: Look, texture: int | None) -> list[Action]:
     hint = _hint(session, canvas, spot) if on_canvas or hovered is not None or axis.is_hot else ""
     if hint != session.hint:
         actions.append(do(pointing.explain, hint))
+    if session.cutting is not None:
+        _strokes_on_their_way(look, canvas)
+        if on_canvas or session.pointer is not None:
+            draw_brush(session, look, imgui.get_mouse_pos(), canvas.view.scale / density)
+        return actions
     actions += draw_badges(look, project, corner, room)
     return actions
 
@@ -174,7 +191,7 @@ def _ring(session: Session, canvas: _Canvas) -> Ring | None:
     """Return the ring around the one handle that is selected, where it can be turned."""
     project, gesture = canvas.project, session.pointer
     held = next((m for m in gesture.marks if isinstance(m, SweepMark)), None) if gesture else None
-    if not session.overlays.handles or project.playhead.since is not None:
+    if not session.overlays.handles or project.playhead.since is not None or session.cutting:
         return None
     if any(project.figure.is_locked(handle) for handle in project.selected):
         return None
@@ -222,7 +239,8 @@ def _handles(
     hovered: int | None = None
     pressed = False
     actions: list[Action] = []
-    if not session.overlays.handles or canvas.project.playhead.since is not None:
+    is_hidden = not session.overlays.handles or session.cutting is not None
+    if is_hidden or canvas.project.playhead.since is not None:
         return hovered, pressed, actions
     radius = GRIP * look.em
     handles = zip(canvas.shown.clip.figure.handles, canvas.shown.handle_places, strict=True)
@@ -283,6 +301,8 @@ def _go_on(session: Session, look: Look, canvas: _Canvas) -> list[Action]:
             accent = imgui.get_style_color_vec4(imgui.Col_.nav_cursor)
             draw_list.add_rect_filled(low, high, ink(accent, 0.12))
             draw_list.add_rect(low, high, ink(accent, 0.8))
+        elif isinstance(mark, StrokeMark):
+            _draw_stroke(look, canvas, mark)
         elif isinstance(mark, EntryMark):
             draw_entry(look, mark, canvas.point)
     io, pointer = imgui.get_io(), canvas.pointer
@@ -299,16 +319,34 @@ def _go_on(session: Session, look: Look, canvas: _Canvas) -> list[Action]:
     return actions
 
 
+def _strokes_on_their_way(look: Look, canvas: _Canvas) -> None:
+    """Draw the strokes that the worker has not come to yet."""
+    figure, known = canvas.project.figure, canvas.project.puppet.cut.source
+    done = () if known is None else known.strokes
+    for stroke in figure.cut_out.strokes[len(done) :]:
+        places = tuple(complex(place) for place in stroke.points + figure.corner)
+        mark = StrokeMark(points=places, radius=stroke.radius, keeps=stroke.keeps)
+        _draw_stroke(look, canvas, mark)
+
+
+def _draw_stroke(look: Look, canvas: _Canvas, mark: StrokeMark) -> None:
+    points = [canvas.point(place) for place in mark.points]
+    draw_stroke(look, mark, points, canvas.view.scale / canvas.density)
+
+
 def _hint(session: Session, canvas: _Canvas, spot: Spot) -> str:
     """Return what can be done where the pointer is."""
     if session.pointer is not None:
         told = [f"{_how(hint)} {hint.what}" for hint in session.pointer.ways]
         return _sentence([*told, "Esc takes it back"])
+    if session.cutting is not None:
+        found = [hint for tool in tools_of(session) for hint in tool.hints(session, spot)]
+        return _sentence([*(f"{_how(hint)} {hint.what}" for hint in found), "Esc goes back"])
     if canvas.project.playhead.since is not None:
         return "Space stops"
     if not session.overlays.handles:
         return "The handles are hidden: H shows them"
-    found = [hint for tool in TOOLS for hint in tool.hints(session, spot)]
+    found = [hint for tool in tools_of(session) for hint in tool.hints(session, spot)]
     told = [f"{_how(hint)} {hint.what}" for hint in found]
     if spot.handle is not None:
         names = {handle.id: handle.name for handle in canvas.shown.clip.figure.handles}

@@ -218,4 +218,5 @@ def _is_busy(session: Session) -> bool:
     # The system's own dialog has its own input, and is asked for its answer.
     asks_system = session.system_dialogs and isinstance(session.dialog, FileDialog)
     is_working = bool(session.jobs.kinds) or session.export is not None
+    is_working |= project is not None and project.stale is not None
     return is_moving or is_working or asks_system or bool(session.toasts)

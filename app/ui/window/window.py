@@ -20,7 +20,7 @@ from app.render import Renderer, Textures, Thumbnail, Thumbnails
 from app.render.gpu import is_software
 from app.storage import app_icon
 from app.ui.panel import Panel
-from app.ui.panels import deform, distortion, domain, export, handle, layers, poses
+from app.ui.panels import cut_out, deform, distortion, domain, export, handle, layers, poses
 from app.ui.timeline import timeline
 from app.ui.viewport import Canvas, viewport
 from app.ui.window.exporter import Exporter
@@ -176,6 +176,7 @@ class Window:
                 draw=distortion.draw,
             ),
             Panel(title="Mesh", icon=icons.ICON_FA_SHAPES, place="side", draw=domain.draw),
+            Panel(title="Cut-out", icon=icons.ICON_FA_SCISSORS, place="side", draw=cut_out.draw),
             Panel(title="Export", icon=icons.ICON_FA_FILE_EXPORT, place="side", draw=export.draw),
         ]
 

@@ -6,5 +6,6 @@ Imports: `engine.domain.picture`, `engine.geometry`.
 """
 
 from engine.domain.outline.enclosure import LARGEST_OUTLINE, Detail, Enclosure, enclose
+from engine.domain.outline.holes import HoleMap, find_holes
 
-__all__ = ["LARGEST_OUTLINE", "Detail", "Enclosure", "enclose"]
+__all__ = ["LARGEST_OUTLINE", "Detail", "Enclosure", "HoleMap", "enclose", "find_holes"]

@@ -5,6 +5,9 @@ clockwise, so that the subject lies on the left, and margin and offset lead into
 shrink with the hole, so that outline and cage leave its middle free.
 """
 
+from collections.abc import Mapping
+from dataclasses import dataclass
+
 import numpy as np
 from scipy import ndimage
 
@@ -12,6 +15,7 @@ from engine.arrays import Booleans, Integers
 from engine.domain.outline.cage import offset_cage
 from engine.domain.outline.fitting import Candidates, fit_polygon
 from engine.domain.outline.margin import curve_at_margin, distance_field
+from engine.domain.picture import WholePiece, WorkingGrid, join_parts, working_grid
 from engine.errors import EngineError
 from engine.geometry import Hole, deepest_point
 
@@ -19,6 +23,50 @@ SMALLEST_HOLE = 0.012  # radius of the largest disc in a hole that is kept, of t
 SHARE = 0.25  # of that radius: the margin at most, and the offset from outline to cage
 FEWEST_EDGES = 16
 FRAME = 2  # cells of the subject around a hole that is cut out
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class HoleMap:
+    """Where the holes of a subject are, in pixels of its picture, y up.
+
+    Parameters
+    ----------
+    grid : WorkingGrid
+    piece : WholePiece
+        In cells of the grid.
+    middles : dict of int to complex
+        Of the holes that are large enough to be kept, by their numbers.
+    """
+
+    grid: WorkingGrid
+    piece: WholePiece
+    middles: Mapping[int, complex]
+
+    def number_at(self, point: complex) -> int:
+        """Return the number of the hole that a point is in, if it can be kept; else 0."""
+        numbers = self.piece.numbers_at(self.grid.to_cells(np.array([point])))
+        return int(numbers[0]) if len(numbers) and int(numbers[0]) in self.middles else 0
+
+
+def find_holes(mask: Booleans) -> HoleMap:
+    """Find the holes of a subject, (h, w), first row on top.
+
+    Raises
+    ------
+    EngineError
+        If the subject falls into too many parts.
+    """
+    grid = working_grid(mask)
+    piece = join_parts(grid.mask, grid.diagonal)
+    middles = {}
+    windows = ndimage.find_objects(piece.holes)
+    for number, (rows, columns) in enumerate(windows, start=1):
+        depth = ndimage.distance_transform_edt(np.pad(piece.holes[rows, columns] == number, 1))
+        row, column = np.unravel_index(int(np.argmax(depth)), depth.shape)
+        if depth[row, column] >= SMALLEST_HOLE * grid.diagonal:
+            cell = complex(columns.start + column - 0.5, rows.start + row - 0.5)
+            middles[number] = complex(grid.to_picture(np.array([cell]))[0])
+    return HoleMap(grid=grid, piece=piece, middles=middles)
 
 
 def trace_hole(

@@ -81,7 +81,7 @@ def subject_mask(rgba: Bytes, cut_out: CutOut = AUTOMATIC) -> Subject:
         subject, notices = _without_background(rgba[..., :3], cut_out.tolerance)
         subject &= visible
     if cut_out.strokes:
-        subject = _brushed(subject, cut_out.strokes) & present
+        subject, notices = _brushed(subject, cut_out.strokes) & present, ()
     _require_size(subject)
     cut = bool((visible & ~subject).any())
     return Subject(mask=readonly(subject), cut=cut, notices=notices)

@@ -16,7 +16,8 @@ from app.editor.actions import saving
 from app.editor.jobs import Job
 from app.storage import Origin
 from app.storage.assets import sample_images
-from engine.domain.outline import Detail, Holes
+from engine.domain.outline import Detail
+from engine.domain.picture import CutOut, Holes
 
 SAMPLE = sample_images() / "giraffe.lissom"
 
@@ -120,7 +121,7 @@ def test_the_words_to_choose_from_are_those_that_the_program_knows():
     defaults = Meshing()
     assert defaults.detail == options.DEFAULT_DETAIL
     assert defaults.triangles == options.DEFAULT_TRIANGLES
-    assert defaults.tolerance == options.DEFAULT_TOLERANCE
+    assert CutOut().tolerance == options.DEFAULT_TOLERANCE
 
 
 def test_every_command_says_what_it_understands_and_does_it():

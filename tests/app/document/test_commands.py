@@ -398,7 +398,6 @@ def test_a_domain_that_loses_a_handle_is_refused_by_the_handle_s_name():
         (lambda: Meshing(detail="best"), "detail"),
         (lambda: Meshing(triangles=0), "triangles"),
         (lambda: Meshing(triangles=10**30), "triangles"),
-        (lambda: Meshing(tolerance=256), "tolerance"),
         (lambda: Handle(id=-1, name="x", position=0j), "id is not negative"),
         (lambda: Handle(id=0, name="x", position=0j, weight=float("nan")), "weight"),
         (lambda: Handle(id=0, name="x", position=0j, weight=1e300), "weight"),

@@ -44,7 +44,7 @@ LAST = 90  # frame beyond which the walk does not go
 # What ends the project is left out; what asks first is answered by Escape.
 LEAVING = {"close", "quit"}
 BOUND = [key for name, binding in BINDINGS.items() if name not in LEAVING for key in binding.keys]
-TABS = ("Handle", "Deform", "Distortion", "Mesh", "Export")
+TABS = ("Handle", "Deform", "Distortion", "Mesh", "Cut-out", "Export")
 WIDGETS = (
     *("button", "invisible_button", "selectable", "checkbox", "begin_combo", "slider_int"),
     *("menu_item", "menu_item_simple", "input_text", "input_int", "input_float"),
@@ -401,8 +401,7 @@ class Walk:
     def rebuild(self) -> None:
         detail = "normal" if self.chance(0.1) else "coarse"
         triangles = int(self.rng.integers(1_000, 2_000))
-        tolerance = int(self.rng.integers(10, 30))
-        meshing = Meshing(triangles=triangles, detail=detail, tolerance=tolerance)
+        meshing = Meshing(triangles=triangles, detail=detail)
         self.act(viewing.draft_meshing, meshing)
         self.act(rebuilding.rebuild)
 

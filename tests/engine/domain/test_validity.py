@@ -9,6 +9,7 @@ from shapes import regular_polygon
 
 from engine.domain import Domain, build_domain, require_domain
 from engine.domain.meshing import Mesh
+from engine.domain.picture.cut_out import CutOut
 from engine.errors import EngineError
 
 # A pentagon with a hole in its fan: the L-shaped outline 0, 2, 2+i, 1+i, 1+2i, 2i.
@@ -82,7 +83,7 @@ def test_a_mesh_that_goes_twice_around_fills_nothing():
 
 @pytest.fixture(scope="module")
 def holed() -> Domain:
-    built, _ = build_domain(ring(), triangles=1_000, detail="coarse", holes="keep")
+    built, _ = build_domain(ring(), triangles=1_000, detail="coarse", cut_out=CutOut(holes="keep"))
     assert len(built.holes) == 1
     return built
 

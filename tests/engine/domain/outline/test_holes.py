@@ -13,6 +13,7 @@ from engine.arrays import Booleans, Bytes, Complexes
 from engine.domain import build_domain, require_domain
 from engine.domain.outline import Detail, Enclosure, enclose
 from engine.domain.picture import subject_mask
+from engine.domain.picture.cut_out import CutOut
 from engine.geometry import Hole, contains, signed_area
 
 DETAILS: tuple[Detail, ...] = ("coarse", "normal", "fine")
@@ -142,7 +143,9 @@ def test_random_holes(places: list[tuple[float, float, float]], detail: Detail) 
 
 @pytest.mark.parametrize("picture", [pictures.ring(), pictures.painted(keyhole())])
 def test_a_built_domain_with_holes_is_one(picture: Bytes) -> None:
-    domain, _ = build_domain(picture, triangles=3_000, detail="normal", holes="keep")
+    domain, _ = build_domain(
+        picture, triangles=3_000, detail="normal", cut_out=CutOut(holes="keep")
+    )
     require_domain(domain)
     assert len(domain.loops) == len(domain.cages) == 2
     loops: Complexes = np.concatenate(domain.loops)

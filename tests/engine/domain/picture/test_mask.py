@@ -8,6 +8,7 @@ from PIL import Image
 from scipy import ndimage
 
 from engine.arrays import Booleans, Bytes
+from engine.domain.picture.cut_out import CutOut, Mask
 from engine.domain.picture.mask import subject_mask
 from engine.errors import EngineError
 
@@ -99,8 +100,8 @@ def test_a_picture_of_nothing_but_background_is_kept_whole() -> None:
 def test_the_tolerance_decides_what_belongs_to_the_background() -> None:
     rgba = pictures.on_plain(pictures.blob(200), WHITE)
     rgba[:60, :60, :3] = 235
-    assert not subject_mask(rgba, tolerance=25).mask[:50, :50].any()
-    assert subject_mask(rgba, tolerance=10).mask[5:50, 5:50].all()
+    assert not subject_mask(rgba, CutOut(tolerance=25)).mask[:50, :50].any()
+    assert subject_mask(rgba, CutOut(tolerance=10)).mask[5:50, 5:50].all()
 
 
 @pytest.mark.parametrize(
@@ -123,7 +124,7 @@ def test_unusable_pictures_are_refused(rgba: Bytes, message: str) -> None:
 @pytest.mark.parametrize("tolerance", [-1, 256])
 def test_a_tolerance_beyond_the_levels_is_refused(tolerance: int) -> None:
     with pytest.raises(EngineError, match=str(tolerance)):
-        subject_mask(pictures.blob(50), tolerance=tolerance)
+        subject_mask(pictures.blob(50), CutOut(tolerance=tolerance))
 
 
 def test_a_background_s_colour_can_be_chosen() -> None:
@@ -131,8 +132,10 @@ def test_a_background_s_colour_can_be_chosen() -> None:
     paper = (120, 200, 90)
     rgba = pictures.on_plain(drawing, paper)
     rgba[:, :15, :3] = rgba[:15, :, :3] = 10  # most of the border is a frame of another colour
-    assert not np.array_equal(subject_mask(rgba).mask, subject_mask(rgba, background=paper).mask)
-    chosen = subject_mask(rgba, background=paper)
+    assert not np.array_equal(
+        subject_mask(rgba).mask, subject_mask(rgba, CutOut(background=paper)).mask
+    )
+    chosen = subject_mask(rgba, CutOut(background=paper))
     assert np.mean(chosen.mask[15:, 15:] != visible(drawing)[15:, 15:]) < 0.003
     assert chosen.mask[:15].all()
     assert "background removed" in chosen.notices[0]
@@ -140,7 +143,7 @@ def test_a_background_s_colour_can_be_chosen() -> None:
 
 def test_no_background_is_removed_where_none_is_wanted() -> None:
     rgba = pictures.on_plain(pictures.blob(100), WHITE)
-    subject = subject_mask(rgba, background="none")
+    subject = subject_mask(rgba, CutOut(background="none"))
     assert subject.mask.all()
     assert subject.notices == ()
 
@@ -150,7 +153,7 @@ def test_a_colour_is_removed_through_what_is_transparent() -> None:
     rgba[40:60, 40:60] = (*WHITE, 255)
     rgba[45:55, :45, 3] = 0  # the white inside is reached from outside
     rgba[45:55, 45, :] = (*WHITE, 255)
-    subject = subject_mask(rgba, background=WHITE)
+    subject = subject_mask(rgba, CutOut(background=WHITE))
     assert not subject.mask[48:52, 42:58].any()
     assert subject.mask[50, 80]
 
@@ -159,16 +162,16 @@ def test_a_mask_is_taken_at_its_word() -> None:
     rgba = pictures.blob(100)
     mask = np.zeros((100, 100), dtype=np.bool_)
     mask[20:60, 30:90] = True
-    assert_array_equal(subject_mask(rgba, mask=mask).mask, mask & visible(rgba))
+    assert_array_equal(subject_mask(rgba, CutOut(mask=Mask.of(mask))).mask, mask & visible(rgba))
 
 
 def test_masks_and_colours_that_are_none_are_refused() -> None:
     rgba = pictures.blob(100)
     with pytest.raises(EngineError, match="keeps nothing"):
-        subject_mask(rgba, mask=~visible(rgba))
+        subject_mask(rgba, CutOut(mask=Mask.of(~visible(rgba))))
     with pytest.raises(EngineError, match="90 × 100 pixels and the picture 100 × 100"):
-        subject_mask(rgba, mask=visible(rgba)[:, 10:])
+        subject_mask(rgba, CutOut(mask=Mask.of(visible(rgba)[:, 10:])))
     with pytest.raises(EngineError, match="levels of a background"):
-        subject_mask(rgba, background=(0, 300, 0))
+        subject_mask(rgba, CutOut(background=(0, 300, 0)))
     with pytest.raises(EngineError, match="Nothing is left"):
-        subject_mask(pictures.on_plain(rgba, WHITE), background=WHITE, tolerance=255)
+        subject_mask(pictures.on_plain(rgba, WHITE), CutOut(background=WHITE, tolerance=255))

@@ -10,9 +10,9 @@ from PIL import Image
 from scipy import ndimage
 
 from engine.arrays import Bytes, Floats
-from engine.domain import texture
-from engine.domain.picture import matted
+from engine.domain.build import texture as painted_texture
 from engine.domain.picture.mask import subject_mask
+from engine.domain.picture.matte import matted
 
 INK = (40, 90, 160)
 # Subject and background: dark on white, light on black, and two that differ in hue above all.
@@ -22,6 +22,10 @@ COLOURS = [
     ((200, 40, 40), (60, 200, 80)),
     ((250, 220, 80), (120, 160, 220)),
 ]
+
+
+def texture(rgba: Bytes) -> Bytes:
+    return painted_texture(rgba, subject_mask(rgba))
 
 
 def disc(softness: float, size: int = 200) -> Floats:

@@ -1,0 +1,200 @@
+"""Cutting the subject out of its picture by hand: colour, brush, mask and holes."""
+
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from app.document import figure_commands
+from app.editor.action import do
+from app.editor.actions import editing
+from app.editor.dialogs import FileDialog
+from app.editor.failures import report
+from app.editor.jobs import Job
+from app.editor.project import Project
+from app.editor.session import CutTool, Session
+from app.storage import (
+    cut_picture,
+    decode_mask,
+    encode_mask,
+    read_picture_file,
+    write_atomically,
+)
+from engine.domain import Mask, Stroke
+
+READING, WRITING = "Loading the mask", "Saving the mask"
+MASKS = (".png",)
+SMALLEST_BRUSH, LARGEST_BRUSH = 1.0, 1000.0  # pixels of the picture
+BRUSH_STEP = 1.25
+FIRST_BRUSH = 0.03  # of the picture's longer side
+DROP = 2  # pixels around the one that is picked whose colour counts
+
+
+def take_up(session: Session, tool: CutTool | None) -> None:
+    """Take a tool in hand that cuts out; None, or the same one again, goes back to posing."""
+    if session.project is None or session.pointer is not None:
+        return
+    session.cutting = None if tool == session.cutting else tool
+
+
+def toggle(session: Session) -> None:
+    """Begin to cut out with the brush that removes, or go back to posing."""
+    take_up(session, None if session.cutting else "remove")
+
+
+def swap_brush(session: Session) -> None:
+    """Let the brush keep where it removed, or the other way round."""
+    if session.cutting in {"keep", "remove"}:
+        session.cutting = "keep" if session.cutting == "remove" else "remove"
+
+
+def enlarge_brush(session: Session) -> None:
+    """Make the brush larger."""
+    if session.project:
+        set_brush(session, brush_radius(session.project) * BRUSH_STEP)
+
+
+def shrink_brush(session: Session) -> None:
+    """Make the brush smaller."""
+    if session.project:
+        set_brush(session, brush_radius(session.project) / BRUSH_STEP)
+
+
+def set_brush(session: Session, radius: float) -> None:
+    """Set the radius of the brush, in pixels of the picture."""
+    if session.project:
+        session.project.brush = min(max(radius, SMALLEST_BRUSH), LARGEST_BRUSH)
+
+
+def brush_radius(project: Project) -> float:
+    """Return the radius of the brush, in pixels of the picture."""
+    if project.brush is not None:
+        return project.brush
+    return max(4.0, FIRST_BRUSH * max(project.figure.picture.size))
+
+
+def change(session: Session, **changes: Any) -> None:
+    """Give the cut-out other values of its fields."""
+    if session.project:
+        cut_out = replace(session.project.figure.cut_out, **changes)
+        editing.edit_figure(session, figure_commands.set_cut_out, cut_out)
+
+
+def set_tolerance(session: Session, tolerance: int) -> None:
+    """Set by how many levels the background may vary."""
+    change(session, tolerance=tolerance)
+
+
+def set_background(session: Session, background: Any) -> None:
+    """Set what is removed: "auto", "none", or a colour. A mask that was loaded goes."""
+    change(session, background=background, mask=None)
+
+
+def pick(session: Session, place: complex) -> None:
+    """Take the colour of the picture at a place for the background's."""
+    project = session.project
+    if project is None:
+        return
+    rgba = project.puppet.picture.rgba
+    height, width = rgba.shape[:2]
+    point = place - project.figure.corner
+    row, column = int(height - point.imag), int(point.real)
+    if not (0 <= row < height and 0 <= column < width):
+        return
+    around = rgba[
+        max(0, row - DROP) : row + DROP + 1, max(0, column - DROP) : column + DROP + 1, :3
+    ]
+    red, green, blue = (int(level) for level in np.median(around.reshape(-1, 3), axis=0))
+    set_background(session, (red, green, blue))
+
+
+def brush(session: Session, stroke: Stroke) -> None:
+    """Keep or remove what a stroke covers."""
+    editing.edit_figure(session, figure_commands.brush, stroke)
+
+
+def swap_hole(session: Session, place: complex) -> None:
+    """Keep the hole at a place that would be filled, or fill one that would be kept."""
+    project = session.project
+    holes = project.puppet.cut.value.holes if project else None
+    if project is None or holes is None:
+        return
+    point = place - project.figure.corner
+    number = holes.number_at(point)
+    if not number:
+        return
+    swapped = project.figure.cut_out.swapped
+    others = tuple(other for other in swapped if holes.number_at(other) != number)
+    change(session, swapped=others if len(others) < len(swapped) else (*swapped, point))
+
+
+def forget_strokes(session: Session) -> None:
+    """Take away all strokes and the mask."""
+    change(session, strokes=(), mask=None)
+
+
+def ask_mask(session: Session) -> None:
+    """Ask which mask to load."""
+    session.dialog = FileDialog(
+        title="Load a mask",
+        folder=session.usual_folder,
+        suffixes=MASKS,
+        writes=False,
+        chosen=lambda path: do(load_mask, path),
+    )
+
+
+def load_mask(session: Session, path: Path) -> None:
+    """Read a mask on the worker; it takes the place of the background and of all strokes."""
+    project = session.project
+    if project is None:
+        return
+    identity = project.active
+
+    def take(mask: Mask) -> None:
+        if session.project is project and project.active == identity:
+            change(session, mask=mask, strokes=())
+
+    session.jobs.put(
+        Job(
+            kind=READING,
+            work=lambda: decode_mask(read_picture_file(path), path.name),
+            done=take,
+            failed=lambda error: report(session, f"{path.name} cannot be loaded", error),
+        )
+    )
+
+
+def ask_mask_path(session: Session) -> None:
+    """Ask where to save the mask."""
+    if session.project:
+        session.dialog = FileDialog(
+            title="Save the mask",
+            folder=session.usual_folder,
+            name=f"{session.project.name} mask.png",
+            suffixes=MASKS,
+            writes=True,
+            chosen=lambda path: do(save_mask, path),
+        )
+
+
+def save_mask(session: Session, path: Path) -> None:
+    """Write what is kept as a black and white picture."""
+    project = session.project
+    if project is None:
+        return
+    picture, cut_out = project.puppet.picture, project.figure.cut_out
+
+    def work() -> None:
+        content = encode_mask(Mask.of(cut_picture(picture, cut_out).kept))
+        write_atomically(path, lambda file: file.write(content))
+
+    session.jobs.put(
+        Job(
+            kind=WRITING,
+            work=work,
+            done=lambda _: session.tell(f"Saved {path.name}.", tone="good"),
+            failed=lambda error: report(session, "The mask was not saved", error),
+        )
+    )

@@ -1,0 +1,168 @@
+"""Cutting the subject out of its picture: by colour, by brush, by a mask; and its holes."""
+
+from imgui_bundle import ImVec2, imgui
+from imgui_bundle import icons_fontawesome_6 as icons
+
+from app.editor import Action, CutTool, Project, Session, do
+from app.editor.actions import cutting, rebuilding
+from app.ui.shortcuts import BINDINGS
+from app.ui.style import (
+    FILL,
+    Look,
+    Scale,
+    at_end,
+    heading,
+    icon_button,
+    label,
+    segments,
+    slider,
+    small,
+    tip,
+)
+from engine.domain import CutOut
+
+TOLERANCES = Scale(left=0, right=120)
+BRUSHES = Scale(left=cutting.SMALLEST_BRUSH, right=cutting.LARGEST_BRUSH / 2, logarithmic=True)
+BACKGROUNDS = (("auto", "Automatic"), ("none", "None"), ("colour", "Colour"))
+BRUSH_TOOLS: tuple[tuple[CutTool, str, str, str], ...] = (
+    ("keep", icons.ICON_FA_PAINTBRUSH, "Keep", "Brush over what belongs to the drawing"),
+    ("remove", icons.ICON_FA_ERASER, "Remove", "Brush over what is to go"),
+)
+
+
+def draw(session: Session, look: Look) -> list[Action]:
+    """Draw what tells the subject from the rest of the picture."""
+    project = session.project
+    if project is None:
+        return []
+    cut_out = project.figure.cut_out
+    heading(look, "Background")
+    actions = _background(session, look, project, cut_out)
+    heading(look, "By hand", framed=True)
+    at_end(1.15 * imgui.get_frame_height())
+    if icon_button(
+        look,
+        icons.ICON_FA_TRASH,
+        "forget strokes",
+        "Take away all strokes and the mask",
+        enabled=cut_out.is_by_hand,
+    ):
+        actions.append(do(cutting.forget_strokes))
+    actions += _brush(session, look, project)
+    actions += _mask(look, cut_out)
+    heading(look, "Holes")
+    actions += _holes(session, look, project)
+    actions += _state(session, look, project)
+    return actions
+
+
+def _background(session: Session, look: Look, project: Project, cut_out: CutOut) -> list[Action]:
+    if not project.puppet.is_opaque and cut_out.background == "auto":
+        small(look, "The picture is transparent around the drawing: nothing has to be removed.")
+    actions: list[Action] = []
+    imgui.begin_disabled(cut_out.mask is not None)
+    label(look, "Remove")
+    kind = "colour" if isinstance(cut_out.background, tuple) else cut_out.background
+    match segments(look, "background", BACKGROUNDS, kind):
+        case "auto" | "none" as chosen:
+            actions.append(do(cutting.set_background, chosen))
+        case "colour":
+            actions.append(do(cutting.take_up, "pick"))
+    tip("A plain background is found at the picture's border, or has the colour that you pick")
+    imgui.end_disabled()
+    label(look, "Colour")
+    text = f"{icons.ICON_FA_EYE_DROPPER}  Pick"
+    actions += _tool(session, look, "pick", text, "Click on the background in the picture")
+    if isinstance(cut_out.background, tuple):
+        red, green, blue = (level / 255 for level in cut_out.background)
+        imgui.same_line()
+        imgui.color_button("##background", (red, green, blue, 1.0))
+    label(look, "Tolerance")
+    hint = "How far the background may vary in colour, 0 to 255"
+    entered = slider(look, "tolerance", cut_out.tolerance, TOLERANCES, text="%.0f", hint=hint)
+    if entered is not None:
+        actions.append(do(cutting.set_tolerance, round(entered.value)))
+    if cut_out.mask is not None:
+        small(look, "A mask was loaded: it takes the place of all this.")
+    return actions
+
+
+def _brush(session: Session, look: Look, project: Project) -> list[Action]:
+    actions: list[Action] = []
+    gap = imgui.get_style().item_spacing.x
+    width = (imgui.get_content_region_avail().x - gap) / len(BRUSH_TOOLS)
+    for index, (tool, icon, name, hint) in enumerate(BRUSH_TOOLS):
+        if index:
+            imgui.same_line()
+        actions += _tool(session, look, tool, f"{icon}  {name}", hint, width=width)
+    label(look, "Size")
+    keys = " and ".join(BINDINGS[name].keys_in_words for name in ("smaller brush", "larger brush"))
+    hint = f"Radius of the brush in pixels of the picture; {keys} change it"
+    radius = cutting.brush_radius(project)
+    entered = slider(look, "brush", radius, BRUSHES, text="%.0f", hint=hint)
+    if entered is not None:
+        actions.append(do(cutting.set_brush, entered.value))
+    return actions
+
+
+def _mask(look: Look, cut_out: CutOut) -> list[Action]:
+    actions: list[Action] = []
+    gap = imgui.get_style().item_spacing.x
+    width = (imgui.get_content_region_avail().x - gap) / 2
+    if imgui.button(f"{icons.ICON_FA_FOLDER_OPEN}  Load mask…", ImVec2(width, 0)):
+        actions.append(do(cutting.ask_mask))
+    tip("A black and white picture of the same size: white is kept, black is removed")
+    imgui.same_line()
+    if imgui.button(f"{icons.ICON_FA_FLOPPY_DISK}  Save mask…", ImVec2(width, 0)):
+        actions.append(do(cutting.ask_mask_path))
+    tip("Save what is kept as a black and white picture")
+    count = len(cut_out.strokes)
+    if count:
+        small(look, "1 stroke" if count == 1 else f"{count:,} strokes")
+    return actions
+
+
+def _holes(session: Session, look: Look, project: Project) -> list[Action]:
+    holes = project.puppet.cut.value.holes
+    if holes is None or not holes.middles:
+        small(look, "There are none. Where the brush removes a part inside, there is one.")
+        return []
+    text = f"{icons.ICON_FA_CIRCLE_HALF_STROKE}  Keep or fill by a click"
+    hint = "Click in a hole to keep it open, or to fill it"
+    return _tool(session, look, "holes", text, hint, width=FILL)
+
+
+def _tool(
+    session: Session, look: Look, tool: CutTool, text: str, hint: str, *, width: float = 0.0
+) -> list[Action]:
+    """Draw the button of a tool; the one in hand is highlighted, and given back by its button."""
+    palette = look.palette
+    in_hand = session.cutting == tool
+    imgui.push_style_color(imgui.Col_.button, palette.accent if in_hand else palette.raised)
+    imgui.push_style_color(imgui.Col_.text, palette.on_accent if in_hand else palette.text)
+    pressed = imgui.button(f"{text}###{tool} tool", ImVec2(width, 0))
+    imgui.pop_style_color(2)
+    tip(hint)
+    return [do(cutting.take_up, tool)] if pressed else []
+
+
+def _state(session: Session, look: Look, project: Project) -> list[Action]:
+    actions: list[Action] = []
+    imgui.dummy(ImVec2(0, 0.2 * look.em))
+    renewal = project.renewal
+    if renewal is not None and renewal.meshing is not None:
+        imgui.progress_bar(renewal.progress, ImVec2(FILL, 0), renewal.now)
+        if imgui.button("Cancel###stop", ImVec2(FILL, 0)):
+            actions.append(do(rebuilding.cancel))
+    elif session.cutting is not None:
+        if imgui.button("Back to posing###done", ImVec2(FILL, 0)):
+            actions.append(do(cutting.take_up, None))
+        tip("Show the drawing as it is posed", BINDINGS["stop cutting"].keys_in_words)
+    if project.figure.is_stale and project.figure is project.unbuildable:
+        small(
+            look, "The mesh is still that of before: this cut-out gives none. Change it, or undo."
+        )
+    small(
+        look, "The mesh follows when the brush rests: handles stay, and every key is posed again."
+    )
+    return actions

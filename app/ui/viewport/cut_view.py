@@ -1,0 +1,150 @@
+"""The picture at rest while it is cut out: what is removed lies under a veil."""
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+from imgui_bundle import ImVec2, imgui
+
+from app.editor import Project, Session, StrokeMark
+from app.editor.actions import cutting
+from app.render import Disc, Renderer
+from app.render.gpu import GpuMesh, GpuPicture, PosedMesh, PositionBuffer, singles
+from app.ui.style import Look, Palette, ink
+from app.ui.viewport.marks import plain
+from engine.arrays import Booleans, Bytes, Complexes, Integers
+from engine.domain import CutOut
+
+VEIL = (214, 48, 72, 150)
+FINEST = 1024  # pixels of the veil's longer side
+STROKE = 0.45  # opacity of one that is not done yet
+HOLE = 7.0  # pixels: radius of the mark in a hole
+SQUARE: Integers = np.array([[0, 1, 2], [0, 2, 3]], dtype=np.int32)
+
+
+class _Sheet:
+    """Owner of a picture on two triangles."""
+
+    def __init__(self, renderer: Renderer, pixels: Bytes, corners: Complexes) -> None:
+        programs = renderer.programs
+        self._picture = GpuPicture(programs.context, pixels)
+        rest = _corners(*self._picture.size)
+        self._mesh = GpuMesh(programs, self._picture, rest=rest, triangles=SQUARE)
+        places = PositionBuffer(programs.context, len(rest))
+        places.write(singles(corners))
+        self.pose = PosedMesh(self._mesh, places)
+
+    def write(self, pixels: Bytes) -> None:
+        self._picture.write(pixels)
+
+    def release(self) -> None:
+        for owner in (self.pose, self._mesh, self._picture):
+            owner.release()
+
+
+class CutView:
+    """Owner of what is drawn of a figure while it is cut out.
+
+    Parameters
+    ----------
+    renderer : Renderer
+    project : Project
+    figure : int
+        Its id.
+    """
+
+    def __init__(self, renderer: Renderer, project: Project, figure: int) -> None:
+        self.figure = figure
+        self._puppet = project.puppets[figure]
+        self._kept = self._puppet.cut.value.kept
+        picture = self._puppet.picture
+        corners = project.document.figure(figure).corner + _corners(*picture.size)
+        self._sheet = _Sheet(renderer, picture.rgba, corners)
+        self._veil = _Sheet(renderer, _veil(self._kept), corners)
+
+    def meshes(self) -> tuple[PosedMesh, ...]:
+        """Return the picture, and the veil over what is removed of it now."""
+        kept = self._puppet.cut.value.kept
+        if kept is not self._kept:
+            self._kept = kept
+            self._veil.write(_veil(kept))
+        return (self._sheet.pose, self._veil.pose)
+
+    def release(self) -> None:
+        """Let everything go."""
+        self._sheet.release()
+        self._veil.release()
+
+
+def mark_holes(project: Project, palette: Palette, scale: float) -> tuple[Disc, ...]:
+    """Return a mark for each hole: a ring in one that stays open, a disc in one that is filled."""
+    figure, holes = project.figure, project.puppet.cut.value.holes
+    if holes is None:
+        return ()
+    swapped = {holes.number_at(point) for point in figure.cut_out.swapped}
+    return tuple(
+        Disc(
+            centre=middle + figure.corner,
+            radius=HOLE * scale,
+            fill=plain(
+                palette.accent if _is_filled(figure.cut_out, number, swapped) else palette.panel
+            ),
+            rim=plain(palette.text),
+            rim_width=2.0 * scale,
+        )
+        for number, middle in holes.middles.items()
+    )
+
+
+def draw_brush(session: Session, look: Look, at: ImVec2, scale: float) -> None:
+    """Draw the ring of the brush around the pointer.
+
+    Parameters
+    ----------
+    session : Session
+    look : Look
+    at : ImVec2
+        Where the pointer is.
+    scale : float
+        Pixels of the screen that one of the picture takes.
+    """
+    if session.project is None or session.cutting not in {"keep", "remove"}:
+        return
+    keeps = (session.cutting == "keep") != imgui.get_io().key_alt
+    palette, em = look.palette, look.em
+    radius = cutting.brush_radius(session.project) * scale
+    draw_list = imgui.get_window_draw_list()
+    # Dark below light, so that it shows on any picture.
+    draw_list.add_circle(at, radius, ink(palette.desk, 0.6), 64, 0.22 * em)
+    draw_list.add_circle(at, radius, ink(palette.good if keeps else palette.danger), 64, 0.1 * em)
+    sign = 0.35 * em
+    colour = ink(palette.good if keeps else palette.danger)
+    draw_list.add_line(ImVec2(at.x - sign, at.y), ImVec2(at.x + sign, at.y), colour, 0.12 * em)
+    if keeps:
+        draw_list.add_line(ImVec2(at.x, at.y - sign), ImVec2(at.x, at.y + sign), colour, 0.12 * em)
+
+
+def draw_stroke(look: Look, mark: StrokeMark, points: Sequence[ImVec2], scale: float) -> None:
+    """Draw a stroke that is not done yet; `points` are its places on the screen."""
+    colour = look.palette.good if mark.keeps else look.palette.danger
+    draw_list = imgui.get_window_draw_list()
+    radius = mark.radius * scale
+    if len(points) > 1:
+        draw_list.add_polyline(list(points), ink(colour, STROKE), 2 * radius, 0)
+    else:
+        draw_list.add_circle_filled(points[0], radius, ink(colour, STROKE))
+
+
+def _is_filled(cut_out: CutOut, number: int, swapped: set[int]) -> bool:
+    return (cut_out.holes == "fill") != (number in swapped)
+
+
+def _corners(width: float, height: float) -> Complexes:
+    return np.array([0, width, width + 1j * height, 1j * height])
+
+
+def _veil(kept: Booleans) -> Bytes:
+    step = math.ceil(max(kept.shape) / FINEST)
+    veil = np.zeros((*kept[::step, ::step].shape, 4), dtype=np.uint8)
+    veil[~kept[::step, ::step]] = VEIL
+    return veil
