@@ -21,7 +21,6 @@ from engine.variant import Variant
 
 # Handles may sit on the outline itself, where rounding decides on which side they are.
 ON_OUTLINE = 1e-9
-AUTOMATIC = CutOut()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -113,7 +112,7 @@ class Figure:
     picture: PictureFile
     domain: Domain
     meshing: Meshing
-    cut_out: CutOut = AUTOMATIC
+    cut_out: CutOut = CutOut()
     is_stale: bool = False
     handles: tuple[Handle, ...] = ()
     next_handle: int = 0
@@ -302,7 +301,7 @@ class Figure:
 
 
 def new_figure(
-    picture: PictureFile, domain: Domain, meshing: Meshing, cut_out: CutOut = AUTOMATIC
+    picture: PictureFile, domain: Domain, meshing: Meshing, cut_out: CutOut = CutOut()
 ) -> Figure:
     """Return the figure of a picture just opened: one key at frame 0, as it was drawn."""
     identity = HarmonicMap.identity(domain.cage)

@@ -10,8 +10,6 @@ from engine.arrays import Booleans, Bytes, freeze
 from engine.domain import CutOut, HoleMap, build_domain, find_holes, subject_mask, texture
 from engine.errors import EngineError
 
-AUTOMATIC = CutOut()
-
 
 class OpenedPicture(NamedTuple):
     """A new document, its decoded picture, and every remedy that was applied, in words."""
@@ -40,7 +38,7 @@ class Cut:
     holes: HoleMap | None
 
 
-def open_picture(path: Path, meshing: Meshing, cut_out: CutOut = AUTOMATIC) -> OpenedPicture:
+def open_picture(path: Path, meshing: Meshing, cut_out: CutOut = CutOut()) -> OpenedPicture:
     """Read a picture, find its outline, and return the document that shows it as it was drawn.
 
     Raises

@@ -13,7 +13,6 @@ from engine.geometry import Hole, deepest_point
 
 FEWEST_TRIANGLES = 1_000
 MOST_TRIANGLES = 2_000_000
-AUTOMATIC = CutOut()
 # A picture that is never deformed is as good as any inside a cage so much larger.
 FRAME = 1.1
 
@@ -65,7 +64,7 @@ def build_domain(
     *,
     triangles: int,
     detail: Detail,
-    cut_out: CutOut = AUTOMATIC,
+    cut_out: CutOut | None = None,
 ) -> tuple[Domain, tuple[str, ...]]:
     """Find the subject of a picture and build its domain.
 
@@ -77,8 +76,8 @@ def build_domain(
         How many triangles to aim at, 1,000 to 2,000,000.
     detail : Detail
         How closely the outline follows the subject.
-    cut_out : CutOut
-        What tells the subject from the rest of the picture.
+    cut_out : CutOut, optional
+        What tells the subject from the rest of the picture; None is `CutOut()`.
 
     Returns
     -------
@@ -96,6 +95,7 @@ def build_domain(
             f"The number of triangles must be between {FEWEST_TRIANGLES:,} and "
             f"{MOST_TRIANGLES:,}, not {triangles:,}."
         )
+    cut_out = cut_out or CutOut()
     subject = subject_mask(rgba, cut_out)
     enclosure = enclose(subject.mask, detail=detail, holes=cut_out.holes, swapped=cut_out.swapped)
     loops = [hole.outline for hole in enclosure.holes]

@@ -12,7 +12,7 @@ from engine.errors import EngineError
 BackgroundColour = tuple[int, int, int]  # red, green, blue, each 0 to 255
 Holes = Literal["fill", "keep"]
 
-LARGEST_RADIUS = 4096.0  # pixels of a stroke
+SMALLEST_RADIUS, LARGEST_RADIUS = 0.5, 4096.0  # pixels of a stroke
 FARTHEST = 1e5  # pixels from the picture's corner that a stroke may go
 # Of all strokes together: points, and rows of pixels of the discs that they are drawn as, which
 # take a minute.
@@ -77,9 +77,9 @@ class Stroke:
     def __post_init__(self) -> None:
         points = as_points(self.points, "stroke", at_least=1)
         object.__setattr__(self, "points", points)
-        if not 0 < self.radius <= LARGEST_RADIUS:
+        if not SMALLEST_RADIUS <= self.radius <= LARGEST_RADIUS:
             raise EngineError(
-                f"The radius of a brush is above 0 and at most {LARGEST_RADIUS:g} pixels, not "
+                f"The radius of a brush is {SMALLEST_RADIUS:g} to {LARGEST_RADIUS:g} pixels, not "
                 f"{self.radius:g}."
             )
         if max(np.abs(points.real).max(), np.abs(points.imag).max()) > FARTHEST:
@@ -187,8 +187,8 @@ def _paint_discs(kept: Booleans, centres: Complexes, stroke: Stroke) -> None:
 
 def _spacing(radius: float) -> float:
     """Return how far apart discs may be that leave a quarter of a pixel between them."""
-    # Two circles whose centres are s apart meet s² / 8 r within their common tangent.
-    return sqrt(2 * max(radius, 0.5))
+    # Two circles whose centres are s apart meet about s² / 8 r within their common tangent.
+    return min(radius, sqrt(2 * radius))
 
 
 def _close_together(points: Complexes, radius: float) -> Complexes:

@@ -16,7 +16,6 @@ OPAQUE_SHARE = 0.998  # visible pixels from which on the picture counts as opaqu
 SMALLEST_SIDE = 8  # pixels
 LEAST_AGREEMENT = 0.80  # of the border with the background's colour
 SUBJECT_SHARES = (0.01, 0.97)  # of the picture, between which a removed background is believed
-AUTOMATIC = CutOut()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -38,15 +37,15 @@ class Subject:
     notices: tuple[str, ...]
 
 
-def subject_mask(rgba: Bytes, cut_out: CutOut = AUTOMATIC) -> Subject:
+def subject_mask(rgba: Bytes, cut_out: CutOut | None = None) -> Subject:
     """Find the subject of a picture: what is not transparent, or stands on a plain background.
 
     Parameters
     ----------
     rgba : uint8, shape (h, w, 4)
         Straight alpha, first row on top.
-    cut_out : CutOut
-        What tells it from the rest.
+    cut_out : CutOut, optional
+        What tells it from the rest; None is `CutOut()`.
 
     Returns
     -------
@@ -60,6 +59,7 @@ def subject_mask(rgba: Bytes, cut_out: CutOut = AUTOMATIC) -> Subject:
         If the picture is empty, fully transparent, or its subject is under 8 pixels across; if a
         mask has another size.
     """
+    cut_out = cut_out or CutOut()
     if rgba.ndim != 3 or rgba.shape[2] != 4 or rgba.dtype != np.uint8:
         raise EngineError(f"A picture must be uint8 (h, w, 4), not {rgba.dtype} {rgba.shape}.")
     if rgba.size == 0:

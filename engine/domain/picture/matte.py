@@ -29,18 +29,20 @@ MOST_SAMPLED = 4000  # pixels of the rim likewise
 SURE = 2.0  # pixels off the mask from which on a pixel is background alone
 NOISE_REACH = 2  # pixels: what is varied within is noise
 FAINTEST = 1 / 64  # α from which on a pixel's own colour is unmixed
-GEOMETRY = 0.25  # standard deviation of what the distance from the mask's border tells of α
+# Standard deviation of what the distance from the mask's border tells of α in the middle of the
+# edge; at its ends, it is surer.
+GEOMETRY, SURER = 0.25, 0.6
 # Beside the edge, α is noise: standard deviations of it that are taken away at least, the share of
 # pixels that lies within what is taken away, a margin, and how much of α that is at most.
 LEAST_NOISE, MOST_BESIDE, MARGIN, MOST_NOISE = 2.5, 0.99, 1.0, 0.25
 # Levels within which a pixel at the edge of a subject that clearly differs is background: so faint.
 ALIKE, FAINT = 20, 0.049
+PLAIN = 0.12  # standard deviation of α up to which that is believed
 # Levels between subject and background below which a subject that is no wider than its edge is
 # taken for what an encoder leaves around one; and the share of the usual contrast.
 CLEAREST_THIN, THIN_SHARE = 30.0, 0.2
 # Brightness, blueness, redness of red, green, blue.
-TONES = np.array([[0.299, 0.587, 0.114], [-0.169, -0.331, 0.5], [0.5, -0.419, -0.081]])
-COLOURS = np.linalg.inv(TONES)  # of tones
+TONES = ((0.299, 0.587, 0.114), (-0.169, -0.331, 0.5), (0.5, -0.419, -0.081))
 ROUNDING = 0.5  # levels of noise that every picture has
 # JPEG stores the last two tones at half the resolution: how much they are blurred is measured where
 # α is about one half, if brightness tells it well enough.
@@ -100,13 +102,13 @@ class _Tile:
     @classmethod
     def of(cls, rgb: Bytes, subject: Booleans, paper: Floats) -> Self:
         colours = rgb.astype(np.float64)
-        tones = colours @ TONES.T
+        tones = _tones(colours)
         inside = ndimage.distance_transform_edt(subject)
         depth = inside - ndimage.distance_transform_edt(~subject)
         sure = depth < -SURE
         if not sure.any():
             sure = depth < 0
-        background, noise = _local(tones, sure, NEARBY, TONES @ paper)
+        background, noise = _local(tones, sure, NEARBY, _tones(paper))
         return cls(
             rgb=colours,
             tones=tones,
@@ -137,6 +139,18 @@ class _Mixture(NamedTuple):
     noise: Floats
 
 
+def _tones(colours: Floats) -> Floats:
+    """Return the brightness, blueness and redness of colours (…, 3)."""
+    tones: Floats = colours @ np.array(TONES).T
+    return tones
+
+
+def _colours(tones: Floats) -> Floats:
+    """Return red, green and blue of tones (…, 3)."""
+    colours: Floats = tones @ np.linalg.inv(np.array(TONES)).T
+    return colours
+
+
 def matted(rgba: Bytes, subject: Booleans) -> Bytes:
     """Make what is not the subject of a picture transparent.
 
@@ -164,17 +178,17 @@ def matted(rgba: Bytes, subject: Booleans) -> Bytes:
     subject = without_specks(subject)
     result = rgba.copy()
     result[..., 3][~subject] = 0
-    windows = list(_windows(subject))
+    windows = list(_parts(subject))
     edge = _measured(rgba, subject, windows)
     for inner, outer in windows:
         _mix(result[inner], rgba[outer], subject[outer], _within(inner, outer), edge)
     return readonly(result)
 
 
-Window = tuple[slice, slice]
+_Part = tuple[slice, slice]
 
 
-def _windows(subject: Booleans) -> Iterator[tuple[Window, Window]]:
+def _parts(subject: Booleans) -> Iterator[tuple[_Part, _Part]]:
     """Yield the tiles at or through which the edge runs, without and with the room around them."""
     height, width = subject.shape
     for top in range(0, height, TILE):
@@ -189,7 +203,7 @@ def _windows(subject: Booleans) -> Iterator[tuple[Window, Window]]:
                 yield (slice(top, bottom), slice(left, right)), outer
 
 
-def _within(inner: Window, outer: Window) -> Window:
+def _within(inner: _Part, outer: _Part) -> _Part:
     rows, columns = (
         slice(part.start - around.start, part.stop - around.start)
         for part, around in zip(inner, outer, strict=True)
@@ -220,7 +234,7 @@ def _local(values: Floats, where: Booleans, reach: int, otherwise: Floats) -> tu
     return mean, variance
 
 
-def _measured(rgba: Bytes, subject: Booleans, windows: list[tuple[Window, Window]]) -> _Edge:
+def _measured(rgba: Bytes, subject: Booleans, windows: list[tuple[_Part, _Part]]) -> _Edge:
     """Measure the edge on some of the tiles."""
     step = max(1, len(rgba) * rgba.shape[1] // (MOST_SAMPLED * 25))
     paper = np.median(rgba[..., :3][~subject][::step], axis=0).astype(np.float64)
@@ -305,7 +319,7 @@ def _mixture(tile: _Tile, width: int) -> _Mixture:
     front = tile.tones.reshape(-1, 3)[nearest]
     # Across the edge the nearest one stays the same: it varies along the edge alone.
     near = np.abs(tile.depth) <= width + 1
-    _, varied = _local(front, near, NOISE_REACH, TONES @ np.full(3, 128.0))
+    _, varied = _local(front, near, NOISE_REACH, _tones(np.full(3, 128.0)))
     behind = tile.background.reshape(-1, 3)[band]
     noise = (varied + tile.noise).reshape(-1, 3)[band] / 2 + ROUNDING**2
     core = nearest.ravel()[band]
@@ -328,7 +342,7 @@ def _nearest_core(tile: _Tile, width: int) -> Indices:
     return np.asarray(rows * core.shape[1] + columns, dtype=np.intp)
 
 
-def _mix(result: Bytes, rgba: Bytes, subject: Booleans, inner: Window, edge: _Edge) -> None:
+def _mix(result: Bytes, rgba: Bytes, subject: Booleans, inner: _Part, edge: _Edge) -> None:
     """Unmix the edge in a tile of the result, in place; `inner` is where it lies in the others."""
     tile = _Tile.of(rgba[..., :3], subject, edge.paper)
     mixture = _mixture(tile, edge.width)
@@ -337,7 +351,7 @@ def _mix(result: Bytes, rgba: Bytes, subject: Booleans, inner: Window, edge: _Ed
     alpha = _alpha(tile, mixture, edge)
     pixels = rgba.reshape(-1, 4)[mixture.band].astype(np.float64)
     front = tile.rgb.reshape(-1, 3)[mixture.core]
-    behind = tile.background.reshape(-1, 3)[mixture.band] @ COLOURS.T
+    behind = _colours(tile.background.reshape(-1, 3)[mixture.band])
     share = np.maximum(alpha, FAINTEST)[:, None]
     unmixed = np.clip(behind + (pixels[:, :3] - behind) / share, 0, 255)
     # The fainter the subject, the less does its own pixel tell of it.
@@ -372,14 +386,16 @@ def _alpha(tile: _Tile, mixture: _Mixture, edge: _Edge) -> Floats:
     length = np.sqrt((way**2).sum(axis=1))
     is_speck = ~solid & (length < max(CLEAREST_THIN, THIN_SHARE * edge.contrast))
     guess, variance = np.where(is_speck, 0.0, guess), np.where(is_speck, np.inf, variance)
-    trust = GEOMETRY**2 / (GEOMETRY**2 + variance)
+    prior = GEOMETRY * (1 - SURER * np.abs(2 * guess - 1))
+    trust = prior**2 / (prior**2 + variance)
     alpha = guess + trust * (np.clip(alpha, -0.5, 1.5) - guess)
-    deviation = GEOMETRY * np.sqrt(1 - trust)
+    deviation = prior * np.sqrt(1 - trust)
     alpha = _without_noise(alpha, np.minimum(edge.noise * deviation, MOST_NOISE))
     rgb = tile.rgb.reshape(-1, 3)
-    behind = tile.background.reshape(-1, 3)[mixture.band] @ COLOURS.T
+    behind = _colours(tile.background.reshape(-1, 3)[mixture.band])
     own, front = rgb[mixture.band], rgb[mixture.core]
     is_paper = (_levels_between(own, behind) <= ALIKE) | (_levels_between(own, edge.paper) <= ALIKE)
+    is_paper &= variance < PLAIN**2
     is_paper &= (_levels_between(front, behind) > 2 * ALIKE) & (depth < edge.width)
     return np.where(is_paper, np.minimum(alpha, FAINT), alpha)
 
