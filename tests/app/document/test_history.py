@@ -266,3 +266,31 @@ def test_ten_thousand_steps_can_be_undone():
     while history.undo_label:
         history.undo()
     assert history.document is first
+
+
+def test_what_completes_a_step_is_undone_with_it():
+    history = History(disc_document(), saved=True)
+    first = history.document
+    pose = UnkeyedPose(figure=0, frame=3, pose=first.figures[0].keys[0].pose)
+    history.do(set_fps(10))
+    history.do(set_fps(20))
+    later = history.document
+    history.undo()
+    history.complete(scene_commands.set_loop(loop=True))
+    completed = history.document
+    assert (completed.fps, completed.loop) == (10, True)
+    assert history.undo_label == "Set frames per second"
+    history.redo()
+    assert history.document is later  # it was made before, and stays as it was
+    history.undo()
+    assert history.document is completed
+    history.undo()
+    assert history.document is first
+    # A pose that no key holds is over the domain of before.
+    history.pose(pose)
+    history.complete(scene_commands.set_loop(loop=True))
+    assert history.unkeyed is None
+    # What changes nothing completes nothing.
+    same = history.document
+    history.complete(scene_commands.set_loop(loop=True))
+    assert history.document is same

@@ -1,5 +1,7 @@
 """Strokes of a brush, masks, and what is left of a picture that they are applied to."""
 
+import itertools
+
 import numpy as np
 import pictures
 import pytest
@@ -24,7 +26,7 @@ def distance(points, way):
     if len(way) == 1:
         return np.abs(points - way[0])
     nearest = np.full(points.shape, np.inf)
-    for start, end in zip(way[:-1], way[1:], strict=True):
+    for start, end in itertools.pairwise(way):
         along = end - start
         share = np.clip(
             ((points - start) * np.conj(along)).real / max(abs(along) ** 2, 1e-12), 0, 1

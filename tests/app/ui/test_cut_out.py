@@ -1,0 +1,226 @@
+"""Cutting out by hand in the window: brush, pipette, mask, holes, and how the mesh follows."""
+
+import numpy as np
+import pictures
+import pytest
+from documents import differences
+from imgui_bundle import imgui
+from PIL import Image
+
+from app.editor.actions import cutting, editing, posing, rebuilding
+from app.storage.project_file import load_project, save_project
+
+SIZE = 120
+PAPER = (90, 140, 210)
+
+
+@pytest.fixture
+def drawing(window, tmp_path):
+    """An opaque picture of a ring on a plain colour, whose inside is taken for drawing."""
+    rgba = pictures.on_plain(pictures.ring(SIZE), PAPER)
+    Image.fromarray(rgba).save(tmp_path / "ring.png")
+    return window.open(tmp_path / "ring.png")
+
+
+def rest(window):
+    """Let the mesh follow the brush."""
+    window.settle()
+    window.clock.now += rebuilding.REST
+    window.settle()
+    window.frames(2)
+    window.settle()
+
+
+def stroke(window, *places):
+    """Draw a stroke by the pointer."""
+
+    def draw(robot):
+        robot.mouse_move_to_pos(window.point(places[0]))
+        robot.mouse_down()
+        for place in places[1:]:
+            robot.mouse_move_to_pos(window.point(place))
+        robot.mouse_up()
+
+    window.run(draw)
+
+
+def click(window, place):
+    stroke(window, place)
+
+
+def kept(project):
+    return project.puppet.cut.value.kept
+
+
+MIDDLE = complex(SIZE / 2, SIZE / 2)
+
+
+def test_each_stroke_is_a_step_and_the_mesh_follows_when_the_brush_rests(window, drawing):
+    session, first = window.session, drawing.document
+    posing.add_handle(session, complex(0.1 * SIZE, SIZE / 2))
+    window.settle()
+    with_handle = drawing.document
+    window.act(cutting.take_up, "remove")
+    window.act(cutting.set_brush, 12.0)
+    stroke(window, MIDDLE - 10, MIDDLE + 10)
+    stroke(window, MIDDLE)
+    figure = drawing.figure
+    assert [len(s.points) > 1 for s in figure.cut_out.strokes] == [True, False]
+    assert figure.is_stale
+    assert figure.domain is first.figures[0].domain
+    rest(window)
+    figure = drawing.figure
+    assert not figure.is_stale
+    assert figure.domain is not first.figures[0].domain
+    assert len(figure.handles) == 1
+    assert not kept(drawing)[SIZE // 2, SIZE // 2]
+    assert drawing.puppet.cut.value.texture[SIZE // 2, SIZE // 2, 3] == 0
+    assert drawing.history.undo_label == "Brush"
+    last = drawing.document
+    window.act(editing.undo)
+    assert len(drawing.figure.cut_out.strokes) == 1
+    window.act(editing.undo)
+    assert drawing.document is with_handle
+    window.act(editing.redo)
+    window.act(editing.redo)
+    assert drawing.document is last
+
+
+def test_a_step_between_two_strokes_gets_a_mesh_of_its_own(window, drawing):
+    window.act(cutting.take_up, "remove")
+    window.act(cutting.set_brush, 8.0)
+    stroke(window, MIDDLE)
+    stroke(window, complex(5, 5), complex(5, SIZE - 5))
+    rest(window)
+    last = drawing.document
+    window.act(editing.undo)
+    assert drawing.figure.is_stale
+    rest(window)
+    assert not drawing.figure.is_stale
+    assert len(drawing.figure.cut_out.strokes) == 1
+    window.act(editing.redo)
+    assert drawing.document is last
+
+
+def test_alt_and_x_swap_the_brush_and_brackets_change_its_size(window, drawing):
+    session = window.session
+    keys = window.Key
+
+    def play(robot):
+        robot.key_press(keys.x)
+        assert session.cutting == "remove"
+        robot.key_press(keys.x)
+        assert session.cutting == "keep"
+        radius = cutting.brush_radius(drawing)
+        robot.key_press(keys.right_bracket)
+        assert cutting.brush_radius(drawing) == pytest.approx(radius * cutting.BRUSH_STEP)
+        robot.key_press(keys.left_bracket)
+        assert cutting.brush_radius(drawing) == pytest.approx(radius)
+        robot.mouse_move_to_pos(window.point(MIDDLE))
+        robot.key_down(imgui.Key.mod_alt)
+        robot.mouse_down()
+        robot.mouse_up()
+        robot.key_up(imgui.Key.mod_alt)
+        robot.mouse_move_to_pos(window.point(complex(3, 3)))
+        robot.mouse_down()
+        robot.mouse_up()
+
+    window.run(play)
+    assert [stroke.keeps for stroke in drawing.figure.cut_out.strokes] == [False, True]
+
+    def leave(robot):
+        robot.key_press(keys.escape)
+
+    window.run(leave)
+    assert session.cutting is None
+
+
+def test_a_stroke_that_is_cancelled_is_none(window, drawing):
+    before = drawing.document
+    window.act(cutting.take_up, "keep")
+
+    def play(robot):
+        robot.mouse_move_to_pos(window.point(MIDDLE))
+        robot.mouse_down()
+        robot.mouse_move_to_pos(window.point(MIDDLE + 20))
+        robot.key_press(window.Key.escape)
+        robot.mouse_up()
+
+    window.run(play)
+    assert drawing.document is before
+    assert window.session.cutting == "keep"
+
+
+def test_the_pipette_takes_the_background_s_colour(window, drawing):
+    window.act(cutting.take_up, "pick")
+    click(window, complex(4, 4))
+    assert drawing.figure.cut_out.background == PAPER
+    window.act(cutting.set_background, "none")
+    rest(window)
+    assert kept(drawing).all()
+    window.act(cutting.set_tolerance, 3)
+    window.act(cutting.set_background, "auto")
+    rest(window)
+    assert not kept(drawing).all()
+    assert drawing.figure.cut_out.tolerance == 3
+
+
+def test_a_mask_is_saved_and_loaded_again(window, drawing, tmp_path):
+    window.act(cutting.take_up, "remove")
+    stroke(window, MIDDLE, MIDDLE + 15)
+    rest(window)
+    by_hand = kept(drawing)
+    path = tmp_path / "mask.png"
+    window.act(cutting.save_mask, path)
+    window.settle()
+    written = Image.open(path)
+    assert written.size == (SIZE, SIZE)
+    assert set(np.unique(np.asarray(written.convert("L")))) == {0, 255}
+    window.act(cutting.forget_strokes)
+    rest(window)
+    assert not np.array_equal(kept(drawing), by_hand)
+    window.act(cutting.load_mask, path)
+    rest(window)
+    assert drawing.figure.cut_out.mask is not None
+    assert np.array_equal(kept(drawing), by_hand)
+    assert not drawing.figure.is_stale
+
+
+def test_a_mask_of_another_size_is_refused(window, drawing, tmp_path):
+    before = drawing.document
+    Image.new("L", (10, 10), 255).save(tmp_path / "small.png")
+    window.act(cutting.load_mask, tmp_path / "small.png")
+    window.settle()
+    assert drawing.document is before
+    assert any("same width and height" in toast.text for toast in window.session.toasts)
+
+
+def test_what_cannot_be_is_told_and_undone(window, drawing):
+    posing.add_handle(window.session, complex(0.1 * SIZE, SIZE / 2))
+    window.settle()
+    domain = drawing.figure.domain
+    window.act(cutting.take_up, "remove")
+    window.act(cutting.set_brush, 300.0)
+    stroke(window, MIDDLE)
+    rest(window)
+    assert drawing.figure.is_stale
+    assert drawing.figure.domain is domain
+    assert any("removed all" in toast.text for toast in window.session.toasts)
+    window.act(editing.undo)
+    rest(window)
+    assert not drawing.figure.is_stale
+
+
+def test_it_is_saved_and_survives_a_crash(window, drawing, tmp_path):
+    window.act(cutting.take_up, "remove")
+    stroke(window, MIDDLE, MIDDLE + 15)
+    path = tmp_path / "stale.lissom"
+    save_project(path, drawing.document)
+    assert not differences(drawing.document, load_project(path))
+    assert load_project(path).figures[0].is_stale
+    again = window.open(path)
+    assert again.figure.is_stale
+    rest(window)
+    assert not again.figure.is_stale
+    assert len(again.figure.cut_out.strokes) == 1
+    assert not kept(again)[SIZE // 2, SIZE // 2]
