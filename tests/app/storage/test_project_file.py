@@ -25,6 +25,7 @@ from app.errors import LissomError
 from app.storage.archive import MIMETYPE
 from app.storage.project_file import load_project, load_thumbnail, save_project
 from app.storage.project_json import USUAL_LAYER
+from engine.domain.picture.cut_out import CutOut
 from engine.maps import Boundary, certify
 
 CAGE, MESH = disc_domain().cage, disc_domain().mesh
@@ -109,6 +110,8 @@ def test_a_stored_file_of_schema_1_opens():
         markers=(),
         library=(),
         mirror=None,
+        cut_out=CutOut(tolerance=figure.cut_out.tolerance),
+        is_stale=False,
         handles=tuple(replace(handle, front=0.0, extent=None) for handle in figure.handles),
         # Keys of that time have corners.
         keys=tuple(replace(key, fronts={}, passing=Passing.CORNER) for key in figure.keys),
@@ -327,6 +330,8 @@ def test_every_field_is_needed(tmp_path, members):
     # What is as usual is not written.
     kept |= {"size", "front", "extent", "fronts", "passing", *USUAL_LAYER}
     kept |= {"names", "sheet", "shapes"}  # of exports; earlier versions did not write them
+    # Of the cut-out, likewise.
+    kept |= {"background", "mask", "strokes", "holes", "swapped", "stale"}
     missing = [way for way in ways(known) if way[-1] not in kept]
     assert len(missing) > 60
     for way in missing:
