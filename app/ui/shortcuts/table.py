@@ -414,6 +414,16 @@ BINDINGS: dict[str, Binding] = {
         hint="Show where flipped poses are mirrored",
         active=lambda session: session.overlays.mirror,
     ),
+    "motion paths": Binding(
+        label="Motion paths",
+        action=do(viewing.toggle, "paths"),
+        menu="View",
+        keys=(Key.j,),
+        icon=icons.ICON_FA_ROUTE,
+        hint="Show where the selected handles go, with a dot for each frame",
+        active=lambda session: session.overlays.paths,
+        in_bar=True,
+    ),
     "theme": Binding(
         label="Light or dark",
         action=do(viewing.toggle_theme),
@@ -578,6 +588,13 @@ BINDINGS: dict[str, Binding] = {
         keys=(CTRL | int(Key.home),),
         icon=icons.ICON_FA_ARROWS_LEFT_RIGHT_TO_LINE,
         hint="Show all frames",
+    ),
+    "pass": Binding(
+        label="Pass keys otherwise",
+        action=do(keys.pass_otherwise),
+        menu="Keys",
+        keys=(Key.t,),
+        hint="Through, in a corner, with a stop, or hold: the next way for the chosen keys",
     ),
     "ease": Binding(
         label="Ease in and out",
