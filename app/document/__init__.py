@@ -24,7 +24,6 @@ from app.document.layering import Attachment, Switch
 from app.document.model import Document
 from app.document.playhead import Playhead
 from app.document.queries import (
-    USUAL_EXTENT,
     Clip,
     Extremes,
     Front,
@@ -79,7 +78,6 @@ __all__ = [
     "RUBBERY",
     "STIFF",
     "STRETCHES",
-    "USUAL_EXTENT",
     "VARIANTS",
     "Attachment",
     "Clip",

@@ -8,8 +8,7 @@ Imports: `app.document`.
 from app.motion.extent import Box, box_around, extent_source, measure_extent, motion_box
 from app.motion.inbetweens import Animation, PoseSampler
 from app.motion.joints import HERE, Joints, Placement, hung_animations, joints_source
-from app.motion.motion_paths import MotionPaths, trace_paths
-from app.motion.paint_order import painted_depths, painted_triangles
+from app.motion.paint_order import painted_triangles
 from app.motion.posable_mesh import PosableMesh
 from app.motion.prepared import Motion, prepare_motion
 from app.motion.series_queue import Build, next_build, with_series
@@ -23,7 +22,6 @@ __all__ = [
     "Build",
     "Joints",
     "Motion",
-    "MotionPaths",
     "Placed",
     "Placement",
     "PosableMesh",
@@ -39,10 +37,8 @@ __all__ = [
     "measure_extent",
     "motion_box",
     "next_build",
-    "painted_depths",
     "painted_triangles",
     "prepare_motion",
     "show",
-    "trace_paths",
     "with_series",
 ]

@@ -20,7 +20,7 @@ from engine.maps import Limits
 
 # A dual variable stays within this factor of weight / c. Measured: with much more, samples whose
 # dual variable has all but vanished stop every step by curvature that the Hessian does not see.
-DUAL_RANGE = 20.0
+DUAL_RANGE = 100.0
 
 
 class Walls(NamedTuple):

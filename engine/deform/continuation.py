@@ -7,6 +7,8 @@ without a leash. When the model expects little more at one weight, the next one 
 
 - Corrections: where a step is stopped by a wall, the second-order change of the bounds along it is
   added to the right-hand side and solved for with the same factors (after Mehrotra 1992).
+- Where it is still stopped, by the curvature of walls that are near but hardly press, their dual
+  variables are raised until the Hessian sees it, and the step is solved for anew.
 - Samples are added where a segment could bulge out farther than a part of the slack at its ends, so
   that the barrier sees what the certificate would find between the samples, before it refuses.
 - Walls: they stand a little inside the bounds, which leaves the room between samples. A sample that
@@ -22,8 +24,9 @@ import numpy as np
 from engine.arrays import Complexes, Floats, Indices, readonly
 from engine.deform.barrier import Barrier, Walls
 from engine.deform.handles import Handles, Wish
-from engine.deform.newton import SHORTEST, SUFFICIENT, Direction, Model, newton_model
+from engine.deform.newton import SHORTEST, SUFFICIENT, Direction, Model, newton_models
 from engine.deform.objective import Jet, Objective
+from engine.deform.steering import MARGIN
 from engine.maps import (
     Boundary,
     Certificate,
@@ -47,10 +50,8 @@ LONG_ENOUGH = 0.3
 # needed for that.
 OPTIMAL = 1e-6
 LEAST_PER_ENERGY = 1e-7
-# The walls stand inside the bounds by this part of the way to the identity.
-MARGIN = 3e-4
 # The wall of a sample that is beyond them stands this part of its way to the bound farther out.
-OUTWARDS = 0.5
+OUTWARDS = 0.1
 # Segments may bulge by this part of the slack at their ends, or of the margin, before they are cut.
 BULGE_PER_SLACK = 0.25
 BULGE_PER_MARGIN = 0.5
@@ -59,15 +60,19 @@ MOST_SAMPLES = 4
 # Part of the way to a wall that a step may use up.
 TO_THE_WALL = 0.95
 CORRECTIONS = 2
+# How often walls that stop a step are made stiffer, until this part of it can be taken.
+STIFFENINGS = 4
+ENOUGH = 0.8
 # As long as the model expects more than this part of the energy as a gain, a sketch of the Hessian
 # does.
 SKETCHED = 1e-3
-# Less slack than this cannot be told from none.
+# Less slack than this cannot be told from none: the wall is moved this far away.
 ROUNDING_SLACK = 1e-11
+REOPENED = 1e-9
 # A full step is doubled as long as that gains.
 LONGEST = 64.0
-# Steps shorter than this are caught by the curvature of a few bounds. Their dual variables are
-# raised to where the Hessian sees it: this part of what would outweigh the expected gain.
+# Steps shorter than this are caught by the curvature of a few bounds. Dual variables of walls that
+# stop a step are raised to this part of what would outweigh the expected gain.
 CAUGHT = 0.08
 RAISED = 0.1
 # A step whose map is not certified is halved this many times.
@@ -75,9 +80,14 @@ HALVINGS = 6
 # A bound is active when moving it all the way to the identity would, to first order, cost more than
 # this part of the energy.
 ACTIVE = 1e-4
-# Steps before a search is given up; from the present map, which is near rest or caught by bounds.
+# A search from elsewhere must gain this part of the energy: less is not worth a jump.
+WORTH_A_JUMP = 1e-3
+# What a search could still gain is an estimate that holds below this part of the energy.
+RELIED_ON = 0.03
+# Steps before all searches for one wish are given up, and before the one from the present map is
+# put off, which is near rest or caught by bounds.
 MOST_STEPS = 150
-MOST_STEPS_HERE = 40
+MOST_STEPS_HERE = 12
 # Steps in a row that are hardly taken: the search is caught.
 MOST_CAUGHT = 12
 # Far handles go at most this far (of L) in one row of a straight path, in at most so many rows.
@@ -151,6 +161,12 @@ class Search:
     optimality : float
         Expected gain and complementarity over the energy; 0 at a minimum.
     active : tuple of ActiveBound
+    gap : float
+        About what the map could still gain, were everything convex.
+    rival : float
+        The energy that other ways have found: a search that cannot win is given up.
+    before : int
+        The steps of those ways.
     """
 
     handles: Handles
@@ -174,6 +190,9 @@ class Search:
     caught: int = 0
     optimality: float = np.inf
     active: tuple[ActiveBound, ...] = ()
+    gap: float = np.inf
+    rival: float = np.inf
+    before: int = 0
 
     @property
     def has_arrived(self) -> bool:
@@ -183,8 +202,17 @@ class Search:
     @property
     def is_over(self) -> bool:
         """Whether the search found a minimum, or is given up."""
-        most = MOST_STEPS_HERE if self.way is Way.HERE else MOST_STEPS
-        return self.has_arrived or self.steps >= most or self.caught >= MOST_CAUGHT
+        here_first = self.way is Way.HERE and self.before == 0
+        most = MOST_STEPS_HERE if here_first else MOST_STEPS - self.before
+        return (
+            self.has_arrived or self.steps >= most or self.caught >= MOST_CAUGHT or self._cannot_win
+        )
+
+    @property
+    def _cannot_win(self) -> bool:
+        """Whether another way has found less energy than this one can come to."""
+        low_enough = (1.0 - WORTH_A_JUMP) * self.rival
+        return self.gap < RELIED_ON * self.energy and self.energy - self.gap > low_enough
 
 
 def begin_search(
@@ -243,7 +271,12 @@ def advance(search: Search) -> Search:
     with the whole Hessian, 24 m n² for m samples.
     """
     objective, barrier, jet = _objective(search)
-    direction, length = _corrected(newton_model(objective, jet, exact=True), barrier, jet)
+    search = replace(search, walls=barrier.walls)
+    for model in newton_models(objective, jet):
+        direction, length, barrier = _freed(model, barrier, jet)
+        # Where the exact Hessian is hardly positive, its steps lead far beyond the walls.
+        if length > CAUGHT:
+            break
     length = _length(objective, jet, direction, length)
     taken, length, refusals, broken = _certified(search, direction, length)
     a, b, da, db = _radial_changes(jet, direction)
@@ -252,7 +285,7 @@ def advance(search: Search) -> Search:
     if length < CAUGHT:
         ahead = jet.advanced(1.0, direction.jet)
         outside = barrier.slacks(np.abs(ahead.f), np.abs(ahead.g)) < CAUGHT * barrier.slacks(a, b)
-        needed = RAISED * gain / (search.boundary.spacing * barrier.margins(a, b))
+        needed = RAISED * gain / (search.boundary.shares * barrier.margins(a, b))
         duals = np.where(outside, np.maximum(duals, needed), duals)
     free = replace(objective, barrier=None, wish=search.wish)
     reached = jet.advanced(length, direction.jet)
@@ -288,13 +321,14 @@ def _objective(search: Search) -> tuple[Objective, Barrier, Jet]:
         weight = _first_weight(objective.energy(jet))
     barrier = Barrier(walls=search.walls, weight=weight, duals=search.duals)
     a, b = np.abs(jet.f), np.abs(jet.g)
-    if barrier.slacks(a, b).min() < ROUNDING_SLACK:
+    too_near = barrier.slacks(a, b) < ROUNDING_SLACK
+    if too_near.any():
         # What the last step left of it is less than the rounding of this measurement.
-        wider = _walls(search.inside, search.limits, a, b)
+        k, sigma_b, sigma_a = search.walls.k, search.walls.sigma_b, search.walls.sigma_a
         walls = Walls(
-            k=np.maximum(search.walls.k, wider.k),
-            sigma_a=np.maximum(search.walls.sigma_a, wider.sigma_a),
-            sigma_b=np.minimum(search.walls.sigma_b, wider.sigma_b),
+            k=np.where(too_near[0], np.maximum(k, b / a + REOPENED), k),
+            sigma_a=np.where(too_near[2], np.maximum(sigma_a, a + b + REOPENED), sigma_a),
+            sigma_b=np.where(too_near[1], np.minimum(sigma_b, a - b - REOPENED), sigma_b),
         )
         barrier = replace(barrier, walls=walls)
     return replace(objective, barrier=barrier), barrier, jet
@@ -305,6 +339,43 @@ def _on_the_path(search: Search) -> Wish:
     share = (search.steps + 1) / search.rows
     targets = search.wish.positions
     return Wish(search.origins + share * (targets - search.origins), share * search.wish.rotations)
+
+
+def _freed(model: Model, barrier: Barrier, jet: Jet) -> tuple[Direction, float, Barrier]:
+    """Return a step that few walls stop, how much of it they allow, and the barrier of its model.
+
+    What stops a step is the curvature of walls that are near but press little, which their dual
+    variables do not show. They are raised to where the Hessian sees it.
+    """
+    objective = model.objective
+    a, b = np.abs(jet.f), np.abs(jet.g)
+    slacks, margins = barrier.slacks(a, b), barrier.margins(a, b)
+    direction, allowed = _corrected(model, barrier, jet)
+    best, tried = (direction, allowed, barrier), (direction, allowed, barrier)
+    for _ in range(STIFFENINGS):
+        direction, allowed, barrier = tried
+        if allowed >= ENOUGH:
+            break
+        ahead = jet.advanced(1.0, direction.jet)
+        outside = barrier.slacks(np.abs(ahead.f), np.abs(ahead.g)) < (1 - TO_THE_WALL) * slacks
+        needed = -RAISED * direction.derivative / (objective.boundary.shares * margins)
+        duals = barrier.current_duals(a, b)
+        raised = replace(barrier, duals=np.where(outside, np.maximum(4 * duals, needed), duals))
+        samples = np.flatnonzero(outside.any(axis=0))
+        stiffer = raised.derivatives(a, b).plus(
+            barrier.derivatives(a, b).weighted(-np.ones(len(a)))
+        )
+        added = objective.stiffening(jet, stiffer.weighted(objective.boundary.shares), samples)
+        model = model.stiffened(added)
+        tried = (*_corrected(model, raised, jet), raised)
+        if _promise(*tried[:2]) > _promise(*best[:2]):
+            best = tried
+    return best
+
+
+def _promise(direction: Direction, length: float) -> float:
+    """Return what a quadratic model expects of a part of its step."""
+    return -direction.derivative * length * (1 - length / 2)
 
 
 def _corrected(model: Model, barrier: Barrier, jet: Jet) -> tuple[Direction, float]:
@@ -323,7 +394,7 @@ def _corrected(model: Model, barrier: Barrier, jet: Jet) -> tuple[Direction, flo
         linear = margins + allowed * barrier.margin_changes(a, b, da, db)
         curved = (barrier.margins(np.abs(ahead.f), np.abs(ahead.g)) - linear) / allowed**2
         factors = np.clip(duals * curved / margins, -most, most)
-        by_a, b_per_b = barrier.margin_gradient(a, objective.boundary.spacing * factors)
+        by_a, b_per_b = barrier.margin_gradient(a, objective.boundary.shares * factors)
         corrected = model.direction(objective.sampled_gradient(jet, by_a, b_per_b))
         if corrected.derivative >= 0:
             break
@@ -455,11 +526,12 @@ def _rated(search: Search, jet: Jet, boundary: Boundary, barrier: Barrier) -> Se
     gradient; the multipliers times c are the energy that the barrier holds back.
     """
     if search.steps <= search.rows or search.length == 0:
-        return replace(search, optimality=np.inf)
+        return replace(search, optimality=np.inf, gap=np.inf)
     a, b = np.abs(jet.f), np.abs(jet.g)
-    multipliers = boundary.spacing * (barrier.weight / barrier.margins(a, b))
-    complementarity = barrier.weight * len(multipliers)
+    multipliers = boundary.shares * (barrier.weight / barrier.margins(a, b))
+    complementarity = 3.0 * barrier.weight * float(boundary.shares.sum())
     optimality = (search.gain + complementarity) / search.energy
+    gap = search.gain + 2.0 * complementarity
     # The derivatives of c = u² − b² by the bound, away from the identity.
     walls = barrier.walls
     prices = multipliers * np.array(
@@ -472,7 +544,7 @@ def _rated(search: Search, jet: Jet, boundary: Boundary, barrier: Barrier) -> Se
         for (name, way), price in zip(ways.items(), prices, strict=True)
         if price.sum() * way > ACTIVE * search.energy
     )
-    return replace(search, optimality=float(optimality), active=active)
+    return replace(search, optimality=float(optimality), active=active, gap=gap)
 
 
 def _weighed(search: Search) -> Search:
@@ -480,7 +552,7 @@ def _weighed(search: Search) -> Search:
     if search.steps <= search.rows:
         return replace(search, weight=_first_weight(search.energy))
     if search.length > LONG_ENOUGH and search.gain < CENTRED * search.weight:
-        least = LEAST_PER_ENERGY * search.energy
+        least = LEAST_PER_ENERGY * search.energy / float(search.boundary.shares.sum())
         return replace(search, weight=max(LOWER * search.weight, least))
     return search
 

@@ -9,9 +9,9 @@ The objective is the symmetric Dirichlet energy with stiff handles and a barrier
 - a step is cut until its map is certified with a part of the slack left, and where the certificate
   found a bound broken between two samples, a sample is added: the barrier then sees it.
 
-When the hand rests, `continuation` finds the minimum: from the present map, whose energy then only
-falls, and where bounds hold it back from the shape at rest too, since limbs that were pulled
-through each other can stay entangled. The pose of least energy is kept.
+When the hand rests, `continuation` finds the minimum: a few steps from the present map, which is
+often near it; then, where bounds hold it back, from the shape at rest, since a map that has met
+bounds early hardly leaves them. The pose of least energy is kept.
 """
 
 from dataclasses import dataclass, replace
@@ -23,7 +23,7 @@ import numpy as np
 from engine.arrays import Complexes, Floats
 from engine.deform.barrier import Barrier, Walls
 from engine.deform.certified_step import CertifiedStep, add_samples, take_certified_step
-from engine.deform.continuation import MARGIN, Search, Way, advance, begin_search
+from engine.deform.continuation import MOST_STEPS, WORTH_A_JUMP, Search, Way, advance, begin_search
 from engine.deform.energy import symmetric_dirichlet
 from engine.deform.handles import Handles, Wish
 from engine.deform.objective import Jet, Objective
@@ -32,8 +32,10 @@ from engine.deform.steering import (
     FULL,
     LEASH,
     LEAST_RESTING,
+    MARGIN,
     ROUNDING,
     Schedule,
+    are_correlated,
     closing_limits,
     cut_to_leash,
     limits_for,
@@ -56,8 +58,6 @@ PATH_REST = 1e-3
 PATIENCE = 4
 # Handles that are wanted this far (of L) from where they are at rest are also led along their way.
 FAR = 0.15
-# A search from elsewhere must gain this part of the energy: less is not worth a jump.
-WORTH_A_JUMP = 1e-3
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -277,10 +277,10 @@ class Deformer:
     def settle(self, state: State, wish: Wish, *, at_most: int = 600) -> tuple[State, int]:
         """Find the pose of least energy for a wish; return the number of steps too.
 
-        From the present map, from the shape at rest, and, for handles that are far from where they
-        are at rest, along the straight way there, as long as bounds hold the shape back. At most
-        `at_most` steps are taken. The energy is never above that of the present map, once that is
-        within the bounds.
+        From the present map, from the shape at rest, and, for handles that are wanted far away and
+        past each other, along the straight way there, as long as bounds hold the shape back. At
+        most `at_most` steps are taken. The energy is never above that of the present map, once that
+        is within the bounds.
         """
         count = 0
         if not (self._goes_on(state, wish) and state.status.is_final):
@@ -352,49 +352,56 @@ class Deformer:
         energy = free.energy(free.jet(*state.map.columns))
         search = advance(search)
         # From the present map every gain is shown; of a search from elsewhere the end is shown, if
-        # it is worth the jump.
-        from_here = state.outcome is None or state.ways[0] is Way.HERE
-        if from_here:
+        # it is worth the jump, or proven where nothing was.
+        before = state.outcome
+        proves = search.has_arrived and before is not None and not before.has_arrived
+        if before is None:
             better = search.energy < energy
         else:
-            better = search.is_over and search.energy < (1.0 - WORTH_A_JUMP) * energy
+            worth = energy if proves else (1.0 - WORTH_A_JUMP) * energy
+            better = search.is_over and search.energy < worth
         if better:
             state = replace(state, map=search.map, certificate=search.certificate)
         jet = free.jet(*state.map.columns)
-        state = replace(
-            state, search=search, statistics=self._search_statistics(free, jet, search, search)
-        )
         if not search.is_over:
-            return state
+            statistics = self._search_statistics(free, jet, search, search)
+            return replace(state, search=search, statistics=statistics)
         # A minimum that was found before stays what is known, unless there is much less energy.
-        outcome, before = search, state.outcome
-        if before is not None and not search.energy < (1.0 - WORTH_A_JUMP) * before.energy:
+        if before is None or proves or search.energy < (1.0 - WORTH_A_JUMP) * before.energy:
+            outcome = search
+        else:
             outcome = before
-        ways = self._further_ways(state.ways, outcome, polished=before is not None and from_here)
+        shown = free.energy(jet)
+        taken = search.before + search.steps
+        ways = self._further_ways(state.ways, outcome, shown) if taken < MOST_STEPS else ()
         state = replace(
             state,
+            search=search,
             outcome=outcome,
             ways=ways,
             statistics=self._search_statistics(free, jet, search, outcome),
         )
         if ways:
-            return replace(state, search=self._search(state, search.wish, ways[0]))
-        # What was found may be a little above the present map, which is nearer to the bounds.
-        shown = free.energy(jet)
-        if not outcome.has_arrived or shown < (1.0 - WORTH_A_JUMP) * outcome.energy:
-            return replace(state, status=Status.UNFINISHED)
-        return replace(state, status=Status.AT_LIMITS if outcome.active else Status.CONVERGED)
+            following = replace(
+                self._search(state, search.wish, ways[0]),
+                rival=outcome.energy if outcome.has_arrived else inf,
+                before=taken,
+            )
+            return replace(state, search=following)
+        if _is_proven(outcome, shown):
+            return replace(state, status=Status.AT_LIMITS if outcome.active else Status.CONVERGED)
+        return replace(state, status=Status.UNFINISHED)
 
     def _further_ways(
-        self, ways: tuple[Way, ...], outcome: Search, *, polished: bool
+        self, ways: tuple[Way, ...], outcome: Search, shown: float
     ) -> tuple[Way, ...]:
-        """Return the ways that are left to search; the last is from the present map once more."""
+        """Return the ways that are left to search."""
         if outcome.has_arrived and not outcome.active:
             return ()
-        others = [way for way in ways[1:] if way is not Way.PATH or self._is_far(outcome.wish)]
-        if others:
-            return tuple(others)
-        return () if polished else (Way.HERE,)
+        others = tuple(way for way in ways[1:] if way is not Way.PATH or self._is_tangled(outcome))
+        if not others and ways[0] is not Way.HERE and not _is_proven(outcome, shown):
+            return (Way.HERE,)
+        return others
 
     def _search_statistics(
         self, free: Objective, jet: Jet, search: Search, outcome: Search
@@ -420,10 +427,12 @@ class Deformer:
     def _at_rest(self) -> HarmonicMap:
         return HarmonicMap.identity(self.boundary.cage, self.boundary.holes)
 
-    def _is_far(self, wish: Wish) -> bool:
-        """Tell whether a handle is wanted far from where it is at rest."""
-        ways = np.abs(wish.positions - self.handles.points)
-        return bool(ways.max(initial=0.0) > FAR * self.boundary.size)
+    def _is_tangled(self, outcome: Search) -> bool:
+        """Tell whether handles are wanted far from where they are at rest, past each other."""
+        ways = np.abs(outcome.wish.positions - self.handles.points)
+        return bool(ways.max(initial=0.0) > FAR * self.boundary.size) and not are_correlated(
+            self.handles, outcome.wish.positions
+        )
 
     def _is_within(self, certificate: Certificate) -> bool:
         return self.bounds.allow(
@@ -453,6 +462,14 @@ class _Step(NamedTuple):
         ahead = self.jet.advanced(1.0, taken.direction.jet)
         here, there = (np.abs(self.jet.f), np.abs(self.jet.g)), (np.abs(ahead.f), np.abs(ahead.g))
         return self.barrier.next_duals(*here, *there)
+
+
+def _is_proven(outcome: Search, shown: float) -> bool:
+    """Tell whether a minimum was found that the energy shown is not much below.
+
+    A little it may be: the present map may be nearer to the bounds than searches go.
+    """
+    return outcome.has_arrived and shown >= (1.0 - WORTH_A_JUMP) * outcome.energy
 
 
 def _handle_error(jet: Jet, wish: Wish, size: float) -> float:

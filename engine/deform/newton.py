@@ -1,12 +1,14 @@
 """Projected Newton's method for the objective of a drag."""
 
-from dataclasses import dataclass
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
 from scipy.linalg import lapack
 
 from engine.arrays import Complexes, Floats
+from engine.deform.energy import Radial
 from engine.deform.objective import Jet, Objective
 
 # A step is accepted when it gains at least this part of what the gradient promises (Armijo).
@@ -53,13 +55,21 @@ class Model:
     ----------
     objective : Objective
     gradient : float64, shape (u,)
+    hessian : float64, shape (u, u)
+        Its upper triangle.
     factor : float64, shape (u, u)
         Cholesky's, for `lapack.dpotrs`.
     """
 
     objective: Objective
     gradient: Floats
+    hessian: Floats
     factor: Floats
+
+    def stiffened(self, added: Floats) -> "Model":
+        """Return the model with a positive semidefinite matrix added to its Hessian."""
+        hessian = self.hessian + added
+        return replace(self, hessian=hessian, factor=_factor_shifted(hessian))
 
     def direction(self, correction: Floats | None = None) -> Direction:
         """Return the step to the minimum, with a `correction` (u,) added to the gradient."""
@@ -77,35 +87,37 @@ class Model:
 
 def newton_direction(objective: Objective, jet: Jet) -> Direction:
     """Solve for the step that minimises the projected quadratic model of the objective."""
-    return newton_model(objective, jet, exact=False).direction()
+    radial = objective.radial(jet)
+    return _model(objective, jet, radial, objective.hessian(jet, radial)).direction()
 
 
-def newton_model(objective: Objective, jet: Jet, *, exact: bool) -> Model:
-    """Return the quadratic model of the objective at a map.
+def newton_models(objective: Objective, jet: Jet) -> Iterator[Model]:
+    """Yield quadratic models of the objective at a map, all positive, the last one projected.
 
-    Parameters
-    ----------
-    objective : Objective
-    jet : Jet
-    exact : bool
-        Whether to leave in the Hessian what the projection removes, or half of it, as long as it
-        stays positive: near a minimum steps are Newton's own, and far from it they follow bent
-        valleys that the projection crawls along.
+    Those before leave in the Hessian all that the projection removes, and half of it, where it
+    stays positive: near a minimum steps are Newton's own, and far from it they follow bent valleys
+    that the projection crawls along.
     """
     radial = objective.radial(jet)
     hessian = objective.hessian(jet, radial)
-    factor = None
-    if exact:
-        removed = objective.negative_part(jet, radial)
-        for part in KEPT_NEGATIVE:
-            bent = hessian.copy()
-            bent[: len(removed), : len(removed)] -= part * removed
-            factor = _factor(bent, SHIFT * float(hessian.diagonal().mean()))
-            if factor is not None:
-                break
-    if factor is None:
-        factor = _factor_shifted(hessian)
-    return Model(objective=objective, gradient=objective.gradient(jet, radial), factor=factor)
+    removed = objective.negative_part(jet, radial)
+    for part in KEPT_NEGATIVE:
+        bent = hessian.copy()
+        bent[: len(removed), : len(removed)] -= part * removed
+        factor = _factor(bent, SHIFT * float(hessian.diagonal().mean()))
+        if factor is not None:
+            gradient = objective.gradient(jet, radial)
+            yield Model(objective=objective, gradient=gradient, hessian=bent, factor=factor)
+    yield _model(objective, jet, radial, hessian)
+
+
+def _model(objective: Objective, jet: Jet, radial: Radial, hessian: Floats) -> Model:
+    return Model(
+        objective=objective,
+        gradient=objective.gradient(jet, radial),
+        hessian=hessian,
+        factor=_factor_shifted(hessian),
+    )
 
 
 def line_search(

@@ -11,6 +11,7 @@ change no map, have a stiffness of their own (`Handles`), and steps never change
 are u = 4 n − 2 − 2 q real unknowns for the n functions of the span.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
@@ -26,12 +27,16 @@ from engine.maps import Boundary
 
 # A sketched Hessian takes one sample in four, with the coefficients of its neighbours summed, as
 # long as that leaves this many for each cage vertex; samples with coefficients this far above the
-# mean (near a bound) enter one by one.
+# median (near a bound) enter one by one.
 STRIDE = 4
 SAMPLES_PER_VERTEX = 2
-STRONG = 3.0
+STIFF = 10.0
+# What keeps a Hessian positive that was summed in single precision, relative to its diagonal.
+SINGLE = 1e-6
 # Stiffness of a step against turning the whole shape by an angle; handles have some 1e3.
 DAMPING = 1e-4
+# The same where single precision adds its rounding.
+DAMPING_SINGLE = 0.1
 
 
 class Jet(NamedTuple):
@@ -53,6 +58,18 @@ class Jet(NamedTuple):
     def advanced(self, length: float, direction: "Jet") -> "Jet":
         """Return the jet of the map that lies `length` steps along a direction."""
         return Jet(*(here + length * there for here, there in zip(self, direction, strict=True)))
+
+
+class _Quadrature(NamedTuple):
+    """Samples (s,), and what they contribute to the Hessian (6, s).
+
+    The entries are, in the frames of f and g, radial and tangential of f, the same of g, between
+    both radials, and what the projection removes from the tangential of f.
+    """
+
+    samples: Indices
+    entries: Floats
+    precision: type[np.complex64] | type[np.complex128]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -81,6 +98,14 @@ class Objective:
     def _turning(self) -> Booleans:
         return np.isfinite(self.wish.rotations)
 
+    @property
+    def _is_single(self) -> bool:
+        """Whether the many calm samples are summed in single precision, in half the time.
+
+        The functions of tiny holes are too large on their rims for that.
+        """
+        return self.sketched and not self.boundary.holes
+
     def jet(self, phi: Complexes, psi: Complexes) -> Jet:
         """Measure a map, or a change of a map, by the columns (n,) of its coefficients."""
         span, coordinates = self.boundary.span, self.handles.coordinates
@@ -98,7 +123,7 @@ class Objective:
         value = self.energy(jet)
         if self.barrier is not None and np.isfinite(value):
             density = self.barrier.value(np.abs(jet.f), np.abs(jet.g))
-            value += float(self.boundary.spacing @ density)
+            value += float(self.boundary.shares @ density)
         return value
 
     def energy(self, jet: Jet) -> float:
@@ -125,7 +150,7 @@ class Objective:
         energy = symmetric_dirichlet_derivatives(a, b).weighted(self.boundary.weights)
         if self.barrier is None:
             return energy
-        return energy.plus(self.barrier.derivatives(a, b).weighted(self.boundary.spacing))
+        return energy.plus(self.barrier.derivatives(a, b).weighted(self.boundary.shares))
 
     def gradient(self, jet: Jet, radial: Radial) -> Floats:
         """Return the gradient (u,)."""
@@ -170,40 +195,42 @@ class Objective:
         h_a / a can be negative: max(h_a / a, 0) is the exact projection. The sum over the samples
         is a quadrature, coarser than that of energy and gradient. Cost: 24 s n² for s samples.
         """
-        n = len(self.boundary.span)
-        which, entries = self._quadrature(radial)
-        rows = self.boundary.derivatives[which]
-        f, g = jet.f[which], jet.g[which]
-        b = np.abs(g)
-        frame_f = f.conj() / np.abs(f)
-        frame_g = np.where(b > 0, g.conj(), 1.0) / np.where(b > 0, b, 1.0)
-        radial_f, tangential_f, radial_g, tangential_g, cross, _ = entries
-        root_f, root_g = np.sqrt(radial_f), np.sqrt(radial_g)
-        by_phi = np.concatenate(
-            [
-                rows * (root_f * frame_f)[:, None],
-                rows * (-1j * np.sqrt(tangential_f) * frame_f)[:, None],
-                *self._turning_roots(jet),
-                self._damping_root(jet),
-            ]
-        ).view(np.float64)
-        rows = rows[:, 1:]
-        by_psi = np.concatenate(
-            [
-                rows * (root_g * frame_g)[:, None],
-                rows * (-1j * np.sqrt(tangential_g) * frame_g)[:, None],
-            ]
-        ).view(np.float64)
-        s, u = len(which), len(self.handles.hessian)
         hessian = self.handles.hessian.copy()
-        hessian[: 2 * n, : 2 * n] += by_phi.T @ by_phi
-        of_psi = by_psi.T @ by_psi
-        mixed = by_phi[:s].T @ ((cross / (root_f * root_g))[:, None] * by_psi[:s])
+        calm, stiff = self._quadratures(radial)
+        rounding = self._add(hessian, jet, calm)
+        self._add(hessian, jet, stiff, [*self._turning_roots(jet), self._damping_root(jet)])
+        if self._is_single:
+            # Not against translations, which would otherwise be made by turning.
+            n, added = len(self.boundary.span.cage), SINGLE * rounding
+            np.fill_diagonal(hessian, hessian.diagonal() + added)
+            for part in (0, 1):
+                hessian[part : 2 * n : 2, part : 2 * n : 2] -= added / n
+        return hessian
+
+    def stiffening(self, jet: Jet, radial: Radial, samples: Indices) -> Floats:
+        """Return the positive part of the Hessian (u, u) of a few samples, upper triangle."""
+        hessian = np.zeros_like(self.handles.hessian)
+        entries = _entries(radial)[:, samples]
+        self._add(hessian, jet, _Quadrature(samples, entries, np.complex128))
+        return hessian
+
+    def _add(
+        self, hessian: Floats, jet: Jet, quadrature: "_Quadrature", more: Sequence[Complexes] = ()
+    ) -> float:
+        """Add samples, and further rows of φ, to a Hessian; return their mean on its diagonal."""
+        n, u = len(self.boundary.span), len(hessian)
+        rows_phi, rows_psi, cross = self._roots(jet, quadrature)
+        by_phi: Floats = np.concatenate([rows_phi, *more]).view(cross.dtype)
+        by_psi: Floats = rows_psi.view(cross.dtype)
+        of_phi: Floats = by_phi.T @ by_phi
+        of_psi: Floats = by_psi.T @ by_psi
+        mixed: Floats = by_phi[: len(cross)].T @ (cross[:, None] * by_psi[: len(cross)])
+        hessian[: 2 * n, : 2 * n] += of_phi
         hessian[2 * n :, 2 * n :] += of_psi[: u - 2 * n, : u - 2 * n]
         hessian[: 2 * n, 2 * n :] += mixed[:, : u - 2 * n]
         if self.boundary.holes:
             self._fold_logarithms(hessian, mixed, of_psi)
-        return hessian
+        return float(of_phi.diagonal().mean())
 
     def _fold_logarithms(self, hessian: Floats, mixed: Floats, of_psi: Floats) -> None:
         """Add what ψ's logarithms, the conjugates of φ's, contribute to a Hessian (u, u).
@@ -229,50 +256,66 @@ class Objective:
 
         `hessian` minus this is the exact Hessian; it need not be positive.
         """
-        which, entries = self._quadrature(radial)
-        bent = entries[-1] > 0
-        f = jet.f[which][bent]
-        roots = -1j * np.sqrt(entries[-1][bent]) * f.conj() / np.abs(f)
-        by_phi = np.concatenate(
-            [
-                self.boundary.derivatives[which][bent] * roots[:, None],
-                *self._turning_roots(jet, removed=True),
-            ]
-        ).view(np.float64)
-        removed: Floats = by_phi.T @ by_phi
+        n = len(self.boundary.span)
+        removed = np.zeros((2 * n, 2 * n))
+        calm, stiff = self._quadratures(radial)
+        for (samples, entries, precision), more in (
+            (calm, []),
+            (stiff, self._turning_roots(jet, removed=True)),
+        ):
+            bent = entries[-1] > 0
+            f = jet.f[samples[bent]]
+            roots = -1j * np.sqrt(entries[-1][bent]) * f.conj() / np.abs(f)
+            rows = self.boundary.derivatives[samples[bent]].astype(precision, copy=False)
+            rows *= roots.astype(precision)[:, None]
+            by_phi = np.concatenate([rows, *more]).view(rows.real.dtype)
+            removed += by_phi.T @ by_phi
         return removed
 
-    def _quadrature(self, radial: Radial) -> tuple[Indices, Floats]:
-        """Return the samples that enter the Hessian, with their coefficients (6, s).
+    def _roots(self, jet: Jet, quadrature: "_Quadrature") -> tuple[Complexes, Complexes, Floats]:
+        """Return rows of φ and of ψ whose Gram matrices are their blocks of the Hessian.
 
-        The last one is what the projection removes.
+        The first s rows of each are the radial ones, of the s samples: the third array (s,) weighs
+        their products between φ and ψ.
         """
-        entries = np.array(
-            [
-                radial.aa,
-                np.maximum(radial.around_a, 0.0),
-                radial.bb,
-                radial.around_b,
-                radial.ab,
-                np.maximum(-radial.around_a, 0.0),
-            ]
+        samples, entries, precision = quadrature
+        rows = self.boundary.derivatives[samples].astype(precision, copy=False)
+        f, g = jet.f[samples], jet.g[samples]
+        b = np.abs(g)
+        frame_f = f.conj() / np.abs(f)
+        frame_g = np.where(b > 0, g.conj(), 1.0) / np.where(b > 0, b, 1.0)
+        root_f, around_f, root_g, around_g = np.sqrt(entries[:4])
+        by_phi = [root_f * frame_f, -1j * around_f * frame_f]
+        by_psi = [root_g * frame_g, -1j * around_g * frame_g]
+        both = root_f * root_g
+        cross = entries[4] / np.where(both > 0, both, 1.0)
+        return (
+            np.concatenate([rows * frame.astype(precision)[:, None] for frame in by_phi]),
+            np.concatenate([rows[:, 1:] * frame.astype(precision)[:, None] for frame in by_psi]),
+            cross.astype(rows.real.dtype),
         )
+
+    def _quadratures(self, radial: Radial) -> tuple["_Quadrature", "_Quadrature"]:
+        """Return the samples that enter the Hessian, the calm and the stiff ones.
+
+        The calm ones stand for their neighbours that were added, and in a sketch for more.
+        """
+        entries = _entries(radial)
         m, n = len(self.boundary.points), len(self.boundary.span)
-        stride = min(STRIDE, m // (SAMPLES_PER_VERTEX * n)) if self.sketched else 1
-        if stride <= 1:
-            return np.arange(m), entries
-        density = radial.aa + radial.bb
-        strong = density > STRONG * self.boundary.spacing * float(density.sum())
-        starts = np.concatenate(
-            [np.arange(*loop, stride) for loop in pairwise([*self.boundary.starts, m])]
-        )
-        alone = np.flatnonzero(strong)
-        summed = np.add.reduceat(np.where(strong, 0.0, entries), starts, axis=1)
-        middles = np.minimum(starts + stride // 2, m - 1)
+        own = np.flatnonzero(self.boundary.weights)
+        stride = min(STRIDE, len(own) // (SAMPLES_PER_VERTEX * n)) if self.sketched else 1
+        loops = np.searchsorted(own, [*self.boundary.starts, m])
+        first = np.concatenate([np.arange(*loop, max(stride, 1)) for loop in pairwise(loops)])
+        density = (radial.aa + radial.bb) / self.boundary.shares
+        stiff = density > STIFF * float(np.median(density))
+        summed = np.add.reduceat(np.where(stiff, 0.0, entries), own[first], axis=1)
+        middles = own[np.minimum(first + stride // 2, len(own) - 1)]
         some = summed[0] > 0
         return (
-            np.concatenate([middles[some], alone]),
-            np.hstack([summed[:, some], entries[:, alone]]),
+            _Quadrature(
+                middles[some], summed[:, some], np.complex64 if self._is_single else np.complex128
+            ),
+            _Quadrature(np.flatnonzero(stiff), entries[:, stiff], np.complex128),
         )
 
     def _damping_root(self, jet: Jet) -> Complexes:
@@ -280,7 +323,8 @@ class Objective:
 
         One handle leaves the rotation of the shape free; rounding alone would then turn it.
         """
-        per_sample = -1j * np.sqrt(DAMPING) * self.boundary.weights / jet.f
+        damping = DAMPING_SINGLE if self._is_single else DAMPING
+        per_sample = -1j * np.sqrt(damping) * self.boundary.weights / jet.f
         row: Complexes = per_sample[None, :] @ self.boundary.derivatives
         return row
 
@@ -314,3 +358,17 @@ class Objective:
         scale = np.sqrt(self._turning_stiffness * np.abs(eigenvalue)) / length
         frame = scale * (-2.0 * delta - 1j * eigenvalue) / jet.fz[self._turning]
         return [frame[:, None] * self._turning_rows]
+
+
+def _entries(radial: Radial) -> Floats:
+    """Return what samples contribute to the Hessian, as a `_Quadrature` has it."""
+    return np.array(
+        [
+            radial.aa,
+            np.maximum(radial.around_a, 0.0),
+            radial.bb,
+            radial.around_b,
+            radial.ab,
+            np.maximum(-radial.around_a, 0.0),
+        ]
+    )

@@ -38,7 +38,7 @@ PROGRESS = 1e-3
 # After so many steps without progress the drag is at rest.
 IDLE_AT_REST = 50
 # The walls stand inside the limits by this part of the way to the identity.
-MARGIN = 1e-4
+MARGIN = 3e-4
 # A step leaves at least this part of the slack between the walls and the map.
 KEPT = 0.1
 # While a map is outside its bounds the limits follow it at this relative distance.
@@ -130,18 +130,26 @@ def cut_to_leash(
 
 def rigidly_aligned(handles: Handles, wish: Wish, at_rest: HarmonicMap) -> HarmonicMap:
     """Return the rigid motion that brings the shape at rest nearest to its wish."""
-    centre, wanted, angle = _common_motion(handles, handles.points, wish.positions)
+    centre, wanted, angle, _ = _common_motion(handles, handles.points, wish.positions)
     turn = complex(np.exp(1j * angle))
     return HarmonicMap.similarity(
         at_rest.cage, at_rest.holes, factor=turn, shift=wanted - turn * centre
     )
 
 
+def are_correlated(handles: Handles, targets: Complexes) -> bool:
+    """Tell whether a rotation of the handles as a whole leads most of the way to their targets."""
+    if len(targets) < 2:
+        return True
+    _, _, _, correlation = _common_motion(handles, handles.points, targets)
+    return correlation > CORRELATED
+
+
 def _turned(handles: Handles, positions: Complexes, targets: Complexes, most: float) -> Complexes:
     """Return the positions turned as a whole towards the targets, up to an angle."""
     if len(positions) == 0:
         return positions
-    centre, _, angle = _common_motion(handles, positions, targets)
+    centre, _, angle, _ = _common_motion(handles, positions, targets)
     turn = np.exp(1j * np.clip(angle, -most, most))
     turned: Complexes = centre + turn * (positions - centre)
     return turned
@@ -149,16 +157,19 @@ def _turned(handles: Handles, positions: Complexes, targets: Complexes, most: fl
 
 def _common_motion(
     handles: Handles, positions: Complexes, targets: Complexes
-) -> tuple[complex, complex, float]:
-    """Return the centres of positions and targets, and the angle between both (Procrustes)."""
+) -> tuple[complex, complex, float, float]:
+    """Return the centres of positions and targets, the angle between both, and its correlation.
+
+    The angle is Procrustes's, and 0 where the correlation (0 to 1) is weak.
+    """
     weights = handles.stiffness / handles.stiffness.sum()
     centre, wanted = complex(weights @ positions), complex(weights @ targets)
     from_centre, from_wanted = positions - centre, targets - wanted
-    correlation = weights @ (from_centre.conj() * from_wanted)
-    scale = weights @ (np.abs(from_centre) * np.abs(from_wanted))
-    if abs(correlation) <= CORRELATED * scale:
-        return centre, wanted, 0.0
-    return centre, wanted, float(np.angle(correlation))
+    product = weights @ (from_centre.conj() * from_wanted)
+    scale = float(weights @ (np.abs(from_centre) * np.abs(from_wanted)))
+    if abs(product) <= CORRELATED * scale:
+        return centre, wanted, 0.0, float(abs(product)) / max(scale, np.finfo(np.float64).tiny)
+    return centre, wanted, float(np.angle(product)), float(abs(product)) / scale
 
 
 def limits_for(certificate: Certificate, bounds: Limits) -> Limits:

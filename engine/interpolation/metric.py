@@ -18,8 +18,8 @@ from engine.chebyshev import PiecewiseSeries, nodes, to_coefficients
 from engine.dirichlet import Extension
 from engine.interpolation.derivatives import Derivatives, Passage
 from engine.interpolation.eta import EtaBlend
-from engine.interpolation.passing import Course, Tangent, bernstein, curbed
-from engine.maps import Bounds, derivatives_of
+from engine.interpolation.passing import Course
+from engine.maps import derivatives_of
 from engine.paths import IntegrationPaths
 
 DEGREE = 24  # of the series of a piece of time
@@ -46,10 +46,7 @@ class MetricBlend:
 
     Parameters
     ----------
-    full : Course
-        Of log f_z: the interval's, with all of its velocities.
     eta : EtaBlend
-        Along the interval's course.
     series : PiecewiseSeries
         c_j.
     modes : complex128, shape (j, s)
@@ -58,7 +55,6 @@ class MetricBlend:
         H_j' there: the square of a step multiplies it, and single precision is plenty.
     """
 
-    full: Course
     eta: EtaBlend
     series: PiecewiseSeries
     modes: Complexes
@@ -68,19 +64,17 @@ class MetricBlend:
     def of(
         cls,
         passage: Passage,
-        bounds: Bounds,
         paths: IntegrationPaths,
         transform: Extension,
     ) -> Self:
         """Solve the Dirichlet problems of the residual between two keyframes."""
         fz, fzbar = derivatives_of([key.map for key in passage.keyframes], transform.nodes)
-        real_parts, series = separate(OutlineMetric.of(fz, fzbar, passage.course, bounds))
+        real_parts, series = separate(OutlineMetric.of(fz, fzbar), passage.course)
         modes, modes_z = transform.extend(real_parts)
         modes.imag -= modes[0].imag
         # Unbounded there; the steps beside these nodes are so short that it is not missed.
         modes_z[paths.cornered] = 0.0
         return cls(
-            full=passage.course.full,
             eta=EtaBlend.of(passage),
             series=series,
             modes=freeze(np.ascontiguousarray(modes.T)),
@@ -96,57 +90,54 @@ class MetricBlend:
     def derivatives(self, time: float) -> Derivatives:
         """Blend the metric on the outline and η everywhere."""
         passage = self.eta.passage
-        logarithm, logarithm_z = passage.log_fz(self.full(time))
+        weights = passage.course(time)
+        logarithm, logarithm_z = passage.log_fz(weights)
         coefficients = self.series(time)
         # As reals: a complex product with real coefficients would do half its work on zeros.
         logarithm.view(np.float64)[:] += coefficients @ self.modes.view(np.float64)
         single = coefficients.astype(np.float32)
         logarithm_z.view(np.float64)[:] += single @ self.modes_z.view(np.float32)
-        return self.eta.with_log_fz(logarithm, logarithm_z, passage.course(time))
+        return self.eta.with_log_fz(logarithm, logarithm_z, weights)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class OutlineMetric:
-    """The metrics along an interval's course at points of the outline.
+    """The metrics of an interval's keyframes at points of the outline.
 
     Parameters
     ----------
-    course : Course
-        Of η.
-    log_modulus : float64, shape (q, N)
-        ln |f_z| of the keyframes.
-    trace : float64, shape (2, N) or (4, N)
-        𝒜 = |f_z|² + |f_z̄|², half the trace of the metric tensor: of two keyframes where the course
-        is straight, else control values.
+    log_modulus, trace : float64, shape (q, N)
+        ln |f_z|, and 𝒜 = |f_z|² + |f_z̄|², half the trace of the metric tensor.
     eta : complex128, shape (q, N)
         η up to conjugation, which |f_z| does not see.
     """
 
-    course: Course
     log_modulus: Floats
     trace: Floats
     eta: Complexes
 
     @classmethod
-    def of(cls, fz: Complexes, fzbar: Complexes, course: Course, bounds: Bounds) -> "OutlineMetric":
-        """Work the metrics out from the derivatives (q, N) of the course's keyframes."""
-        trace, eta = np.abs(fz) ** 2 + np.abs(fzbar) ** 2, fz * fzbar.conj()
+    def of(cls, fz: Complexes, fzbar: Complexes) -> "OutlineMetric":
+        """Work the metrics out from the derivatives (q, N)."""
         return cls(
-            course=course,
             log_modulus=np.log(np.abs(fz)),
-            trace=_controls(trace, eta, course, bounds),
-            eta=eta,
+            trace=np.abs(fz) ** 2 + np.abs(fzbar) ** 2,
+            eta=fz * fzbar.conj(),
         )
 
-    def residuals(self, times: Floats) -> Floats:
-        """Return ln |f_z| of the blended metric less the blend of the ln |f_z|, (N, times).
+    def residuals(self, weights: Floats) -> Floats:
+        """Return ln |f_z| of the blended metric less the blend of the ln |f_z|, (N, t).
 
         Departs from the paper: the bars of Equation (13) and the lines before it were lost; the
         product of its roots is |η|².
+
+        Parameters
+        ----------
+        weights : float64, shape (q, t)
+            Of the keyframes, at t times.
         """
-        weights = self.course.full.at(times)
-        trace = self.trace.T @ (weights if self.course.is_straight else bernstein(times))
-        twice_eta = 2 * np.abs(self.eta.T @ self.course.at(times))
+        trace = self.trace.T @ weights
+        twice_eta = 2 * np.abs(self.eta.T @ weights)
         # σ_a² = 𝒜 + 2|η| and σ_b² = 𝒜 − 2|η|, Equations (10) and (11); K² is their quotient,
         # Equation (12). The first is convex in time and the second concave: Properties 5' to 7'.
         # Their product is the discriminant of (13), above 0 by Lemma 7; as a product it keeps its
@@ -157,24 +148,8 @@ class OutlineMetric:
         return residuals
 
 
-def _controls(trace: Floats, eta: Complexes, course: Course, bounds: Bounds) -> Floats:
-    """Return the control values of 𝒜 (4, N) along a course, from the keyframes' 𝒜 and η (q, N)."""
-    full = course.full.controls
-    if full is None:
-        return trace
-    controls: Floats = full @ trace
-    start, end = course.ends
-    if isinstance(start, Tangent):
-        curb = curbed(trace[:3], eta[:3], start, bounds)
-        controls[1] = trace[1] + start.joint.arms[1] * curb
-    if isinstance(end, Tangent):
-        curb = curbed(trace[-3:], eta[-3:], end, bounds)
-        controls[2] = trace[-2] + end.joint.arms[0] * curb
-    return controls
-
-
-def separate(metric: OutlineMetric) -> tuple[Floats, PiecewiseSeries]:
-    """Write the residuals as a sum of products of functions on the outline and of time.
+def separate(metric: OutlineMetric, course: Course) -> tuple[Floats, PiecewiseSeries]:
+    """Write the residuals along a course as a sum of products of functions on the outline and time.
 
     Returns
     -------
@@ -188,7 +163,7 @@ def separate(metric: OutlineMetric) -> tuple[Floats, PiecewiseSeries]:
     while pending:
         start, end = pending.pop()
         times = start + (end - start) * (1 + x) / 2
-        coefficients = metric.residuals(times) @ to_coefficients(DEGREE).T
+        coefficients = metric.residuals(course.at(times)) @ to_coefficients(DEGREE).T
         rest = np.abs(coefficients[:, -LAST_TERMS:]).max()
         if rest <= TOLERANCE or end - start <= SHORTEST:
             breaks.append(end)

@@ -1,7 +1,7 @@
 """From keyframes and points to in-betweens at any time."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
@@ -21,7 +21,7 @@ from engine.interpolation.inbetweens import (
 from engine.interpolation.keyframe_samples import KeyframeSamples, sample_keyframes
 from engine.interpolation.metric import MetricBlend
 from engine.interpolation.nu import NuBlend
-from engine.interpolation.passing import Course, Joint, Tangent, shortened
+from engine.interpolation.passing import Course, Joint, Tangent, tangent_length
 from engine.interpolation.scaling import SharpScaling
 from engine.interpolation.sites import Sites, prepare_sites
 from engine.interpolation.smooth_scaling import Scaling
@@ -138,7 +138,9 @@ def prepare(
         extension = transform.at(sites.paths.nodes)
     joint = Joint(1.0, 1.0)  # keyframes are at whole times
     tangents: list[Tangent | None] = [
-        shortened(variant, three, joint, bounds, sites.boundary) if through and three else None
+        Tangent(joint, tangent_length(variant, three, joint, bounds, sites.boundary))
+        if through and three
+        else None
         for three in _neighbourhoods(maps, loop=loop)
     ]
     intervals = []
@@ -162,7 +164,7 @@ def prepare(
         sites=sites,
         keyframes=samples,
         intervals=tuple(intervals),
-        tangents=tuple(1.0 if tangent is None else tangent.kept for tangent in tangents),
+        tangents=tuple(1.0 if tangent is None else tangent.length for tangent in tangents),
     )
 
 
@@ -196,8 +198,7 @@ def prepare_inbetweens(
     course : Course, optional
         By default the linear blend of the paper.
     bounds : Bounds
-        That metric and a scaled variant obey along other courses; with the straight one they obey
-        their keyframes' own.
+        That a scaled variant obeys along another course; the straight one obeys its keyframes' own.
 
     Raises
     ------
@@ -220,9 +221,7 @@ def prepare_inbetweens(
             scaled = [key.map for key in passage.keyframes]
             scale = Scaling.of(SharpScaling.of(scaled, sites.outline, passage.course, bounds))
         case Variant.METRIC:
-            blend = MetricBlend.of(passage, bounds, sites.paths, _matching(transform, sites))
-            # The course of η; all else keeps its velocities.
-            passage = replace(passage, course=passage.course.full)
+            blend = MetricBlend.of(passage, sites.paths, _matching(transform, sites))
     return IntegratedInbetweens(sites=sites, passage=passage, blend=blend, scale=scale)
 
 

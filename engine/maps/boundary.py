@@ -45,8 +45,9 @@ class Boundary:
     weights : float64, shape (m,)
         Of the samples in means over the boundary, with sum 1: the arc length that belongs to each,
         and 0 for those that were added. Sums do not change by refinement.
-    spacing : float64, shape (m,)
-        The arc length that belongs to each sample, added or not, with sum 1.
+    shares : float64, shape (m,)
+        Of the samples in sums of barriers: their weights, and for those that were added the mean
+        weight. A bound that presses at one of these few points then keeps as much slack as others.
     half_lengths : float64, shape (m,)
         Of the segments.
     derivatives : complex128, shape (m, n)
@@ -64,7 +65,7 @@ class Boundary:
     points: Complexes
     starts: Indices
     weights: Floats
-    spacing: Floats
+    shares: Floats
     half_lengths: Floats
     derivatives: Complexes
     bending_kernel: Floats
@@ -116,7 +117,7 @@ class Boundary:
             points=readonly(points),
             starts=readonly(starts),
             weights=lengths,
-            spacing=lengths,
+            shares=lengths,
             half_lengths=readonly(half),
             derivatives=readonly(span.derivatives(points)),
             bending_kernel=readonly(span.bending_kernel(points, ends)),
@@ -170,12 +171,13 @@ class Boundary:
         kernel[first] = self.span.bending_kernel(starts, middles)
         kernel[first + 1] = self.span.bending_kernel(middles, ends)
         rows = self.span.derivatives(middles)
+        share = 1.0 / np.count_nonzero(self.weights)
         return replace(
             self,
             points=readonly(points),
             starts=readonly(loops),
             weights=readonly(np.insert(self.weights, segments + 1, 0.0)),
-            spacing=readonly(_arc_lengths(half, loops)),
+            shares=readonly(np.insert(self.shares, segments + 1, share)),
             half_lengths=readonly(half),
             derivatives=readonly(np.insert(self.derivatives, segments + 1, rows, axis=0)),
             bending_kernel=readonly(kernel),

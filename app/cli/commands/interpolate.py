@@ -4,11 +4,10 @@ import argparse
 
 import numpy as np
 
-from app.document import NATURAL
 from app.errors import LissomError
 from app.storage import check_writable, read_arrays, write_arrays
 from engine.interpolation import prepare
-from engine.maps import Bounds, HarmonicMap
+from engine.maps import HarmonicMap
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -25,13 +24,7 @@ def run(arguments: argparse.Namespace) -> int:
             "phi and psi must both be of shape (keyframes, cage vertices); they are of shape "
             f"{phi.shape} and {psi.shape}, with a cage of shape {data['cage'].shape}"
         )
-    if arguments.bounds and not arguments.through:
-        raise LissomError("--bounds is what --through keeps; say --through as well")
-    _require_in_range(arguments.times, len(phi), loop=arguments.loop)
-    bounds = NATURAL.bounds
-    if arguments.bounds:
-        k, sigma_a, sigma_b = arguments.bounds
-        bounds = Bounds(k=k, sigma_a=sigma_a, sigma_b=sigma_b)
+    _require_in_range(arguments.times, len(phi))
     prepared = prepare(
         [HarmonicMap(cage=data["cage"], phi=a, psi=b) for a, b in zip(phi, psi, strict=True)],
         data["points"],
@@ -40,9 +33,6 @@ def run(arguments: argparse.Namespace) -> int:
         triangles=data.get("triangles"),
         anchor=data.get("anchor"),
         turns=data.get("turns"),
-        through=arguments.through,
-        loop=arguments.loop,
-        bounds=bounds,
     )
     frames = [prepared.frame(time) for time in arguments.times]
     results = {
@@ -54,18 +44,15 @@ def run(arguments: argparse.Namespace) -> int:
     }
     if prepared.variant.is_scaled:
         results["rho"] = np.array([frame.rho for frame in frames])
-    if arguments.through:
-        results["tangents"] = np.array(prepared.tangents)
     write_arrays(arguments.out, results)
     return 0
 
 
-def _require_in_range(times: tuple[float, ...], keyframes: int, *, loop: bool) -> None:
+def _require_in_range(times: tuple[float, ...], keyframes: int) -> None:
     """Refuse times before any long computation."""
-    last = keyframes if loop else keyframes - 1
     for time in times:
-        if keyframes >= 2 and not 0 <= time <= last:
+        if keyframes >= 2 and not 0 <= time <= keyframes - 1:
             raise LissomError(
                 f"time {time:g} is out of range: {keyframes} keyframes span the times from 0 to "
-                f"{last}"
+                f"{keyframes - 1}"
             )

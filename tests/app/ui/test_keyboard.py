@@ -231,8 +231,3 @@ def test_no_frame_stays_around_a_button_when_a_question_is_gone(window):
     imgui.get_io().add_mouse_pos_event(5.0, 795.0)
     window.frames(30)
     assert window.picture() == before
-
-
-def test_no_two_actions_have_the_same_keys():
-    taken = [int(keys) for binding in BINDINGS.values() for keys in binding.keys]
-    assert len(taken) == len(set(taken))

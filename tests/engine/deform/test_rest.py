@@ -17,7 +17,8 @@ from scipy.optimize import minimize, nnls
 from shapes import regular_polygon
 
 from engine.deform import Deformer, Handles, Objective, Status
-from engine.deform.continuation import MARGIN, OPTIMAL
+from engine.deform.continuation import OPTIMAL
+from engine.deform.steering import MARGIN
 from engine.maps import Boundary, Bounds
 from engine.maps.cauchy import cauchy_coordinates, cauchy_derivatives
 
@@ -196,6 +197,39 @@ def test_resuming_never_loses_and_gains_little(targets):
     again = settled(deformer, targets, deformer.start(state.map))
     before, after = state.statistics.objective, again.statistics.objective
     assert (1 - 1e-3) * before <= after <= (1 + 1e-9) * before
+
+
+@pytest.mark.parametrize(
+    ("deformer", "targets"),
+    [
+        (star(TIGHT), STAR_POINTS[[3, 1, 5, 2, 0, 4]]),
+        (star(Bounds(k=0.13, sigma_a=1.3, sigma_b=0.77)), STAR_POINTS.mean() + 0.02 * STAR_POINTS),
+        (bar(Bounds(k=0.9, sigma_a=10.0, sigma_b=0.1)), BAR_POINTS[[2, 1, 0]] + 0.4j),
+    ],
+    ids=["swapped", "collapsed", "turned around"],
+)
+def test_hard_requests_are_proven_minima_within_150_steps(deformer, targets):
+    wish = deformer.handles.wish(targets)
+    state, steps = deformer.settle(deformer.start(), wish)
+    assert state.status in (Status.AT_LIMITS, Status.CONVERGED)
+    assert state.statistics.optimality <= OPTIMAL
+    assert steps <= 150
+    assert_sound(state, deformer.bounds)
+
+
+def test_a_drag_at_tight_bounds_comes_to_rest_after_release():
+    deformer = star(Bounds(k=0.35, sigma_a=1.6, sigma_b=0.6))
+    state, targets = deformer.start(), STAR_POINTS + 0.5 * np.exp(2j * np.arange(6))
+    for share in np.linspace(0, 1, 9)[1:]:
+        row = STAR_POINTS + share * (targets - STAR_POINTS)
+        state = deformer.step(state, deformer.handles.wish(row))
+    wish, steps = deformer.handles.wish(targets), 0
+    while not state.status.is_final:
+        state, steps = deformer.step(state, wish), steps + 1
+    assert state.status is Status.AT_LIMITS
+    assert steps < 100
+    afresh = settled(deformer, targets)
+    assert_allclose(state.statistics.objective, afresh.statistics.objective, rtol=2e-3)
 
 
 def test_coming_to_rest_is_repeated_bit_for_bit():
