@@ -25,7 +25,7 @@ Equation map of *Bounded Distortion Harmonic Shape Interpolation* (Chien, Chen, 
     (8), (16)-(18)  scaled η, largest ρ(t)           engine.interpolation.scaling.SharpScaling
     Property 4      ρ(t) without kinks               engine.interpolation.smooth_scaling.Scaling
     (9)-(13)        metric on the outline, Lemma 7   engine.interpolation.metric.OutlineMetric
-    Section 6       metric variant                   engine.interpolation.metric.MetricBlend
+    Section 6       metric variant                   engine.interpolation.metric.MetricResidual
     Section 7.4     Hilbert transform                engine.dirichlet.hilbert.HilbertTransform
     Section 7       spanning tree from the anchor    engine.paths.spanning_tree.SpanningTree
     Section 7       quadrature along its edges       engine.paths.integration_paths.IntegrationPaths

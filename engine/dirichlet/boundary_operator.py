@@ -2,9 +2,15 @@
 
 Row i is the equation at node i, μ/2 + 1/(2π) ∮ μ Im(dζ / (ζ − z)) = b: plain quadrature far from a
 panel, and exact integrals of its polynomials near it.
+
+On the loop of a hole the mean of μ there is added. Constants there, which the integral does not
+see, are ruled out by it, and what the mean is in the end is what the real part lacks: a function
+that is to be the real part of a single-valued one may have to give way by a constant around each
+hole (S. Mikhlin, *Integral Equations*, 1957, section 31).
 """
 
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Self
 
 import numpy as np
@@ -28,12 +34,18 @@ class BoundaryOperator:
         Entries of panels at the nodes near them, zeros among them.
     near_by_column : csr_array, float64, shape (N, N)
         The transpose.
+    starts : intp, shape (1 + holes,)
+        The first node of each loop.
+    means : float64, shape (holes, N)
+        The weights of the mean over the loop of each hole.
     """
 
     nodes: Complexes
     differentials: Complexes
     near: csr_array
     near_by_column: csr_array
+    starts: Indices
+    means: Floats
 
     @classmethod
     def of(cls, panels: Panels) -> Self:
@@ -56,11 +68,19 @@ class BoundaryOperator:
         row = np.repeat(pairs[:, 0], NODES)
         entries /= 2 * np.pi
         near = csr_array((entries.ravel(), (row, columns.ravel())), shape=(size, size))
+        differentials = panels.differentials().ravel()
+        firsts = NODES * panels.starts
+        means = np.zeros((len(firsts) - 1, size))
+        for number, (start, end) in enumerate(pairwise([*firsts[1:], size])):
+            lengths = np.abs(differentials[start:end])
+            means[number, start:end] = lengths / lengths.sum()
         return cls(
             nodes=nodes,
-            differentials=panels.differentials().ravel(),
+            differentials=differentials,
             near=near,
             near_by_column=near.T.tocsr(),
+            starts=firsts,
+            means=means,
         )
 
     def near_rows(self, columns: Indices) -> Indices:
@@ -85,6 +105,8 @@ class BoundaryOperator:
         column = place[column]
         there = column >= 0
         found[row[there], column[there]] = self.near.data[entry[there]]
+        for mean in self.means:
+            found += (mean[rows, None] > 0) * mean[columns]
         return found
 
 
@@ -110,7 +132,7 @@ def _near_entries(panels: Panels, nodes: Complexes, power: int) -> tuple[Indices
     if power != 1:
         # Across a corner both panels start there, and nodes as close to it as 1e-10 of a panel keep
         # all their digits only if the corner is never added and subtracted.
-        across = np.where(panels.forward[panel], panel - 1, panel + 1) % len(panels)
+        across = np.where(panels.forward[panel], panels.before[panel], panels.following[panel])
         beside = node // NODES == across
         arcs = panels.arcs().ravel()[node[beside]]
         w[beside] = arcs * (panels.span[across[beside]] / panels.span[panel[beside]])

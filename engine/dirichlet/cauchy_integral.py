@@ -63,8 +63,8 @@ class CauchyIntegral:
         keys = near.squares * count + near.clusters
         alone = np.array(
             [
-                ~np.isin(near.squares * count + (near.clusters + side) % count, keys)
-                for side in (-1, 1)
+                ~np.isin(near.squares * count + beside[near.clusters], keys)
+                for beside in (panels.before, panels.following)
             ]
         )
         # The near pairs of a leaf belong to each of its points.

@@ -6,15 +6,18 @@ with a real density,
     g(z) = 1/(2πi) ∮ μ(ζ) dζ / (ζ − z),      μ/2 + 1/(2π) ∮ μ Im(dζ / (ζ − z)) = b  on the outline,
 
 an integral equation of the second kind with one solution. It is collocated at the nodes of graded
-panels, with near and adjacent panels integrated exactly, and solved directly.
+panels, with near and adjacent panels integrated exactly, and solved directly. Around holes a
+single-valued g has the real part b but for a constant on the loop of each, which comes out with it
+(`engine.dirichlet.boundary_operator`).
 
 Departs from the paper: Section 7.4 uses the complex coordinates of Weber and Gotsman (2010) on the
 cage's own n-dimensional space. That is wrong by up to a percent of the diameter, does not return
 the keyframes, and loses the bounds that Theorem 6 proves.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Self
+from typing import NamedTuple, Self
 
 import numpy as np
 
@@ -23,43 +26,71 @@ from engine.dirichlet.boundary_operator import BoundaryOperator
 from engine.dirichlet.cauchy_integral import CauchyIntegral
 from engine.dirichlet.panels import Panels
 from engine.dirichlet.skeleton_solver import SkeletonSolver
-from engine.geometry import box_diagonal, contains, distance_to_boundary, edges
+from engine.geometry import (
+    Hole,
+    box_diagonal,
+    contains,
+    distance_to_boundary,
+    loop_ends,
+    next_on_loop,
+)
 
 EDGE_DEPTH, CORNER_DEPTH = 1e-9, 1e-13  # of points on the outline, over its size
 
 
+class Extended(NamedTuple):
+    """Holomorphic functions with given real parts on the boundary.
+
+    Parameters
+    ----------
+    values, derivatives : complex128, shape (t, j)
+        Of each function at the points.
+    lacking : float64, shape (holes, j)
+        By how much, a constant around each hole, the real parts are below what was given.
+    """
+
+    values: Complexes
+    derivatives: Complexes
+    lacking: Floats
+
+
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class HilbertTransform:
-    """The integral equation of one outline, factorised; it serves all intervals.
+    """The integral equation of one domain, factorised; it serves all intervals.
 
     Build it with `HilbertTransform.on`.
 
     Parameters
     ----------
-    outline : complex128, shape (p,)
+    loops : tuple of complex128
+        The outline, and those of holes.
     panels : Panels
     solver : SkeletonSolver
         From real parts at the nodes to densities.
+    means : float64, shape (holes, N)
+        From densities to the constants by which the real parts give way around holes.
     """
 
-    outline: Complexes
+    loops: tuple[Complexes, ...]
     panels: Panels
     solver: SkeletonSolver
+    means: Floats
 
     @classmethod
-    def on(cls, outline: Complexes, cage: Complexes) -> Self:
-        """Discretise and factorise the integral equation of an outline inside a cage.
+    def on(cls, outline: Complexes, cage: Complexes, holes: Sequence[Hole] = ()) -> Self:
+        """Discretise and factorise the integral equation of an outline inside a cage, and holes.
 
         The number of nodes follows from the shape: it grows with the number of corners, and where
         the outline comes near itself or near the cage. Time and memory grow with it.
         """
-        return cls.of(outline, Panels.on(outline, cage))
+        return cls.of((outline, *(hole.outline for hole in holes)), Panels.on(outline, cage, holes))
 
     @classmethod
-    def of(cls, outline: Complexes, panels: Panels) -> Self:
-        """Factorise the integral equation on given panels of an outline."""
-        solver = SkeletonSolver.of(BoundaryOperator.of(panels))
-        return cls(outline=outline, panels=panels, solver=solver)
+    def of(cls, loops: Sequence[Complexes], panels: Panels) -> Self:
+        """Factorise the integral equation on given panels of some loops."""
+        operator = BoundaryOperator.of(panels)
+        solver = SkeletonSolver.of(operator)
+        return cls(loops=tuple(loops), panels=panels, solver=solver, means=operator.means)
 
     @property
     def nbytes(self) -> int:
@@ -68,7 +99,7 @@ class HilbertTransform:
 
     @property
     def nodes(self) -> Complexes:
-        """Points of the outline (N,) at which real parts are given."""
+        """Points of the boundary (N,) at which real parts are given."""
         return self.panels.nodes.ravel()
 
     def at(self, points: Complexes) -> "Extension":
@@ -76,7 +107,7 @@ class HilbertTransform:
 
         Time and memory grow with the number of points and nodes, and not with their product.
         """
-        inside = _strictly_inside(self.outline, points)
+        inside = _strictly_inside(self.loops, points)
         integral = CauchyIntegral.of(self.panels, inside)
         return Extension(transform=self, points=points, integral=integral)
 
@@ -92,7 +123,7 @@ class Extension:
     transform : HilbertTransform
     points : complex128, shape (t,)
     integral : CauchyIntegral
-        At the points, or a hair's breadth from those that are on the outline.
+        At the points, or a hair's breadth from those that are on the boundary.
     """
 
     transform: HilbertTransform
@@ -100,13 +131,13 @@ class Extension:
     integral: CauchyIntegral
 
     @property
-    def outline(self) -> Complexes:
-        """The outline (p,)."""
-        return self.transform.outline
+    def loops(self) -> tuple[Complexes, ...]:
+        """The outline, and those of holes."""
+        return self.transform.loops
 
     @property
     def nodes(self) -> Complexes:
-        """Points of the outline (N,) at which real parts are given."""
+        """Points of the boundary (N,) at which real parts are given."""
         return self.transform.nodes
 
     @property
@@ -114,46 +145,48 @@ class Extension:
         """Memory beyond the transform's own, in bytes."""
         return self.integral.nbytes
 
-    def extend(self, real_parts: Floats) -> tuple[Complexes, Complexes]:
-        """Return holomorphic functions with given real parts on the outline, and their derivatives.
+    def extend(self, real_parts: Floats) -> Extended:
+        """Return holomorphic functions with given real parts on the boundary.
+
+        They are so up to an imaginary constant. At a corner that turns inwards a derivative is
+        unbounded, and the value there means nothing.
 
         Parameters
         ----------
         real_parts : float64, shape (N, j)
             At `nodes`.
-
-        Returns
-        -------
-        values, derivatives : complex128, shape (t, j)
-            Of each function, up to an imaginary constant. At a corner that turns inwards a
-            derivative is unbounded, and the value there means nothing.
         """
-        return self.integral(self.transform.solver(real_parts))
+        densities = self.transform.solver(real_parts)
+        return Extended(*self.integral(densities), self.transform.means @ densities)
 
 
-def _strictly_inside(outline: Complexes, points: Complexes) -> Complexes:
-    """Move points on the outline, or outside it by rounding, a hair's breadth inside.
+def _strictly_inside(loops: Sequence[Complexes], points: Complexes) -> Complexes:
+    """Move points on the boundary, or outside it by rounding, a hair's breadth inside.
 
     There the limit from inside is meant. Where two panels meet on an edge, the logarithms of both
     cancel only as far as the point's distance is known: 1e-9 of the size leaves seven digits. At a
     corner both panels start from the same point, and 1e-13 keeps the root of a distance small.
     """
+    outline, *holes = loops
     size = box_diagonal(outline)
-    close = distance_to_boundary(outline, points) < EDGE_DEPTH * size
-    close |= ~contains(outline, points)
+    close = distance_to_boundary(outline, points, holes) < EDGE_DEPTH * size
+    close |= ~contains(outline, points, holes=holes)
     moved = points.copy()
     z = points[close, None]
-    sides = edges(outline)
+    corners = np.concatenate(loops)
+    sides = loop_ends(loops) - corners
     direction = sides / np.abs(sides)
-    along = np.clip(((z - outline) * sides.conj()).real / np.abs(sides) ** 2, 0.0, 1.0)
-    feet = outline + along * sides
+    along = np.clip(((z - corners) * sides.conj()).real / np.abs(sides) ** 2, 0.0, 1.0)
+    feet = corners + along * sides
     rows, nearest = np.arange(len(z)), np.abs(z - feet).argmin(axis=1)
     inside = feet[rows, nearest] + 1j * EDGE_DEPTH * size * direction[nearest]
-    interior_angle = np.pi - np.angle(direction / np.roll(direction, 1))
+    firsts = np.cumsum([0, *map(len, loops[:-1])])
+    before = np.argsort(next_on_loop(firsts, len(corners)))
+    interior_angle = np.pi - np.angle(direction / direction[before])
     bisector = direction * np.exp(0.5j * interior_angle)
-    to_vertex = np.abs(z - outline)
+    to_vertex = np.abs(z - corners)
     vertex = to_vertex.argmin(axis=1)
     at_corner = to_vertex[rows, vertex] < 4 * EDGE_DEPTH * size
-    corner = outline[vertex] + CORNER_DEPTH * size * bisector[vertex]
+    corner = corners[vertex] + CORNER_DEPTH * size * bisector[vertex]
     moved[close] = np.where(at_corner, corner, inside)
     return moved

@@ -1,5 +1,6 @@
-"""Straight panels of an outline, on which densities are polynomials in a graded parameter."""
+"""Straight panels of a boundary, on which densities are polynomials in a graded parameter."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
 from typing import Self
@@ -7,7 +8,14 @@ from typing import Self
 import numpy as np
 
 from engine.arrays import Booleans, Complexes, Floats, Indices, freeze
-from engine.geometry import Pieces, bisect, distance_to_segments
+from engine.geometry import (
+    Hole,
+    Pieces,
+    bisect,
+    distance_to_segments,
+    loop_ends,
+    next_on_loop,
+)
 
 NODES = 12  # Gauss-Legendre nodes of a panel
 POWER = 3  # grading at corners: arc length is the third power of the parameter
@@ -20,7 +28,7 @@ FINEST = 2.0**-20  # of an edge: panels are not cut below this
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Panels:
-    """Pieces ζ(τ) = origin + span · τ^power of an outline, 0 ≤ τ ≤ 1, in order along it.
+    """Pieces ζ(τ) = origin + span · τ^power of a boundary, 0 ≤ τ ≤ 1, in order along its loops.
 
     A panel that ends at a corner has its origin there and the power `POWER`, the others have the
     power 1. Solutions of the Dirichlet problem behave like s^β at a corner, with β above 1/2; in τ
@@ -31,48 +39,73 @@ class Panels:
     origin, span : complex128, shape (p,)
     power : intp, shape (p,)
     forward : bool, shape (p,)
-        Whether the panel runs from its origin along the outline, or against it.
+        Whether the panel runs from its origin along its loop, or against it.
+    starts : intp, shape (1 + holes,)
+        The first panel of each loop.
     """
 
     origin: Complexes
     span: Complexes
     power: Indices
     forward: Booleans
+    starts: Indices
 
     @classmethod
-    def on(cls, outline: Complexes, cage: Complexes, *, coarseness: float = 1.0) -> Self:
-        """Cut an outline into panels as short as its narrow places and the cage ask for.
+    def on(
+        cls,
+        outline: Complexes,
+        cage: Complexes,
+        holes: Sequence[Hole] = (),
+        *,
+        coarseness: float = 1.0,
+    ) -> Self:
+        """Cut a boundary into panels as short as its narrow places and the cages ask for.
 
         Parameters
         ----------
         outline, cage : complex128, shapes (p,) and (n,)
+        holes : sequence of Hole
         coarseness : float
             Factor on how long the panels may be.
         """
-        sides = Pieces.whole(outline, np.roll(outline, -1))
+        loops = [outline, *(hole.outline for hole in holes)]
+        cages = np.concatenate([cage, *(hole.cage for hole in holes)])
+        corners, following = np.concatenate(loops), loop_ends(loops)
+        firsts = np.cumsum([0, *map(len, loops[:-1])])
+        sides = Pieces.whole(corners, following)
         # Every edge is first halved, so that a panel touches one corner at most.
-        halves = sides.halved(np.ones(len(outline), dtype=np.bool_))
+        halves = sides.halved(np.ones(len(corners), dtype=np.bool_))
 
         def is_fine(pieces: Pieces) -> Booleans:
-            room = coarseness * _room(pieces, outline, cage)
+            room = coarseness * _room(pieces, corners, next_on_loop(firsts, len(corners)), cages)
             fine: Booleans = (pieces.lengths <= room) | (pieces.width <= FINEST)
             return fine
 
         pieces = bisect(halves, is_fine)
         forward = pieces.place + pieces.width < 1.0
         corner = (pieces.place == 0.0) | ~forward
-        following = np.roll(outline, -1)[pieces.segment]
         span = pieces.width * pieces.span[pieces.segment]
         return cls(
-            origin=freeze(np.where(forward, pieces.starts, following)),
+            origin=freeze(np.where(forward, pieces.starts, following[pieces.segment])),
             span=freeze(np.where(forward, span, -span)),
             power=freeze(np.where(corner, POWER, 1)),
             forward=freeze(forward),
+            starts=freeze(np.searchsorted(pieces.segment, firsts)),
         )
 
     def __len__(self) -> int:
         """Return the number of panels."""
         return len(self.origin)
+
+    @property
+    def following(self) -> Indices:
+        """The next panel of each on its loop, intp (p,)."""
+        return next_on_loop(self.starts, len(self))
+
+    @property
+    def before(self) -> Indices:
+        """The panel before each on its loop, intp (p,)."""
+        return np.argsort(self.following)
 
     @property
     def nodes(self) -> Complexes:
@@ -87,7 +120,7 @@ class Panels:
         return result
 
     def differentials(self) -> Complexes:
-        """Return dζ at the nodes, (p, NODES), counter-clockwise: the weights of line integrals."""
+        """Return dζ at the nodes, (p, NODES), along the loops: the weights of line integrals."""
         tau, weights = gauss_legendre()
         speed = self.power[:, None] * tau ** (self.power[:, None] - 1)
         sign = np.where(self.forward, 1.0, -1.0)
@@ -131,18 +164,17 @@ def end_values() -> tuple[Floats, Floats]:
     return freeze(signs @ to_legendre), freeze(to_legendre.sum(axis=0))
 
 
-def _room(pieces: Pieces, outline: Complexes, cage: Complexes) -> Floats:
+def _room(pieces: Pieces, corners: Complexes, following: Indices, cage: Complexes) -> Floats:
     """Return how long a panel on each of the pieces of edges may be."""
-    count, starts, ends = len(outline), pieces.starts, pieces.ends
-    following = np.roll(outline, -1)
+    starts, ends = pieces.starts, pieces.ends
     to_cage = distance_to_segments(cage, starts, ends).min(axis=0)
     # Two segments that do not cross are nearest at an end of one of them.
-    from_vertices = distance_to_segments(outline, starts, ends).T
-    to_edges = np.minimum(from_vertices, np.roll(from_vertices, -1, axis=1))
+    from_vertices = distance_to_segments(corners, starts, ends).T
+    to_edges = np.minimum(from_vertices, from_vertices[:, following])
     for end in (starts, ends):
-        np.minimum(to_edges, distance_to_segments(end, outline, following), out=to_edges)
+        np.minimum(to_edges, distance_to_segments(end, corners, corners[following]), out=to_edges)
     own = np.arange(len(pieces))
-    for neighbour in (-1, 0, 1):
-        to_edges[own, (pieces.segment + neighbour) % count] = np.inf
+    for neighbour in (np.arange(len(corners)), following, np.argsort(following)):
+        to_edges[own, neighbour[pieces.segment]] = np.inf
     room: Floats = np.minimum(PANEL_PER_CAGE * to_cage, PANEL_PER_GAP * to_edges.min(axis=1))
     return room

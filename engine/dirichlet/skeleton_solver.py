@@ -74,7 +74,12 @@ class SkeletonSolver:
         """Compress and eliminate level by level."""
         size = len(operator.nodes)
         system = _System(operator=operator, roots=np.sqrt(np.abs(operator.differentials)))
-        cuts = np.linspace(0, size // NODES, max(1, round(size / LEAF)) + 1).astype(int) * NODES
+        # A box of nodes on two loops would be a large one.
+        cuts = [0]
+        for start, end in pairwise([*operator.starts, size]):
+            count = max(1, round((end - start) / LEAF))
+            along = np.linspace(0, (end - start) // NODES, count + 1).astype(int)
+            cuts += (start + NODES * along[1:]).tolist()
         active = [_Active.leaf(system, np.arange(a, b)) for a, b in pairwise(cuts)]
         levels = []
         while len(active) > 1 and sum(len(each.nodes) for each in active) > SMALL:
@@ -228,6 +233,8 @@ class _System:
         root = np.sqrt(radius / (2 * np.pi * ON_CIRCLE))
         kernel = root * self.roots[box.nodes] / (here - circle[:, None])
         turn = operator.differentials[box.nodes] / np.abs(operator.differentials[box.nodes])
+        # Means over loops act on all nodes of the loop alike, and with these roots symmetrically.
+        means = operator.means[:, box.nodes] / self.roots[box.nodes]
         return np.concatenate(
-            [near_by, near_from.T, kernel.real, kernel.imag, (kernel * turn).imag]
+            [near_by, near_from.T, kernel.real, kernel.imag, (kernel * turn).imag, means]
         )

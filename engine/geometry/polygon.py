@@ -24,6 +24,13 @@ def loop_ends(loops: Sequence[Complexes]) -> Complexes:
     return np.concatenate([np.roll(loop, -1) for loop in loops])
 
 
+def next_on_loop(starts: Indices, count: int) -> Indices:
+    """Return the next one of each of `count` items on closed loops that begin at `starts`."""
+    following: Indices = np.arange(1, count + 1)
+    following[np.append(starts[1:], count) - 1] = starts
+    return following
+
+
 def signed_area(polygon: Complexes) -> float:
     """Return the area, positive where the polygon runs counter-clockwise (shoelace formula)."""
     # Taken about the first vertex: far from the origin the plain sum would lose digits.

@@ -1,15 +1,16 @@
 """What every variant blends: the derivatives of Φ and Ψ at the nodes of the paths."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Self
 
 import numpy as np
 
-from engine.arrays import Complexes, Floats, Integers
+from engine.arrays import Complexes, Floats, Indices, Integers
 from engine.errors import EngineError
 from engine.interpolation.keyframe_samples import KeyframeSamples
 from engine.interpolation.passing import Course
+from engine.interpolation.residual import Residual
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -38,11 +39,14 @@ class Passage:
     sheets : int32, shape (q,)
         Branch of each logarithm, from `root_sheets`.
     course : Course
+    residuals : tuple of Residual
+        What is added to the blend of log f_z.
     """
 
     keyframes: tuple[KeyframeSamples, ...]
     sheets: Integers
     course: Course
+    residuals: tuple[Residual, ...] = ()
 
     @classmethod
     def of(
@@ -74,11 +78,31 @@ class Passage:
         """Return the blended position of the anchor."""
         return complex(self.course(time) @ [key.anchor_position for key in self.keyframes])
 
-    def log_fz(self, weights: Floats) -> tuple[Complexes, Complexes]:
-        """Return Σ w_i log f_z of the keyframes and its derivative, each (s,); Equation (3)."""
+    @property
+    def nbytes(self) -> int:
+        """Memory beyond the keyframes' own, in bytes."""
+        return sum(residual.nbytes for residual in self.residuals)
+
+    def at(self, which: Indices) -> Self:
+        """Return the same at some of the nodes (c,) only."""
+        return replace(
+            self,
+            keyframes=tuple(key.at(which) for key in self.keyframes),
+            residuals=tuple(residual.at(which) for residual in self.residuals),
+        )
+
+    def log_fz(self, time: float) -> tuple[Complexes, Complexes]:
+        """Return Σ w_i log f_z of the keyframes and its derivative, each (s,); Equation (3).
+
+        Residuals are included.
+        """
+        weights = self.course(time)
         logarithm = weighted([key.log_fz for key in self.keyframes], weights)
         logarithm.imag += 2 * np.pi * float(weights @ self.sheets)
-        return logarithm, weighted([key.log_fz_z for key in self.keyframes], weights)
+        logarithm_z = weighted([key.log_fz_z for key in self.keyframes], weights)
+        for residual in self.residuals:
+            residual.add_to(logarithm, logarithm_z, time)
+        return logarithm, logarithm_z
 
 
 def weighted(arrays: Sequence[Complexes], weights: Floats) -> Complexes:

@@ -5,7 +5,7 @@ from typing import Self
 
 import numpy as np
 
-from engine.arrays import Complexes, Floats, freeze
+from engine.arrays import Complexes, freeze
 from engine.interpolation.derivatives import Derivatives, Passage, weighted
 
 
@@ -39,22 +39,17 @@ class EtaBlend:
 
     @property
     def nbytes(self) -> int:
-        """Memory beyond the keyframes' own, in bytes."""
+        """Memory beyond the passage's own, in bytes."""
         return sum(array.nbytes for array in (*self.conj_eta, *self.conj_eta_z))
 
     def derivatives(self, time: float) -> Derivatives:
-        """Blend f_z logarithmically and η linearly."""
-        weights = self.passage.course(time)
-        return self.with_log_fz(*self.passage.log_fz(weights), weights)
-
-    def with_log_fz(
-        self, logarithm: Complexes, logarithm_z: Complexes, weights: Floats
-    ) -> Derivatives:
-        """Blend η linearly, with log f_z and its derivative (s,) given.
+        """Blend f_z logarithmically and η linearly.
 
         Departs from the paper: Equation (7) lost a bar; it reads f_z̄ = η / conj(f_z), that is
         Ψ' = conj(η) / Φ'. The unscaled Ψ' is returned; ρ is a factor of it.
         """
+        weights = self.passage.course(time)
+        logarithm, logarithm_z = self.passage.log_fz(time)
         fz = np.exp(logarithm)
         inverse = 1.0 / fz
         g = weighted(self.conj_eta, weights)

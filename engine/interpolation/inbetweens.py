@@ -56,17 +56,24 @@ class IntegratedInbetweens:
     blend : Blend
     scale : Scaling or None
         None where Ψ is not scaled.
+    correction : float
+        The largest |h| that closes the periods around holes; 0 where there are none.
     """
 
     sites: Sites
     passage: Passage
     blend: Blend
     scale: Scaling | None
+    correction: float
 
     @property
     def nbytes(self) -> int:
         """Memory beyond the sites' and the keyframes' own, in bytes."""
-        return self.blend.nbytes + (0 if self.scale is None else self.scale.nbytes)
+        return (
+            self.passage.nbytes
+            + self.blend.nbytes
+            + (0 if self.scale is None else self.scale.nbytes)
+        )
 
     def rho(self, time: float) -> float:
         """Return ρ; 1 where Ψ is not scaled."""

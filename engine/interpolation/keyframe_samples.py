@@ -1,14 +1,15 @@
 """Keyframes where in-betweens need them: proven free of folds, and sampled along the paths."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
-from engine.arrays import Complexes, freeze
+from engine.arrays import Complexes, Indices, freeze
 from engine.errors import EngineError
 from engine.interpolation.sites import Sites
-from engine.maps import HarmonicMap, Limits, certify, distortion, evaluate
+from engine.maps import HarmonicMap, Limits, certify, distortion
 from engine.paths import IntegrationPaths, continue_logarithm
 
 
@@ -49,6 +50,16 @@ class KeyframeSamples:
         """f_z at the anchor."""
         return complex(np.exp(self.log_fz[0]))
 
+    def at(self, which: Indices) -> "KeyframeSamples":
+        """Return what is known at some of the nodes (c,)."""
+        return replace(
+            self,
+            log_fz=freeze(self.log_fz[which]),
+            log_fz_z=freeze(self.log_fz_z[which]),
+            nu=freeze(self.nu[which]),
+            nu_z=freeze(self.nu_z[which]),
+        )
+
     @property
     def nbytes(self) -> int:
         """Memory that the arrays take, in bytes."""
@@ -78,10 +89,15 @@ def sample_keyframes(
     paths = sites.paths
     for i, f in enumerate(maps):
         _require_unfolded(f, sites, first + i)
-    coefficients = np.column_stack([c for f in maps for c in (f.phi, f.psi)])
-    values, first_order, second_order = evaluate(
-        sites.cage, coefficients, paths.nodes, orders=(0, 1, 2)
-    )
+    span = sites.boundary.span
+    coefficients = np.hstack([f.coefficients for f in maps])
+    values, first_order, second_order = span.evaluate(coefficients, paths.nodes, orders=(0, 1, 2))
+    # Φ and Ψ themselves go on from turn to turn around a hole: a log(z − c) has an argument, which
+    # the span leaves out since it cancels in f.
+    for centre, logs in zip(span.centres, coefficients[len(span.vertices) :], strict=True):
+        away = paths.nodes - centre
+        arguments = continue_logarithm(away, 1 / away, paths, partial(np.add, -centre)).imag
+        values += 1j * np.multiply.outer(arguments, logs)
     ends = np.concatenate([[0], paths.places])
     columns = [slice(2 * i, 2 * i + 2) for i in range(len(maps))]
     return tuple(

@@ -8,30 +8,26 @@ handful of Dirichlet problems serve every time.
 """
 
 from dataclasses import dataclass
-from typing import Self
+from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
-from engine.arrays import Complexes, Floats, freeze
-from engine.chebyshev import PiecewiseSeries, nodes, to_coefficients
+from engine.arrays import Complexes, Floats
 from engine.dirichlet import Extension
-from engine.interpolation.derivatives import Derivatives, Passage
-from engine.interpolation.eta import EtaBlend
-from engine.interpolation.passing import Course
+from engine.interpolation.derivatives import Passage
+from engine.interpolation.residual import Residual, separate
 from engine.maps import derivatives_of
 from engine.paths import IntegrationPaths
 
-DEGREE = 24  # of the series of a piece of time
 TOLERANCE = 1e-10  # of the series' last terms, in ln |f_z|
 LEFT_OUT = 1e-8  # of the modes, in ln |f_z|: two digits more than the points' places need
-LAST_TERMS = 3
-SHORTEST = 2.0**-30  # pieces of time are not halved below this
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class MetricBlend:
-    """The metric tensor linear on the outline, and η linear: Properties 1 to 4, 5' to 7' and 8.
+class MetricResidual(NamedTuple):
+    """What the metric variant adds to the logarithmic blend of f_z.
+
+    It makes the metric tensor linear on the outline, and with η linear gives Properties 1 to 4, 5'
+    to 7' and 8.
 
     log f_z is the logarithmic blend and a holomorphic residual,
 
@@ -46,19 +42,18 @@ class MetricBlend:
 
     Parameters
     ----------
-    eta : EtaBlend
-    series : PiecewiseSeries
-        c_j.
-    modes : complex128, shape (j, s)
-        H_j at the nodes of the paths.
-    modes_z : complex64, shape (j, s)
-        H_j' there: the square of a step multiplies it, and single precision is plenty.
+    residual : Residual
+    lacking : float64, shape (holes, j)
+        By how much each H_j stays below U_j on the boundary of a hole.
     """
 
-    eta: EtaBlend
-    series: PiecewiseSeries
-    modes: Complexes
-    modes_z: npt.NDArray[np.complex64]
+    residual: Residual
+    lacking: Floats
+
+    def lacking_at(self, time: float) -> Floats:
+        """Return how much the real part stays below at a time, (holes,)."""
+        missing: Floats = self.lacking @ self.residual.series(time)
+        return missing
 
     @classmethod
     def of(
@@ -66,38 +61,20 @@ class MetricBlend:
         passage: Passage,
         paths: IntegrationPaths,
         transform: Extension,
-    ) -> Self:
+    ) -> "MetricResidual":
         """Solve the Dirichlet problems of the residual between two keyframes."""
         fz, fzbar = derivatives_of([key.map for key in passage.keyframes], transform.nodes)
-        real_parts, series = separate(OutlineMetric.of(fz, fzbar), passage.course)
-        modes, modes_z = transform.extend(real_parts)
+        metric = OutlineMetric.of(fz, fzbar)
+        real_parts, series = separate(
+            lambda times: metric.residuals(passage.course.at(times)),
+            tolerance=TOLERANCE,
+            left_out=LEFT_OUT,
+        )
+        modes, modes_z, lacking = transform.extend(real_parts)
         modes.imag -= modes[0].imag
         # Unbounded there; the steps beside these nodes are so short that it is not missed.
         modes_z[paths.cornered] = 0.0
-        return cls(
-            eta=EtaBlend.of(passage),
-            series=series,
-            modes=freeze(np.ascontiguousarray(modes.T)),
-            modes_z=freeze(modes_z.T.astype(np.complex64, order="C")),
-        )
-
-    @property
-    def nbytes(self) -> int:
-        """Memory beyond the keyframes' own, in bytes."""
-        arrays = (self.modes, self.modes_z, self.series.coefficients)
-        return self.eta.nbytes + sum(array.nbytes for array in arrays)
-
-    def derivatives(self, time: float) -> Derivatives:
-        """Blend the metric on the outline and η everywhere."""
-        passage = self.eta.passage
-        weights = passage.course(time)
-        logarithm, logarithm_z = passage.log_fz(weights)
-        coefficients = self.series(time)
-        # As reals: a complex product with real coefficients would do half its work on zeros.
-        logarithm.view(np.float64)[:] += coefficients @ self.modes.view(np.float64)
-        single = coefficients.astype(np.float32)
-        logarithm_z.view(np.float64)[:] += single @ self.modes_z.view(np.float32)
-        return self.eta.with_log_fz(logarithm, logarithm_z, weights)
+        return cls(Residual.of(series, modes, modes_z), lacking)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -146,46 +123,3 @@ class OutlineMetric:
         squared = (trace + np.sqrt(discriminant)) / 2  # Equation (13), the larger root
         residuals: Floats = 0.5 * np.log(squared) - self.log_modulus.T @ weights
         return residuals
-
-
-def separate(metric: OutlineMetric, course: Course) -> tuple[Floats, PiecewiseSeries]:
-    """Write the residuals along a course as a sum of products of functions on the outline and time.
-
-    Returns
-    -------
-    modes : float64, shape (N, j)
-    series : PiecewiseSeries
-        Of the j coefficients; the residuals are `modes @ series(t)` to about 1e-8.
-    """
-    x = nodes(DEGREE)
-    pending = [(0.0, 1.0)]
-    breaks, pieces = [0.0], []
-    while pending:
-        start, end = pending.pop()
-        times = start + (end - start) * (1 + x) / 2
-        coefficients = metric.residuals(course.at(times)) @ to_coefficients(DEGREE).T
-        rest = np.abs(coefficients[:, -LAST_TERMS:]).max()
-        if rest <= TOLERANCE or end - start <= SHORTEST:
-            breaks.append(end)
-            pieces.append(coefficients)
-        else:
-            middle = (start + end) / 2
-            pending += [(middle, end), (start, middle)]
-    modes, sizes, functions = np.linalg.svd(np.hstack(pieces), full_matrices=False)
-    kept = max(1, int(np.count_nonzero(sizes > LEFT_OUT)))
-    series = (sizes[:kept, None] * functions[:kept]).reshape(kept, len(pieces), DEGREE + 1)
-    times, coefficients = np.array(breaks), series.transpose(1, 2, 0)
-    return modes[:, :kept], PiecewiseSeries(
-        breaks=freeze(times), coefficients=freeze(_vanishing_at_ends(times, coefficients))
-    )
-
-
-def _vanishing_at_ends(breaks: Floats, coefficients: Floats) -> Floats:
-    """Take off the rounding that is left at the keyframes, so that they come out exactly."""
-    signs = (-1.0) ** np.arange(DEGREE + 1)
-    first, last = signs @ coefficients[0], coefficients[-1].sum(axis=0)
-    at_breaks = first + np.multiply.outer(breaks, last - first)
-    corrected = coefficients.copy()
-    corrected[:, 0] -= (at_breaks[1:] + at_breaks[:-1]) / 2
-    corrected[:, 1] -= (at_breaks[1:] - at_breaks[:-1]) / 2
-    return corrected

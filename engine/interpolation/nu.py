@@ -22,7 +22,7 @@ class NuBlend:
 
     @property
     def nbytes(self) -> int:
-        """Memory beyond the keyframes' own, in bytes."""
+        """Memory beyond the passage's own, in bytes."""
         return 0
 
     def derivatives(self, time: float) -> Derivatives:
@@ -32,7 +32,7 @@ class NuBlend:
         f_z̄ = conj(ν) conj(f_z), that is Ψ' = ν Φ'.
         """
         keyframes, weights = self.passage.keyframes, self.passage.course(time)
-        logarithm, logarithm_z = self.passage.log_fz(weights)
+        logarithm, logarithm_z = self.passage.log_fz(time)
         fz = np.exp(logarithm)
         nu = weighted([key.nu for key in keyframes], weights)
         nu_z = weighted([key.nu_z for key in keyframes], weights)

@@ -1,7 +1,7 @@
 """From keyframes and points to in-betweens at any time."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -19,9 +19,10 @@ from engine.interpolation.inbetweens import (
     LinearInbetweens,
 )
 from engine.interpolation.keyframe_samples import KeyframeSamples, sample_keyframes
-from engine.interpolation.metric import MetricBlend
+from engine.interpolation.metric import MetricResidual
 from engine.interpolation.nu import NuBlend
 from engine.interpolation.passing import Course, Joint, Tangent, tangent_length
+from engine.interpolation.periods import Closing, Open
 from engine.interpolation.scaling import SharpScaling
 from engine.interpolation.sites import Sites, prepare_sites
 from engine.interpolation.smooth_scaling import Scaling
@@ -127,14 +128,23 @@ def prepare(
     maps = tuple(keyframes)
     variant = _known(variant)
     _require_keyframes(maps)
-    sites = prepare_sites(outline, maps[0].cage, points, triangles=triangles, anchor=anchor)
+    sites = prepare_sites(
+        outline,
+        maps[0].cage,
+        points,
+        holes=maps[0].holes,
+        triangles=triangles,
+        anchor=anchor,
+    )
     samples = sample_keyframes(maps, sites)
     around = (*samples, samples[0]) if loop else samples
     sheets = root_sheets(np.array([key.anchor_fz for key in around]), turns)
     extension: Extension | None = None
     if variant.needs_transform:
-        transform = transform or HilbertTransform.on(sites.outline, sites.cage)
-        _require_outline(transform.outline, sites)
+        transform = transform or HilbertTransform.on(
+            sites.outline, sites.cage, sites.boundary.holes
+        )
+        _require_boundary(transform.loops, sites)
         extension = transform.at(sites.paths.nodes)
     joint = Joint(1.0, 1.0)  # keyframes are at whole times
     tangents: list[Tangent | None] = [
@@ -207,22 +217,47 @@ def prepare_inbetweens(
         another outline.
     """
     passage = Passage.of(keyframes, sheets, course)
+    if variant is Variant.LINEAR:
+        return LinearInbetweens.of(passage, sites)
+    metric: MetricResidual | None = None
+    if variant is Variant.METRIC:
+        metric = MetricResidual.of(passage, sites.paths, _matching(transform, sites))
+        passage = replace(passage, residuals=(metric.residual,))
+    closing = _closing(variant, sites, passage, metric)
+    if closing is not None:
+        passage = replace(passage, residuals=(*passage.residuals, closing.residual))
     scale: Scaling | None = None
-    blend: Blend
-    match variant:
-        case Variant.LINEAR:
-            return LinearInbetweens.of(passage, sites)
-        case Variant.NU:
-            blend = NuBlend(passage=passage)
-        case Variant.ETA:
-            blend = EtaBlend.of(passage)
-        case Variant.SCALED_ETA:
-            blend = EtaBlend.of(passage)
-            scaled = [key.map for key in passage.keyframes]
-            scale = Scaling.of(SharpScaling.of(scaled, sites.outline, passage.course, bounds))
-        case Variant.METRIC:
-            blend = MetricBlend.of(passage, sites.paths, _matching(transform, sites))
-    return IntegratedInbetweens(sites=sites, passage=passage, blend=blend, scale=scale)
+    if variant is Variant.SCALED_ETA:
+        scaled = [key.map for key in passage.keyframes]
+        scale = Scaling.of(SharpScaling.of(scaled, sites.outline, passage.course, bounds))
+    return IntegratedInbetweens(
+        sites=sites,
+        passage=passage,
+        blend=_blend(variant, passage),
+        scale=scale,
+        correction=0.0 if closing is None else closing.largest,
+    )
+
+
+def _blend(variant: Variant, passage: Passage) -> Blend:
+    return NuBlend(passage=passage) if variant is Variant.NU else EtaBlend.of(passage)
+
+
+def _closing(
+    variant: Variant, sites: Sites, passage: Passage, metric: MetricResidual | None
+) -> Closing | None:
+    """Close the periods of in-betweens around holes; return None where there are none."""
+    if sites.closing is None:
+        return None
+    at_loops = _blend(variant, passage.at(sites.paths.around))
+
+    def opened(time: float) -> Open:
+        here = at_loops.derivatives(time)
+        return Open(here.fz, here.g, None if metric is None else metric.lacking_at(time))
+
+    sign = 1 if variant is Variant.NU else -1
+    breaks = (0.0, 1.0) if metric is None else tuple(metric.residual.series.breaks)
+    return sites.closing.close(opened, sites.paths.nodes, sign=sign, breaks=breaks)
 
 
 def _known(variant: Variant | str) -> Variant:
@@ -237,7 +272,7 @@ def _require_keyframes(maps: Sequence[HarmonicMap]) -> None:
     if len(maps) < 2:
         raise EngineError(f"In-betweens need at least two keyframes, not {len(maps)}.")
     for i, f in enumerate(maps):
-        if not np.array_equal(f.cage, maps[0].cage):
+        if not f.span.equals(maps[0].span):
             raise EngineError(f"Keyframe {i} has another cage than keyframe 0; they must share it.")
 
 
@@ -256,7 +291,7 @@ def _matching(transform: Extension | None, sites: Sites) -> Extension:
     """Refuse a transform of another domain, whose in-betweens would be wrong without a word."""
     if transform is None:
         raise EngineError("The metric variant needs a Hilbert transform of the outline.")
-    _require_outline(transform.outline, sites)
+    _require_boundary(transform.loops, sites)
     if not np.array_equal(transform.points, sites.paths.nodes):
         raise EngineError(
             "The Hilbert transform is prepared for other points; prepare it for the nodes of the "
@@ -265,9 +300,10 @@ def _matching(transform: Extension | None, sites: Sites) -> Extension:
     return transform
 
 
-def _require_outline(outline: Complexes, sites: Sites) -> None:
-    if not np.array_equal(outline, sites.outline):
+def _require_boundary(loops: Sequence[Complexes], sites: Sites) -> None:
+    own = sites.boundary.loops
+    if len(loops) != len(own) or not all(map(np.array_equal, loops, own)):
         raise EngineError(
-            f"The Hilbert transform is of another outline, of {len(outline)} vertices, than the "
-            f"points', of {len(sites.outline)}; build it anew for this one."
+            f"The Hilbert transform is of another outline, of {sum(map(len, loops))} vertices, "
+            f"than the points', of {sum(map(len, own))}; build it anew for this one."
         )

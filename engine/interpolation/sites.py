@@ -1,15 +1,25 @@
 """Where in-betweens are wanted: what belongs to the domain and the points, not to a keyframe."""
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
 
 from engine.arrays import Complexes, as_points
 from engine.errors import EngineError
-from engine.geometry import deepest_point, diameter, require_inside
+from engine.geometry import Hole, deepest_point, diameter, require_inside
+from engine.interpolation.periods import PeriodClosing
 from engine.maps import Boundary
-from engine.paths import ON_OUTLINE, IntegrationPaths, lay_paths, mesh_network, scattered_network
+from engine.paths import (
+    ON_OUTLINE,
+    IntegrationPaths,
+    Loops,
+    lay_paths,
+    mesh_network,
+    scattered_network,
+    with_loops,
+)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -24,15 +34,21 @@ class Sites:
         Largest distance between two vertices of the outline.
     points : complex128, shape (m,)
     paths : IntegrationPaths
-        From the anchor to the points.
+        From the anchor to the points, and around holes.
     boundary : Boundary
         On which keyframes are proven free of folds.
+    loops : Loops
+        Around the holes, at the nodes `paths.around`.
+    closing : PeriodClosing or None
+        Of in-betweens around the holes; None where there are none.
     """
 
     diameter: float
     points: Complexes
     paths: IntegrationPaths
     boundary: Boundary
+    loops: Loops
+    closing: PeriodClosing | None
 
     @property
     def outline(self) -> Complexes:
@@ -52,7 +68,8 @@ class Sites:
     @property
     def nbytes(self) -> int:
         """Memory that the arrays take, in bytes."""
-        return self.points.nbytes + self.boundary.nbytes + self.paths.nbytes
+        closing = 0 if self.closing is None else self.closing.nbytes
+        return self.points.nbytes + self.boundary.nbytes + self.paths.nbytes + closing
 
 
 def prepare_sites(
@@ -60,6 +77,7 @@ def prepare_sites(
     cage: npt.ArrayLike,
     points: npt.ArrayLike,
     *,
+    holes: Sequence[Hole] = (),
     triangles: npt.ArrayLike | None = None,
     anchor: npt.ArrayLike | None = None,
 ) -> Sites:
@@ -73,6 +91,8 @@ def prepare_sites(
         The polygon of the Cauchy coordinates, counter-clockwise around the outline.
     points : complex, shape (m,)
         In the closed domain, to 1e-9 of its diameter.
+    holes : sequence of Hole
+        Of the domain.
     triangles : int, shape (t, 3), optional
         Triangles of the points; the paths then follow their edges. Without them the engine finds
         its own paths.
@@ -87,22 +107,33 @@ def prepare_sites(
     """
     points = as_points(points, "points", at_least=1)
     boundary = Boundary.sample(
-        as_points(outline, "outline", at_least=3), as_points(cage, "cage", at_least=3)
+        as_points(outline, "outline", at_least=3), as_points(cage, "cage", at_least=3), holes
     )
-    outline = boundary.outline
+    outline, *inner = boundary.loops
     tolerance = ON_OUTLINE * diameter(outline)
-    root = np.array([deepest_point(outline)]) if anchor is None else _single(anchor)
-    require_inside(outline, root, "anchor", tolerance=tolerance)
-    require_inside(outline, points, "point", tolerance=tolerance)
+    root = np.array([deepest_point(outline, inner)]) if anchor is None else _single(anchor)
+    require_inside(outline, root, "anchor", holes=inner, tolerance=tolerance)
+    require_inside(outline, points, "point", holes=inner, tolerance=tolerance)
+    corners, cages = np.concatenate(boundary.loops), boundary.span.vertices
+    loops = Loops.around(outline, inner, np.concatenate([corners, cages]))
     if triangles is None:
-        network = scattered_network(outline, points, root)
+        # Without a mesh nothing else may come near a hole.
+        everything = np.concatenate([points, loops.nodes[loops.starts]])
+        network = scattered_network(outline, everything, root, holes=inner)
+        network = replace(network, places=network.places[: len(points)])
     else:
-        network = mesh_network(outline, points, _as_triangles(triangles), root)
+        network = mesh_network(outline, points, _as_triangles(triangles), root, holes=inner)
+    closing: PeriodClosing | None = None
+    if inner:
+        network = with_loops(network, outline, inner, loops)
+        closing = PeriodClosing.of(boundary, loops, complex(root[0]))
     return Sites(
         diameter=diameter(outline),
         points=points,
-        paths=lay_paths(network, outline, boundary.cage),
+        paths=lay_paths(network, corners, cages),
         boundary=boundary,
+        loops=loops,
+        closing=closing,
     )
 
 

@@ -10,6 +10,7 @@ from engine.arrays import Complexes, Floats, Indices, as_points, readonly
 from engine.geometry import (
     Hole,
     box_diagonal,
+    next_on_loop,
     require_around,
     require_cages_in_holes,
     require_simple,
@@ -107,7 +108,7 @@ class Boundary:
         ]
         points = np.concatenate(samples)
         starts = np.cumsum([0, *map(len, samples[:-1])])
-        ends = points[_following(len(points), starts)]
+        ends = points[next_on_loop(starts, len(points))]
         half = np.abs(ends - points) / 2
         lengths = readonly(_arc_lengths(half, starts))
         return cls(
@@ -142,7 +143,7 @@ class Boundary:
     @property
     def following(self) -> Indices:
         """The sample at which each segment ends, intp (m,)."""
-        return _following(len(self.points), self.starts)
+        return next_on_loop(self.starts, len(self.points))
 
     @property
     def nbytes(self) -> int:
@@ -184,16 +185,9 @@ class Boundary:
         )
 
 
-def _following(count: int, starts: Indices) -> Indices:
-    """Return the next sample of each of some samples, on loops that begin at `starts`."""
-    following: Indices = np.arange(1, count + 1)
-    following[np.append(starts[1:], count) - 1] = starts
-    return following
-
-
 def _arc_lengths(half_lengths: Floats, starts: Indices) -> Floats:
     """Return the arc length from the middle of the segment before each sample to that after it."""
     lengths: Floats = half_lengths.copy()
-    lengths[_following(len(lengths), starts)] += half_lengths
+    lengths[next_on_loop(starts, len(lengths))] += half_lengths
     lengths /= lengths.sum()
     return lengths

@@ -7,14 +7,17 @@ Imports: `engine.domain.meshing`, `engine.geometry`.
 
 from engine.paths.complex_log import continue_logarithm, root_sheets
 from engine.paths.integration_paths import IntegrationPaths, lay_paths
-from engine.paths.path_network import ON_OUTLINE, mesh_network, scattered_network
+from engine.paths.loops import Loops
+from engine.paths.path_network import ON_OUTLINE, mesh_network, scattered_network, with_loops
 
 __all__ = [
     "ON_OUTLINE",
     "IntegrationPaths",
+    "Loops",
     "continue_logarithm",
     "lay_paths",
     "mesh_network",
     "root_sheets",
     "scattered_network",
+    "with_loops",
 ]

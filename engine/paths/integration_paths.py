@@ -30,6 +30,8 @@ class IntegrationPaths:
     tree : SpanningTree
     places : intp, shape (m,)
         The node of each point.
+    around : intp, shape (c,)
+        Those of loops around holes.
     cornered : bool, shape (s,)
         Nodes at a corner of the outline, where the derivative of a solution of the Dirichlet
         problem is unbounded or cannot be had.
@@ -39,6 +41,7 @@ class IntegrationPaths:
     steps: Complexes
     tree: SpanningTree
     places: Indices
+    around: Indices
     cornered: Booleans
 
     @property
@@ -49,6 +52,7 @@ class IntegrationPaths:
             self.nodes,
             self.steps,
             self.places,
+            self.around,
             self.cornered,
             tree.parent,
             tree.down,
@@ -93,6 +97,12 @@ def lay_paths(network: Network, outline: Complexes, cage: Complexes) -> Integrat
     A step is no longer than a fixed part of the shape, nor than a part of its distance to the
     nearest singularity: the vertices of the cage, where Φ' is log-singular, and those of the
     outline, where the metric variant's f_z is.
+
+    Parameters
+    ----------
+    network : Network
+    outline, cage : complex128, shapes (p,) and (n,)
+        The vertices of all loops of the boundary, and of all cages.
     """
     scale = box_diagonal(outline)
     singular = cKDTree(as_xy(np.concatenate([cage, outline])))
@@ -118,6 +128,7 @@ def lay_paths(network: Network, outline: Complexes, cage: Complexes) -> Integrat
         steps=freeze(nodes - nodes[parents]),
         tree=SpanningTree.of_parents(parents),
         places=freeze(new[network.places]),
+        around=freeze(new[network.around]),
         cornered=freeze(cornered),
     )
 

@@ -6,7 +6,7 @@ triangle is convex, so that each leg of such a path stays inside, however narrow
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 import shapely
@@ -16,11 +16,13 @@ from engine.arrays import Booleans, Complexes, Indices, Integers, ragged
 from engine.domain.meshing import Mesh
 from engine.errors import EngineError
 from engine.geometry import as_xy, box_diagonal, constrained_delaunay, loop_ends
+from engine.paths.loops import Loops
 from engine.paths.spanning_tree import breadth_first_parents
 
 CELL = 1 / 50  # longest edge of the triangles between scattered points, over the box diagonal
 MOST_CELLS = 2000  # over the box diagonal, by which segments near the boundary are looked for
-NEIGHBOURS = 64  # mesh vertices that are tried for a straight way to the anchor
+NEIGHBOURS = 64  # nodes that are tried for a straight way to the anchor, or to a loop
+TRIES = 32  # places of a loop around a hole from which nodes are looked for
 ON_OUTLINE = 1e-9  # distance, over the size of the shape, at which a point counts as on the outline
 
 # How a triangle with corners 0, 1, 2 is cut where the sides 01, 12, 20 (bits 1, 2, 4 of the index)
@@ -48,11 +50,14 @@ class Network:
         Parent of each node; −1 where no path of interest passes.
     places : intp, shape (m,)
         The node of each point.
+    around : intp, shape (c,)
+        Those of loops around holes.
     """
 
     nodes: Complexes
     parents: Indices
     places: Indices
+    around: Indices = field(default_factory=lambda: np.empty(0, dtype=np.intp))
 
 
 def mesh_network(
@@ -133,6 +138,43 @@ def scattered_network(
     nodes = np.concatenate([ends, portals])
     parents = breadth_first_parents(len(nodes), np.concatenate(legs), 0)
     return Network(nodes=nodes, parents=_prune(parents, len(ends)), places=np.arange(1, len(ends)))
+
+
+def with_loops(
+    network: Network, outline: Complexes, holes: Sequence[Complexes], loops: Loops
+) -> Network:
+    """Return a network that leads around each hole, too.
+
+    Raises
+    ------
+    EngineError
+        If no node near a loop sees it.
+    """
+    reached = np.flatnonzero(network.parents >= 0)
+    parents, ends = [network.parents], [*loops.starts[1:], len(loops.nodes)]
+    first = len(network.nodes)
+    for number, (start, end) in enumerate(zip(loops.starts, ends, strict=True)):
+        along = loops.nodes[start:end]
+        for begin in range(0, len(along), max(1, len(along) // TRIES)):
+            distance = np.abs(network.nodes[reached] - along[begin])
+            nearest = reached[np.argsort(distance, kind="stable")[:NEIGHBOURS]]
+            from_loop = np.repeat(along[begin], len(nearest))
+            seen = nearest[~_crosses((outline, *holes), from_loop, network.nodes[nearest])]
+            if len(seen):
+                break
+        else:
+            raise EngineError(f"No point near hole {number} sees it; give more points around it.")
+        order = first + np.roll(np.arange(len(along)), -begin)
+        own = np.empty(len(along), dtype=np.intp)
+        own[order - first] = np.concatenate([seen[:1], order[:-1]])
+        parents.append(own)
+        first += len(along)
+    return Network(
+        nodes=np.concatenate([network.nodes, loops.nodes]),
+        parents=np.concatenate(parents),
+        places=network.places,
+        around=len(network.nodes) + np.arange(len(loops.nodes)),
+    )
 
 
 def _crosses(loops: Sequence[Complexes], starts: Complexes, ends: Complexes) -> Booleans:

@@ -1,5 +1,7 @@
 import numpy as np
 import pytest
+from holed_shapes import inner_points as points_of
+from holed_shapes import plate, ring
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from interpolation_shapes import around, bar, inner_points, letter_l, narrow_u, random_map, spiral
@@ -38,7 +40,7 @@ def entire(z):
 def test_holomorphic_functions_are_found_from_their_real_parts(polygon, seed):
     transform = HilbertTransform.on(polygon, far_cage(polygon))
     points = inner_points(polygon, 60, seed)
-    values, slopes = transform.at(points).extend(entire(transform.nodes)[0].real)
+    values, slopes, _ = transform.at(points).extend(entire(transform.nodes)[0].real)
     expected, expected_slopes = entire(points)
     assert_allclose(without_constant(values), without_constant(expected), rtol=0, atol=1e-5)
     # Slopes lose digits next to the corners only.
@@ -55,7 +57,7 @@ def test_values_are_accurate_on_the_outline_itself(shape):
     anywhere = outline + 0.123 * edges(outline)
     outside = middles * (1 + 1e-15)
     points = np.concatenate([outline, middles, anywhere, outside])
-    values, slopes = transform.at(points).extend(entire(transform.nodes)[0].real)
+    values, slopes, _ = transform.at(points).extend(entire(transform.nodes)[0].real)
     expected, expected_slopes = entire(points)
     assert_allclose(without_constant(values), without_constant(expected), rtol=0, atol=1e-5)
     count = len(outline)
@@ -71,7 +73,7 @@ def test_singularities_at_inward_corners_are_resolved():
     outline, cage = letter_l()
     transform = HilbertTransform.on(outline, cage)
     points = inner_points(outline, 200, 0)
-    values, _ = transform.at(points).extend(corner_function(transform.nodes).real[:, None])
+    values, _, _ = transform.at(points).extend(corner_function(transform.nodes).real[:, None])
     expected = corner_function(points)[:, None]
     assert_allclose(without_constant(values), without_constant(expected), rtol=0, atol=1e-6)
 
@@ -90,8 +92,8 @@ def solutions(shape, coarsenesses):
     points = np.concatenate([inner_points(outline, 150, 0), outline + 0.3 * edges(outline)])
     for coarseness in coarsenesses:
         panels = Panels.on(outline, cage, coarseness=coarseness)
-        transform = HilbertTransform.of(outline, panels)
-        values, _ = transform.at(points).extend(metric_data(maps, transform.nodes))
+        transform = HilbertTransform.of((outline,), panels)
+        values, _, _ = transform.at(points).extend(metric_data(maps, transform.nodes))
         yield len(transform.nodes), without_constant(values)
 
 
@@ -127,7 +129,7 @@ def test_any_number_of_nodes_is_taken_and_memory_grows_with_it():
     # Four times the panels, four times the memory; a matrix would take sixteen times.
     outline, cage = spiral()
     coarse, fine = (
-        HilbertTransform.of(outline, Panels.on(outline, cage, coarseness=coarseness))
+        HilbertTransform.of((outline,), Panels.on(outline, cage, coarseness=coarseness))
         for coarseness in (2.0, 0.25)
     )
     more = len(fine.nodes) / len(coarse.nodes)
@@ -135,7 +137,7 @@ def test_any_number_of_nodes_is_taken_and_memory_grows_with_it():
     assert len(fine.nodes) > 9_000
     assert fine.nbytes < 1.5 * more * coarse.nbytes
     points = inner_points(outline, 60, 0)
-    values, _ = fine.at(points).extend(entire(fine.nodes)[0].real)
+    values, _, _ = fine.at(points).extend(entire(fine.nodes)[0].real)
     expected, _ = entire(points)
     assert_allclose(without_constant(values), without_constant(expected), rtol=0, atol=1e-7)
 
@@ -226,3 +228,49 @@ def test_fast_evaluation_agrees_with_the_sum_over_all_panels():
         direct_slopes += sign / panels.span[panel] * (slope_weights @ own)
     assert_allclose(values, direct, rtol=0, atol=1e-9)
     assert_allclose(slopes, direct_slopes, rtol=0, atol=1e-6)
+
+
+def around_holes(shape):
+    """Return single-valued functions that are singular in the holes, (functions, constants)."""
+    rng = np.random.default_rng(0)
+
+    def values(z):
+        columns = [np.exp(z)]
+        for hole in shape.holes:
+            columns += [0.1 / (z - hole.centre), 0.02 / (z - hole.centre) ** 2 + z**2]
+        return np.column_stack(columns)
+
+    count = 1 + 2 * len(shape.holes)
+    return values, rng.normal(size=(len(shape.holes), count))
+
+
+@pytest.mark.parametrize("shape", [ring(), plate(2), plate(3)])
+def test_around_holes_functions_are_found_from_real_parts_but_for_a_constant_each(shape):
+    # What is given is off by a constant around each hole: exactly that comes back as lacking.
+    transform = HilbertTransform.on(shape.outline, shape.cage, shape.holes)
+    function, constants = around_holes(shape)
+    given = function(transform.nodes).real
+    for constant, mean in zip(constants, transform.means, strict=True):
+        given[mean > 0] += constant
+    points = np.concatenate([points_of(shape, 150), *shape.loops])
+    values, slopes, lacking = transform.at(points).extend(given)
+    assert_allclose(lacking, constants, rtol=0, atol=1e-7)
+    expected = function(points)
+    assert_allclose(without_constant(values), without_constant(expected), rtol=0, atol=1e-6)
+    h = 1e-5
+    inner = points_of(shape, 150)
+    wanted = (function(inner + h) - function(inner - h)) / (2 * h)
+    assert_allclose(slopes[: len(inner)], wanted, rtol=0, atol=5e-3)
+
+
+def test_the_fast_solver_solves_the_whole_matrix_around_holes():
+    shape = ring()
+    operator = BoundaryOperator.of(
+        Panels.on(shape.outline, shape.cage, shape.holes, coarseness=8.0)
+    )
+    everything = np.arange(len(operator.nodes))
+    right = np.column_stack([np.sin(operator.nodes.real), operator.nodes.imag**2])
+    matrix = operator.entries(everything, everything)
+    found = SkeletonSolver.of(operator)(right)
+    expected = np.linalg.solve(matrix, right)
+    assert_allclose(found, expected, rtol=0, atol=1e-7 * np.abs(expected).max())

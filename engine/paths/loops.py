@@ -1,0 +1,76 @@
+"""Closed paths around holes, on which periods are measured."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import shapely
+
+from engine.arrays import Booleans, Complexes, Indices, freeze
+from engine.geometry import Pieces, as_xy, bisect, distance_to_segments
+
+NODES = 10  # Gauss-Legendre nodes of a piece
+# Longest piece, over its distance to the nearest singularity: quadrature then errs by some 1e-12.
+PIECE_PER_DISTANCE = 0.8
+ROUNDNESS = 4  # edges of a quarter circle around a corner of the hole
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Loops:
+    """Quadrature on closed paths, one around each hole, half way to what is next to it.
+
+    Parameters
+    ----------
+    nodes, differentials : complex128, shape (c,)
+        The nodes of one loop after the other, and dz there, clockwise.
+    starts : intp, shape (holes,)
+        The first node of each loop.
+    """
+
+    nodes: Complexes
+    differentials: Complexes
+    starts: Indices
+
+    @classmethod
+    def around(cls, outline: Complexes, holes: Sequence[Complexes], singular: Complexes) -> "Loops":
+        """Lay the loops.
+
+        Parameters
+        ----------
+        outline : complex128, shape (p,)
+        holes : sequence of complex128
+            Their outlines.
+        singular : complex128, shape (v,)
+            Where integrands are singular, outside the domain or on its boundary.
+        """
+        nodes, differentials = [], []
+        rings = [shapely.LinearRing(as_xy(loop)) for loop in (outline, *holes)]
+        x, weights = np.polynomial.legendre.leggauss(NODES)
+
+        def is_fine(pieces: Pieces) -> Booleans:
+            room = distance_to_segments(singular, pieces.starts, pieces.ends).min(axis=0)
+            return np.asarray(pieces.lengths <= PIECE_PER_DISTANCE * room)
+
+        for number, hole in enumerate(holes):
+            others = shapely.MultiLineString(rings[: number + 1] + rings[number + 2 :])
+            area = shapely.Polygon(as_xy(hole))
+            room = shapely.distance(area, others)
+            wider = area.buffer(room / 2, quad_segs=ROUNDNESS).exterior
+            corners = shapely.get_coordinates(wider)[:-1] @ [1, 1j]
+            if wider.is_ccw:
+                corners = corners[::-1]
+            pieces = bisect(Pieces.whole(corners, np.roll(corners, -1)), is_fine)
+            spans = (pieces.ends - pieces.starts)[:, None]
+            nodes.append((pieces.starts[:, None] + spans * (1 + x) / 2).ravel())
+            differentials.append((spans * weights / 2).ravel())
+        return cls(
+            nodes=freeze(np.concatenate([np.empty(0, np.complex128), *nodes])),
+            differentials=freeze(np.concatenate([np.empty(0, np.complex128), *differentials])),
+            starts=freeze(np.cumsum([0, *map(len, nodes)])[: len(nodes)].astype(np.intp)),
+        )
+
+    def integrals(self, values: Complexes) -> Complexes:
+        """Integrate over each loop: (c, ...) to (holes, ...)."""
+        each = values * self.differentials.reshape(-1, *[1] * (values.ndim - 1))
+        sums: Complexes = np.add.reduceat(each, self.starts, axis=0)
+        return sums

@@ -1,0 +1,210 @@
+"""In-betweens around holes: closed, exact at the keyframes, and as little changed as can be."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from holed_shapes import Holed, inner_points, plate, random_map, ring
+from numpy.testing import assert_allclose
+
+from engine.interpolation import Variant, prepare
+from engine.interpolation.periods import Open
+from engine.maps import Boundary, HarmonicMap, distortion
+
+CLOSED = [Variant.NU, Variant.ETA, Variant.METRIC]
+TIMES = (0.25, 0.5, 0.8)
+SHAPES = {"one hole": ring(), "two holes": plate(2), "three holes": plate(3)}
+
+
+def keys(shape: Holed, seed: int = 0, size: float = 0.12) -> list[HarmonicMap]:
+    return [random_map(shape, seed, size), random_map(shape, seed + 100, size)]
+
+
+def between(shape: Holed, maps, variant, points=None, **options):
+    points = inner_points(shape, 120) if points is None else points
+    return prepare(
+        maps, points, outline=shape.outline, variant=variant, anchor=shape.anchor, **options
+    )
+
+
+def circles(shape: Holed) -> list[np.ndarray]:
+    """Return circles around each hole, with Gauss-Legendre nodes of both halves: z and dz."""
+    x, weights = np.polynomial.legendre.leggauss(48)
+    found = []
+    for hole in shape.holes:
+        radius = 1.12 * np.abs(hole.outline - hole.centre).max()
+        halves = []
+        for way in (1, -1):
+            turn = way * np.pi * (1 + x) / 2
+            z = radius * np.exp(1j * turn)
+            halves.append((hole.centre + z, 1j * z * way * np.pi / 2 * weights))
+        found.append(halves)
+    return found
+
+
+@pytest.mark.parametrize("variant", CLOSED)
+@pytest.mark.parametrize("name", SHAPES)
+def test_both_ways_around_a_hole_lead_to_the_same_place(name, variant):
+    shape = SHAPES[name]
+    halves = [half for each in circles(shape) for half in each]
+    points = np.concatenate([z for z, _ in halves])
+    motion = between(shape, keys(shape), variant, points)
+    diameter = motion.sites.diameter
+    for time in TIMES:
+        frame = motion.frame(time)
+        steps = [
+            (fz * dz + fzbar * dz.conj()).sum()
+            for fz, fzbar, (_, dz) in zip(
+                np.split(frame.fz, len(halves)),
+                np.split(frame.fzbar, len(halves)),
+                halves,
+                strict=True,
+            )
+        ]
+        for one, two in zip(steps[::2], steps[1::2], strict=True):
+            assert abs(one) > 0.1
+            assert abs(one - two) < 1e-9 * diameter
+        assert motion.intervals[0].correction > 1e-4
+
+
+@pytest.mark.parametrize("variant", list(Variant))
+@pytest.mark.parametrize("name", ["one hole", "three holes"])
+def test_keyframes_are_met_exactly(name, variant):
+    shape = SHAPES[name]
+    maps = keys(shape, 1)
+    motion = between(shape, maps, variant)
+    for time, f in enumerate(maps):
+        frame = motion.frame(float(time))
+        assert_allclose(frame.positions, f(motion.sites.points), rtol=0, atol=1e-11)
+        fz, fzbar = f.derivatives(motion.sites.points)
+        assert_allclose(frame.fz, fz, rtol=0, atol=1e-9)
+        assert_allclose(frame.fzbar, fzbar, rtol=0, atol=1e-9)
+
+
+@pytest.mark.parametrize("variant", list(Variant))
+def test_the_other_way_in_time_is_the_same_way(variant):
+    maps = keys(ring(), 2)
+    there, back = (between(ring(), each, variant) for each in (maps, maps[::-1]))
+    for time in TIMES:
+        one, two = there.frame(time), back.frame(1 - time)
+        assert_allclose(one.positions, two.positions, rtol=0, atol=1e-9)
+        assert_allclose(one.fz, two.fz, rtol=0, atol=1e-9)
+
+
+@pytest.mark.parametrize("variant", list(Variant))
+def test_in_betweens_turn_and_grow_with_the_domain(variant):
+    shape, factor, shift = ring(), 300 * np.exp(0.7j), 500 - 200j
+    maps = keys(shape, 3)
+    elsewhere = shape.moved(factor, shift)
+    # g(w) = factor · f((w − shift) / factor) + shift
+    moved = [
+        HarmonicMap(
+            cage=elsewhere.cage,
+            phi=factor * f.phi + shift * (np.arange(len(f.phi)) < len(shape.cage)),
+            psi=np.conj(factor) * f.psi,
+            holes=elsewhere.holes,
+            logs=factor * f.logs,
+        )
+        for f in maps
+    ]
+    # Logarithms differ by a constant: the same shape in another place.
+    points = inner_points(shape, 120)
+    one = between(shape, maps, variant, points)
+    two = between(elsewhere, moved, variant, factor * points + shift)
+    for time in TIMES:
+        here, there = one.frame(time).positions, two.frame(time).positions
+        here, there = factor * (here - here[0]), there - there[0]
+        assert_allclose(there, here, rtol=0, atol=2e-6 * abs(factor))
+
+
+@pytest.mark.parametrize("variant", list(Variant))
+def test_a_tiny_hole_tends_to_none(variant):
+    tiny = ring(0.002)
+    cage = tiny.cage
+    whole = [
+        HarmonicMap(cage=cage, phi=cage + 0.1 * cage**2, psi=0.05 * cage),
+        HarmonicMap(cage=cage, phi=cage - 0.05 * cage**3, psi=-0.1j * cage + 0.02 * cage**2),
+    ]
+    extra = np.zeros(36)
+    holed = [
+        HarmonicMap(
+            cage=cage,
+            phi=np.append(f.phi, extra),
+            psi=np.append(f.psi, extra),
+            holes=tiny.holes,
+            logs=np.zeros(1),
+        )
+        for f in whole
+    ]
+    points = inner_points(ring(), 120)
+    one, two = between(tiny, holed, variant, points), between(tiny, whole, variant, points)
+    for time in TIMES:
+        difference = one.frame(time).positions - two.frame(time).positions
+        assert np.abs(difference).max() < 2e-4
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_nu_keeps_property_5_and_metric_the_keys_bounds(seed):
+    shape = ring()
+    maps = keys(shape, seed, 0.15)
+    boundary = Boundary.sample(shape.outline, shape.cage, shape.holes)
+    ends = [f.derivatives(boundary.points) for f in maps]
+    pointwise = np.maximum(*(distortion.k(*end) for end in ends))
+    most_a = max(distortion.sigma_a(*end).max() for end in ends)
+    least_b = min(distortion.sigma_b(*end).min() for end in ends)
+    by_nu = between(shape, maps, "nu", boundary.points)
+    by_metric = between(shape, maps, "metric", boundary.points)
+    for time in TIMES:
+        frame = by_nu.frame(time)
+        assert np.all(distortion.k(frame.fz, frame.fzbar) <= pointwise + 1e-9)
+        frame = by_metric.frame(time)
+        assert distortion.k(frame.fz, frame.fzbar).max() <= 1.05 * pointwise.max()
+        assert distortion.sigma_a(frame.fz, frame.fzbar).max() <= 1.02 * most_a
+        assert distortion.sigma_b(frame.fz, frame.fzbar).min() >= 0.98 * least_b
+
+
+def test_the_correction_is_the_smallest():
+    """Any other holomorphic function that closes the period is larger on the boundary."""
+    shape = ring()
+    motion = between(shape, keys(shape), "nu")
+    closing, loops = motion.sites.closing, motion.sites.loops
+    plain = replace(motion.intervals[0].passage, residuals=())
+    blend = replace(motion.intervals[0].blend, passage=plain.at(motion.sites.paths.around))
+    here = blend.derivatives(0.5)
+    parts, gap = closing.correction(Open(here.fz, here.g), 1)
+    assert gap < 1e-13
+    h = closing.on_boundary @ (parts[: len(parts) // 2] + 1j * parts[len(parts) // 2 :])
+    weights = closing.boundary.weights
+    smallest = np.sqrt(weights @ np.abs(h) ** 2)
+    assert smallest > 1e-4
+    for power in (1, 2, -1, -2):
+        form = loops.nodes**power - shape.anchor**power
+        factor = 0j
+        for _ in range(30):
+            grown = np.exp(factor * form)
+            period = loops.integrals(here.fz * grown) + loops.integrals(here.g * grown).conj()
+            along = loops.integrals(here.fz * grown * form)
+            across = loops.integrals(here.g * grown * form).conj()
+            # period + along d + across conj(d) = 0
+            determinant = abs(along) ** 2 - abs(across) ** 2
+            factor -= complex(((along.conj() * period - across * period.conj()) / determinant)[0])
+        other = factor * (closing.boundary.points**power - shape.anchor**power)
+        assert np.sqrt(weights @ np.abs(other) ** 2) > 1.001 * smallest
+
+
+def test_a_motion_through_keys_is_closed_too():
+    shape = ring()
+    (halves,) = circles(shape)
+    points = np.concatenate([z for z, _ in halves])
+    maps = [random_map(shape, seed, 0.1) for seed in range(4)]
+    for variant in CLOSED:
+        motion = between(shape, maps, variant, points, through=True)
+        for time in (0.4, 1.5, 2.3):
+            frame = motion.frame(time)
+            one, two = (
+                (fz * dz + fzbar * dz.conj()).sum()
+                for fz, fzbar, (_, dz) in zip(
+                    np.split(frame.fz, 2), np.split(frame.fzbar, 2), halves, strict=True
+                )
+            )
+            assert abs(one - two) < 1e-9
