@@ -7,6 +7,7 @@ import numpy as np
 
 from engine.arrays import Complexes, freeze
 from engine.interpolation.derivatives import Derivatives, Passage, weighted
+from engine.interpolation.residual import Residual
 from engine.interpolation.sites import Sites
 from engine.interpolation.smooth_scaling import Scaling
 
@@ -58,13 +59,16 @@ class IntegratedInbetweens:
         None where Ψ is not scaled.
     correction : float
         The largest |h| that closes the periods around holes; 0 where there are none.
+    opening : Residual or None
+        d around holes, where Ψ is scaled (`engine.interpolation.scaling`).
     """
 
     sites: Sites
     passage: Passage
     blend: Blend
     scale: Scaling | None
-    correction: float
+    correction: float = 0.0
+    opening: Residual | None = None
 
     @property
     def nbytes(self) -> int:
@@ -83,7 +87,8 @@ class IntegratedInbetweens:
         """Return Φ and conj(Ψ), each (m,), both 0 at the anchor and Ψ before its scaling.
 
         f is the anchor's position + Φ + ρ conj(Ψ). Without ρ both parts are analytic in time; ρ is
-        smooth, but bends within a small part of the interval.
+        smooth, but bends within a small part of the interval. Around holes, where ρ scales Φ a
+        little, too, the parts are the map for ρ = 0 and what is added to it for ρ = 1.
         """
         # What the quadrature lacks of the keyframes is known, and blended like them: the keyframes
         # come out exactly, without a jump in time.
@@ -94,16 +99,49 @@ class IntegratedInbetweens:
         phi += weighted([key.phi_error for key in keyframes], weights)
         psi = paths.integrals(paths.step_integrals(blended.g, blended.gz))
         psi += weighted([key.psi_error for key in keyframes], weights)
-        return phi, psi.conj()
+        if self.opening is None:
+            return phi, psi.conj()
+        fz, fzz = self._conformal(blended, time)
+        alone = paths.integrals(paths.step_integrals(fz, fzz))
+        alone += weighted([key.phi_error for key in keyframes], weights)
+        return alone, phi - alone + psi.conj()
+
+    def derivative_parts(self, time: float) -> tuple[Complexes, Complexes, Complexes]:
+        """Return f_z for ρ = 0, what ρ adds to it, and f_z̄ before its scaling, at the points."""
+        blended, places = self.blend.derivatives(time), self.sites.paths.places
+        fz, fzbar = blended.fz[places], blended.g[places].conj()
+        if self.opening is None:
+            return fz, np.zeros_like(fz), fzbar
+        alone = self._conformal(blended, time)[0][places]
+        return alone, fz - alone, fzbar
+
+    def _conformal(self, blended: Derivatives, time: float) -> tuple[Complexes, Complexes]:
+        """Return f_z and its derivative for ρ = 0, each (s,)."""
+        logarithm, logarithm_z = np.zeros_like(blended.fz), np.zeros_like(blended.fz)
+        if self.opening is not None:
+            self.opening.add_to(logarithm, logarithm_z, time)
+        growth = np.exp(logarithm)
+        return blended.fz * growth, (blended.fzz + blended.fz * logarithm_z) * growth
 
     def offsets(self, time: float) -> Complexes:
         """Return f − f(anchor) at the points, (m,)."""
+        if self.opening is not None:
+            alone, scaled = self.parts(time)
+            return alone + self.rho(time) * scaled
         return self._offsets(self.blend.derivatives(time), time, self.rho(time))
 
     def frame(self, time: float) -> Frame:
         """Return the in-between at a time in [0, 1]."""
-        blended = self.blend.derivatives(time)
         rho = self.rho(time)
+        if self.opening is not None:
+            alone, scaled, fzbar = self.derivative_parts(time)
+            return Frame(
+                positions=self.passage.anchor_position(time) + self.offsets(time),
+                fz=alone + rho * scaled,
+                fzbar=rho * fzbar,
+                rho=rho,
+            )
+        blended = self.blend.derivatives(time)
         places = self.sites.paths.places
         return Frame(
             positions=self.passage.anchor_position(time) + self._offsets(blended, time, rho),

@@ -160,7 +160,7 @@ class PeriodClosing:
         *,
         sign: int,
         breaks: Sequence[float] = (0.0, 1.0),
-        vanishing: bool = True,
+        to_conformal: bool = False,
     ) -> Closing:
         """Close the periods of in-betweens at all times.
 
@@ -174,14 +174,21 @@ class PeriodClosing:
             1 keeps ν, −1 keeps η.
         breaks : sequence of float
             From 0 to 1: where the in-betweens may have kinks in time.
-        vanishing : bool
-            Whether the in-betweens are closed at times 0 and 1 already, as keyframes are.
+        to_conformal : bool
+            Whether not h is wanted, but what leads on from there to the correction of f_z alone,
+            without f_z̄.
         """
         largest = 0.0
 
+        def solved(here: Open) -> Floats:
+            parts, _ = self.correction(here, sign)
+            if to_conformal:
+                parts = self.correction(here._replace(g=0.0 * here.g), sign)[0] - parts
+            return parts
+
         def corrections(times: Floats) -> Floats:
             nonlocal largest
-            found = np.array([self.correction(opened(float(time)), sign)[0] for time in times]).T
+            found = np.array([solved(opened(float(time))) for time in times]).T
             h = self.on_boundary @ as_complex(found)
             largest = max(largest, float(np.abs(h).max()))
             return found
@@ -192,7 +199,7 @@ class PeriodClosing:
             left_out=TOLERANCE,
             shortest=SHORTEST,
             breaks=breaks,
-            vanishing=vanishing,
+            vanishing=not to_conformal,
         )
         functions = self.coefficients @ as_complex(forms)
         values, slopes = self.boundary.span.evaluate(functions, points, orders=(0, 1))

@@ -223,19 +223,20 @@ def prepare_inbetweens(
     if variant is Variant.METRIC:
         metric = MetricResidual.of(passage, sites.paths, _matching(transform, sites))
         passage = replace(passage, residuals=(metric.residual,))
-    closing = _closing(variant, sites, passage, metric)
-    if closing is not None:
-        passage = replace(passage, residuals=(*passage.residuals, closing.residual))
+    closings = _closings(variant, sites, passage, metric)
+    if closings:
+        passage = replace(passage, residuals=(*passage.residuals, closings[0].residual))
     scale: Scaling | None = None
     if variant is Variant.SCALED_ETA:
         scaled = [key.map for key in passage.keyframes]
-        scale = Scaling.of(SharpScaling.of(scaled, sites.outline, passage.course, bounds))
+        scale = Scaling.of(SharpScaling.of(scaled, sites.outline, passage.course, bounds, closings))
     return IntegratedInbetweens(
         sites=sites,
         passage=passage,
         blend=_blend(variant, passage),
         scale=scale,
-        correction=0.0 if closing is None else closing.largest,
+        correction=closings[0].largest if closings else 0.0,
+        opening=closings[1].residual if len(closings) > 1 else None,
     )
 
 
@@ -243,12 +244,12 @@ def _blend(variant: Variant, passage: Passage) -> Blend:
     return NuBlend(passage=passage) if variant is Variant.NU else EtaBlend.of(passage)
 
 
-def _closing(
+def _closings(
     variant: Variant, sites: Sites, passage: Passage, metric: MetricResidual | None
-) -> Closing | None:
-    """Close the periods of in-betweens around holes; return None where there are none."""
+) -> tuple[Closing, ...]:
+    """Close the periods of in-betweens around holes: h, and d where Ψ is scaled."""
     if sites.closing is None:
-        return None
+        return ()
     at_loops = _blend(variant, passage.at(sites.paths.around))
 
     def opened(time: float) -> Open:
@@ -257,7 +258,11 @@ def _closing(
 
     sign = 1 if variant is Variant.NU else -1
     breaks = (0.0, 1.0) if metric is None else tuple(metric.residual.series.breaks)
-    return sites.closing.close(opened, sites.paths.nodes, sign=sign, breaks=breaks)
+    points = sites.paths.nodes
+    closing = sites.closing.close(opened, points, sign=sign, breaks=breaks)
+    if variant is not Variant.SCALED_ETA:
+        return (closing,)
+    return closing, sites.closing.close(opened, points, sign=sign, to_conformal=True)
 
 
 def _known(variant: Variant | str) -> Variant:

@@ -1,26 +1,28 @@
-"""The largest ρ that brings η back within the keyframes' bounds (Section 7.3, Appendix A)."""
+"""The largest ρ that brings η back within the keyframes' bounds (Section 7.3, Appendix A).
+
+Around holes the period of f_z and that of ρ f_z̄ close together, so that the correction depends on
+ρ. Both are closed for ρ = 1 (F e^h, G e^−h) and for ρ = 0 (F e^(h + d), 0), and what is between is
+the mean of both maps with the weights ρ and 1 − ρ: closed for every ρ, and
+
+    F_ρ = F e^h (ρ + (1 − ρ) e^d),    G_ρ = ρ G e^−h.
+"""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Self
+from typing import Self, TypeVar
 
 import numpy as np
 
 from engine.arrays import Booleans, Complexes, Floats, Indices, freeze
-from engine.geometry import box_diagonal, sample_graded
+from engine.geometry import box_diagonal, next_on_loop, sample_graded
 from engine.interpolation.passing import Course
-from engine.maps import Bounds, HarmonicMap, evaluate
+from engine.interpolation.periods import Closing
+from engine.maps import Bounds, HarmonicMap
 
 # Segments between the samples of the outline, over the distance to the nearest cage vertex and over
 # the box diagonal. Interpolation between them is then right to 1e-7.
 SEGMENT_PER_DISTANCE = 0.2
 SEGMENT_PER_SIZE = 1 / 400
-STENCIL = (
-    0,
-    1,
-    -1,
-    2,
-)  # samples, counted from the start of a segment, that it is interpolated from
 NEGLIGIBLE = 1e-9  # f_z̄ / f_z below which no scaling is needed, whatever the bounds
 CEILING = 2.0  # ratios are cut off there: only those below 1 matter
 PARTS = (
@@ -36,6 +38,8 @@ MARGIN = 0.05  # by which a sample may be lower in between than both ends of a r
 # each point's own.
 BESIDE_KEY = 0.24
 
+type_ = TypeVar("type_", Floats, Complexes)
+
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class PointSamples:
@@ -43,11 +47,13 @@ class PointSamples:
 
     Parameters
     ----------
-    log_modulus : float64, shape (q, ...)
-        ln |f_z|.
+    log_modulus : float64, shape (q + j, ...)
+        ln |f_z|, and the real parts of the modes of h.
     conj_eta : complex128, shape (q, ...)
     k, sigma_a, sigma_b : float64, shape (...)
         The larger k and sigma_a and the smaller sigma_b of the keyframes: Properties 5 to 7.
+    opening : complex128, shape (i, ...)
+        The modes of d; none without holes.
     """
 
     log_modulus: Floats
@@ -55,17 +61,19 @@ class PointSamples:
     k: Floats
     sigma_a: Floats
     sigma_b: Floats
+    opening: Complexes
 
     @classmethod
-    def of(cls, fz: Complexes, g: Complexes) -> Self:
-        """Build the samples from f_z and conj(f_z̄), each (q, ...)."""
+    def of(cls, fz: Complexes, g: Complexes, h: Complexes, d: Complexes) -> Self:
+        """Build the samples from f_z and conj(f_z̄), each (q, ...), and modes (j, ...), (i, ...)."""
         a, b = np.abs(fz), np.abs(g)
         return cls(
-            log_modulus=freeze(np.log(a)),
+            log_modulus=freeze(np.concatenate([np.log(a), h.real])),
             conj_eta=freeze(fz * g),
             k=freeze((b / a).max(axis=0)),
             sigma_a=freeze((a + b).max(axis=0)),
             sigma_b=freeze((a - b).min(axis=0)),
+            opening=freeze(np.array(d)),
         )
 
     def at(self, chosen: Indices) -> Self:
@@ -76,6 +84,7 @@ class PointSamples:
             k=self.k[chosen],
             sigma_a=self.sigma_a[chosen],
             sigma_b=self.sigma_b[chosen],
+            opening=self.opening[:, chosen],
         )
 
     def bounded(self, worst: "Worst | None") -> Self:
@@ -93,21 +102,53 @@ class PointSamples:
 
         Parameters
         ----------
-        weights : float64, shape (q, ...)
-            Of the keyframes, each to be broadcast with the points' shape.
+        weights : float64, shape (q + j + i, ...)
+            Of the keyframes and of the modes, each to be broadcast with the points' shape.
 
         Returns
         -------
         float64
             Of the common shape, at most `CEILING`.
         """
-        a = np.exp(sum(w * value for w, value in zip(weights, self.log_modulus, strict=True)))
-        b = np.abs(sum(w * value for w, value in zip(weights, self.conj_eta, strict=True))) / a
+        count = len(self.log_modulus)
+        a = np.exp(_total(weights[:count], self.log_modulus))
+        b = np.abs(_total(weights[: len(self.conj_eta)], self.conj_eta)) / a
+        if len(self.opening):
+            return self._around_holes(a, b, np.exp(_total(weights[count:], self.opening)))
         # ρ_k, ρ_a and ρ_b of Section 7.3 have the denominator |f_z̄| in common.
         room = np.minimum(self.k * a, np.minimum(self.sigma_a - a, a - self.sigma_b))
         ratios = np.full(room.shape, CEILING)
         np.divide(room, b, out=ratios, where=b > np.maximum(NEGLIGIBLE * a, room / CEILING))
         return ratios
+
+    def _around_holes(self, a: Floats, b: Floats, opened: Complexes) -> Floats:
+        """Return the same for |F_1| = a, |G_1| = b and F_0 = F_1 e^d, with e^d given.
+
+        |F_ρ|² is a quadratic in ρ, and so is each bound. Where the map for ρ = 0 is beyond a bound
+        there is no telling: the bound is left to the others.
+        """
+        way = 1.0 - opened
+        f0, f1, f2 = np.abs(opened) ** 2, (opened * way.conj()).real, np.abs(way) ** 2
+        f0, f1, f2 = a * a * f0, a * a * f1, a * a * f2
+        k = self.k * self.k
+        quadratics = (
+            (-k * f0, -k * f1, b * b - k * f2),
+            (f0 - self.sigma_a**2, f1 + self.sigma_a * b, f2 - b * b),
+            (self.sigma_b**2 - f0, self.sigma_b * b - f1, b * b - f2),
+        )
+        lowest = np.full(a.shape, CEILING)
+        for c0, c1, c2 in quadratics:
+            # The first ρ at which c0 + 2 c1 ρ + c2 ρ² > 0.
+            discriminant = c1 * c1 - c2 * c0
+            divisor = c1 + np.sqrt(np.maximum(discriminant, 0.0))
+            there = (c0 < 0) & (discriminant >= 0) & (divisor > -c0 / CEILING)
+            np.minimum(lowest, -c0 / np.where(there, divisor, 1.0), out=lowest, where=there)
+        return lowest
+
+
+def _total(weights: Floats, values: type_) -> type_:
+    total: type_ = sum(w * value for w, value in zip(weights, values, strict=True))
+    return total
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -150,29 +191,49 @@ class SharpScaling:
         At the outline's samples (p,), in order along it, its vertices among them.
     worst : Worst
         Of the keyframes; with the given bounds, where the course is not straight.
+    closings : tuple of Closing
+        Around holes those of h and of d.
     """
 
     course: Course
     curves: "OutlineCurves"
     samples: PointSamples
     worst: Worst
+    closings: tuple[Closing, ...] = ()
 
     @classmethod
     def of(
-        cls, maps: Sequence[HarmonicMap], outline: Complexes, course: Course, bounds: Bounds
+        cls,
+        maps: Sequence[HarmonicMap],
+        outline: Complexes,
+        course: Course,
+        bounds: Bounds,
+        closings: tuple[Closing, ...] = (),
     ) -> Self:
-        """Sample the keyframes of a course along the outline (p,)."""
-        cage = maps[0].cage
+        """Sample the keyframes of a course along the outline (p,), and along their holes."""
+        span = maps[0].span
         longest = SEGMENT_PER_SIZE * box_diagonal(outline)
-        points = sample_graded(outline, cage, ratio=SEGMENT_PER_DISTANCE, longest=longest)
-        coefficients = np.array([*(f.phi for f in maps), *(f.psi for f in maps)]).T
-        first, second = evaluate(cage, coefficients, points, orders=(1, 2))
-        curves = OutlineCurves.through(points, first.T, second.T)
-        samples = PointSamples.of(*np.split(first.T, 2))
+        sampled = [
+            sample_graded(loop, span.vertices, ratio=SEGMENT_PER_DISTANCE, longest=longest)
+            for loop in (outline, *(hole.outline for hole in span.holes))
+        ]
+        points = np.concatenate(sampled)
+        starts = np.cumsum([0, *map(len, sampled[:-1])])
+        columns = np.array([f.columns for f in maps]).swapaxes(0, 1)  # Φ of all, and then Ψ of all
+        values, slopes = span.evaluate(columns.reshape(-1, len(span)).T, points, orders=(1, 2))
+        modes = [span.evaluate(each.functions, points, orders=(0, 1)) for each in closings]
+        curves = OutlineCurves.through(
+            points,
+            np.vstack([values.T, *(mode[0].T for mode in modes)]),
+            np.vstack([slopes.T, *(mode[1].T for mode in modes)]),
+            starts=starts,
+            counts=(len(maps), modes[0][0].shape[1] if modes else 0),
+        )
+        samples = curves.samples_of(curves.coefficients[0])
         worst = _worst(curves, samples)
         if not course.is_straight:
             worst = worst.widened(bounds)
-        return cls(course=course, curves=curves, samples=samples, worst=worst)
+        return cls(course=course, curves=curves, samples=samples, worst=worst, closings=closings)
 
     def __call__(self, times: Floats) -> Floats:
         """Return ρ in (0, 1] at times (s,) in (0, 1), in ascending order.
@@ -214,8 +275,13 @@ class SharpScaling:
         return np.minimum((1.0 - TOO_HIGH) * lowest, 1.0)
 
     def _weights(self, times: Floats) -> Floats:
-        """Return the keyframes' weights at times (s,), to be broadcast with points: (q, s, 1)."""
-        return self.course.at(times[:, None])
+        """Return the weights of keyframes and modes at times (s,), for any points: (…, s, 1)."""
+        keys = self.course.at(times[:, None])
+        series = [
+            np.array([each.series(float(time)) for time in times]).T[..., None]
+            for each in self.closings
+        ]
+        return np.concatenate([keys, *series])
 
     def _promising(self, chosen: Indices, ratios: Floats) -> Booleans:
         """Tell from which of some samples (c,) segments start that may hold a minimum, (s, c)."""
@@ -224,7 +290,7 @@ class SharpScaling:
         drop = np.maximum(drop, np.maximum(np.roll(drop, 1, axis=1), np.roll(drop, -1, axis=1)))
         goal = np.minimum(ratios.min(axis=1), 1.0) - GAIN
         low: Booleans = np.minimum(ratios, after) - drop < goal[:, None]
-        low &= np.roll(chosen, -1) == (chosen + 1) % len(self.samples.k)
+        low &= np.roll(chosen, -1) == self.curves.following[chosen]
         return low
 
     def _refine(
@@ -259,17 +325,35 @@ class OutlineCurves:
     ----------
     places : complex128, shape (8, p)
         w of the four samples of each segment, each twice.
-    coefficients : complex128, shape (8, 2 q, p)
-        f_z of the keyframes, and then conj(f_z̄) of them.
+    coefficients : complex128, shape (8, 2 q + j + i, p)
+        f_z of the keyframes, conj(f_z̄) of them, and the modes of h and d.
+    counts : (int, int)
+        q and j.
+    following : intp, shape (p,)
+        The sample at which each segment ends.
     """
 
     places: Complexes
     coefficients: Complexes
+    counts: tuple[int, int]
+    following: Indices
 
     @classmethod
-    def through(cls, points: Complexes, values: Complexes, derivatives: Complexes) -> Self:
-        """Interpolate functions (2 q, p) with their derivatives at points (p,)."""
-        stencil = [np.roll(np.arange(len(points)), -step) for step in STENCIL]
+    def through(
+        cls,
+        points: Complexes,
+        values: Complexes,
+        derivatives: Complexes,
+        *,
+        starts: Indices,
+        counts: tuple[int, int],
+    ) -> Self:
+        """Interpolate functions (2 q + j + i, p) with their derivatives at points (p,).
+
+        `starts` are the first points of the loops.
+        """
+        here, after = np.arange(len(points)), next_on_loop(starts, len(points))
+        stencil = [here, after, np.argsort(after), after[after]]
         span = points[stencil[1]] - points
         places = np.repeat([(points[at] - points) / span for at in stencil], 2, axis=0)
         column = np.repeat([values[:, at] for at in stencil], 2, axis=0)
@@ -283,7 +367,18 @@ class OutlineCurves:
                 rise[::2] = [derivatives[:, at] * span for at in stencil]
             column = rise / gap
             coefficients.append(column[0])
-        return cls(places=freeze(places), coefficients=freeze(np.array(coefficients)))
+        return cls(
+            places=freeze(places),
+            coefficients=freeze(np.array(coefficients)),
+            counts=counts,
+            following=freeze(after),
+        )
+
+    def samples_of(self, values: Complexes) -> PointSamples:
+        """Return the samples with these values (2 q + j + i, ...) of the functions."""
+        count, modes = self.counts
+        fz, g, h, d = np.split(values, [count, 2 * count, 2 * count + modes])
+        return PointSamples.of(fz, g, h, d)
 
     def at(self, segment: Indices, places: Floats) -> PointSamples:
         """Return the samples at places (c, s), each from 0 to 1, along segments (c,)."""
@@ -292,8 +387,7 @@ class OutlineCurves:
         for node, coefficient in zip(nodes[-2::-1], coefficients[-2::-1], strict=True):
             values *= places - node[:, None]
             values += coefficient[:, :, None]
-        fz, g = np.split(values, 2)
-        return PointSamples.of(fz, g)
+        return self.samples_of(values)
 
 
 def looseness(times: Floats) -> Floats:

@@ -85,9 +85,9 @@ class Distortions:
         if not scales(inbetweens):
             frame = inbetweens.frame(time)
             return Sample(_reals(np.concatenate([frame.fz, frame.fzbar])), None)
-        blended, places = inbetweens.blend.derivatives(time), inbetweens.sites.paths.places
-        fz, fzbar = blended.fz[places], blended.g[places].conj()
-        values, scaled = np.concatenate([fz, fzbar]), np.concatenate([np.zeros_like(fz), fzbar])
+        alone, added, fzbar = inbetweens.derivative_parts(time)
+        values = np.concatenate([alone + added, fzbar])
+        scaled = np.concatenate([added, fzbar])
         return Sample(_reals(values), _reals(scaled))
 
 
