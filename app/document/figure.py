@@ -218,7 +218,13 @@ class Figure:
 
     def map_of(self, pose: Pose) -> HarmonicMap:
         """Return the map of a pose."""
-        return HarmonicMap(cage=self.domain.cage, phi=pose.phi, psi=pose.psi)
+        return HarmonicMap(
+            cage=self.domain.cage,
+            phi=pose.phi,
+            psi=pose.psi,
+            holes=self.domain.holes,
+            logs=pose.logs,
+        )
 
     def is_proven(self, pose: Pose) -> bool:
         """Tell whether a pose is proven to keep the bounds of now."""
@@ -259,9 +265,11 @@ class Figure:
             require_place(self.anchor, "The anchor")
             places["anchor"] = self.anchor
         if places:
-            outline = self.domain.outline
+            outline, *holes = self.domain.loops
             points = np.array(list(places.values()), dtype=np.complex128)
-            inside = contains(outline, points, tolerance=ON_OUTLINE * box_diagonal(outline))
+            inside = contains(
+                outline, points, holes=holes, tolerance=ON_OUTLINE * box_diagonal(outline)
+            )
             for (name, place), is_inside in zip(places.items(), inside, strict=True):
                 require(
                     bool(is_inside),
@@ -293,10 +301,14 @@ class Figure:
             pose.targets.keys() == {handle.id for handle in self.handles},
             f"{what} does not have one target for each handle.",
         )
+        count = sum(map(len, self.domain.cages))
         require(
-            len(pose.phi) == len(pose.psi) == len(self.domain.cage),
-            f"{what} has coefficients for a cage of {len(pose.phi)} vertices, not of "
-            f"{len(self.domain.cage)}.",
+            len(pose.phi) == len(pose.psi) == count,
+            f"{what} has coefficients for a cage of {len(pose.phi)} vertices, not of {count}.",
+        )
+        require(
+            len(pose.logs) == len(self.domain.holes),
+            f"{what} is around {len(pose.logs)} holes, not {len(self.domain.holes)}.",
         )
 
 
@@ -304,9 +316,9 @@ def new_figure(
     picture: PictureFile, domain: Domain, meshing: Meshing, cut_out: CutOut = CutOut()
 ) -> Figure:
     """Return the figure of a picture just opened: one key at frame 0, as it was drawn."""
-    identity = HarmonicMap.identity(domain.cage)
+    rest = HarmonicMap.identity(domain.cage, domain.holes)
     undistorted = Certificate(k=0.0, sigma_a=1.0, sigma_b=1.0, winding=0, certified=True)
-    pose = Pose(targets={}, phi=identity.phi, psi=identity.psi, certificate=undistorted)
+    pose = Pose(targets={}, phi=rest.phi, psi=rest.psi, logs=rest.logs, certificate=undistorted)
     return Figure(
         picture=picture,
         domain=domain,

@@ -183,7 +183,7 @@ def _held_only_by(old: Step, new: Step) -> int:
         _figure_held_only_by(figure, figures.get(figure.id)) for figure in old.document.figures
     )
     if old.unkeyed is not None and old.unkeyed is not new.unkeyed:
-        held += POSE_BYTES + old.unkeyed.pose.phi.nbytes + old.unkeyed.pose.psi.nbytes
+        held += POSE_BYTES + old.unkeyed.pose.nbytes
     return held
 
 
@@ -198,13 +198,13 @@ def _figure_held_only_by(old: Figure, new: Figure | None) -> int:
         held += sum(s.points.nbytes for s in old.cut_out.strokes if id(s) not in kept)
     if new is None or old.domain is not new.domain:
         mesh = old.domain.mesh
-        arrays = (old.domain.outline, old.domain.cage, mesh.vertices, mesh.triangles)
-        held += sum(array.nbytes for array in arrays)
+        held += sum(loop.nbytes for loop in (*old.domain.loops, *old.domain.cages))
+        held += mesh.vertices.nbytes + mesh.triangles.nbytes
     later = () if new is None else new.poses
     poses, maps = {id(pose) for pose in later}, {id(pose.phi) for pose in later}
     for pose in old.poses:
         if id(pose) not in poses:
             held += POSE_BYTES
         if id(pose.phi) not in maps:
-            held += pose.phi.nbytes + pose.psi.nbytes
+            held += pose.nbytes
     return held

@@ -2,14 +2,16 @@
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from enum import StrEnum
 from types import MappingProxyType
 
+import numpy as np
+
 from app.document.checks import FARTHEST, NOTHING, Unknown, require, require_place
 from app.document.easing import HOLD, LINEAR, Easing
-from engine.arrays import Complexes, as_points
-from engine.maps import Certificate
+from engine.arrays import Complexes, as_points, freeze
+from engine.maps import Certificate, HarmonicMap
 
 HEAVIEST = 1e6
 # A locked handle pulls so many times as strongly: a free one that is dragged as far as the limits
@@ -130,7 +132,9 @@ class Pose:
     targets : mapping of int to Target
         One for each handle of the document, by the handle's id.
     phi, psi : complex128, shape (n,)
-        Coefficients of the map over the domain's cage.
+        Coefficients of the map over the domain's cage, and those in its holes.
+    logs : complex128, shape (holes,)
+        Those of its logarithms.
     certificate : Certificate
         What is proven of the map, by the solver or when it was read; it is never written.
     """
@@ -138,12 +142,24 @@ class Pose:
     targets: Mapping[int, Target]
     phi: Complexes
     psi: Complexes
+    logs: Complexes = field(default_factory=lambda: freeze(np.empty(0, dtype=np.complex128)))
     certificate: Certificate
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "targets", MappingProxyType(dict(self.targets)))
         object.__setattr__(self, "phi", as_points(self.phi, "phi", at_least=3))
         object.__setattr__(self, "psi", as_points(self.psi, "psi", at_least=3))
+        object.__setattr__(self, "logs", as_points(self.logs, "logs"))
+
+    @property
+    def nbytes(self) -> int:
+        """Memory that the map takes, in bytes."""
+        return self.phi.nbytes + self.psi.nbytes + self.logs.nbytes
+
+    def with_map(self, harmonic_map: HarmonicMap) -> "Pose":
+        """Return the pose with another map."""
+        f = harmonic_map
+        return replace(self, phi=f.phi, psi=f.psi, logs=f.logs)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

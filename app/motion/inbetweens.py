@@ -62,6 +62,7 @@ class PoseSampler:
             domain.outline,
             domain.cage,
             mesh.vertices if points is None else points,
+            holes=domain.holes,
             triangles=mesh.triangles if points is None else None,
             anchor=anchor,
         )
@@ -81,7 +82,7 @@ class PoseSampler:
         with self._transform_lock:
             if self._transform is None:
                 self._transform = (
-                    HilbertTransform.on(self.domain.outline, self.domain.cage)
+                    HilbertTransform.on(self.domain.outline, self.domain.cage, self.domain.holes)
                     if self._sibling is None
                     else self._sibling.transform
                 )
@@ -112,7 +113,13 @@ class PoseSampler:
         """Return the samples of a pose's map."""
         with self._lock:
             if pose not in self._samples:
-                f = HarmonicMap(cage=self.domain.cage, phi=pose.phi, psi=pose.psi)
+                f = HarmonicMap(
+                    cage=self.domain.cage,
+                    phi=pose.phi,
+                    psi=pose.psi,
+                    holes=self.domain.holes,
+                    logs=pose.logs,
+                )
                 (self._samples[pose],) = sample_keyframes([f], self.sites)
             return self._samples[pose]
 

@@ -228,7 +228,11 @@ class Joints:
         mesh = child.domain.mesh
         middles = mesh.vertices[mesh.triangles].mean(axis=1)
         middles = middles[:: max(1, len(middles) // MOST_STARTS)]
-        anchor = deepest_point(child.domain.outline) if child.anchor is None else child.anchor
+        anchor = (
+            deepest_point(child.domain.outline, child.domain.loops[1:])
+            if child.anchor is None
+            else child.anchor
+        )
         points = np.array([anchor, *middles])
         here, there = (self.placement(each.id, frame) for each in (child, parent))
         places = here.on(self._animation_at(child, points).frame(frame).positions)

@@ -9,7 +9,7 @@ from app.document import Pose
 from engine.arrays import Booleans, Complexes, Floats, Integers
 from engine.domain import Domain
 from engine.domain.meshing import Mesh, in_order_of, triangulate
-from engine.maps import cauchy_coordinates
+from engine.maps import Span
 
 # Triangles of the mesh that is shown while the full one would be too slow.
 COARSE_TRIANGLES = 12_000
@@ -62,7 +62,8 @@ class PosableMesh:
     source : Domain
         The figure's.
     coordinates : complex64, shape (v, n)
-        Cauchy coordinates of the vertices: single precision is plenty for a screen.
+        Values at the vertices of the functions that maps are made of: single precision is plenty
+        for a screen.
     """
 
     domain: Domain
@@ -118,8 +119,10 @@ class PosableMesh:
     def posed(self, pose: Pose) -> Complexes:
         """Return where a pose takes the vertices, (v,)."""
         # Relative to the identity, so that few digits are lost far from the origin.
-        cage = self.domain.cage
-        moved = np.column_stack([pose.phi - cage, pose.psi]).astype(np.complex64)
+        span = _span(self.domain)
+        phi = np.concatenate([pose.phi, pose.logs]) - span.identity()
+        psi = np.concatenate([pose.psi, pose.logs.conj()])
+        moved = np.column_stack([phi, psi]).astype(np.complex64)
         shift = self.coordinates @ moved
         places: Complexes = self.domain.mesh.vertices + shift[:, 0] + shift[:, 1].conj()
         return places
@@ -153,4 +156,8 @@ def _cross(first: Complexes, second: Complexes) -> Floats:
 
 
 def _coordinates(domain: Domain) -> npt.NDArray[np.complex64]:
-    return cauchy_coordinates(domain.cage, domain.mesh.vertices).astype(np.complex64)
+    return _span(domain).coordinates(domain.mesh.vertices).astype(np.complex64)
+
+
+def _span(domain: Domain) -> Span:
+    return Span(cage=domain.cage, holes=domain.holes)

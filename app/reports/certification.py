@@ -22,6 +22,7 @@ class IntervalReport:
     last: int
     reached: Extremes
     keys: Extremes
+    correction: float
 
     @property
     def is_within(self) -> bool:
@@ -71,7 +72,8 @@ def certify_clip(clip: Clip, variant: Variant | None = None) -> Report:
     outline; there it is taken at graded samples, some hundred an edge, the same for keys and
     in-betweens.
     """
-    boundary = Boundary.sample(clip.figure.domain.outline, clip.figure.domain.cage)
+    domain = clip.figure.domain
+    boundary = Boundary.sample(domain.outline, domain.cage, domain.holes)
     keys = tuple(
         (key.frame, certify(clip.figure.map_of(key.pose), boundary, clip.figure.bounds))
         for key in clip.keys
@@ -96,6 +98,7 @@ def certify_clip(clip: Clip, variant: Variant | None = None) -> Report:
                 last=clip.keys[last].frame,
                 reached=reached,
                 keys=bound,
+                correction=inbetweens.correction,
             )
         )
     return Report(keys=keys, intervals=tuple(reports))

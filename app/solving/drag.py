@@ -40,7 +40,7 @@ class Rig:
         boundary = (
             earlier.deformer.boundary
             if earlier is not None and earlier.figure.domain is figure.domain
-            else Boundary.sample(figure.domain.outline, figure.domain.cage)
+            else Boundary.sample(figure.domain.outline, figure.domain.cage, figure.domain.holes)
         )
         handles = (
             earlier.deformer.handles
@@ -147,6 +147,7 @@ class Drag:
             targets=targets,
             phi=self.state.map.phi,
             psi=self.state.map.psi,
+            logs=self.state.map.logs,
             certificate=self.state.certificate,
         )
 
@@ -194,9 +195,10 @@ def pose_at(rig: Rig, clip: Clip, frame: float, sibling: PoseSampler | None = No
     blended = Animation(clip, points=boundary.points, sampler=sampler).frame(frame)
     fitted = fit_map(boundary, blended.fz, blended.fzbar, blended.positions)
     for share in (1.0, 0.5, 0.25, 0.0):
-        phi = share * fitted.phi + (1.0 - share) * near.phi
-        psi = share * fitted.psi + (1.0 - share) * near.psi
-        mixed = HarmonicMap(cage=boundary.cage, phi=phi, psi=psi)
+        own = figure.map_of(near)
+        mixed = own.changed(
+            *(share * (new - old) for new, old in zip(fitted.columns, own.columns, strict=True))
+        )
         certificate = certify(mixed, boundary, rig.deformer.bounds)
         if certificate.certified:
             break
@@ -207,7 +209,13 @@ def pose_at(rig: Rig, clip: Clip, frame: float, sibling: PoseSampler | None = No
         handle.id: Target(position=complex(place))
         for handle, place in zip(figure.handles, places, strict=True)
     }
-    return Pose(targets=targets, phi=mixed.phi, psi=mixed.psi, certificate=certificate)
+    return Pose(
+        targets=targets,
+        phi=mixed.phi,
+        psi=mixed.psi,
+        logs=mixed.logs,
+        certificate=certificate,
+    )
 
 
 def fit_map(
@@ -235,7 +243,14 @@ def fit_map(
     matrix = root * boundary.derivatives[chosen, 1:]
     wanted = root * np.column_stack([fz, fzbar.conj()])
     solved, *_ = np.linalg.lstsq(matrix, wanted, rcond=None)
+    count = len(boundary.holes)
+    logs: Complexes = np.empty(0, dtype=np.complex128)
+    if count:
+        # Those of Ψ are the conjugates of those of Φ: with their mean the rest is fitted once more.
+        logs = np.asarray(solved[-count:, 0] + solved[-count:, 1].conj(), np.complex128) / 2
+        wanted = wanted - matrix[:, -count:] @ np.column_stack([logs, logs.conj()])
+        solved, *_ = np.linalg.lstsq(matrix[:, :-count], wanted, rcond=None)
     phi, psi = (np.concatenate([[0], column]) for column in solved.T)
-    shape = HarmonicMap(cage=boundary.cage, phi=phi, psi=psi)
+    shape = HarmonicMap(cage=boundary.cage, phi=phi, psi=psi, holes=boundary.holes, logs=logs)
     offset = weights @ (positions - shape(boundary.points[chosen])) / weights.sum()
-    return HarmonicMap(cage=boundary.cage, phi=phi + offset, psi=psi)
+    return shape.moved(1.0, complex(offset))

@@ -121,10 +121,8 @@ def _with_domain(renewal: Renewal, picture: Bytes, meshing: Meshing) -> Renewal:
     )
     before = renewal.before
     domain = domain.moved(before.corner)
-    rest = HarmonicMap.identity(domain.cage)
-    keys = tuple(
-        replace(key, pose=replace(key.pose, phi=rest.phi, psi=rest.psi)) for key in before.keys
-    )
+    rest = HarmonicMap.identity(domain.cage, domain.holes)
+    keys = tuple(replace(key, pose=key.pose.with_map(rest)) for key in before.keys)
     rig = Rig.of(replace(before, domain=domain, keys=keys, library=(), bounds=renewal.bounds))
     return replace(renewal, domain=domain, rig=rig, notices=notices)
 
@@ -150,7 +148,7 @@ def _solved(renewal: Renewal, rig: Rig, pose: Pose) -> Pose:
     certificate = certify(state.map, boundary, bounds)
     if renewal.domain is None and not certificate.certified:
         return replace(pose, certificate=certify(first, boundary, bounds))
-    return replace(pose, phi=state.map.phi, psi=state.map.psi, certificate=certificate)
+    return replace(pose.with_map(state.map), certificate=certificate)
 
 
 def _carried_over(figure: Figure, pose: Pose, rig: Rig) -> HarmonicMap:
@@ -158,14 +156,15 @@ def _carried_over(figure: Figure, pose: Pose, rig: Rig) -> HarmonicMap:
 
     The pose's map goes on from the old outline up to the old cage, where the new outline may lie.
     """
-    boundary, cage = rig.deformer.boundary, figure.domain.cage
-    is_at_rest = np.allclose(pose.phi, cage, rtol=0.0, atol=AT_REST) and np.allclose(
-        pose.psi, 0.0, rtol=0.0, atol=AT_REST
+    boundary, domain = rig.deformer.boundary, figure.domain
+    shape, rest = figure.map_of(pose), HarmonicMap.identity(domain.cage, domain.holes)
+    is_at_rest = all(
+        np.allclose(one, two, rtol=0.0, atol=AT_REST)
+        for one, two in zip(shape.columns, rest.columns, strict=True)
     )
-    inside = contains(cage, boundary.points)
+    inside = contains(domain.cage, boundary.points, holes=domain.cages[1:])
     if is_at_rest or not inside.any():
-        return HarmonicMap.identity(boundary.cage)
+        return HarmonicMap.identity(boundary.cage, boundary.holes)
     points = boundary.points[inside]
-    shape = figure.map_of(pose)
     fz, fzbar = shape.derivatives(points)
     return fit_map(boundary, fz, fzbar, shape(points), inside=inside)

@@ -90,6 +90,10 @@ class Archive:
         """The names of the members that were not asked for, folders left out."""
         return [n for n in self._members if n not in self._read and not n.endswith("/")]
 
+    def has(self, name: str) -> bool:
+        """Tell whether there is a member of this name."""
+        return name in self._members
+
     def read(self, name: str, *, largest: int | None = None) -> bytes:
         """Return the contents of a member, of at most `largest` bytes where that is given.
 

@@ -3,8 +3,10 @@
 A project is a zip file: `mimetype` (first, not packed), `project.json`, `thumbnail.png`, and for
 each figure, under `figures/` and its id, the picture byte for byte as `source.*`, the arrays of the
 domain, what was cut out by hand, and phi and psi of each key under `keys/` and of the library's
-poses under `poses/`. The maps are stored, not solved again, so that another solver never changes an
-animation. Fields and members that this version does not know are handed on.
+poses under `poses/`. Where the domain has holes, their outlines and cages are under `holes/`, their
+centres beside it, and the coefficients of a map's logarithms beside its phi and psi. The maps are
+stored, not solved again, so that another solver never changes an animation. Fields and members that
+this version does not know are handed on.
 
 A file is input like any other, whoever wrote it. What it would unpack to is known, and limited,
 before anything is; pictures and domains are checked; and what holds of a map is not written but
@@ -34,6 +36,8 @@ from engine.arrays import Complexes, as_points
 from engine.domain import MOST_MESH_TRIANGLES, MOST_STROKE_POINTS, Domain, Mask, require_domain
 from engine.domain.meshing import Mesh
 from engine.domain.outline import LARGEST_OUTLINE
+from engine.geometry import Hole
+from engine.maps import HarmonicMap
 
 LARGEST_JSON = 32 * MEBIBYTE
 # In project.json; a thousand keys of a hundred handles have as many.
@@ -41,6 +45,7 @@ MOST_VALUES = 1_000_000
 LARGEST_THUMBNAIL = 2 * MEBIBYTE
 THUMBNAIL = "thumbnail.png"
 KEYS, POSES = "keys", "poses"  # folders of the maps of a figure
+CENTRES = "hole_centres.npy"
 # Of lists and objects in each other; fields that are not known are kept, and must be writable.
 DEEPEST = 40
 # What zipfile and json raise on damaged files; the first two of them are encryption and a zip
@@ -147,11 +152,20 @@ def _figure_members(figure: Figure) -> dict[str, bytes]:
     if cut_out.strokes:
         points = np.concatenate([stroke.points for stroke in cut_out.strokes])
         members[f"{folder}/strokes.npy"] = array_member(points)
+    holes = figure.domain.holes
+    if holes:
+        centres = np.array([hole.centre for hole in holes], dtype=np.complex128)
+        members[f"{folder}/{CENTRES}"] = array_member(centres)
+    for index, hole in enumerate(holes):
+        outline, cage = _hole_members(figure.id, index)
+        members |= {outline: array_member(hole.outline), cage: array_member(hole.cage)}
     keys = [key.pose for key in figure.keys]
     for name, poses in ((KEYS, keys), (POSES, [kept.pose for kept in figure.library])):
         for index, pose in enumerate(poses):
-            phi, psi = _coefficient_members(figure.id, name, index)
+            phi, psi, logs = _coefficient_members(figure.id, name, index)
             members |= {phi: array_member(pose.phi), psi: array_member(pose.psi)}
+            if holes:
+                members[logs] = array_member(pose.logs)
     return members
 
 
@@ -159,9 +173,14 @@ def _folder(figure: int) -> str:
     return f"figures/{figure}"
 
 
-def _coefficient_members(figure: int, name: str, index: int) -> tuple[str, str]:
-    folder = f"{_folder(figure)}/{name}"
-    return f"{folder}/{index:05}.phi.npy", f"{folder}/{index:05}.psi.npy"
+def _coefficient_members(figure: int, name: str, index: int) -> tuple[str, str, str]:
+    first = f"{_folder(figure)}/{name}/{index:05}"
+    return f"{first}.phi.npy", f"{first}.psi.npy", f"{first}.logs.npy"
+
+
+def _hole_members(figure: int, index: int) -> tuple[str, str]:
+    first = f"{_folder(figure)}/holes/{index:05}"
+    return f"{first}.outline.npy", f"{first}.cage.npy"
 
 
 class _Parts:
@@ -200,7 +219,10 @@ class _Parts:
         )
         triangles = read.triangles(f"{folder}/triangles.npy", most=MOST_MESH_TRIANGLES)
         domain = Domain(
-            outline=outline, cage=cage, mesh=Mesh(vertices=vertices, triangles=triangles)
+            outline=outline,
+            cage=cage,
+            mesh=Mesh(vertices=vertices, triangles=triangles),
+            holes=self._holes(figure),
         )
         require_domain(domain)
         return domain
@@ -212,15 +234,35 @@ class _Parts:
     def strokes(self, figure: int) -> Complexes:
         return self._archive.points(f"{_folder(figure)}/strokes.npy", most=MOST_STROKE_POINTS)
 
-    def coefficients(self, figure: int, key: int) -> tuple[Complexes, Complexes]:
-        return self._coefficients(*_coefficient_members(figure, KEYS, key))
+    def _holes(self, figure: int) -> tuple[Hole, ...]:
+        name, most = f"{_folder(figure)}/{CENTRES}", LARGEST_OUTLINE
+        if not self._archive.has(name):
+            return ()
+        # A hole has three corners at least.
+        centres = as_points(self._archive.points(name, most=most // 3), "hole_centres")
+        holes = []
+        for index, centre in enumerate(centres):
+            outline, cage = (
+                self._archive.points(member, most=most) for member in _hole_members(figure, index)
+            )
+            holes.append(Hole(outline=outline, cage=cage, centre=complex(centre)))
+        return tuple(holes)
 
-    def kept_coefficients(self, figure: int, index: int) -> tuple[Complexes, Complexes]:
-        return self._coefficients(*_coefficient_members(figure, POSES, index))
+    def key_map(self, figure: int, domain: Domain, key: int) -> HarmonicMap:
+        return self._map(domain, *_coefficient_members(figure, KEYS, key))
 
-    def _coefficients(self, phi: str, psi: str) -> tuple[Complexes, Complexes]:
-        most = LARGEST_OUTLINE
-        return self._archive.points(phi, most=most), self._archive.points(psi, most=most)
+    def kept_map(self, figure: int, domain: Domain, index: int) -> HarmonicMap:
+        return self._map(domain, *_coefficient_members(figure, POSES, index))
+
+    def _map(self, domain: Domain, phi: str, psi: str, logs: str) -> HarmonicMap:
+        most, none = LARGEST_OUTLINE, np.empty(0, dtype=np.complex128)
+        return HarmonicMap(
+            cage=domain.cage,
+            phi=self._archive.points(phi, most=most),
+            psi=self._archive.points(psi, most=most),
+            holes=domain.holes,
+            logs=self._archive.points(logs, most=most) if domain.holes else none,
+        )
 
 
 def _read_json(archive: Archive) -> JsonObject:

@@ -83,11 +83,11 @@ class FigureParts(Protocol):
     def strokes(self, figure: int) -> Complexes:
         """Return the points of all strokes of its cut-out."""
 
-    def coefficients(self, figure: int, key: int) -> tuple[Complexes, Complexes]:
-        """Return phi and psi of the key with this index."""
+    def key_map(self, figure: int, domain: Domain, key: int) -> HarmonicMap:
+        """Return the map of the key with this index."""
 
-    def kept_coefficients(self, figure: int, index: int) -> tuple[Complexes, Complexes]:
-        """Return phi and psi of the library's pose with this index."""
+    def kept_map(self, figure: int, domain: Domain, index: int) -> HarmonicMap:
+        """Return the map of the library's pose with this index."""
 
 
 def write_document(document: Document) -> Json:
@@ -275,11 +275,11 @@ def _read_figure(fields: JsonObject, parts: FigureParts) -> Figure:
     picture = parts.picture(identity, as_object(fields["picture"], f"{where}.picture"))
     domain = parts.domain(identity)
     meshing = as_object(fields["domain"], f"{where}.domain")
-    boundary = Boundary.sample(domain.outline, domain.cage)
+    boundary = Boundary.sample(domain.outline, domain.cage, domain.holes)
 
-    def pose(phi: Complexes, psi: Complexes, targets: Mapping[int, Target]) -> Pose:
-        proven = certify(HarmonicMap(cage=domain.cage, phi=phi, psi=psi), boundary, bounds)
-        return Pose(targets=targets, phi=phi, psi=psi, certificate=proven)
+    def pose(f: HarmonicMap, targets: Mapping[int, Target]) -> Pose:
+        proven = certify(f, boundary, bounds)
+        return Pose(targets=targets, phi=f.phi, psi=f.psi, logs=f.logs, certificate=proven)
 
     figure = Figure(
         id=identity,
@@ -293,7 +293,7 @@ def _read_figure(fields: JsonObject, parts: FigureParts) -> Figure:
         ),
         next_handle=as_whole(fields["next_handle"], f"{where}.next_handle"),
         keys=tuple(
-            _read_key(key, f"{where}.keys[{i}]", partial(pose, *parts.coefficients(identity, i)))
+            _read_key(key, f"{where}.keys[{i}]", partial(pose, parts.key_map(identity, domain, i)))
             for i, key in enumerate(keys)
         ),
         anchor=_read_optional(fields["anchor"], f"{where}.anchor", as_point),
@@ -301,7 +301,7 @@ def _read_figure(fields: JsonObject, parts: FigureParts) -> Figure:
         bounds=bounds,
         library=tuple(
             _read_kept(
-                kept, f"{where}.library[{i}]", partial(pose, *parts.kept_coefficients(identity, i))
+                kept, f"{where}.library[{i}]", partial(pose, parts.kept_map(identity, domain, i))
             )
             for i, kept in enumerate(library)
         ),

@@ -182,6 +182,11 @@ class LinearInbetweens:
     fz: tuple[Complexes, ...]
     fzbar: tuple[Complexes, ...]
 
+    @property
+    def correction(self) -> float:
+        """0: linear blends are closed."""
+        return 0.0
+
     @classmethod
     def of(cls, passage: Passage, sites: Sites) -> Self:
         """Work out the derivatives of the keyframes at the points."""

@@ -59,6 +59,7 @@ def _block(report: Report) -> dict[str, Any]:
                 "k_keys": interval.keys.k,
                 "sigma_a_keys": interval.keys.sigma_a,
                 "sigma_b_keys": interval.keys.sigma_b,
+                "correction": interval.correction,
             }
             for interval in report.intervals
         ],
@@ -86,4 +87,10 @@ def _as_table(report: Report) -> str:
         verdict = "within" if interval.is_within else "OVER"
         lines.append(f"{f'{interval.first} to {interval.last}':<16} {figures}  {verdict}")
     lines.append("In brackets: the worse of the two keyframes.")
+    largest = max((interval.correction for interval in report.intervals), default=0.0)
+    if largest > 0:
+        lines.append(
+            f"Around holes the in-betweens are stretched and turned by up to {largest:.2%} to "
+            "close; what is kept of the bounds is measured above."
+        )
     return "\n".join(lines)

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from app.cli.commands.hole_arrays import HOLE_ARRAYS, hole_arrays, read_holes
 from app.errors import LissomError
 from app.storage import check_writable, read_arrays, write_arrays
 from engine.deform import Deformer, Handles
@@ -21,15 +22,15 @@ def run(arguments: argparse.Namespace) -> int:
     case = read_arrays(
         arguments.case,
         required=("outline", "cage", "handles", "targets", *LIMITS),
-        optional=("phi", "psi", "path"),
+        optional=("phi", "psi", "logs", "path", *HOLE_ARRAYS),
     )
     k, sigma_a, sigma_b = (_scalar(case, name) for name in LIMITS)
     bounds = Bounds(k=k, sigma_a=sigma_a, sigma_b=sigma_b)
-    boundary = Boundary.sample(case["outline"], case["cage"])
+    boundary = Boundary.sample(case["outline"], case["cage"], read_holes(case))
     handles = Handles.place(boundary, case["handles"])
     wishes = [handles.wish(row) for row in _rows(case, len(handles.points))]
     deformer = Deformer(boundary=boundary, handles=handles, bounds=bounds)
-    state, steps = deformer.start(_start(case, boundary.cage)), 0
+    state, steps = deformer.start(_start(case, boundary)), 0
     for wish in wishes[:-1]:
         state, count = deformer.follow(state, wish)
         steps += count
@@ -42,6 +43,8 @@ def run(arguments: argparse.Namespace) -> int:
             "cage": boundary.cage,
             "phi": state.map.phi,
             "psi": state.map.psi,
+            "logs": state.map.logs,
+            **hole_arrays(boundary.holes),
             "handles_mapped": deformer.positions(state),
             "k": certificate.k,
             "sigma_a": certificate.sigma_a,
@@ -73,12 +76,16 @@ def _rows(case: Mapping[str, npt.NDArray[Any]], count: int) -> list[npt.NDArray[
     return [*path, case["targets"]]
 
 
-def _start(
-    case: Mapping[str, npt.NDArray[Any]], cage: npt.NDArray[np.complex128]
-) -> HarmonicMap | None:
+def _start(case: Mapping[str, npt.NDArray[Any]], boundary: Boundary) -> HarmonicMap | None:
     """Return the map to start from, or None for the identity."""
     if ("phi" in case) != ("psi" in case):
         raise LissomError("a start map needs both phi and psi")
     if "phi" not in case:
         return None
-    return HarmonicMap(cage=cage, phi=case["phi"], psi=case["psi"])
+    return HarmonicMap(
+        cage=boundary.cage,
+        phi=case["phi"],
+        psi=case["psi"],
+        holes=boundary.holes,
+        logs=case.get("logs", np.zeros(len(boundary.holes))),
+    )

@@ -4,6 +4,7 @@ import argparse
 
 import numpy as np
 
+from app.cli.commands.hole_arrays import hole_arrays
 from app.cli.console import notice
 from app.cli.cut_out import read_cut_out
 from app.reports import draw_preview
@@ -14,7 +15,6 @@ from app.storage import (
     write_arrays,
     write_atomically,
 )
-from engine.arrays import Complexes
 from engine.domain import build_domain, texture_coordinates
 
 
@@ -43,11 +43,7 @@ def run(arguments: argparse.Namespace) -> int:
             "cage": domain.cage,
             "vertices": mesh.vertices,
             "triangles": mesh.triangles,
-            "hole_outlines": _joined([hole.outline for hole in holes]),
-            "hole_outline_sizes": np.array([len(hole.outline) for hole in holes], dtype=np.int64),
-            "hole_cages": _joined([hole.cage for hole in holes]),
-            "hole_cage_sizes": np.array([len(hole.cage) for hole in holes], dtype=np.int64),
-            "hole_centres": np.array([hole.centre for hole in holes], dtype=np.complex128),
+            **hole_arrays(holes),
             "uv": texture_coordinates(mesh.vertices, picture.size),
             "image_size": np.array(picture.size),
         },
@@ -58,8 +54,3 @@ def run(arguments: argparse.Namespace) -> int:
         f"{sum(map(len, domain.cages))} vertices{kept}, {len(mesh.triangles):,} triangles"
     )
     return 0
-
-
-def _joined(polygons: list[Complexes]) -> Complexes:
-    """Return the vertices of all polygons, one polygon after the other."""
-    return np.concatenate([np.empty(0, dtype=np.complex128), *polygons])

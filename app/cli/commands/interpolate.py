@@ -4,6 +4,7 @@ import argparse
 
 import numpy as np
 
+from app.cli.commands.hole_arrays import HOLE_ARRAYS, read_holes
 from app.errors import LissomError
 from app.storage import check_writable, read_arrays, write_arrays
 from engine.interpolation import prepare
@@ -16,17 +17,27 @@ def run(arguments: argparse.Namespace) -> int:
     data = read_arrays(
         arguments.maps,
         required=("outline", "cage", "phi", "psi", "points"),
-        optional=("anchor", "triangles", "turns"),
+        optional=("anchor", "triangles", "turns", "logs", *HOLE_ARRAYS),
     )
-    phi, psi = data["phi"], data["psi"]
-    if phi.ndim != 2 or phi.shape != psi.shape or phi.shape[1:] != data["cage"].shape:
+    phi, psi, holes = data["phi"], data["psi"], read_holes(data)
+    count = data["cage"].size + sum(len(hole.cage) for hole in holes)
+    if phi.ndim != 2 or phi.shape != psi.shape or phi.shape[1] != count:
         raise LissomError(
             "phi and psi must both be of shape (keyframes, cage vertices); they are of shape "
-            f"{phi.shape} and {psi.shape}, with a cage of shape {data['cage'].shape}"
+            f"{phi.shape} and {psi.shape}, with {count} vertices of the cage and those in holes"
+        )
+    logs = data.get("logs", np.zeros((len(phi), len(holes))))
+    if logs.shape != (len(phi), len(holes)):
+        raise LissomError(
+            f"logs must be of shape (keyframes, holes), ({len(phi)}, {len(holes)}), not "
+            f"{logs.shape}"
         )
     _require_in_range(arguments.times, len(phi))
     prepared = prepare(
-        [HarmonicMap(cage=data["cage"], phi=a, psi=b) for a, b in zip(phi, psi, strict=True)],
+        [
+            HarmonicMap(cage=data["cage"], phi=a, psi=b, holes=holes, logs=c)
+            for a, b, c in zip(phi, psi, logs, strict=True)
+        ],
         data["points"],
         outline=data["outline"],
         variant=arguments.variant,

@@ -12,11 +12,14 @@ CASE.npz holds the shape and what is asked of it:
   handles      (h,)   complex128  points of the shape that are held
   targets      (h,)   complex128  where they should be
   k_max, sigma_a_max, sigma_b_min  scalars, bounds on the distortion
-  phi, psi     (n,)   complex128  optional, the map to start from
+  phi, psi     (n,)   complex128  optional, the map to start from, with logs (holes,) around holes
+  hole_outlines, hole_outline_sizes, hole_cages, hole_cage_sizes, hole_centres
+                                  optional, the holes, as lissom domain writes them
   path         (s, h) complex128  optional, positions of the handles on the way to the targets
 
-MAP.npz holds outline, cage and
-  phi, psi     (n,)   complex128  the map
+MAP.npz holds outline, cage, the arrays of the holes, and
+  phi, psi     (n,)   complex128  the map: the coefficients of the cage, then those of each hole's
+  logs         (holes,) complex128  a_j: 2 a_j ln|z - hole_centre_j| is a part of the map
   handles_mapped (h,) complex128  where the handles are
   k, sigma_a, sigma_b             proven for the whole shape: nowhere beyond
   certified                       whether that is within the bounds, and the map injective

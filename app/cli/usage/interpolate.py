@@ -10,6 +10,10 @@ MAPS.npz holds
   outline    (p,)    complex  the domain's boundary, simple, counter-clockwise
   cage       (n,)    complex  the polygon of the Cauchy coordinates around it, counter-clockwise
   phi, psi   (q, n)  complex  coefficients of the keyframes f = Phi + conj(Psi), q >= 2
+  hole_outlines, hole_outline_sizes, hole_cages, hole_cage_sizes, hole_centres
+                              optional: the holes, as lissom domain writes them; phi and psi then
+                              have the coefficients of the cage first, then of each hole's
+  logs       (q, h)  complex  optional: a_j of the holes; 2 a_j ln|z - hole_centre_j| is in the map
   points     (m,)    complex  where the in-betweens are wanted, in the closed domain
   anchor     ()      complex  optional: the point whose position and arg f_z are linear in time;
                               by default the centre of the largest disc in the domain

@@ -212,4 +212,4 @@ def _carried(figure: Figure, pose: Pose, factor: complex, shift: complex) -> Pos
         )
         for identity, target in pose.targets.items()
     }
-    return replace(pose, targets=targets, phi=moved.phi, psi=moved.psi)
+    return replace(pose.with_map(moved), targets=targets)

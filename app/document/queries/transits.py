@@ -149,5 +149,5 @@ def _is_same(pose: Pose, other: Pose) -> bool:
     """Tell whether two poses have the same map."""
     if pose is other or pose.phi is other.phi:
         return True
-    apart = (np.abs(pose.phi - other.phi).max(), np.abs(pose.psi - other.psi).max())
-    return bool(max(apart) <= SAME_MAP)
+    pairs = ((pose.phi, other.phi), (pose.psi, other.psi), (pose.logs, other.logs))
+    return all(np.abs(one - two).max(initial=0.0) <= SAME_MAP for one, two in pairs)

@@ -83,8 +83,10 @@ def _facts(look: Look, project: Project) -> None:
     imgui.push_style_var(imgui.StyleVar_.item_spacing, close)
     width, height = project.document.canvas
     _fact(look, "Picture", f"{width} × {height} pixels")
-    _fact(look, "Outline", f"{len(domain.outline):,} points")
-    _fact(look, "Cage", f"{len(domain.cage):,} points")
+    _fact(look, "Outline", f"{sum(map(len, domain.loops)):,} points")
+    _fact(look, "Cage", f"{sum(map(len, domain.cages)):,} points")
+    if domain.holes:
+        _fact(look, "Holes", f"{len(domain.holes):,}")
     _fact(look, "Triangles", f"{len(domain.mesh.triangles):,}")
     _fact(look, "Vertices", f"{len(domain.mesh.vertices):,}")
     _fact(look, "Least angle", f"{_smallest_angle(domain.mesh):.1f}°")

@@ -1,6 +1,5 @@
 """What the viewport says over the drawing: the next step, or that no key holds the pose."""
 
-import numpy as np
 from imgui_bundle import ImVec2, imgui
 
 from app.document import Figure
@@ -8,6 +7,7 @@ from app.editor import Action, Project, do
 from app.editor.actions import posing
 from app.ui.shortcuts import BINDINGS
 from app.ui.style import Look, ink, tip
+from engine.maps import HarmonicMap
 
 HINTS = (
     "Click on the drawing to add a handle.",
@@ -46,7 +46,8 @@ def first_step(project: Project) -> int | None:
 def _is_posed(figure: Figure) -> bool:
     """Tell whether the first pose is another than the one in which the picture was drawn."""
     pose = figure.keys[0].pose
-    return bool(pose.psi.any()) or not np.array_equal(pose.phi, figure.domain.cage)
+    rest = HarmonicMap.identity(figure.domain.cage, figure.domain.holes)
+    return not figure.map_of(pose).is_same(rest)
 
 
 def _pill(

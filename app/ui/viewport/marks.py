@@ -18,6 +18,7 @@ from app.render import (
     mark_handles,
 )
 from app.ui.style import Palette, interface_scale
+from engine.arrays import Complexes
 
 FAINT = 3.0  # pixels: the radius of a handle of another layer
 
@@ -41,9 +42,9 @@ def mark_all(
     figure = shown.clip.figure
     lines: list[Line] = []
     if session.overlays.outline:
-        lines.append(_outline(shown, palette, scale))
+        lines += _outlines(shown, palette, scale)
     if session.overlays.cage:
-        lines.append(_cage(shown, palette, scale))
+        lines += _cages(shown, palette, scale)
     if session.export_frame is not None:
         lines.append(_frame(session.export_frame, palette, scale))
     on = partial(_on, shown)
@@ -101,26 +102,37 @@ def _on(shown: Shown, place: complex) -> complex:
     return complex(shown.placement.on(np.array([place]))[0])
 
 
-def _outline(shown: Shown, palette: Palette, scale: float) -> Line:
-    """Return the outline, moved with the shape."""
-    points = shown.positions[: len(shown.mesh.domain.outline)]
-    return Line(
-        points=shown.placement.on(points),
-        colour=plain(palette.accent),
-        width=1.5 * scale,
-        closed=True,
-    )
+def moved_loops(shown: Shown) -> list[Complexes]:
+    """Return the outline, and those of holes, moved with the shape."""
+    # The vertices of a mesh begin with those of the loops.
+    ends = np.cumsum([len(loop) for loop in shown.mesh.domain.loops])
+    return np.split(shown.positions[: ends[-1]], ends[:-1])
 
 
-def _cage(shown: Shown, palette: Palette, scale: float) -> Line:
-    """Return the cage, which stays around the shape at rest."""
-    return Line(
-        points=shown.mesh.domain.cage,
-        colour=plain(palette.warning, 0.8),
-        width=1.5 * scale,
-        dash=5.0 * scale,
-        closed=True,
-    )
+def _outlines(shown: Shown, palette: Palette, scale: float) -> list[Line]:
+    return [
+        Line(
+            points=shown.placement.on(points),
+            colour=plain(palette.accent),
+            width=1.5 * scale,
+            closed=True,
+        )
+        for points in moved_loops(shown)
+    ]
+
+
+def _cages(shown: Shown, palette: Palette, scale: float) -> list[Line]:
+    """Return the cages, which stay around the shape at rest and in its holes."""
+    return [
+        Line(
+            points=cage,
+            colour=plain(palette.warning, 0.8),
+            width=1.5 * scale,
+            dash=5.0 * scale,
+            closed=True,
+        )
+        for cage in shown.mesh.domain.cages
+    ]
 
 
 def _frame(box: Box, palette: Palette, scale: float) -> Line:

@@ -31,6 +31,7 @@ from app.ui.style import Look, ink
 from app.ui.viewport.badges import draw_badges
 from app.ui.viewport.cut_view import draw_brush, draw_stroke
 from app.ui.viewport.entry import draw_entry, typed
+from app.ui.viewport.marks import moved_loops
 from app.ui.viewport.mirror_axis import axis_grip, draw_axis
 from app.ui.viewport.ring import Ring, draw_ring
 from engine.geometry import contains
@@ -153,8 +154,8 @@ class _Canvas:
         return layering.figure_at(self.project, self._plane(complex(mouse.x, mouse.y)), below=below)
 
     def is_on_shape(self, place: complex) -> bool:
-        outline = self.shown.positions[: len(self.shown.mesh.domain.outline)]
-        return bool(contains(outline, np.array([place]))[0])
+        outline, *holes = moved_loops(self.shown)
+        return bool(contains(outline, np.array([place]), holes=holes)[0])
 
 
 def _spot(canvas: _Canvas, handle: int | None, *, on_ring: bool) -> Spot:

@@ -43,7 +43,8 @@ def test_a_case_is_solved(write, tmp_path, capsys):
     got = deform(write(), tmp_path / "map.npz")
     assert "converged" in capsys.readouterr().out
     assert set(got) == {
-        *("outline", "cage", "phi", "psi", "handles_mapped"),
+        *("outline", "cage", "phi", "psi", "logs", "handles_mapped"),
+        *("hole_outlines", "hole_outline_sizes", "hole_cages", "hole_cage_sizes", "hole_centres"),
         *("k", "sigma_a", "sigma_b", "certified", "status", "steps"),
     }
     assert bool(got["certified"]) is True
