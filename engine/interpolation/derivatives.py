@@ -10,7 +10,7 @@ from engine.arrays import Complexes, Floats, Indices, Integers
 from engine.errors import EngineError
 from engine.interpolation.keyframe_samples import KeyframeSamples
 from engine.interpolation.passing import Course
-from engine.interpolation.residual import Residual
+from engine.interpolation.periods import Residual
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

@@ -13,9 +13,10 @@ from typing import NamedTuple
 import numpy as np
 
 from engine.arrays import Complexes, Floats
+from engine.chebyshev import separate
 from engine.dirichlet import Extension
 from engine.interpolation.derivatives import Passage
-from engine.interpolation.residual import Residual, separate
+from engine.interpolation.periods import Residual
 from engine.maps import derivatives_of
 from engine.paths import IntegrationPaths
 

@@ -25,11 +25,11 @@ from itertools import pairwise
 from typing import NamedTuple, Self
 
 import numpy as np
+import numpy.typing as npt
 import scipy.linalg
 
-from engine.arrays import Complexes, Floats, freeze
-from engine.chebyshev import PiecewiseSeries
-from engine.interpolation.residual import Residual, separate
+from engine.arrays import Complexes, Floats, Indices, freeze
+from engine.chebyshev import PiecewiseSeries, separate
 from engine.maps import Boundary
 from engine.paths import Loops
 
@@ -43,6 +43,55 @@ HALVINGS = 8
 ROUNDING = 1e-13  # of the diagonal: periods below are rounding
 SHORTEST = 2.0**-5  # pieces of time are not halved below this
 TOLERANCE = 1e-11  # of the series in time: the periods are closed as far
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Residual:
+    """Σ c_j(t) H_j; what is added to a blend vanishes at both keyframes.
+
+    Parameters
+    ----------
+    series : PiecewiseSeries
+        c_j.
+    modes : complex128, shape (j, s)
+        H_j at the nodes of the paths.
+    modes_z : complex64, shape (j, s)
+        H_j' there: the square of a step multiplies it, and single precision is plenty.
+    """
+
+    series: PiecewiseSeries
+    modes: Complexes
+    modes_z: npt.NDArray[np.complex64]
+
+    @classmethod
+    def of(cls, series: PiecewiseSeries, values: Complexes, slopes: Complexes) -> Self:
+        """Pack functions given with their derivatives, each (s, j)."""
+        return cls(
+            series=series,
+            modes=freeze(np.ascontiguousarray(values.T)),
+            modes_z=freeze(slopes.T.astype(np.complex64, order="C")),
+        )
+
+    def at(self, which: Indices) -> "Residual":
+        """Return the same at some of the nodes (c,)."""
+        return Residual(
+            series=self.series,
+            modes=freeze(np.ascontiguousarray(self.modes[:, which])),
+            modes_z=freeze(np.ascontiguousarray(self.modes_z[:, which])),
+        )
+
+    @property
+    def nbytes(self) -> int:
+        """Memory that the arrays take, in bytes."""
+        return self.modes.nbytes + self.modes_z.nbytes + self.series.coefficients.nbytes
+
+    def add_to(self, logarithm: Complexes, logarithm_z: Complexes, time: float) -> None:
+        """Add it to log f_z and its derivative, each (s,), in place."""
+        coefficients = self.series(time)
+        # As reals: a complex product with real coefficients would do half its work on zeros.
+        logarithm.view(np.float64)[:] += coefficients @ self.modes.view(np.float64)
+        single = coefficients.astype(np.float32)
+        logarithm_z.view(np.float64)[:] += single @ self.modes_z.view(np.float32)
 
 
 class Open(NamedTuple):

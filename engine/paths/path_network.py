@@ -39,6 +39,10 @@ PIECES: tuple[list[list[int]], ...] = (
 )
 
 
+def _none() -> Indices:
+    return np.empty(0, dtype=np.intp)
+
+
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Network:
     """A tree of straight legs inside the domain; node 0 is the anchor.
@@ -57,7 +61,7 @@ class Network:
     nodes: Complexes
     parents: Indices
     places: Indices
-    around: Indices = field(default_factory=lambda: np.empty(0, dtype=np.intp))
+    around: Indices = field(default_factory=_none)
 
 
 def mesh_network(

@@ -5,9 +5,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
+from engine.chebyshev import separate
 from engine.interpolation.metric import OutlineMetric
 from engine.interpolation.passing import Course
-from engine.interpolation.residual import separate
 
 
 def random_derivatives(seed, *, k=1.0, count=400):
