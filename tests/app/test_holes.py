@@ -17,7 +17,7 @@ from app.motion.posable_mesh import PosableMesh
 from app.reports import certify_clip
 from app.solving.drag import fit_map
 from app.storage import load_project, save_project
-from engine.domain import Domain, build_domain, require_domain
+from engine.domain import CutOut, Domain, build_domain, require_domain
 from engine.domain.meshing import triangulate
 from engine.geometry import contains
 from engine.maps import Boundary, Bounds, HarmonicMap, certify
@@ -137,7 +137,9 @@ def ring_picture() -> np.ndarray:
 
 
 def test_arrays_of_holes_are_handed_from_command_to_command(tmp_path):
-    domain, _ = build_domain(ring_picture(), triangles=1000, detail="coarse", holes="keep")
+    domain, _ = build_domain(
+        ring_picture(), triangles=1000, detail="coarse", cut_out=CutOut(holes="keep")
+    )
     (hole,) = domain.holes
     held = 80 + 80j + 52 * np.exp(1j * np.pi * np.array([0.0, 0.5, 1.0, 1.5]))
     case = {
