@@ -36,6 +36,8 @@ class ExportFormat:
         Whether it holds pictures; else it holds shapes, and plays at any rate.
     largest : int, optional
         Pixels of a picture each way, at most.
+    is_still : bool
+        Whether it is one frame, at the playhead or the first one.
     is_even : bool
         Whether the sides of its pictures are even.
     fastest : float, optional
@@ -54,6 +56,7 @@ class ExportFormat:
     is_transparent: bool = True
     is_drawn: bool = True
     largest: int | None = None
+    is_still: bool = False
     is_even: bool = False
     fastest: float | None = None
     library: str = ""
@@ -70,6 +73,14 @@ EXPORT_FORMATS: Final[Mapping[str, ExportFormat]] = MappingProxyType(
             "0 of the timeline is frame_0000.png; numbers go on one by one from that of the first "
             "frame, with --fps too, and have more digits if one needs them. Frames of before with "
             "the same names are replaced, other files stay.",
+        ),
+        "picture": ExportFormat(
+            label="PNG picture",
+            group="Frames",
+            use="One pose, exact, at any size: the frame at the playhead.",
+            about="the frame --frame alone, as a PNG",
+            suffixes=(".png",),
+            is_still=True,
         ),
         "apng": ExportFormat(
             label="Animated PNG",

@@ -46,6 +46,9 @@ from app.document.queries import (
     transits,
 )
 from app.document.settings import (
+    COARSEST_TOLERANCE,
+    FEWEST_TRIANGLES,
+    FINEST_TOLERANCE,
     FRAME_NAMES,
     FRAMINGS,
     LAST_FRAME,
@@ -54,6 +57,7 @@ from app.document.settings import (
     STIFF,
     STRETCHES,
     VARIANTS,
+    WIDEST_PADDING,
     ExportSettings,
     FrameRange,
     Framing,
@@ -67,6 +71,9 @@ from app.document.settings import (
 from engine.variant import Variant
 
 __all__ = [
+    "COARSEST_TOLERANCE",
+    "FEWEST_TRIANGLES",
+    "FINEST_TOLERANCE",
     "FRAME_NAMES",
     "FRAMINGS",
     "HOLD",
@@ -79,6 +86,7 @@ __all__ = [
     "STIFF",
     "STRETCHES",
     "VARIANTS",
+    "WIDEST_PADDING",
     "Attachment",
     "Clip",
     "Command",

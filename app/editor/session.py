@@ -142,12 +142,16 @@ class ToolInHand(Protocol):
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class ExportRun:
-    """An export that is under way: what it draws, how, and how many frames are drawn."""
+    """An export that is under way: what it draws, how, and how many frames are drawn.
+
+    Where it is for the clipboard, its file goes there and does not stay.
+    """
 
     document: Document
     pictures: Mapping[int, Bytes]
     poses: Mapping[int, Poses]
     plan: ExportPlan
+    for_clipboard: bool = False
     done: int = 0
 
 

@@ -259,7 +259,9 @@ def _check_size(name: str, size: tuple[int, int]) -> None:
 
 
 def _frames(document: Document, settings: ExportSettings) -> FrameRange:
-    return settings.frames or exported_frames(document)
+    frames = settings.frames or exported_frames(document)
+    is_still = EXPORT_FORMATS[settings.format].is_still
+    return FrameRange(frames.first, frames.first) if is_still else frames
 
 
 def _tags(document: Document, request: ExportRequest, times: tuple[float, ...]) -> tuple[Tag, ...]:

@@ -31,6 +31,8 @@ from app.document.settings import (
     FrameRange,
     Marker,
     Meshing,
+    ShapeDetail,
+    SheetLayout,
 )
 from app.export_formats import EXPORT_FORMATS
 from engine.domain.build import Domain
@@ -245,6 +247,15 @@ def _random_export(rng: np.random.Generator) -> ExportSettings:
         background=["transparent", "#12aBef"][rng.integers(2)],
         framing=FRAMINGS[rng.integers(2)],
         frames=None if rng.random() < 0.5 else FrameRange(2, int(rng.integers(2, 50))),
+        names=["frame_####", "{name} ##é"][rng.integers(2)],
+        sheet=SheetLayout(
+            trimmed=bool(rng.integers(2)),
+            padding=int(rng.integers(9)),
+            power_of_two=bool(rng.integers(2)),
+        ),
+        shapes=ShapeDetail(
+            triangles=int(rng.integers(100, 9999)), tolerance=[None, 0.1][rng.integers(2)]
+        ),
     )
 
 

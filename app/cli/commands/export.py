@@ -126,12 +126,14 @@ def _poses(document: Document, arguments: argparse.Namespace) -> dict[int, KeptP
 
 def _settings(own: ExportSettings, arguments: argparse.Namespace, out: Path) -> ExportSettings:
     """Return the project's settings with those that were given in their place."""
+    one = arguments.frame
+    frames = arguments.frames if one is None else (one, one)
     given = {
-        "format": arguments.format or _format_of(out, own),
+        "format": arguments.format or _format_of(out, own, is_one=one is not None),
         "size": arguments.size,
         "background": arguments.background,
         "framing": arguments.framing,
-        "frames": None if arguments.frames is None else FrameRange(*arguments.frames),
+        "frames": None if frames is None else FrameRange(*frames),
         "names": arguments.names,
     }
     sheet = {
@@ -152,13 +154,15 @@ def _known(given: dict[str, Any]) -> dict[str, Any]:
     return {name: value for name, value in given.items() if value is not None}
 
 
-def _format_of(out: Path, own: ExportSettings) -> str | None:
+def _format_of(out: Path, own: ExportSettings, *, is_one: bool) -> str | None:
     """Return the one format that a name stands for, or None where that is as the project has it.
+
+    Of one frame, a name of several formats is that of a picture.
 
     Raises
     ------
     LissomError
-        If no format has names that end so.
+        If no format has names that end so, or several have.
     """
     suffix = out.suffix.lower()
     if out.is_dir() or not suffix:
@@ -170,7 +174,15 @@ def _format_of(out: Path, own: ExportSettings) -> str | None:
             "say --format"
         )
     is_own = suffix in EXPORT_FORMATS[own.format].suffixes
-    return None if is_own else format_by_suffix().get(suffix)
+    if suffix in format_by_suffix() or (is_own and not is_one):
+        return None if is_own else format_by_suffix()[suffix]
+    several = [name for name, format_ in EXPORT_FORMATS.items() if suffix in format_.suffixes]
+    if is_one:
+        return next(name for name in several if EXPORT_FORMATS[name].is_still)
+    raise LissomError(
+        f"{out} may be {' or '.join(several)}: say --format, or --frame N for the picture of a "
+        "frame"
+    )
 
 
 def _summary_of_frames(plan: ExportPlan) -> str:

@@ -23,6 +23,7 @@ examples:
   lissom export wave.lissom --out wave.gif --size 480x480 --fps 12
   lissom export wave.lissom --out wave.mp4 --background "#ffffff" --framing fit
   lissom export wave.lissom --out wave.glb --tolerance 0.2
+  lissom export wave.lissom --out pose.png --frame 12 --size 4000x3000
 """
 
 
@@ -37,8 +38,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         required=True,
         help="a folder for PNG frames, a file for every other format",
     )
-    parser.add_argument(
+    either = parser.add_mutually_exclusive_group()
+    either.add_argument(
         "--frames", metavar="A:B", type=_frames, help="frames of the timeline, both ends included"
+    )
+    either.add_argument(
+        "--frame", metavar="N", type=int, help="one frame; to a name in .png, as one picture"
     )
     parser.add_argument(
         "--fps", metavar="F", type=float, help="pictures a second (default: the project's)"

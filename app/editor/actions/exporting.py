@@ -1,15 +1,26 @@
 """Exports: asked for here, drawn by the window, a few frames at a time."""
 
 import os
+import secrets
 import subprocess
 import sys
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from app.document import Clip, ExportSettings, clip_of, scene_commands
+from app.document import (
+    Clip,
+    Document,
+    ExportSettings,
+    FrameRange,
+    Pose,
+    clip_of,
+    key_commands,
+    scene_commands,
+)
 from app.editor.action import Action, do
 from app.editor.actions import editing, posing
+from app.editor.clipboard import clipboard_program, put_on_clipboard
 from app.editor.dialogs import FileDialog, Question
 from app.editor.failures import report, sentence
 from app.editor.jobs import Job
@@ -37,7 +48,7 @@ from app.motion import (
     hung_animations,
 )
 
-PREPARING = "Preparing the export"
+PREPARING, COPYING = "Preparing the export", "Copying the picture"
 
 
 def ask(session: Session) -> None:
@@ -97,13 +108,10 @@ def start(session: Session, out: Path) -> None:
     if project is None or session.export is not None:
         return
     posing.drop(session)
-    document = project.document
-    pictures = {figure: puppet.cut.value.texture for figure, puppet in project.puppets.items()}
-    request = ExportRequest(out=out, settings=document.export, project=project.name)
-    check_request(document, request)
-    if not EXPORT_FORMATS[document.export.format].is_drawn:
-        document = with_light_meshes(document, document.export.shapes.triangles)
-    there = [] if project.replaceable == out else replaced_files(document, request)
+    settings = project.document.export
+    request = _request(session, project, out, settings)
+    check_request(project.document, request)
+    there = [] if project.replaceable == out else replaced_files(project.document, request)
     if there:
         what = "file" if len(there) == 1 else f"{len(there)} files"
         which = there[0] if len(there) == 1 else f"{there[0]} … {there[-1]}"
@@ -113,6 +121,55 @@ def start(session: Session, out: Path) -> None:
             answers=(("Replace", do(replace_files, out)),),
         )
         return
+
+    def begun(run: ExportRun) -> None:
+        session.export = run
+        project.export_to = out
+        # Another pose is another picture, which may not take this one's place without a question.
+        project.replaceable = None if EXPORT_FORMATS[settings.format].is_still else out
+
+    _prepare(session, project, request, begun)
+
+
+def copy_picture(session: Session) -> None:
+    """Put the picture of what is shown on the system's clipboard, as an export would draw it."""
+    project = session.project
+    if project is None or session.export is not None:
+        return
+    clipboard_program()  # tells what to install where there is none
+    posing.drop(session)
+    session.folder.mkdir(parents=True, exist_ok=True)
+    out = session.folder / f"clipboard-{secrets.token_hex(8)}.png"
+    settings = replace(project.document.export, format="picture")
+    request = _request(session, project, out, settings)
+    check_request(project.document, request)
+
+    def begun(run: ExportRun) -> None:
+        session.export = replace(run, for_clipboard=True)
+
+    _prepare(session, project, request, begun)
+
+
+def _request(
+    session: Session, project: Project, out: Path, settings: ExportSettings
+) -> ExportRequest:
+    if EXPORT_FORMATS[settings.format].is_still:
+        now = project.playhead.frame_at(project.document, session.clock())
+        settings = replace(settings, frames=FrameRange(now, now))
+    return ExportRequest(out=out, settings=settings, project=project.name)
+
+
+def _prepare(
+    session: Session,
+    project: Project,
+    request: ExportRequest,
+    begun: Callable[[ExportRun], None],
+) -> None:
+    """Let a worker prepare an export that was checked, and then begin."""
+    document, format_ = project.document, EXPORT_FORMATS[request.settings.format]
+    if format_.is_still and project.unkeyed is not None:
+        document = _with_pose(project, project.unkeyed)
+    pictures = {figure: puppet.cut.value.texture for figure, puppet in project.puppets.items()}
     motions = {
         figure: puppet.fine.value or puppet.coarse.value
         for figure, puppet in project.puppets.items()
@@ -121,28 +178,33 @@ def start(session: Session, out: Path) -> None:
     box = extent.value if extent.follows(extent_source(document)) else None
 
     def work() -> ExportRun:
+        detail = request.settings.shapes.triangles
+        exported = document if format_.is_drawn else with_light_meshes(document, detail)
         alone = [
-            _animation(clip_of(document, figure.id), motions[figure.id])
-            for figure in document.figures
+            _animation(clip_of(exported, figure.id), motions[figure.id])
+            for figure in exported.figures
         ]
-        hung = hung_animations(alone, document)
+        hung = hung_animations(alone, exported)
         poses = {figure: KeptPoses(animation) for figure, animation in hung.items()}
-        plan = plan_export(document, request, poses, box)
-        return ExportRun(document=document, pictures=pictures, poses=poses, plan=plan)
-
-    def done(run: ExportRun) -> None:
-        session.export = run
-        project.export_to = project.replaceable = out
+        plan = plan_export(exported, request, poses, box)
+        return ExportRun(document=exported, pictures=pictures, poses=poses, plan=plan)
 
     session.jobs.put(
         Job(
             kind=PREPARING,
             lane="export",
             work=work,
-            done=done,
+            done=begun,
             failed=lambda error: report(session, "The export could not begin", error),
         )
     )
+
+
+def _with_pose(project: Project, pose: Pose) -> Document:
+    """Return the document with a pose that no key holds in a key, for one picture."""
+    frame, figure = project.playhead.frame, project.figure
+    place = key_commands.pose_key if frame in figure.key_frames else key_commands.insert_key
+    return place(figure.id, frame, pose)(project.document)
 
 
 def _animation(clip: Clip, motion: Motion) -> Animation:
@@ -194,6 +256,9 @@ def advance(session: Session, run: ExportRun, done: int) -> None:
 def finish(session: Session, run: ExportRun, notices: Sequence[str]) -> None:
     """Tell that an export is complete, and what the person should know about it."""
     session.export = None
+    if run.for_clipboard:
+        _copy(session, run.plan.out)
+        return
     folder = run.plan.out if run.plan.out.is_dir() else run.plan.out.parent
     count = len(run.plan.times)
     frames = "1 frame" if count == 1 else f"{count} frames"
@@ -206,6 +271,26 @@ def finish(session: Session, run: ExportRun, notices: Sequence[str]) -> None:
     )
     for notice in (*notices, *run.plan.notices):
         session.tell(sentence(notice))
+
+
+def _copy(session: Session, picture: Path) -> None:
+    """Put a picture on the clipboard, and its file away."""
+
+    def work() -> None:
+        try:
+            put_on_clipboard(picture)
+        finally:
+            picture.unlink(missing_ok=True)
+
+    session.jobs.put(
+        Job(
+            kind=COPYING,
+            lane="export",
+            work=work,
+            done=lambda _: session.tell("The picture is on the clipboard.", tone="good"),
+            failed=lambda error: report(session, "The picture was not copied", error),
+        )
+    )
 
 
 def fail(session: Session, error: Exception) -> None:

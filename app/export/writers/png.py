@@ -80,3 +80,24 @@ class PngSequence(FrameWriter):
         path = self._folder / self._names[index]
         write_atomically(path, lambda file: file.write(data))
         return b""
+
+
+class PngPicture(FrameWriter):
+    """Writes the one frame to a file.
+
+    Parameters
+    ----------
+    file : binary file
+    plan : ExportPlan
+    """
+
+    def __init__(self, file: IO[bytes], plan: ExportPlan) -> None:  # noqa: ARG002 - as all writers
+        self._file = file
+
+    def encode(self, index: int, frame: Bytes) -> bytes:  # noqa: ARG002 - there is one
+        """Return the frame's file."""
+        return encode_png(frame)
+
+    def add(self, encoded: bytes) -> None:
+        """Write it."""
+        self._file.write(encoded)

@@ -14,7 +14,7 @@ from app.export.writers.frame_writer import FrameWriter
 from app.export.writers.gif import GifWriter
 from app.export.writers.glb import glb_file
 from app.export.writers.html import html_page
-from app.export.writers.png import PngSequence
+from app.export.writers.png import PngPicture, PngSequence
 from app.export.writers.spritesheet import SpritesheetWriter
 from app.export.writers.webp import WebpWriter
 from app.storage import atomic_file
@@ -34,6 +34,7 @@ FOLDER_WRITERS: Final[Mapping[str, Callable[[ExportPlan], FrameWriter]]] = Mappi
 FILE_WRITERS: Final[Mapping[str, Callable[[IO[bytes], ExportPlan], FrameWriter]]] = (
     MappingProxyType(
         {
+            "picture": PngPicture,
             "apng": ApngWriter,
             "gif": GifWriter,
             "webp": WebpWriter,

@@ -5,7 +5,17 @@ from dataclasses import replace
 from imgui_bundle import ImVec2, imgui
 from imgui_bundle import icons_fontawesome_6 as icons
 
-from app.document import ExportSettings, FrameRange, exported_frames
+from app.document import (
+    COARSEST_TOLERANCE,
+    FEWEST_TRIANGLES,
+    FINEST_TOLERANCE,
+    WIDEST_PADDING,
+    ExportSettings,
+    FrameRange,
+    ShapeDetail,
+    SheetLayout,
+    exported_frames,
+)
 from app.editor import Action, Project, Session, do
 from app.editor.actions import exporting
 from app.export import frame_view, missing, shown_box
@@ -26,9 +36,14 @@ from app.ui.style import (
     small,
     tip,
 )
+from engine.domain import MOST_TRIANGLES
 
 BACKGROUNDS = (("transparent", "Transparent"), ("colour", "Colour"))
 FRAMINGS = (("fit", "All motion"), ("canvas", "Canvas"))
+CELLS = (("trimmed", "Trimmed"), ("alike", "All alike"))
+SIDES = (("any", "Any"), ("powers", "Powers of two"))
+TOLERANCES = (("usual", "½ px, 8 shapes"), ("own", "Own"))
+FRAMELESS = {"glb"}  # has no frame, no size and no background
 RANGES = (("all", "All frames"), ("own", "From – to"))
 WHITE = "#ffffff"
 MEASURES = "Measuring where the motion reaches…"
@@ -49,28 +64,48 @@ def draw(session: Session, look: Look) -> list[Action]:
     box = shown_box(view)
     actions = [do(exporting.show_frame, box)]
     heading(look, "Picture")
-    chosen = _picture(look, settings)
-    chosen, more = _size(session, look, chosen, view)
-    actions += more
+    chosen = _format(look, settings)
+    if settings.format not in FRAMELESS:
+        chosen = _picture(look, chosen)
+        chosen, more = _size(session, look, chosen, view)
+        actions += more
+    chosen = _details(look, chosen)
     _preview(look, project, settings, box, motion)
     heading(look, "Frames")
-    chosen = _frames(look, project, chosen)
+    if EXPORT_FORMATS[settings.format].is_still:
+        now = project.playhead.frame_at(project.document, session.clock())
+        small(look, f"Frame {now}, where the playhead is, with its pose as it is shown.")
+    else:
+        chosen = _frames(look, project, chosen)
     if chosen != settings:
         actions.append(do(exporting.set_export, chosen))
     heading(look, "Output")
     return actions + _output(session, look, project)
 
 
-def _picture(look: Look, settings: ExportSettings) -> ExportSettings:
+def _format(look: Look, settings: ExportSettings) -> ExportSettings:
+    """Draw the formats in groups, each with what it is good for."""
     label(look, "Format")
-    if imgui.begin_combo("##format", EXPORT_FORMATS[settings.format].label):
+    now = EXPORT_FORMATS[settings.format]
+    if imgui.begin_combo("##format", now.label, imgui.ComboFlags_.height_largest):
+        group = ""
         for name, format_ in EXPORT_FORMATS.items():
+            if format_.group != group:
+                group = format_.group
+                imgui.separator_text(group)
             if imgui.selectable(format_.label, name == settings.format)[0]:
                 settings = _with_format(settings, name)
+            imgui.indent()
+            small(look, format_.use)
+            imgui.unindent()
         imgui.end_combo()
+    tip(now.use)
     if missing(settings.format):
-        needs = f"needs {EXPORT_FORMATS[settings.format].library}: {missing(settings.format)}"
-        small(look, f"{EXPORT_FORMATS[settings.format].label} {needs}")
+        small(look, f"It needs {now.library}: {missing(settings.format)}")
+    return settings
+
+
+def _picture(look: Look, settings: ExportSettings) -> ExportSettings:
     label(look, "Background")
     settings = _background(look, settings)
     label(look, "Framing")
@@ -78,6 +113,74 @@ def _picture(look: Look, settings: ExportSettings) -> ExportSettings:
         case "canvas" | "fit" as framing:
             settings = replace(settings, framing=framing)
     return settings
+
+
+def _details(look: Look, settings: ExportSettings) -> ExportSettings:
+    """Draw what only some formats have."""
+    if settings.format == "png":
+        return _names(look, settings)
+    if settings.format == "spritesheet":
+        return replace(settings, sheet=_sheet(look, settings.sheet))
+    if not EXPORT_FORMATS[settings.format].is_drawn:
+        return replace(settings, shapes=_shapes(look, settings.shapes))
+    return settings
+
+
+def _names(look: Look, settings: ExportSettings) -> ExportSettings:
+    label(look, "File names")
+    _, names = imgui.input_text("##names", settings.names)
+    done = imgui.is_item_deactivated_after_edit()
+    tip("One # for each digit of a frame's number; {name} is the project's name")
+    return replace(settings, names=names) if done and names else settings
+
+
+def _sheet(look: Look, sheet: SheetLayout) -> SheetLayout:
+    label(look, "Frames are")
+    match segments(look, "trimmed", CELLS, "trimmed" if sheet.trimmed else "alike"):
+        case "trimmed":
+            sheet = replace(sheet, trimmed=True)
+        case "alike":
+            sheet = replace(sheet, trimmed=False)
+    label(look, "Padding")
+    _, padding = imgui.input_int("##padding", sheet.padding, 0)
+    if imgui.is_item_deactivated_after_edit():
+        sheet = replace(sheet, padding=min(max(padding, 0), WIDEST_PADDING))
+    tip("Transparent pixels between frames and at the border")
+    label(look, "Sheet sides")
+    match segments(look, "sides", SIDES, "powers" if sheet.power_of_two else "any"):
+        case "powers":
+            sheet = replace(sheet, power_of_two=True)
+        case "any":
+            sheet = replace(sheet, power_of_two=False)
+    return sheet
+
+
+def _shapes(look: Look, shapes: ShapeDetail) -> ShapeDetail:
+    label(look, "Triangles")
+    _, triangles = imgui.input_int("##triangles", shapes.triangles, 0)
+    if imgui.is_item_deactivated_after_edit():
+        shapes = replace(shapes, triangles=min(max(triangles, FEWEST_TRIANGLES), MOST_TRIANGLES))
+    tip("Of each figure, about: more of them bend more smoothly, in a larger file")
+    label(look, "Within")
+    own = shapes.tolerance is not None
+    room = 4.0 * look.em if own else 0.0
+    match segments(look, "tolerance", TOLERANCES, "own" if own else "usual", room=room):
+        case "usual":
+            return replace(shapes, tolerance=None)
+        case "own":
+            return replace(shapes, tolerance=0.5)
+    tip(
+        "How far the shapes may be from the motion. As usual, it takes at most 8 of them, which "
+        "every viewer shows; a tolerance of your own takes as many as it needs"
+    )
+    if shapes.tolerance is not None:
+        imgui.same_line(0, imgui.get_style().item_inner_spacing.x)
+        imgui.set_next_item_width(FILL)
+        _, tolerance = imgui.input_float("##pixels", shapes.tolerance, 0.0, 0.0, "%.3g px")
+        if imgui.is_item_deactivated_after_edit():
+            tolerance = min(max(round(tolerance, 6), FINEST_TOLERANCE), COARSEST_TOLERANCE)
+            shapes = replace(shapes, tolerance=tolerance)
+    return shapes
 
 
 def _with_format(settings: ExportSettings, name: str) -> ExportSettings:
@@ -186,7 +289,10 @@ def _frames(look: Look, project: Project, settings: ExportSettings) -> ExportSet
         settings = replace(settings, frames=FrameRange(first, last))
     count = frames.last - frames.first + 1
     text = "1 picture" if count == 1 else f"{count} pictures"
-    small(look, f"{text}, {count / document.fps:.1f} s at {document.fps:g} fps")
+    if EXPORT_FORMATS[settings.format].is_drawn:
+        small(look, f"{text}, {count / document.fps:.1f} s at {document.fps:g} fps")
+    else:
+        small(look, f"{count / document.fps:.1f} s, at any rate")
     return settings
 
 
@@ -218,6 +324,10 @@ def _output(session: Session, look: Look, project: Project) -> list[Action]:
     if main_button(look, f"{icons.ICON_FA_FILE_EXPORT}  Export###start", FILL):
         actions.append(do(exporting.repeat))
     tip("Export now", BINDINGS["export again"].keys_in_words)
+    if EXPORT_FORMATS[project.document.export.format].is_still:
+        if imgui.button(f"{icons.ICON_FA_COPY}  Copy###copy", ImVec2(FILL, 0)):
+            actions.append(do(exporting.copy_picture))
+        tip("Put the picture on the clipboard", BINDINGS["copy picture"].keys_in_words)
     return actions
 
 

@@ -121,6 +121,13 @@ BINDINGS: dict[str, Binding] = {
         menu="File",
         keys=(CTRL | SHIFT | int(Key.e),),
     ),
+    "copy picture": Binding(
+        label="Copy picture",
+        action=do(exporting.copy_picture),
+        menu="File",
+        keys=(CTRL | SHIFT | int(Key.c),),
+        hint="Put the picture of the pose on the clipboard",
+    ),
     "close": Binding(
         label="Close",
         action=do(saving.close),

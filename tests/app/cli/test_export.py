@@ -158,6 +158,19 @@ def test_a_model_needs_no_graphics_and_tells_how_good_it_is(project, tmp_path, c
     assert "vertices within" in said
 
 
+def test_one_frame_is_a_picture_of_any_size(project, tmp_path):
+    export(project, "--out", tmp_path / "frames", "--frames", "3:3")
+    export(project, "--out", tmp_path / "pose.png", "--frame", 3)
+    assert (
+        pixels(tmp_path / "pose.png").tobytes()
+        == pixels(tmp_path / "frames" / "frame_0003.png").tobytes()
+    )
+    export(project, "--out", tmp_path / "large.png", "--frame", 3, "--size", "1501x999")
+    assert pixels(tmp_path / "large.png").shape == (999, 1501, 4)
+    export(project, "--out", tmp_path / "one", "--frame", 3)
+    assert [path.name for path in (tmp_path / "one").iterdir()] == ["frame_0003.png"]
+
+
 def test_frames_are_named_as_one_likes(project, tmp_path):
     export(project, "--out", tmp_path / "frames", "--frames", "2:4", "--names", "{name}_v2_##x")
     names = sorted(path.name for path in (tmp_path / "frames").iterdir())
@@ -195,6 +208,8 @@ def test_notices_tell_what_the_person_should_know(project, tmp_path, capsys):
         (["--out", "frames", "--variant", "cubic"], "metric"),
         (["--out", "no/frames"], "does not exist"),
         (["--out", "walk.xyz"], "no format has names that end in .xyz"),
+        (["--out", "walk.png"], "walk.png may be picture or apng or spritesheet"),
+        (["--out", "walk.png", "--frame", "7"], "0 to 6"),
         (["--out", "walk.obj", "--format", "gif"], "end in .gif"),
         (["--out", "walk.glb", "--format", "gif"], "end in .gif"),
         (["--out", "walk.glb", "--format", "png"], "named like a file"),

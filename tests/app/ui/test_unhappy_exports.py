@@ -2,6 +2,8 @@
 
 import errno
 import os
+import sys
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -9,8 +11,9 @@ from harness import MOST_FRAMES
 from imgui_bundle import hello_imgui
 from PIL import Image
 
+from app.document import UnkeyedPose
 from app.document.settings import ExportSettings
-from app.editor.actions import exporting, files, keys, posing, saving
+from app.editor.actions import editing, exporting, files, keys, playback, posing, saving
 from app.editor.dialogs import Question
 from app.storage.assets import sample_images
 from app.ui.window import exporter
@@ -332,3 +335,82 @@ def test_picture_may_go_once_it_is_open(window, tmp_path):
     assert len(list((tmp_path / "frames").iterdir())) == 3
     reopened = window.open(path)
     assert reopened.document.figures[0].picture.data == BAR.read_bytes()
+
+
+@pytest.mark.usefixtures("project")
+@pytest.mark.parametrize("name", ["bar.glb", "bar.html"])
+def test_models_are_exported_and_cancelled_as_all_else(window, tmp_path, name):
+    session = window.session
+    exporting.set_export(session, ExportSettings(format=name[4:], size=SIZE))
+    window.act(exporting.start, tmp_path / name)
+    session.jobs.settle()
+    window.frames()
+    window.act(exporting.cancel)
+    window.settle()
+    assert list(tmp_path.iterdir()) == []
+    assert "The export was cancelled. Nothing was written." in texts(window)
+    window.act(exporting.start, tmp_path / name)
+    window.settle()
+    finish(window)
+    assert (tmp_path / name).stat().st_size > 1000
+    assert f"Exported {name}." in texts(window)
+
+
+@pytest.fixture
+def clipboard(tmp_path, monkeypatch):
+    """A clipboard that is a file, by the program of X servers."""
+    if sys.platform != "linux":
+        pytest.skip("the clipboard of Linux")
+    kept, programs = tmp_path / "kept.png", tmp_path / "programs"
+    programs.mkdir()
+    (programs / "xclip").write_text(f"#!/bin/sh\ncat > {kept}\n")
+    (programs / "xclip").chmod(0o755)
+    monkeypatch.setenv("PATH", f"{programs}:{os.environ['PATH']}")
+    monkeypatch.setenv("DISPLAY", ":7")
+    monkeypatch.delenv("WAYLAND_DISPLAY", raising=False)
+    return kept
+
+
+def test_the_pose_that_is_shown_is_exported_and_copied(window, project, tmp_path, clipboard):
+    session = window.session
+    exporting.set_export(session, ExportSettings(format="picture", size=SIZE, framing="canvas"))
+    playback.seek(session, 4)
+    window.settle()
+    rest = project.figure.keys[0].pose
+    moved = replace(rest, phi=rest.phi + 20)
+    project.history.pose(UnkeyedPose(figure=project.active, frame=4, pose=moved))
+    assert project.unkeyed is moved
+    out = tmp_path / "pose.png"
+
+    def exported():
+        window.settle()
+        finish(window)
+        assert is_whole(out)
+        with Image.open(out) as image:
+            return np.asarray(image).astype(int)
+
+    window.act(exporting.start, out)
+    shifted = exported()
+    editing.undo(session)
+    window.act(exporting.start, out)
+    assert question(window).title == "Replace the file?"
+    answer(window, "Replace")
+    pixels = exported()
+    assert np.abs(pixels - shifted).max() > 50
+    window.act(exporting.copy_picture)
+    window.settle()
+    finish(window)
+    assert "The picture is on the clipboard." in texts(window)
+    with Image.open(clipboard) as image:
+        assert np.array_equal(np.asarray(image), pixels)
+    assert [path for path in session.folder.iterdir() if path.suffix == ".png"] == []
+    assert project.export_to == out
+
+
+@pytest.mark.usefixtures("project")
+def test_what_the_clipboard_needs_is_told(window, monkeypatch, tmp_path):
+    monkeypatch.setenv("PATH", str(tmp_path))
+    monkeypatch.setattr("sys.platform", "linux")
+    window.act(exporting.copy_picture)
+    assert window.session.export is None
+    assert any("sudo apt install xclip" in text for text in texts(window)), texts(window)

@@ -1,0 +1,69 @@
+"""The system's clipboard for pictures."""
+
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+from typing import Final
+
+from app.errors import LissomError
+
+_PATIENCE: Final = 20  # seconds
+_POWERSHELL: Final = (
+    "Add-Type -AssemblyName System.Windows.Forms, System.Drawing; [Windows.Forms.Clipboard]::"
+    "SetImage([Drawing.Image]::FromFile($env:LISSOM_PICTURE))"
+)
+_OSASCRIPT: Final = (
+    'set the clipboard to (read (POSIX file (system attribute "LISSOM_PICTURE")) as «class PNGf»)'
+)
+
+
+def clipboard_program() -> tuple[str, ...]:
+    """Return the command that takes a PNG file from its standard input or LISSOM_PICTURE.
+
+    Raises
+    ------
+    LissomError
+        If this system has none.
+    """
+    if sys.platform == "win32":
+        return ("powershell", "-NoProfile", "-STA", "-Command", _POWERSHELL)
+    if sys.platform == "darwin":
+        return ("osascript", "-e", _OSASCRIPT)
+    if os.environ.get("WAYLAND_DISPLAY") and shutil.which("wl-copy"):
+        return ("wl-copy", "--type", "image/png")
+    if os.environ.get("DISPLAY") and shutil.which("xclip"):
+        return ("xclip", "-selection", "clipboard", "-target", "image/png")
+    needed = "wl-clipboard" if os.environ.get("WAYLAND_DISPLAY") else "xclip"
+    raise LissomError(
+        f"nothing here takes pictures to the clipboard: install {needed} (sudo apt install "
+        f"{needed}), or export the picture as a file"
+    )
+
+
+def put_on_clipboard(picture: Path) -> None:
+    """Put a PNG file on the clipboard; the file is not needed any more afterwards.
+
+    Raises
+    ------
+    LissomError
+        If the system does not take it.
+    """
+    command = clipboard_program()
+    try:
+        with picture.open("rb") as file:
+            # The program may stay to serve the clipboard, so that nothing of it is waited for.
+            subprocess.run(  # noqa: S603 - one of those above
+                command,
+                stdin=file,
+                stdout=subprocess.DEVNULL,
+                stderr=subprocess.DEVNULL,
+                env={**os.environ, "LISSOM_PICTURE": str(picture)},
+                timeout=_PATIENCE,
+                check=True,
+            )
+    except (OSError, subprocess.SubprocessError) as error:
+        raise LissomError(
+            f"the picture could not be put on the clipboard by {command[0]}; export it as a file"
+        ) from error
