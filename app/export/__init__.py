@@ -5,6 +5,7 @@ Out: PNG frames, animated pictures, sprite sheets, video, models.
 Imports: `app.render`, `app.motion`, `app.storage`.
 """
 
+from app.export.clipboard import clipboard_program, put_on_clipboard
 from app.export.destination import PROJECT, FrameNames, data_file, folder_within, suited
 from app.export.framing import frame_view, shown_box
 from app.export.moving_shape import with_light_meshes
@@ -32,6 +33,7 @@ __all__ = [
     "Poses",
     "ShapeExport",
     "check_request",
+    "clipboard_program",
     "data_file",
     "encode_png",
     "export",
@@ -39,6 +41,7 @@ __all__ = [
     "frame_view",
     "missing",
     "plan_export",
+    "put_on_clipboard",
     "replaced_files",
     "sheet_grid",
     "shown_box",

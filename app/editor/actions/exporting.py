@@ -20,7 +20,6 @@ from app.document import (
 )
 from app.editor.action import Action, do
 from app.editor.actions import editing, posing
-from app.editor.clipboard import clipboard_program, put_on_clipboard
 from app.editor.dialogs import FileDialog, Question
 from app.editor.failures import report, sentence
 from app.editor.jobs import Job
@@ -32,8 +31,10 @@ from app.export import (
     FrameNames,
     KeptPoses,
     check_request,
+    clipboard_program,
     data_file,
     plan_export,
+    put_on_clipboard,
     replaced_files,
     suited,
     with_light_meshes,
