@@ -11,7 +11,7 @@ from app.storage import decode_picture, sample_images
 from engine.domain import build_domain
 from engine.domain.meshing import triangulate
 from engine.domain.outline import enclose
-from engine.domain.picture import subject_mask
+from engine.domain.picture import matted, subject_mask
 from engine.maps import cauchy_coordinates, cauchy_derivatives, evaluate
 
 
@@ -48,6 +48,7 @@ def _stages(data: bytes) -> Table:
     rows = [
         Row(name="decode", seconds=measure(lambda: decode_picture(data, ""))),
         Row(name="mask", seconds=measure(lambda: subject_mask(rgba))),
+        Row(name="matte", seconds=measure(lambda: matted(rgba, subject.mask))),
         Row(
             name="outline and cage",
             seconds=measure(lambda: enclose(subject.mask, detail="normal")),

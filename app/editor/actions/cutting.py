@@ -38,15 +38,9 @@ def take_up(session: Session, tool: CutTool | None) -> None:
     session.cutting = None if tool == session.cutting else tool
 
 
-def toggle(session: Session) -> None:
-    """Begin to cut out with the brush that removes, or go back to posing."""
-    take_up(session, None if session.cutting else "remove")
-
-
-def swap_brush(session: Session) -> None:
-    """Let the brush keep where it removed, or the other way round."""
-    if session.cutting in {"keep", "remove"}:
-        session.cutting = "keep" if session.cutting == "remove" else "remove"
+def begin_or_swap(session: Session) -> None:
+    """Begin to cut out with the brush that removes; let a brush in hand do the opposite."""
+    take_up(session, "keep" if session.cutting == "remove" else "remove")
 
 
 def enlarge_brush(session: Session) -> None:

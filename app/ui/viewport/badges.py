@@ -33,6 +33,13 @@ def draw_badges(look: Look, project: Project, corner: ImVec2, room: ImVec2) -> l
     return []
 
 
+def draw_cutting(look: Look, corner: ImVec2, room: ImVec2) -> list[Action]:
+    """Tell that the picture is shown at rest, to be cut out, and how to go back."""
+    keys = BINDINGS["stop cutting"].keys_in_words
+    place = ImVec2(corner.x + room.x / 2, corner.y + look.em)
+    return _pill(look, f"Cutting out: {keys} goes back to posing", place)
+
+
 def first_step(project: Project) -> int | None:
     """Return which hint a new project is at; None where the person has found the way."""
     figure = project.figure

@@ -28,7 +28,7 @@ from app.motion import Shown
 from app.render import View
 from app.ui.shortcuts import with_key
 from app.ui.style import Look, ink
-from app.ui.viewport.badges import draw_badges
+from app.ui.viewport.badges import draw_badges, draw_cutting
 from app.ui.viewport.cut_view import draw_brush, draw_stroke
 from app.ui.viewport.entry import draw_entry, typed
 from app.ui.viewport.marks import moved_loops
@@ -96,7 +96,7 @@ def draw(session: Session, look: Look, texture: int | None) -> list[Action]:
         _strokes_on_their_way(look, canvas)
         if on_canvas or session.pointer is not None:
             draw_brush(session, look, imgui.get_mouse_pos(), canvas.view.scale / density)
-        return actions
+        return actions + draw_cutting(look, corner, room)
     actions += draw_badges(look, project, corner, room)
     return actions
 

@@ -2,6 +2,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 from PIL import Image, ImageDraw
+from scipy import ndimage
 
 from app.cli.main import main
 from engine.geometry import polygon
@@ -143,6 +144,28 @@ def test_a_mask_says_what_is_kept(photo, tmp_path, capsys):
         assert reason in error_of(words, capsys)
     missing = ["domain", photo, "--out", tmp_path / "e.npz", "--mask", tmp_path / "none.png"]
     assert "No such file" in error_of(missing, capsys)
+
+
+def test_projects_and_exports_are_cut_out_likewise(photo, tmp_path):
+    mask = np.zeros((120, 160), np.uint8)
+    mask[30:90, 20:80] = 255
+    Image.fromarray(mask).save(tmp_path / "mask.png")
+    script = tmp_path / "script.json"
+    script.write_text('{"schema": 1, "handles": {"a": [50, 60]}, "keys": [{"frame": 0}]}')
+    for words, kept in (
+        (["--mask", tmp_path / "mask.png"], mask > 0),
+        (["--background", "none"], mask >= 0),
+    ):
+        project, frames = tmp_path / "posed.lissom", tmp_path / "frames"
+        posing = ["pose", photo, script, "--out", project, "--triangles", 2000, *words]
+        assert main([str(word) for word in posing]) == 0
+        exporting = ["export", project, "--out", frames, "--framing", "canvas"]
+        assert main([str(word) for word in exporting]) == 0
+        (frame,) = frames.iterdir()
+        alpha = np.asarray(Image.open(frame))[..., 3]
+        assert (alpha[ndimage.binary_erosion(kept, iterations=3)] > 250).all()
+        assert (alpha[~ndimage.binary_dilation(kept, iterations=2)] < 5).all()
+        frame.unlink()
 
 
 def test_the_preview_shows_picture_outline_cage_and_mesh(drawing, tmp_path):

@@ -18,6 +18,7 @@ from app.document.keyframe import Target
 from app.document.settings import VARIANTS, ExportSettings, FrameRange, Meshing
 from app.editor import jobs
 from app.editor.actions import (
+    cutting,
     editing,
     exporting,
     keys,
@@ -32,6 +33,7 @@ from app.editor.timeline_view import Strip
 from app.export_formats import EXPORT_FORMATS
 from app.storage.project_file import load_project, save_project
 from app.ui.shortcuts import ARROWS, BINDINGS, MODIFIERS
+from engine.domain.picture.cut_out import Stroke
 from engine.maps.bounds import Bounds
 
 SEEDS, STEPS = range(10), 1_000
@@ -475,6 +477,22 @@ class Walk:
         if not self.session.overlays.onion:
             self.act(viewing.toggle, "onion")
 
+    def cut_out(self) -> None:
+        match self.rng.integers(5):
+            case 0:
+                self.act(cutting.take_up, self.choice(("keep", "remove", "pick", "holes", None)))
+            case 1 | 2:
+                width, height = self.project.document.canvas
+                count = self.rng.integers(1, 4)
+                way = self.rng.uniform(0, width, count) + 1j * self.rng.uniform(0, height, count)
+                radius = float(self.rng.uniform(2, 12))
+                stroke = Stroke(points=way, radius=radius, keeps=self.chance(0.7))
+                self.act(cutting.brush, stroke)
+            case 3:
+                self.act(cutting.set_tolerance, int(self.rng.integers(10, 30)))
+            case 4:
+                self.act(cutting.forget_strokes)
+
     def change_view(self) -> None:
         match self.rng.integers(4):
             case 0:
@@ -572,6 +590,7 @@ ALL = (
     (Walk.look_at_time, 1),
     (Walk.change_onion_skin, 1),
     (Walk.change_view, 2),
+    (Walk.cut_out, 0.5),
     (Walk.change_export, 1),
     (Walk.undo, 4),
     (Walk.redo, 2),
