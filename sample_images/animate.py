@@ -1,6 +1,7 @@
 """Make the sample projects: `python sample_images/animate.py [NAME ...] [--out DIR]`.
 
-Each NAME.json beside this script says how NAME.png moves; NAME.lissom is what Lissom makes of both.
+Each NAME.json beside this script says how NAME.png, or NAME.ora, moves; NAME.lissom is what Lissom
+makes of both.
 """
 
 import argparse
@@ -10,6 +11,11 @@ from app.cli.main import main
 
 HERE = Path(__file__).resolve().parent
 TRIANGLES = 30_000  # fine enough at the pictures' size, and small to ship
+
+
+def _drawing(name: str) -> Path:
+    layered = HERE / f"{name}.ora"
+    return layered if layered.exists() else HERE / f"{name}.png"
 
 
 def animate() -> None:
@@ -23,7 +29,7 @@ def animate() -> None:
         main(
             [
                 "pose",
-                str(HERE / f"{name}.png"),
+                str(_drawing(name)),
                 str(HERE / f"{name}.json"),
                 f"--out={arguments.out / f'{name}.lissom'}",
                 f"--triangles={TRIANGLES}",

@@ -187,6 +187,16 @@ def _lit(colours: NDArray[np.float64], mask: Pixels, gloss: float) -> NDArray[np
     return lit
 
 
+def _straight(pixels: Pixels) -> NDArray[np.uint8]:
+    """Colours that are multiplied by alpha as straight ones, uint8 (h, w, 4)."""
+    image = np.zeros(pixels.shape, dtype=np.uint8)
+    image[..., 3] = np.rint(255 * pixels[..., 3])
+    visible = image[..., 3] > 0
+    colours = pixels[visible, :3] / pixels[visible, 3:]
+    image[visible, :3] = np.rint(255 * np.clip(colours, 0.0, 1.0))
+    return image
+
+
 class Canvas:
     """A transparent picture that grows form by form, from the back to the front.
 
@@ -253,6 +263,10 @@ class Canvas:
         swell = np.sin(np.linspace(0.0, np.pi, len(points)))
         self.flat(ribbon(points, width * (0.35 + 0.65 * swell)).shape, colour)
 
+    def layer(self) -> Image.Image:
+        """The whole canvas with straight alpha, as a layer of a larger drawing."""
+        return Image.fromarray(_straight(self._pixels))
+
     def image(self) -> Image.Image:
         """The picture with straight alpha, cropped to the subject and an even margin."""
         alpha = np.rint(255 * self._pixels[..., 3]).astype(np.uint8)
@@ -261,11 +275,7 @@ class Canvas:
         margin = round(_MARGIN * max(size))
         image = np.zeros((size[0] + 2 * margin, size[1] + 2 * margin, 4), dtype=np.uint8)
         subject = self._pixels[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1]
-        inner = image[margin:-margin, margin:-margin]
-        inner[..., 3] = np.rint(255 * subject[..., 3])
-        visible = inner[..., 3] > 0
-        colours = subject[visible, :3] / subject[visible, 3:]
-        inner[visible, :3] = np.rint(255 * np.clip(colours, 0.0, 1.0))
+        image[margin:-margin, margin:-margin] = _straight(subject)
         return Image.fromarray(image)
 
     def save(self, path: Path) -> None:

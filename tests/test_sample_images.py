@@ -11,6 +11,8 @@ import pytest
 from PIL import Image
 from scipy import ndimage
 
+from app.storage.pictures import read_openraster
+
 SAMPLES = Path(__file__).parents[1] / "sample_images"
 NAMES = ("bar", "character", "dragon", "giraffe", "octopus", "ring", "s")
 VISIBLE = 8  # alpha from which the mask of a picture with a soft rim counts a pixel
@@ -77,6 +79,18 @@ def test_script_draws_the_shipped_bar(draw: ModuleType, tmp_path: Path) -> None:
     draw.main(["bar", "--out", str(tmp_path)])
     with Image.open(tmp_path / "bar.png") as drawn, Image.open(SAMPLES / "bar.png") as shipped:
         assert differ_at_most(drawn, shipped) <= 1
+
+
+def test_script_draws_the_shipped_layers(draw: ModuleType) -> None:
+    assert set(draw.LAYERED) == {path.stem for path in SAMPLES.glob("*.ora")}
+    shipped = read_openraster((SAMPLES / "friend.ora").read_bytes()).layers
+    layers = draw.friend.LAYERS
+    assert [name for name, _ in layers] == [layer.name for layer in shipped]
+    smile = next(index for index, (name, _) in enumerate(layers) if name == "smile")
+    canvas = draw.friend.Canvas(*draw.friend.SIZE)
+    layers[smile][1](canvas)
+    with Image.fromarray(shipped[smile].picture.rgba) as drawn:
+        assert differ_at_most(canvas.layer(), drawn) <= 1
 
 
 def test_script_draws_the_shipped_icon(monkeypatch: pytest.MonkeyPatch) -> None:

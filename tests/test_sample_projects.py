@@ -6,13 +6,17 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
+from app.document.queries.fronts import is_visible
 from app.document.queries.timeline import clip_of, exported_frames
+from app.motion import Animation, Joints
 from app.reports.certification import certify_clip
 from app.solving.script import load_pose_script
+from app.storage.pictures import read_openraster
 from app.storage.project_file import load_project
 
 SAMPLES = Path(__file__).parent.parent / "sample_images"
-NAMES = sorted(path.stem for path in SAMPLES.glob("*.json"))
+LAYERED = ("friend",)
+NAMES = sorted({path.stem for path in SAMPLES.glob("*.json")} - set(LAYERED))
 
 
 def test_four_creatures_move():
@@ -36,6 +40,38 @@ def test_a_sample_is_what_its_script_says(name):
         for lag in document.figures[0].lags(key.pose).values()
     ]
     assert max(lags) < 2.0, "handles arrive, to two pixels"
+
+
+@pytest.mark.parametrize("name", LAYERED)
+def test_a_sample_on_layers_is_what_its_script_says(name):
+    document = load_project(SAMPLES / f"{name}.lissom")
+    drawing = read_openraster((SAMPLES / f"{name}.ora").read_bytes())
+    script = load_pose_script(SAMPLES / f"{name}.json")
+    assert [figure.name for figure in document.figures] == [layer.name for layer in drawing.layers]
+    parts = {part.layer: part for part in script.figures}
+    names = {figure.id: figure.name for figure in document.figures}
+    for figure in document.figures:
+        part = parts.get(figure.name)
+        assert figure.still == (part is None)
+        if part is None:
+            continue
+        assert [key.frame for key in figure.keys] == [key.frame for key in part.keys]
+        joint = figure.attachment
+        assert (None if joint is None else names[joint.to]) == (part.attach and part.attach.to)
+        assert (
+            max([0.0, *(lag for key in figure.keys for lag in figure.lags(key.pose).values())]) < 2
+        )
+    # Mouths and lids take turns, and the joints of the whole chain stay closed.
+    joints = Joints(document)
+    laugh, head = (next(f for f in document.figures if f.name == n) for n in ("laugh", "head"))
+    assert [is_visible(laugh, frame) for frame in (29, 30, 52)] == [True, False, True]
+    at = np.array([laugh.attachment.at])
+    for frame in (9.5, 36):
+        carrier = joints.placement(head.id, frame)
+        moved = Animation(clip_of(document, head.id), points=at).positions(frame)
+        own = Animation(clip_of(document, laugh.id), points=np.array([laugh.anchor]))
+        held = joints.placement(laugh.id, frame).on(own.positions(frame))
+        assert_allclose(held, carrier.on(moved), rtol=0, atol=1e-9 * 1500)
 
 
 @pytest.mark.parametrize("name", NAMES)

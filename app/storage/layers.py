@@ -9,7 +9,16 @@ from typing import NamedTuple
 import numpy as np
 from PIL import Image
 
-from app.document import Document, Figure, Meshing, PictureFile, layer_commands, new_figure
+from app.document import (
+    Document,
+    ExportSettings,
+    Figure,
+    Framing,
+    Meshing,
+    PictureFile,
+    layer_commands,
+    new_figure,
+)
 from app.errors import LissomError
 from app.storage.opening import OpenedPicture, cut_picture
 from app.storage.pictures import (
@@ -194,4 +203,7 @@ def _scene(drawing: LayeredPicture, meshing: Meshing, *, is_cut_out: bool) -> Op
         raise LissomError("none of its layers can be posed: there is no shape on any of them")
     pictures = {index: layer.picture for index, layer in enumerate(drawing.layers)}
     notices = [*drawing.notices, *(notice for _, told in made for notice in told)]
-    return OpenedScene(Document(figures=figures, size=drawing.size), pictures, tuple(notices))
+    # A drawing with a background has a frame of its own.
+    framing: Framing = "canvas" if figures[0].still else "fit"
+    document = Document(figures=figures, size=drawing.size, export=ExportSettings(framing=framing))
+    return OpenedScene(document, pictures, tuple(notices))

@@ -53,9 +53,13 @@ class SampleFile(NamedTuple):
 def samples() -> tuple[SampleFile, ...]:
     """Return the samples, animated ones first."""
     found = []
-    for picture in sorted(sample_images().glob("*.png")):
-        project = picture.with_suffix(PROJECT)
-        is_animated = project.is_file()
+    projects = {path.stem: path for path in sample_images().glob(f"*{PROJECT}")}
+    pictures = {path.stem: path for path in sample_images().glob("*.png")}
+    # A drawing on layers has no picture but the small one in its project.
+    for name in sorted(projects.keys() | pictures.keys()):
+        picture = pictures.get(name, projects.get(name, Path()))
+        project = projects.get(name, picture)
+        is_animated = name in projects
         found.append(
             SampleFile(
                 picture.stem.capitalize(),
