@@ -33,6 +33,7 @@ def test_a_sample_is_what_its_script_says(name):
     }
     assert [key.frame for key in document.figures[0].keys] == [key.frame for key in script.keys]
     assert [key.easing for key in document.figures[0].keys] == [key.ease for key in script.keys]
+    assert [key.passing for key in document.figures[0].keys] == [key.passing for key in script.keys]
     assert document.figures[0].bounds == script.bounds
     lags = [
         lag

@@ -16,22 +16,27 @@ ACCURACY = 1e-6
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class IntervalReport:
-    """One interval: what its in-betweens reach, beside what its two keys do."""
+    """One interval: what its in-betweens reach, beside what its two keys do.
+
+    `limits` is what they are to keep: the keys' own distortion, but where the motion passes through
+    a key, the figure's bounds, or what the keys around have beyond them.
+    """
 
     first: int
     last: int
     reached: Extremes
     keys: Extremes
     correction: float
+    limits: Extremes
 
     @property
     def is_within(self) -> bool:
-        """Whether the in-betweens keep to the keyframes' own distortion, but for rounding."""
-        reached, keys = self.reached, self.keys
+        """Whether the in-betweens keep the limits, but for rounding."""
+        reached, limits = self.reached, self.limits
         return (
-            reached.k <= keys.k + ACCURACY
-            and reached.sigma_a <= keys.sigma_a * (1 + ACCURACY)
-            and reached.sigma_b >= keys.sigma_b * (1 - ACCURACY)
+            reached.k <= limits.k + ACCURACY
+            and reached.sigma_a <= limits.sigma_a * (1 + ACCURACY)
+            and reached.sigma_b >= limits.sigma_b * (1 - ACCURACY)
         )
 
 
@@ -81,12 +86,17 @@ def certify_clip(clip: Clip, variant: Variant | None = None) -> Report:
     animation = Animation(clip, variant, points=boundary.points)
     reports = []
     for (first, last), transit in zip(intervals(clip), transits(clip), strict=True):
-        poses = clip.keys[first].pose, clip.keys[last].pose
         ends = [
-            Extremes.measured(*clip.figure.map_of(pose).derivatives(boundary.points))
-            for pose in poses
+            Extremes.measured(*clip.figure.map_of(key.pose).derivatives(boundary.points))
+            for key in (clip.keys[first], clip.keys[last], *transit.keys)
         ]
         bound = ends[0].joined(ends[1])
+        limits = bound
+        if transit.is_joined:
+            bounds = clip.figure.bounds
+            limits = Extremes(bounds.k, bounds.sigma_a, bounds.sigma_b)
+            for end in ends:
+                limits = limits.joined(end)
         inbetweens = animation.sampler.inbetweens_of(transit, clip.figure.bounds, animation.variant)
         reached = bound
         for t in np.linspace(0.0, 1.0, TIMES)[1:-1]:
@@ -99,6 +109,7 @@ def certify_clip(clip: Clip, variant: Variant | None = None) -> Report:
                 reached=reached,
                 keys=bound,
                 correction=inbetweens.correction,
+                limits=limits,
             )
         )
     return Report(keys=keys, intervals=tuple(reports))

@@ -69,7 +69,7 @@ def pose_document(
                 document = document.with_figure(still_figure(figure))
     notices: list[str] = []
     for identity, part in named.items():
-        figure, told = _posed(document.figure(identity), part, progress)
+        figure, told = _posed(document.figure(identity), part, progress, loop=script.loop)
         document = document.with_figure(figure)
         notices += told
     return document, tuple(notices)
@@ -126,16 +126,20 @@ def _prepared(document: Document, identity: int, part: FigureScript) -> Document
 
 
 def _posed(
-    figure: Figure, part: FigureScript, progress: Callable[[str], None]
+    figure: Figure, part: FigureScript, progress: Callable[[str], None], *, loop: bool
 ) -> tuple[Figure, list[str]]:
     rig = Rig.of(figure)
     pose = figure.keys[0].pose
     whose = "" if part.layer is None else f"{part.layer}, "
     identities = {handle.name: handle.id for handle in figure.handles}
-    keys, notices = [], []
+    keys: list[Keyframe] = []
+    notices: list[str] = []
     for key in part.keys:
         progress(f"solving {whose}the key at frame {key.frame}")
         pose, told = _solve(rig, pose, key)
+        if loop and key is part.keys[-1] and keys and pose.targets == keys[0].pose.targets:
+            # The same moment again, to the last digit.
+            pose, told = keys[0].pose, []
         notices += [f"{whose}{notice}" for notice in told]
         fronts = {identities[name]: front for name, front in key.fronts.items()}
         keys.append(

@@ -8,7 +8,8 @@ EPILOG = """\
 Keyframes are certified: their k, sigma_a and sigma_b hold at every point of the shape, not only at
 samples. For each interval between two keys the extremes of the in-betweens over time and space
 stand beside the two keys' own. The exit status is 0 if every keyframe is certified and every
-interval is within its keyframes' bounds, 1 if not.
+interval is within its keyframes' bounds, or within the figure's where the motion passes through its
+keys, 1 if not.
 
 examples:
   lissom certify wave.lissom
