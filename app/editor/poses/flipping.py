@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import replace
 
-from app.document import Keyframe, Pose, pose_commands
+from app.document import Figure, Keyframe, Pose, pairs_by_name, pose_commands
 from app.editor.actions import playback
 from app.editor.failures import report
 from app.editor.jobs import Job
@@ -76,6 +76,13 @@ def place_axis(session: Session, x: float | None) -> None:
     flip_again(session, gesture)
 
 
+def _with_pose(figure: Figure, key: Keyframe, pose: Pose) -> Keyframe:
+    """Return a key as its mirror image: it turns the other way, and partners exchange depths."""
+    pairs = pairs_by_name(figure.handles)
+    fronts = {pairs.get(identity, identity): front for identity, front in key.fronts.items()}
+    return replace(key, pose=pose, turns=-key.turns, fronts=fronts)
+
+
 def _flip(
     session: Session, project: Project, frame: int, keys: Sequence[Keyframe], gesture: object
 ) -> None:
@@ -89,7 +96,7 @@ def _flip(
         if now.domain is not figure.domain or now.handles != figure.handles:
             session.tell("The pose was not flipped: the shape or its handles changed. Paste again.")
             return
-        flipped = [replace(key, pose=pose) for key, pose in zip(keys, poses, strict=True)]
+        flipped = [_with_pose(figure, key, pose) for key, pose in zip(keys, poses, strict=True)]
         putting.put(session, project, frame, flipped, label="Paste flipped", gesture=gesture)
         project.flip = Flip(
             figure=figure.id, keys=tuple(keys), frames=project.chosen, poses=tuple(poses)

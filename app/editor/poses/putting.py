@@ -55,7 +55,15 @@ def fitted(project: Project, keys: Sequence[Keyframe], bounds: Bounds) -> list[K
         Those that it had then.
     """
     figure = project.figure
-    return [replace(key, pose=_fitted(project, figure, key.pose, bounds)) for key in keys]
+    known = {handle.id for handle in figure.handles}
+    return [
+        replace(
+            key,
+            pose=_fitted(project, figure, key.pose, bounds),
+            fronts={i: front for i, front in key.fronts.items() if i in known},
+        )
+        for key in keys
+    ]
 
 
 def _fitted(project: Project, figure: Figure, pose: Pose, bounds: Bounds) -> Pose:

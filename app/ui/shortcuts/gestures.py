@@ -42,6 +42,8 @@ GESTURES = (
     Gesture(with_key(CTRL, "drag a key"), "Copy it"),
     Gesture("Click between keys", "Change the easing"),
     Gesture("Double-click the track", "Insert a key"),
+    Gesture("Double-click a marker", "Name it"),
+    Gesture("Drag a pose onto the timeline", "Make a key of it"),
     Gesture("Wheel on the timeline", "Scroll"),
     Gesture(with_key(CTRL, "wheel on the timeline"), "Zoom in time"),
 )

@@ -1,0 +1,68 @@
+"""Several keys that are pasted flipped, with the ways between them."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from animations import still_document
+from documents import altered
+from projects import project_of
+
+from app.document import Keyframe, handle_commands
+from app.editor import Jobs, Session
+from app.editor.actions import editing, playback
+from app.editor.actions.upkeep import maintain
+from app.editor.poses import copying, flipping
+
+
+@pytest.fixture
+def session(tmp_path):
+    """A blob with a pair of handles; from frame 0 to 6 it turns round, the left hand in front."""
+    document = still_document()
+    for name, place in (("paw.L", 40 + 45j), ("paw.R", 80 + 45j)):
+        document = handle_commands.add_handle(0, place, name=name)(document)
+    first = document.figures[0].keys[0]
+    keys = (
+        replace(first, turns=2, fronts={0: 1.0}),
+        Keyframe(frame=6, pose=first.pose, turns=-1),
+    )
+    project = project_of(altered(document, keys=keys), np.zeros((90, 120, 4), np.uint8), "blob")
+    session = Session(clock=lambda: 0.0, jobs=Jobs(), folder=tmp_path, project=project)
+    settle(session)
+    return session
+
+
+def settle(session):
+    while True:
+        maintain(session)
+        if not session.jobs.kinds:
+            return
+        assert session.jobs.settle()
+        session.jobs.deliver()
+
+
+def test_keys_are_flipped_with_their_turns_and_what_is_in_front(session):
+    project, before = session.project, session.project.document
+    editing.choose_keys(session, frozenset({0, 6}))
+    copying.copy(session)
+    playback.scrub(session, 20)
+    flipping.paste(session)
+    settle(session)
+    assert project.chosen == {20, 26}
+    assert (project.figure.key(20).turns, project.figure.key(26).turns) == (-2, 1)
+    assert dict(project.figure.key(20).fronts) == {1: 1.0}
+    assert flipping.is_fresh(project)
+    editing.choose_keys(session, frozenset({20}))
+    assert not flipping.is_fresh(project)
+    editing.undo(session)
+    assert project.document is before
+
+
+def test_a_flip_that_comes_too_late_is_told(session):
+    copying.copy(session)
+    flipping.paste(session)
+    editing.edit_figure(session, handle_commands.remove_handles, {0})
+    before = session.project.document
+    settle(session)
+    assert session.project.document is before
+    assert "Paste again" in session.toasts[-1].text
