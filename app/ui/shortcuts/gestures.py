@@ -25,7 +25,7 @@ GESTURES = (
     Gesture("Drag the ring around a handle", "Turn the shape there"),
     Gesture(with_key(ALT, "drag a handle"), "Turn the shape there"),
     Gesture(with_key(CTRL, "turn"), "Turn by steps of 15°"),
-    Gesture("Type a number in a drag, Enter", "Move it by pixels, turn it by degrees"),
+    Gesture("Type a number in a drag, Enter", "By pixels or degrees"),
     Gesture("X or Y in a drag", "Keep to an axis"),
     Gesture(with_key(ALT, "click a handle"), "Delete it"),
     Gesture(with_key(CTRL, "click the shape"), "Put the anchor there"),

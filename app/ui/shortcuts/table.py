@@ -197,7 +197,7 @@ BINDINGS: dict[str, Binding] = {
         possible=copying.can_paste_on_selected,
     ),
     "flip on selected": Binding(
-        label="Paste flipped on selected handles",
+        label="Paste flipped on selected",
         action=do(flipping.paste_on_selected),
         menu="Edit",
         keys=(CTRL | ALT | SHIFT | int(Key.v),),
@@ -409,7 +409,7 @@ BINDINGS: dict[str, Binding] = {
         label="Mirror axis",
         action=do(viewing.toggle, "mirror"),
         menu="View",
-        keys=(SHIFT | int(Key.m),),
+        keys=(CTRL | int(Key.m),),
         hint="Show where flipped poses are mirrored",
         active=lambda session: session.overlays.mirror,
     ),

@@ -231,3 +231,8 @@ def test_no_frame_stays_around_a_button_when_a_question_is_gone(window):
     imgui.get_io().add_mouse_pos_event(5.0, 795.0)
     window.frames(30)
     assert window.picture() == before
+
+
+def test_no_two_actions_have_the_same_key():
+    chords = [int(chord) for binding in BINDINGS.values() for chord in binding.keys]
+    assert len(set(chords)) == len(chords)
