@@ -125,7 +125,8 @@ def test_screenshots_of_the_main_states(window, dragon, save):
     panel = heat[60:200, 915:1270]
     missing = [tone for tone in ramp if (np.abs(panel - tone).max(axis=2) < 10).sum() < 3]
     assert len(missing) <= 2
-    assert near(heat[280:480, 915:1270], palette.danger).sum() > 300  # two limits
+    # Two limits; their lines may lie between two rows of pixels.
+    assert near(heat[280:480, 915:1270], palette.danger, 45).sum() > 300
 
     viewing.show_heat_map(session, "none")
     window.show_tab("Export")

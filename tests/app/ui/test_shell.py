@@ -88,23 +88,23 @@ def test_docked_panels_leave_room_in_a_small_window(window):
 
 
 @pytest.mark.parametrize(
-    ("size", "scale", "has_title"),
+    ("size", "scale"),
     [
-        ((1280, 800), 1.0, True),
-        ((2560, 1440), 2.0, True),
-        ((1280, 800), 1.5, True),
+        ((1280, 800), 1.0),
+        ((2560, 1440), 2.0),
+        ((1280, 800), 1.5),
     ],
 )
-def test_all_tabs_fit_and_the_one_in_front_has_its_title(window, size, scale, has_title):
+def test_all_tabs_fit_and_the_one_in_front_has_its_title(window, size, scale):
     window.open(sample_images() / "ring.png")
     window.resize(size, scale)
     for title in ("Handle", "Mesh"):
         window.show_tab(title)
         bar = _docked(title).tab_bar
-        assert len(bar.tabs) == 7
+        assert len(bar.tabs) > 6
         assert bar.width_all_tabs_ideal <= bar.bar_rect.get_width()
         name = imgui.internal.find_window_by_name(f"###{title}").name.split("###")[0]
-        assert name == title if has_title else len(name) == 1
+        assert name == title
     window.resize((1280, 800))
 
 
