@@ -105,7 +105,8 @@ def _flipped_map(rig: Rig, pose: Pose, axis: float) -> HarmonicMap:
     """Return the map that is nearest to R ∘ f ∘ R, with which the solver begins."""
     figure, boundary = rig.figure, rig.deformer.boundary
     mirrored = _reflected(boundary.points, axis)
-    inside = contains(figure.domain.cage, mirrored)
+    cage, *inner = figure.domain.cages
+    inside = contains(cage, mirrored, holes=inner)
     shape, points = figure.map_of(pose), mirrored[inside]
     fz, fzbar = shape.derivatives(points)
     places = _reflected(shape(points), axis)
