@@ -1,7 +1,9 @@
 """Exports: frames per second and where their time goes, start-up, and memory."""
 
 import io
+import json
 import os
+import struct
 import subprocess
 import sys
 import tempfile
@@ -24,7 +26,16 @@ from app.document import (
     clip_of,
     new_figure,
 )
-from app.export import ExportRequest, KeptPoses, Painter, encode_png, export, plan_export
+from app.export import (
+    ExportRequest,
+    KeptPoses,
+    Painter,
+    encode_png,
+    export,
+    missing,
+    plan_export,
+)
+from app.export_formats import EXPORT_FORMATS
 from app.motion import Animation
 from app.render import Renderer
 from app.render.gpu import RenderTarget, create_context
@@ -40,6 +51,7 @@ def tables() -> Iterator[Table]:
     yield _speed()
     with tempfile.TemporaryDirectory() as folder:
         yield _processes(Path(folder))
+        yield _formats(Path(folder))
 
 
 def _speed() -> Table:
@@ -92,6 +104,32 @@ def _processes(folder: Path) -> Table:
             ),
         ),
     )
+
+
+def _formats(folder: Path) -> Table:
+    """Measure every format of one file on the animated giraffe, in frames that suit a web page."""
+    project = sample_images() / "giraffe.lissom"
+    rows = []
+    for name, format_ in EXPORT_FORMATS.items():
+        if not format_.suffixes or missing(name):
+            continue
+        out = folder / f"{name}{format_.suffixes[0]}"
+        words = ["--size", "480x464", "--format", name]
+        words += [] if format_.is_transparent else ["--background", "#ffffff"]
+        seconds, _ = _run("export", str(project), "--out", str(out), *words)
+        note = f"{out.stat().st_size / 1000:,.0f} KB"
+        if name == "glb":
+            note += f", {_without_texture(out.read_bytes()) / 1000:,.0f} KB without the texture"
+        rows.append(Row(name=name, seconds=seconds, note=note))
+    return Table(title="the giraffe's 3 s in every format, by the clock", rows=tuple(rows))
+
+
+def _without_texture(glb: bytes) -> int:
+    """Return the bytes of a glTF file but for its pictures."""
+    (length,) = struct.unpack_from("<I", glb, 12)
+    content = json.loads(glb[20 : 20 + length])
+    views = [content["bufferViews"][image["bufferView"]] for image in content["images"]]
+    return len(glb) - sum(int(view["byteLength"]) for view in views)
 
 
 def _bending_giraffe(size: tuple[int, int], *, last: int) -> Document:
