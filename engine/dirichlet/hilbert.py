@@ -130,6 +130,12 @@ class Extension:
     points: Complexes
     integral: CauchyIntegral
 
+    def on(self, panels: Panels) -> Self:
+        """Return the extension at the same points from other panels of the same boundary."""
+        transform = HilbertTransform.of(self.loops, panels)
+        integral = CauchyIntegral.of(panels, _strictly_inside(self.loops, self.points))
+        return type(self)(transform=transform, points=self.points, integral=integral)
+
     @property
     def loops(self) -> tuple[Complexes, ...]:
         """The outline, and those of holes."""
@@ -187,6 +193,8 @@ def _strictly_inside(loops: Sequence[Complexes], points: Complexes) -> Complexes
     to_vertex = np.abs(z - corners)
     vertex = to_vertex.argmin(axis=1)
     at_corner = to_vertex[rows, vertex] < 4 * EDGE_DEPTH * size
-    corner = corners[vertex] + CORNER_DEPTH * size * bisector[vertex]
+    # Far from the origin, no less than the rounding of the coordinates.
+    depth = max(CORNER_DEPTH * size, 8 * float(np.spacing(np.abs(corners).max())))
+    corner = corners[vertex] + depth * bisector[vertex]
     moved[close] = np.where(at_corner, corner, inside)
     return moved

@@ -7,7 +7,7 @@ from typing import Self
 
 import numpy as np
 
-from engine.arrays import Booleans, Complexes, Floats, Indices, freeze
+from engine.arrays import Booleans, Complexes, Floats, Indices, freeze, ragged
 from engine.geometry import (
     Hole,
     Pieces,
@@ -91,6 +91,30 @@ class Panels:
             power=freeze(np.where(corner, POWER, 1)),
             forward=freeze(forward),
             starts=freeze(np.searchsorted(pieces.segment, firsts)),
+        )
+
+    def unresolved(self, values: Floats, tolerance: float) -> Booleans:
+        """Tell on which panels (p,) polynomials through values (N, j) at the nodes are too coarse.
+
+        That is where one of their last Legendre coefficients is above `tolerance`.
+        """
+        to_legendre, _ = legendre_matrices()
+        last = to_legendre[-2:] @ values.reshape(len(self), NODES, -1)
+        coarse: Booleans = np.abs(last).max(axis=(1, 2)) > tolerance
+        return coarse
+
+    def halved(self, chosen: Booleans) -> Self:
+        """Return panels of which the chosen ones (p,) are cut in the middle."""
+        panel, place = ragged(1 + chosen.astype(np.intp))
+        at_origin = ~chosen[panel] | ((place == 0) == self.forward[panel])
+        span = np.where(chosen[panel], self.span[panel] / 2, self.span[panel])
+        firsts = np.cumsum([0, *(1 + chosen)])
+        return type(self)(
+            origin=freeze(self.origin[panel] + np.where(at_origin, 0, span)),
+            span=freeze(span),
+            power=freeze(np.where(at_origin, self.power[panel], 1)),
+            forward=freeze(self.forward[panel]),
+            starts=freeze(firsts[self.starts]),
         )
 
     def __len__(self) -> int:

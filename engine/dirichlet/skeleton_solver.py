@@ -22,8 +22,8 @@ from engine.dirichlet.panels import NODES
 
 LEAF = 6 * NODES  # nodes of a box of the lowest level, about
 SMALL = 600  # nodes that are solved for directly
-# Of what a skeleton loses, relative to what acts; random sums lose a digit more.
-TOLERANCE = 1e-10
+# Of what a skeleton loses, relative to what acts; random sums lose a digit more, corners another.
+TOLERANCE = 1e-11
 CIRCLE = 2.0  # radius of the circle around a box, over the box's own
 SUMMED, SPARE = 6, 32  # random sums into which a row goes; sums beyond the number of columns
 ON_CIRCLE = 64  # points; what they miss falls like CIRCLE^(−half of them)

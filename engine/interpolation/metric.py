@@ -22,6 +22,9 @@ from engine.paths import IntegrationPaths
 
 TOLERANCE = 1e-10  # of the series' last terms, in ln |f_z|
 LEFT_OUT = 1e-8  # of the modes, in ln |f_z|: two digits more than the points' places need
+# Last Legendre coefficients of the residual on a panel, in ln |f_z|, up to which it may stay; the
+# times at which they are looked at; and how often a panel may be halved.
+RESOLVED, LOOKED_AT, MOST_HALVINGS = 5e-4, np.array([0.03, 0.25, 0.5, 0.75, 0.97]), 8
 
 
 class MetricResidual(NamedTuple):
@@ -64,8 +67,7 @@ class MetricResidual(NamedTuple):
         transform: Extension,
     ) -> "MetricResidual":
         """Solve the Dirichlet problems of the residual between two keyframes."""
-        fz, fzbar = derivatives_of([key.map for key in passage.keyframes], transform.nodes)
-        metric = OutlineMetric.of(fz, fzbar)
+        metric, transform = _resolved(passage, transform)
         real_parts, series = separate(
             lambda times: metric.residuals(passage.course.at(times)),
             tolerance=TOLERANCE,
@@ -76,6 +78,25 @@ class MetricResidual(NamedTuple):
         # Unbounded there; the steps beside these nodes are so short that it is not missed.
         modes_z[paths.cornered] = 0.0
         return cls(Residual.of(series, modes, modes_z), lacking)
+
+
+def _resolved(passage: Passage, transform: Extension) -> tuple["OutlineMetric", Extension]:
+    """Return the metrics at nodes that resolve the residual, and a transform with these nodes.
+
+    The nodes follow the shape. Keyframes at extreme bounds vary faster still beside a vertex of the
+    cage, and for them panels are halved there.
+    """
+    maps = [key.map for key in passage.keyframes]
+    weights = passage.course.at(LOOKED_AT)
+    panels = transform.transform.panels
+    metric = OutlineMetric.of(*derivatives_of(maps, transform.nodes))
+    for _ in range(MOST_HALVINGS):
+        coarse = panels.unresolved(metric.residuals(weights), RESOLVED)
+        if not coarse.any():
+            break
+        panels = panels.halved(coarse)
+        metric = OutlineMetric.of(*derivatives_of(maps, panels.nodes.ravel()))
+    return metric, transform if panels is transform.transform.panels else transform.on(panels)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

@@ -180,6 +180,32 @@ def test_panels_tile_the_outline():
     assert_allclose(slopes, 0, rtol=0, atol=1e-7)
 
 
+def test_halved_panels_tile_the_same_outline():
+    outline, cage = spiral()
+    whole = Panels.on(outline, cage, coarseness=4.0)
+    chosen = np.random.default_rng(0).random(len(whole)) < 0.5
+    chosen[~whole.forward] = True
+    panels = whole.halved(chosen)
+    assert len(panels) == len(whole) + chosen.sum()
+    starts = np.where(panels.forward, panels.origin, panels.origin + panels.span)
+    along = panels.differentials().sum(axis=1)
+    assert_allclose(np.roll(starts, -1), starts + along, rtol=0, atol=1e-13)
+    transform = HilbertTransform.of((outline,), panels)
+    points = inner_points(outline, 60, 0)
+    values = transform.at(points).extend(entire(transform.nodes)[0].real).values
+    assert_allclose(
+        without_constant(values), without_constant(entire(points)[0]), rtol=0, atol=1e-6
+    )
+
+
+def test_far_from_the_origin_corners_are_kept_apart_from_their_rounding():
+    outline, cage = spiral()
+    far, around_it = outline + 2000 + 3000j, cage + 2000 + 3000j
+    transform = HilbertTransform.on(far, around_it)
+    found = transform.at(far).extend(np.cos(transform.nodes.real - 2000)[:, None])
+    assert np.isfinite(found.values).all()
+
+
 @pytest.mark.parametrize("power", [1, 3])
 def test_panel_integrals_are_exact_for_polynomials_in_the_parameter(power):
     rng = np.random.default_rng(0)

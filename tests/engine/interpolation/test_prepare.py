@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from interpolation_shapes import bar, bent, inner_points, letter_l, random_map
+from interpolation_shapes import bar, bent, inner_points, letter_l, narrow_u, random_map
 from numpy.testing import assert_allclose, assert_array_equal
 
 from engine.dirichlet.hilbert import HilbertTransform
@@ -11,7 +11,8 @@ from engine.errors import EngineError
 from engine.geometry import polygon
 from engine.interpolation import Variant, prepare, prepare_inbetweens, prepare_sites
 from engine.interpolation.keyframe_samples import sample_keyframes
-from engine.maps.harmonic_map import HarmonicMap
+from engine.interpolation.metric import OutlineMetric
+from engine.maps.harmonic_map import HarmonicMap, derivatives_of
 from engine.paths.complex_log import root_sheets
 
 OUTLINE, CAGE = SHAPE = letter_l()
@@ -202,3 +203,27 @@ def test_what_a_variant_needs_is_asked_for():
             interval = prepare_inbetweens(variant, sites, keys[:2], sheets[:2])
             frame = interval.frame(0.5)
             assert (frame.rho is not None) == variant.is_scaled
+
+
+def test_nodes_of_the_metric_follow_the_keyframes_too():
+    # A key near its bounds, of noise on the cage: the nodes that the shape asks for were off by
+    # 7e-3 in ln |f_z| beside a vertex of the cage.
+    outline, cage = narrow_u(0.1)
+    points = polygon.sample_graded(
+        outline, cage, ratio=0.3, longest=polygon.box_diagonal(outline) / 100
+    )
+    points = points[np.abs(points[:, None] - outline).min(axis=1) > 1e-3]
+    rng = np.random.default_rng(38)
+    noise = rng.normal(size=(2, len(cage))) + 1j * rng.normal(size=(2, len(cage)))
+    noise *= np.abs(polygon.edges(cage)).mean()
+    of_noise = HarmonicMap(cage=cage, phi=noise[0], psi=noise[1])
+    fz, fzbar = of_noise.derivatives(points)
+    phi = cage + 0.8 / np.abs(fz).max() * noise[0]
+    fz, _ = HarmonicMap(cage=cage, phi=phi, psi=noise[1]).derivatives(points)
+    key = HarmonicMap(cage=cage, phi=phi, psi=0.93 / (np.abs(fzbar) / np.abs(fz)).max() * noise[1])
+    maps = [HarmonicMap.identity(cage), key]
+    found = prepare(maps, points, outline=outline, variant="metric").frame(0.5)
+    metric = OutlineMetric.of(*derivatives_of(maps, points))
+    halves = np.full((2, 1), 0.5)
+    expected = metric.residuals(halves) + metric.log_modulus.T @ halves
+    assert_allclose(np.log(np.abs(found.fz)), expected[:, 0], rtol=0, atol=3e-4)
