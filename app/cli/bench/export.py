@@ -114,7 +114,7 @@ def _formats(folder: Path) -> Table:
         if not format_.suffixes or missing(name):
             continue
         out = folder / f"{name}{format_.suffixes[0]}"
-        words = ["--size", "480x464", "--format", name]
+        words = ["--format", name] if name == "glb" else ["--format", name, "--size", "480x464"]
         words += [] if format_.is_transparent else ["--background", "#ffffff"]
         seconds, _ = _run("export", str(project), "--out", str(out), *words)
         note = f"{out.stat().st_size / 1000:,.0f} KB"

@@ -45,6 +45,7 @@ def run(arguments: argparse.Namespace) -> int:
         fps=arguments.fps,
     )
     check_request(document, request)
+    _check_options(request.settings.format, arguments)
     source = f"the picture of {arguments.project}"
     pictures = {
         figure.id: cut_picture(decode_picture(figure.picture.data, source), figure.cut_out).texture
@@ -148,6 +149,27 @@ def _settings(own: ExportSettings, arguments: argparse.Namespace, out: Path) -> 
         sheet=replace(own.sheet, **_known(sheet)),
         shapes=replace(own.shapes, **_known(shapes)),
     )
+
+
+def _check_options(name: str, arguments: argparse.Namespace) -> None:
+    """Refuse options that a format has no use for.
+
+    Raises
+    ------
+    LissomError
+        If there is one.
+    """
+    is_drawn = EXPORT_FORMATS[name].is_drawn
+    useless = {
+        "triangles": is_drawn,
+        "tolerance": is_drawn,
+        "names": name != "png",
+        **dict.fromkeys(("trim", "padding", "power_of_two"), name != "spritesheet"),
+        **dict.fromkeys(("size", "background", "framing"), name == "glb"),
+    }
+    for option, is_useless in useless.items():
+        if is_useless and getattr(arguments, option) is not None:
+            raise LissomError(f"{name} has no use for --{option.replace('_', '-')}; leave it out")
 
 
 def _known(given: dict[str, Any]) -> dict[str, Any]:

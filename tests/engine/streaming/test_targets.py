@@ -28,7 +28,7 @@ def largest_distance(targets, motion, times):
     return max(np.abs(targets.positions(time) - motion(time)).max() for time in times)
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=12, deadline=None)
 @given(st.integers(0, 1000), st.integers(1, 6), st.floats(0.1, 2.0))
 def test_the_tolerance_holds_at_every_time_for_every_point(seed, count, speed):
     motion = film(seed, count, speed=speed)
