@@ -1,0 +1,100 @@
+"""Poses that are kept, and blended into others."""
+
+import numpy as np
+import pytest
+from animations import moving_document
+from invariants import check_pose
+from projects import project_of
+
+from app.document.commands import handle_commands
+from app.editor import Jobs, Session
+from app.editor.actions import editing, playback
+from app.editor.actions.upkeep import maintain
+from app.editor.poses import library
+from app.storage import Preferences
+
+
+@pytest.fixture
+def session(tmp_path):
+    """A blob that is turned and bent from frame 0 to frame 6, with two handles."""
+    document = moving_document()
+    for place in (40 + 45j, 80 + 45j):
+        document = handle_commands.add_handle(0, place)(document)
+    project = project_of(document, np.zeros((90, 120, 4), np.uint8), "blob")
+    session = Session(clock=lambda: 0.0, jobs=Jobs(), folder=tmp_path, project=project)
+    settle(session)
+    return session
+
+
+def settle(session):
+    while True:
+        maintain(session)
+        if not session.jobs.kinds:
+            return
+        assert session.jobs.settle()
+        session.jobs.deliver()
+
+
+def go(session, frame):
+    playback.scrub(session, frame)
+    settle(session)
+
+
+def keep(session, frame):
+    go(session, frame)
+    library.keep(session)
+    settle(session)
+    return session.project.figure.library[-1]
+
+
+def test_an_in_between_is_kept_as_the_nearest_pose(session):
+    between = keep(session, 3)
+    check_pose(session.project.figure, between.pose)
+    assert between.pose.certificate.certified
+    assert session.project.figure.key_frames == {0, 6}
+
+
+@pytest.mark.parametrize("share", [0.0, 0.3, 0.7])
+def test_a_blend_is_between_and_certified_and_its_beginning_is_not_forgotten(session, share):
+    project = session.project
+    kept = keep(session, 6)
+    go(session, 0)
+    first, before = project.figure.key(0).pose, project.document
+    for now in (0.9, 1.0, 0.5, share):
+        library.blend(session, kept.name, now)
+        settle(session)
+    library.end_blend(session)
+    settle(session)
+    pose = project.figure.key(0).pose
+    check_pose(project.figure, pose)
+    assert pose.certificate.certified
+    for identity, target in pose.targets.items():
+        one, other = (each.targets[identity].position for each in (first, kept.pose))
+        assert target.position == pytest.approx((1 - share) * one + share * other)
+    editing.undo(session)
+    assert project.document is before
+
+
+def test_without_auto_key_a_blend_waits_to_be_inserted(session):
+    project = session.project
+    kept = keep(session, 6)
+    session.preferences = Preferences(auto_key=False)
+    go(session, 3)
+    for share in (0.5, 1.0):
+        library.blend(session, kept.name, share)
+        settle(session)
+        library.end_blend(session)
+        settle(session)
+        assert project.figure.key_frames == {0, 6}
+        assert project.unkeyed is not None
+    assert project.unkeyed is kept.pose
+    editing.undo(session)
+    editing.undo(session)
+    assert project.unkeyed is None
+
+
+def test_names_are_not_given_twice(session):
+    one, other = keep(session, 0), keep(session, 6)
+    assert (one.name, other.name) == ("Pose 1", "Pose 2")
+    library.delete(session, "Pose 1")
+    assert keep(session, 0).name == "Pose 3"
