@@ -42,7 +42,7 @@ def check_invariants(session: Session) -> None:
 def check_pose(figure: Figure, pose: Pose) -> None:
     """Fail unless a pose is of a figure, and its certificate is true."""
     assert set(pose.targets) == {handle.id for handle in figure.handles}
-    assert len(pose.phi) == len(pose.psi) == len(figure.domain.cage)
+    assert len(pose.phi) == len(pose.psi) == sum(map(len, figure.domain.cages))
     assert np.isfinite(pose.phi).all()
     assert np.isfinite(pose.psi).all()
     if pose.certificate.certified:
@@ -57,11 +57,13 @@ def _is_true(domain: Domain, pose: Pose) -> bool:
         sigma_a=max(told.sigma_a, 1.0) + SLACK,
         sigma_b=min(told.sigma_b, 1.0) - SLACK,
     )
-    shape = HarmonicMap(cage=domain.cage, phi=pose.phi, psi=pose.psi)
+    shape = HarmonicMap(
+        cage=domain.cage, phi=pose.phi, psi=pose.psi, holes=domain.holes, logs=pose.logs
+    )
     return certify(shape, _boundary(domain), allowed).certified
 
 
 @lru_cache(maxsize=8)
 def _boundary(domain: Domain) -> Boundary:
     require_domain(domain)
-    return Boundary.sample(domain.outline, domain.cage)
+    return Boundary.sample(domain.outline, domain.cage, domain.holes)

@@ -224,3 +224,31 @@ def test_it_is_saved_and_survives_a_crash(window, drawing, tmp_path):
     assert not again.figure.is_stale
     assert len(again.figure.cut_out.strokes) == 1
     assert not kept(again)[SIZE // 2, SIZE // 2]
+
+
+def test_a_click_keeps_a_hole_or_fills_it(window, tmp_path):
+    Image.fromarray(pictures.ring(SIZE)).save(tmp_path / "ring.png")
+    project = window.open(tmp_path / "ring.png")
+    posing.add_handle(window.session, complex(0.1 * SIZE, SIZE / 2))
+    window.settle()
+    before = project.document
+    first = len(project.figure.domain.holes)
+    window.act(cutting.take_up, "holes")
+    click(window, complex(0.1 * SIZE, SIZE / 2))
+    assert project.document is before  # no hole there
+    click(window, MIDDLE + 4)
+    assert len(project.figure.cut_out.swapped) == 1
+    rest(window)
+    assert len(project.figure.domain.holes) == 1 - first
+    assert len(project.figure.handles) == 1
+    path = tmp_path / "ring.lissom"
+    save_project(path, project.document)
+    assert not differences(project.document, load_project(path))
+    click(window, MIDDLE - 9j)
+    assert project.figure.cut_out.swapped == ()
+    rest(window)
+    assert len(project.figure.domain.holes) == first
+    window.act(editing.undo)
+    assert len(project.figure.domain.holes) == 1 - first
+    window.act(editing.undo)
+    assert project.document is before
