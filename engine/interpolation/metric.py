@@ -24,7 +24,7 @@ TOLERANCE = 1e-10  # of the series' last terms, in ln |f_z|
 LEFT_OUT = 1e-8  # of the modes, in ln |f_z|: two digits more than the points' places need
 # Last Legendre coefficients of the residual on a panel, in ln |f_z|, up to which it may stay; the
 # times at which they are looked at; and how often a panel may be halved.
-RESOLVED, LOOKED_AT, MOST_HALVINGS = 5e-4, np.array([0.03, 0.25, 0.5, 0.75, 0.97]), 8
+RESOLVED, LOOKED_AT, MOST_HALVINGS = 5e-4, (0.03, 0.25, 0.5, 0.75, 0.97), 8
 
 
 class MetricResidual(NamedTuple):
@@ -87,7 +87,7 @@ def _resolved(passage: Passage, transform: Extension) -> tuple["OutlineMetric", 
     cage, and for them panels are halved there.
     """
     maps = [key.map for key in passage.keyframes]
-    weights = passage.course.at(LOOKED_AT)
+    weights = passage.course.at(np.array(LOOKED_AT))
     panels = transform.transform.panels
     metric = OutlineMetric.of(*derivatives_of(maps, transform.nodes))
     for _ in range(MOST_HALVINGS):
