@@ -24,6 +24,7 @@ from app.document.layering import Attachment, Switch
 from app.document.model import Document
 from app.document.playhead import Playhead
 from app.document.queries import (
+    USUAL_EXTENT,
     Clip,
     Extremes,
     Front,
@@ -85,6 +86,7 @@ __all__ = [
     "RUBBERY",
     "STIFF",
     "STRETCHES",
+    "USUAL_EXTENT",
     "VARIANTS",
     "WIDEST_PADDING",
     "Attachment",

@@ -209,6 +209,11 @@ def drop(session: Session, paths: Sequence[Path]) -> None:
     )
 
 
+def tint_depth(session: Session, tints: bool) -> None:  # noqa: FBT001 - of an action
+    """Show what of the drawing is in front, and what behind."""
+    session.tints_depth = tints
+
+
 def hang(session: Session, child: int, parent: int, turns: bool = True) -> None:  # noqa: FBT001, FBT002 - of an action
     """Hang a layer by its anchor on the one under it; nothing moves at the present frame."""
     project = session.project

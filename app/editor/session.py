@@ -185,6 +185,7 @@ class Session:
     space_used: bool = False  # Space was held to move the view
     hovered: int | None = None  # the handle under the pointer
     hint: str = ""  # about what is under the pointer
+    tints_depth: bool = False  # whether the drawing shows what of it is in front
     quitting: bool = False
 
     def __post_init__(self) -> None:

@@ -8,7 +8,7 @@ Imports: `app.document`.
 from app.motion.extent import Box, box_around, extent_source, measure_extent, motion_box
 from app.motion.inbetweens import Animation, PoseSampler
 from app.motion.joints import HERE, Joints, Placement, hung_animations, joints_source
-from app.motion.paint_order import painted_triangles
+from app.motion.paint_order import painted_depths, painted_triangles
 from app.motion.posable_mesh import PosableMesh
 from app.motion.prepared import Motion, prepare_motion
 from app.motion.series_queue import Build, next_build, with_series
@@ -37,6 +37,7 @@ __all__ = [
     "measure_extent",
     "motion_box",
     "next_build",
+    "painted_depths",
     "painted_triangles",
     "prepare_motion",
     "show",

@@ -6,7 +6,7 @@ Imports: the values of `app.document`.
 """
 
 from app.document.queries.clips import Clip, clip_of, closes, intervals
-from app.document.queries.fronts import Front, fronts_at, is_visible
+from app.document.queries.fronts import USUAL_EXTENT, Front, fronts_at, is_visible
 from app.document.queries.shortfall import Extremes, Shortfall, falls_short, find_shortfall
 from app.document.queries.timeline import (
     Moment,
@@ -20,6 +20,7 @@ from app.document.queries.timeline import (
 from app.document.queries.transits import Transit, transits
 
 __all__ = [
+    "USUAL_EXTENT",
     "Clip",
     "Extremes",
     "Front",

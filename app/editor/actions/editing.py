@@ -31,6 +31,7 @@ def edit(session: Session, command: Command) -> None:
         return
     before = _posed(project)
     project.history.do(command, gesture=project.gesture)
+    follow_figures(project)
     if _posed(project) != before:
         # The solver would put back what the command took away.
         posing.drop(session)

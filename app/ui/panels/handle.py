@@ -15,8 +15,9 @@ from app.document import (
     find_shortfall,
     handle_commands,
 )
-from app.editor import Action, Project, Session, do
+from app.editor import Action, Project, Session, do, layering
 from app.editor.actions import editing, posing
+from app.ui.panels import depth
 from app.ui.shortcuts import bound_text_button, with_key
 from app.ui.style import (
     FILL,
@@ -66,6 +67,8 @@ def draw(session: Session, look: Look) -> list[Action]:
         actions += _hold(session, look, chosen)
     else:
         small(look, "Select a handle to see its settings.")
+    if len(chosen) != 1 and session.tints_depth:
+        actions.append(do(layering.tint_depth, not session.tints_depth))
     heading(look, "Anchor")
     return actions + _anchor(look, project, chosen)
 
@@ -157,7 +160,8 @@ def _details(session: Session, look: Look, project: Project, handle: Handle) -> 
     )
     if placed is not None:
         actions.append(do(editing.edit_figure, handle_commands.move_handle, handle.id, placed))
-    return actions + _wish(look, project, handle)
+    actions += _wish(look, project, handle)
+    return actions + depth.draw(session, look, project, handle)
 
 
 def _hold(session: Session, look: Look, chosen: Sequence[Handle]) -> list[Action]:

@@ -7,7 +7,7 @@ import numpy as np
 
 from app.document import is_visible, time_of
 from app.editor import HeatMap, Project, Puppet, Session
-from app.motion import PosableMesh, Shown, Vertices
+from app.motion import PosableMesh, Shown, Vertices, painted_depths
 from app.render import (
     DrawnMesh,
     Ghost,
@@ -133,6 +133,11 @@ class _Drawing:
         for figure, picture in self._pictures.items():
             picture.write(self.project.puppets[figure].cut.value.texture)
 
+    def tint(self, pose: PosedMesh, values: Floats) -> None:
+        """Upload other values of the vertices."""
+        pose.write_heat(values.astype(np.float32))
+        self._heated.pop(pose, None)
+
     def keep_only(self, meshes: Collection[PosableMesh]) -> None:
         """Let the buffers of other meshes go."""
         for mesh, number in [key for key in self._drawn_meshes if key[0] not in meshes]:
@@ -192,6 +197,8 @@ def _inputs(session: Session, project: Project) -> tuple[object, ...]:
         session.hovered,
         session.cutting,
         project.figure.cut_out if session.cutting else None,
+        session.tints_depth,
+        project.document.figures,
         session.overlays,
         session.export_frame,
         session.preferences,
@@ -245,10 +252,16 @@ def _scene(session: Session, project: Project, shown: Shown, drawing: _Drawing) 
                 shows.vertices, placement=shows.placement, opacity=figure.opacity
             )
             poses.append(pose)
-            if overlays.heat_map != "none":
+            if session.tints_depth:
+                clip, rest = shows.clip, shows.mesh.domain.mesh
+                depths = painted_depths(rest, clip, shows.frame)
+                drawing.tint(pose, depths if figure.id == project.active else 0 * depths)
+            elif overlays.heat_map != "none":
                 drawing.heat(pose, shows, overlays.heat_map)
     heat = None
-    if overlays.heat_map != "none":
+    if session.tints_depth:
+        heat = Heat(low=-1.0, high=1.0, contours=0, strength=0.5)
+    elif overlays.heat_map != "none":
         low, high = heat_limits(project, overlays.heat_map)
         heat = Heat(low=low, high=high)
     wireframe = Wireframe(colour=plain(palette.text, 0.35)) if overlays.wireframe else None
