@@ -73,7 +73,7 @@ class Motion:
         prepared = self._prepared(clip, moment.interval)
         if prepared is None:
             return None
-        if prepared.series is not None:
+        if prepared.series is not None and prepared.series.covers(moment.weight):
             return Streamed(prepared.series, prepared.distortions, moment.weight, triangles)
         positions = prepared.inbetweens.frame(moment.weight).positions
         return Placed(positions=positions, triangles=triangles)

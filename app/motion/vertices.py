@@ -55,7 +55,7 @@ class Streamed:
     @cached_property
     def derivatives(self) -> tuple[Complexes, Complexes] | None:
         """f_z and f_z̄ at the vertices, each (v,); None where they are not streamed."""
-        if self.distortions is None:
+        if self.distortions is None or not self.distortions.covers(self.time):
             return None
         fz, fzbar = _complexes(self.distortions, self.time).reshape(2, -1)
         return fz, fzbar

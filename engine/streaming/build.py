@@ -1,5 +1,6 @@
 """From the direct path to series: adaptive pieces of time, each compared with it."""
 
+from collections import deque
 from collections.abc import Generator
 from dataclasses import dataclass, replace
 from typing import TypeVar
@@ -18,7 +19,10 @@ SAMPLED = 8192  # columns that the rank of a motion is found from
 DEGREES = (8, 16, 32)  # the nodes of each are among those of the next
 LAST_TERMS = 2
 MOST_ROWS = 12  # of a piece: a frame costs as many multiply-adds, a linear blend two
-SHORTEST = 2.0**-14  # pieces are not halved below this; `Series.error` tells what is left then
+SHORTEST = 2.0**-14  # pieces are not halved below this
+# Pieces that are tried. What is not accurate by then stays on the direct path: where float32 itself
+# is too coarse, as for parts that cancel each other, no piece is short enough.
+MOST_ATTEMPTS = 96
 # Shares of the tolerance. The rest is for rounding to float32.
 OF_POLYNOMIALS, OF_RANK, OF_RHO = 0.1, 0.4, 0.2
 CHECKED = 0.7  # of the tolerance, at the times that are looked at; between them it may be more
@@ -37,20 +41,25 @@ def build_series(channels: Channels) -> Generator[None, None, Series]:
     f^t is analytic in time (with ρ, both of its parts are), so that a polynomial through Chebyshev
     nodes converges geometrically. Pieces of time are halved where its last coefficients do not
     come down. What a piece's polynomials do at the many points is then written in the few
-    functions of time that suffice for all of them.
+    functions of time that suffice for all of them. Stretches that no piece is accurate on are left
+    out.
     """
     source = yield from _prepare(channels)
-    pending = [(0.0, 1.0)]
+    # The longest first: easy stretches are covered before the hard ones take all attempts.
+    pending = deque([(0.0, 1.0)])
     pieces, error = [], 0.0
-    while pending:
-        start, end = pending.pop()
+    for _ in range(MOST_ATTEMPTS):
+        if not pending:
+            break
+        start, end = pending.popleft()
         found = yield from _attempt(source, start, end)
-        if found is None:
-            middle = (start + end) / 2
-            pending += [(middle, end), (start, middle)]
-        else:
+        if found is not None:
             pieces.append(found[0])
             error = max(error, found[1])
+        elif end - start > SHORTEST:
+            middle = (start + end) / 2
+            pending += [(start, middle), (middle, end)]
+    pieces.sort(key=lambda piece: piece.start)
     return Series(pieces=tuple(pieces), rho=source.rho, error=error)
 
 
@@ -109,8 +118,7 @@ def _prepare(channels: Channels) -> Generator[None, None, _Source]:
 def _attempt(
     source: _Source, start: float, end: float
 ) -> Generator[None, None, tuple[SeriesPiece, float] | None]:
-    """Return the piece from `start` to `end` and its error, or None where it must be halved."""
-    shortest = end - start <= SHORTEST
+    """Return the piece from `start` to `end` and its error, or None where it is not accurate."""
     first = source.channels.sample(start)
     yield
     last = source.channels.sample(end)
@@ -121,16 +129,14 @@ def _attempt(
     for degree in DEGREES:
         known = yield from window.snapshots(degree, known)
         rest = _last_terms(known)
-        is_last = degree == DEGREES[-1]
-        if rest <= OF_POLYNOMIALS * source.tolerance or (is_last and shortest):
+        if rest <= OF_POLYNOMIALS * source.tolerance:
             piece = window.compressed(known)
             yield
             error = yield from window.error(piece, degree)
-            accurate = error <= CHECKED * source.tolerance and len(piece.rows) <= MOST_ROWS
-            if accurate or (is_last and shortest):
+            if error <= CHECKED * source.tolerance and len(piece.rows) <= MOST_ROWS:
                 return piece, error
         # At the rate at which the terms came down, twice the degree brings their ratio squared.
-        if rest * (rest / before) ** 2 > source.tolerance and not shortest:
+        if rest * (rest / before) ** 2 > source.tolerance:
             return None
         before = rest
     return None

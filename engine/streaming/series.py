@@ -61,7 +61,7 @@ class Series:
     Parameters
     ----------
     pieces : tuple of SeriesPiece
-        One after the other, from time 0 to time 1.
+        In the order of time. Between them there may be stretches that are left to the direct path.
     rho : Scaling or None
         None where Ψ is not scaled.
     error : float
@@ -84,18 +84,23 @@ class Series:
         own = sum(piece.nbytes for piece in self.pieces)
         return own + (0 if self.rho is None else self.rho.nbytes)
 
+    def covers(self, time: float) -> bool:
+        """Tell whether the series knows the values at a time."""
+        return self._piece_at(time) is not None
+
     def blend(self, time: float) -> tuple[SeriesPiece, Singles]:
         """Return the piece at a time in [0, 1], and the weights (r,) of its rows.
 
         Raises
         ------
         EngineError
-            If the time is out of range.
+            If the time is out of range, or in a stretch that is left to the direct path.
         """
         if not 0.0 <= time <= 1.0:
             raise EngineError(f"A series runs from time 0 to 1; {time:g} is outside.")
-        starts = [piece.start for piece in self.pieces]
-        piece = self.pieces[bisect_right(starts, time) - 1]
+        piece = self._piece_at(time)
+        if piece is None:
+            raise EngineError(f"The series does not cover the time {time:g}; take the direct path.")
         rho = 1.0 if self.rho is None else self.rho(time)
         return piece, piece.weights(time, rho)
 
@@ -110,3 +115,12 @@ class Series:
         """
         piece, weights = self.blend(time)
         return np.dot(weights, piece.rows, out=out)
+
+    def _piece_at(self, time: float) -> SeriesPiece | None:
+        starts = [piece.start for piece in self.pieces]
+        index = bisect_right(starts, time) - 1
+        if index < 0:
+            return None
+        # Where a piece ends and none follows, it knows the value yet.
+        piece = self.pieces[index]
+        return piece if time <= piece.end else None

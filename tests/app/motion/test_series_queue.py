@@ -74,6 +74,21 @@ def streamed(motion, clip):
     return [motion.ready[pair_of(clip, i)].series is not None for i in range(3)]
 
 
+def test_what_a_series_leaves_out_is_shown_by_the_direct_path(clip, prepared):
+    motion, _ = stream(prepared, clip, FRAME, heat=True)
+    pair = pair_of(clip, 1)
+    without = {
+        name: replace(getattr(motion.ready[pair], name), pieces=())
+        for name in ("series", "distortions")
+    }
+    partly = replace(motion, ready={pair: motion.ready[pair]._replace(**without)})
+    shown = partly.vertices(clip, FRAME)
+    assert isinstance(shown, Placed)
+    assert_allclose(shown.positions, prepared.vertices(clip, FRAME).positions, rtol=0, atol=0)
+    only_places = motion.ready[pair]._replace(distortions=without["distortions"])
+    assert replace(motion, ready={pair: only_places}).vertices(clip, FRAME).derivatives is None
+
+
 def test_the_nearest_interval_is_built_first(clip, prepared):
     motion, order = stream(prepared, clip, FRAME, heat=False)
     assert order == [(1, False), (2, False), (0, False)]

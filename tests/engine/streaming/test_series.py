@@ -16,7 +16,7 @@ from engine.errors import EngineError
 from engine.interpolation import Variant, prepare
 from engine.maps import distortion
 from engine.streaming import Distortions, Positions, build_series, finish
-from engine.streaming.build import DEGREES, MOST_ROWS
+from engine.streaming.build import DEGREES, MOST_ATTEMPTS, MOST_ROWS
 from engine.streaming.channels import Sample
 
 SHAPES = {"bar": bar(), "letter L": letter_l(), "narrow U": narrow_u(0.1)}
@@ -159,6 +159,39 @@ def test_pieces_are_short_where_the_motion_is_hard():
         assert_allclose(left, right, rtol=0, atol=1e-6)
 
 
+def test_what_float32_cannot_hold_is_left_to_the_direct_path():
+    # Large values that matter to the last digit: no piece is short enough, and none is kept.
+    places = np.linspace(0.9, 1, 40)
+    calls = []
+
+    def function(t):
+        calls.append(t)
+        return 1e4 * places * np.exp(t)
+
+    series = finish(build_series(Curves(function)))
+    assert series.pieces == ()
+    assert not any(series.covers(t) for t in (0.0, 0.3, 1.0))
+    assert len(calls) < MOST_ATTEMPTS * 40
+    with pytest.raises(EngineError, match="direct path"):
+        series.values(0.3)
+
+
+def test_a_hard_moment_costs_no_more_than_itself():
+    places = np.linspace(0, 1, 40)
+
+    def function(t):
+        return places * abs(t - 0.3) ** 0.2
+
+    series = finish(build_series(Curves(function)))
+    assert series.error <= 1e-6
+    assert not series.covers(0.3)
+    missing = 1.0 - sum(piece.end - piece.start for piece in series.pieces)
+    assert 0 < missing < 0.01
+    for t in np.random.default_rng(0).random(200):
+        if series.covers(t):
+            assert_allclose(series.values(t), function(t), rtol=0, atol=1e-6)
+
+
 def test_many_functions_of_time_are_parted_in_pieces():
     turns = np.linspace(-30, 30, 3000)
     series = finish(build_series(Curves(lambda t: np.cos(turns * t))))
@@ -166,9 +199,11 @@ def test_many_functions_of_time_are_parted_in_pieces():
     assert max(len(piece.rows) for piece in series.pieces) <= MOST_ROWS
 
 
-def test_what_is_not_smooth_ends_and_tells_its_error():
+def test_what_jumps_is_left_to_the_direct_path():
     series = finish(build_series(Curves(lambda t: np.array([float(t > 0.317), t]))))
-    assert series.error > 0.01
+    assert series.error <= 1e-6
+    assert not series.covers(0.317)
+    assert all(series.covers(t) for t in (0.0, 0.3169, 0.3171, 1.0))
     assert len(series.pieces) < 20
 
 
