@@ -1,5 +1,8 @@
 """The dialog that is open: a question, the sheet of keys, or a choice of a file."""
 
+from collections.abc import Mapping
+from itertools import combinations_with_replacement
+
 from imgui_bundle import ImVec2, imgui
 
 from app.editor import Action, Dialog, FileDialog, Question, Session, ShortcutSheet, do
@@ -9,6 +12,7 @@ from app.ui.dialogs.native_dialog import NativeDialog
 from app.ui.shortcuts import BINDINGS, GESTURES
 from app.ui.style import Look, heading, main_button
 
+HEADING = 2  # rows that the heading of a group takes
 GOING_ON = (browse, use_own_dialogs)  # with the dialog that is open
 
 
@@ -134,15 +138,34 @@ def _shortcuts(look: Look) -> None:
         for group in groups
     }
     rows["Pointer"] = [(gesture.what, gesture.how) for gesture in GESTURES]
-    columns = (groups[: (len(groups) + 1) // 2], [*groups[(len(groups) + 1) // 2 :]], ["Pointer"])
+    style = imgui.get_style()
+    # Closer than elsewhere: all keys are to be seen at once.
+    imgui.push_style_var(imgui.StyleVar_.item_spacing, ImVec2(style.item_spacing.x, 0.2 * look.em))
+    columns = _columns({group: len(rows[group]) for group in rows})
     if imgui.begin_table("sheet", len(columns), imgui.TableFlags_.sizing_fixed_fit):
         for column in columns:
             imgui.table_next_column()
+            names = [text for group in column for text, _ in rows[group]]
+            keys_at = max(imgui.calc_text_size(name).x for name in names) + look.em
             for group in column:
                 heading(look, group)
                 for text, keys in rows[group]:
                     imgui.text_unformatted(text)
-                    imgui.same_line(11.5 * look.em)
+                    imgui.same_line(keys_at)
                     imgui.text_disabled(keys)
-            imgui.dummy(ImVec2(21 * look.em, 0))
+            imgui.dummy(ImVec2(20 * look.em, 0))
         imgui.end_table()
+    imgui.pop_style_var()
+
+
+def _columns(sizes: Mapping[str, int]) -> tuple[list[str], ...]:
+    """Part groups of so many rows into three columns, in their order and as low as can be."""
+    names = list(sizes)
+    cuts = combinations_with_replacement(range(len(names) + 1), 2)
+    parted = [(names[:i], names[i:j], names[j:]) for i, j in cuts]
+    return min(
+        parted,
+        key=lambda columns: max(
+            sum(sizes[name] + HEADING for name in column) for column in columns
+        ),
+    )
