@@ -5,10 +5,11 @@ import argparse
 import numpy as np
 
 from app.cli.commands.hole_arrays import HOLE_ARRAYS, read_holes
+from app.document import NATURAL
 from app.errors import LissomError
 from app.storage import check_writable, read_arrays, write_arrays
 from engine.interpolation import prepare
-from engine.maps import HarmonicMap
+from engine.maps import Bounds, HarmonicMap
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -32,7 +33,13 @@ def run(arguments: argparse.Namespace) -> int:
             f"logs must be of shape (keyframes, holes), ({len(phi)}, {len(holes)}), not "
             f"{logs.shape}"
         )
-    _require_in_range(arguments.times, len(phi))
+    if arguments.bounds and not arguments.through:
+        raise LissomError("--bounds is what --through keeps; say --through as well")
+    _require_in_range(arguments.times, len(phi), loop=arguments.loop)
+    bounds = NATURAL.bounds
+    if arguments.bounds:
+        k, sigma_a, sigma_b = arguments.bounds
+        bounds = Bounds(k=k, sigma_a=sigma_a, sigma_b=sigma_b)
     prepared = prepare(
         [
             HarmonicMap(cage=data["cage"], phi=a, psi=b, holes=holes, logs=c)
@@ -44,6 +51,9 @@ def run(arguments: argparse.Namespace) -> int:
         triangles=data.get("triangles"),
         anchor=data.get("anchor"),
         turns=data.get("turns"),
+        through=arguments.through,
+        loop=arguments.loop,
+        bounds=bounds,
     )
     frames = [prepared.frame(time) for time in arguments.times]
     results = {
@@ -55,15 +65,18 @@ def run(arguments: argparse.Namespace) -> int:
     }
     if prepared.variant.is_scaled:
         results["rho"] = np.array([frame.rho for frame in frames])
+    if arguments.through:
+        results["tangents"] = np.array(prepared.tangents)
     write_arrays(arguments.out, results)
     return 0
 
 
-def _require_in_range(times: tuple[float, ...], keyframes: int) -> None:
+def _require_in_range(times: tuple[float, ...], keyframes: int, *, loop: bool) -> None:
     """Refuse times before any long computation."""
+    last = keyframes if loop else keyframes - 1
     for time in times:
-        if keyframes >= 2 and not 0 <= time <= keyframes - 1:
+        if keyframes >= 2 and not 0 <= time <= last:
             raise LissomError(
                 f"time {time:g} is out of range: {keyframes} keyframes span the times from 0 to "
-                f"{keyframes - 1}"
+                f"{last}"
             )

@@ -20,14 +20,24 @@ MAPS.npz holds
   triangles  (t, 3)  int      optional: triangles of the points; integration follows their edges
   turns      (q-1,)  int      optional: whole turns that the shape makes between keyframes i and
                               i + 1 beyond the shorter way, counter-clockwise; by default 0. From
-                              no turn to one of 200 degrees the shorter way is -160: 1 makes it 200
+                              no turn to one of 200 degrees the shorter way is -160: 1 makes it 200;
+                              with --loop (q,), the last one back to keyframe 0
 
-Keyframe i is at time i. OUT.npz gets times (s,), anchor, and one row for each time of
+Keyframe i is at time i. Without --through the motion has a corner at each, as in the paper. With
+it the velocity is continuous at keyframes between two others, in a loop at all: the slope of the
+parabola through three, shortened where the in-betweens would leave the bounds. That they keep them
+everywhere is proven with metric; with nu for k, and with scaled-eta rho sees to it. A keyframe that
+is itself beyond the bounds widens them for the intervals around it.
+
+OUT.npz gets times (s,), anchor, and one row for each time of
   positions, fz, fzbar  (s, m)  complex128  f, f_z and the derivative of f by conj(z) at the points
   rho                   (s,)    float64     with scaled-eta: the scaling of eta, 1 at keyframes
+  tangents              (q,)    float64     with --through: how much of the full velocity is left
+                                            at each keyframe, from 0, a stop, to 1; 1 at ends
 
 examples:
   lissom interpolate maps.npz --variant metric --times 0,0.25,0.5,0.75,1 --out frames.npz
+  lissom interpolate maps.npz --variant metric --through --loop --times 0,0.5,1,1.5 --out frames.npz
 """
 
 
@@ -48,7 +58,22 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         required=True,
         metavar="T,T,...",
         type=_times,
-        help="in [0, q - 1], in any order, separated by commas",
+        help="in [0, q - 1], with --loop in [0, q], in any order, separated by commas",
+    )
+    parser.add_argument(
+        "--through",
+        action="store_true",
+        help="pass keyframes at one velocity, within bounds, instead of in a corner",
+    )
+    parser.add_argument(
+        "--loop", action="store_true", help="the last keyframe leads on to the first, at time q"
+    )
+    parser.add_argument(
+        "--bounds",
+        metavar="K,SA,SB",
+        type=_bounds,
+        help="what --through keeps: the largest k and sigma_a and the smallest sigma_b "
+        "(default: those of a new project)",
     )
     parser.add_argument("--out", metavar="OUT.npz", type=Path, required=True, help="where to write")
 
@@ -60,3 +85,13 @@ def _times(text: str) -> tuple[float, ...]:
         raise argparse.ArgumentTypeError(
             f"{text!r} is not a list of numbers separated by commas"
         ) from None
+
+
+def _bounds(text: str) -> tuple[float, float, float]:
+    try:
+        k, sigma_a, sigma_b = (float(word) for word in text.split(","))
+    except ValueError:
+        raise argparse.ArgumentTypeError(
+            f"{text!r} is not three numbers separated by commas, such as 0.5,2,0.5"
+        ) from None
+    return k, sigma_a, sigma_b

@@ -17,7 +17,9 @@ at its lower left corner and y up, as in `lissom domain`:
 Left out, fps is 24, loop false, variant "metric" (or nu, scaled-eta, eta, linear), bounds as above,
 which is "Natural" in the window ("Rubbery" is 0.8, 5.0, 0.2 and "Stiff" 0.35, 1.5, 0.67), the
 anchor the engine's choice, and ease "linear" (or in, out, in-out, hold, or four numbers from 0 to 1
-of a Bézier curve); it leads to the next key. A handle that a key does not name keeps its target of
+of a Bézier curve); it leads to the next key. A key's passing is "through", where it is between two
+others the motion passes it at one velocity; "corner", come and go straight, which is what a key has
+that names an ease; "stop"; or "hold", stay until the next key. A handle that a key does not name keeps its target of
 the key before, at first its place in the picture. Each key is solved by a drag from the key before;
 where the bounds hold a handle back, the key is kept and a notice says by how much.
 

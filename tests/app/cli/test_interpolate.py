@@ -34,13 +34,14 @@ def write(tmp_path):
     return written
 
 
-def interpolate(maps, out, *, variant="nu", times="0,0.5,1"):
-    return main(["interpolate", maps, "--variant", variant, f"--times={times}", "--out", str(out)])
+def interpolate(maps, out, *options, variant="nu", times="0,0.5,1"):
+    arguments = ["interpolate", maps, "--variant", variant, f"--times={times}", "--out", str(out)]
+    return main([*arguments, *options])
 
 
-def error_of(capsys, maps, out, **options):
+def error_of(capsys, maps, out, *flags, **options):
     with pytest.raises(SystemExit) as leaving:
-        interpolate(maps, out, **options)
+        interpolate(maps, out, *flags, **options)
     assert leaving.value.code == 2
     said = capsys.readouterr().err.splitlines()
     assert len(said) == 1
@@ -160,3 +161,36 @@ def test_bad_files_are_refused(write, tmp_path, capsys, changes, message):
 )
 def test_bad_times_are_refused(write, tmp_path, capsys, times, message):
     assert message in error_of(capsys, write(), tmp_path / "out.npz", times=times)
+
+
+def test_motion_through_keyframes_and_round_a_loop(write, tmp_path):
+    maps = write(turns=np.array([0, 1, 0]))
+    e = 1e-4
+    times = ",".join(str(t) for t in (0, 1 - 2 * e, 1 - e, 1, 1 + e, 1 + 2 * e, 3))
+    bounds = "0.9,30,0.03"
+    assert (
+        interpolate(maps, tmp_path / "a", "--through", "--loop", "--bounds", bounds, times=times)
+        == 0
+    )
+    with np.load(tmp_path / "a") as file:
+        frames = dict(file)
+    p = frames["positions"]
+    assert_allclose(p[6], p[0], atol=1e-12)
+    before, after = 3 * p[3] - 4 * p[2] + p[1], -3 * p[3] + 4 * p[4] - p[5]
+    assert_allclose(before, after, atol=1e-4 * np.abs(after).max())
+    assert frames["tangents"].shape == (3,)
+    assert frames["tangents"].max() > 0.1
+    # Tighter bounds leave less.
+    assert interpolate(maps, tmp_path / "b", "--through", "--loop", times=times) == 0
+    with np.load(tmp_path / "b") as file:
+        assert (file["tangents"] <= frames["tangents"]).all()
+
+
+def test_what_cannot_be_said_about_passing_is_told(write, capsys, tmp_path):
+    maps, out = write(), tmp_path / "out"
+    said = error_of(capsys, maps, out, "--bounds", "0.5,2,0.5")
+    assert "--through as well" in said
+    assert "must be between 0 and 1, not 2" in error_of(
+        capsys, maps, out, "--through", "--bounds", "2,2,0.5"
+    )
+    assert "span the times from 0 to 3" in error_of(capsys, maps, out, "--loop", times="3.1")
