@@ -22,7 +22,7 @@ from app.document import (
 from app.editor.action import Action
 from app.editor.derived import Derived
 from app.editor.timeline_view import Timing
-from app.motion import Box, Build, Joints, Motion, PosableMesh, Shown
+from app.motion import Box, Build, Joints, Motion, MotionPaths, PosableMesh, Shown
 from app.render import View, fit_view
 from app.reports import Curves
 from app.solving import Drag, Renewal, Rig
@@ -182,6 +182,8 @@ class Project:
         None fits the picture into the viewport.
     curves : Derived
         Distortion over time, of the active figure.
+    paths : Derived
+        Of the active figure's handles; they are traced while they are shown.
     meshing : Meshing, optional
         What the domain will be rebuilt with; None as long as that is what it has.
     drafted_bounds : Bounds, optional
@@ -225,6 +227,7 @@ class Project:
     posing: PoseInProgress | None = None
     settling: PoseInProgress | None = None
     curves: Derived[Clip, Curves | None] = field(default_factory=lambda: Derived(None))
+    paths: Derived[Clip, MotionPaths | None] = field(default_factory=lambda: Derived(None))
     meshing: Meshing | None = None
     drafted_bounds: Bounds | None = None
     renewal: Renewal | None = None

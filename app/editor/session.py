@@ -31,6 +31,7 @@ class Overlays:
     cage: bool = False
     onion: bool = False
     mirror: bool = False  # the axis at which poses are flipped
+    paths: bool = False  # of the selected handles
     heat_map: HeatMap = "none"
 
 

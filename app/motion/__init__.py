@@ -8,6 +8,7 @@ Imports: `app.document`.
 from app.motion.extent import Box, box_around, extent_source, measure_extent, motion_box
 from app.motion.inbetweens import Animation, PoseSampler
 from app.motion.joints import HERE, Joints, Placement, hung_animations, joints_source
+from app.motion.motion_paths import MotionPaths, trace_paths
 from app.motion.paint_order import painted_depths, painted_triangles
 from app.motion.posable_mesh import PosableMesh
 from app.motion.prepared import Motion, prepare_motion
@@ -22,6 +23,7 @@ __all__ = [
     "Build",
     "Joints",
     "Motion",
+    "MotionPaths",
     "Placed",
     "Placement",
     "PosableMesh",
@@ -41,5 +43,6 @@ __all__ = [
     "painted_triangles",
     "prepare_motion",
     "show",
+    "trace_paths",
     "with_series",
 ]

@@ -42,6 +42,7 @@ def extent_source(document: Document) -> tuple[object, ...]:
             figure.keys,
             figure.anchor,
             figure.variant,
+            figure.bounds,
             figure.attachment,
             figure in document.exported,
         )

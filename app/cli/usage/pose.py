@@ -19,9 +19,10 @@ which is "Natural" in the window ("Rubbery" is 0.8, 5.0, 0.2 and "Stiff" 0.35, 1
 anchor the engine's choice, and ease "linear" (or in, out, in-out, hold, or four numbers from 0 to 1
 of a Bézier curve); it leads to the next key. A key's passing is "through", where it is between two
 others the motion passes it at one velocity; "corner", come and go straight, which is what a key has
-that names an ease; "stop"; or "hold", stay until the next key. A handle that a key does not name keeps its target of
-the key before, at first its place in the picture. Each key is solved by a drag from the key before;
-where the bounds hold a handle back, the key is kept and a notice says by how much.
+that names an ease; "stop"; or "hold", stay until the next key. A handle that a key does not name
+keeps its target of the key before, at first its place in the picture. Each key is solved by a drag
+from the key before; where the bounds hold a handle back, the key is kept and a notice says by how
+much.
 
 A handle may say what is painted in front around it, from -1 (behind) to 1, and how far around, in
 pixels: {"at": [120, 880], "front": 0.5, "extent": 60}; a key with "front": {"nose": 1} says it from

@@ -6,12 +6,14 @@ from app.document import (
     Command,
     Easing,
     FrameRange,
+    Passing,
     Variant,
     figure_commands,
     key_commands,
     scene_commands,
 )
 from app.editor.actions import editing, playback, posing
+from app.editor.project import Project
 from app.editor.session import Session
 
 
@@ -38,17 +40,35 @@ def set_easing(session: Session, frames: frozenset[int], easing: Easing) -> None
     editing.edit_figure(session, key_commands.set_easing, frames, easing)
 
 
-def ease(session: Session, easing: Easing) -> None:
-    """Set how time runs from the chosen keys on, or from the key at the playhead or before it."""
+def set_passing(session: Session, frames: frozenset[int], passing: Passing) -> None:
+    """Set how the motion passes the keys at these frames."""
+    editing.edit_figure(session, key_commands.set_passing, frames, passing)
+
+
+def pass_otherwise(session: Session) -> None:
+    """Pass the chosen keys in the next way, or the key at the playhead or before it."""
     project = session.project
     if project is None:
         return
-    frames = project.chosen
-    if not frames:
-        here = playback.current_frame(session, project)
-        before = [frame for frame in project.figure.key_frames if frame <= here]
-        frames = frozenset({max(before, default=project.figure.keys[0].frame)})
-    set_easing(session, frames, easing)
+    frames = _chosen_or_here(session, project)
+    passings = list(Passing)
+    first = project.figure.key(min(frames)).shown_passing
+    set_passing(session, frames, passings[(passings.index(first) + 1) % len(passings)])
+
+
+def _chosen_or_here(session: Session, project: Project) -> frozenset[int]:
+    """Return the frames of the chosen keys, or of the one at the playhead or before it."""
+    if project.chosen:
+        return project.chosen
+    here = playback.current_frame(session, project)
+    before = [frame for frame in project.figure.key_frames if frame <= here]
+    return frozenset({max(before, default=project.figure.keys[0].frame)})
+
+
+def ease(session: Session, easing: Easing) -> None:
+    """Set how time runs from the chosen keys on, or from the key at the playhead or before it."""
+    if session.project:
+        set_easing(session, _chosen_or_here(session, session.project), easing)
 
 
 def ease_new_keys(session: Session, easing: Easing) -> None:

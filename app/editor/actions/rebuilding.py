@@ -49,6 +49,15 @@ def loosen(session: Session) -> None:
     posing.pull_again(session, gesture=gesture)
 
 
+def loosen_bounds(session: Session) -> None:
+    """Allow the next looser stretch on the way between the keys; poses stay as they are."""
+    project = session.project
+    bounds = loosened(project.figure.bounds) if project else None
+    if project is not None and bounds is not None:
+        cancel(session)
+        project.history.do(figure_commands.set_bounds(project.active, bounds))
+
+
 def enter_bound(session: Session, bounds: Bounds, name: str, value: float) -> None:
     """Set one of the bounds to a number that was typed in.
 

@@ -25,6 +25,7 @@ from app.motion import (
     next_build,
     prepare_motion,
     show,
+    trace_paths,
     with_series,
 )
 from app.reports import measure_curves
@@ -36,7 +37,7 @@ SKETCHING, REFINING, STREAMING = "In-betweens", "Finer in-betweens", "Smooth pla
 MOST_UNASKED = 1000  # frames whose extent is measured before anybody asks
 CUTTING = "Cutting out"
 MEASURING, SPANNING = "Measuring", "Measuring the motion"
-HANGING = "Joints"
+HANGING, TRACING = "Joints", "Motion paths"
 
 
 def maintain(session: Session) -> None:
@@ -84,6 +85,9 @@ def missing(session: Session, project: Project) -> Iterator[Derivation[Any, Any]
     yield from _cut(project)
     clips = [(clip_of(document, figure), puppet) for figure, puppet in project.puppets.items()]
     movable = [(clip, puppet) for clip, puppet in clips if not puppet.coarse.has_failed(clip)]
+    if session.overlays.paths and project.selected:
+        # First of all: it is watched while the hand moves, and of few points only.
+        yield from _trace(project)
     for clip, puppet in movable:
         if not puppet.coarse.value.knows(clip):
             # Where nobody sees them before the hand rests, they are not worked out for each move.
@@ -132,6 +136,21 @@ def _sketch(clip: Clip, puppet: Puppet, *, whole: bool) -> Derivation[Clip, Moti
         source=clip,
         work=lambda: _coarse_motion(clip, earlier, whole=whole),
         complaint="The in-betweens of these keys cannot be made",
+    )
+
+
+def _trace(project: Project) -> Iterator[Derivation[Any, Any]]:
+    """Yield the paths of the active figure's handles."""
+    clip, paths = project.clip, project.paths
+    if paths.follows(clip) or paths.has_failed(clip):
+        return
+    earlier, sibling = paths.value, project.puppet.coarse.value.sampler
+    yield Derivation(
+        kind=TRACING,
+        into=paths,
+        source=clip,
+        work=lambda: trace_paths(clip, earlier, sibling),
+        complaint="The paths of the handles cannot be traced",
     )
 
 

@@ -16,7 +16,7 @@ from app.storage import LARGEST_GHOST_STEP, LARGEST_SCALE, MOST_GHOSTS, SMALLEST
 
 SCALE_STEP = 0.25
 AROUND_HANDLES = 0.12  # of the figure's diagonal, on each side of the handles that are fitted
-OverlayName = Literal["handles", "wireframe", "outline", "cage", "onion", "mirror"]
+OverlayName = Literal["handles", "wireframe", "outline", "cage", "onion", "mirror", "paths"]
 HEAT_MAPS: tuple[HeatMap, ...] = ("none", "k", "sigma_a", "sigma_b")
 
 

@@ -1,5 +1,6 @@
 """The status bar."""
 
+from collections.abc import Callable
 from typing import NamedTuple
 
 from imgui_bundle import ImColor, imgui, imspinner
@@ -12,6 +13,26 @@ from app.ui.style import Look, shortened, tip
 WORDS = {"k": "Shear", "σa": "Stretch", "σb": "Squeeze"}
 LEAST_ROOM = 6.0  # em: narrower, a hint is left out
 SLOW = 0.3  # seconds after which a job is told of; shorter ones would only flicker
+
+
+SLOWED, STOPPED = 0.5, 0.05  # of the velocity at a key, below which that is told
+MOST_TOLD = 3  # keys
+
+
+class Remedy(NamedTuple):
+    """What a button beside a warning does."""
+
+    verb: Callable[[Session], None]
+    what: str  # in its tooltip
+
+
+PULL_AGAIN = Remedy(
+    rebuilding.loosen, "Let this drawing stretch further, and pull the handles again"
+)
+GO_ON = Remedy(
+    rebuilding.loosen_bounds,
+    "Let this drawing stretch further between its keys, so that the motion can go on through them",
+)
 
 
 class Fact(NamedTuple):
@@ -29,12 +50,15 @@ def draw_status(session: Session, look: Look) -> list[Action]:
     width = sum(imgui.calc_text_size(fact.text).x + gap for fact in told)
     end = imgui.get_window_width() - width + gap - look.em
     actions: list[Action] = []
-    held_back = hold_back(session)
+    held_back, slowed = hold_back(session), slow_down(session)
     slow = session.jobs.running_for(SLOW)
     if held_back:
-        actions += _held_back(session, look, held_back)
+        actions += _warn(session, look, held_back, PULL_AGAIN)
         imgui.same_line(0, gap)
-    hint = session.hint if held_back else session.hint or "Ready"
+    elif slowed:
+        actions += _warn(session, look, slowed, GO_ON)
+        imgui.same_line(0, gap)
+    hint = session.hint if held_back or slowed else session.hint or "Ready"
     room = end - imgui.get_cursor_pos_x() - gap
     if slow:
         _spinner(look)
@@ -66,16 +90,33 @@ def hold_back(session: Session) -> str:
     return f"Stretch limit reached – {text}" + (f", {others} more too" if others else "")
 
 
-def _held_back(session: Session, look: Look, text: str) -> list[Action]:
-    """Tell that the limits hold a handle back, and offer the remedy."""
+def slow_down(session: Session) -> str:
+    """Return at which keys the limits slow the motion down that should pass through; else ""."""
+    project = session.project
+    if project is None or project.is_posing or project.playhead.since is not None:
+        return ""
+    lengths = project.puppet.coarse.value.lengths(project.clip) or {}
+    slowed = sorted(frame for frame, length in lengths.items() if length < SLOWED)
+    if not slowed:
+        return ""
+    verb = "stops" if max(lengths[frame] for frame in slowed) < STOPPED else "slows down"
+    told = ", ".join(map(str, slowed[:MOST_TOLD]))
+    others = len(slowed) - MOST_TOLD
+    told += f" and {others} more" if others > 0 else ""
+    frames = "frame" if len(slowed) == 1 else "frames"
+    return f"The motion {verb} at {frames} {told} to keep within the stretch limit"
+
+
+def _warn(session: Session, look: Look, text: str, remedy: Remedy) -> list[Action]:
+    """Tell what the limits prevent, and offer the remedy."""
     imgui.text_colored(look.palette.warning, text)
     project = session.project
     if project is None or loosened(project.figure.bounds) is None:
         return []
     imgui.same_line(0, 0.8 * look.em)
     is_pressed = imgui.small_button("Loosen")
-    tip("Let this drawing stretch further, and pull the handles again")
-    return [do(rebuilding.loosen)] if is_pressed else []
+    tip(remedy.what)
+    return [do(remedy.verb)] if is_pressed else []
 
 
 def facts(session: Session) -> list[Fact]:

@@ -1,16 +1,16 @@
-"""Keys as diamonds on the track, and the box that chooses them."""
+"""Keys on the track, marked by how they are passed, and the box that chooses them."""
 
 from itertools import pairwise
 
 from imgui_bundle import ImVec2, ImVec4, imgui
 from imgui_bundle import icons_fontawesome_6 as icons
 
-from app.document import LAST_FRAME, Keyframe
+from app.document import LAST_FRAME, Keyframe, Passing
 from app.editor import Action, KeyBox, KeyDrag, Project, TimeGesture, do
 from app.editor.actions import editing, keys, timeline_pointing
 from app.ui.shortcuts import with_key
 from app.ui.style import begin_tip, ink
-from app.ui.timeline.menus import key_menu, track_menu
+from app.ui.timeline.menus import PASSINGS, key_menu, track_menu
 from app.ui.timeline.track import (
     ROUNDING,
     Track,
@@ -151,15 +151,16 @@ def _draw_key(track: Track, key: Keyframe, radius: float) -> None:
     x, y = track.x(key.frame), track.middle
     fill, warns = _colour(track, key)
     chosen = key.frame in track.project.chosen
+    passing, centre = key.shown_passing, ImVec2(x, y)
     if chosen:
-        _diamond(ImVec2(x, y), radius + 0.24 * em, ink(palette.accent, 0.35))
-    _diamond(ImVec2(x, y), radius + 0.12 * em, ink(palette.desk))
-    _diamond(ImVec2(x, y), radius, ink(fill))
+        _mark(passing, centre, radius + 0.24 * em, ink(palette.accent, 0.35))
+    _mark(passing, centre, radius + 0.12 * em, ink(palette.desk))
+    _mark(passing, centre, radius, ink(fill))
     gesture = track.project.timing.gesture
     if isinstance(gesture, KeyDrag) and gesture.by and key.frame == gesture.pressed + gesture.by:
         write_tag(track, x, f"{key.frame}  ({gesture.by:+d})")
     if warns and chosen:
-        _diamond(ImVec2(x, y), 0.45 * radius, ink(warns))
+        _mark(passing, centre, 0.45 * radius, ink(warns))
     if warns:
         draw_list.add_circle_filled(ImVec2(x, track.bar_top - 0.1 * em), 0.2 * em, ink(warns))
 
@@ -175,14 +176,36 @@ def _colour(track: Track, key: Keyframe) -> tuple[ImVec4, ImVec4 | None]:
     return (palette.accent if key.frame in track.project.chosen else warns or palette.text), warns
 
 
-def _diamond(centre: ImVec2, radius: float, colour: int) -> None:
-    imgui.get_window_draw_list().add_quad_filled(
-        ImVec2(centre.x, centre.y - radius),
-        ImVec2(centre.x + radius, centre.y),
-        ImVec2(centre.x, centre.y + radius),
-        ImVec2(centre.x - radius, centre.y),
-        colour,
-    )
+def _mark(passing: Passing, centre: ImVec2, radius: float, colour: int) -> None:
+    """Draw a key's mark: round where the motion goes on, pointed, pinched, or square for a hold."""
+    draw_list, x, y = imgui.get_window_draw_list(), centre.x, centre.y
+    across = radius / 2**0.5
+    match passing:
+        case Passing.THROUGH:
+            draw_list.add_circle_filled(centre, 0.86 * radius, colour)
+        case Passing.HOLD:
+            half = 1.06 * across
+            draw_list.add_rect_filled(
+                ImVec2(x - half, y - half), ImVec2(x + half, y + half), colour
+            )
+        case Passing.STOP:
+            half, waist = 1.1 * across, 0.3 * across
+            for side in (-1, 1):
+                draw_list.add_quad_filled(
+                    ImVec2(x - half, y + side * half),
+                    ImVec2(x + half, y + side * half),
+                    ImVec2(x + waist, y),
+                    ImVec2(x - waist, y),
+                    colour,
+                )
+        case _:
+            draw_list.add_quad_filled(
+                ImVec2(x, y - radius),
+                ImVec2(x + radius, y),
+                ImVec2(x, y + radius),
+                ImVec2(x - radius, y),
+                colour,
+            )
 
 
 def lags(project: Project, key: Keyframe) -> list[str]:
@@ -204,6 +227,8 @@ def _tell(track: Track, key: Keyframe) -> None:
     imgui.text_unformatted(f"Key at frame {key.frame}")
     imgui.same_line()
     imgui.text_disabled(in_seconds(key.frame, document.fps))
+    name, hint = PASSINGS[key.shown_passing]
+    imgui.text_unformatted(f"{name}: {hint[0].lower()}{hint[1:]}")
     if not key.pose.certificate.certified:
         imgui.text_colored(
             palette.danger,

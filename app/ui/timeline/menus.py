@@ -2,14 +2,20 @@
 
 from imgui_bundle import imgui
 
-from app.document import PRESETS, Keyframe
+from app.document import PRESETS, Keyframe, Passing
 from app.editor import Action, Project, do
 from app.editor.actions import keys, playback
 from app.ui.shortcuts import BINDINGS
-from app.ui.style import Look
+from app.ui.style import Look, tip
 from app.ui.timeline.easing_curve import LABELS
 from app.ui.timeline.track import Track
 
+PASSINGS = {
+    Passing.THROUGH: ("Through", "The motion goes on smoothly, between two other keys"),
+    Passing.CORNER: ("Corner", "The motion comes and goes straight, and turns sharply"),
+    Passing.STOP: ("Stop", "The motion slows down to rest, and starts again"),
+    Passing.HOLD: ("Hold", "The pose stays until the next key"),
+}
 FACTORS = ((0.5, "Half as long"), (2.0, "Twice as long"))
 
 
@@ -26,6 +32,13 @@ def key_menu(track: Track, key: Keyframe) -> list[Action]:
         actions.append(delete.action)
     if imgui.menu_item_simple("Go to this key", "Click"):
         actions.append(do(playback.scrub, key.frame))
+    if imgui.begin_menu("Passing"):
+        for passing, (name, hint) in PASSINGS.items():
+            chosen = key.shown_passing is passing
+            if imgui.menu_item(f"{name}###{passing}", "", chosen)[0]:
+                actions.append(do(keys.set_passing, frames, passing))
+            tip(hint)
+        imgui.end_menu()
     if imgui.begin_menu("Easing"):
         for name, preset in PRESETS.items():
             if imgui.menu_item(LABELS[name], "", key.easing == preset)[0]:

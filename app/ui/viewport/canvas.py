@@ -190,6 +190,7 @@ def _inputs(session: Session, project: Project) -> tuple[object, ...]:
         project.puppet.coarse.value
         if session.overlays.onion
         else project.puppet.coarse.value.sampler,
+        project.paths.value if session.overlays.paths else None,
         project.posing.targets if project.posing else None,
         project.selected,
         project.view(session.screen),

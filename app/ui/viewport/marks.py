@@ -21,6 +21,8 @@ from app.ui.style import Palette, interface_scale
 from engine.arrays import Complexes
 
 FAINT = 3.0  # pixels: the radius of a handle of another layer
+STILL = 0.5  # pixels of the picture: a path that leads no farther is none
+DOT, KEY_DOT = 2.4, 4.4  # pixels: radius of a frame on a path, and of a key
 
 
 def pixel_scale(session: Session) -> float:
@@ -45,11 +47,15 @@ def mark_all(
         lines += _outlines(shown, palette, scale)
     if session.overlays.cage:
         lines += _cages(shown, palette, scale)
+    dots: tuple[Disc, ...] = ()
+    if session.overlays.paths and project.playhead.since is None:
+        path_lines, dots = _paths(project, shown, palette, scale)
+        lines += path_lines
     if session.export_frame is not None:
         lines.append(_frame(session.export_frame, palette, scale))
     on = partial(_on, shown)
     if not session.overlays.handles or project.playhead.since is not None:
-        return tuple(lines), ()
+        return tuple(lines), dots
     style = HandleStyle()
     wishes = project.posing.targets if project.posing else None
     if wishes is None and shown.pose is not None:
@@ -72,7 +78,7 @@ def mark_all(
     anchor = find_anchor(project, shown)
     faint = _others(project, scale)
     below = () if anchor is None else mark_anchor(on(anchor), scale=scale, style=style)
-    return (*lines, *handle_lines), (*faint, *below, *discs)
+    return (*lines, *handle_lines), (*dots, *faint, *below, *discs)
 
 
 def find_anchor(project: Project, shown: Shown) -> complex | None:
@@ -107,6 +113,37 @@ def moved_loops(shown: Shown) -> list[Complexes]:
     # The vertices of a mesh begin with those of the loops.
     ends = np.cumsum([len(loop) for loop in shown.mesh.domain.loops])
     return np.split(shown.positions[: ends[-1]], ends[:-1])
+
+
+def _paths(
+    project: Project, shown: Shown, palette: Palette, scale: float
+) -> tuple[list[Line], tuple[Disc, ...]]:
+    """Return the paths of the selected handles: a dot for each frame, and a larger one for keys."""
+    paths, joints = project.paths.value, project.joints.value
+    if paths is None or len(paths.frames) < 2 or paths.clip.figure.id != project.active:
+        return [], ()
+    places = shown.placement.on(paths.places)
+    if joints is not None:
+        rows = zip(paths.frames.tolist(), paths.places, strict=True)
+        places = np.array([joints.placement(project.active, frame).on(row) for frame, row in rows])
+    keys = np.isin(paths.frames, [key.frame for key in project.figure.keys])
+    lines, discs = [], []
+    for handle, path in zip(paths.clip.figure.handles, places.T, strict=True):
+        # What does not move would only be a blot on its handle.
+        if handle.id not in project.selected or np.abs(path - path[0]).max() <= STILL:
+            continue
+        lines.append(Line(points=path, colour=plain(palette.accent, 0.55), width=1.2 * scale))
+        discs += [
+            Disc(
+                centre=place,
+                radius=(KEY_DOT if is_key else DOT) * scale,
+                fill=plain(palette.text if is_key else palette.accent),
+                rim=plain(palette.desk, 0.8),
+                rim_width=scale,
+            )
+            for place, is_key in zip(path.tolist(), keys.tolist(), strict=True)
+        ]
+    return lines, tuple(discs)
 
 
 def _outlines(shown: Shown, palette: Palette, scale: float) -> list[Line]:
