@@ -85,9 +85,8 @@ def missing(session: Session, project: Project) -> Iterator[Derivation[Any, Any]
     yield from _cut(project)
     clips = [(clip_of(document, figure), puppet) for figure, puppet in project.puppets.items()]
     movable = [(clip, puppet) for clip, puppet in clips if not puppet.coarse.has_failed(clip)]
-    if session.overlays.paths and project.selected:
-        # First of all: it is watched while the hand moves, and of few points only.
-        yield from _trace(project)
+    # First of all: they are watched while the hand moves, and are of few points only.
+    yield from _trace(session, project)
     for clip, puppet in movable:
         if not puppet.coarse.value.knows(clip):
             # Where nobody sees them before the hand rests, they are not worked out for each move.
@@ -139,9 +138,11 @@ def _sketch(clip: Clip, puppet: Puppet, *, whole: bool) -> Derivation[Clip, Moti
     )
 
 
-def _trace(project: Project) -> Iterator[Derivation[Any, Any]]:
-    """Yield the paths of the active figure's handles."""
+def _trace(session: Session, project: Project) -> Iterator[Derivation[Any, Any]]:
+    """Yield the paths of the active figure's handles, while some are shown."""
     clip, paths = project.clip, project.paths
+    if not (session.overlays.paths and project.selected):
+        return
     if paths.follows(clip) or paths.has_failed(clip):
         return
     earlier, sibling = paths.value, project.puppet.coarse.value.sampler
