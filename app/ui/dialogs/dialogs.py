@@ -146,7 +146,7 @@ def _shortcuts(look: Look) -> None:
         for column in columns:
             imgui.table_next_column()
             names = [text for group in column for text, _ in rows[group]]
-            keys_at = max(imgui.calc_text_size(name).x for name in names) + look.em
+            keys_at = max(imgui.calc_text_size(name).x for name in names) + 1.6 * look.em
             for group in column:
                 heading(look, group)
                 for text, keys in rows[group]:
