@@ -131,7 +131,10 @@ class _Drawing:
     def refresh(self) -> None:
         """Bring the pictures up to what is cut out of them now."""
         for figure, picture in self._pictures.items():
-            picture.write(self.project.puppets[figure].cut.value.texture)
+            # A layer may be gone; undo brings it back.
+            puppet = self.project.puppets.get(figure)
+            if puppet is not None:
+                picture.write(puppet.cut.value.texture)
 
     def tint(self, pose: PosedMesh, values: Floats) -> None:
         """Upload other values of the vertices."""
