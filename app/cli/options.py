@@ -12,7 +12,7 @@ from app.errors import LissomError
 from engine.variant import Variant
 
 DETAILS = ("coarse", "normal", "fine")
-HOLES = ("fill", "keep")
+HOLES = ("keep", "fill")
 DEFAULT_DETAIL = "normal"
 DEFAULT_TRIANGLES = 100_000
 DEFAULT_TOLERANCE = 18

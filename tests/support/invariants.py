@@ -43,6 +43,7 @@ def check_pose(figure: Figure, pose: Pose) -> None:
     """Fail unless a pose is of a figure, and its certificate is true."""
     assert set(pose.targets) == {handle.id for handle in figure.handles}
     assert len(pose.phi) == len(pose.psi) == sum(map(len, figure.domain.cages))
+    assert len(pose.logs) == len(figure.domain.holes)
     assert np.isfinite(pose.phi).all()
     assert np.isfinite(pose.psi).all()
     if pose.certificate.certified:

@@ -8,8 +8,9 @@ from app.cli.options import add_cut_out_options, add_meshing_options, input_file
 EPILOG = """\
 The picture may be a PNG, JPEG, GIF, WebP, AVIF, TIFF, BMP, TGA, PPM or ICO. Transparent pixels are
 outside; from an opaque picture a plain background is removed. Whatever else had to be done (parts
-bridged, holes filled, specks dropped) is told on standard error. With --holes keep, holes stay
-holes into which a disc fits that is as wide as 2.4 % of the drawing's diagonal.
+bridged, holes filled, specks dropped) is told on standard error. Holes stay holes, the
+largest first, if a disc fits into them that is as wide as 2.4 % of the drawing's diagonal; with
+--holes fill none does.
 
 DOMAIN.npz holds, in pixels of the picture with the origin at its lower left corner and y up:
   outline     (p,)    complex128  the domain's boundary, counter-clockwise
@@ -28,7 +29,7 @@ examples:
   lissom domain giraffe.png --out giraffe.npz
   lissom domain giraffe.png --out giraffe.npz --detail fine --preview preview.png
   lissom domain icon.png --out icon.npz --triangles 5000
-  lissom domain cup.png --out cup.npz --holes keep
+  lissom domain cup.png --out cup.npz --holes fill
   lissom domain photo.jpg --out photo.npz --background "#8fb0d0" --tolerance 40
 """
 

@@ -77,7 +77,7 @@ class _Fit:
 
 
 def enclose(
-    mask: Booleans, *, detail: Detail, holes: Holes = "fill", swapped: Sequence[complex] = ()
+    mask: Booleans, *, detail: Detail, holes: Holes = "keep", swapped: Sequence[complex] = ()
 ) -> Enclosure:
     """Find the outline of a subject, and the cage around it.
 
@@ -88,7 +88,7 @@ def enclose(
     detail : {"coarse", "normal", "fine"}
         How closely the outline follows: its margin is 1.2, 0.6 or 0.3 % of the diagonal of the
         subject's box, wider where it would take too many vertices, narrower between limbs.
-    holes : {"fill", "keep"}
+    holes : {"keep", "fill"}
         Whether holes stay holes into which a disc fits that is 2.4 % of the diagonal wide: the
         largest first, as long as all loops together have few vertices.
     swapped : sequence of complex
@@ -113,7 +113,8 @@ def enclose(
     every = np.arange(1, len(piece.hole_areas) + 1)
     wanted = np.setdiff1d(every, others) if holes == "keep" else np.intersect1d(every, others)
     kept, crowded = _kept_holes(piece, wanted, fit, margin, grid.diagonal)
-    filled = np.setdiff1d(np.arange(1, len(piece.hole_areas) + 1), [*kept, *crowded])
+    small = np.setdiff1d(wanted, [*kept, *crowded])
+    filled = np.setdiff1d(every, wanted)
     return Enclosure(
         outline=readonly(grid.to_picture(fit.outline)),
         cage=readonly(grid.to_picture(fit.cage)),
@@ -128,7 +129,8 @@ def enclose(
         notices=(
             *piece.notices,
             *piece.told_filled(filled),
-            *piece.told_filled(crowded, "for an outline of few vertices"),
+            *piece.told_filled(small, "too small to stay open"),
+            *piece.told_filled(crowded, "since too many open holes make posing slow"),
             *_told(fit.draft, int(np.count_nonzero(piece.mask))),
         ),
     )

@@ -10,7 +10,7 @@ from engine.arrays import Booleans, Bytes, Complexes, as_points, readonly
 from engine.errors import EngineError
 
 BackgroundColour = tuple[int, int, int]  # red, green, blue, each 0 to 255
-Holes = Literal["fill", "keep"]
+Holes = Literal["keep", "fill"]
 
 SMALLEST_RADIUS, LARGEST_RADIUS = 0.5, 4096.0  # pixels of a stroke
 FARTHEST = 1e5  # pixels from the picture's corner that a stroke may go
@@ -105,7 +105,7 @@ class CutOut:
         What is kept instead; then no background is looked for.
     strokes : tuple of Stroke
         What is kept and removed by hand after that, one stroke over the other.
-    holes : {"fill", "keep"}
+    holes : {"keep", "fill"}
         Whether large holes of the subject stay holes.
     swapped : tuple of complex
         Points in those that are treated the other way, in pixels of the picture, y up.
@@ -115,7 +115,7 @@ class CutOut:
     background: Literal["auto", "none"] | BackgroundColour = "auto"
     mask: Mask | None = None
     strokes: tuple[Stroke, ...] = ()
-    holes: Holes = "fill"
+    holes: Holes = "keep"
     swapped: tuple[complex, ...] = ()
 
     def __post_init__(self) -> None:

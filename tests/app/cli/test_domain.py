@@ -34,7 +34,8 @@ def error_of(words, capsys):
 
 def test_the_file_is_as_documented(drawing, tmp_path, capsys):
     out = tmp_path / "result without suffix"
-    assert main(["domain", str(drawing), "--out", str(out), "--triangles", "3000"]) == 0
+    words = ["domain", drawing, "--out", out, "--triangles", "3000", "--holes", "fill"]
+    assert main([str(word) for word in words]) == 0
     said = capsys.readouterr()
     assert "2 parts" in said.err
     assert "hole" in said.err
@@ -69,7 +70,7 @@ def test_the_file_is_as_documented(drawing, tmp_path, capsys):
 
 def test_holes_are_kept_where_they_are_wanted(drawing, tmp_path, capsys):
     out, preview = tmp_path / "d.npz", tmp_path / "p.png"
-    words = ["domain", drawing, "--out", out, "--holes", "keep", "--preview", preview]
+    words = ["domain", drawing, "--out", out, "--preview", preview]
     assert main([*map(str, words), "--triangles", "3000"]) == 0
     said = capsys.readouterr()
     assert "hole" not in said.err

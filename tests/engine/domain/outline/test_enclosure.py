@@ -123,7 +123,9 @@ def test_a_nearly_closed_ring_stays_open_or_says_so() -> None:
     centre = np.array([150 + 150j])
     assert not contains(wide.outline, centre).any()
     assert contains(shut.outline, centre).all()
-    assert shut.notices == ("1 hole filled, 30.9% of the subject",)
+    assert len(shut.holes) == 1
+    filled = enclose(subject_mask(pictures.ring(mouth=0)).mask, detail="normal", holes="fill")
+    assert filled.notices == ("1 hole filled, 30.9% of the subject",)
 
 
 def test_a_gap_that_has_to_be_closed_is_told() -> None:
@@ -152,7 +154,7 @@ def test_holes_and_specks_are_told() -> None:
     outline = outlined(rgba)
     assert outline.notices == (
         "2 specks dropped (0.01% of the subject)",
-        "2 holes filled, the largest 0.3% of the subject",
+        "2 holes filled, the largest 0.3% of the subject, too small to stay open",
     )
     assert not contains(outline.outline, np.array([5.5 + 294.5j])).any()
 

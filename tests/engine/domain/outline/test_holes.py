@@ -78,7 +78,7 @@ def test_large_holes_are_kept(mask: Booleans, count: int, detail: Detail) -> Non
 @pytest.mark.parametrize("name", ["ring", "plate"])
 def test_what_lies_around_the_holes_is_the_same_whether_they_are_kept_or_filled(name) -> None:
     mask = {"ring": pictures.ring()[..., 3] > 0, "plate": plate((120, 150, 60))}[name]
-    keeping, filling = kept(mask), enclose(mask, detail="normal")
+    keeping, filling = kept(mask), enclose(mask, detail="normal", holes="fill")
     assert_array_equal(keeping.outline, filling.outline)
     assert_array_equal(keeping.cage, filling.cage)
     assert filling.holes == ()
@@ -92,7 +92,7 @@ def test_small_holes_are_filled_and_told(radius: float, count: int) -> None:
     enclosure = kept(mask)
     assert len(enclosure.holes) == 1 + count
     check_holes(mask, enclosure)
-    told = () if count else ("1 hole filled, under 0.1% of the subject",)
+    told = () if count else ("1 hole filled, under 0.1% of the subject, too small to stay open",)
     assert enclosure.notices == told
 
 
@@ -114,7 +114,7 @@ def test_the_largest_holes_are_kept_while_there_are_few_vertices() -> None:
     assert smallest >= 0.6 * sizes[len(enclosure.holes)]
     (told,) = enclosure.notices
     assert told.startswith(f"{len(places) - len(enclosure.holes)} holes filled, the largest")
-    assert told.endswith("of the subject, for an outline of few vertices")
+    assert told.endswith("of the subject, since too many open holes make posing slow")
 
 
 def test_holes_are_where_they_are_in_the_picture() -> None:
@@ -153,7 +153,9 @@ def test_a_built_domain_with_holes_is_one(picture: Bytes) -> None:
     assert 1 - len(domain.holes) == (
         len(domain.mesh.vertices) - len(domain.mesh.edges()) + len(domain.mesh.triangles)
     )
-    without, _ = build_domain(picture, triangles=3_000, detail="normal")
+    without, _ = build_domain(
+        picture, triangles=3_000, detail="normal", cut_out=CutOut(holes="fill")
+    )
     assert without.holes == ()
 
 
