@@ -31,12 +31,8 @@ from engine.maps import Boundary
 STRIDE = 4
 SAMPLES_PER_VERTEX = 2
 STIFF = 10.0
-# What keeps a Hessian positive that was summed in single precision, relative to its diagonal.
-SINGLE = 1e-6
 # Stiffness of a step against turning the whole shape by an angle; handles have some 1e3.
 DAMPING = 1e-4
-# The same where single precision adds its rounding.
-DAMPING_SINGLE = 0.1
 
 
 class Jet(NamedTuple):
@@ -69,7 +65,6 @@ class _Quadrature(NamedTuple):
 
     samples: Indices
     entries: Floats
-    precision: type[np.complex64] | type[np.complex128]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -97,14 +92,6 @@ class Objective:
     @cached_property
     def _turning(self) -> Booleans:
         return np.isfinite(self.wish.rotations)
-
-    @property
-    def _is_single(self) -> bool:
-        """Whether the many calm samples are summed in single precision, in half the time.
-
-        The functions of tiny holes are too large on their rims for that.
-        """
-        return self.sketched and not self.boundary.holes
 
     def jet(self, phi: Complexes, psi: Complexes) -> Jet:
         """Measure a map, or a change of a map, by the columns (n,) of its coefficients."""
@@ -196,41 +183,32 @@ class Objective:
         is a quadrature, coarser than that of energy and gradient. Cost: 24 s n² for s samples.
         """
         hessian = self.handles.hessian.copy()
-        calm, stiff = self._quadratures(radial)
-        rounding = self._add(hessian, jet, calm)
-        self._add(hessian, jet, stiff, [*self._turning_roots(jet), self._damping_root(jet)])
-        if self._is_single:
-            # Not against translations, which would otherwise be made by turning.
-            n, added = len(self.boundary.span.cage), SINGLE * rounding
-            np.fill_diagonal(hessian, hessian.diagonal() + added)
-            for part in (0, 1):
-                hessian[part : 2 * n : 2, part : 2 * n : 2] -= added / n
+        rows = [*self._turning_roots(jet), self._damping_root(jet)]
+        self._add(hessian, jet, self._quadrature(radial), rows)
         return hessian
 
     def stiffening(self, jet: Jet, radial: Radial, samples: Indices) -> Floats:
         """Return the positive part of the Hessian (u, u) of a few samples, upper triangle."""
         hessian = np.zeros_like(self.handles.hessian)
         entries = _entries(radial)[:, samples]
-        self._add(hessian, jet, _Quadrature(samples, entries, np.complex128))
+        self._add(hessian, jet, _Quadrature(samples, entries))
         return hessian
 
     def _add(
         self, hessian: Floats, jet: Jet, quadrature: "_Quadrature", more: Sequence[Complexes] = ()
-    ) -> float:
-        """Add samples, and further rows of φ, to a Hessian; return their mean on its diagonal."""
+    ) -> None:
+        """Add samples, and further rows of φ, to a Hessian."""
         n, u = len(self.boundary.span), len(hessian)
         rows_phi, rows_psi, cross = self._roots(jet, quadrature)
-        by_phi: Floats = np.concatenate([rows_phi, *more]).view(cross.dtype)
-        by_psi: Floats = rows_psi.view(cross.dtype)
-        of_phi: Floats = by_phi.T @ by_phi
+        by_phi: Floats = np.concatenate([rows_phi, *more]).view(np.float64)
+        by_psi: Floats = rows_psi.view(np.float64)
         of_psi: Floats = by_psi.T @ by_psi
         mixed: Floats = by_phi[: len(cross)].T @ (cross[:, None] * by_psi[: len(cross)])
-        hessian[: 2 * n, : 2 * n] += of_phi
+        hessian[: 2 * n, : 2 * n] += by_phi.T @ by_phi
         hessian[2 * n :, 2 * n :] += of_psi[: u - 2 * n, : u - 2 * n]
         hessian[: 2 * n, 2 * n :] += mixed[:, : u - 2 * n]
         if self.boundary.holes:
             self._fold_logarithms(hessian, mixed, of_psi)
-        return float(of_phi.diagonal().mean())
 
     def _fold_logarithms(self, hessian: Floats, mixed: Floats, of_psi: Floats) -> None:
         """Add what ψ's logarithms, the conjugates of φ's, contribute to a Hessian (u, u).
@@ -256,20 +234,14 @@ class Objective:
 
         `hessian` minus this is the exact Hessian; it need not be positive.
         """
-        n = len(self.boundary.span)
-        removed = np.zeros((2 * n, 2 * n))
-        calm, stiff = self._quadratures(radial)
-        for (samples, entries, precision), more in (
-            (calm, []),
-            (stiff, self._turning_roots(jet, removed=True)),
-        ):
-            bent = entries[-1] > 0
-            f = jet.f[samples[bent]]
-            roots = -1j * np.sqrt(entries[-1][bent]) * f.conj() / np.abs(f)
-            rows = self.boundary.derivatives[samples[bent]].astype(precision, copy=False)
-            rows *= roots.astype(precision)[:, None]
-            by_phi = np.concatenate([rows, *more]).view(rows.real.dtype)
-            removed += by_phi.T @ by_phi
+        samples, entries = self._quadrature(radial)
+        bent = entries[-1] > 0
+        f = jet.f[samples[bent]]
+        roots = -1j * np.sqrt(entries[-1][bent]) * f.conj() / np.abs(f)
+        rows = self.boundary.derivatives[samples[bent]] * roots[:, None]
+        turning = self._turning_roots(jet, removed=True)
+        by_phi = np.concatenate([rows, *turning]).view(np.float64)
+        removed: Floats = by_phi.T @ by_phi
         return removed
 
     def _roots(self, jet: Jet, quadrature: "_Quadrature") -> tuple[Complexes, Complexes, Floats]:
@@ -278,8 +250,8 @@ class Objective:
         The first s rows of each are the radial ones, of the s samples: the third array (s,) weighs
         their products between φ and ψ.
         """
-        samples, entries, precision = quadrature
-        rows = self.boundary.derivatives[samples].astype(precision, copy=False)
+        samples, entries = quadrature
+        rows = self.boundary.derivatives[samples]
         f, g = jet.f[samples], jet.g[samples]
         b = np.abs(g)
         frame_f = f.conj() / np.abs(f)
@@ -290,15 +262,15 @@ class Objective:
         both = root_f * root_g
         cross = entries[4] / np.where(both > 0, both, 1.0)
         return (
-            np.concatenate([rows * frame.astype(precision)[:, None] for frame in by_phi]),
-            np.concatenate([rows[:, 1:] * frame.astype(precision)[:, None] for frame in by_psi]),
-            cross.astype(rows.real.dtype),
+            np.concatenate([rows * frame[:, None] for frame in by_phi]),
+            np.concatenate([rows[:, 1:] * frame[:, None] for frame in by_psi]),
+            cross,
         )
 
-    def _quadratures(self, radial: Radial) -> tuple["_Quadrature", "_Quadrature"]:
-        """Return the samples that enter the Hessian, the calm and the stiff ones.
+    def _quadrature(self, radial: Radial) -> "_Quadrature":
+        """Return the samples that enter the Hessian.
 
-        The calm ones stand for their neighbours that were added, and in a sketch for more.
+        Calm ones stand for their neighbours that were added, and in a sketch for more.
         """
         entries = _entries(radial)
         m, n = len(self.boundary.points), len(self.boundary.span)
@@ -311,11 +283,9 @@ class Objective:
         summed = np.add.reduceat(np.where(stiff, 0.0, entries), own[first], axis=1)
         middles = own[np.minimum(first + stride // 2, len(own) - 1)]
         some = summed[0] > 0
-        return (
-            _Quadrature(
-                middles[some], summed[:, some], np.complex64 if self._is_single else np.complex128
-            ),
-            _Quadrature(np.flatnonzero(stiff), entries[:, stiff], np.complex128),
+        return _Quadrature(
+            np.concatenate([middles[some], np.flatnonzero(stiff)]),
+            np.hstack([summed[:, some], entries[:, stiff]]),
         )
 
     def _damping_root(self, jet: Jet) -> Complexes:
@@ -323,8 +293,7 @@ class Objective:
 
         One handle leaves the rotation of the shape free; rounding alone would then turn it.
         """
-        damping = DAMPING_SINGLE if self._is_single else DAMPING
-        per_sample = -1j * np.sqrt(damping) * self.boundary.weights / jet.f
+        per_sample = -1j * np.sqrt(DAMPING) * self.boundary.weights / jet.f
         row: Complexes = per_sample[None, :] @ self.boundary.derivatives
         return row
 

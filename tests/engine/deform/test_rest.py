@@ -204,16 +204,16 @@ def test_resuming_never_loses_and_gains_little(targets):
     [
         (star(TIGHT), STAR_POINTS[[3, 1, 5, 2, 0, 4]]),
         (star(Bounds(k=0.13, sigma_a=1.3, sigma_b=0.77)), STAR_POINTS.mean() + 0.02 * STAR_POINTS),
-        (bar(Bounds(k=0.9, sigma_a=10.0, sigma_b=0.1)), BAR_POINTS[[2, 1, 0]] + 0.4j),
+        (star(Bounds(k=0.35, sigma_a=1.6, sigma_b=0.6)), 3 * STAR_POINTS),
     ],
-    ids=["swapped", "collapsed", "turned around"],
+    ids=["swapped", "collapsed", "far too large"],
 )
-def test_hard_requests_are_proven_minima_within_150_steps(deformer, targets):
+def test_hard_requests_are_proven_minima_within_few_steps(deformer, targets):
     wish = deformer.handles.wish(targets)
     state, steps = deformer.settle(deformer.start(), wish)
     assert state.status in (Status.AT_LIMITS, Status.CONVERGED)
     assert state.statistics.optimality <= OPTIMAL
-    assert steps <= 150
+    assert steps <= 45
     assert_sound(state, deformer.bounds)
 
 
