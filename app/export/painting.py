@@ -3,6 +3,7 @@
 import math
 from collections.abc import Mapping
 from contextlib import ExitStack
+from dataclasses import replace
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -13,17 +14,20 @@ from app.export.framing import shown_box
 from app.export.plan import ExportPlan
 from app.export.poses import Poses
 from app.motion import Placed, box_around, painted_triangles
-from app.render import TRANSPARENT, Backdrop, Colour, DrawnMesh, Renderer, Scene
+from app.render import TRANSPARENT, Backdrop, Colour, DrawnMesh, Renderer, Scene, View
 from app.render.gpu import (
     Context,
     GlError,
     GpuMesh,
     GpuPicture,
     RenderTarget,
+    largest_size,
 )
 from engine.arrays import Bytes
 
 _SMALL: Final = 0.75  # pixels of the frame per pixel of the picture
+_TILE: Final = 4096  # pixels each way that are drawn at once, at most
+_MOST_PIXELS: Final = 2**28  # of a frame: a gigabyte
 _NO_ERROR: Final = "GL_NO_ERROR"
 _OUTSIDE: Final = 1.0  # pixels; less than this is seen by nobody
 
@@ -33,6 +37,14 @@ class PosedFrame(NamedTuple):
 
     frame: float
     vertices: tuple[Placed, ...]
+
+
+class _Tile(NamedTuple):
+    """A part of a frame that is drawn at once, and where its upper left corner is."""
+
+    view: View
+    left: int
+    top: int
 
 
 class Painter:
@@ -79,9 +91,9 @@ class Painter:
             programs = self._renderer.programs
             # At its own size the drawing comes out exact from one sample a pixel; made much smaller
             # it is finer from four.
-            self._target = RenderTarget(
-                programs, plan.view.size, 2 if plan.view.scale < _SMALL else 1
-            )
+            finer = 2 if plan.view.scale < _SMALL else 1
+            self._tiles = _tiles(plan.view, min(_TILE, largest_size(context) // finer))
+            self._target = RenderTarget(programs, self._tiles[0].view.size, finer)
             owned.callback(self._target.release)
             # Errors up to here are a window's, or of moderngl, which binds the framebuffer of
             # before again though it may be gone. A target without memory has raised by itself.
@@ -138,8 +150,12 @@ class Painter:
                 if is_visible(clip.figure, posed.frame)
             )
             scene = Scene(background=self._background, meshes=meshes)
-            self._renderer.draw(self._target, self._view, scene)
-            pixels = self._read(posed)
+            width, height = self._view.size
+            pixels = np.empty((height, width, 4), dtype=np.uint8)
+            pixels[:] = np.rint(255 * np.array(self._background.colour))
+            for tile in self._tiles:
+                self._renderer.draw(self._target, tile.view, scene)
+                self._read(posed, tile.view, pixels[tile.top :, tile.left :])
         except (*EXPECTED_ERRORS, GlError) as error:
             raise LissomError(f"frame {posed.frame:g} cannot be drawn: {error}") from error
         # OpenGL goes on after an error, with pictures that are black or of another frame.
@@ -147,13 +163,16 @@ class Painter:
             raise LissomError(f"frame {posed.frame:g} cannot be drawn: OpenGL failed; try again")
         return pixels
 
-    def _read(self, posed: PosedFrame) -> Bytes:
-        """Read the frame back: the part where the figures are, since the rest has one colour."""
-        width, height = self._view.size
-        pixels = np.empty((height, width, 4), dtype=np.uint8)
-        pixels[:] = np.rint(255 * np.array(self._background.colour))
+    def _read(self, posed: PosedFrame, view: View, pixels: Bytes) -> None:
+        """Read back what was drawn of a view, the rest of which has the background's colour.
+
+        Only the part where the figures are is read. `pixels` begin where the view does, and may end
+        before it.
+        """
+        height, width, _ = pixels.shape
+        width, height = min(width, view.size[0]), min(height, view.size[1])
         vertices = np.concatenate([placed.positions for placed in posed.vertices])
-        box = box_around(self._view.to_pixels(vertices))
+        box = box_around(view.to_pixels(vertices))
         # Two pixels more: none that a triangle touches is left out.
         left, top = (max(0, math.floor(side) - 2) for side in _sides(box.lower))
         right, bottom = (math.ceil(side) + 2 for side in _sides(box.upper))
@@ -161,7 +180,6 @@ class Painter:
         if left < right and top < bottom:
             part = (left, top, right - left, bottom - top)
             pixels[top:bottom, left:right] = self._target.read_straight_rgba(part)
-        return pixels
 
     @property
     def notices(self) -> tuple[str, ...]:
@@ -177,6 +195,23 @@ class Painter:
 
 def _sides(corner: complex) -> tuple[float, float]:
     return corner.real, corner.imag
+
+
+def _tiles(view: View, side: int) -> list[_Tile]:
+    """Divide a frame into equal tiles; the last ones may reach beyond it."""
+    width, height = view.size
+    if width * height > _MOST_PIXELS:
+        raise LissomError(
+            f"a frame of {width} × {height} pixels is too large: it may have {_MOST_PIXELS:,} of "
+            "them; choose a smaller size"
+        )
+    size = min(width, side), min(height, side)
+    half = complex(*size) / 2
+    return [
+        _Tile(replace(view, centre=view.to_plane(complex(left, top) + half), size=size), left, top)
+        for top in range(0, height, size[1])
+        for left in range(0, width, size[0])
+    ]
 
 
 def _colour(plan: ExportPlan) -> Colour:

@@ -13,6 +13,7 @@ from app.render.gpu.context import (
     create_context,
     finish_drawing,
     is_software,
+    largest_size,
     probe,
     window_context,
 )
@@ -38,6 +39,7 @@ __all__ = [
     "create_context",
     "finish_drawing",
     "is_software",
+    "largest_size",
     "probe",
     "set_uniforms",
     "singles",

@@ -157,4 +157,13 @@ def test_errors_of_others_are_not_the_exports(gl, document):
 
 def test_frames_too_large_for_the_machine_are_refused(gl, document):
     with pytest.raises(LissomError, match="too large"):
-        still(gl, document, size=(65_535, 10))
+        still(gl, document, size=(65_535, 9_999))
+
+
+def test_a_frame_is_drawn_in_parts_that_the_machine_holds(gl, document, monkeypatch):
+    whole = still(gl, document, size=(150, 111))
+    monkeypatch.setattr("app.export.painting._TILE", 64)
+    parts = still(gl, document, size=(150, 111))
+    assert np.abs(parts.astype(int) - whole).max() <= 2
+    monkeypatch.setattr("app.export.painting.largest_size", lambda _: 32)
+    assert np.abs(still(gl, document, size=(150, 111)).astype(int) - whole).max() <= 2
