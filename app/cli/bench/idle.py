@@ -19,13 +19,13 @@ from app.render.gpu import window_context
 from app.storage import sample_images
 from app.ui.window import Window, has_display
 
-SAMPLE = "giraffe.lissom"
+SAMPLE = "dragon.png"  # samples that move would play
 REST = 8.0  # seconds without work, after which nothing is on its way any more
 PATIENCE = 60.0
 
 
 def table(seconds: float) -> Table:
-    """Measure a window that nobody touches: the welcome view, and a project that is open."""
+    """Measure a window that nobody touches: the welcome view, and a drawing that is open."""
     title = f"Processor time of a window that nobody touches, in {seconds:g} s"
     if not has_display():
         row = Row(name="not measured", seconds=None, note="it needs a screen: set DISPLAY")
