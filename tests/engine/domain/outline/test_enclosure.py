@@ -154,8 +154,9 @@ def test_holes_and_specks_are_told() -> None:
     outline = outlined(rgba)
     assert outline.notices == (
         "2 specks dropped (0.01% of the subject)",
-        "2 holes filled, the largest 0.3% of the subject, too small to stay open",
+        "1 hole filled, 0.1% of the subject, too small to stay open",
     )
+    assert len(outline.holes) == 1
     assert not contains(outline.outline, np.array([5.5 + 294.5j])).any()
 
 
