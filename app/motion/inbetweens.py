@@ -11,6 +11,7 @@ from engine.dirichlet import Extension, HilbertTransform
 from engine.domain import Domain
 from engine.interpolation import (
     Course,
+    End,
     Frame,
     Inbetweens,
     Joint,
@@ -20,7 +21,7 @@ from engine.interpolation import (
     prepare_inbetweens,
     prepare_sites,
     sample_keyframes,
-    tangent_length,
+    shortened,
 )
 from engine.maps import Bounds, HarmonicMap
 from engine.paths import root_sheets
@@ -71,7 +72,7 @@ class PoseSampler:
         self._transform_lock = threading.RLock()
         self._samples: dict[Pose, KeyframeSamples] = {}
         self._inbetweens: dict[tuple[object, ...], tuple[tuple[Pose, ...], Inbetweens]] = {}
-        self._lengths: dict[tuple[object, ...], tuple[tuple[Pose, ...], float]] = {}
+        self._tangents: dict[tuple[object, ...], tuple[tuple[Pose, ...], Tangent]] = {}
         self._sibling = sibling
         self._transform: HilbertTransform | None = None
         self._extension: Extension | None = None
@@ -105,8 +106,8 @@ class PoseSampler:
             self._inbetweens = {
                 key: kept for key, kept in self._inbetweens.items() if wanted.issuperset(kept[0])
             }
-            self._lengths = {
-                key: kept for key, kept in self._lengths.items() if wanted.issuperset(kept[0])
+            self._tangents = {
+                key: kept for key, kept in self._tangents.items() if wanted.issuperset(kept[0])
             }
 
     def samples(self, pose: Pose) -> KeyframeSamples:
@@ -142,37 +143,39 @@ class PoseSampler:
         poses = tuple(key.pose for key in transit.keys)
         if not transit.is_joined:
             return self._prepared(poses, transit.turns, Course.straight(), variant)
-        lengths = self.lengths(transit, bounds, variant)
-        ends = [
-            Tangent(end, length) if isinstance(end, Joint) else end
-            for end, length in zip((transit.start, transit.end), lengths, strict=True)
-        ]
+        ends = self._ends(transit, bounds, variant)
         course = Course.between(*ends)
         return self._prepared(poses, transit.turns, course, variant, bounds=bounds)
 
-    def lengths(self, transit: Transit, bounds: Bounds, variant: Variant) -> tuple[float, float]:
-        """Return how much of its full velocity the motion has at both keys of an interval.
+    def kept(self, transit: Transit, bounds: Bounds, variant: Variant) -> tuple[float, float]:
+        """Return how much of its velocity the bounds leave to the motion at both keys.
 
         From 0, a stop, to 1, which it is too where the motion does not pass through.
         """
-        poses = [key.pose for key in transit.keys]
-        return (
-            self._length(poses[:3], transit.start, bounds, variant),
-            self._length(poses[-3:], transit.end, bounds, variant),
+        start, end = (
+            end.kept if isinstance(end, Tangent) else 1.0
+            for end in self._ends(transit, bounds, variant)
         )
+        return start, end
 
-    def _length(
-        self, poses: Sequence[Pose], joint: Joint | float, bounds: Bounds, variant: Variant
-    ) -> float:
-        if not isinstance(joint, Joint):
-            return 1.0
+    def _ends(self, transit: Transit, bounds: Bounds, variant: Variant) -> list[End]:
+        poses = [key.pose for key in transit.keys]
+        windows = (transit.start, poses[:3]), (transit.end, poses[-3:])
+        return [
+            self._tangent(window, end, bounds, variant) if isinstance(end, Joint) else end
+            for end, window in windows
+        ]
+
+    def _tangent(
+        self, poses: Sequence[Pose], joint: Joint, bounds: Bounds, variant: Variant
+    ) -> Tangent:
         with self._lock:
             key = (*poses, joint, bounds, variant)
-            if key not in self._lengths:
+            if key not in self._tangents:
                 maps = [self.samples(pose).map for pose in poses]
-                length = tangent_length(variant, maps, joint, bounds, self.sites.boundary)
-                self._lengths[key] = tuple(poses), length
-            return self._lengths[key][1]
+                tangent = shortened(variant, maps, joint, bounds, self.sites.boundary)
+                self._tangents[key] = tuple(poses), tangent
+            return self._tangents[key][1]
 
     def _prepared(
         self,

@@ -27,13 +27,13 @@ Pair = tuple[object, ...]
 class PreparedInterval(NamedTuple):
     """The in-betweens of some poses, which it keeps alive so that their identities stay theirs.
 
-    `lengths` tells how much of its full velocity the motion has at both ends. The series of the
+    `kept` tells how much of its velocity the motion has at both ends. The series of the
     positions and of f_z and f_z̄ are None until they are built.
     """
 
     poses: tuple[Pose, ...]
     inbetweens: Inbetweens
-    lengths: tuple[float, float]
+    kept: tuple[float, float]
     series: Series | None = None
     distortions: Series | None = None
 
@@ -97,8 +97,8 @@ class Motion:
             raise ValueError(f"the in-betweens of interval {interval} are not prepared")
         return prepared.inbetweens
 
-    def lengths(self, clip: Clip) -> Mapping[int, float] | None:
-        """Return how much of its full velocity the motion has at keys, by their frames.
+    def kept(self, clip: Clip) -> Mapping[int, float] | None:
+        """Return how much of its velocity the bounds leave to the motion at keys, by their frames.
 
         From 0, a stop, to 1; of those that it passes through. None where that is not known.
         """
@@ -109,9 +109,9 @@ class Motion:
                 return None
             first = int(isinstance(transit.start, Joint))
             ends, keys = (transit.start, transit.end), transit.keys[first : first + 2]
-            for end, key, length in zip(ends, keys, prepared.lengths, strict=True):
+            for end, key, kept in zip(ends, keys, prepared.kept, strict=True):
                 if isinstance(end, Joint):
-                    found[key.frame] = length
+                    found[key.frame] = kept
         return found
 
     def _prepared(self, clip: Clip, interval: int) -> PreparedInterval | None:
@@ -159,9 +159,9 @@ def prepare_motion(
             earlier.mesh.domain, anchor=clip.figure.anchor, sibling=sibling
         )
         inbetweens = sampler.inbetweens_of(transit, figure.bounds, figure.variant)
-        lengths = sampler.lengths(transit, figure.bounds, figure.variant)
+        kept = sampler.kept(transit, figure.bounds, figure.variant)
         poses = tuple(key.pose for key in transit.keys)
-        ready[pair] = PreparedInterval(poses, inbetweens, lengths)
+        ready[pair] = PreparedInterval(poses, inbetweens, kept)
     if sampler is not None:
         sampler.keep_only([pose for prepared in ready.values() for pose in prepared.poses])
     return Motion(mesh=earlier.mesh, clip=clip, sampler=sampler, ready=MappingProxyType(ready))

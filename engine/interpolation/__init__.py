@@ -7,7 +7,7 @@ Imports: `engine.paths`, `engine.dirichlet`, `engine.maps`.
 
 from engine.interpolation.inbetweens import Frame, Inbetweens, IntegratedInbetweens
 from engine.interpolation.keyframe_samples import KeyframeSamples, sample_keyframes
-from engine.interpolation.passing import Course, End, Joint, Tangent, tangent_length
+from engine.interpolation.passing import Course, End, Joint, Tangent, shortened
 from engine.interpolation.preparation import Prepared, prepare, prepare_inbetweens
 from engine.interpolation.sites import Sites, prepare_sites
 from engine.interpolation.smooth_scaling import Scaling
@@ -30,5 +30,5 @@ __all__ = [
     "prepare_inbetweens",
     "prepare_sites",
     "sample_keyframes",
-    "tangent_length",
+    "shortened",
 ]

@@ -39,6 +39,8 @@ class Passage:
     sheets : int32, shape (q,)
         Branch of each logarithm, from `root_sheets`.
     course : Course
+    eta_course : Course, optional
+        Of η, where that has another one.
     residuals : tuple of Residual
         What is added to the blend of log f_z.
     """
@@ -46,6 +48,7 @@ class Passage:
     keyframes: tuple[KeyframeSamples, ...]
     sheets: Integers
     course: Course
+    eta_course: Course | None = None
     residuals: tuple[Residual, ...] = ()
 
     @classmethod

@@ -48,7 +48,7 @@ class EtaBlend:
         Departs from the paper: Equation (7) lost a bar; it reads f_z̄ = η / conj(f_z), that is
         Ψ' = conj(η) / Φ'. The unscaled Ψ' is returned; ρ is a factor of it.
         """
-        weights = self.passage.course(time)
+        weights = (self.passage.eta_course or self.passage.course)(time)
         logarithm, logarithm_z = self.passage.log_fz(time)
         fz = np.exp(logarithm)
         inverse = 1.0 / fz

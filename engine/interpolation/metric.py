@@ -16,8 +16,9 @@ from engine.arrays import Complexes, Floats
 from engine.chebyshev import separate
 from engine.dirichlet import Extension
 from engine.interpolation.derivatives import Passage
+from engine.interpolation.passing import Course, Tangent, bernstein, curbed
 from engine.interpolation.periods import Residual
-from engine.maps import derivatives_of
+from engine.maps import Bounds, derivatives_of
 from engine.paths import IntegrationPaths
 
 TOLERANCE = 1e-10  # of the series' last terms, in ln |f_z|
@@ -63,13 +64,14 @@ class MetricResidual(NamedTuple):
     def of(
         cls,
         passage: Passage,
+        bounds: Bounds,
         paths: IntegrationPaths,
         transform: Extension,
     ) -> "MetricResidual":
         """Solve the Dirichlet problems of the residual between two keyframes."""
-        metric, transform = _resolved(passage, transform)
+        metric, transform = _resolved(passage, bounds, transform)
         real_parts, series = separate(
-            lambda times: metric.residuals(passage.course.at(times)),
+            metric.residuals,
             tolerance=TOLERANCE,
             left_out=LEFT_OUT,
         )
@@ -80,63 +82,69 @@ class MetricResidual(NamedTuple):
         return cls(Residual.of(series, modes, modes_z), lacking)
 
 
-def _resolved(passage: Passage, transform: Extension) -> tuple["OutlineMetric", Extension]:
+def _resolved(
+    passage: Passage, bounds: Bounds, transform: Extension
+) -> tuple["OutlineMetric", Extension]:
     """Return the metrics at nodes that resolve the residual, and a transform with these nodes.
 
     The nodes follow the shape. Keyframes at extreme bounds vary faster still beside a vertex of the
     cage, and for them panels are halved there.
     """
     maps = [key.map for key in passage.keyframes]
-    weights = passage.course.at(np.array(LOOKED_AT))
+    course, times = passage.course, np.array(LOOKED_AT)
     panels = transform.transform.panels
-    metric = OutlineMetric.of(*derivatives_of(maps, transform.nodes))
+    metric = OutlineMetric.of(*derivatives_of(maps, transform.nodes), course, bounds)
     for _ in range(MOST_HALVINGS):
-        coarse = panels.unresolved(metric.residuals(weights), RESOLVED)
+        coarse = panels.unresolved(metric.residuals(times), RESOLVED)
         if not coarse.any():
             break
         panels = panels.halved(coarse)
-        metric = OutlineMetric.of(*derivatives_of(maps, panels.nodes.ravel()))
+        metric = OutlineMetric.of(*derivatives_of(maps, panels.nodes.ravel()), course, bounds)
     return metric, transform if panels is transform.transform.panels else transform.on(panels)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class OutlineMetric:
-    """The metrics of an interval's keyframes at points of the outline.
+    """The metrics along an interval's course at points of the outline.
 
     Parameters
     ----------
-    log_modulus, trace : float64, shape (q, N)
-        ln |f_z|, and 𝒜 = |f_z|² + |f_z̄|², half the trace of the metric tensor.
+    course : Course
+        Of η.
+    log_modulus : float64, shape (q, N)
+        ln |f_z| of the keyframes.
+    trace : float64, shape (2, N) or (4, N)
+        𝒜 = |f_z|² + |f_z̄|², half the trace of the metric tensor: of two keyframes where the course
+        is straight, else control values.
     eta : complex128, shape (q, N)
         η up to conjugation, which |f_z| does not see.
     """
 
+    course: Course
     log_modulus: Floats
     trace: Floats
     eta: Complexes
 
     @classmethod
-    def of(cls, fz: Complexes, fzbar: Complexes) -> "OutlineMetric":
-        """Work the metrics out from the derivatives (q, N)."""
+    def of(cls, fz: Complexes, fzbar: Complexes, course: Course, bounds: Bounds) -> "OutlineMetric":
+        """Work the metrics out from the derivatives (q, N) of the course's keyframes."""
+        trace, eta = np.abs(fz) ** 2 + np.abs(fzbar) ** 2, fz * fzbar.conj()
         return cls(
+            course=course,
             log_modulus=np.log(np.abs(fz)),
-            trace=np.abs(fz) ** 2 + np.abs(fzbar) ** 2,
-            eta=fz * fzbar.conj(),
+            trace=_controls(trace, eta, course, bounds),
+            eta=eta,
         )
 
-    def residuals(self, weights: Floats) -> Floats:
-        """Return ln |f_z| of the blended metric less the blend of the ln |f_z|, (N, t).
+    def residuals(self, times: Floats) -> Floats:
+        """Return ln |f_z| of the blended metric less the blend of the ln |f_z|, (N, times).
 
         Departs from the paper: the bars of Equation (13) and the lines before it were lost; the
         product of its roots is |η|².
-
-        Parameters
-        ----------
-        weights : float64, shape (q, t)
-            Of the keyframes, at t times.
         """
-        trace = self.trace.T @ weights
-        twice_eta = 2 * np.abs(self.eta.T @ weights)
+        weights = self.course.full.at(times)
+        trace = self.trace.T @ (weights if self.course.is_straight else bernstein(times))
+        twice_eta = 2 * np.abs(self.eta.T @ self.course.at(times))
         # σ_a² = 𝒜 + 2|η| and σ_b² = 𝒜 − 2|η|, Equations (10) and (11); K² is their quotient,
         # Equation (12). The first is convex in time and the second concave: Properties 5' to 7'.
         # Their product is the discriminant of (13), above 0 by Lemma 7; as a product it keeps its
@@ -145,3 +153,19 @@ class OutlineMetric:
         squared = (trace + np.sqrt(discriminant)) / 2  # Equation (13), the larger root
         residuals: Floats = 0.5 * np.log(squared) - self.log_modulus.T @ weights
         return residuals
+
+
+def _controls(trace: Floats, eta: Complexes, course: Course, bounds: Bounds) -> Floats:
+    """Return the control values of 𝒜 (4, N) along a course, from the keyframes' 𝒜 and η (q, N)."""
+    full = course.full.controls
+    if full is None:
+        return trace
+    controls: Floats = full @ trace
+    start, end = course.ends
+    if isinstance(start, Tangent):
+        curb = curbed(trace[:3], eta[:3], start, bounds)
+        controls[1] = trace[1] + start.joint.arms[1] * curb
+    if isinstance(end, Tangent):
+        curb = curbed(trace[-3:], eta[-3:], end, bounds)
+        controls[2] = trace[-2] + end.joint.arms[0] * curb
+    return controls

@@ -6,7 +6,7 @@ too. Bernstein weights are convex: where the control values obey a convex bound,
 in-between. The paper blends two keyframes only.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from math import inf
 from typing import NamedTuple, Self
@@ -63,10 +63,20 @@ class Joint(NamedTuple):
 
 
 class Tangent(NamedTuple):
-    """A joint with the part of its velocity, from 0 to 1, that the bounds leave to it."""
+    """A joint with what the bounds leave of its velocity.
+
+    Parameters
+    ----------
+    joint : Joint
+    length : float
+        Part of the velocity, from 0 to 1; with the metric variant, of that of η.
+    kept : float
+        How much of all of the velocity is left, from 0, a stop, to 1.
+    """
 
     joint: Joint
     length: float
+    kept: float
 
 
 # How an interval leaves a keyframe, or reaches it: a tangent, or the share of a straight blend's
@@ -85,15 +95,18 @@ class Course:
         them and one after them where there are tangents. None for a linear blend of two.
     first : int
         Index of the keyframe at time 0; that at time 1 comes after it.
+    ends : tuple of End
+        What it was built from.
     """
 
     controls: Floats | None
     first: int
+    ends: tuple[End, End]
 
     @classmethod
     def straight(cls) -> Self:
         """Return the linear blend of two keyframes, as the paper has it."""
-        return cls(controls=None, first=0)
+        return cls(controls=None, first=0, ends=(1.0, 1.0))
 
     @classmethod
     def between(cls, start: End, end: End) -> Self:
@@ -112,7 +125,16 @@ class Course:
             controls[2, first:] += end.length * end.joint.arms[0] * end.joint.velocity
         else:
             controls[2, first : first + 2] += end / 3 * np.array([1.0, -1.0])
-        return cls(controls=freeze(controls), first=first)
+        return cls(controls=freeze(controls), first=first, ends=(start, end))
+
+    @property
+    def full(self) -> Self:
+        """The course with all of its velocities."""
+        # But for a stop at a pose that is to be kept.
+        ends = (
+            e._replace(length=1.0) if isinstance(e, Tangent) and e.kept else e for e in self.ends
+        )
+        return type(self).between(*ends)
 
     @property
     def count(self) -> int:
@@ -130,22 +152,26 @@ class Course:
 
     def at(self, times: Floats) -> Floats:
         """Return the weights at times (...), float64 (q, ...)."""
-        rest = 1.0 - times
         if self.controls is None:
-            return np.stack([rest, times])
-        bernstein = [rest**3, 3 * times * rest**2, 3 * times**2 * rest, times**3]
-        weights: Floats = np.tensordot(self.controls.T, np.stack(bernstein), axes=1)
+            return np.stack([1.0 - times, times])
+        weights: Floats = np.tensordot(self.controls.T, bernstein(times), axes=1)
         return weights
 
 
-def tangent_length(
+def bernstein(times: Floats) -> Floats:
+    """Return the cubic Bernstein polynomials at times (...), float64 (4, ...)."""
+    rest = 1.0 - times
+    return np.stack([rest**3, 3 * times * rest**2, 3 * times**2 * rest, times**3])
+
+
+def shortened(
     variant: Variant,
     maps: Sequence[HarmonicMap],
     joint: Joint,
     bounds: Bounds,
     boundary: Boundary,
-) -> float:
-    """Return how much of its velocity a joint may keep for the control values to obey the bounds.
+) -> Tangent:
+    """Return a joint's tangent, short enough for the control values to obey the bounds.
 
     Parameters
     ----------
@@ -159,21 +185,24 @@ def tangent_length(
 
     Returns
     -------
-    float
-        From 0 to 1, by bisection. 0, a stop, where the keyframe is at a bound, or equal to a
-        neighbour: past it the motion would swing beyond the pose that is to be kept.
+    Tangent
+        Of length 0, a stop, where the keyframe is equal to a neighbour: past it the motion would
+        swing beyond the pose that is to be kept.
 
     Notes
     -----
     For the metric variant the bounds are convex in (𝒜, η): 𝒜 + 2|η| ≤ σ_a², 𝒜 − 2|η| ≥ σ_b² and
     |η| ≤ 𝒜 k / (1 + k²). Obeyed by the control values on the boundary, they hold for every
-    in-between, there and, as η is anti-holomorphic and f_z has no zeros, inside. For ν the bound
-    on k is convex, and those on σ are not; nor are any of the others'. Scaled η has its ρ to obey
-    them (`engine.interpolation.scaling`).
+    in-between, there and, as η is anti-holomorphic and f_z has no zeros, inside. As 𝒜 is free
+    at each point of the boundary, it is only curbed where it must be (`curbed`); what is left to
+    bisection is the velocity of η. For ν the bound on k is convex, and those on σ are not; nor are
+    any of the others'. Scaled η has its ρ to obey them (`engine.interpolation.scaling`).
     """
     if any(_is_same(maps[1], f, boundary) for f in (maps[0], maps[2])):
-        return 0.0
-    quantities = [_quantities(variant, f, boundary) for f in maps]
+        return Tangent(joint, 0.0, 0.0)
+    quantities = np.array([_quantities(variant, f, boundary) for f in maps])
+    if variant is Variant.METRIC:
+        return _shortened_metric(quantities, joint, bounds, boundary)
     key, velocity = quantities[1], np.tensordot(joint.velocity, quantities, axes=1)
     worst_a, worst_b = _stretches(variant, key)
     limits = (
@@ -189,6 +218,102 @@ def tangent_length(
             for share in SHARES
         )
 
+    length = _longest(is_within)
+    return Tangent(joint, length, length)
+
+
+def _shortened_metric(
+    quantities: Complexes, joint: Joint, bounds: Bounds, boundary: Boundary
+) -> Tangent:
+    """Shorten the velocity of η only as far as 𝒜 cannot make up for it."""
+    trace, eta = quantities[:, 0].real, quantities[:, 1]
+    velocity, turned = np.tensordot(joint.velocity, quantities, axes=1)
+
+    def is_within(length: float) -> bool:
+        lowest, highest = _room(trace[1], eta[1], length * turned, joint, bounds)
+        # Between samples the room may be less.
+        room = highest - lowest
+        return bool((room.min(axis=1) >= BETWEEN * _second(room)).all())
+
+    length = _longest(is_within)
+    left = curbed(trace, eta, Tangent(joint, length, 1.0), bounds)
+    weights = np.repeat(boundary.weights[:, None], PARTS + 1, axis=1)
+
+    def energy(by_trace: Floats, by_eta: Complexes) -> float:
+        return float((weights * (by_trace**2 + 4 * np.abs(by_eta) ** 2)).sum())
+
+    whole = energy(velocity.real, turned)
+    kept = energy(left, length * turned) / whole if whole > 0 else 1.0
+    return Tangent(joint, length, min(1.0, kept**0.5))
+
+
+def curbed(trace: Floats, eta: Complexes, tangent: Tangent, bounds: Bounds) -> Floats:
+    """Return the velocity of 𝒜 at a joint, curbed point by point where bounds ask for it.
+
+    Parameters
+    ----------
+    trace : float64, shape (3, ...)
+        𝒜 of the keyframe and its neighbours at points of the boundary.
+    eta : complex128, shape (3, ...)
+    tangent : Tangent
+    bounds : Bounds
+
+    Returns
+    -------
+    float64, shape (...)
+    """
+    joint = tangent.joint
+    velocity: Floats = np.tensordot(joint.velocity, trace, axes=1)
+    if not tangent.kept:
+        return 0.0 * velocity
+    turned = tangent.length * np.tensordot(joint.velocity, eta, axes=1)
+    lowest, highest = _room(trace[1], eta[1], turned, joint, bounds)
+    middle = (lowest + highest) / 2
+    lowest, highest = np.minimum(lowest, middle), np.maximum(highest, middle)
+    still = np.clip(0.0, lowest, highest)
+    wanted = velocity - still
+    room = np.where(wanted > 0, highest - still, still - lowest)
+    # Full up to half of the room, and all of it at one and a half: without a kink in between.
+    share = np.abs(wanted) / np.where(room > 0, room, 1.0)
+    bent = share - np.clip(share - 0.5, 0.0, None) ** 2 / 2
+    curb = np.where(share <= 0.5, share, np.where(share < 1.5, bent, 1.0))
+    left: Floats = still + np.sign(wanted) * room * curb
+    return left
+
+
+def _room(
+    trace: Floats, eta: Complexes, turned: Complexes, joint: Joint, bounds: Bounds
+) -> tuple[Floats, Floats]:
+    """Return between which velocities of 𝒜 both control values obey the bounds, at each point.
+
+    Parameters
+    ----------
+    trace, eta : shape (...)
+        Of the keyframe.
+    turned : complex128, shape (...)
+        The velocity of η.
+    joint : Joint
+    bounds : Bounds
+        Widened at points where the keyframe exceeds them.
+    """
+    size = np.abs(eta)
+    stretch = np.maximum((bounds.sigma_a * (1.0 - SPARE)) ** 2, trace + 2 * size)
+    squeeze = np.minimum((bounds.sigma_b * (1.0 + SPARE)) ** 2, trace - 2 * size)
+    k = bounds.k * (1.0 - SPARE)
+    shear = np.maximum(k / (1.0 + k * k), size / trace)
+    lowest, highest = np.full(trace.shape, -np.inf), np.full(trace.shape, np.inf)
+    for arm in joint.arms:
+        turned_size = np.abs(eta + arm * turned)
+        least = np.maximum(squeeze + 2 * turned_size, turned_size / shear)
+        most = stretch - 2 * turned_size
+        ends = (least - trace) / arm, (most - trace) / arm
+        lowest = np.maximum(lowest, ends[0] if arm > 0 else ends[1])
+        highest = np.minimum(highest, ends[1] if arm > 0 else ends[0])
+    return lowest, highest
+
+
+def _longest(is_within: Callable[[float], bool]) -> float:
+    """Return the largest number from 0 to 1 that is found to be within, by bisection."""
     if is_within(1.0):
         return 1.0
     low, high = 0.0, 1.0
@@ -214,8 +339,13 @@ def _obeys(variant: Variant, values: Complexes, limits: tuple[float, float, floa
 
 def _largest(values: Floats) -> float:
     """Return the largest of values (p, PARTS + 1) along segments, with what it may miss."""
-    second = np.abs(values[:, 2:] - 2 * values[:, 1:-1] + values[:, :-2]).max(axis=1)
-    return float((values.max(axis=1) + BETWEEN * second).max())
+    return float((values.max(axis=1) + BETWEEN * _second(values)).max())
+
+
+def _second(values: Floats) -> Floats:
+    """Return the largest second difference of values (p, PARTS + 1) along each segment."""
+    second: Floats = np.abs(values[:, 2:] - 2 * values[:, 1:-1] + values[:, :-2]).max(axis=1)
+    return second
 
 
 def _quantities(variant: Variant, f: HarmonicMap, boundary: Boundary) -> Complexes:

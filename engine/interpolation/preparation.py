@@ -21,7 +21,7 @@ from engine.interpolation.inbetweens import (
 from engine.interpolation.keyframe_samples import KeyframeSamples, sample_keyframes
 from engine.interpolation.metric import MetricResidual
 from engine.interpolation.nu import NuBlend
-from engine.interpolation.passing import Course, Joint, Tangent, tangent_length
+from engine.interpolation.passing import Course, Joint, Tangent, shortened
 from engine.interpolation.periods import Closing, Open
 from engine.interpolation.scaling import SharpScaling
 from engine.interpolation.sites import Sites, prepare_sites
@@ -148,9 +148,7 @@ def prepare(
         extension = transform.at(sites.paths.nodes)
     joint = Joint(1.0, 1.0)  # keyframes are at whole times
     tangents: list[Tangent | None] = [
-        Tangent(joint, tangent_length(variant, three, joint, bounds, sites.boundary))
-        if through and three
-        else None
+        shortened(variant, three, joint, bounds, sites.boundary) if through and three else None
         for three in _neighbourhoods(maps, loop=loop)
     ]
     intervals = []
@@ -174,7 +172,7 @@ def prepare(
         sites=sites,
         keyframes=samples,
         intervals=tuple(intervals),
-        tangents=tuple(1.0 if tangent is None else tangent.length for tangent in tangents),
+        tangents=tuple(1.0 if tangent is None else tangent.kept for tangent in tangents),
     )
 
 
@@ -208,7 +206,8 @@ def prepare_inbetweens(
     course : Course, optional
         By default the linear blend of the paper.
     bounds : Bounds
-        That a scaled variant obeys along another course; the straight one obeys its keyframes' own.
+        That metric and a scaled variant obey along other courses; with the straight one they obey
+        their keyframes' own.
 
     Raises
     ------
@@ -221,8 +220,14 @@ def prepare_inbetweens(
         return LinearInbetweens.of(passage, sites)
     metric: MetricResidual | None = None
     if variant is Variant.METRIC:
-        metric = MetricResidual.of(passage, sites.paths, _matching(transform, sites))
-        passage = replace(passage, residuals=(metric.residual,))
+        metric = MetricResidual.of(passage, bounds, sites.paths, _matching(transform, sites))
+        # All but η keeps its velocities at keyframes.
+        passage = replace(
+            passage,
+            course=passage.course.full,
+            eta_course=passage.course,
+            residuals=(metric.residual,),
+        )
     closings = _closings(variant, sites, passage, metric)
     if closings:
         passage = replace(passage, residuals=(*passage.residuals, closings[0].residual))

@@ -12,8 +12,9 @@ from app.document.keyframe import Keyframe, Passing, Pose
 from app.document.queries.clips import Clip, closes, intervals
 from engine.interpolation import Joint
 
-# Pixels by which the coefficients of two maps that are the same may differ, by rounding in files.
-SAME_MAP = 1e-6
+# Pixels by which the coefficients of two maps may differ that are the same to the eye: the solver
+# comes back to a pose only so closely.
+SAME_MAP = 0.01
 # How an interval leaves a key, or reaches it: by the joint with which the motion passes it, or at a
 # share of a straight blend's pace, 1 at a corner and 0 at a stop.
 Passed = Joint | float

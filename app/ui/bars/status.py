@@ -95,16 +95,18 @@ def slow_down(session: Session) -> str:
     project = session.project
     if project is None or project.is_posing or project.playhead.since is not None:
         return ""
-    lengths = project.puppet.coarse.value.lengths(project.clip) or {}
-    slowed = sorted(frame for frame, length in lengths.items() if length < SLOWED)
+    kept = project.puppet.coarse.value.kept(project.clip) or {}
+    slowed = sorted(frame for frame, share in kept.items() if share < SLOWED)
+    stopped = [frame for frame in slowed if kept[frame] < STOPPED]
     if not slowed:
         return ""
-    verb = "stops" if max(lengths[frame] for frame in slowed) < STOPPED else "slows down"
-    told = ", ".join(map(str, slowed[:MOST_TOLD]))
-    others = len(slowed) - MOST_TOLD
-    told += f" and {others} more" if others > 0 else ""
-    frames = "frame" if len(slowed) == 1 else "frames"
-    return f"The motion {verb} at {frames} {told} to keep within the stretch limit"
+    verb, frames = ("stops", stopped) if stopped else ("slows down", slowed)
+    told = [f"{frame}" for frame in frames[:MOST_TOLD]]
+    if len(frames) > MOST_TOLD:
+        told.append(f"{len(frames) - MOST_TOLD} more")
+    where = f"{', '.join(told[:-1])} and {told[-1]}" if len(told) > 1 else told[0]
+    noun = "frame" if len(frames) == 1 else "frames"
+    return f"The motion {verb} at {noun} {where} to keep within the stretch limit"
 
 
 def _warn(session: Session, look: Look, text: str, remedy: Remedy) -> list[Action]:

@@ -8,12 +8,16 @@ from hypothesis import strategies as st
 from imgui_bundle import ImVec2, imgui
 from projects import project_of
 
-from app.document import exported_frames, key_commands
+from app.document import exported_frames, figure_commands, key_commands
 from app.document.easing import HOLD, LINEAR, PRESETS
-from app.document.keyframe import Handle, Keyframe, Target
+from app.document.keyframe import Handle, Keyframe, Passing, Target
 from app.document.settings import FrameRange
-from app.editor.actions import editing, keys, playback, timeline_pointing
+from app.editor.actions import editing, keys, playback, rebuilding, timeline_pointing
 from app.editor.timeline_view import Strip
+from app.ui.bars.status import slow_down
+from app.ui.style import PALETTES
+from app.ui.viewport.marks import mark_all
+from engine.maps import Bounds
 
 FRAMES = (0, 12, 24, 48)
 
@@ -279,6 +283,67 @@ def test_easing_of_all_chosen_keys_is_changed_together(window, play):
     easings = [key.easing for key in play(choose).figures[0].keys]
     assert easings == [HOLD, LINEAR, HOLD, LINEAR]
     assert undo_all(window) == 1
+
+
+def test_how_keys_are_passed_is_chosen_in_their_menu_and_by_a_key(window, project, play):
+    editing.choose_keys(window.session, frozenset({12, 24}))
+
+    def choose(hand):
+        hand.click("key 12", 1)
+        hand.robot.item_click("//$FOCUSED/Passing")
+        hand.robot.item_click("//**/###stop")
+
+    passings = [key.shown_passing for key in play(choose).figures[0].keys]
+    assert passings == ["through", "stop", "stop", "through"]
+    for expected in ("hold", "through", "corner"):
+        window.run(lambda robot: robot.key_press(int(window.Key.t)))
+        window.settle()
+        passings = [key.shown_passing for key in project.figure.keys]
+        assert passings == ["through", expected, expected, "through"]
+    assert undo_all(window) == 4
+
+
+def test_the_paths_of_selected_handles_are_shown_and_follow_the_keys(window, project):
+    window.run(lambda robot: robot.key_press(int(window.Key.j)))
+    window.settle()
+    assert project.paths.value is None  # nothing is selected
+    project.selected = frozenset({1})
+    window.settle()
+    paths = project.paths.value
+    assert project.paths.follows(project.clip)
+    assert paths.places.shape == (61, 2)
+    places = CENTRE + RADIUS / 2 * np.exp(1j * np.array([0.0, 0.3, -0.3, 0.1]))
+    np.testing.assert_allclose(paths.places[list(FRAMES), 1], places, atol=1e-6)
+    shown = project.puppet.shown
+    with_path, _ = mark_all(window.session, project, shown, PALETTES["dark"])
+    project.selected = frozenset()
+    without, _ = mark_all(window.session, project, shown, PALETTES["dark"])
+    assert len(with_path) > len(without)
+    # In a corner at frame 12 the path is another one.
+    keys.set_passing(window.session, frozenset({12}), Passing.CORNER)
+    project.selected = frozenset({1})
+    window.settle()
+    assert np.abs(project.paths.value.places - paths.places)[6:20].max() > 0.1
+    window.session.overlays = replace(window.session.overlays, paths=False)
+
+
+def test_keys_that_the_limits_slow_down_are_told_with_a_remedy(window, project):
+    assert slow_down(window.session) == ""
+    tight = Bounds(k=0.01, sigma_a=1.001, sigma_b=0.999)
+    command = figure_commands.set_bounds(0, tight)
+    project.history.do(figure_commands.set_variant(0, "nu"))
+    squeezed = project.figure.key(12).pose
+    squeezed = replace(squeezed, psi=0.3 * (project.figure.domain.cage - CENTRE).conj())
+    project.history.do(key_commands.pose_key(0, 12, squeezed))
+    project.history.do(command)
+    window.settle()
+    assert slow_down(window.session) == (
+        "The motion stops at frame 12 to keep within the stretch limit"
+    )
+    rebuilding.loosen_bounds(window.session)
+    window.settle()
+    assert project.figure.bounds != tight
+    assert project.figure.key(12).pose is squeezed
 
 
 def test_playhead_is_dragged_and_stops_at_the_ends(window, project, play):

@@ -16,6 +16,8 @@ from engine.dirichlet.product_integration import is_near, panel_weights
 from engine.dirichlet.skeleton_solver import SkeletonSolver
 from engine.geometry.polygon import box_diagonal, edges
 from engine.interpolation.metric import OutlineMetric
+from engine.interpolation.passing import Course
+from engine.maps import Bounds
 
 
 def far_cage(outline):
@@ -81,9 +83,8 @@ def test_singularities_at_inward_corners_are_resolved():
 def metric_data(maps, points):
     """Return what the metric variant asks for: singular near the cage, and no one's real part."""
     columns = zip(*(f.derivatives(points) for f in maps), strict=True)
-    return OutlineMetric.of(*(np.array(column) for column in columns)).residuals(
-        np.array([[0.5], [0.5]])
-    )
+    fz, fzbar = (np.array(column) for column in columns)
+    return OutlineMetric.of(fz, fzbar, Course.straight(), Bounds()).residuals(np.array([0.5]))
 
 
 def solutions(shape, coarsenesses):

@@ -8,6 +8,7 @@ from numpy.testing import assert_allclose
 from engine.chebyshev import separate
 from engine.interpolation.metric import OutlineMetric
 from engine.interpolation.passing import Course
+from engine.maps import Bounds
 
 
 def random_derivatives(seed, *, k=1.0, count=400):
@@ -28,7 +29,7 @@ def jacobian(fz, fzbar):
 @settings(max_examples=30)
 def test_lemma_7_the_discriminant_is_positive_and_as_the_lemma_has_it(seed, time):
     fz, fzbar = random_derivatives(seed)
-    metric = OutlineMetric.of(fz, fzbar)
+    metric = OutlineMetric.of(fz, fzbar, Course.straight(), Bounds())
     a, eta = metric.trace, metric.eta
     trace = (1 - time) * a[0] + time * a[1]
     blended = (1 - time) * eta[0] + time * eta[1]
@@ -45,11 +46,9 @@ def test_lemma_7_the_discriminant_is_positive_and_as_the_lemma_has_it(seed, time
 @settings(max_examples=20)
 def test_the_root_of_equation_13_has_the_blended_metric_tensor(seed, time):
     fz, fzbar = random_derivatives(seed, k=0.99)
-    metric = OutlineMetric.of(fz, fzbar)
+    metric = OutlineMetric.of(fz, fzbar, Course.straight(), Bounds())
     weights = np.array([1 - time, time])
-    modulus = np.exp(
-        metric.residuals(np.array([[1 - time], [time]]))[:, 0] + weights @ metric.log_modulus
-    )
+    modulus = np.exp(metric.residuals(np.array([time]))[:, 0] + weights @ metric.log_modulus)
     # Any rotation has the same metric; f_z̄ follows from η, up to conjugation.
     other = (weights @ metric.eta).conj() / modulus
     found, first, second = (
@@ -63,12 +62,10 @@ def test_the_root_of_equation_13_has_the_blended_metric_tensor(seed, time):
 
 def test_the_residual_is_written_in_few_products_and_vanishes_at_the_keyframes():
     fz, fzbar = random_derivatives(2, k=0.7)
-    metric = OutlineMetric.of(fz, fzbar)
-    modes, series = separate(
-        lambda times: metric.residuals(Course.straight().at(times)), tolerance=1e-10, left_out=1e-8
-    )
+    metric = OutlineMetric.of(fz, fzbar, Course.straight(), Bounds())
+    modes, series = separate(metric.residuals, tolerance=1e-10, left_out=1e-8)
     times = np.random.default_rng(0).random(30)
     found = np.array([modes @ series(time) for time in times]).T
-    assert_allclose(found, metric.residuals(np.stack([1 - times, times])), rtol=0, atol=1e-8)
+    assert_allclose(found, metric.residuals(times), rtol=0, atol=1e-8)
     for time in (0.0, 1.0):
         assert_allclose(series(time), 0, rtol=0, atol=1e-15)

@@ -25,7 +25,7 @@ from engine.interpolation import (
     prepare_inbetweens,
     prepare_sites,
     sample_keyframes,
-    tangent_length,
+    shortened,
 )
 from engine.maps import Boundary, Bounds, HarmonicMap
 from engine.paths import root_sheets
@@ -99,7 +99,7 @@ def test_the_velocity_at_a_keyframe_is_the_slope_of_the_parabola_through_three()
     assert_allclose(
         joint.velocity @ np.array([np.ones(3), times, times**2]).T, [0, 1, 0], atol=1e-15
     )
-    course = Course.between(Tangent(joint, 0.5), Tangent(Joint(5.0, 1.0), 1.0))
+    course = Course.between(Tangent(joint, 0.5, 1.0), Tangent(Joint(5.0, 1.0), 1.0, 1.0))
     keys = np.array([1.0, -2.0, 3.0, 7.0])
     weights = course.at(np.linspace(0, 1, 7))
     assert_allclose(weights.sum(axis=0), 1, atol=1e-14)
@@ -122,8 +122,8 @@ def test_corners_and_stops():
 def test_an_easing_that_slows_time_at_a_key_is_made_up_for():
     joint = Joint(1.0, 1.0, end_pace=0.5, start_pace=2.0)
     before, after = (
-        Course.between(1.0, Tangent(joint, 1.0)),
-        Course.between(Tangent(joint, 1.0), 1.0),
+        Course.between(1.0, Tangent(joint, 1.0, 1.0)),
+        Course.between(Tangent(joint, 1.0, 1.0), 1.0),
     )
     e = 1e-6
     rates = (before(1.0) - before(1.0 - e)) / e * 0.5, (after(e) - after(0.0)) / e * 2.0
@@ -193,7 +193,7 @@ def test_what_the_other_variants_promise_is_kept(variant):
 
 def test_a_keyframe_beyond_the_bounds_is_met_at_a_stop():
     reach = max(float(distortion_of(MAPS[1], OUTLINE)[2].max()), 0.05)
-    prepared = between(bounds=Bounds(k=0.5 * reach, sigma_a=50, sigma_b=0.02))
+    prepared = between(variant="nu", bounds=Bounds(k=0.5 * reach, sigma_a=50, sigma_b=0.02))
     assert prepared.tangents[1] < 1e-3
     assert np.abs(velocities(prepared, 1)).max() < 0.02 * np.abs(velocities(prepared, 0)[1]).max()
 
@@ -266,7 +266,7 @@ def test_a_tangent_is_the_same_in_any_unit_of_time_and_shrinks_with_the_bounds()
     three = [random_map(SHAPE, seed, k=0.5, bend=0.8) for seed in (1, 2, 3)]
 
     def length(joint, bounds):
-        return tangent_length(Variant.METRIC, three, joint, bounds, boundary())
+        return shortened(Variant.METRIC, three, joint, bounds, boundary()).length
 
     tight, tighter = (
         Bounds(k=0.8, sigma_a=3.2, sigma_b=0.2),
@@ -281,6 +281,6 @@ def test_a_course_asks_for_its_keyframes():
     sites = prepare_sites(OUTLINE, CAGE, POINTS)
     keys = sample_keyframes(MAPS[:2], sites)
     sheets = root_sheets(np.array([key.anchor_fz for key in keys]))
-    course = Course.between(Tangent(Joint(1.0, 1.0), 1.0), 1.0)
+    course = Course.between(Tangent(Joint(1.0, 1.0), 1.0, 1.0), 1.0)
     with pytest.raises(EngineError, match="three keyframes, not 2"):
         prepare_inbetweens(Variant.NU, sites, keys, sheets, course=course)
