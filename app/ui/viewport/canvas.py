@@ -141,11 +141,6 @@ class _Drawing:
         pose.write_heat(values.astype(np.float32))
         self._heated.pop(pose, None)
 
-    def tint(self, pose: PosedMesh, values: Floats) -> None:
-        """Upload other values of the vertices."""
-        pose.write_heat(values.astype(np.float32))
-        self._heated.pop(pose, None)
-
     def keep_only(self, meshes: Collection[PosableMesh]) -> None:
         """Let the buffers of other meshes go."""
         for mesh, number in [key for key in self._drawn_meshes if key[0] not in meshes]:
