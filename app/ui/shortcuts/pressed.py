@@ -20,13 +20,18 @@ def pressed(session: Session) -> list[Action]:
     actions = []
     for binding in BINDINGS.values():
         # What is typed during a drag is for the tool in hand.
-        keys = [key for key in binding.keys if session.pointer is None or int(key) & CTRL]
+        keys = [key for key in binding.keys if session.pointer is None or not _is_typed(key)]
         flags = imgui.InputFlags_.route_always
         if binding.repeats:
             flags |= imgui.InputFlags_.repeat
         if any(imgui.shortcut(chord, flags) for chord in keys) and binding.possible(session):
             actions.append(binding.action)
     return actions + _nudges(session) + _space(session)
+
+
+def _is_typed(key: int) -> bool:
+    """Tell whether a key may be part of a number, or of a word."""
+    return not int(key) & CTRL and key != Key.delete
 
 
 def _close_menu() -> bool:

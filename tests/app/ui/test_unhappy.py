@@ -9,7 +9,7 @@ import pytest
 from imgui_bundle import ImVec2, imgui
 
 from app.document.commands import handle_commands, key_commands
-from app.document.keyframe import Target
+from app.document.keyframe import Passing, Target
 from app.document.queries.shortfall import find_shortfall
 from app.document.settings import FrameRange, Meshing
 from app.editor.actions import (
@@ -385,6 +385,7 @@ def test_bound_that_bounds_nothing_is_refused_in_words(window, bent):
 
     def enter(robot):
         robot.set_ref("//Deform")
+        robot.item_open("**/Details")
         robot.item_input_value("**/##bound k", -3.0)
 
     window.run(enter)
@@ -415,6 +416,9 @@ def test_scrubbing_while_the_worker_builds(window, bent, monkeypatch):
 def test_poses_that_follow_each_other_twice_are_prepared_once(window, bent):
     keys.set_variant(window.session, "nu")
     editing.edit(window.session, key_commands.copy_keys(0, {0, 24}, 48))
+    # Passed through, the keys would be met with other velocities at the ends.
+    frames = {0, 24, 48, 72}
+    editing.edit(window.session, key_commands.set_passing(0, frames, Passing.CORNER))
     window.settle()
     assert frames_of(bent) == [0, 24, 48, 72]
     # None of it is known of this one.
