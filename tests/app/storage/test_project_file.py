@@ -110,7 +110,8 @@ def test_a_stored_file_of_schema_1_opens():
         markers=(),
         library=(),
         mirror=None,
-        cut_out=CutOut(tolerance=figure.cut_out.tolerance),
+        # Holes were filled.
+        cut_out=CutOut(tolerance=figure.cut_out.tolerance, holes="fill"),
         is_stale=False,
         handles=tuple(replace(handle, front=0.0, extent=None) for handle in figure.handles),
         # Keys of that time have corners.
