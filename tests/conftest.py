@@ -17,3 +17,10 @@ def pytest_addoption(parser: pytest.Parser) -> None:
         action="store_true",
         help="write the golden images anew instead of comparing with them; look at them then",
     )
+    parser.addoption(
+        "--steps",
+        metavar="N",
+        type=int,
+        default=350,
+        help="of each random walk through the window; many walk farther, and take longer",
+    )

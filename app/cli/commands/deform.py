@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from app.cli.commands.hole_arrays import HOLE_ARRAYS, hole_arrays, read_holes
+from app.cli.hole_arrays import HOLE_ARRAYS, hole_arrays, read_holes
 from app.errors import LissomError
 from app.storage import check_writable, read_arrays, write_arrays
 from engine.deform import Deformer, Handles

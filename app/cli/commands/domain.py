@@ -4,9 +4,9 @@ import argparse
 
 import numpy as np
 
-from app.cli.commands.hole_arrays import hole_arrays
 from app.cli.console import notice
 from app.cli.cut_out import read_cut_out
+from app.cli.hole_arrays import hole_arrays
 from app.reports import draw_preview
 from app.storage import (
     check_writable,

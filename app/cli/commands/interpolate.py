@@ -4,7 +4,7 @@ import argparse
 
 import numpy as np
 
-from app.cli.commands.hole_arrays import HOLE_ARRAYS, read_holes
+from app.cli.hole_arrays import HOLE_ARRAYS, read_holes
 from app.document import NATURAL
 from app.errors import LissomError
 from app.storage import check_writable, read_arrays, write_arrays

@@ -9,7 +9,7 @@ import numpy as np
 from engine.arrays import Booleans, Complexes, Indices, readonly
 from engine.domain.outline.cage import offset_cage
 from engine.domain.outline.fitting import Candidates, fit_polygon
-from engine.domain.outline.holes import trace_hole
+from engine.domain.outline.holes import SMALLEST_HOLE, trace_hole
 from engine.domain.outline.margin import DistanceField, MarginCurve, curve_at_margin, distance_field
 from engine.domain.picture import Holes, WholePiece, join_parts, working_grid
 from engine.errors import EngineError
@@ -29,6 +29,7 @@ LARGEST_OUTLINE = 500
 WIDEST_GAP = 0.2  # of the diagonal: so wide ones are closed where else there would be more
 WIDENING, MOST_WIDENED = 1.42, 2.0
 MOST_DRAFTS = 6
+DISC = 2.5  # area of a disc of radius 1, with some room for pixels
 LEAST_ENCLOSED = 0.001  # of the subject's area: what is told
 LEAST_FUSED = 0.03  # of the subject's outline: what is told
 
@@ -146,7 +147,9 @@ def _kept_holes(
     kept: dict[int, Hole] = {}
     room = MOST_VERTICES - len(fit.outline)
     crowded: list[int] = []
-    for number in map(int, wanted):
+    # Into a smaller one no disc fits that is wide enough; pictures may have thousands of them.
+    least = DISC * (SMALLEST_HOLE * diagonal) ** 2
+    for number in map(int, wanted[piece.hole_areas[wanted - 1] >= least]):
         hole = trace_hole(
             piece.holes,
             number,

@@ -36,10 +36,10 @@ from app.ui.shortcuts import ARROWS, BINDINGS, MODIFIERS
 from engine.domain.picture.cut_out import Stroke
 from engine.maps.bounds import Bounds
 
-SEEDS, STEPS = range(10), 1_000
+SEEDS = range(10)
 MOST_FRAMES = 400  # until the worker has caught up
 REMEMBERED = 20  # actions that are told where the walk fails
-LOOKED_AT, SAVED = 25, 250  # steps between two looks at the invariants, and between two saves
+LOOKED_AT, SAVED = 25, 150  # steps between two looks at the invariants, and between two saves
 USUAL, SMALL = (1280, 800), (800, 560)
 MOST_HANDLES, MOST_KEYS = 6, 8
 LAST = 90  # frame beyond which the walk does not go
@@ -626,14 +626,14 @@ def workers(monkeypatch):
 
 
 @pytest.mark.parametrize("seed", SEEDS)
-def test_random_walk_ends_where_it_began(small_window, workers, monkeypatch, tmp_path, seed):
-    window = small_window
+def test_random_walk_ends_where_it_began(small_window, workers, tmp_path, seed, request):
+    window, monkeypatch = small_window, request.getfixturevalue("monkeypatch")
     project = window.open(draw_bone(tmp_path / "bone.png"))
     first = project.document
     if seed % 5:
         keys.set_variant(window.session, "nu")
     walk = Walk(window, seed, workers, Widgets(monkeypatch), tmp_path)
-    for number in range(STEPS):
+    for number in range(request.config.getoption("--steps")):
         try:
             walk.step(number)
         except Exception as error:
