@@ -66,8 +66,9 @@ CORRECTIONS = 2
 STIFFENINGS = 4
 ENOUGH = 0.8
 # As long as the model expects more than this part of the energy as a gain, a sketch of the Hessian
-# does.
+# does, of one sample in so many.
 SKETCHED = 1e-3
+STRIDE = 4
 # Less slack than this cannot be told from none: the wall is moved this far away.
 ROUNDING_SLACK = 1e-11
 REOPENED = 1e-9
@@ -316,7 +317,7 @@ def _objective(search: Search) -> tuple[Objective, Barrier, Jet]:
         boundary=search.boundary,
         handles=search.handles,
         wish=wish,
-        sketched=search.gain > SKETCHED * search.energy,
+        stride=STRIDE if search.gain > SKETCHED * search.energy else 1,
     )
     jet = objective.jet(*search.map.columns)
     if search.steps < search.rows:

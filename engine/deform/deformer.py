@@ -49,6 +49,8 @@ from engine.maps import Boundary, Bounds, Certificate, HarmonicMap, Limits, cert
 # much softer.
 LEAST_TIGHTENING = 0.1
 SOFTNESS = 0.003
+# One sample in so many enters the Hessian while the hand moves.
+STRIDE = 6
 # Expected gain relative to the energy near rest, where a sketched Hessian would go in circles.
 NEAR_REST = 1e-4
 # One row of a recorded path: so many steps, or until the expected gain is below this.
@@ -199,7 +201,7 @@ class Deformer:
             shortfall=_excess(taken.certificate, self.bounds) if step.tightening else error,
             moving=step.leashed or step.tightening,
             # A sketch may overshoot between its samples in the open: nothing to do with the walls.
-            overshot=step.objective.sketched and not step.leashed,
+            overshot=step.objective.stride > 1 and not step.leashed,
         )
         boundary, duals = add_samples(
             self.boundary, state.boundary, step.next_duals(taken), taken.broken
@@ -265,7 +267,7 @@ class Deformer:
                 handles=handles,
                 wish=wish,
                 barrier=barrier,
-                sketched=leashed or not _near_rest(state.statistics),
+                stride=STRIDE if leashed or not _near_rest(state.statistics) else 1,
             ),
             limits=limits,
             required=required,

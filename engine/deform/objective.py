@@ -25,12 +25,12 @@ from engine.deform.energy import Radial, symmetric_dirichlet, symmetric_dirichle
 from engine.deform.handles import Handles, Wish
 from engine.maps import Boundary
 
-# A sketched Hessian takes one sample in four, with the coefficients of its neighbours summed, as
-# long as that leaves this many for each cage vertex; samples with coefficients this far above the
-# median (near a bound) enter one by one.
-STRIDE = 4
+# A sketched Hessian takes one sample in so many, with the coefficients of its neighbours summed, as
+# long as that leaves this many for each cage vertex. Samples with coefficients this far above the
+# median (near a bound) enter one by one; of many the stiffest, this part of the number of the calm.
 SAMPLES_PER_VERTEX = 2
-STIFF = 10.0
+STIFF = 3.0
+STIFF_PER_CALM = 0.75
 # Stiffness of a step against turning the whole shape by an angle; handles have some 1e3.
 DAMPING = 1e-4
 
@@ -77,17 +77,17 @@ class Objective:
     handles : Handles
     wish : Wish
     barrier : Barrier or None
-    sketched : bool
-        Whether the Hessian makes do with fewer samples. Good enough, and two to three times faster,
-        on the way; near a minimum its steps overshoot in directions that show between the samples
-        only, and the shape would never come to rest.
+    stride : int
+        One sample in so many enters the Hessian; more than one make a sketch of it. Good enough,
+        and two to three times faster, on the way; near a minimum its steps overshoot in directions
+        that show between the samples only, and the shape would never come to rest.
     """
 
     boundary: Boundary
     handles: Handles
     wish: Wish
     barrier: Barrier | None = None
-    sketched: bool = False
+    stride: int = 1
 
     @cached_property
     def _turning(self) -> Booleans:
@@ -199,9 +199,7 @@ class Objective:
     ) -> None:
         """Add samples, and further rows of φ, to a Hessian."""
         n, u = len(self.boundary.span), len(hessian)
-        rows_phi, rows_psi, cross = self._roots(jet, quadrature)
-        by_phi: Floats = np.concatenate([rows_phi, *more]).view(np.float64)
-        by_psi: Floats = rows_psi.view(np.float64)
+        by_phi, by_psi, cross = self._roots(jet, quadrature, more)
         of_psi: Floats = by_psi.T @ by_psi
         mixed: Floats = by_phi[: len(cross)].T @ (cross[:, None] * by_psi[: len(cross)])
         hessian[: 2 * n, : 2 * n] += by_phi.T @ by_phi
@@ -244,11 +242,13 @@ class Objective:
         removed: Floats = by_phi.T @ by_phi
         return removed
 
-    def _roots(self, jet: Jet, quadrature: "_Quadrature") -> tuple[Complexes, Complexes, Floats]:
+    def _roots(
+        self, jet: Jet, quadrature: "_Quadrature", more: Sequence[Complexes]
+    ) -> tuple[Floats, Floats, Floats]:
         """Return rows of φ and of ψ whose Gram matrices are their blocks of the Hessian.
 
-        The first s rows of each are the radial ones, of the s samples: the third array (s,) weighs
-        their products between φ and ψ.
+        Further rows of φ come last. The first s rows of each are the radial ones, of the s samples:
+        the third array (s,) weighs their products between φ and ψ.
         """
         samples, entries = quadrature
         rows = self.boundary.derivatives[samples]
@@ -262,8 +262,8 @@ class Objective:
         both = root_f * root_g
         cross = entries[4] / np.where(both > 0, both, 1.0)
         return (
-            np.concatenate([rows * frame[:, None] for frame in by_phi]),
-            np.concatenate([rows[:, 1:] * frame[:, None] for frame in by_psi]),
+            np.concatenate([*(rows * part[:, None] for part in by_phi), *more]).view(np.float64),
+            np.concatenate([rows[:, 1:] * part[:, None] for part in by_psi]).view(np.float64),
             cross,
         )
 
@@ -275,11 +275,15 @@ class Objective:
         entries = _entries(radial)
         m, n = len(self.boundary.points), len(self.boundary.span)
         own = np.flatnonzero(self.boundary.weights)
-        stride = min(STRIDE, len(own) // (SAMPLES_PER_VERTEX * n)) if self.sketched else 1
+        stride = max(min(self.stride, len(own) // (SAMPLES_PER_VERTEX * n)), 1)
         loops = np.searchsorted(own, [*self.boundary.starts, m])
-        first = np.concatenate([np.arange(*loop, max(stride, 1)) for loop in pairwise(loops)])
+        first = np.concatenate([np.arange(*loop, stride) for loop in pairwise(loops)])
         density = (radial.aa + radial.bb) / self.boundary.shares
-        stiff = density > STIFF * float(np.median(density))
+        least = STIFF * float(np.median(density))
+        if stride > 1:
+            most = max(n, int(STIFF_PER_CALM * m / self.stride))
+            least = max(least, float(np.partition(density, -most)[-most]))
+        stiff = density > least
         summed = np.add.reduceat(np.where(stiff, 0.0, entries), own[first], axis=1)
         middles = own[np.minimum(first + stride // 2, len(own) - 1)]
         some = summed[0] > 0

@@ -37,8 +37,11 @@ FULL = 0.7
 PROGRESS = 1e-3
 # After so many steps without progress the drag is at rest.
 IDLE_AT_REST = 50
-# The walls stand inside the limits by this part of the way to the identity.
+# The walls stand inside the limits by this part of the way to the identity,
 MARGIN = 3e-4
+# and beyond every sample at least by this much, or this part of sigma_a: a map may be at its limits
+# to the last digit, and the barrier's Hessian has a root only where there is slack.
+LEAST_SLACK = 1e-10
 # A step leaves at least this part of the slack between the walls and the map.
 KEPT = 0.1
 # While a map is outside its bounds the limits follow it at this relative distance.
@@ -204,11 +207,12 @@ def place_walls(
     """Return the walls of the barrier, and the bounds that the next map must keep everywhere."""
     inner = limits.towards_identity(MARGIN)
     k, sigma_a, sigma_b = _extremes(a, b)
+    rounding = LEAST_SLACK * sigma_a
     # A map may start between the walls and the limits.
     walls = Limits(
-        k=max(inner.k, k + (limits.k - k) / 4),
-        sigma_a=max(inner.sigma_a, sigma_a + (limits.sigma_a - sigma_a) / 4),
-        sigma_b=min(inner.sigma_b, sigma_b + (limits.sigma_b - sigma_b) / 4),
+        k=max(inner.k, k + max((limits.k - k) / 4, LEAST_SLACK)),
+        sigma_a=max(inner.sigma_a, sigma_a + max((limits.sigma_a - sigma_a) / 4, rounding)),
+        sigma_b=min(inner.sigma_b, sigma_b - max((sigma_b - limits.sigma_b) / 4, rounding)),
     )
     required = Limits(
         k=walls.k - KEPT * (walls.k - k),
@@ -217,7 +221,10 @@ def place_walls(
     )
     # Between its samples the present map may have less slack than that.
     for asked in (required, walls, limits.towards_identity(ROUNDING)):
-        if asked.allow(k=certificate.k, sigma_a=certificate.sigma_a, sigma_b=certificate.sigma_b):
+        within = limits.allow(k=asked.k, sigma_a=asked.sigma_a, sigma_b=asked.sigma_b)
+        if within and asked.allow(
+            k=certificate.k, sigma_a=certificate.sigma_a, sigma_b=certificate.sigma_b
+        ):
             return walls, asked
     return walls, limits
 

@@ -51,7 +51,7 @@ def _drag(boundary: Boundary) -> Table:
     for _ in range(DRAG_STEPS):
         states.append(deformer.step(states[-1], wish))
     state = states[DRAG_STEPS // 2]
-    objective = Objective(boundary=boundary, handles=handles, wish=wish, sketched=True)
+    objective = Objective(boundary=boundary, handles=handles, wish=wish, stride=4)
     jet = objective.jet(*state.map.columns)
     radial = objective.radial(jet)
     rows = (

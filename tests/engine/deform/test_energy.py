@@ -127,14 +127,14 @@ def test_margins_change_as_their_derivatives_say():
     assert_allclose(by_a * da + b_per_b * B * db, (factors * changes).sum(axis=0), rtol=1e-12)
 
 
-def problem(*, sketched, rotations=None, barrier=True, seed=3):
+def problem(*, stride, rotations=None, barrier=True, seed=3):
     boundary = star_boundary()
     handles = Handles.place(boundary, STAR_POINTS, [1, 2, 1, 1, 0.5, 1])
     wish = handles.wish(1.02 * STAR_POINTS + 0.01j, rotations)
     all_walls = Walls.around(WALLS, len(boundary.points))
     walls = Barrier(walls=all_walls, weight=0.2) if barrier else None
     objective = Objective(
-        boundary=boundary, handles=handles, wish=wish, barrier=walls, sketched=sketched
+        boundary=boundary, handles=handles, wish=wish, barrier=walls, stride=stride
     )
     rng = np.random.default_rng(seed)
     n = len(boundary.cage)
@@ -148,7 +148,7 @@ def problem(*, sketched, rotations=None, barrier=True, seed=3):
 @pytest.mark.parametrize("rotations", [None, np.array([0.3, np.nan, -0.2, np.nan, np.nan, 3.0])])
 @pytest.mark.parametrize("barrier", [True, False])
 def test_gradient_agrees_with_finite_differences(rotations, barrier):
-    objective, phi, psi, rng = problem(sketched=True, rotations=rotations, barrier=barrier)
+    objective, phi, psi, rng = problem(stride=4, rotations=rotations, barrier=barrier)
     jet = objective.jet(phi, psi)
     gradient = objective.gradient(jet, objective.radial(jet))
     n = len(phi)
@@ -164,14 +164,14 @@ def test_gradient_agrees_with_finite_differences(rotations, barrier):
 
 @pytest.mark.parametrize("barrier", [True, False])
 def test_hessian_is_exact_where_nothing_is_projected(barrier):
-    objective, phi, psi, rng = problem(sketched=False, barrier=barrier)
+    objective, phi, psi, rng = problem(stride=1, barrier=barrier)
     jet = objective.jet(phi, psi)
     assert np.all(objective.radial(jet).around_a > 0)
     assert_products(objective, jet, len(phi), rng)
 
 
 def test_hessian_of_rotations_is_exact_at_their_wish():
-    objective, phi, psi, rng = problem(sketched=False)
+    objective, phi, psi, rng = problem(stride=1)
     jet = objective.jet(phi, psi)
     wish = objective.handles.wish(jet.positions, np.angle(jet.fz))
     objective = Objective(
@@ -181,7 +181,7 @@ def test_hessian_of_rotations_is_exact_at_their_wish():
 
 
 def test_hessian_of_rotations_is_the_projection():
-    objective, phi, psi, _ = problem(sketched=False, barrier=False)
+    objective, phi, psi, _ = problem(stride=1, barrier=False)
     jet = objective.jet(phi, psi)
     handles = objective.handles
     turned = np.full(6, np.nan)
@@ -227,7 +227,7 @@ def assert_products(objective, jet, n, rng):
 @pytest.mark.parametrize("barrier", [True, False])
 def test_the_hessian_without_its_projection_is_exact(barrier):
     # A shrunk map, where the projection removes something at most samples, and turned handles.
-    objective, phi, psi, rng = problem(sketched=False, barrier=barrier)
+    objective, phi, psi, rng = problem(stride=1, barrier=barrier)
     jet = objective.jet(0.6 * phi, 0.3 * psi)
     n = len(phi)
     turned = np.where(np.arange(6) % 2, np.nan, np.angle(jet.fz) - 0.4)
@@ -253,10 +253,10 @@ def test_the_hessian_without_its_projection_is_exact(barrier):
 
 
 def test_the_coarse_hessian_resembles_the_exact_one():
-    objective, phi, psi, rng = problem(sketched=True)
+    objective, phi, psi, rng = problem(stride=4)
     jet = objective.jet(phi, psi)
     coarse = np.triu(objective.hessian(jet, objective.radial(jet)))
-    whole = replace(objective, sketched=False)
+    whole = replace(objective, stride=1)
     exact = np.triu(whole.hessian(jet, objective.radial(jet)))
     coarse, exact = (h + np.triu(h, 1).T for h in (coarse, exact))
     assert not np.array_equal(coarse, exact)
@@ -285,7 +285,7 @@ def test_newton_finds_the_free_minimum_in_30_steps():
 
 @pytest.mark.parametrize("size", [1e160, 1e300])
 def test_a_trial_step_may_lead_farther_than_numbers_reach(size):
-    objective, phi, psi, _ = problem(sketched=True)
+    objective, phi, psi, _ = problem(stride=4)
     far = objective.jet(size * phi, size * psi)
     assert objective.energy(far) == np.inf
     assert objective.value(far) == np.inf

@@ -5,6 +5,7 @@ from deform_shapes import STAR_POINTS, star_boundary
 from numpy.testing import assert_allclose
 
 from engine.deform import Handles
+from engine.deform.barrier import Barrier, Walls
 from engine.deform.objective import Objective
 from engine.deform.steering import (
     IDLE_AT_REST,
@@ -117,3 +118,20 @@ def test_common_rotations_are_turned_along_the_circle():
     assert np.angle(near.positions[1] / STAR_POINTS[1]) > 0.15
     near, _, _ = leashed(STAR_POINTS, np.array([2.0, *[np.nan] * 5]))
     assert_allclose(near.rotations[0], 0.2)
+
+
+def test_the_barrier_is_convex_for_a_map_at_its_limits_to_the_last_digit():
+    # Rounding can leave a sample at a wall, or beyond it, where the barrier's Hessian has no root.
+    rng = np.random.default_rng(0)
+    for a in rng.uniform(0.5, 2.0, size=(100, 1)):
+        b = rng.uniform(0.1, 0.4, size=1) * a
+        k, sigma_a, sigma_b = (b / a).item(), (a + b).item(), (a - b).item()
+        at_limits = Limits(k=k, sigma_a=sigma_a, sigma_b=sigma_b)
+        held = certificate(k=k, sigma_a=sigma_a, sigma_b=sigma_b)
+        walls, required = place_walls(at_limits, a, b, held)
+        barrier = Barrier(walls=Walls.around(walls, 1), weight=1e-2)
+        assert np.all(barrier.slacks(a, b) > 0)
+        bent = barrier.derivatives(a, b)
+        assert bent.aa > 0
+        assert bent.bb > 0
+        assert at_limits.allow(k=required.k, sigma_a=required.sigma_a, sigma_b=required.sigma_b)
