@@ -65,6 +65,16 @@ class PiecewiseSeries:
         )
         return values
 
+    def at(self, times: Floats) -> Floats:
+        """Return the values at times (s,), float64 (j, s)."""
+        last = len(self.breaks) - 2
+        pieces = np.minimum(np.searchsorted(self.breaks, times, side="right") - 1, last)
+        start, end = self.breaks[pieces], self.breaks[pieces + 1]
+        x = np.clip((2 * times - start - end) / (end - start), -1.0, 1.0)
+        terms = np.cos(np.arange(self.coefficients.shape[1])[:, None] * np.arccos(x))
+        values: Floats = np.einsum("ns,snj->js", terms, self.coefficients[pieces])
+        return values
+
 
 def separate(
     values: Callable[[Floats], Floats],

@@ -277,10 +277,7 @@ class SharpScaling:
     def _weights(self, times: Floats) -> Floats:
         """Return the weights of keyframes and modes at times (s,), for any points: (…, s, 1)."""
         keys = self.course.at(times[:, None])
-        series = [
-            np.array([each.series(float(time)) for time in times]).T[..., None]
-            for each in self.closings
-        ]
+        series = [each.series.at(times)[..., None] for each in self.closings]
         return np.concatenate([keys, *series])
 
     def _promising(self, chosen: Indices, ratios: Floats) -> Booleans:

@@ -1,6 +1,7 @@
 """A ρ that is C^∞ in time: Property 4 for scaled η (Section 5.5 leaves that to others)."""
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Self
 
@@ -16,6 +17,12 @@ STRETCH = 2.0
 SPACING = 1 / 192
 FARTHEST = 7.125  # |u| from which on time is a keyframe's, to rounding
 HALF_WINDOW = 3  # samples on each side from which the value at a time is taken
+# Every so many samples the sharp ρ is looked at first, and in the middle between two of them. What
+# is between these is interpolated where that would have told the middle to `SMOOTH`: but around
+# its kinks.
+COARSEST = 8
+SMOOTH = 3e-7
+MIDDLE = np.array([3, -25, 150, 150, -25, 3]) / 256  # of six samples: the polynomial through them
 # What the difference from the sharp ρ is enlarged by, since it is seen at the samples only.
 CAUTION = 1.25
 ROUNDING = 2e-7
@@ -42,10 +49,10 @@ class Scaling:
 
     @classmethod
     def of(cls, sharp: SharpScaling) -> Self:
-        """Sample a sharp ρ, some 2,700 times, and fit it."""
+        """Sample a sharp ρ and fit it."""
         count = round(2 * FARTHEST / SPACING) + 1
         u = np.linspace(-FARTHEST, FARTHEST, count)
-        logarithms = np.log(sharp(time_of(u)))
+        logarithms = _sampled(lambda at: np.log(sharp(time_of(at))), u)
         fitted = _fits(logarithms, 0.0), _fits(logarithms, 0.5)
         padded = np.pad(logarithms, (1, 2))
         between = (9 * (padded[1:-2] + padded[2:-1]) - padded[:-3] - padded[3:]) / 16
@@ -87,6 +94,30 @@ def time_of(u: Floats) -> Floats:
     """Return the times in (0, 1) of stretched ones."""
     times: Floats = 1.0 / (1.0 + np.exp(-STRETCH * np.sinh(u / STRETCH)))
     return times
+
+
+def _sampled(function: Callable[[Floats], Floats], u: Floats) -> Floats:
+    """Return the values of a function, 0 beyond both ends, at equidistant places (s,).
+
+    Where it is smooth most of them are interpolated.
+    """
+    values, rough = np.empty(len(u)), np.ones(len(u), np.bool_)
+    step = COARSEST
+    values[::step] = function(u[::step])
+    while step > 1:
+        stencils = sliding_window_view(np.pad(values[::step], 2), len(MIDDLE))
+        between = np.arange(step // 2, len(u), step)
+        values[between] = stencils @ MIDDLE
+        looked = between[rough[between]]
+        found = function(u[looked])
+        wrong = looked[np.abs(found - values[looked]) > SMOOTH]
+        values[looked] = found
+        # A kink is within half a step of one that is wrong, and the next stencils reach 5/4 steps.
+        near = wrong[:, None] + np.arange(-2 * step, 2 * step + 1)
+        rough[:] = False
+        rough[np.clip(near, 0, len(u) - 1)] = True
+        step //= 2
+    return values
 
 
 def _weights(offset: float) -> tuple[Floats, Floats]:

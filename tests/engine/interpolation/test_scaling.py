@@ -111,7 +111,10 @@ def test_each_bound_is_just_reached_where_it_alone_counts(bound):
     loose = {"k": 100.0, "sigma_a": 100.0, "sigma_b": -100.0}
     values = {name: np.array([v]) for name, v in (loose | {bound: limits[bound]}).items()}
     samples = PointSamples(
-        log_modulus=np.log([[1.0], [4.0]]), conj_eta=np.array([[8.0 + 0j], [8.0]]), **values
+        log_modulus=np.log([[1.0], [4.0]]),
+        conj_eta=np.array([[8.0 + 0j], [8.0]]),
+        opening=np.empty((0, 1), np.complex128),
+        **values,
     )
     (rho,) = samples.ratios(np.array([[0.5], [0.5]]))
     reached = {"k": rho * 4 / 2, "sigma_a": 2 + rho * 4, "sigma_b": 2 - rho * 4}
