@@ -42,7 +42,8 @@ MOST_STEPS = 15
 HALVINGS = 8
 ROUNDING = 1e-13  # of the diagonal: periods below are rounding
 SHORTEST = 2.0**-5  # pieces of time are not halved below this
-TOLERANCE = 1e-11  # of the series in time: the periods are closed as far
+TOLERANCE = 1e-11  # of the series in time
+LEFT_OUT = 1e-10  # of the modes: the periods are closed as far
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -245,7 +246,7 @@ class PeriodClosing:
         forms, series = separate(
             corrections,
             tolerance=TOLERANCE,
-            left_out=TOLERANCE,
+            left_out=LEFT_OUT,
             shortest=SHORTEST,
             breaks=breaks,
             vanishing=not to_conformal,

@@ -79,12 +79,12 @@ class PointSamples:
     def at(self, chosen: Indices) -> Self:
         """Return some of the points (p,)."""
         return type(self)(
-            log_modulus=self.log_modulus[:, chosen],
-            conj_eta=self.conj_eta[:, chosen],
+            log_modulus=self.log_modulus.take(chosen, axis=1),
+            conj_eta=self.conj_eta.take(chosen, axis=1),
             k=self.k[chosen],
             sigma_a=self.sigma_a[chosen],
             sigma_b=self.sigma_b[chosen],
-            opening=self.opening[:, chosen],
+            opening=self.opening.take(chosen, axis=1),
         )
 
     def bounded(self, worst: "Worst | None") -> Self:
@@ -114,39 +114,46 @@ class PointSamples:
         a = np.exp(_total(weights[:count], self.log_modulus))
         b = np.abs(_total(weights[: len(self.conj_eta)], self.conj_eta)) / a
         if len(self.opening):
-            return self._around_holes(a, b, np.exp(_total(weights[count:], self.opening)))
+            return self._around_holes(a, b, _total(weights[count:], self.opening))
         # ρ_k, ρ_a and ρ_b of Section 7.3 have the denominator |f_z̄| in common.
         room = np.minimum(self.k * a, np.minimum(self.sigma_a - a, a - self.sigma_b))
         ratios = np.full(room.shape, CEILING)
         np.divide(room, b, out=ratios, where=b > np.maximum(NEGLIGIBLE * a, room / CEILING))
         return ratios
 
-    def _around_holes(self, a: Floats, b: Floats, opened: Complexes) -> Floats:
-        """Return the same for |F_1| = a, |G_1| = b and F_0 = F_1 e^d, with e^d given.
+    def _around_holes(self, a: Floats, b: Floats, d: Complexes) -> Floats:
+        """Return the same for |F_1| = a, |G_1| = b and F_0 = F_1 e^d.
 
         |F_ρ|² is a quadratic in ρ, and so is each bound. Where the map for ρ = 0 is beyond a bound
         there is no telling: the bound is left to the others.
         """
-        way = 1.0 - opened
-        f0, f1, f2 = np.abs(opened) ** 2, (opened * way.conj()).real, np.abs(way) ** 2
-        f0, f1, f2 = a * a * f0, a * a * f1, a * a * f2
+        # a² |e^d|², and the products of a e^d and a − a e^d.
+        squared, grown = a * a, np.exp(d.real)
+        f0 = squared * grown * grown
+        f1 = squared * grown * np.cos(d.imag) - f0
+        f2 = squared - f0 - 2.0 * f1
         k = self.k * self.k
         quadratics = (
             (-k * f0, -k * f1, b * b - k * f2),
             (f0 - self.sigma_a**2, f1 + self.sigma_a * b, f2 - b * b),
             (self.sigma_b**2 - f0, self.sigma_b * b - f1, b * b - f2),
         )
-        lowest = np.full(a.shape, CEILING)
-        for c0, c1, c2 in quadratics:
-            # The first ρ at which c0 + 2 c1 ρ + c2 ρ² > 0.
-            discriminant = c1 * c1 - c2 * c0
-            divisor = c1 + np.sqrt(np.maximum(discriminant, 0.0))
-            there = (c0 < 0) & (discriminant >= 0) & (divisor > -c0 / CEILING)
-            np.minimum(lowest, -c0 / np.where(there, divisor, 1.0), out=lowest, where=there)
-        return lowest
+        inverse = np.full(a.shape, 1.0 / CEILING)
+        with np.errstate(invalid="ignore"):
+            for c0, c1, c2 in quadratics:
+                # The first ρ at which c0 + 2 c1 ρ + c2 ρ² > 0; where there is none the root is no
+                # number, which `fmax` passes over.
+                root = c1 + np.sqrt(c1 * c1 - c2 * c0)
+                root = np.divide(root, -c0, out=np.zeros_like(root), where=c0 < 0)
+                np.fmax(inverse, root, out=inverse)
+        return 1.0 / inverse
 
 
 def _total(weights: Floats, values: type_) -> type_:
+    """Return the weighted sum of values (n, c) at times (n, s, 1), or (n, c, p) at (n, c, 1)."""
+    if values.ndim == 2:
+        flat: Floats = weights[..., 0].T @ values.view(np.float64)
+        return flat.view(values.dtype)
     total: type_ = sum(w * value for w, value in zip(weights, values, strict=True))
     return total
 
@@ -299,10 +306,12 @@ class SharpScaling:
         places are only cut finer, round after round: no parabola is fitted.
         """
         place, width = np.full(len(when), 0.5), 0.5
-        weights = self._weights(times)
+        weights, keys = self._weights(times), self.course.count
+        summed = np.concatenate([weights[:keys], np.ones((len(self.closings), len(times), 1))])
         for _ in range(ROUNDS):
             places = _around(place, width)
-            found = self.curves.at(segment, places).bounded(worst).ratios(weights[:, when])
+            found = self.curves.at(segment, places, weights[keys:, when, 0])
+            found = found.bounded(worst).ratios(summed[:, when])
             best, rows = found.argmin(axis=1), np.arange(len(when))
             variation = np.abs(np.diff(found, axis=1)).max(axis=1, initial=0.0)
             np.minimum.at(lowest, when, found[rows, best])
@@ -377,14 +386,22 @@ class OutlineCurves:
         fz, g, h, d = np.split(values, [count, 2 * count, 2 * count + modes])
         return PointSamples.of(fz, g, h, d)
 
-    def at(self, segment: Indices, places: Floats) -> PointSamples:
-        """Return the samples at places (c, s), each from 0 to 1, along segments (c,)."""
+    def at(self, segment: Indices, places: Floats, weights: Floats | None = None) -> PointSamples:
+        """Return the samples at places (c, s), each from 0 to 1, along segments (c,).
+
+        In place of the modes they have their sums with weights (j + i, c), or none at all.
+        """
         nodes, coefficients = self.places[:, segment], self.coefficients[:, :, segment]
-        values = np.repeat(coefficients[-1][:, :, None], places.shape[1], axis=2)
-        for node, coefficient in zip(nodes[-2::-1], coefficients[-2::-1], strict=True):
+        count, modes = self.counts
+        functions, terms = np.split(coefficients, [2 * count], axis=1)
+        if weights is not None and len(weights):
+            sums = np.add.reduceat(weights * terms, [0, modes], axis=1)
+            functions = np.concatenate([functions, sums], axis=1)
+        values = np.repeat(functions[-1][:, :, None], places.shape[1], axis=2)
+        for node, coefficient in zip(nodes[-2::-1], functions[-2::-1], strict=True):
             values *= places - node[:, None]
             values += coefficient[:, :, None]
-        return self.samples_of(values)
+        return PointSamples.of(*np.split(values, [count, 2 * count, 2 * count + 1]))
 
 
 def looseness(times: Floats) -> Floats:

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from operator import mul
 from typing import Self
 
 import numpy as np
@@ -81,12 +82,13 @@ class Scaling:
         """Return ρ in (0, 1] at a time in [0, 1]."""
         if not 0.0 < time < 1.0:
             return 1.0
-        u = STRETCH * np.arcsinh(np.log(time / (1.0 - time)) / STRETCH)
+        u = STRETCH * math.asinh(math.log(time / (1.0 - time)) / STRETCH)
         place = min(max((u + FARTHEST) / SPACING, -1.0), round(2 * FARTHEST / SPACING) + 1.0)
-        nearest = int(np.round(place))
+        nearest = round(place)
         fit, mean = _weights(place - nearest)
         window = slice(nearest + 1, nearest + 1 + 2 * HALF_WINDOW + 1)
-        logarithm = float(fit @ self.logarithms[window] - mean @ self.excess[window])
+        logarithm = _dot(fit, self.logarithms[window].tolist())
+        logarithm -= _dot(mean, self.excess[window].tolist())
         return math.exp(min(logarithm, 0.0))
 
 
@@ -120,29 +122,34 @@ def _sampled(function: Callable[[Floats], Floats], u: Floats) -> Floats:
     return values
 
 
-def _weights(offset: float) -> tuple[Floats, Floats]:
+def _weights(offset: float) -> tuple[list[float], list[float]]:
     """Return by how much each sample of a window counts at an offset from its middle.
 
     Returns
     -------
-    fit, mean : float64, shape (2 HALF_WINDOW + 1,)
+    fit, mean : list of float, length 2 HALF_WINDOW + 1
         Of the value of the fitted parabola, and of the mean; both sum to 1.
     """
-    place = (np.arange(-HALF_WINDOW, HALF_WINDOW + 1) - offset) / (HALF_WINDOW + 0.5)
-    bump = np.exp(-1.0 / np.maximum(1.0 - place**2, 1e-3))
-    # The first row of the inverse of the parabola's normal equations, by its cofactors: in a frame
-    # that is played, this is most of what ρ costs.
-    square = place * place
-    first, second = bump * place, bump * square
-    m0, m1, m2 = float(bump.sum()), float(first.sum()), float(second.sum())
-    m3, m4 = float(second @ place), float(second @ square)
+    # In a frame that is played, this is most of the cost; so short arrays are slower than lists.
+    place = [(i - offset) / (HALF_WINDOW + 0.5) for i in range(-HALF_WINDOW, HALF_WINDOW + 1)]
+    bump = [math.exp(-1.0 / max(1.0 - x * x, 1e-3)) for x in place]
+    # The first row of the inverse of the parabola's normal equations, by its cofactors.
+    first = list(map(mul, bump, place))
+    second = list(map(mul, first, place))
+    m0, m1, m2 = sum(bump), sum(first), sum(second)
+    m3, m4 = _dot(second, place), _dot(second, list(map(mul, place, place)))
     c0, c1, c2 = m2 * m4 - m3 * m3, m2 * m3 - m1 * m4, m1 * m3 - m2 * m2
-    fit: Floats = (c0 * bump + c1 * first + c2 * second) / (m0 * c0 + m1 * c1 + m2 * c2)
-    return fit, bump / m0
+    whole = m0 * c0 + m1 * c1 + m2 * c2
+    fit = [(c0 * b + c1 * x + c2 * y) / whole for b, x, y in zip(bump, first, second, strict=True)]
+    return fit, [b / m0 for b in bump]
+
+
+def _dot(one: list[float], two: list[float]) -> float:
+    return sum(map(mul, one, two))
 
 
 def _fits(values: Floats, offset: float) -> Floats:
     """Return the fit at an offset from each sample, like `values`; they are 0 beyond the ends."""
     windows = sliding_window_view(np.pad(values, HALF_WINDOW), 2 * HALF_WINDOW + 1)
-    fits: Floats = windows @ _weights(offset)[0]
+    fits: Floats = windows @ np.array(_weights(offset)[0])
     return fits
