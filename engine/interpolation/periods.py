@@ -43,7 +43,7 @@ HALVINGS = 8
 ROUNDING = 1e-13  # of the diagonal: periods below are rounding
 SHORTEST = 2.0**-5  # pieces of time are not halved below this
 TOLERANCE = 1e-11  # of the series in time
-LEFT_OUT = 1e-10  # of the modes: the periods are closed as far
+LEFT_OUT = 2e-11  # of the modes: the periods are closed as far
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

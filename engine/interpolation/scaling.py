@@ -310,12 +310,12 @@ class SharpScaling:
         summed = np.concatenate([weights[:keys], np.ones((len(self.closings), len(times), 1))])
         for _ in range(ROUNDS):
             places = _around(place, width)
-            found = self.curves.at(segment, places, weights[keys:, when, 0])
-            found = found.bounded(worst).ratios(summed[:, when])
+            samples = self.curves.at(segment, places, weights[keys:, when, 0])
+            found = samples.bounded(worst).ratios(summed[:, when])
             best, rows = found.argmin(axis=1), np.arange(len(when))
             variation = np.abs(np.diff(found, axis=1)).max(axis=1, initial=0.0)
             np.minimum.at(lowest, when, found[rows, best])
-            kept = found[rows, best] - variation <= lowest[when]
+            kept = found[rows, best] - variation < np.minimum(lowest[when], 1.0) - GAIN
             when, segment, place = when[kept], segment[kept], places[rows, best][kept]
             width *= 2.0 / PARTS
 

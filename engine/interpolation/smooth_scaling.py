@@ -145,7 +145,8 @@ def _weights(offset: float) -> tuple[list[float], list[float]]:
 
 
 def _dot(one: list[float], two: list[float]) -> float:
-    return sum(map(mul, one, two))
+    total: float = sum(map(mul, one, two))
+    return total
 
 
 def _fits(values: Floats, offset: float) -> Floats:

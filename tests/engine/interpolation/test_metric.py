@@ -66,6 +66,7 @@ def test_the_residual_is_written_in_few_products_and_vanishes_at_the_keyframes()
     modes, series = separate(metric.residuals, tolerance=1e-10, left_out=1e-8)
     times = np.random.default_rng(0).random(30)
     found = np.array([modes @ series(time) for time in times]).T
+    assert_allclose(modes @ series.at(times), found, rtol=0, atol=1e-13)
     assert_allclose(found, metric.residuals(times), rtol=0, atol=1e-8)
     for time in (0.0, 1.0):
         assert_allclose(series(time), 0, rtol=0, atol=1e-15)

@@ -12,6 +12,8 @@ from engine.geometry import polygon
 from engine.interpolation import Variant, prepare, prepare_inbetweens, prepare_sites
 from engine.interpolation.keyframe_samples import sample_keyframes
 from engine.interpolation.metric import OutlineMetric
+from engine.interpolation.passing import Course
+from engine.maps import Bounds
 from engine.maps.harmonic_map import HarmonicMap, derivatives_of
 from engine.paths.complex_log import root_sheets
 
@@ -223,7 +225,7 @@ def test_nodes_of_the_metric_follow_the_keyframes_too():
     key = HarmonicMap(cage=cage, phi=phi, psi=0.93 / (np.abs(fzbar) / np.abs(fz)).max() * noise[1])
     maps = [HarmonicMap.identity(cage), key]
     found = prepare(maps, points, outline=outline, variant="metric").frame(0.5)
-    metric = OutlineMetric.of(*derivatives_of(maps, points))
+    metric = OutlineMetric.of(*derivatives_of(maps, points), Course.straight(), Bounds())
     halves = np.full((2, 1), 0.5)
-    expected = metric.residuals(halves) + metric.log_modulus.T @ halves
+    expected = metric.residuals(halves[0]) + metric.log_modulus.T @ halves
     assert_allclose(np.log(np.abs(found.fz)), expected[:, 0], rtol=0, atol=3e-4)

@@ -11,7 +11,7 @@ from engine.geometry.polygon import edges
 from engine.interpolation import prepare
 from engine.interpolation.passing import Course
 from engine.interpolation.scaling import BESIDE_KEY, PointSamples, SharpScaling
-from engine.interpolation.smooth_scaling import Scaling
+from engine.interpolation.smooth_scaling import FARTHEST, HALF_WINDOW, Scaling, time_of
 from engine.maps import Bounds, distortion
 from engine.maps.harmonic_map import HarmonicMap
 
@@ -152,6 +152,22 @@ def test_the_smooth_rho_is_never_above_the_sharp_one_and_seldom_below(seed):
     # Corners are cut within a small part of the time; everywhere else it is the sharp one.
     assert np.mean(found > highest * (1 - 2e-5)) > 0.6
     assert smooth.least <= found.min()
+
+
+@pytest.mark.parametrize("seed", [26, 3])
+def test_the_sharp_rho_is_looked_at_closely_at_its_kinks_only(seed):
+    sharp = SharpScaling.of(pair(seed), SHAPE[0], STRAIGHT, Bounds())
+    asked = []
+
+    def seen(times):
+        asked.extend(times)
+        return sharp(times)
+
+    smooth = Scaling.of(seen)
+    samples = smooth.logarithms[HALF_WINDOW + 1 : -HALF_WINDOW - 1]
+    everywhere = np.linspace(-FARTHEST, FARTHEST, len(samples))
+    assert len(asked) < 0.4 * len(samples)
+    assert_allclose(samples, np.log(sharp(time_of(everywhere))), rtol=0, atol=5e-7)
 
 
 def test_rho_does_not_fall_at_once_beside_a_key_where_the_other_part_vanishes():
