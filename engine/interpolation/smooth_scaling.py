@@ -23,7 +23,7 @@ HALF_WINDOW = 3  # samples on each side from which the value at a time is taken
 # its kinks.
 COARSEST = 8
 SMOOTH = 3e-7
-MIDDLE = np.array([3, -25, 150, 150, -25, 3]) / 256  # of six samples: the polynomial through them
+MIDDLE = (3, -25, 150, 150, -25, 3)  # over 256, of six samples: the polynomial through them
 # What the difference from the sharp ρ is enlarged by, since it is seen at the samples only.
 CAUTION = 1.25
 ROUNDING = 2e-7
@@ -109,7 +109,7 @@ def _sampled(function: Callable[[Floats], Floats], u: Floats) -> Floats:
     while step > 1:
         stencils = sliding_window_view(np.pad(values[::step], 2), len(MIDDLE))
         between = np.arange(step // 2, len(u), step)
-        values[between] = stencils @ MIDDLE
+        values[between] = stencils @ np.divide(MIDDLE, 256)
         looked = between[rough[between]]
         found = function(u[looked])
         wrong = looked[np.abs(found - values[looked]) > SMOOTH]
