@@ -16,11 +16,12 @@ from app.document import (
     Framing,
     Meshing,
     PictureFile,
+    is_visible,
     layer_commands,
     new_figure,
 )
 from app.errors import LissomError
-from app.storage.opening import OpenedPicture, cut_picture
+from app.storage.opening import OpenedPicture
 from app.storage.pictures import (
     Layer,
     LayeredPicture,
@@ -111,16 +112,31 @@ def as_scene(opened: OpenedPicture) -> OpenedScene:
     return OpenedScene(document, {document.figures[0].id: picture}, notices)
 
 
-def flattened(opened: OpenedScene) -> Bytes:
-    """Return all layers that are seen as one picture, uint8 (h, w, 4) with straight alpha."""
-    canvas = opened.document.canvas
-    flat = Image.new("RGBA", canvas)
-    for figure in opened.document.exported:
-        layer = Image.fromarray(cut_picture(opened.pictures[figure.id], figure.cut_out).texture)
+def flattened(document: Document, textures: Mapping[int, Bytes]) -> Bytes:
+    """Return all layers that are seen at first as one picture, as they were drawn.
+
+    Parameters
+    ----------
+    document : Document
+    textures : mapping of int to uint8, shape (h, w, 4)
+        What is cut out of the figures' pictures, by their ids.
+
+    Returns
+    -------
+    uint8, shape (h, w, 4)
+        With straight alpha.
+    """
+    if len(document.figures) == 1:
+        return textures[document.figures[0].id]
+    flat = Image.new("RGBA", document.canvas)
+    for figure in document.exported:
+        if not is_visible(figure, document.frames.first):
+            continue
+        layer = Image.fromarray(textures[figure.id])
         layer.putalpha(layer.getchannel("A").point(lambda a, o=figure.opacity: round(o * a)))
-        corner, height = figure.corner, layer.height
-        place = round(corner.real), round(canvas[1] - corner.imag - height)
-        moved = Image.new("RGBA", canvas)
+        corner = figure.corner
+        place = round(corner.real), round(flat.height - corner.imag - layer.height)
+        moved = Image.new("RGBA", flat.size)
         moved.paste(layer, place)
         flat = Image.alpha_composite(flat, moved)
     return readonly(np.asarray(flat))

@@ -1,6 +1,6 @@
 """From a picture file to a new document, and from a picture to what is painted on its mesh."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import NamedTuple
 
@@ -52,7 +52,9 @@ def open_picture(path: Path, meshing: Meshing, cut_out: CutOut = CutOut()) -> Op
         picture.rgba, triangles=meshing.triangles, detail=meshing.detail, cut_out=cut_out
     )
     file = PictureFile(data=data, suffix=picture.suffix, size=picture.size)
-    document = Document(figures=(new_figure(file, domain, meshing, cut_out),))
+    figure = new_figure(file, domain, meshing, cut_out)
+    named = replace(figure, name=path.stem.strip() or figure.name)
+    document = Document(figures=(named,))
     return OpenedPicture(document, picture, picture.notices + remedies)
 
 

@@ -9,6 +9,7 @@ from app.solving import load_pose_script, pose_document
 from app.storage import (
     as_scene,
     check_writable,
+    cut_picture,
     draw_thumbnail,
     flattened,
     is_layered,
@@ -35,7 +36,11 @@ def run(arguments: argparse.Namespace) -> int:
     status.clear()
     for message in lags:
         notice(message)
-    picture = flattened(opened)
+    textures = {
+        figure.id: cut_picture(opened.pictures[figure.id], figure.cut_out).texture
+        for figure in document.figures
+    }
+    picture = flattened(document, textures)
     save_project(arguments.out, document, thumbnail=draw_thumbnail(picture))
     posed = [figure for figure in document.figures if not figure.still]
     keys = sum(len(figure.keys) for figure in posed)

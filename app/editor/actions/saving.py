@@ -13,6 +13,7 @@ from app.reports import draw_curves, write_curves
 from app.storage import (
     SECONDS,
     draw_thumbnail,
+    flattened,
     save_preferences,
     save_project,
     write_atomically,
@@ -53,10 +54,11 @@ def write(session: Session, path: Path, then: Action | None) -> None:
         project.to_save = (path, then)
         return
     document = project.document
-    texture = project.puppets[document.figures[0].id].cut.value.texture
+    textures = {figure: puppet.cut.value.texture for figure, puppet in project.puppets.items()}
 
     def work() -> None:
-        save_project(path, document, thumbnail=draw_thumbnail(texture))
+        picture = flattened(document, textures)
+        save_project(path, document, thumbnail=draw_thumbnail(picture))
 
     def done(_: None) -> None:
         project.history.mark_saved(document)

@@ -160,8 +160,8 @@ class Window:
                 draw=lambda session, look: viewport.draw(session, look, self._texture),
             ),
             Panel(title="Timeline", icon=icons.ICON_FA_FILM, place="bottom", draw=timeline.draw),
-            Panel(title="Layers", icon=icons.ICON_FA_LAYER_GROUP, place="side", draw=layers.draw),
             Panel(title="Handle", icon=icons.ICON_FA_CIRCLE_DOT, place="side", draw=handle.draw),
+            Panel(title="Layers", icon=icons.ICON_FA_LAYER_GROUP, place="side", draw=layers.draw),
             Panel(
                 title="Poses",
                 icon=icons.ICON_FA_PERSON_RUNNING,

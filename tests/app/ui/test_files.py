@@ -91,12 +91,12 @@ def test_a_picture_dropped_on_a_scene_may_become_a_layer(window, project, drop):
     window.run(lambda robot: robot.item_click("//###dialog/New layer"))
     window.settle()
     assert window.session.project is project
-    assert [figure.name for figure in project.document.figures] == ["figure", "ring"]
+    assert [figure.name for figure in project.document.figures] == ["bar", "ring"]
     assert project.figure.name == "ring"
     window.act(editing.undo)
     window.settle()
     assert len(project.document.figures) == 1
-    assert project.figure.name == "figure"
+    assert project.figure.name == "bar"
     window.act(editing.redo)
     window.settle()
     assert set(project.puppets) == {figure.id for figure in project.document.figures}
