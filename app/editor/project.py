@@ -211,6 +211,8 @@ class Project:
         The clock's seconds when the playhead was last seen to move.
     autosaved : Document, optional
         The one that the autosave holds, from the time `autosaved_at` on.
+    chosen_of : mapping of int to frozenset of int
+        The frames of the chosen keys of figures, by their ids; figures without any are not in it.
     gesture : object, optional
         Commands given while it lasts make one step of undo together.
     held : int
@@ -249,7 +251,7 @@ class Project:
     playhead: Playhead = field(default_factory=Playhead)
     timing: Timing = field(default_factory=Timing)
     selected: frozenset[int] = frozenset()  # ids of handles
-    chosen: frozenset[int] = frozenset()  # frames of keys
+    chosen_of: Mapping[int, frozenset[int]] = field(default_factory=dict)  # frames of keys
     camera: View | None = None
     flip: Flip | None = None
     blend: PoseBlend | None = None
@@ -272,6 +274,15 @@ class Project:
     def figure(self) -> Figure:
         """The figure that is posed, as it is now."""
         return self.document.figure(self.active)
+
+    @property
+    def chosen(self) -> frozenset[int]:
+        """The frames of the chosen keys of the active figure; setting them lets all others go."""
+        return self.chosen_of.get(self.active, frozenset())
+
+    @chosen.setter
+    def chosen(self, frames: frozenset[int]) -> None:
+        self.chosen_of = {self.active: frames} if frames else {}
 
     @property
     def clip(self) -> Clip:

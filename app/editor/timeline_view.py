@@ -82,10 +82,10 @@ class KeyDrag:
 
     Parameters
     ----------
-    keys : frozenset of int
-        Their frames in `before`.
+    keys : mapping of int to frozenset of int
+        Their frames in `before`, by the ids of their figures.
     pressed : int
-        The one under the pointer.
+        The frame of the one under the pointer, which is of the active figure.
     start : float
         The pointer's frame at the press.
     copies : bool
@@ -95,7 +95,7 @@ class KeyDrag:
         How far they are, in frames.
     """
 
-    keys: frozenset[int]
+    keys: Mapping[int, frozenset[int]]
     pressed: int
     start: float
     copies: bool
@@ -116,10 +116,21 @@ class EdgeDrag:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class KeyBox:
-    """The pointer spans a stretch of time to choose the keys in it, besides those it `keeps`."""
+    """The pointer spans a stretch of time and rows to choose the keys there.
+
+    Parameters
+    ----------
+    start : float
+        The pointer's frame at the press.
+    row : int
+        The id of the figure whose row the pointer was on.
+    keeps : mapping of int to frozenset of int
+        The keys that are chosen besides.
+    """
 
     start: float
-    keeps: frozenset[int] = frozenset()
+    row: int
+    keeps: Mapping[int, frozenset[int]]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -180,6 +191,10 @@ class Timing:
         What it shows while the gesture lasts: nothing may move under the pointer.
     seen : int
         The frame that was shown last, so that the strip follows the playhead only when it moves.
+    scrolled : float
+        By how many em the rows of figures are scrolled down, where there are more than have room.
+    seen_row : int, optional
+        The figure that was active last, so that the rows follow it only when another one is.
     shortfalls : Derived
     """
 
@@ -187,4 +202,6 @@ class Timing:
     gesture: TimeGesture | None = None
     held: Strip | None = None
     seen: int = 0
+    scrolled: float = 0.0
+    seen_row: int | None = None
     shortfalls: Derived[Figure, Shortfalls] = field(default_factory=lambda: Derived({}))

@@ -26,7 +26,9 @@ def check_invariants(session: Session) -> None:
     document, figure = project.document, project.figure
     assert set(project.puppets) == {each.id for each in document.figures}
     assert project.selected <= {handle.id for handle in figure.handles}
-    assert project.chosen <= figure.key_frames
+    for identity, frames in project.chosen_of.items():
+        assert frames
+        assert frames <= document.figure(identity).key_frames
     assert playback.current_frame(session, project) in document.frames
     for each in document.figures:
         frames = [key.frame for key in each.keys]

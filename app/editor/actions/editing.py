@@ -1,6 +1,6 @@
 """Changes of the document: commands, undo, and what is selected."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from itertools import count
 from typing import Concatenate, ParamSpec
@@ -183,17 +183,37 @@ def ungroup(session: Session) -> None:
 
 def choose_keys(session: Session, frames: frozenset[int]) -> None:
     """Select the keys at these frames, as far as they are there, and no handles."""
+    if session.project:
+        choose_keys_of(session, {session.project.active: frames})
+
+
+def choose_keys_of(session: Session, chosen_of: Mapping[int, frozenset[int]]) -> None:
+    """Select keys of several figures, as far as they are there, and no handles."""
     project = session.project
     if project:
-        project.selected, project.chosen = frozenset(), frames
+        project.selected, project.chosen_of = frozenset(), chosen_of
         _forget_what_is_gone(project)
+
+
+def change_keys(
+    change: Callable[[int, frozenset[int]], Command], chosen_of: Mapping[int, frozenset[int]]
+) -> Command:
+    """Return the command that changes keys of several figures together."""
+    commands = [change(figure, frames) for figure, frames in chosen_of.items()]
+
+    def all_of_them(document: Document) -> Document:
+        for command in commands:
+            document = command(document)
+        return document
+
+    return Command(commands[0].label, all_of_them)
 
 
 def delete(session: Session) -> None:
     """Delete the selected keys, or the selected handles."""
     project = session.project
-    if project and project.chosen:
-        edit_figure(session, key_commands.delete_keys, project.chosen)
+    if project and project.chosen_of:
+        edit(session, change_keys(key_commands.delete_keys, project.chosen_of))
     elif project and project.selected:
         posing.remove_handles(session, project.selected)
 
@@ -231,7 +251,12 @@ def _forget_what_is_gone(project: Project) -> None:
     document = project.document
     follow_figures(project)
     project.selected &= {handle.id for handle in project.figure.handles}
-    project.chosen &= project.figure.key_frames
+    known = {figure.id: figure.key_frames for figure in document.figures}
+    project.chosen_of = {
+        figure: frames & known[figure]
+        for figure, frames in project.chosen_of.items()
+        if figure in known and frames & known[figure]
+    }
     if project.playhead.frame not in document.frames:
         frame = document.frames.clamp(project.playhead.frame)
         project.playhead = replace(project.playhead, frame=frame)

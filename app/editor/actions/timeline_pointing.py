@@ -1,5 +1,6 @@
 """Gestures of the pointer in the timeline, from press to release, and what it shows."""
 
+from collections.abc import Mapping
 from dataclasses import replace
 from itertools import count
 
@@ -7,7 +8,6 @@ from app.document import (
     LAST_FRAME,
     Command,
     Document,
-    Figure,
     FrameRange,
     key_commands,
     scene_commands,
@@ -50,6 +50,13 @@ def follow(session: Session, frame: int, strip: Strip | None) -> None:
             look_at(session, strip)
 
 
+def scroll_rows(session: Session, to: float) -> None:
+    """Scroll the rows of figures to a number of em below the first one; the active one is seen."""
+    if session.project:
+        timing = session.project.timing
+        timing.scrolled, timing.seen_row = to, session.project.active
+
+
 def begin(session: Session, gesture: TimeGesture, strip: Strip) -> None:
     """Begin a gesture; what is shown stays until it ends."""
     if session.project:
@@ -57,8 +64,8 @@ def begin(session: Session, gesture: TimeGesture, strip: Strip) -> None:
         session.project.timing.held = strip
 
 
-def move(session: Session, frame: float) -> None:
-    """Follow the pointer to another time."""
+def move(session: Session, frame: float, row: int) -> None:
+    """Follow the pointer to another time, on the row of a figure."""
     project = session.project
     if project is None:
         return
@@ -70,9 +77,7 @@ def move(session: Session, frame: float) -> None:
         case MarkerDrag() as drag:
             _drag_marker(session, project, drag, frame)
         case KeyBox() as box:
-            low, high = sorted((box.start, frame))
-            inside = {key for key in project.figure.key_frames if low <= key <= high}
-            editing.choose_keys(session, box.keeps | inside)
+            editing.choose_keys_of(session, _inside(project.document, box, frame, row))
         case Scrub(offset=offset):
             playback.scrub(session, round(frame + offset))
 
@@ -86,6 +91,22 @@ def end(session: Session) -> None:
         timing.gesture = timing.held = None
 
 
+def _inside(
+    document: Document, box: KeyBox, frame: float, row: int
+) -> Mapping[int, frozenset[int]]:
+    """Return the keys within a box that ends at a frame and a row, and those that it keeps."""
+    low, high = sorted((box.start, frame))
+    order = [figure.id for figure in document.figures]
+    first, last = sorted(map(order.index, (box.row, row)))
+    inside = dict(box.keeps)
+    for figure in document.figures[first : last + 1]:
+        if figure.still:
+            continue
+        frames = frozenset(key for key in figure.key_frames if low <= key <= high)
+        inside[figure.id] = inside.get(figure.id, frozenset()) | frames
+    return inside
+
+
 def cancel(session: Session) -> None:
     """End the gesture, and take back what it did."""
     if session.project is None:
@@ -93,53 +114,62 @@ def cancel(session: Session) -> None:
     match session.project.timing.gesture:
         case KeyDrag(before=before, after=after, keys=keys) if session.project.document is after:
             _become(session, before, "Move keys")
-            editing.choose_keys(session, keys)
+            editing.choose_keys_of(session, keys)
         case EdgeDrag(before=before, after=after) if session.project.document is after:
             _become(session, before, "Set preview range")
         case MarkerDrag(before=before, after=after) if session.project.document is after:
             _become(session, before, "Move marker")
         case KeyBox(keeps=keeps):
-            editing.choose_keys(session, keeps)
+            editing.choose_keys_of(session, keeps)
     end(session)
 
 
-def shift_of(figure: Figure, keys: frozenset[int], wanted: int, *, copies: bool) -> int:
+def shift_of(
+    document: Document, keys: Mapping[int, frozenset[int]], wanted: int, *, copies: bool
+) -> int:
     """Return the number of frames next to `wanted` by which keys can be moved.
 
     Parameters
     ----------
-    figure : Figure
-    keys : frozenset of int
-        Their frames.
+    document : Document
+    keys : mapping of int to frozenset of int
+        Their frames, by the ids of their figures.
     wanted : int
     copies : bool
         Whether they stay as well; then 0 stands for no copies.
     """
-    all_keys = figure.key_frames
-    taken = all_keys if copies else all_keys - keys
-    low, high = -min(keys), LAST_FRAME - max(keys)
+    there = {figure: document.figure(figure).key_frames for figure in keys}
+    taken = there if copies else {figure: there[figure] - keys[figure] for figure in keys}
+    low, high = -min(map(min, keys.values())), LAST_FRAME - max(map(max, keys.values()))
     wanted = min(max(wanted, low), high)
     for distance in count():
         # On the side from which the pointer comes first: keys wait before one that is in the way.
         for by in (wanted - distance, wanted + distance)[:: 1 if wanted > 0 else -1]:
-            if by == 0 or (low <= by <= high and not {key + by for key in keys} & taken):
+            if by == 0 or (
+                low <= by <= high
+                and not any(
+                    key + by in taken[figure] for figure, frames in keys.items() for key in frames
+                )
+            ):
                 return by
     raise AssertionError("unreachable: 0 is always possible")
 
 
 def _drag_keys(session: Session, project: Project, drag: KeyDrag, frame: float) -> None:
     wanted = round(frame - drag.start)
-    figure = drag.before.figure(project.active)
-    by = shift_of(figure, drag.keys, wanted, copies=drag.copies)
+    by = shift_of(drag.before, drag.keys, wanted, copies=drag.copies)
     if by == drag.by:
         return
     if project.document is not drag.after:
         end(session)
         return
     change = key_commands.copy_keys if drag.copies else key_commands.move_keys
-    command = change(project.active, drag.keys, by)
+    command = editing.change_keys(lambda figure, frames: change(figure, frames, by), drag.keys)
     _become(session, command(drag.before) if by else drag.before, command.label)
-    editing.choose_keys(session, frozenset(key + by for key in drag.keys))
+    editing.choose_keys_of(
+        session,
+        {figure: frozenset(key + by for key in frames) for figure, frames in drag.keys.items()},
+    )
     project.timing.gesture = replace(drag, by=by, after=project.document)
 
 

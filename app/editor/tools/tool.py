@@ -1,5 +1,6 @@
 """What a tool is: it takes a press, and then has the pointer until the button is let go."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Protocol, Self
 
@@ -60,18 +61,18 @@ class Selection:
     """What was selected when a gesture began."""
 
     handles: frozenset[int]
-    keys: frozenset[int]
+    keys: Mapping[int, frozenset[int]]
 
     @classmethod
     def of(cls, project: Project) -> Self:
         """Return what is selected now."""
-        return cls(project.selected, project.chosen)
+        return cls(project.selected, project.chosen_of)
 
 
 def take_back(session: Session, gesture: ToolInHand, before: Selection) -> None:
     """Undo what a gesture did to the document and to the selection."""
     if session.project:
-        session.project.selected, session.project.chosen = before.handles, before.keys
+        session.project.selected, session.project.chosen_of = before.handles, before.keys
         editing.take_back(session, gesture)
 
 

@@ -24,7 +24,8 @@ Key = imgui.Key
 
 
 def _edits(session: Session) -> bool:
-    return session.project is not None and bool(session.project.selected or session.project.chosen)
+    project = session.project
+    return project is not None and bool(project.selected or project.chosen_of)
 
 
 def _undoable(session: Session) -> bool:

@@ -32,15 +32,13 @@ class _Bar:
 def draw_intervals(track: Track) -> list[Action]:
     """Draw all bars; a click on one opens its easing."""
     actions: list[Action] = []
-    draw_list = imgui.get_window_draw_list()
-    low, high = ImVec2(track.left, track.track_top), ImVec2(track.right, track.track_bottom)
-    draw_list.push_clip_rect(low, high, intersect_with_current_clip_rect=True)
+    track.push_clip()
     _draw_still(track)
     for bar in _bars(track):
         left, right = track.x(bar.low), track.x(bar.high)
         if right - left >= LEAST * track.look.em and track.shows(left, right):
             actions += _interval(track, bar, left, right)
-    draw_list.pop_clip_rect()
+    imgui.pop_clip_rect()
     return actions
 
 

@@ -1,18 +1,20 @@
-"""Keys on the track, marked by how they are passed, and the box that chooses them."""
+"""Keys of all figures, marked by how they are passed, and the box that chooses them."""
 
+from collections.abc import Mapping
 from itertools import pairwise
 
 from imgui_bundle import ImVec2, ImVec4, imgui
 from imgui_bundle import icons_fontawesome_6 as icons
 
-from app.document import LAST_FRAME, Keyframe, Passing
-from app.editor import Action, KeyBox, KeyDrag, Project, TimeGesture, do
+from app.document import LAST_FRAME, Figure, Keyframe, Passing
+from app.editor import Action, KeyBox, KeyDrag, Project, TimeGesture, do, layering
 from app.editor.actions import editing, keys, timeline_pointing
 from app.ui.shortcuts import with_key
 from app.ui.style import begin_tip, ink
 from app.ui.timeline.menus import PASSINGS, key_menu, track_menu
 from app.ui.timeline.track import (
     ROUNDING,
+    Row,
     Track,
     in_hand,
     in_seconds,
@@ -23,6 +25,7 @@ from app.ui.timeline.track import (
 
 CTRL = int(imgui.Key.mod_ctrl)
 REACH, SMALLEST = 0.55, 0.26  # em: half a key's diagonal, with room and among many
+SMALLER = 0.7  # keys of figures that are not the active one, as a part of what theirs would be
 GRIP = 1.45  # half the side of the box in which the pointer takes a key, as a part of that
 
 
@@ -48,19 +51,30 @@ def _press_ground(track: Track, low: ImVec2, high: ImVec2) -> list[Action]:
     if is_pressed():
         actions += begin_box(track)
     if clicked and is_plain_click():
-        actions.append(do(editing.choose_keys, frozenset()))
+        actions += choose_row(track, {})
     twice = imgui.is_item_hovered() and imgui.is_mouse_double_clicked(imgui.MouseButton_.left)
     if twice and round(track.pointed) in track.project.document.frames:
         actions.append(do(keys.insert_at, round(track.pointed)))
     if imgui.is_item_clicked(imgui.MouseButton_.right):
+        if not track.pointed_row.is_active:
+            actions += choose_row(track, {})
         imgui.open_popup("menu of track")
     return actions + track_menu(track)
 
 
+def choose_row(track: Track, chosen_of: Mapping[int, frozenset[int]]) -> list[Action]:
+    """Let the figure of the row under the pointer be the active one, and choose keys."""
+    return [
+        do(layering.choose, track.pointed_row.figure.id),
+        do(editing.choose_keys_of, chosen_of),
+    ]
+
+
 def begin_box(track: Track) -> list[Action]:
     """Begin to choose keys by a box; with Shift besides those that are chosen."""
-    keeps = track.project.chosen if imgui.get_io().key_shift else frozenset()
-    return [do(timeline_pointing.begin, KeyBox(start=track.pointed, keeps=keeps), track.strip)]
+    keeps = track.project.chosen_of if imgui.get_io().key_shift else {}
+    box = KeyBox(start=track.pointed, row=track.pointed_row.figure.id, keeps=keeps)
+    return [do(timeline_pointing.begin, box, track.strip)]
 
 
 def is_plain_click() -> bool:
@@ -86,94 +100,121 @@ def draw_box(track: Track) -> None:
 
 
 def draw_keys(track: Track) -> list[Action]:
-    """Draw the keys, and take what the pointer does to them."""
+    """Draw the keys of all figures, and take what the pointer does to them."""
     actions: list[Action] = []
-    radius = _radius(track)
-    grip = GRIP * radius
-    gesture = track.project.timing.gesture
-    draw_list = imgui.get_window_draw_list()
-    low, high = ImVec2(track.left, track.track_top), ImVec2(track.right, track.track_bottom)
-    draw_list.push_clip_rect(low, high, intersect_with_current_clip_rect=True)
-    for key in track.project.figure.keys:
-        x = track.x(key.frame)
-        if not track.shows(x - grip, x + grip):
-            continue
-        box = ImVec2(x - grip, track.middle - grip), ImVec2(x + grip, track.middle + grip)
-        origin = _origin(gesture, key.frame)
-        track.button(f"key {origin}", *box, right=True)
-        is_held = isinstance(gesture, KeyDrag) and key.frame == gesture.pressed + gesture.by
-        _draw_key(track, key, 1.15 * radius if in_hand() or is_held else radius)
-        if is_pressed():
-            actions += _press(track, key.frame)
-        if imgui.is_item_clicked(imgui.MouseButton_.right):
-            if key.frame not in track.project.chosen:
-                actions.append(do(editing.choose_keys, frozenset({key.frame})))
-            imgui.open_popup(f"menu of key {key.frame}")
-        if gesture is None:
-            _tell(track, key)
-        actions += key_menu(track, key)
-    draw_list.pop_clip_rect()
+    track.push_clip()
+    for row in track.rows:
+        if not row.figure.still or row.is_active:
+            # The same buttons when another figure becomes the active one.
+            imgui.push_id(f"row {row.figure.id}")
+            actions += _draw_row(track, row)
+            imgui.pop_id()
+    imgui.pop_clip_rect()
     return actions
 
 
-def _radius(track: Track) -> float:
+def _draw_row(track: Track, row: Row) -> list[Action]:
+    actions: list[Action] = []
+    radius = _radius(track, row)
+    grip = GRIP * radius
+    gesture, identity = track.project.timing.gesture, row.figure.id
+    for key in row.figure.keys:
+        x = track.x(key.frame)
+        if not track.shows(x - grip, x + grip):
+            continue
+        box = ImVec2(x - grip, row.middle - grip), ImVec2(x + grip, row.middle + grip)
+        origin = _origin(gesture, row.figure, key.frame)
+        track.button(f"key {origin}", *box, right=True)
+        is_held = row.is_active and _is_held(gesture, key.frame)
+        _draw_key(track, row, key, 1.15 * radius if in_hand() or is_held else radius)
+        if is_pressed():
+            actions += _press(track, identity, key.frame)
+        if imgui.is_item_clicked(imgui.MouseButton_.right):
+            if key.frame not in track.project.chosen_of.get(identity, ()):
+                actions += choose_row(track, {identity: frozenset({key.frame})})
+            elif not row.is_active:
+                actions += choose_row(track, track.project.chosen_of)
+            imgui.open_popup(f"menu of key {key.frame}")
+        if gesture is None:
+            _tell(track, row, key)
+        actions += key_menu(track, key)
+    return actions
+
+
+def _radius(track: Track, row: Row) -> float:
     """Return how large keys are, in pixels: smaller where they would cover each other."""
-    pairs = pairwise(track.project.figure.keys)
+    pairs = pairwise(row.figure.keys)
     gap = min((later.frame - key.frame for key, later in pairs), default=LAST_FRAME)
-    return min(max(0.48 * gap * track.strip.scale, SMALLEST), REACH) * track.look.em
+    part = 1.0 if row.is_active else SMALLER
+    return part * min(max(0.48 * gap * track.strip.scale, SMALLEST), REACH) * track.look.em
 
 
-def _origin(gesture: TimeGesture | None, frame: int) -> int:
+def _is_held(gesture: TimeGesture | None, frame: int) -> bool:
+    """Tell whether a key of the active figure is the one that is dragged."""
+    return isinstance(gesture, KeyDrag) and frame == gesture.pressed + gesture.by
+
+
+def _origin(gesture: TimeGesture | None, figure: Figure, frame: int) -> int:
     """Return at which frame a key was before the drag, so that its button stays the same one."""
-    if isinstance(gesture, KeyDrag) and not gesture.copies and frame - gesture.by in gesture.keys:
-        return frame - gesture.by
+    if isinstance(gesture, KeyDrag) and not gesture.copies:
+        before = frame - gesture.by
+        return before if before in gesture.keys.get(figure.id, ()) else frame
     return frame
 
 
-def _press(track: Track, frame: int) -> list[Action]:
-    chosen, io = track.project.chosen, imgui.get_io()
+def _press(track: Track, figure: int, frame: int) -> list[Action]:
+    chosen_of, io = track.project.chosen_of, imgui.get_io()
+    chosen = chosen_of.get(figure, frozenset())
     if io.key_shift:
-        return [do(editing.choose_keys, chosen ^ {frame})]
-    chosen = chosen if frame in chosen else frozenset({frame})
+        return [do(editing.choose_keys_of, {**chosen_of, figure: chosen ^ {frame}})]
+    if frame not in chosen:
+        chosen_of = {figure: frozenset({frame})}
     drag = KeyDrag(
-        keys=chosen,
+        keys=chosen_of,
         pressed=frame,
         start=track.pointed,
         copies=io.key_ctrl,
         before=track.project.document,
         after=track.project.document,
     )
-    return [do(editing.choose_keys, chosen), do(timeline_pointing.begin, drag, track.strip)]
+    return [
+        do(layering.choose, figure),
+        do(editing.choose_keys_of, chosen_of),
+        do(timeline_pointing.begin, drag, track.strip),
+    ]
 
 
-def _draw_key(track: Track, key: Keyframe, radius: float) -> None:
+def _draw_key(track: Track, row: Row, key: Keyframe, radius: float) -> None:
     palette, draw_list, em = track.look.palette, imgui.get_window_draw_list(), track.look.em
-    x, y = track.x(key.frame), track.middle
-    fill, warns = _colour(track, key)
-    chosen = key.frame in track.project.chosen
+    x, y = track.x(key.frame), row.middle
+    chosen = key.frame in track.project.chosen_of.get(row.figure.id, ())
+    warns = _warning(track, row, key)
+    fill = palette.accent if chosen else warns or (palette.text if row.is_active else palette.dim)
     passing, centre = key.shown_passing, ImVec2(x, y)
     if chosen:
         _mark(passing, centre, radius + 0.24 * em, ink(palette.accent, 0.35))
     _mark(passing, centre, radius + 0.12 * em, ink(palette.desk))
     _mark(passing, centre, radius, ink(fill))
     gesture = track.project.timing.gesture
-    if isinstance(gesture, KeyDrag) and gesture.by and key.frame == gesture.pressed + gesture.by:
+    if (
+        row.is_active
+        and isinstance(gesture, KeyDrag)
+        and gesture.by
+        and _is_held(gesture, key.frame)
+    ):
         write_tag(track, x, f"{key.frame}  ({gesture.by:+d})")
     if warns and chosen:
         _mark(passing, centre, 0.45 * radius, ink(warns))
-    if warns:
+    if warns and row.is_active:
         draw_list.add_circle_filled(ImVec2(x, track.bar_top - 0.1 * em), 0.2 * em, ink(warns))
 
 
-def _colour(track: Track, key: Keyframe) -> tuple[ImVec4, ImVec4 | None]:
-    """Return the colour of a key, and that of its warning if there is one."""
+def _warning(track: Track, row: Row, key: Keyframe) -> ImVec4 | None:
+    """Return the colour of a key's warning if there is one."""
     palette = track.look.palette
-    warns = None
     if not key.pose.certificate.certified:
-        warns = palette.danger
-    elif lags(track.project, key):
-        warns = palette.warning
-    return (palette.accent if key.frame in track.project.chosen else warns or palette.text), warns
+        return palette.danger
+    return palette.warning if row.is_active and lags(track.project, key) else None
 
 
 def _mark(passing: Passing, centre: ImVec2, radius: float, colour: int) -> None:
@@ -209,7 +250,7 @@ def _mark(passing: Passing, centre: ImVec2, radius: float, colour: int) -> None:
 
 
 def lags(project: Project, key: Keyframe) -> list[str]:
-    """Return which handles fall short of their targets in a key, in words."""
+    """Return which handles fall short of their targets in a key of the active figure, in words."""
     short = project.timing.shortfalls.value.get(key.pose, {})
     names = {handle.id: handle.name for handle in project.figure.handles}
     return [
@@ -219,7 +260,7 @@ def lags(project: Project, key: Keyframe) -> list[str]:
     ]
 
 
-def _tell(track: Track, key: Keyframe) -> None:
+def _tell(track: Track, row: Row, key: Keyframe) -> None:
     """Explain a key in a tooltip."""
     if not begin_tip():
         return
@@ -234,7 +275,7 @@ def _tell(track: Track, key: Keyframe) -> None:
             palette.danger,
             f"{icons.ICON_FA_TRIANGLE_EXCLAMATION}  Beyond the limits: in-betweens may fold here",
         )
-    for text in lags(track.project, key):
+    for text in lags(track.project, key) if row.is_active else ():
         imgui.text_colored(palette.warning, f"{icons.ICON_FA_TRIANGLE_EXCLAMATION}  {text}")
     imgui.text_disabled(f"Drag to move, {with_key(CTRL, 'drag')} to copy, right click for more")
     imgui.end_tooltip()

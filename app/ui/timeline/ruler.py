@@ -19,7 +19,7 @@ def draw_ruler(track: Track, frame: int) -> list[Action]:
     if is_pressed():
         actions += [
             do(timeline_pointing.begin, Scrub(), track.strip),
-            do(timeline_pointing.move, track.pointed),
+            do(timeline_pointing.move, track.pointed, track.row.figure.id),
         ]
     if imgui.is_item_hovered():
         imgui.set_mouse_cursor(imgui.MouseCursor_.resize_ew)

@@ -13,8 +13,9 @@ from app.ui.timeline.edges import draw_edges
 from app.ui.timeline.intervals import draw_intervals
 from app.ui.timeline.keys import draw_box, draw_ground, draw_keys
 from app.ui.timeline.markers import draw_markers
+from app.ui.timeline.rows import draw_rows
 from app.ui.timeline.ruler import draw_overview, draw_playhead, draw_ruler
-from app.ui.timeline.track import Track, in_seconds, was_dragged
+from app.ui.timeline.track import THIN, Track, in_seconds, was_dragged
 
 CTRL = int(imgui.Key.mod_ctrl)
 ZOOM_STEP = 1.2  # a notch of the wheel
@@ -41,6 +42,7 @@ def draw(session: Session, look: Look) -> list[Action]:
 def _draw_track(track: Track, frame: int) -> list[Action]:
     actions = draw_ruler(track, frame)
     actions += draw_ground(track)
+    actions += draw_rows(track, frame)
     actions += _navigate(track)
     actions += draw_intervals(track)
     actions += draw_edges(track)
@@ -51,7 +53,7 @@ def _draw_track(track: Track, frame: int) -> list[Action]:
     actions += draw_overview(track, frame)
     actions += _go_on(track)
     actions += draw_dropped(track)
-    actions += _follow(track, frame)
+    actions += _follow(track, frame) + _follow_active(track)
     if imgui.is_window_hovered() or track.project.timing.gesture is not None:
         actions.append(do(pointing.explain, _hint(track)))
     imgui.set_cursor_screen_pos(track.corner)
@@ -66,6 +68,10 @@ def _navigate(track: Track) -> list[Action]:
         return []
     em, frames = track.look.em, track.project.document.frames
     strip = track.strip
+    wheels_rows = imgui.get_mouse_pos().x < track.left and not io.key_ctrl
+    if wheels_rows and io.mouse_wheel:
+        to = track.project.timing.scrolled - THIN * io.mouse_wheel
+        return [do(timeline_pointing.scroll_rows, min(max(to, 0.0), track.overflow / em))]
     if io.key_ctrl and io.mouse_wheel:
         place = (imgui.get_mouse_pos().x - track.left) / em
         strip = strip.zoomed(ZOOM_STEP**io.mouse_wheel, place)
@@ -88,7 +94,8 @@ def _go_on(track: Track) -> list[Action]:
         return [do(timeline_pointing.cancel)]
     # A press that does not go on is a click; only the playhead is there at once.
     goes_on = isinstance(gesture, Scrub) or was_dragged()
-    moves = [do(timeline_pointing.move, track.pointed)] if goes_on else []
+    row = track.pointed_row.figure.id
+    moves = [do(timeline_pointing.move, track.pointed, row)] if goes_on else []
     if imgui.is_mouse_down(imgui.MouseButton_.left):
         return [*moves, *_pull(track)] if goes_on else []
     if isinstance(gesture, KeyDrag) and not goes_on and not gesture.copies:
@@ -126,6 +133,16 @@ def _follow(track: Track, frame: int) -> list[Action]:
     return [do(timeline_pointing.follow, frame, strip if strip is not track.strip else None)]
 
 
+def _follow_active(track: Track) -> list[Action]:
+    """Scroll the rows to that of a figure that has become the active one."""
+    timing, row, em = track.project.timing, track.row, track.look.em
+    if timing.seen_row == row.figure.id:
+        return []
+    above, below = track.track_top - row.top, row.bottom - track.track_bottom
+    scrolled = min(timing.scrolled, track.overflow / em)
+    return [do(timeline_pointing.scroll_rows, scrolled + (max(below, 0.0) - max(above, 0.0)) / em)]
+
+
 def _hint(track: Track) -> str:
     gesture = track.project.timing.gesture
     if isinstance(gesture, KeyDrag):
@@ -134,7 +151,13 @@ def _hint(track: Track) -> str:
         return f"{what} by {gesture.by:+d} frames, {seconds}: Esc takes it back"
     if gesture is not None:
         return "Esc takes it back" if isinstance(gesture, EdgeDrag | MarkerDrag) else ""
-    y = imgui.get_mouse_pos().y
+    return _hint_of_place(track)
+
+
+def _hint_of_place(track: Track) -> str:
+    x, y = imgui.get_mouse_pos()
+    if x < track.left:
+        return "Click a layer to see its handles and keys, wheel to see more layers"
     if y < track.ruler_top:
         return "Drag the ends of the preview range, double-click to play all frames"
     if track.marks_top <= y < track.track_top:

@@ -1,7 +1,10 @@
 """Where times are on the screen, for all that is drawn in the timeline."""
 
+from dataclasses import dataclass
+
 from imgui_bundle import ImVec2, imgui
 
+from app.document import Figure
 from app.editor import Project, Strip
 from app.ui.style import Look, ink
 
@@ -10,6 +13,23 @@ MARKS, SMALL_MARKS = 1.25, 0.7  # em: height of the band of markers, with their 
 BAR, BAR_SHARE = 3.6, 0.62  # em: height of intervals at most, and as a part of the track's
 CRAMPED, CRAMPED_SHARE = 5.5, 0.85  # em: below this height bars take more, and the overview goes
 ROUNDING = 0.4  # em
+NAMES, NAMES_SHARE = 9.0, 0.25  # em: width of the figures' names at most, and as a part of all
+THIN, TALL = 1.25, 2.8  # em: height of the rows of figures, and of the active one's at least
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Row:
+    """Where a figure's keys are: between two heights, in pixels of the window."""
+
+    figure: Figure
+    top: float
+    bottom: float
+    is_active: bool
+
+    @property
+    def middle(self) -> float:
+        """Half-way between them."""
+        return (self.top + self.bottom) / 2
 
 
 class Track:
@@ -25,8 +45,12 @@ class Track:
         self.look = look
         self.project = project
         self.corner = imgui.get_cursor_screen_pos()
-        self.size = imgui.get_content_region_avail()
-        self.left, self.top = self.corner.x, self.corner.y
+        room = imgui.get_content_region_avail()
+        figures = project.document.figures
+        self.has_names = len(figures) > 1
+        names = min(NAMES * look.em, NAMES_SHARE * room.x) if self.has_names else 0.0
+        self.size = ImVec2(room.x - names, room.y)
+        self.left, self.top = self.corner.x + names, self.corner.y
         self.right, self.bottom = self.left + self.size.x, self.top + self.size.y
         self.ruler_top = self.top + PREVIEW * look.em
         self.is_cramped = self.size.y < CRAMPED * look.em
@@ -35,13 +59,44 @@ class Track:
         self.track_top = self.marks_top + bool(project.document.markers) * marks * look.em
         is_whole = self.is_cramped or project.timing.strip is None
         self.track_bottom = self.bottom - (0 if is_whole else OVERVIEW * look.em)
-        self.middle = (self.track_top + self.track_bottom) / 2
+        self.rows, self.overflow = self._lay_rows(figures)
+        self.row = next(row for row in self.rows if row.is_active)
+        self.middle = self.row.middle
         share = CRAMPED_SHARE if self.is_cramped else BAR_SHARE
-        height = min(BAR * look.em, share * (self.track_bottom - self.track_top))
+        height = min(BAR * look.em, share * (self.row.bottom - self.row.top))
         self.bar_top, self.bar_bottom = self.middle - height / 2, self.middle + height / 2
         timing = project.timing
         fitting = Strip.fitting(project.document.frames, self.width)
         self.strip = timing.held or timing.strip or fitting
+
+    def _lay_rows(self, figures: tuple[Figure, ...]) -> tuple[list[Row], float]:
+        """Return a row for each figure, the one in front on top, and for how much there is no room.
+
+        The active one's takes what the others leave.
+        """
+        thin, room = THIN * self.look.em, self.track_bottom - self.track_top
+        others = (len(figures) - 1) * thin
+        tall = max(min(TALL * self.look.em, room), room - others)
+        overflow = max(others + tall - room, 0.0)
+        top = self.track_top - min(self.project.timing.scrolled * self.look.em, overflow)
+        rows = []
+        for figure in reversed(figures):
+            is_active = figure.id == self.project.active
+            bottom = top + (tall if is_active else thin)
+            rows.append(Row(figure=figure, top=top, bottom=bottom, is_active=is_active))
+            top = bottom
+        return rows, overflow
+
+    @property
+    def pointed_row(self) -> Row:
+        """The row under the pointer, or the nearest one that is seen."""
+        y = min(max(imgui.get_mouse_pos().y, self.track_top), self.track_bottom - 1)
+        return next((row for row in self.rows if y < row.bottom), self.rows[-1])
+
+    def push_clip(self) -> None:
+        """Let nothing be drawn and pointed at beyond the track, until the clip is popped."""
+        low, high = ImVec2(self.left, self.track_top), ImVec2(self.right, self.track_bottom)
+        imgui.push_clip_rect(low, high, intersect_with_current_clip_rect=True)
 
     @property
     def width(self) -> float:

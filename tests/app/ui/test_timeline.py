@@ -494,7 +494,9 @@ def test_keys_go_to_the_nearest_place_that_is_free(frames, subset, wanted, copie
         there = {frame + by for frame in dragged}
         return by == 0 or (min(there) >= 0 and not there & (frames if copies else frames - dragged))
 
-    by = timeline_pointing.shift_of(document.figures[0], dragged, wanted, copies=copies)
+    by = timeline_pointing.shift_of(
+        document, {document.figures[0].id: dragged}, wanted, copies=copies
+    )
     assert is_possible(by)
     nearest = max(wanted, -min(dragged))
     assert not any(is_possible(o) for o in range(-40, 120) if abs(o - nearest) < abs(by - nearest))

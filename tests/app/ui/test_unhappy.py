@@ -282,9 +282,11 @@ def test_only_what_is_there_is_selected(window, bent):
     editing.select(window.session, frozenset({1, 7}))
     assert bent.selected == {1}
     timeline_pointing.begin(
-        window.session, KeyBox(start=0.0, keeps=frozenset({24, 31})), bent.timing.strip
+        window.session,
+        KeyBox(start=0.0, row=bent.active, keeps={bent.active: frozenset({24, 31})}),
+        bent.timing.strip,
     )
-    timeline_pointing.move(window.session, 10.0)
+    timeline_pointing.move(window.session, 10.0, bent.active)
     assert bent.chosen == {0, 24}
     timeline_pointing.cancel(window.session)
     assert bent.chosen == {24}

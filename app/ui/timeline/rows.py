@@ -1,0 +1,163 @@
+"""The rows of a scene's figures: their names, and when each one is shown or hidden."""
+
+from itertools import pairwise
+
+from imgui_bundle import ImVec2, imgui
+from imgui_bundle import icons_fontawesome_6 as icons
+
+from app.document import Figure, is_visible, layer_commands
+from app.editor import Action, do, layering
+from app.editor.actions import editing, playback
+from app.ui.style import SMALL, begin_tip, ink, shortened
+from app.ui.timeline.track import THIN, Row, Track, in_hand
+
+HATCH = 0.55  # em between the lines over a time in which a figure is hidden
+EYE = 0.62  # em: half the width of the mark where a figure is shown or hidden
+
+
+def draw_rows(track: Track, frame: int) -> list[Action]:
+    """Draw what lies behind the keys of all figures; take clicks on names and on eyes."""
+    actions: list[Action] = []
+    if track.has_names:
+        actions += _draw_names(track, frame)
+    track.push_clip()
+    for row in track.rows:
+        if track.has_names:
+            _draw_ground(track, row)
+        for begin, end in _hidden(row.figure):
+            _hatch(track, row, begin, end)
+    for row in track.rows:
+        imgui.push_id(f"row {row.figure.id}")
+        for switch in row.figure.switches:
+            actions += _draw_switch(track, row, switch.frame, visible=switch.visible)
+        imgui.pop_id()
+    imgui.pop_clip_rect()
+    return actions
+
+
+def _draw_ground(track: Track, row: Row) -> None:
+    """Part a row from the next one; that of the active figure is brighter."""
+    palette, draw_list = track.look.palette, imgui.get_window_draw_list()
+    low, high = ImVec2(track.left, row.top), ImVec2(track.right, row.bottom)
+    if row.is_active:
+        draw_list.add_rect_filled(low, high, ink(palette.accent, 0.08))
+    draw_list.add_line(ImVec2(low.x, high.y), high, ink(palette.line))
+
+
+def _draw_names(track: Track, frame: int) -> list[Action]:
+    actions: list[Action] = []
+    palette, draw_list, em = track.look.palette, imgui.get_window_draw_list(), track.look.em
+    low, high = ImVec2(track.corner.x, track.track_top), ImVec2(track.left, track.track_bottom)
+    imgui.push_clip_rect(low, high, intersect_with_current_clip_rect=True)
+    imgui.push_font(None, SMALL * imgui.get_style().font_size_base)
+    for row in track.rows:
+        box = ImVec2(low.x, row.top), ImVec2(high.x - 0.3 * em, row.bottom)
+        if track.button(f"name {row.figure.id}", *box):
+            actions.append(do(layering.choose, row.figure.id))
+        if row.is_active or in_hand():
+            colour = ink(palette.accent, 0.25) if row.is_active else ink(palette.hovered)
+            draw_list.add_rect_filled(*box, colour, 0.2 * em)
+        icon = icons.ICON_FA_IMAGE if row.figure.still else icons.ICON_FA_PERSON
+        text = shortened(row.figure.name, box[1].x - low.x - 2.6 * em)
+        colour = ink(palette.text if is_visible(row.figure, frame) else palette.dim)
+        top = row.middle - imgui.get_text_line_height() / 2
+        draw_list.add_text(ImVec2(low.x + 0.4 * em, top), colour, icon)
+        draw_list.add_text(ImVec2(low.x + 1.8 * em, top), colour, text)
+    imgui.pop_font()
+    _draw_scrolled(track)
+    imgui.pop_clip_rect()
+    return actions
+
+
+def _draw_scrolled(track: Track) -> None:
+    """Draw beside the names which of the rows are seen, if not all are."""
+    if not track.overflow:
+        return
+    height = track.track_bottom - track.track_top
+    per_pixel = height / (height + track.overflow)
+    top = track.track_top + per_pixel * (track.track_top - track.rows[0].top)
+    width = 0.18 * track.look.em
+    imgui.get_window_draw_list().add_rect_filled(
+        ImVec2(track.left - width, top),
+        ImVec2(track.left, top + per_pixel * height),
+        ink(track.look.palette.dim, 0.8),
+        width / 2,
+    )
+
+
+def _hidden(figure: Figure) -> list[tuple[int | None, int | None]]:
+    """Return the stretches in which a figure is hidden; None is where there is no end to them."""
+    if figure.hidden:
+        return [(None, None)]
+    switches = figure.switches
+    stretches: list[tuple[int | None, int | None]] = [
+        (switch.frame, after.frame) for switch, after in pairwise(switches) if not switch.visible
+    ]
+    if switches and not switches[0].visible:
+        # A figure begins as its first switch says.
+        stretches.append((None, switches[0].frame))
+    if switches and not switches[-1].visible:
+        stretches.append((switches[-1].frame, None))
+    return stretches
+
+
+def _hatch(track: Track, row: Row, begin: int | None, end: int | None) -> None:
+    palette, draw_list = track.look.palette, imgui.get_window_draw_list()
+    frames = track.project.document.frames
+    left = max(track.x(frames.first if begin is None else begin), track.left)
+    right = min(track.x(frames.last if end is None else end), track.right)
+    if right <= left:
+        return
+    low, high = ImVec2(left, row.top + 1), ImVec2(right, row.bottom - 1)
+    height, gap = high.y - low.y, HATCH * track.look.em
+    draw_list.add_rect_filled(low, high, ink(palette.desk, 0.7))
+    imgui.push_clip_rect(low, high, intersect_with_current_clip_rect=True)
+    # The lines stay where they are in time while the timeline is scrolled.
+    first = track.x(0)
+    x = first + ((left - height - first) // gap) * gap
+    while x < right:
+        draw_list.add_line(ImVec2(x, high.y), ImVec2(x + height, low.y), ink(palette.dim, 0.35))
+        x += gap
+    imgui.pop_clip_rect()
+
+
+def _draw_switch(track: Track, row: Row, frame: int, *, visible: bool) -> list[Action]:
+    """Draw an eye where a figure comes to be seen, or a struck one where it is hidden."""
+    actions: list[Action] = []
+    palette, em, x = track.look.palette, track.look.em, track.x(frame)
+    if not track.shows(x - EYE * em, x + EYE * em):
+        return []
+    # Below the keys of the active figure; beside those of the others.
+    bottom = row.bottom - 0.1 * em
+    middle = (
+        bottom - THIN / 2 * em
+        if row.is_active and row.bottom - row.top > 2 * THIN * em
+        else (row.middle)
+    )
+    half = EYE * em
+    clicked = track.button(
+        f"switch {frame}", ImVec2(x, middle - half), ImVec2(x + 2 * half, middle + half), right=True
+    )
+    draw_list = imgui.get_window_draw_list()
+    colour = ink(palette.text if in_hand() else palette.anchor)
+    draw_list.add_line(ImVec2(x, row.top + 2), ImVec2(x, row.bottom - 2), colour, 1.5)
+    imgui.push_font(None, SMALL * SMALL * imgui.get_style().font_size_base)
+    icon = icons.ICON_FA_EYE if visible else icons.ICON_FA_EYE_SLASH
+    top = middle - imgui.get_text_line_height() / 2
+    draw_list.add_text(ImVec2(x + 0.15 * em, top), colour, icon)
+    imgui.pop_font()
+    menu = f"menu of switch {frame}"
+    if imgui.is_item_clicked(imgui.MouseButton_.right):
+        imgui.open_popup(menu)
+    elif clicked:
+        actions += [do(layering.choose, row.figure.id), do(playback.scrub, frame)]
+    if track.project.timing.gesture is None and begin_tip():
+        imgui.text_unformatted(f"{'Shown' if visible else 'Hidden'} from frame {frame} on")
+        imgui.text_disabled("Click to go there, right click to take it away")
+        imgui.end_tooltip()
+    if imgui.begin_popup(menu):
+        if imgui.menu_item_simple("Delete"):
+            command = layer_commands.switch_at(row.figure.id, frame, visible=None)
+            actions.append(do(editing.edit, command))
+        imgui.end_popup()
+    return actions
