@@ -13,6 +13,7 @@ from app.ui.timeline.track import THIN, Row, Track, in_hand
 
 HATCH = 0.55  # em between the lines over a time in which a figure is hidden
 EYE = 0.62  # em: half the width of the mark where a figure is shown or hidden
+BESIDE = 0.35  # em that it makes way for a key at the same frame
 
 
 def draw_rows(track: Track, frame: int) -> list[Action]:
@@ -127,24 +128,20 @@ def _draw_switch(track: Track, row: Row, frame: int, *, visible: bool) -> list[A
     palette, em, x = track.look.palette, track.look.em, track.x(frame)
     if not track.shows(x - EYE * em, x + EYE * em):
         return []
-    # Below the keys of the active figure; beside those of the others.
-    bottom = row.bottom - 0.1 * em
-    middle = (
-        bottom - THIN / 2 * em
-        if row.is_active and row.bottom - row.top > 2 * THIN * em
-        else (row.middle)
-    )
-    half = EYE * em
-    clicked = track.button(
-        f"switch {frame}", ImVec2(x, middle - half), ImVec2(x + 2 * half, middle + half), right=True
-    )
+    # Below the keys of the active figure, and beside those of the others.
+    is_below = row.is_active and row.bottom - row.top > 2 * THIN * em
+    middle = row.bottom - (0.1 + THIN / 2) * em if is_below else row.middle
+    is_at_key = not is_below and frame in row.figure.key_frames
+    left, half = x + (BESIDE * em if is_at_key else 0.0), EYE * em
+    low, high = ImVec2(left, middle - half), ImVec2(left + 2 * half, middle + half)
+    clicked = track.button(f"switch {frame}", low, high, right=True)
     draw_list = imgui.get_window_draw_list()
     colour = ink(palette.text if in_hand() else palette.anchor)
     draw_list.add_line(ImVec2(x, row.top + 2), ImVec2(x, row.bottom - 2), colour, 1.5)
     imgui.push_font(None, SMALL * SMALL * imgui.get_style().font_size_base)
     icon = icons.ICON_FA_EYE if visible else icons.ICON_FA_EYE_SLASH
     top = middle - imgui.get_text_line_height() / 2
-    draw_list.add_text(ImVec2(x + 0.15 * em, top), colour, icon)
+    draw_list.add_text(ImVec2(left + 0.15 * em, top), colour, icon)
     imgui.pop_font()
     menu = f"menu of switch {frame}"
     if imgui.is_item_clicked(imgui.MouseButton_.right):

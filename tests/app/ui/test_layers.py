@@ -2,10 +2,11 @@
 
 import numpy as np
 import pytest
+from imgui_bundle import ImVec2
 from layered import openraster
 from PIL import Image, ImageDraw
 
-from app.document import figure_commands
+from app.document import figure_commands, key_commands, layer_commands
 from app.document.keyframe import Target
 from app.editor import layering
 from app.editor.actions import editing, playback, posing
@@ -170,3 +171,179 @@ def test_depth_is_set_at_a_handle_and_shown_as_a_tint(window, scene):
     window.run(lambda robot: robot.item_input_value("Handle/##depth", 0.5))
     window.settle()
     assert scene.figure.handles[0].front == 0.5
+
+
+ARM, BODY = (0, 12, 24), (0, 18)
+
+
+@pytest.fixture
+def keyed(scene):
+    """The scene with some keys: of the arm, which is the active layer, and of the body."""
+    for name, frames in (("arm", ARM), ("body", BODY)):
+        figure = scene.document.figure(identity(scene, name))
+        for frame in frames[1:]:
+            pose = figure.keys[0].pose
+            scene.history.do(key_commands.insert_key(figure.id, frame, pose), gesture=None)
+    return scene
+
+
+def frames_of(project, name):
+    return tuple(key.frame for key in project.document.figure(identity(project, name)).keys)
+
+
+class Rows:
+    """The robot's pointer on the rows of the timeline."""
+
+    def __init__(self, robot, project):
+        self.robot = robot
+        self._project = project
+        robot.set_ref("###Timeline")
+        arm = identity(project, "arm")
+        begin, end = self.place("arm", f"key {ARM[0]}"), self.place("arm", f"key {ARM[-1]}")
+        assert project.active == arm
+        self._origin, self._step = begin.x, (end.x - begin.x) / ARM[-1]
+
+    def name(self, layer, item):
+        return f"**/row {identity(self._project, layer)}/{item}"
+
+    def place(self, layer, item):
+        return self.robot.item_info(self.name(layer, item)).rect_full.get_center()
+
+    def go_to(self, frame, y):
+        self.robot.mouse_move_to_pos(ImVec2(self._origin + frame * self._step, y))
+
+    def click(self, layer, item, button=0):
+        self.robot.item_click(self.name(layer, item), button)
+
+    def drag(self, layer, item, frame):
+        y = self.place(layer, item).y
+        self.robot.mouse_move(self.name(layer, item))
+        self.robot.mouse_down(0)
+        self.go_to(frame - 1, y)
+        self.go_to(frame, y)
+        self.robot.mouse_up(0)
+
+    def box(self, start, end):
+        """Span a box between two places, each a frame and a row's middle."""
+        self.go_to(*start)
+        self.robot.mouse_down(0)
+        self.go_to(end[0] - 1, end[1])
+        self.go_to(*end)
+        self.robot.mouse_up(0)
+
+
+@pytest.fixture
+def play(window, keyed):
+    def play(what):
+        window.run(lambda robot: what(Rows(robot, keyed)))
+        window.settle()
+
+    return play
+
+
+def test_a_key_of_another_row_chooses_its_layer(window, keyed, play):
+    arm, body = identity(keyed, "arm"), identity(keyed, "body")
+    play(lambda rows: rows.click("body", "key 18"))
+    assert keyed.active == body
+    assert keyed.chosen_of == {body: {18}}
+    assert playback.current_frame(window.session, keyed) == 18
+    window.run(lambda robot: robot.item_click(f"###Timeline/**/name {arm}"))
+    assert keyed.active == arm
+    assert not keyed.chosen_of
+    # So does what is between the keys of a row.
+    play(lambda rows: (rows.go_to(22, rows.place("body", "key 18").y), rows.robot.mouse_click(0)))
+    assert keyed.active == body
+
+
+def test_keys_of_several_rows_are_chosen_by_a_box_and_move_together(window, keyed, play):
+    arm, body = identity(keyed, "arm"), identity(keyed, "body")
+    before = keyed.document
+
+    def box(rows):
+        top, bottom = rows.place("arm", "key 12").y, rows.place("body", "key 18").y
+        rows.box((8, top), (21, bottom))
+
+    play(box)
+    assert keyed.active == arm
+    assert keyed.chosen_of == {arm: {12}, body: {18}}
+    # Taken by the one of the row that was not active.
+    play(lambda rows: rows.drag("body", "key 18", 22))
+    assert (frames_of(keyed, "arm"), frames_of(keyed, "body")) == ((0, 16, 24), (0, 22))
+    assert keyed.chosen_of == {arm: {16}, body: {22}}
+    assert keyed.active == body
+    window.act(editing.undo)
+    assert keyed.document is before
+    window.act(layering.choose, arm)
+    # One of them waits before a key that is in the way, and so does the other one.
+    play(box)
+    play(lambda rows: rows.drag("arm", "key 12", 24))
+    assert (frames_of(keyed, "arm"), frames_of(keyed, "body")) == ((0, 23, 24), (0, 29))
+    window.run(lambda robot: robot.key_press(int(window.Key.delete)))
+    assert (frames_of(keyed, "arm"), frames_of(keyed, "body")) == ((0, 24), (0,))
+    window.act(editing.undo)
+    window.act(editing.undo)
+    assert keyed.document is before
+
+
+def test_a_box_within_a_row_leaves_the_others_and_esc_takes_it_back(window, keyed, play):
+    arm, body = identity(keyed, "arm"), identity(keyed, "body")
+    play(
+        lambda rows: rows.box(
+            (8, rows.place("body", "key 18").y), (21, rows.place("body", "key 18").y)
+        )
+    )
+    assert keyed.chosen_of == {body: {18}}
+    before = keyed.document
+
+    def give_up(rows):
+        rows.robot.mouse_move(rows.name("body", "key 18"))
+        rows.robot.mouse_down(0)
+        rows.go_to(30, rows.place("body", "key 18").y)
+        rows.robot.key_press(int(window.Key.escape))
+        rows.robot.mouse_up(0)
+
+    play(give_up)
+    assert keyed.document is before
+    assert keyed.chosen_of == {body: {18}}
+    window.act(editing.choose_keys_of, {arm: frozenset({12, 77}), body: frozenset({5})})
+    assert keyed.chosen_of == {arm: {12}}
+
+
+def test_where_a_layer_is_hidden_is_marked_on_its_row(window, keyed, play):
+    arm, body = identity(keyed, "arm"), identity(keyed, "body")
+    window.act(playback.seek, 6)
+    window.act(layering.switch_here, body)
+    window.settle()
+    assert [switch.frame for switch in keyed.document.figure(body).switches] == [0, 6]
+    window.act(playback.seek, 20)
+    play(lambda rows: rows.click("body", "switch 6"))
+    assert playback.current_frame(window.session, keyed) == 6
+    assert keyed.active == body
+    window.act(layering.choose, arm)
+
+    def delete(rows):
+        rows.click("body", "switch 6", 1)
+        rows.robot.item_click("//$FOCUSED/Delete")
+
+    play(delete)
+    assert [switch.frame for switch in keyed.document.figure(body).switches] == [0]
+
+
+def test_rows_scroll_where_there_are_many(window, keyed):
+    for _ in range(8):
+        window.act(editing.edit, layer_commands.duplicate_figure(identity(keyed, "wall")))
+    window.act(layering.choose, identity(keyed, "arm"))
+    window.frames(3)
+    assert keyed.timing.scrolled == 0
+    window.act(layering.choose, identity(keyed, "wall"))
+    window.frames(3)
+    low = keyed.timing.scrolled
+    assert low > 0
+
+    def wheel(robot):
+        robot.set_ref("###Timeline")
+        robot.mouse_move(f"**/name {identity(keyed, 'wall')}")
+        robot.mouse_wheel_y(2)
+
+    window.run(wheel)
+    assert keyed.timing.scrolled < low
