@@ -14,7 +14,7 @@ from app.ui.style import begin_tip, ink
 from app.ui.timeline.menus import PASSINGS, key_menu, track_menu
 from app.ui.timeline.track import (
     ROUNDING,
-    Row,
+    FigureRow,
     Track,
     in_hand,
     in_seconds,
@@ -113,7 +113,7 @@ def draw_keys(track: Track) -> list[Action]:
     return actions
 
 
-def _draw_row(track: Track, row: Row) -> list[Action]:
+def _draw_row(track: Track, row: FigureRow) -> list[Action]:
     actions: list[Action] = []
     radius = _radius(track, row)
     grip = GRIP * radius
@@ -141,7 +141,7 @@ def _draw_row(track: Track, row: Row) -> list[Action]:
     return actions
 
 
-def _radius(track: Track, row: Row) -> float:
+def _radius(track: Track, row: FigureRow) -> float:
     """Return how large keys are, in pixels: smaller where they would cover each other."""
     pairs = pairwise(row.figure.keys)
     gap = min((later.frame - key.frame for key, later in pairs), default=LAST_FRAME)
@@ -184,7 +184,7 @@ def _press(track: Track, figure: int, frame: int) -> list[Action]:
     ]
 
 
-def _draw_key(track: Track, row: Row, key: Keyframe, radius: float) -> None:
+def _draw_key(track: Track, row: FigureRow, key: Keyframe, radius: float) -> None:
     palette, draw_list, em = track.look.palette, imgui.get_window_draw_list(), track.look.em
     x, y = track.x(key.frame), row.middle
     chosen = key.frame in track.project.chosen_of.get(row.figure.id, ())
@@ -209,7 +209,7 @@ def _draw_key(track: Track, row: Row, key: Keyframe, radius: float) -> None:
         draw_list.add_circle_filled(ImVec2(x, track.bar_top - 0.1 * em), 0.2 * em, ink(warns))
 
 
-def _warning(track: Track, row: Row, key: Keyframe) -> ImVec4 | None:
+def _warning(track: Track, row: FigureRow, key: Keyframe) -> ImVec4 | None:
     """Return the colour of a key's warning if there is one."""
     palette = track.look.palette
     if not key.pose.certificate.certified:
@@ -260,7 +260,7 @@ def lags(project: Project, key: Keyframe) -> list[str]:
     ]
 
 
-def _tell(track: Track, row: Row, key: Keyframe) -> None:
+def _tell(track: Track, row: FigureRow, key: Keyframe) -> None:
     """Explain a key in a tooltip."""
     if not begin_tip():
         return

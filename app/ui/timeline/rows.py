@@ -9,7 +9,7 @@ from app.document import Figure, is_visible, layer_commands
 from app.editor import Action, do, layering
 from app.editor.actions import editing, playback
 from app.ui.style import SMALL, begin_tip, ink, shortened
-from app.ui.timeline.track import THIN, Row, Track, in_hand
+from app.ui.timeline.track import THIN, FigureRow, Track, in_hand
 
 HATCH = 0.55  # em between the lines over a time in which a figure is hidden
 EYE = 0.62  # em: half the width of the mark where a figure is shown or hidden
@@ -36,7 +36,7 @@ def draw_rows(track: Track, frame: int) -> list[Action]:
     return actions
 
 
-def _draw_ground(track: Track, row: Row) -> None:
+def _draw_ground(track: Track, row: FigureRow) -> None:
     """Part a row from the next one; that of the active figure is brighter."""
     palette, draw_list = track.look.palette, imgui.get_window_draw_list()
     low, high = ImVec2(track.left, row.top), ImVec2(track.right, row.bottom)
@@ -102,7 +102,7 @@ def _hidden(figure: Figure) -> list[tuple[int | None, int | None]]:
     return stretches
 
 
-def _hatch(track: Track, row: Row, begin: int | None, end: int | None) -> None:
+def _hatch(track: Track, row: FigureRow, begin: int | None, end: int | None) -> None:
     palette, draw_list = track.look.palette, imgui.get_window_draw_list()
     frames = track.project.document.frames
     left = max(track.x(frames.first if begin is None else begin), track.left)
@@ -122,7 +122,7 @@ def _hatch(track: Track, row: Row, begin: int | None, end: int | None) -> None:
     imgui.pop_clip_rect()
 
 
-def _draw_switch(track: Track, row: Row, frame: int, *, visible: bool) -> list[Action]:
+def _draw_switch(track: Track, row: FigureRow, frame: int, *, visible: bool) -> list[Action]:
     """Draw an eye where a figure comes to be seen, or a struck one where it is hidden."""
     actions: list[Action] = []
     palette, em, x = track.look.palette, track.look.em, track.x(frame)

@@ -18,7 +18,7 @@ THIN, TALL = 1.25, 2.8  # em: height of the rows of figures, and of the active o
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Row:
+class FigureRow:
     """Where a figure's keys are: between two heights, in pixels of the window."""
 
     figure: Figure
@@ -69,7 +69,7 @@ class Track:
         fitting = Strip.fitting(project.document.frames, self.width)
         self.strip = timing.held or timing.strip or fitting
 
-    def _lay_rows(self, figures: tuple[Figure, ...]) -> tuple[list[Row], float]:
+    def _lay_rows(self, figures: tuple[Figure, ...]) -> tuple[list[FigureRow], float]:
         """Return a row for each figure, the one in front on top, and for how much there is no room.
 
         The active one's takes what the others leave.
@@ -83,12 +83,12 @@ class Track:
         for figure in reversed(figures):
             is_active = figure.id == self.project.active
             bottom = top + (tall if is_active else thin)
-            rows.append(Row(figure=figure, top=top, bottom=bottom, is_active=is_active))
+            rows.append(FigureRow(figure=figure, top=top, bottom=bottom, is_active=is_active))
             top = bottom
         return rows, overflow
 
     @property
-    def pointed_row(self) -> Row:
+    def pointed_row(self) -> FigureRow:
         """The row under the pointer, or the nearest one that is seen."""
         y = min(max(imgui.get_mouse_pos().y, self.track_top), self.track_bottom - 1)
         return next((row for row in self.rows if y < row.bottom), self.rows[-1])
