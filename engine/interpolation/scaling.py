@@ -250,10 +250,9 @@ class SharpScaling:
         """
         if not self.course.is_straight:
             return self._minima(times, self.worst)
-        rho = self._minima(times, None)
-        share = looseness(times)
-        loose = share > 0
-        rho[loose] **= 1.0 - share[loose]
+        rho, share = np.ones(len(times)), looseness(times)
+        tight, loose = share < 1, share > 0
+        rho[tight] = self._minima(times[tight], None) ** (1.0 - share[tight])
         rho[loose] *= self._minima(times[loose], self.worst) ** share[loose]
         return rho
 
