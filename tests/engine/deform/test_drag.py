@@ -22,6 +22,7 @@ from pictures import stick_figure
 
 from engine.deform import Deformer, Handles, Status
 from engine.deform.certified_step import FARTHEST, add_samples
+from engine.deform.deformer import STRIDE
 from engine.domain.build import build_domain
 from engine.domain.outline.cage import offset_cage
 from engine.errors import EngineError
@@ -166,6 +167,27 @@ def test_wild_requests_stay_certified_and_the_shape_comes_back(name):
     assert state.status is Status.CONVERGED
     assert_allclose(deformer.positions(state), STAR_POINTS, rtol=0, atol=1e-5)
     assert_allclose(state.map(0.9 * STAR_POINTS), 0.9 * STAR_POINTS, atol=1e-4)
+
+
+def test_a_sketched_hessian_follows_the_hand_like_the_whole_one(monkeypatch):
+    angle = 2 * np.pi * np.arange(100) / 100
+    outline, cage = (
+        (1 + offset + 0.35 * np.cos(5 * angle)) * np.exp(1j * angle) for offset in (0.0, 0.04)
+    )
+    boundary = Boundary.sample(outline, cage)
+    points = np.append(1.1 * np.exp(2j * np.pi * np.arange(5) / 5), 0.0)
+    deformer = Deformer(boundary=boundary, handles=Handles.place(boundary, points), bounds=BOUNDS)
+    jitter = np.random.default_rng(101).normal(size=(25, 6, 2)) @ [1, 1j]
+    means = []
+    for stride in (STRIDE, 1):
+        monkeypatch.setattr("engine.deform.deformer.STRIDE", stride)
+        state, energies = deformer.start(), []
+        for moved in np.cumsum(0.025 * jitter, axis=0):
+            state = deformer.step(state, deformer.handles.wish(points + moved))
+            energies.append(state.statistics.objective)
+        means.append(np.mean(energies))
+    # 14 % above, as long as samples at the bounds were summed with their neighbours.
+    assert means[0] < 1.05 * means[1]
 
 
 def test_sixty_random_jerks():
