@@ -195,6 +195,7 @@ def _inputs(session: Session, project: Project) -> tuple[object, ...]:
         else project.puppet.coarse.value.sampler,
         project.paths.value if session.overlays.paths else None,
         project.posing.targets if project.posing else None,
+        project.active,
         project.selected,
         project.view(session.screen),
         project.playhead.since is None,

@@ -1,5 +1,7 @@
 """A scene of several layers in the window: chosen, ordered, hidden, joined and painted in front."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from imgui_bundle import ImVec2
@@ -347,3 +349,20 @@ def test_rows_scroll_where_there_are_many(window, keyed):
 
     window.run(wheel)
     assert keyed.timing.scrolled < low
+
+
+def test_handles_are_shown_of_the_layer_that_is_chosen_even_while_in_betweens_are_awaited(
+    window, scene
+):
+    window.act(posing.add_handle, 190 + 118j)
+    window.settle()
+    window.act(editing.select, frozenset())
+    # As long as the worker has not made them, no layer has a sampler.
+    for puppet in scene.puppets.values():
+        puppet.coarse.value = replace(puppet.coarse.value, sampler=None)
+    before = np.asarray(window.picture()).astype(int)
+    scene.active = identity(scene, "body")
+    after = np.asarray(window.picture()).astype(int)
+    hand = window.point(190 + 118j)
+    part = np.s_[int(hand.y) - 8 : int(hand.y) + 8, int(hand.x) - 8 : int(hand.x) + 8]
+    assert np.abs(after[part] - before[part]).max() > 30
