@@ -308,7 +308,10 @@ def _go_on(session: Session, look: Look, canvas: _Canvas) -> list[Action]:
             draw_entry(look, mark, canvas.point)
     io, pointer = imgui.get_io(), canvas.pointer
     actions: list[Action] = []
-    if io.mouse_delta.x or io.mouse_delta.y or io.key_ctrl != session.snaps:
+    # Only what is turned goes by steps; Ctrl let go after Ctrl+Z is not to pull once more.
+    is_turning = any(isinstance(mark, SweepMark) for mark in gesture.marks)
+    is_stepped = is_turning and io.key_ctrl != session.snaps
+    if io.mouse_delta.x or io.mouse_delta.y or is_stepped:
         move = pointing.move_in_steps if io.key_ctrl else pointing.move
         actions.append(do(move, pointer))
     characters = typed()

@@ -93,6 +93,10 @@ def test_undo_during_a_drag(window, bent):
         robot.yield_()
         assert bent.document is not first
         press(robot, window.Key.mod_ctrl, window.Key.z)
+        # Nor does it come again as Ctrl is let go.
+        robot.yield_(3)
+        window.session.jobs.settle()
+        robot.yield_()
         assert bent.document is first
         robot.mouse_move_to_pos(window.point(start - 40j))
         robot.mouse_up(0)
