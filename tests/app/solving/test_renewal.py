@@ -1,0 +1,19 @@
+from layered import blob, openraster
+
+from app.document.settings import Meshing
+from app.solving.renewal import Renewal, go_on
+from app.storage.layers import open_layered
+
+
+def test_a_layer_that_is_built_anew_stays_where_it_is(tmp_path):
+    path = tmp_path / "head.ora"
+    stack = '<layer name="head" src="data/0.png" x="60" y="10"/>'
+    path.write_bytes(openraster((200, 220), stack, [blob(70, 50)]))
+    opened = open_layered(path, Meshing(triangles=4_000))
+    (head,) = opened.document.figures
+    renewal = Renewal(before=head, bounds=head.bounds, meshing=Meshing(triangles=5_000))
+    while not renewal.is_over:
+        renewal = go_on(renewal, opened.pictures[head.id].rgba)
+    assert abs(renewal.domain.outline.mean() - head.domain.outline.mean()) < 1
+    (again,) = renewal.command(opened.document).figures
+    assert again.corner == head.corner == 60 + 160j
