@@ -15,6 +15,7 @@ from app.editor.failures import report, sentence
 from app.editor.jobs import Job
 from app.editor.project import Project
 from app.editor.session import Session
+from app.errors import LissomError
 from app.motion import Joints
 from app.storage import (
     Layer,
@@ -27,7 +28,7 @@ from app.storage import (
 from engine.geometry import contains
 
 T = TypeVar("T")
-ADDING, HANGING = "Adding a layer", "Hanging a layer"
+RISING, ADDING, HANGING = "Finding a shape", "Adding a layer", "Hanging a layer"
 
 
 def choose(session: Session, identity: int) -> None:
@@ -143,6 +144,39 @@ def stand_still(session: Session, identity: int) -> None:
     if session.project:
         figure = session.project.document.figure(identity)
         editing.edit(session, layer_commands.replace_figure(identity, still_figure(figure)))
+
+
+def stand_up(session: Session, identity: int) -> None:
+    """Let a still picture be posed: the shape that is drawn on it, as it was drawn."""
+    project = session.project
+    if project is None:
+        return
+    figure, picture = project.document.figure(identity), project.puppets[identity].picture
+    layer = Layer(
+        name=figure.name,
+        data=figure.picture.data,
+        picture=picture,
+        corner=figure.corner,
+        visible=not figure.hidden,
+        opacity=figure.opacity,
+    )
+    is_cut_out = bool((picture.rgba[..., 3] == 0).any())
+    meshing = session.meshing
+
+    def work() -> Figure:
+        made, notices = layer_figure(layer, identity, meshing, is_cut_out=is_cut_out)
+        if made.still:
+            raise LissomError(f"there is no shape on it ({'; '.join(notices)})")
+        return replace(
+            made, reference=figure.reference, locked=figure.locked, switches=figure.switches
+        )
+
+    def done(made: Figure) -> None:
+        if session.project is project:
+            editing.edit(session, layer_commands.replace_figure(identity, made))
+            choose(session, identity)
+
+    _put(session, RISING, work, done, f"{figure.name} cannot be posed")
 
 
 def add(session: Session, paths: Sequence[Path]) -> None:

@@ -129,6 +129,8 @@ def _settings(project: Project, look: Look, figure: Figure, frame: int) -> list[
     actions += _joint(project, look, figure)
     if figure.still:
         small(look, "A still picture: it is shown as it was drawn.")
+        if imgui.button("Let it be posed", ImVec2(FILL, 0)):
+            actions.append(do(layering.stand_up, identity))
     elif imgui.button("Make it a still picture", ImVec2(FILL, 0)):
         actions.append(do(layering.stand_still, identity))
     return actions

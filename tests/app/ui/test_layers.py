@@ -143,6 +143,22 @@ def test_a_layer_that_hangs_follows_live_and_is_posed_around_its_joint(window, s
     assert np.abs(loose.placement.on(loose.positions) - before).max() < 1e-3
 
 
+def test_a_layer_stands_still_and_is_posed_again(window, scene):
+    arm = identity(scene, "arm")
+    window.act(layering.stand_still, arm)
+    window.settle()
+    assert scene.document.figure(arm).still
+    assert len(scene.document.figure(arm).domain.mesh.triangles) == 2
+    window.run(lambda robot: robot.item_click("Layers/Let it be posed"))
+    window.settle()
+    assert not scene.document.figure(arm).still
+    assert scene.figure.name == "arm"
+    for _ in range(2):
+        window.act(editing.undo)
+    window.settle()
+    assert not scene.document.figure(arm).still
+
+
 def test_layers_take_turns(window, scene):
     arm = identity(scene, "arm")
     window.act(playback.seek, 12)
