@@ -84,6 +84,8 @@ def _row(project: Project, look: Look, figure: Figure, frame: int) -> list[Actio
     text = f"{icon}  {shortened(figure.name, imgui.get_content_region_avail().x - 3 * look.em)}"
     size = ImVec2(0, imgui.get_frame_height())
     imgui.push_style_var(imgui.StyleVar_.selectable_text_align, ImVec2(0, 0.5))
+    # A selectable begins at the line's text, which the buttons before it have put lower.
+    imgui.set_cursor_pos_y(imgui.get_cursor_pos_y() - imgui.get_style().frame_padding.y)
     if imgui.selectable(f"{text}###row {identity}", identity == project.active, 0, size)[0]:
         actions.append(do(layering.choose, identity))
     imgui.pop_style_var()
