@@ -22,8 +22,8 @@ Equation map of *Bounded Distortion Harmonic Shape Interpolation* (Chien, Chen, 
     (3)             logarithmic blend of f_z         engine.interpolation.derivatives.Passage
     (4), (5)        ν variant                        engine.interpolation.nu.NuBlend
     (6), (7)        η variant                        engine.interpolation.eta.EtaBlend
-    (8), (16)-(18)  scaled η, largest ρ(t)           engine.interpolation.scaling.SharpScaling
-    Property 4      ρ(t) without kinks               engine.interpolation.smooth_scaling.Scaling
+    (8), (16)-(18)  scaled η, largest ρ(t)           engine.interpolation.scaling.sharp.SharpScaling
+    Property 4      ρ(t) without kinks               engine.interpolation.scaling.smooth.Scaling
     (9)-(13)        metric on the outline, Lemma 7   engine.interpolation.metric.OutlineMetric
     Section 6       metric variant                   engine.interpolation.metric.MetricResidual
     Section 7.4     Hilbert transform                engine.dirichlet.hilbert.HilbertTransform

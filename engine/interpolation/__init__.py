@@ -1,16 +1,17 @@
 """Interpolation of harmonic keyframes: every variant of the paper behind `prepare`.
 
 In: harmonic maps of one domain, points, a variant, times.
-Out: positions, f_z and f_z̄ of the points at any time.
+Out: positions, f_z and f_z̄ of the points at any time; series in time.
 Imports: `engine.paths`, `engine.dirichlet`, `engine.maps`.
 """
 
+from engine.interpolation import chebyshev
 from engine.interpolation.inbetweens import Frame, Inbetweens, IntegratedInbetweens
 from engine.interpolation.keyframe_samples import KeyframeSamples, sample_keyframes
 from engine.interpolation.passing import Course, End, Joint, Tangent, shortened
 from engine.interpolation.preparation import Prepared, prepare, prepare_inbetweens
+from engine.interpolation.scaling import Scaling
 from engine.interpolation.sites import Sites, prepare_sites
-from engine.interpolation.smooth_scaling import Scaling
 from engine.variant import Variant
 
 __all__ = [
@@ -26,6 +27,7 @@ __all__ = [
     "Sites",
     "Tangent",
     "Variant",
+    "chebyshev",
     "prepare",
     "prepare_inbetweens",
     "prepare_sites",

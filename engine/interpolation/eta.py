@@ -13,7 +13,7 @@ from engine.interpolation.derivatives import Derivatives, Passage, weighted
 class EtaBlend:
     """log f_z and η linear in the weights, Equations (3) and (6): Properties 1, 2 and 8.
 
-    Scaled by ρ (`engine.interpolation.smooth_scaling`) it has Properties 3 to 7 as well.
+    Scaled by ρ (`engine.interpolation.scaling`) it has Properties 3 to 7 as well.
 
     Parameters
     ----------

@@ -8,8 +8,8 @@ import numpy as np
 from engine.arrays import Complexes, freeze
 from engine.interpolation.derivatives import Derivatives, Passage, weighted
 from engine.interpolation.periods import Residual
+from engine.interpolation.scaling import Scaling
 from engine.interpolation.sites import Sites
-from engine.interpolation.smooth_scaling import Scaling
 
 
 class Blend(Protocol):

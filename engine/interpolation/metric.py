@@ -13,8 +13,8 @@ from typing import NamedTuple
 import numpy as np
 
 from engine.arrays import Complexes, Floats
-from engine.chebyshev import separate
 from engine.dirichlet import Extension
+from engine.interpolation.chebyshev import separate
 from engine.interpolation.derivatives import Passage
 from engine.interpolation.passing import Course, Tangent, bernstein, curbed
 from engine.interpolation.periods import Residual

@@ -29,7 +29,7 @@ import numpy.typing as npt
 import scipy.linalg
 
 from engine.arrays import Complexes, Floats, Indices, freeze
-from engine.chebyshev import PiecewiseSeries, separate
+from engine.interpolation.chebyshev import PiecewiseSeries, separate
 from engine.maps import Boundary
 from engine.paths import Loops
 

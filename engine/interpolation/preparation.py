@@ -23,9 +23,8 @@ from engine.interpolation.metric import MetricResidual
 from engine.interpolation.nu import NuBlend
 from engine.interpolation.passing import Course, Joint, Tangent, shortened
 from engine.interpolation.periods import Closing, Open
-from engine.interpolation.scaling import SharpScaling
+from engine.interpolation.scaling import Scaling, SharpScaling
 from engine.interpolation.sites import Sites, prepare_sites
-from engine.interpolation.smooth_scaling import Scaling
 from engine.maps import Bounds, HarmonicMap
 from engine.paths import root_sheets
 from engine.variant import Variant

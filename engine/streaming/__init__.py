@@ -3,7 +3,7 @@
 In: in-betweens of two keyframes; or a whole motion, as points at any time.
 Out: `Series`: a few arrays whose weighted sum is a frame; `ShapeTargets`: the same for other
 programs, of a whole motion within a tolerance.
-Imports: `engine.interpolation`, `engine.chebyshev`.
+Imports: `engine.interpolation`.
 """
 
 from engine.streaming.build import MOST_ROWS, build_series, finish

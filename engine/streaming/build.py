@@ -8,8 +8,7 @@ from typing import TypeVar
 import numpy as np
 
 from engine.arrays import Floats, Singles, freeze
-from engine.chebyshev import nodes, to_coefficients
-from engine.interpolation import Scaling
+from engine.interpolation import Scaling, chebyshev
 from engine.streaming.channels import Channels, Sample, scales
 from engine.streaming.series import Series, SeriesPiece
 
@@ -174,7 +173,7 @@ class _Window:
         found = np.empty((parts, degree + 1, len(self.first.values)), dtype=np.float32)
         if known is not None:
             found[:, ::2] = known
-        for index, x in enumerate(nodes(degree)):
+        for index, x in enumerate(chebyshev.nodes(degree)):
             if known is not None and index % 2 == 0:
                 continue
             if index in (0, degree):
@@ -193,7 +192,7 @@ class _Window:
         parts, count, size = snapshots.shape
         flat = snapshots.reshape(parts * count, size)
         times = leading_functions(flat, OF_RANK * self.source.tolerance)
-        series = to_coefficients(count - 1) @ times.reshape(parts, count, -1)
+        series = chebyshev.to_coefficients(count - 1) @ times.reshape(parts, count, -1)
         ends = np.zeros((count, 2))
         functions = [np.hstack([ends, part]) for part in series]
         functions[0][:2, :2] = [[0.5, 0.5], [-0.5, 0.5]]
@@ -225,7 +224,7 @@ class _Window:
 
 def _last_terms(snapshots: Singles) -> float:
     """Return the largest of the last coefficients of the polynomials through snapshots."""
-    last = to_coefficients(snapshots.shape[1] - 1)[-LAST_TERMS:].astype(np.float32)
+    last = chebyshev.to_coefficients(snapshots.shape[1] - 1)[-LAST_TERMS:].astype(np.float32)
     return max(float(np.abs(last @ part).max()) for part in snapshots)
 
 

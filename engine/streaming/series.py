@@ -6,9 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from engine.arrays import Floats, Singles
-from engine.chebyshev import basis
 from engine.errors import EngineError
-from engine.interpolation import Scaling
+from engine.interpolation import Scaling, chebyshev
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -47,7 +46,7 @@ class SeriesPiece:
             keyframe[int(time)] = 1.0
             return keyframe
         x = (2 * time - self.start - self.end) / (self.end - self.start)
-        polynomials = basis(x, len(self.functions))
+        polynomials = chebyshev.basis(x, len(self.functions))
         exact = polynomials @ self.functions
         if self.scaled_functions is not None:
             exact += (rho - 1.0) * (polynomials @ self.scaled_functions)

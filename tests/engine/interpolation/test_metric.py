@@ -5,7 +5,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
-from engine.chebyshev import separate
+from engine.interpolation.chebyshev import separate
 from engine.interpolation.metric import OutlineMetric
 from engine.interpolation.passing import Course
 from engine.maps import Bounds

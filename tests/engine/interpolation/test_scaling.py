@@ -11,7 +11,7 @@ from engine.geometry.polygon import edges
 from engine.interpolation import prepare
 from engine.interpolation.passing import Course
 from engine.interpolation.scaling import BESIDE_KEY, PointSamples, SharpScaling
-from engine.interpolation.smooth_scaling import FARTHEST, HALF_WINDOW, Scaling, time_of
+from engine.interpolation.scaling.smooth import FARTHEST, HALF_WINDOW, Scaling, time_of
 from engine.maps import Bounds, distortion
 from engine.maps.harmonic_map import HarmonicMap
 

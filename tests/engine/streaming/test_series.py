@@ -10,10 +10,9 @@ from hypothesis import strategies as st
 from interpolation_shapes import bar, bent, inner_points, letter_l, narrow_u, random_map
 from numpy.testing import assert_allclose, assert_array_equal
 
-from engine import chebyshev
 from engine.dirichlet.hilbert import HilbertTransform
 from engine.errors import EngineError
-from engine.interpolation import Variant, prepare
+from engine.interpolation import Variant, chebyshev, prepare
 from engine.maps import distortion
 from engine.streaming import Distortions, Positions, build_series, finish
 from engine.streaming.build import DEGREES, MOST_ATTEMPTS, MOST_ROWS

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
 from engine.arrays import Floats, freeze
-from engine.interpolation.scaling import SharpScaling
+from engine.interpolation.scaling.sharp import SharpScaling
 
 # Time is stretched to u, t = 1 / (1 + exp(−STRETCH sinh(u / STRETCH))), so that a window of
 # constant width in u narrows towards both keyframes, where ρ has to be 1.

@@ -181,7 +181,7 @@ class SharpScaling:
     """The largest ρ at each time: the minimum of the pointwise ratios over the outline.
 
     Being a minimum, it has a kink in time wherever another point or another bound takes over;
-    in-betweens use `engine.interpolation.smooth_scaling.Scaling`.
+    in-betweens use `engine.interpolation.scaling.Scaling`.
 
     Departs from the paper: next to a keyframe a point's own bounds leave no room where f_z̄ nearly
     vanishes. ρ would fall within a moment, and the shape jump. Beside a key (`BESIDE_KEY`) this ρ

@@ -1,0 +1,11 @@
+"""The scaling ρ of η: by the pointwise rule of the paper (Section 7.3), and without kinks.
+
+In: keyframes, an outline, the course through the keys, bounds.
+Out: the factor ρ at any time.
+Imports: `engine.maps`, `engine.interpolation.passing`, `engine.interpolation.periods`.
+"""
+
+from engine.interpolation.scaling.sharp import BESIDE_KEY, PointSamples, SharpScaling
+from engine.interpolation.scaling.smooth import Scaling
+
+__all__ = ["BESIDE_KEY", "PointSamples", "Scaling", "SharpScaling"]
