@@ -35,6 +35,8 @@ class MovingShape:
     texture : uint8, shape (h, w, 4)
         Straight alpha, with colours where it is transparent; the part of the picture that the mesh
         shows.
+    opacity : float
+        Of the whole figure.
     uv : float64, shape (v, 2)
         u right, v up; [0, 1] spans the texture.
     orders : tuple of (float, int32 of shape (m, 3))
@@ -48,6 +50,7 @@ class MovingShape:
 
     name: str
     texture: Bytes
+    opacity: float
     uv: Floats
     orders: tuple[tuple[float, Integers], ...]
     sights: tuple[tuple[float, bool], ...]
@@ -113,13 +116,12 @@ def moving_shapes(
         )
         motion = yield from _share(steps, plan.span, (index, len(clips)))
         texture, uv = _cut_out(pictures[figure.id], mesh.vertices - figure.corner)
-        # The figure may shine through itself where it lies over itself; nothing else can be said.
-        texture[..., 3] = np.rint(figure.opacity * texture[..., 3])
         orders = [(frame, painted_triangles(mesh, clip, frame)) for frame in numbers]
         sights = [(frame, is_visible(figure, frame)) for frame in numbers]
         shape = MovingShape(
             name=plan.out.stem if len(document.figures) == 1 else figure.name,
             texture=bled(texture),
+            opacity=figure.opacity,
             uv=uv,
             orders=tuple(((n - first) / document.fps, order) for n, order in _changes(orders)),
             sights=tuple(((n - first) / document.fps, seen) for n, seen in _changes(sights)),

@@ -185,6 +185,8 @@ class _Asset:
         material = {
             "name": shape.name,
             "pbrMetallicRoughness": {
+                # A faint figure shines through itself where it lies over itself.
+                "baseColorFactor": [1.0, 1.0, 1.0, shape.opacity],
                 "baseColorTexture": {"index": texture},
                 "metallicFactor": 0.0,
                 "roughnessFactor": 1.0,

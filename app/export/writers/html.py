@@ -23,9 +23,13 @@ _PAGE: Final = Path(__file__).with_name("player.html")
 _HEADER: Final = (
     "#version 300 es\nprecision highp float;\nprecision highp int;\nprecision highp sampler2D;\n"
 )
-# The files of the renderer itself, for a drawing as it is.
-_VERTEX: Final = ("mesh.vert", "positions.glsl", "placed.glsl")
-_FRAGMENT: Final = ("picture.frag", "sample.glsl")
+# The files of the renderer itself, for a drawing as it is and for one that is laid over others.
+_SHADERS: Final = (
+    ("vertex", ("mesh.vert", "positions.glsl", "placed.glsl")),
+    ("fragment", ("picture.frag", "sample.glsl")),
+    ("screen", ("screen.vert",)),
+    ("faint", ("ghost.frag",)),
+)
 
 
 def html_page(shapes: Sequence[MovingShape], plan: ExportPlan) -> bytes:
@@ -37,8 +41,7 @@ def html_page(shapes: Sequence[MovingShape], plan: ExportPlan) -> bytes:
         "seconds": (last - first) / plan.fps,
         "fps": plan.fps,
         "loop": plan.loop,
-        "vertex": _HEADER + "\n".join(map(shader_source, _VERTEX)),
-        "fragment": _HEADER + "\n".join(map(shader_source, _FRAGMENT)),
+        **{name: _HEADER + "\n".join(map(shader_source, files)) for name, files in _SHADERS},
         "figures": [_packed(shape) for shape in shapes],
     }
     page = Template(_PAGE.read_text(encoding="utf-8")).substitute(
@@ -72,6 +75,7 @@ def _packed(shape: MovingShape) -> dict[str, Any]:
         "triangles": len(shape.orders[0][1]),
         "orders": [seconds for seconds, _ in shape.orders],
         "sights": shape.sights,
+        "opacity": shape.opacity,
     }
 
 

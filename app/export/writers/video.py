@@ -128,8 +128,10 @@ class VideoWriter(FrameWriter):
         width, height = self._size
         pixels = np.frombuffer(encoded, dtype=np.uint8).reshape(height, width, -1)
         kind = "rgba" if self._background is None else "rgb24"
+        # With one thread: of two, the upper one overwrites the beginning of the lower one's first
+        # row where the width is odd, and now and then does so last.
         frame = av.VideoFrame.from_ndarray(pixels, format=kind).reformat(
-            format=self._pixels, dst_colorspace="ITU709", dst_color_range="MPEG"
+            format=self._pixels, dst_colorspace="ITU709", dst_color_range="MPEG", threads=1
         )
         frame.pts = self._count
         self._count += 1

@@ -298,7 +298,9 @@ def test_figures_are_seen_when_and_as_much_as_they_should(tmp_path, monkeypatch)
     assert (channel.target.node, sampler.interpolation) == (1, "STEP")
     assert_allclose(values(gltf, sampler.input).ravel(), [0, 4 / document.fps], atol=1e-6)
     assert_array_equal(values(gltf, sampler.output), [[0, 0, 0], [1, 1, 1]])
-    assert maker.shapes[0].texture[..., 3].max() == 128
+    factors = [material.pbrMetallicRoughness.baseColorFactor for material in gltf.materials]
+    assert factors == [[1, 1, 1, 0.5], [1, 1, 1, 1]]
+    assert maker.shapes[0].texture[..., 3].max() == 255
     assert ["glTF model keeps" in notice for notice in maker.notices] == [True, True]
     off = (Switch(0, visible=False),)
     unseen = tuple(replace(figure, switches=off) for figure in document.figures)

@@ -34,11 +34,12 @@ def browser(tmp_path_factory):
 
 
 def two_blobs() -> Document:
-    """Two figures of which one lies over the other until it is hidden, in a loop."""
+    """Two figures of which one lies faintly over the other until it is hidden, in a loop."""
     document = moving_document()
     (figure,) = document.figures
     switches = (Switch(0, visible=True), Switch(3, visible=False))
-    above = replace(figure, id=1, name="above", keys=figure.keys[:1], switches=switches)
+    above = replace(figure, id=1, name="above", opacity=0.6, keys=figure.keys[:1])
+    above = replace(above, switches=switches)
     return replace(document, figures=(figure, above), frames=FrameRange(0, 8), loop=True)
 
 
