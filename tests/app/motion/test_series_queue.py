@@ -8,6 +8,7 @@ from animations import moving_document
 from documents import altered
 from numpy.testing import assert_allclose
 from projects import project_of
+from sessions import session_of, settle
 
 from app.document.history import History
 from app.document.keyframe import Keyframe
@@ -142,21 +143,11 @@ def test_a_series_of_other_keys_is_not_kept(document, clip, prepared):
 
 
 def test_a_session_streams_what_it_plays_and_stops_while_a_hand_pulls(document, clip, tmp_path):
-    project = project_of(document, np.zeros((90, 120, 4), np.uint8), "blob")
-    session = Session(clock=lambda: 0.0, jobs=Jobs(), folder=tmp_path, project=project)
-
-    def settle():
-        while True:
-            maintain(session)
-            if not session.jobs.kinds:
-                return
-            assert session.jobs.settle()
-            session.jobs.deliver()
-
-    settle()
+    session = session_of(document, tmp_path)
+    project = session.project
     assert streamed(project.puppet.coarse.value, clip) == [True] * 3
     project.playhead = project.playhead.seek(13, 0.0)
-    settle()
+    settle(session)
     assert isinstance(project.puppet.shown.vertices, Streamed)
     assert project.puppet.build.value is None
     # Another key's pose: its two intervals are built anew, but not while it is being pulled.
@@ -164,7 +155,7 @@ def test_a_session_streams_what_it_plays_and_stops_while_a_hand_pulls(document, 
     moved = replace(key, pose=replace(key.pose, phi=key.pose.phi + 1))
     edited = altered(document, keys=(clip.figure.keys[0], moved, *clip.figure.keys[2:]))
     project.history = History(edited, saved=True)
-    settle()
+    settle(session)
     assert streamed(project.puppet.coarse.value, clip_of(edited, 0)) == [True] * 3
     project.puppet.coarse.value = prepare_motion(
         clip, Motion.at_rest(clip, project.puppet.coarse.value.mesh)

@@ -7,42 +7,22 @@ import pytest
 from animations import moving_document
 from invariants import check_pose
 from projects import project_of
+from sessions import BLANK, go, session_of, settle
 
 from app.document import HOLD
 from app.document.commands import figure_commands, handle_commands, key_commands
 from app.document.settings import NATURAL
-from app.editor import Jobs, Session
-from app.editor.actions import editing, playback, posing
-from app.editor.actions.upkeep import maintain
+from app.editor.actions import editing, posing
 from app.editor.poses import copying
 from app.storage import Preferences
 from engine.maps import Boundary, certify
-
-PICTURE = np.zeros((90, 120, 4), np.uint8)
 
 
 @pytest.fixture
 def session(tmp_path):
     """A blob that is turned and bent from frame 0 to frame 6, with a handle."""
     document = handle_commands.add_handle(0, 60 + 45j)(moving_document())
-    project = project_of(document, PICTURE, "blob")
-    session = Session(clock=lambda: 0.0, jobs=Jobs(), folder=tmp_path, project=project)
-    settle(session)
-    return session
-
-
-def settle(session):
-    while True:
-        maintain(session)
-        if not session.jobs.kinds:
-            return
-        assert session.jobs.settle()
-        session.jobs.deliver()
-
-
-def go(session, frame):
-    playback.scrub(session, frame)
-    settle(session)
+    return session_of(document, tmp_path)
 
 
 def test_a_pose_is_pasted_at_another_frame_as_one_step(session):
@@ -150,7 +130,7 @@ def test_a_pose_is_proven_against_the_limits_of_now(session):
 
 def test_a_pose_of_another_shape_cannot_be_pasted(session):
     copying.copy(session)
-    session.project = project_of(moving_document(), PICTURE, "other")
+    session.project = project_of(moving_document(), BLANK, "other")
     before = session.project.document
     settle(session)
     assert not copying.can_paste(session)

@@ -2,16 +2,13 @@
 
 from dataclasses import replace
 
-import numpy as np
 import pytest
 from animations import still_document
 from documents import altered
-from projects import project_of
+from sessions import session_of, settle
 
 from app.document import Keyframe, handle_commands
-from app.editor import Jobs, Session
 from app.editor.actions import editing, playback
-from app.editor.actions.upkeep import maintain
 from app.editor.poses import copying, flipping
 
 
@@ -26,19 +23,7 @@ def session(tmp_path):
         replace(first, turns=2, fronts={0: 1.0}),
         Keyframe(frame=6, pose=first.pose, turns=-1),
     )
-    project = project_of(altered(document, keys=keys), np.zeros((90, 120, 4), np.uint8), "blob")
-    session = Session(clock=lambda: 0.0, jobs=Jobs(), folder=tmp_path, project=project)
-    settle(session)
-    return session
-
-
-def settle(session):
-    while True:
-        maintain(session)
-        if not session.jobs.kinds:
-            return
-        assert session.jobs.settle()
-        session.jobs.deliver()
+    return session_of(altered(document, keys=keys), tmp_path)
 
 
 def test_keys_are_flipped_with_their_turns_and_what_is_in_front(session):

@@ -1,15 +1,12 @@
 """Poses that are kept, and blended into others."""
 
-import numpy as np
 import pytest
 from animations import moving_document
 from invariants import check_pose
-from projects import project_of
+from sessions import go, session_of, settle
 
 from app.document.commands import handle_commands
-from app.editor import Jobs, Session
-from app.editor.actions import editing, playback
-from app.editor.actions.upkeep import maintain
+from app.editor.actions import editing
 from app.editor.poses import library
 from app.storage import Preferences
 
@@ -20,24 +17,7 @@ def session(tmp_path):
     document = moving_document()
     for place in (40 + 45j, 80 + 45j):
         document = handle_commands.add_handle(0, place)(document)
-    project = project_of(document, np.zeros((90, 120, 4), np.uint8), "blob")
-    session = Session(clock=lambda: 0.0, jobs=Jobs(), folder=tmp_path, project=project)
-    settle(session)
-    return session
-
-
-def settle(session):
-    while True:
-        maintain(session)
-        if not session.jobs.kinds:
-            return
-        assert session.jobs.settle()
-        session.jobs.deliver()
-
-
-def go(session, frame):
-    playback.scrub(session, frame)
-    settle(session)
+    return session_of(document, tmp_path)
 
 
 def keep(session, frame):

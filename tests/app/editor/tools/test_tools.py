@@ -6,10 +6,10 @@ from itertools import product
 import numpy as np
 import pytest
 from animations import still_document
-from projects import project_of
+from sessions import session_of, settle
 
 from app.document.commands import handle_commands, scene_commands
-from app.editor import BoxMark, Jobs, Session, SweepMark
+from app.editor import BoxMark, SweepMark
 from app.editor.actions import editing, playback, posing
 from app.editor.actions.upkeep import maintain
 from app.editor.tools import TOOLS, Spot, pointing
@@ -24,22 +24,12 @@ def session(tmp_path):
     document = still_document()
     for place in (LEFT, RIGHT):
         document = handle_commands.add_handle(0, place)(document)
-    project = project_of(document, np.zeros((90, 120, 4), np.uint8), "blob")
-    project.history.do(scene_commands.set_fps(12))
-    project.history.undo()
-    session = Session(clock=lambda: 0.0, jobs=Jobs(), folder=tmp_path, project=project)
+    session = session_of(document, tmp_path)
+    session.project.history.do(scene_commands.set_fps(12))
+    session.project.history.undo()
     editing.select(session, frozenset({0}))
     settle(session)
     return session
-
-
-def settle(session):
-    while True:
-        maintain(session)
-        if not session.jobs.kinds:
-            return
-        assert session.jobs.settle()
-        session.jobs.deliver()
 
 
 def frames(session, count=2):

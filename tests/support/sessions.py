@@ -1,0 +1,38 @@
+"""Sessions of the editor without a window, and what is waited for in them."""
+
+from pathlib import Path
+
+import numpy as np
+from projects import project_of
+
+from app.document import Document
+from app.editor import Jobs, Session
+from app.editor.actions import playback
+from app.editor.actions.upkeep import maintain
+from engine.arrays import Bytes
+
+BLANK = np.zeros((90, 120, 4), np.uint8)
+
+
+def session_of(document: Document, folder: Path, picture: Bytes = BLANK) -> Session:
+    """Return a session of a document, at rest, whose clock stands still."""
+    project = project_of(document, picture, "blob")
+    session = Session(clock=lambda: 0.0, jobs=Jobs(), folder=folder, project=project)
+    settle(session)
+    return session
+
+
+def settle(session: Session) -> None:
+    """Let the worker do all that there is to do."""
+    while True:
+        maintain(session)
+        if not session.jobs.kinds:
+            return
+        assert session.jobs.settle()
+        session.jobs.deliver()
+
+
+def go(session: Session, frame: int) -> None:
+    """Move the playhead, and wait for what is shown there."""
+    playback.scrub(session, frame)
+    settle(session)
