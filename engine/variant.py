@@ -1,4 +1,4 @@
-"""The variants of interpolation by name, and what each of them needs."""
+"""The variants of interpolation by name, what each needs, and what they are compared with."""
 
 from enum import StrEnum
 
@@ -24,3 +24,12 @@ class Variant(StrEnum):
     def is_scaled(self) -> bool:
         """Whether its Ψ is scaled by a ρ."""
         return self is Variant.SCALED_ETA
+
+
+class Baseline(StrEnum):
+    """Methods that the paper compares its variants with (Section 8); the names in files.
+
+    `engine.baselines.prepare_baseline` builds them.
+    """
+
+    ARAP = "arap"

@@ -9,12 +9,20 @@ from engine.paths.complex_log import continue_logarithm, root_sheets
 from engine.paths.integration_paths import IntegrationPaths, lay_paths
 from engine.paths.loops import Loops
 from engine.paths.path_network import ON_OUTLINE, mesh_network, scattered_network, with_loops
+from engine.paths.spanning_tree import (
+    SpanningTree,
+    breadth_first_parents,
+    depth_first_numbering,
+)
 
 __all__ = [
     "ON_OUTLINE",
     "IntegrationPaths",
     "Loops",
+    "SpanningTree",
+    "breadth_first_parents",
     "continue_logarithm",
+    "depth_first_numbering",
     "lay_paths",
     "mesh_network",
     "root_sheets",

@@ -1,0 +1,43 @@
+"""As-rigid-as-possible shape interpolation (Alexa, Cohen-Or and Levin 2000)."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from engine.baselines.frames import MeshFrame
+from engine.baselines.mesh_keyframes import MeshKeyframe
+from engine.baselines.poisson import PoissonStep
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class ArapInbetweens:
+    """Each triangle's Jacobian is blended by itself, J = R S: the angle of R and S linearly.
+
+    What comes out belongs to no map, and the nearest one is taken. Nothing bounds what that costs
+    in distortion.
+
+    Departs from their paper: its triangles weigh alike, here by their areas, so that the result
+    does not hang on the mesh; and the angles are consistent unless the keyframes' are principal, as
+    Section 8 of *Bounded Distortion Harmonic Shape Interpolation* has it for its comparisons.
+
+    Parameters
+    ----------
+    first, second : MeshKeyframe
+    step : PoissonStep
+    """
+
+    first: MeshKeyframe
+    second: MeshKeyframe
+    step: PoissonStep
+
+    def frame(self, time: float) -> MeshFrame:
+        """Return the in-between at a time in [0, 1]."""
+        first, second, rest = self.first, self.second, 1.0 - time
+        rotation = np.exp(1j * (rest * first.angles + time * second.angles))
+        similar = rest * np.abs(first.fz) + time * np.abs(second.fz)
+        other = rest * first.stretch + time * second.stretch
+        return self.step.integrate(
+            rotation * similar,
+            rotation * other,
+            rest * first.anchor_position + time * second.anchor_position,
+        )

@@ -1,0 +1,146 @@
+"""Keyframes of a triangulated domain: where its vertices are, checked and differentiated."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from engine.arrays import Complexes, Floats, as_points, freeze
+from engine.baselines.triangulated_domain import TriangulatedDomain
+from engine.errors import EngineError
+from engine.paths import root_sheets
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class MeshKeyframe:
+    """One keyframe, linear in each triangle.
+
+    Parameters
+    ----------
+    positions : complex128, shape (n,)
+    fz, fzbar : complex128, shape (m,)
+    angles : float64, shape (m,)
+        arg f_z of each triangle.
+    anchor_position : complex
+    anchor_angle : float
+        arg f_z around the anchor.
+    """
+
+    positions: Complexes
+    fz: Complexes
+    fzbar: Complexes
+    angles: Floats
+    anchor_position: complex
+    anchor_angle: float
+
+    @property
+    def stretch(self) -> Complexes:
+        """S of the polar decomposition R S: |f_z| z + this (m,) times z̄."""
+        stretch: Complexes = self.fzbar * np.exp(-1j * self.angles)
+        return stretch
+
+
+def mesh_keyframes(
+    domain: TriangulatedDomain,
+    positions: Sequence[npt.ArrayLike],
+    *,
+    turns: npt.ArrayLike | None = None,
+    principal: bool = False,
+) -> tuple[MeshKeyframe, ...]:
+    """Differentiate keyframes and choose the branches of their rotation angles.
+
+    Parameters
+    ----------
+    domain : TriangulatedDomain
+    positions : sequence of complex, shape (n,)
+        Of the vertices, in each of q keyframes.
+    turns : int, shape (q − 1,), optional
+        Whole turns between neighbouring keyframes beyond the shorter way.
+    principal : bool
+        Whether each triangle's angle is the one between −π and π, whatever its neighbours' are: as
+        Alexa et al. (2000) have it, and the reason why that fails where shapes turn far.
+
+    Raises
+    ------
+    EngineError
+        If there are fewer than two keyframes, or one has not as many positions as the domain, or
+        folds.
+
+    Notes
+    -----
+    Otherwise the angles are continued from the anchor across inner edges (Section 7.2 of the paper;
+    Choi and Szymczak 2003), which is right as long as f_z turns by less than π from a triangle to
+    the next, and the anchor's own angles are as in `root_sheets`.
+    """
+    if len(positions) < 2:
+        raise EngineError(f"In-betweens need at least two keyframes, not {len(positions)}.")
+    checked = [_checked(domain, each, number) for number, each in enumerate(positions)]
+    derivatives = [domain.derivatives(each) for each in checked]
+    for number, (each, (fz, fzbar)) in enumerate(zip(checked, derivatives, strict=True)):
+        _require_unfolded(domain, each, np.abs(fz) - np.abs(fzbar), number)
+    at_anchor = np.array([domain.anchor_fz(fz) for fz, _ in derivatives])
+    sheets = 2 * np.pi * root_sheets(at_anchor, turns)
+    keyframes = []
+    for position, (fz, fzbar), anchor, sheet in zip(
+        checked, derivatives, at_anchor, sheets, strict=True
+    ):
+        angle = float(np.angle(anchor) + sheet)
+        angles = np.angle(fz) if principal else _continued(domain, fz, anchor) + angle
+        keyframes.append(
+            MeshKeyframe(
+                positions=position,
+                fz=freeze(fz),
+                fzbar=freeze(fzbar),
+                angles=freeze(angles),
+                anchor_position=complex(position[domain.anchor]),
+                anchor_angle=angle,
+            )
+        )
+    return tuple(keyframes)
+
+
+def _continued(domain: TriangulatedDomain, fz: Complexes, anchor: complex) -> Floats:
+    """Return the arguments of f_z (m,) less that of the anchor, continued across inner edges."""
+    crossings = domain.crossings
+    turns = np.angle(fz * fz[crossings.parent].conj())
+    root = crossings.order[0]
+    turns[root] = np.angle(fz[root] / anchor)
+    principal = np.angle(fz / anchor)
+    # Only the integer is taken from the sum, so that no rounding adds up on the way.
+    sheets = np.round((crossings.sums(turns) - principal) / (2 * np.pi))
+    angles: Floats = principal + 2 * np.pi * sheets
+    return angles
+
+
+def _checked(domain: TriangulatedDomain, values: npt.ArrayLike, number: int) -> Complexes:
+    positions = as_points(values, f"The positions of keyframe {number}")
+    if len(positions) != len(domain.points):
+        raise EngineError(
+            f"Keyframe {number} has {len(positions)} points, but the triangles are of "
+            f"{len(domain.points)}; all keyframes must have the same triangles."
+        )
+    return positions
+
+
+def _require_unfolded(
+    domain: TriangulatedDomain, positions: Complexes, sigma_b: Floats, number: int
+) -> None:
+    """Refuse triangles that are turned over, and fans that wind twice around a vertex."""
+    worst = int(sigma_b.argmin())
+    if sigma_b[worst] <= 0:
+        at = domain.points[domain.corners[worst]].mean()
+        raise EngineError(
+            f"Keyframe {number} folds: triangle {worst}, at ({at.real:.6g}, {at.imag:.6g}) of the "
+            f"domain, is turned over ({np.count_nonzero(sigma_b <= 0)} of {len(sigma_b)} are). "
+            "Pose it again without folds; of a harmonic map, take smaller triangles."
+        )
+    a, b, c = positions[domain.corners.T]
+    angles = np.angle([(c - a) / (b - a), (a - b) / (c - b), (b - c) / (a - c)])
+    around = np.bincount(domain.corners.T.ravel(), angles.ravel())
+    double = np.flatnonzero(~domain.border & (np.abs(around - 2 * np.pi) > 1.0))
+    if len(double):
+        raise EngineError(
+            f"Keyframe {number} folds: the triangles around point {double[0]} lie over each other. "
+            "Pose it again without folds."
+        )

@@ -1,0 +1,294 @@
+"""A triangulated domain: piecewise linear maps on it, their derivatives, and ways through it."""
+
+from dataclasses import dataclass
+from typing import Self
+
+import numpy as np
+import numpy.typing as npt
+from scipy.sparse import csc_array, csr_array
+from scipy.sparse.csgraph import connected_components
+from scipy.sparse.linalg import SuperLU, splu
+from scipy.spatial import cKDTree
+
+from engine.arrays import Booleans, Complexes, Floats, Indices, as_points, freeze
+from engine.domain.meshing import Mesh
+from engine.errors import EngineError
+from engine.paths import SpanningTree, breadth_first_parents, depth_first_numbering
+
+FLAT = 1e-12  # area of a triangle, over the square of its longest edge, that counts as none
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Tour:
+    """A spanning tree of a graph whose nodes (s,) keep their numbers.
+
+    Parameters
+    ----------
+    tree : SpanningTree
+    order : intp, shape (s,)
+        The nodes in the tree's own order; the first is the root.
+    parent : intp, shape (s,)
+        Of each node; the root is its own.
+    """
+
+    tree: SpanningTree
+    order: Indices
+    parent: Indices
+
+    @classmethod
+    def through(cls, count: int, edges: Indices, root: int) -> Self:
+        """Reach all nodes from the root by the fewest edges (e, 2)."""
+        parent = breadth_first_parents(count, edges, root)
+        order = depth_first_numbering(parent, root)
+        place = np.empty(count, dtype=np.intp)
+        place[order] = np.arange(count)
+        tree = SpanningTree.of_parents(place[parent[order]])
+        return cls(tree=tree, order=freeze(order), parent=freeze(parent))
+
+    def sums(self, steps: Floats) -> Floats:
+        """Return for each node (s,) the sum of `steps` (s,) on the way from the root."""
+        sums = np.empty_like(steps)
+        sums[self.order] = self.tree.sums(steps[self.order])
+        return sums
+
+    def positions(self, steps: Complexes) -> Complexes:
+        """Return the same for steps in the plane."""
+        sums = np.empty_like(steps)
+        sums[self.order] = self.tree.sums(steps[self.order])
+        return sums
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class TriangulatedDomain:
+    """A plane mesh of one piece, on which maps are linear in each triangle.
+
+    Build it with `TriangulatedDomain.of`.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        n vertices and m triangles, all counter-clockwise.
+    areas : float64, shape (m,)
+    gradient : complex128, sparse, shape (m, n)
+        ∂φ_j/∂z of the hat functions: times the positions of the vertices it is f_z of each
+        triangle, and its conjugate times them is f_z̄.
+    pairs : intp, shape (e, 2)
+        The two triangles at each inner edge.
+    border : bool, shape (n,)
+        Whether a vertex is on the border.
+    loops : int
+        Of edges that the border consists of: 1, and one more for each hole.
+    anchor : int
+        The vertex whose pose is given.
+    ways : Tour
+        Through the vertices along edges, from the anchor.
+    crossings : Tour
+        Through the triangles across inner edges, from one at the anchor.
+    """
+
+    mesh: Mesh
+    areas: Floats
+    gradient: csr_array
+    pairs: Indices
+    border: Booleans
+    loops: int
+    anchor: int
+    ways: Tour
+    crossings: Tour
+
+    @classmethod
+    def of(
+        cls, points: npt.ArrayLike, triangles: npt.ArrayLike, anchor: complex | None = None
+    ) -> Self:
+        """Check a mesh and find its ways.
+
+        Parameters
+        ----------
+        points : complex, shape (n,)
+        triangles : int, shape (m, 3)
+            All counter-clockwise, or all clockwise.
+        anchor : complex, optional
+            The vertex next to it becomes the anchor; by default the one farthest from the border.
+
+        Raises
+        ------
+        EngineError
+            If a triangle names no point or is flat, some are turned over, a point is in no
+            triangle, an edge is in more than two, or the triangles are not of one piece.
+        """
+        points = as_points(points, "points", at_least=3)
+        corners = _oriented(points, _as_corners(triangles, len(points)))
+        mesh = Mesh(vertices=points, triangles=corners.astype(np.int32))
+        edges, sides, pairs = _adjacency(corners, len(points))
+        _require_whole(corners, pairs, len(points))
+        areas = mesh.areas()
+        border = np.zeros(len(points), dtype=np.bool_)
+        border[sides] = True
+        place = _farthest(points, border) if anchor is None else _nearest(points, anchor)
+        first = int(np.flatnonzero((corners == place).any(axis=1))[0])
+        return cls(
+            mesh=mesh,
+            areas=freeze(areas),
+            gradient=_gradient(points, corners, areas),
+            pairs=freeze(pairs),
+            border=freeze(border),
+            # Euler: V − E + F = 2 − (loops), for a plane mesh without its outside.
+            loops=2 - (len(points) - len(edges) + len(corners)),
+            anchor=place,
+            ways=Tour.through(len(points), edges, place),
+            crossings=Tour.through(len(corners), pairs, first),
+        )
+
+    @property
+    def points(self) -> Complexes:
+        """The vertices, complex128 (n,)."""
+        return self.mesh.vertices
+
+    @property
+    def corners(self) -> Indices:
+        """The vertices of each triangle, intp (m, 3)."""
+        return self.mesh.triangles.astype(np.intp)
+
+    @property
+    def around_anchor(self) -> Indices:
+        """The triangles at the anchor."""
+        return np.flatnonzero((self.mesh.triangles == self.anchor).any(axis=1))
+
+    def derivatives(self, positions: Complexes) -> tuple[Complexes, Complexes]:
+        """Return f_z and f_z̄ (m,) of the piecewise linear map to positions (n,)."""
+        fz = np.asarray(self.gradient @ positions)
+        fzbar = np.asarray(self.gradient @ positions.conj()).conj()
+        return fz, fzbar
+
+    def sums_at_vertices(self, fz: Complexes, fzbar: Complexes) -> Complexes:
+        """Return the transpose of `derivatives` with the triangles' areas, complex128 (n,)."""
+        similar = np.asarray(self.gradient.T @ (self.areas * fz.conj())).conj()
+        sums: Complexes = similar + np.asarray(self.gradient.T @ (self.areas * fzbar))
+        return sums
+
+    def anchor_fz(self, fz: Complexes) -> complex:
+        """Return the mean of f_z (m,) around the anchor."""
+        near = self.around_anchor
+        return complex((self.areas[near] @ fz[near]) / self.areas[near].sum())
+
+    def laplacian(self) -> csr_array:
+        """Return Re(Dᴴ A D), D the gradient: the cotangent Laplacian (n, n), divided by 4."""
+        weighted = self.gradient.copy()
+        weighted.data *= np.repeat(self.areas, 3)
+        return csr_array((self.gradient.conj().T @ weighted).real)
+
+
+def factorised(matrix: csr_array | csc_array) -> SuperLU:
+    """Return the factors of a symmetric positive definite matrix."""
+    return splu(
+        csc_array(matrix),
+        permc_spec="MMD_AT_PLUS_A",
+        diag_pivot_thresh=0.0,
+        options={"SymmetricMode": True},
+    )
+
+
+def solved(factors: SuperLU, right: Complexes) -> Complexes:
+    """Solve a real system for a complex right-hand side (n,)."""
+    both = factors.solve(np.column_stack([right.real, right.imag]))
+    solution: Complexes = both[:, 0] + 1j * both[:, 1]
+    return solution
+
+
+def _as_corners(triangles: npt.ArrayLike, count: int) -> Indices:
+    corners = np.asarray(triangles)
+    if corners.ndim != 2 or corners.shape[1] != 3 or corners.dtype.kind not in "iu":
+        raise EngineError(
+            f"triangles must be integers of shape (t, 3), not {corners.dtype} of shape "
+            f"{corners.shape}."
+        )
+    if not len(corners):
+        raise EngineError("A mesh needs at least one triangle; there is none.")
+    if corners.min() < 0 or corners.max() >= count:
+        raise EngineError(
+            f"The triangles name points from {corners.min()} to {corners.max()}, but there are "
+            f"only points 0 to {count - 1}."
+        )
+    return corners.astype(np.intp)
+
+
+def _oriented(points: Complexes, corners: Indices) -> Indices:
+    """Return the triangles counter-clockwise."""
+    a, b, c = points[corners.T]
+    areas = 0.5 * ((b - a).conj() * (c - a)).imag
+    longest = np.max(np.abs([b - a, c - b, a - c]), axis=0)
+    flat = np.flatnonzero(np.abs(areas) <= FLAT * longest**2)
+    if len(flat):
+        raise EngineError(f"Triangle {flat[0]} of the domain is flat; leave it out.")
+    clockwise = areas < 0
+    if clockwise.all():
+        return corners[:, ::-1]
+    if clockwise.any():
+        rarer = clockwise if 2 * clockwise.sum() <= len(corners) else ~clockwise
+        raise EngineError(
+            f"Triangle {np.flatnonzero(rarer)[0]} of the domain is turned over against the others: "
+            "the domain folds there. Give a mesh whose triangles all run the same way round."
+        )
+    return corners
+
+
+def _adjacency(corners: Indices, count: int) -> tuple[Indices, Indices, Indices]:
+    """Return all edges (e, 2), those on the border (b, 2), and the triangles at inner ones."""
+    ends = np.stack([corners, np.roll(corners, -1, axis=1)], axis=-1).reshape(-1, 2)
+    low, high = ends.min(axis=1), ends.max(axis=1)
+    keys = low * count + high
+    order = np.argsort(keys, kind="stable")
+    sorted_keys = keys[order]
+    starts = np.flatnonzero(np.diff(sorted_keys, prepend=-1))
+    shared = np.diff(np.append(starts, len(keys)))
+    if shared.max() > 2:
+        edge = ends[order[starts[shared.argmax()]]]
+        raise EngineError(
+            f"The edge from point {edge[0]} to point {edge[1]} is in {shared.max()} triangles; an "
+            "edge of a plane mesh is in one or two."
+        )
+    edges = np.column_stack([low, high])[order[starts]]
+    inner = starts[shared == 2]
+    pairs = np.column_stack([order[inner] // 3, order[inner + 1] // 3])
+    return edges, edges[shared == 1], pairs
+
+
+def _require_whole(corners: Indices, pairs: Indices, count: int) -> None:
+    """Refuse loose points, and triangles that no edges join to the rest."""
+    unused = np.flatnonzero(np.bincount(corners.ravel(), minlength=count) == 0)
+    if len(unused):
+        raise EngineError(f"Point {unused[0]} is in no triangle; leave it out.")
+    graph = csr_array(
+        (np.ones(len(pairs), np.int8), (pairs[:, 0], pairs[:, 1])), shape=(len(corners),) * 2
+    )
+    pieces, number = connected_components(graph, directed=False)
+    if pieces > 1:
+        apart = np.flatnonzero(number != number[0])[0]
+        raise EngineError(
+            f"Triangle {apart} is not joined to triangle 0 by common edges; give a mesh of one "
+            "piece."
+        )
+
+
+def _gradient(points: Complexes, corners: Indices, areas: Floats) -> csr_array:
+    """∂_z of the hat function at a corner is conj(i e) / 4A, e the opposite edge."""
+    opposite = np.roll(points[corners], -2, axis=1) - np.roll(points[corners], -1, axis=1)
+    values = (1j * opposite).conj() / (4.0 * areas[:, None])
+    rows = np.arange(0, 3 * len(corners) + 1, 3)
+    return csr_array((values.ravel(), corners.ravel(), rows), shape=(len(corners), len(points)))
+
+
+def _farthest(points: Complexes, border: Booleans) -> int:
+    """Return the vertex farthest from those on the border."""
+    xy = np.column_stack([points.real, points.imag])
+    distances, _ = cKDTree(xy[border]).query(xy)
+    return int(np.argmax(distances))
+
+
+def _nearest(points: Complexes, anchor: complex) -> int:
+    place = as_points(np.reshape(np.asarray(anchor), (-1,)), "anchor", at_least=1)
+    if len(place) != 1:
+        raise EngineError(
+            f"One anchor is needed, not {len(place)}; leave it out to have one found."
+        )
+    return int(np.abs(points - place[0]).argmin())
