@@ -9,8 +9,8 @@ import numpy.typing as npt
 from engine.arrays import Complexes, Integers
 from engine.dirichlet import Extension, HilbertTransform
 from engine.errors import EngineError
+from engine.interpolation.blends import EtaBlend, MetricResidual, NuBlend
 from engine.interpolation.derivatives import Passage
-from engine.interpolation.eta import EtaBlend
 from engine.interpolation.inbetweens import (
     Blend,
     Frame,
@@ -19,8 +19,6 @@ from engine.interpolation.inbetweens import (
     LinearInbetweens,
 )
 from engine.interpolation.keyframe_samples import KeyframeSamples, sample_keyframes
-from engine.interpolation.metric import MetricResidual
-from engine.interpolation.nu import NuBlend
 from engine.interpolation.passing import Course, Joint, Tangent, shortened
 from engine.interpolation.periods import Closing, Open
 from engine.interpolation.scaling import Scaling, SharpScaling

@@ -15,7 +15,7 @@ from engine.dirichlet.panels import NODES, Panels
 from engine.dirichlet.product_integration import is_near, panel_weights
 from engine.dirichlet.skeleton_solver import SkeletonSolver
 from engine.geometry.polygon import box_diagonal, edges
-from engine.interpolation.metric import OutlineMetric
+from engine.interpolation.blends import OutlineMetric
 from engine.interpolation.passing import Course
 from engine.maps import Bounds
 

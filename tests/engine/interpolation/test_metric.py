@@ -5,8 +5,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
+from engine.interpolation.blends import OutlineMetric
 from engine.interpolation.chebyshev import separate
-from engine.interpolation.metric import OutlineMetric
 from engine.interpolation.passing import Course
 from engine.maps import Bounds
 

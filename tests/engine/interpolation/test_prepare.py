@@ -10,8 +10,8 @@ from engine.domain.meshing.triangulation import triangulate
 from engine.errors import EngineError
 from engine.geometry import polygon
 from engine.interpolation import Variant, prepare, prepare_inbetweens, prepare_sites
+from engine.interpolation.blends import OutlineMetric
 from engine.interpolation.keyframe_samples import sample_keyframes
-from engine.interpolation.metric import OutlineMetric
 from engine.interpolation.passing import Course
 from engine.maps import Bounds
 from engine.maps.harmonic_map import HarmonicMap, derivatives_of
