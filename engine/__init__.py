@@ -6,35 +6,35 @@ Imports: NumPy, SciPy, contourpy, Shapely; never `app`.
 
 Equation map of *Bounded Distortion Harmonic Shape Interpolation* (Chien, Chen, Weber 2016):
 
-    (1), (14)       f = Φ + conj(Ψ)                  engine.maps.harmonic_map.HarmonicMap
-    (14)            Cauchy coordinates               engine.maps.cauchy.cauchy_coordinates
-    Section 3.4     μ, first dilatation              engine.maps.distortion.mu
-    Section 3.4     k, little dilatation             engine.maps.distortion.k
-    Section 3.4     K, large dilatation              engine.maps.distortion.K
-    Section 3.4     σ_a, larger singular value       engine.maps.distortion.sigma_a
-    Section 3.4     σ_b, smaller singular value      engine.maps.distortion.sigma_b
-    Section 5.2     ν, second dilatation             engine.maps.distortion.nu
-    Section 5.4     η                                engine.maps.distortion.eta
-    Section 8       τ, isometric distortion          engine.maps.distortion.tau
-    (2), (15)       continuous logarithm             engine.paths.complex_log.continue_logarithm
-    Section 7.2     branch at the anchor             engine.paths.complex_log.root_sheets
-    Section 4.1     harmonic in-betweens             engine.interpolation.IntegratedInbetweens
-    (3)             logarithmic blend of f_z         engine.interpolation.derivatives.Passage
-    (4), (5)        ν variant                        engine.interpolation.blends.nu.NuBlend
-    (6), (7)        η variant                        engine.interpolation.blends.eta.EtaBlend
-    (8), (16)-(18)  scaled η, largest ρ(t)           engine.interpolation.scaling.sharp.SharpScaling
-    Property 4      ρ(t) without kinks               engine.interpolation.scaling.smooth.Scaling
-    (9)-(13)        metric on the outline, Lemma 7   engine.interpolation.blends.metric.OutlineMetric
-    Section 6       metric variant                   engine.interpolation.blends.metric.MetricResidual
-    Section 7.4     Hilbert transform                engine.dirichlet.hilbert.HilbertTransform
-    Section 7       spanning tree from the anchor    engine.paths.spanning_tree.SpanningTree
-    Section 7       quadrature along its edges       engine.paths.integration_paths.IntegrationPaths
+    (1), (14)       f = Φ + conj(Ψ)                engine.maps.harmonic_map.HarmonicMap
+    (14)            Cauchy coordinates             engine.maps.cauchy.cauchy_coordinates
+    Section 3.4     μ, first dilatation            engine.maps.distortion.mu
+    Section 3.4     k, little dilatation           engine.maps.distortion.k
+    Section 3.4     K, large dilatation            engine.maps.distortion.K
+    Section 3.4     σ_a, larger singular value     engine.maps.distortion.sigma_a
+    Section 3.4     σ_b, smaller singular value    engine.maps.distortion.sigma_b
+    Section 5.2     ν, second dilatation           engine.maps.distortion.nu
+    Section 5.4     η                              engine.maps.distortion.eta
+    Section 8       τ, isometric distortion        engine.maps.distortion.tau
+    (2), (15)       continuous logarithm           engine.paths.complex_log.continue_logarithm
+    Section 7.2     branch at the anchor           engine.paths.complex_log.root_sheets
+    Section 4.1     harmonic in-betweens           engine.interpolation.IntegratedInbetweens
+    (3)             logarithmic blend of f_z       engine.interpolation.derivatives.Passage
+    (4), (5)        ν variant                      engine.interpolation.blends.nu.NuBlend
+    (6), (7)        η variant                      engine.interpolation.blends.eta.EtaBlend
+    (8), (16)-(18)  scaled η, largest ρ(t)         engine.interpolation.scaling.sharp.SharpScaling
+    Property 4      ρ(t) without kinks             engine.interpolation.scaling.smooth.Scaling
+    (9)-(13)        metric on the outline, Lemma 7 engine.interpolation.blends.metric.OutlineMetric
+    Section 6       metric variant                 engine.interpolation.blends.metric.MetricResidual
+    Section 7.4     Hilbert transform              engine.dirichlet.hilbert.HilbertTransform
+    Section 7       spanning tree from the anchor  engine.paths.spanning_tree.SpanningTree
+    Section 7       quadrature along its edges     engine.paths.integration_paths.IntegrationPaths
 
 The deformer follows Chen and Weber, *Bounded Distortion Harmonic Mappings in the Plane* (2015) and
 *GPU-Accelerated Locally Injective Shape Deformation* (2017):
 
-    2015            bounds k, σ_a, σ_b               engine.maps.bounds.Bounds
+    2015            bounds k, σ_a, σ_b             engine.maps.bounds.Bounds
     2015, Th. 4     certificate in the whole domain  engine.maps.certificate.certify
-    2017            symmetric Dirichlet energy       engine.deform.energy.symmetric_dirichlet
-    2017            Newton step, projected Hessian   engine.deform.newton.newton_direction
+    2017            symmetric Dirichlet energy     engine.deform.energy.symmetric_dirichlet
+    2017            Newton step, projected Hessian engine.deform.newton.newton_direction
 """
