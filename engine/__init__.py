@@ -24,7 +24,7 @@ Equation map of *Bounded Distortion Harmonic Shape Interpolation* (Chien, Chen, 
     (6), (7)        η variant                      engine.interpolation.blends.eta.EtaBlend
     (8), (16)-(18)  scaled η, largest ρ(t)         engine.interpolation.scaling.sharp.SharpScaling
     Property 4      ρ(t) without kinks             engine.interpolation.scaling.smooth.Scaling
-    (9)-(13)        metric on the outline, Lemma 7 engine.interpolation.blends.metric.OutlineMetric
+    (9)-(13)        metric, outline, Lemma 7       engine.interpolation.blends.metric.OutlineMetric
     Section 6       metric variant                 engine.interpolation.blends.metric.MetricResidual
     Section 7.4     Hilbert transform              engine.dirichlet.hilbert.HilbertTransform
     Section 7       spanning tree from the anchor  engine.paths.spanning_tree.SpanningTree
