@@ -33,8 +33,8 @@ Equation map of *Bounded Distortion Harmonic Shape Interpolation* (Chien, Chen, 
 The deformer follows Chen and Weber, *Bounded Distortion Harmonic Mappings in the Plane* (2015) and
 *GPU-Accelerated Locally Injective Shape Deformation* (2017):
 
-    2015            bounds k, σ_a, σ_b             engine.maps.bounds.Bounds
+    2015            bounds k, σ_a, σ_b               engine.maps.bounds.Bounds
     2015, Th. 4     certificate in the whole domain  engine.maps.certificate.certify
-    2017            symmetric Dirichlet energy     engine.deform.energy.symmetric_dirichlet
-    2017            Newton step, projected Hessian engine.deform.newton.newton_direction
+    2017            symmetric Dirichlet energy       engine.deform.energy.symmetric_dirichlet
+    2017            Newton step, projected Hessian   engine.deform.newton.newton_direction
 """
