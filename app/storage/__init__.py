@@ -40,6 +40,7 @@ from app.storage.layers import (
     layer_figure,
     open_layered,
     open_pictures,
+    read_layered,
     still_figure,
 )
 from app.storage.opening import Cut, cut_picture, open_picture
@@ -109,6 +110,7 @@ __all__ = [
     "open_picture",
     "open_pictures",
     "read_arrays",
+    "read_layered",
     "read_picture_file",
     "read_thumbnail",
     "remove_leftover",

@@ -56,6 +56,21 @@ def is_layered(path: Path) -> bool:
     return path.suffix.lower() in READERS
 
 
+def read_layered(path: Path) -> LayeredPicture:
+    """Read a drawing on layers.
+
+    Raises
+    ------
+    LissomError
+        If the file is missing, damaged, or holds no layers that can be used.
+    """
+    data = read_picture_file(path)
+    try:
+        return READERS[path.suffix.lower()](data)
+    except LissomError as error:
+        raise LissomError(f"cannot open {path}: {error}") from error
+
+
 def open_layered(path: Path, meshing: Meshing) -> OpenedScene:
     """Read a drawing on layers, and make each of them a figure.
 
@@ -67,12 +82,7 @@ def open_layered(path: Path, meshing: Meshing) -> OpenedScene:
     LissomError
         If the file is missing, damaged, or holds no layers that can be used.
     """
-    data = read_picture_file(path)
-    try:
-        drawing = READERS[path.suffix.lower()](data)
-    except LissomError as error:
-        raise LissomError(f"cannot open {path}: {error}") from error
-    return _scene(drawing, meshing, is_cut_out=True)
+    return _scene(read_layered(path), meshing, is_cut_out=True)
 
 
 def open_pictures(paths: Sequence[Path], meshing: Meshing) -> OpenedScene:

@@ -1,16 +1,22 @@
 """`lissom domain`: picture → outline, cage and triangulation."""
 
 import argparse
+from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 
 from app.cli.console import notice
 from app.cli.cut_out import read_cut_out
 from app.cli.hole_arrays import hole_arrays
+from app.errors import LissomError
 from app.reports import draw_preview
 from app.storage import (
+    Picture,
     check_writable,
     decode_picture,
+    is_layered,
+    read_layered,
     read_picture_file,
     write_arrays,
     write_atomically,
@@ -23,19 +29,22 @@ def run(arguments: argparse.Namespace) -> int:
     for path in (arguments.out, arguments.preview):
         if path is not None:
             check_writable(path)
-    picture = decode_picture(read_picture_file(arguments.picture), str(arguments.picture))
+    picture, corner = _read(arguments.picture, arguments.layer)
+    cut_out = read_cut_out(arguments)
+    if is_layered(arguments.picture) and cut_out.background == "auto":
+        # What is drawn on a layer is all that it shows, as in a scene.
+        cut_out = replace(cut_out, background="none")
     domain, remedies = build_domain(
-        picture.rgba,
-        triangles=arguments.triangles,
-        detail=arguments.detail,
-        cut_out=read_cut_out(arguments),
+        picture.rgba, triangles=arguments.triangles, detail=arguments.detail, cut_out=cut_out
     )
     for message in (*picture.notices, *remedies):
         notice(message)
-    mesh, holes = domain.mesh, domain.holes
     if arguments.preview is not None:
         drawn = draw_preview(picture, domain)
         write_atomically(arguments.preview, lambda file: file.write(drawn))
+    coordinates = texture_coordinates(domain.mesh.vertices, picture.size)
+    domain = domain.moved(corner)
+    mesh, holes = domain.mesh, domain.holes
     write_arrays(
         arguments.out,
         {
@@ -44,8 +53,9 @@ def run(arguments: argparse.Namespace) -> int:
             "vertices": mesh.vertices,
             "triangles": mesh.triangles,
             **hole_arrays(holes),
-            "uv": texture_coordinates(mesh.vertices, picture.size),
+            "uv": coordinates,
             "image_size": np.array(picture.size),
+            "corner": np.array(corner),
         },
     )
     kept = f", {len(holes)} {'hole' if len(holes) == 1 else 'holes'}" if holes else ""
@@ -54,3 +64,24 @@ def run(arguments: argparse.Namespace) -> int:
         f"{sum(map(len, domain.cages))} vertices{kept}, {len(mesh.triangles):,} triangles"
     )
     return 0
+
+
+def _read(path: Path, layer: str | None) -> tuple[Picture, complex]:
+    """Return a picture, or that of a layer, and where its lower left corner is on the canvas."""
+    if not is_layered(path):
+        if layer is not None:
+            raise LissomError(f"{path} has no layers; leave --layer out")
+        return decode_picture(read_picture_file(path), str(path)), 0j
+    drawing = read_layered(path)
+    names = [each.name for each in drawing.layers]
+    told = ", ".join(map(repr, reversed(names)))
+    if layer is None and len(names) > 1:
+        raise LissomError(
+            f"{path} has {len(names)} layers; name one by --layer, from the front: {told}"
+        )
+    if layer is not None and layer not in names:
+        raise LissomError(f"{path} has no layer {layer!r}; its layers are, from the front: {told}")
+    for message in drawing.notices:
+        notice(message)
+    found = drawing.layers[0 if layer is None else names.index(layer)]
+    return found.picture, found.corner

@@ -6,19 +6,22 @@ from pathlib import Path
 from app.cli.options import add_cut_out_options, add_meshing_options, input_file
 
 EPILOG = """\
-The picture may be a PNG, JPEG, GIF, WebP, AVIF, TIFF, BMP, TGA, PPM or ICO. Transparent pixels are
-outside; from an opaque picture a plain background is removed. Whatever else had to be done (parts
-bridged, holes filled, specks dropped) is told on standard error. Holes stay holes, the
+The picture may be a PNG, JPEG, GIF, WebP, AVIF, TIFF, BMP, TGA, PPM or ICO, or a layer of an
+OpenRaster (.ora) or Photoshop (.psd) drawing that --layer names. Transparent pixels are outside;
+from an opaque picture, other than a layer, a plain background is removed. Whatever else had to be
+done (parts bridged, holes filled, specks dropped) is told on standard error. Holes stay holes, the
 largest first, if a disc fits into them that is as wide as 2.4 % of the drawing's diagonal; with
 --holes fill none does.
 
-DOMAIN.npz holds, in pixels of the picture with the origin at its lower left corner and y up:
+DOMAIN.npz holds, in pixels of the picture, or of the whole canvas where it is a layer of one, with
+the origin at the lower left corner and y up:
   outline     (p,)    complex128  the domain's boundary, counter-clockwise
   cage        (n,)    complex128  the cage around it, counter-clockwise
   vertices    (v,)    complex128  of the triangulation
   triangles   (m, 3)  int32       counter-clockwise
   uv          (v, 2)  float64     u right, v up; [0, 1] spans the picture
   image_size  (2,)    int64       width, height
+  corner      ()      complex128  where the picture's lower left corner is: 0, or a layer's own
 and of the holes that are kept, all empty where there are none:
   hole_outlines       (a,)  complex128  clockwise, one hole after the other
   hole_cages          (b,)  complex128  the cage in each hole, clockwise
@@ -30,6 +33,7 @@ examples:
   lissom domain giraffe.png --out giraffe.npz --detail fine --preview preview.png
   lissom domain icon.png --out icon.npz --triangles 5000
   lissom domain cup.png --out cup.npz --holes fill
+  lissom domain friend.ora --layer "left arm" --out arm.npz
   lissom domain photo.jpg --out photo.npz --background "#8fb0d0" --tolerance 40
 """
 
@@ -40,6 +44,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("picture", metavar="PICTURE", type=input_file, help="the drawing")
     parser.add_argument(
         "--out", metavar="DOMAIN.npz", type=Path, required=True, help="where to write"
+    )
+    parser.add_argument(
+        "--layer",
+        metavar="NAME",
+        help="which layer of a drawing that has several; without a name they are listed",
     )
     add_meshing_options(parser)
     add_cut_out_options(parser)

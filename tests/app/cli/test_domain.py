@@ -1,5 +1,6 @@
 import numpy as np
 import pytest
+from layered import blob, openraster
 from numpy.testing import assert_allclose, assert_array_equal
 from PIL import Image, ImageDraw
 from scipy import ndimage
@@ -44,11 +45,12 @@ def test_the_file_is_as_documented(drawing, tmp_path, capsys):
         domain = dict(file)
     of_holes = {"outlines", "outline_sizes", "cages", "cage_sizes", "centres"}
     assert set(domain) == {
-        *("outline", "cage", "vertices", "triangles", "uv", "image_size"),
+        *("outline", "cage", "vertices", "triangles", "uv", "image_size", "corner"),
         *(f"hole_{name}" for name in of_holes),
     }
     assert all(len(domain[f"hole_{name}"]) == 0 for name in of_holes)
     assert_array_equal(domain["image_size"], [300, 200])
+    assert domain["corner"] == 0
     assert np.issubdtype(domain["image_size"].dtype, np.integer)
     outline, cage, vertices = domain["outline"], domain["cage"], domain["vertices"]
     assert outline.dtype == cage.dtype == vertices.dtype == np.complex128
@@ -199,3 +201,54 @@ def test_bad_pictures_write_nothing(tmp_path, capsys):
         assert reason in error_of(["domain", picture, "--out", out, "--preview", preview], capsys)
     assert "is a folder" in error_of(["domain", empty, "--out", tmp_path], capsys)
     assert sorted(tmp_path.iterdir()) == [empty, text]
+
+
+@pytest.fixture
+def layered(tmp_path):
+    """Return a drawing of 300 × 200 pixels with a layer of its own size and one 40 from its top."""
+    path = tmp_path / "man.ora"
+    stack = (
+        '<layer name="arm" src="data/0.png" x="120" y="40"/><layer name="wall" src="data/1.png"/>'
+    )
+    wall = Image.new("RGBA", (300, 200), (220, 230, 220, 255))
+    path.write_bytes(openraster((300, 200), stack, [blob(100, 60), wall]))
+    return path
+
+
+def test_a_layer_is_where_its_canvas_has_it(layered, tmp_path, capsys):
+    out, preview = tmp_path / "arm.npz", tmp_path / "arm.png"
+    words = ["domain", layered, "--layer", "arm", "--out", out, "--preview", preview]
+    assert main([*map(str, words), "--triangles", "1000"]) == 0
+    assert "100 × 60 pixels" in capsys.readouterr().out
+    assert preview.exists()
+    with np.load(out) as file:
+        domain = dict(file)
+    assert domain["corner"] == 120 + 100j
+    assert_array_equal(domain["image_size"], [100, 60])
+    middle = (domain["outline"].real.min() + domain["outline"].real.max()) / 2
+    assert abs(middle - 170) < 2
+    assert polygon.contains(domain["cage"], domain["outline"]).all()
+    assert polygon.contains(domain["outline"], np.array([170 + 130j])).all()
+    places = polygon.as_xy(domain["vertices"] - domain["corner"])
+    assert_allclose(domain["uv"] * [100, 60], places, rtol=0, atol=1e-9)
+    # One that is opaque all over is a rectangle, as it is in a scene.
+    words[3] = "wall"
+    assert main([*map(str, words), "--triangles", "1000"]) == 0
+    with np.load(out) as file:
+        area = polygon.signed_area(file["outline"])
+    assert abs(area / (300 * 200) - 1) < 0.05
+
+
+def test_which_layer_is_asked_for_where_there_are_several(layered, drawing, tmp_path, capsys):
+    out = tmp_path / "d.npz"
+    error = error_of(["domain", layered, "--out", out], capsys)
+    assert error.endswith("has 2 layers; name one by --layer, from the front: 'arm', 'wall'")
+    error = error_of(["domain", layered, "--layer", "leg", "--out", out], capsys)
+    assert error.endswith("no layer 'leg'; its layers are, from the front: 'arm', 'wall'")
+    error = error_of(["domain", drawing, "--layer", "arm", "--out", out], capsys)
+    assert error.endswith("has no layers; leave --layer out")
+    assert not out.exists()
+    alone = tmp_path / "alone.ora"
+    alone.write_bytes(openraster((90, 70), '<layer name="blob" src="data/0.png"/>', [blob(90, 70)]))
+    words = ["domain", alone, "--out", out, "--triangles", "1000"]
+    assert main(list(map(str, words))) == 0
