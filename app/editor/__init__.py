@@ -34,6 +34,7 @@ from app.editor.timeline_view import (
     MarkerDrag,
     Scrub,
     Strip,
+    SwitchDrag,
     TimeGesture,
 )
 
@@ -67,6 +68,7 @@ __all__ = [
     "Strip",
     "StrokeMark",
     "SweepMark",
+    "SwitchDrag",
     "TimeGesture",
     "Toast",
     "ToolInHand",

@@ -285,6 +285,17 @@ class Project:
         self.chosen_of = {self.active: frames} if frames else {}
 
     @property
+    def count_chosen(self) -> int:
+        """How many keys are chosen, of all figures."""
+        return sum(map(len, self.chosen_of.values()))
+
+    def keys_with(self, figure: int, frame: int) -> Mapping[int, frozenset[int]]:
+        """Return the chosen keys of all figures, if a key is one of them, or else that key."""
+        if frame in self.chosen_of.get(figure, ()):
+            return self.chosen_of
+        return {figure: frozenset({frame})}
+
+    @property
     def clip(self) -> Clip:
         """The figure that is posed, in the time of its scene."""
         return clip_of(self.document, self.active)

@@ -102,7 +102,7 @@ Mark = BoxMark | SweepMark | EntryMark | StrokeMark
 
 @dataclass(frozen=True, slots=True, eq=False)
 class CopiedKeys:
-    """Keys to be pasted, or a pose as the only one, and the figure as it was then."""
+    """Keys of a figure to be pasted, or a pose as the only one, and the figure as it was then."""
 
     figure: Figure
     keys: tuple[Keyframe, ...]
@@ -182,7 +182,7 @@ class Session:
     pointer: ToolInHand | None = None
     cutting: CutTool | None = None  # what is in hand that cuts out; None poses
     snaps: bool = False  # whether what the pointer does goes in steps
-    copied: CopiedKeys | None = None
+    copied: tuple[CopiedKeys, ...] = ()  # of each figure whose keys were copied together
     space_used: bool = False  # Space was held to move the view
     hovered: int | None = None  # the handle under the pointer
     hint: str = ""  # about what is under the pointer

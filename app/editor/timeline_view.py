@@ -151,7 +151,19 @@ class MarkerDrag:
     after: Document
 
 
-TimeGesture = KeyDrag | EdgeDrag | KeyBox | MarkerDrag | Scrub
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class SwitchDrag:
+    """The pointer moves where a figure is shown or hidden: from a frame in `before` to `at`."""
+
+    figure: int
+    switch: int
+    at: int
+    start: float
+    before: Document
+    after: Document
+
+
+TimeGesture = KeyDrag | EdgeDrag | KeyBox | MarkerDrag | SwitchDrag | Scrub
 
 
 # By how many pixels handles, by their ids, fall short of their targets in each key's pose.

@@ -131,6 +131,11 @@ def _random_layer_command(rng: np.random.Generator, document: Document) -> Comma
         layer_commands.set_reference(figure.id, reference=flag),
         layer_commands.switch_at(figure.id, int(rng.integers(50)), visible=flag),
         layer_commands.switch_at(figure.id, int(rng.integers(50)), visible=None),
+        layer_commands.move_switch(
+            figure.id,
+            figure.switches[0].frame if figure.switches else 3,
+            int(rng.integers(50)),
+        ),
         layer_commands.attach(figure.id, inside(rng), joint),
         layer_commands.detach(figure.id, turn, inside(rng)),
     ]
@@ -181,6 +186,8 @@ def _random_key_command(rng: np.random.Generator, document: Document) -> Command
         key_commands.copy_keys(0, frames, by),
         key_commands.delete_keys(0, frames),
         key_commands.reverse_keys(0, frames),
+        key_commands.put_keys(0, [document.figures[0].key(frame) for frame in frames]),
+        key_commands.put_pose(0, int(rng.integers(80)), pose, easing),
         key_commands.scale_keys(0, frames, rng.choice([0.5, 1.0, 1.5, 2.0])),
         scene_commands.scale_time(rng.choice([0.5, 1.0, 1.5, 2.0])),
         key_commands.match_ends(0),

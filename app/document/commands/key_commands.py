@@ -29,21 +29,19 @@ def insert_key(figure: Figure, frame: int, pose: Pose, *, easing: Easing = LINEA
 
 
 @figure_command("Paste pose")
-def put_keys(figure: Figure, keys: Sequence[Keyframe], easing: Easing) -> Figure:
-    """Let keys be at their frames, in place of others that are there.
+def put_pose(figure: Figure, frame: int, pose: Pose, easing: Easing) -> Figure:
+    """Let the key at a frame hold a pose, or a new one that is inserted."""
+    if frame not in figure.key_frames:
+        return _inserted(figure, frame, pose, easing)
+    old = figure.key(frame)
+    return figure if old.pose is pose else _exchange(figure, {frame: replace(old, pose=pose)})
 
-    Of one alone only its pose is taken, to the key at its frame or to a new one, as if inserted.
-    """
-    if len(keys) > 1:
-        others = {key.frame: key for key in figure.keys} | {key.frame: key for key in keys}
-        return _with_keys(figure, others.values())
-    (key,) = keys
-    if key.frame not in figure.key_frames:
-        return _inserted(figure, key.frame, key.pose, easing)
-    old = figure.key(key.frame)
-    if old.pose is key.pose:
-        return figure
-    return _exchange(figure, {key.frame: replace(old, pose=key.pose)})
+
+@figure_command("Paste keys")
+def put_keys(figure: Figure, keys: Sequence[Keyframe]) -> Figure:
+    """Let keys be at their frames, in place of others that are there."""
+    others = {key.frame: key for key in figure.keys} | {key.frame: key for key in keys}
+    return _with_keys(figure, others.values())
 
 
 @figure_command("Move keys")
@@ -74,12 +72,23 @@ def delete_keys(figure: Figure, frames: Collection[int]) -> Figure:
 
 
 @figure_command("Reverse keys")
-def reverse_keys(figure: Figure, frames: Collection[int]) -> Figure:
-    """Let the keys at some frames, and the motion between them, run backwards."""
+def reverse_keys(
+    figure: Figure, frames: Collection[int], span: tuple[int, int] | None = None
+) -> Figure:
+    """Let the keys at some frames, and the motion between them, run backwards.
+
+    Parameters
+    ----------
+    figure : Figure
+    frames : collection of int
+    span : tuple of int, optional
+        The first and the last frame of what runs backwards, where other figures do so together with
+        this one; by default those of the keys.
+    """
     keys = _keys_at(figure, frames)
-    if len(keys) < 2:
+    ends = sum(span) if span else keys[0].frame + keys[-1].frame if keys else 0
+    if len(keys) < 2 and all(2 * key.frame == ends for key in keys):
         return figure
-    ends = keys[0].frame + keys[-1].frame
     # Easing and turns belong to the interval after their key: those between the keys turn round
     # with them, and those after the last key stay where they are.
     ways = [(keys[-1].easing, keys[-1].turns)]
@@ -92,13 +101,26 @@ def reverse_keys(figure: Figure, frames: Collection[int]) -> Figure:
 
 
 @figure_command("Scale time of keys")
-def scale_keys(figure: Figure, frames: Collection[int], factor: float) -> Figure:
-    """Move the keys at some frames apart or together in time, the first of them staying."""
+def scale_keys(
+    figure: Figure, frames: Collection[int], factor: float, first: int | None = None
+) -> Figure:
+    """Move the keys at some frames apart or together in time.
+
+    Parameters
+    ----------
+    figure : Figure
+    frames : collection of int
+    factor : float
+    first : int, optional
+        The frame that stays; by default that of the first key.
+    """
     keys = _keys_at(figure, frames)
     require_factor(factor)
-    if factor == 1 or len(keys) < 2:
+    if factor == 1 or not keys:
         return figure
-    first = keys[0].frame
+    first = keys[0].frame if first is None else first
+    if all(key.frame == first for key in keys):
+        return figure
     return _exchange(
         figure, {key.frame: replace(key, frame=scaled(key.frame, first, factor)) for key in keys}
     )
@@ -177,9 +199,16 @@ def _with_keys(figure: Figure, keys: Iterable[Keyframe]) -> Figure:
 
 
 def stretched(figure: Figure, first: int, factor: float) -> Figure:
-    """Return the figure with its keys apart or together in time, around a frame that stays."""
+    """Return the figure with all of its time stretched or shortened around a frame that stays.
+
+    Where it would be shown and hidden at one frame, what comes later holds from there on.
+    """
+    switches = {scaled(switch.frame, first, factor): switch for switch in figure.switches}
     return _with_keys(
-        figure,
+        replace(
+            figure,
+            switches=tuple(replace(switch, frame=to) for to, switch in switches.items()),
+        ),
         (replace(key, frame=scaled(key.frame, first, factor)) for key in figure.keys),
     )
 

@@ -116,6 +116,19 @@ def switch_at(figure: Figure, frame: int, *, visible: bool | None) -> Figure:
     return figure if switches == figure.switches else replace(figure, switches=switches)
 
 
+@figure_command("Move visibility")
+def move_switch(figure: Figure, frame: int, to: int) -> Figure:
+    """Let a figure that comes to be seen or hidden at a frame do so at another one."""
+    moved = [switch for switch in figure.switches if switch.frame == frame]
+    if not moved:
+        raise LissomError(f"{figure.name!r} is neither shown nor hidden at frame {frame}.")
+    if to == frame:
+        return figure
+    others = [switch for switch in figure.switches if switch.frame != frame]
+    switches = sorted([*others, replace(moved[0], frame=to)], key=lambda switch: switch.frame)
+    return replace(figure, switches=tuple(switches))
+
+
 @command("Attach")
 def attach(document: Document, identity: int, anchor: complex, joint: Attachment) -> Document:
     """Hang a figure by its anchor on a point of another one; circles are refused.

@@ -1,5 +1,6 @@
 """What is done with keys as a whole, and the settings of time beside them."""
 
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 
 from app.document import (
@@ -15,6 +16,9 @@ from app.document import (
 from app.editor.actions import editing, playback, posing
 from app.editor.project import Project
 from app.editor.session import Session
+
+# The frames of keys, by the ids of their figures.
+KeysOf = Mapping[int, frozenset[int]]
 
 
 def retime(session: Session, command: Command) -> None:
@@ -35,14 +39,20 @@ def insert_at(session: Session, frame: int) -> None:
     posing.insert_key(session)
 
 
-def set_easing(session: Session, frames: frozenset[int], easing: Easing) -> None:
-    """Set how time runs from the keys at these frames on."""
-    editing.edit_figure(session, key_commands.set_easing, frames, easing)
+def set_easing(session: Session, keys: KeysOf, easing: Easing) -> None:
+    """Set how time runs from keys on."""
+    _change(session, keys, lambda figure, at: key_commands.set_easing(figure, at, easing))
 
 
-def set_passing(session: Session, frames: frozenset[int], passing: Passing) -> None:
-    """Set how the motion passes the keys at these frames."""
-    editing.edit_figure(session, key_commands.set_passing, frames, passing)
+def set_passing(session: Session, keys: KeysOf, passing: Passing) -> None:
+    """Set how the motion passes keys."""
+    _change(session, keys, lambda figure, at: key_commands.set_passing(figure, at, passing))
+
+
+def _change(
+    session: Session, keys: KeysOf, change: Callable[[int, frozenset[int]], Command]
+) -> None:
+    editing.edit(session, editing.change_keys(change, keys))
 
 
 def pass_otherwise(session: Session) -> None:
@@ -50,19 +60,21 @@ def pass_otherwise(session: Session) -> None:
     project = session.project
     if project is None:
         return
-    frames = _chosen_or_here(session, project)
+    keys = _chosen_or_here(session, project)
     passings = list(Passing)
-    first = project.figure.key(min(frames)).shown_passing
-    set_passing(session, frames, passings[(passings.index(first) + 1) % len(passings)])
+    figure = project.active if project.active in keys else next(iter(keys))
+    first = project.document.figure(figure).key(min(keys[figure])).shown_passing
+    set_passing(session, keys, passings[(passings.index(first) + 1) % len(passings)])
 
 
-def _chosen_or_here(session: Session, project: Project) -> frozenset[int]:
-    """Return the frames of the chosen keys, or of the one at the playhead or before it."""
-    if project.chosen:
-        return project.chosen
+def _chosen_or_here(session: Session, project: Project) -> KeysOf:
+    """Return the chosen keys, or that of the active figure at the playhead or before it."""
+    if project.chosen_of:
+        return project.chosen_of
     here = playback.current_frame(session, project)
     before = [frame for frame in project.figure.key_frames if frame <= here]
-    return frozenset({max(before, default=project.figure.keys[0].frame)})
+    frame = max(before, default=project.figure.keys[0].frame)
+    return {project.active: frozenset({frame})}
 
 
 def ease(session: Session, easing: Easing) -> None:
@@ -76,30 +88,47 @@ def ease_new_keys(session: Session, easing: Easing) -> None:
     session.preferences = replace(session.preferences, easing=easing)
 
 
-def set_turns(session: Session, frames: frozenset[int], turns: int) -> None:
-    """Set how often the shape turns round after the keys at these frames."""
-    editing.edit_figure(session, key_commands.set_turns, frames, turns)
+def set_turns(session: Session, keys: KeysOf, turns: int) -> None:
+    """Set how often the shape turns round after keys."""
+    _change(session, keys, lambda figure, at: key_commands.set_turns(figure, at, turns))
 
 
 def reverse(session: Session) -> None:
-    """Let the chosen keys run backwards, or all if fewer than two are chosen."""
-    if session.project:
-        project = session.project
-        frames = project.chosen if len(project.chosen) > 1 else project.figure.key_frames
-        _rearrange(session, key_commands.reverse_keys(project.active, frames))
+    """Let the chosen keys run backwards, or all of the figure's if fewer than two are chosen."""
+    project = session.project
+    if project is None:
+        return
+    keys = project.chosen_of
+    if project.count_chosen < 2:
+        keys = {project.active: project.figure.key_frames}
+    span = _span(keys)
+    _rearrange(
+        session,
+        editing.change_keys(lambda figure, at: key_commands.reverse_keys(figure, at, span), keys),
+    )
 
 
 def scale(session: Session, factor: float) -> None:
     """Stretch the time of the chosen keys, or of everything if fewer than two are chosen."""
-    if session.project:
-        active, chosen = session.project.active, session.project.chosen
-        several = len(chosen) > 1
-        _rearrange(
-            session,
-            key_commands.scale_keys(active, chosen, factor)
-            if several
-            else scene_commands.scale_time(factor),
-        )
+    project = session.project
+    if project is None:
+        return
+    keys = project.chosen_of
+    if project.count_chosen < 2:
+        _rearrange(session, scene_commands.scale_time(factor))
+        return
+    first, _ = _span(keys)
+    _rearrange(
+        session,
+        editing.change_keys(
+            lambda figure, at: key_commands.scale_keys(figure, at, factor, first), keys
+        ),
+    )
+
+
+def _span(keys: KeysOf) -> tuple[int, int]:
+    """Return the first and the last frame of keys."""
+    return min(map(min, keys.values())), max(map(max, keys.values()))
 
 
 def match_ends(session: Session) -> None:
@@ -190,8 +219,8 @@ def _rearrange(session: Session, command: Command) -> None:
     project = session.project
     if project is None:
         return
-    others = project.figure.key_frames - project.chosen
-    everything = len(project.chosen) < 2
+    chosen_of, everything = project.chosen_of, project.count_chosen < 2
+    others = {i: project.document.figure(i).key_frames - chosen_of[i] for i in chosen_of}
     retime(session, command)
-    frames = project.figure.key_frames
-    project.chosen = frozenset() if everything else frozenset(frames - others)
+    chosen = {i: project.document.figure(i).key_frames - others[i] for i in others}
+    editing.choose_keys_of(session, {} if everything else chosen)

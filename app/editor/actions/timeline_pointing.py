@@ -10,6 +10,7 @@ from app.document import (
     Document,
     FrameRange,
     key_commands,
+    layer_commands,
     scene_commands,
 )
 from app.editor.actions import editing, playback
@@ -23,6 +24,7 @@ from app.editor.timeline_view import (
     MarkerDrag,
     Scrub,
     Strip,
+    SwitchDrag,
     TimeGesture,
 )
 
@@ -76,6 +78,8 @@ def move(session: Session, frame: float, row: int) -> None:
             _drag_edge(session, project, drag, frame)
         case MarkerDrag() as drag:
             _drag_marker(session, project, drag, frame)
+        case SwitchDrag() as drag:
+            _drag_switch(session, project, drag, frame)
         case KeyBox() as box:
             editing.choose_keys_of(session, _inside(project.document, box, frame, row))
         case Scrub(offset=offset):
@@ -119,6 +123,8 @@ def cancel(session: Session) -> None:
             _become(session, before, "Set preview range")
         case MarkerDrag(before=before, after=after) if session.project.document is after:
             _become(session, before, "Move marker")
+        case SwitchDrag(before=before, after=after) if session.project.document is after:
+            _become(session, before, "Move visibility")
         case KeyBox(keeps=keeps):
             editing.choose_keys_of(session, keeps)
     end(session)
@@ -192,6 +198,20 @@ def _drag_marker(session: Session, project: Project, drag: MarkerDrag, frame: fl
         return
     command = scene_commands.move_marker(drag.marker, wanted)
     _become(session, command(drag.before), command.label)
+    project.timing.gesture = replace(drag, at=wanted, after=project.document)
+
+
+def _drag_switch(session: Session, project: Project, drag: SwitchDrag, frame: float) -> None:
+    if project.document is not drag.after:
+        end(session)
+        return
+    document = drag.before
+    wanted = document.frames.clamp(drag.switch + round(frame - drag.start))
+    others = {switch.frame for switch in document.figure(drag.figure).switches} - {drag.switch}
+    if wanted == drag.at or wanted in others:
+        return
+    command = layer_commands.move_switch(drag.figure, drag.switch, wanted)
+    _become(session, command(document), command.label)
     project.timing.gesture = replace(drag, at=wanted, after=project.document)
 
 

@@ -17,7 +17,12 @@ def copy(session: Session) -> None:
     if project is None or project.puppet.shown is None:
         return
     keys = putting.shown_keys(project)
-    if keys:
+    if len(project.chosen_of) > 1 or (project.chosen_of and not project.chosen):
+        figures = [(project.document.figure(i), at) for i, at in project.chosen_of.items()]
+        session.copied = tuple(
+            CopiedKeys(figure, tuple(map(figure.key, sorted(at)))) for figure, at in figures
+        )
+    elif keys:
         _take(session, project.figure, keys)
     else:
         complaint = "The pose could not be copied"
@@ -25,37 +30,69 @@ def copy(session: Session) -> None:
 
 
 def _take(session: Session, figure: Figure, keys: tuple[Keyframe, ...]) -> None:
-    session.copied = CopiedKeys(figure, keys)
+    session.copied = (CopiedKeys(figure, keys),)
+
+
+def copied_for(session: Session) -> Mapping[int, CopiedKeys]:
+    """Return what was copied of each figure, by the id of that on which it can be pasted.
+
+    Keys of several figures go to those that they are of, keys of one to that which is posed.
+    """
+    project, copied = session.project, session.copied
+    if project is None:
+        return {}
+    if len(copied) > 1:
+        domains = {figure.id: figure.domain for figure in project.document.figures}
+        return {
+            each.figure.id: each
+            for each in copied
+            if domains.get(each.figure.id) is each.figure.domain
+        }
+    if copied and copied[0].figure.domain is project.figure.domain:
+        return {project.active: copied[0]}
+    return {}
+
+
+def copied_here(session: Session) -> CopiedKeys | None:
+    """Return what was copied for the figure that is posed, None where that is nothing."""
+    return copied_for(session).get(session.project.active) if session.project else None
 
 
 def can_paste(session: Session) -> bool:
-    """Tell whether what was copied is of the figure that is posed now."""
-    project, copied = session.project, session.copied
-    return (
-        project is not None and copied is not None and copied.figure.domain is project.figure.domain
-    )
+    """Tell whether there is a figure on which what was copied can be pasted."""
+    return bool(copied_for(session))
+
+
+def can_paste_here(session: Session) -> bool:
+    """Tell whether what was copied can be pasted on the figure that is posed."""
+    return copied_here(session) is not None
 
 
 def can_paste_on_selected(session: Session) -> bool:
     """Tell whether there are handles on which what was copied can be pasted."""
-    return can_paste(session) and session.project is not None and bool(session.project.selected)
+    return (
+        can_paste_here(session) and session.project is not None and bool(session.project.selected)
+    )
 
 
 def paste(session: Session) -> None:
     """Let a key at the present frame hold what was copied; of several keys, the first one."""
-    project, copied = session.project, session.copied
-    if project is None or copied is None or not can_paste(session):
+    project, copied = session.project, copied_for(session)
+    if project is None or not copied:
         return
     frame = putting.stand_at_frame(session, project)
-    keys = putting.fitted(project, copied.keys, copied.figure.bounds)
-    label = "Paste keys" if len(keys) > 1 else "Paste pose"
-    putting.put(session, project, frame, keys, label=label)
+    keys = {
+        figure: putting.fitted(project, figure, each.keys, each.figure.bounds)
+        for figure, each in copied.items()
+    }
+    putting.put(session, project, frame, keys)
 
 
 def paste_on_selected(session: Session) -> None:
     """Let the selected handles go where they were in what was copied, and the shape follow."""
-    if session.copied is not None and can_paste_on_selected(session):
-        pull_selected(session, session.copied.keys[0].pose.targets)
+    copied = copied_here(session)
+    if copied is not None and can_paste_on_selected(session):
+        pull_selected(session, copied.keys[0].pose.targets)
 
 
 def pull_selected(session: Session, targets: Mapping[int, Target]) -> None:

@@ -17,20 +17,20 @@ FLIPPING = "Flipping"
 
 def paste(session: Session) -> None:
     """Let keys hold what was copied, mirrored at the figure's axis."""
-    project, copied = session.project, session.copied
-    if project is None or copied is None or not copying.can_paste(session):
+    project, copied = session.project, copying.copied_here(session)
+    if project is None or copied is None:
         return
     frame = putting.stand_at_frame(session, project)
-    keys = putting.fitted(project, copied.keys, copied.figure.bounds)
+    keys = putting.fitted(project, project.active, copied.keys, copied.figure.bounds)
     _flip(session, project, frame, keys, gesture=object())
 
 
 def paste_on_selected(session: Session) -> None:
     """Let the selected handles go where their partners were, and the shape follow."""
-    project, copied = session.project, session.copied
+    project, copied = session.project, copying.copied_here(session)
     if project is None or copied is None or not copying.can_paste_on_selected(session):
         return
-    (key, *_) = putting.fitted(project, copied.keys, copied.figure.bounds)
+    (key, *_) = putting.fitted(project, project.active, copied.keys, copied.figure.bounds)
     figure = project.figure
     copying.pull_selected(session, flipped_targets(figure, key.pose, figure.axis))
 
@@ -97,7 +97,8 @@ def _flip(
             session.tell("The pose was not flipped: the shape or its handles changed. Paste again.")
             return
         flipped = [_with_pose(figure, key, pose) for key, pose in zip(keys, poses, strict=True)]
-        putting.put(session, project, frame, flipped, label="Paste flipped", gesture=gesture)
+        keys_of = {project.active: flipped}
+        putting.put(session, project, frame, keys_of, label="Paste flipped", gesture=gesture)
         project.flip = Flip(
             figure=figure.id, keys=tuple(keys), frames=project.chosen, poses=tuple(poses)
         )

@@ -30,7 +30,7 @@ def keep(session: Session) -> None:
 def _keep(session: Session, project: Project, figure: Figure, keys: tuple[Keyframe, ...]) -> None:
     if session.project is not project or figure.domain is not project.figure.domain:
         return
-    for key in putting.fitted(project, keys, figure.bounds):
+    for key in putting.fitted(project, project.active, keys, figure.bounds):
         editing.edit(session, pose_commands.keep_pose(project.active, key.pose))
     project.kept = project.figure.library[-1].name
 
@@ -54,7 +54,8 @@ def apply_at(session: Session, name: str, frame: int) -> None:
 def _put(session: Session, project: Project, name: str, frame: int) -> None:
     pose = project.figure.kept_pose(name).pose
     project.kept = name
-    putting.put(session, project, frame, [Keyframe(frame=0, pose=pose)], label="Use pose")
+    keys = {project.active: [Keyframe(frame=0, pose=pose)]}
+    putting.put(session, project, frame, keys, label="Use pose")
 
 
 def blend(session: Session, name: str, share: float) -> None:

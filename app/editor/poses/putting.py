@@ -1,6 +1,6 @@
 """Poses on the timeline: what is pasted, flipped or taken from the library."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 
@@ -18,22 +18,45 @@ def put(
     session: Session,
     project: Project,
     frame: int,
-    keys: Sequence[Keyframe],
+    keys_of: Mapping[int, Sequence[Keyframe]],
     *,
-    label: str = "Paste pose",
+    label: str | None = None,
     gesture: object | None = None,
 ) -> None:
-    """Let keys at a frame, and as much later as they were copied, hold poses; choose them."""
+    """Let keys at a frame, and as much later as they were copied, hold poses; choose them.
+
+    Of one alone only its pose is taken.
+
+    Parameters
+    ----------
+    session : Session
+    project : Project
+    frame : int
+        Where the first of them comes.
+    keys_of : mapping of int to sequence of Keyframe
+        By the ids of their figures.
+    label : str, optional
+        What this does in words; by default it pastes.
+    gesture : object, optional
+        What is one step of undo together.
+    """
     gesture = gesture or object()
-    moved = [replace(key, frame=frame + key.frame - keys[0].frame) for key in keys]
-    easing = session.preferences.easing
-    command = key_commands.put_keys(project.active, moved, easing)
-    project.history.do(replace(command, label=label), gesture=gesture)
-    frames = frozenset(key.frame for key in moved)
+    by = frame - min(key.frame for keys in keys_of.values() for key in keys)
+    chosen_of: dict[int, frozenset[int]] = {}
+    is_pose = sum(map(len, keys_of.values())) == 1
+    for figure, keys in keys_of.items():
+        moved = [replace(key, frame=key.frame + by) for key in keys]
+        if is_pose:
+            easing = session.preferences.easing
+            command = key_commands.put_pose(figure, frame, moved[0].pose, easing)
+        else:
+            command = key_commands.put_keys(figure, moved)
+        project.history.do(replace(command, label=label or command.label), gesture=gesture)
+        chosen_of[figure] = frozenset(key.frame for key in moved)
     unkeyed = project.history.unkeyed
-    if unkeyed is not None and unkeyed.figure == project.active and unkeyed.frame in frames:
+    if unkeyed is not None and unkeyed.frame in chosen_of.get(unkeyed.figure, ()):
         project.history.pose(None, gesture=gesture)
-    project.selected, project.chosen = frozenset(), frames
+    project.selected, project.chosen_of = frozenset(), chosen_of
 
 
 def stand_at_frame(session: Session, project: Project) -> int:
@@ -43,18 +66,22 @@ def stand_at_frame(session: Session, project: Project) -> int:
     return playback.current_frame(session, project)
 
 
-def fitted(project: Project, keys: Sequence[Keyframe], bounds: Bounds) -> list[Keyframe]:
-    """Return keys with poses that have the handles of now, and are proven for its limits.
+def fitted(
+    project: Project, identity: int, keys: Sequence[Keyframe], bounds: Bounds
+) -> list[Keyframe]:
+    """Return keys with poses that have a figure's handles of now, and are proven for its limits.
 
     Parameters
     ----------
     project : Project
+    identity : int
+        Of the figure.
     keys : sequence of Keyframe
-        Of the figure that is posed, or of an earlier state of it.
+        Of an earlier state of it, or of one with the same domain.
     bounds : Bounds
         Those that it had then.
     """
-    figure = project.figure
+    figure = project.document.figure(identity)
     known = {handle.id for handle in figure.handles}
     return [
         replace(
@@ -71,7 +98,8 @@ def _fitted(project: Project, figure: Figure, pose: Pose, bounds: Bounds) -> Pos
         pose = posing.retargeted(figure, pose)
     if figure.bounds == bounds:
         return pose
-    project.puppet.rig = rig = Rig.of(figure, project.puppet.rig)
+    puppet = project.puppets[figure.id]
+    puppet.rig = rig = Rig.of(figure, puppet.rig)
     proven = certify(figure.map_of(pose), rig.deformer.boundary, figure.bounds)
     return replace(pose, certificate=proven)
 

@@ -187,7 +187,7 @@ BINDINGS: dict[str, Binding] = {
         menu="Edit",
         keys=(CTRL | SHIFT | int(Key.v),),
         hint="Put the copied pose in a key at this frame, left and right exchanged",
-        possible=copying.can_paste,
+        possible=copying.can_paste_here,
     ),
     "paste on selected": Binding(
         label="Paste on selected handles",

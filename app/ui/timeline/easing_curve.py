@@ -1,5 +1,7 @@
 """Easing curves: how they look, and how they are changed."""
 
+from collections.abc import Mapping
+
 from imgui_bundle import ImVec2, imgui
 
 from app.document import MOST_TURNS, PRESETS, Easing, Keyframe
@@ -59,20 +61,20 @@ def easing_popup(name: str, look: Look, project: Project, key: Keyframe) -> list
     imgui.pop_style_var()
     if not is_open:
         return []
-    frames = project.chosen if key.frame in project.chosen else frozenset({key.frame})
+    taken = project.keys_with(project.active, key.frame)
+    count = sum(map(len, taken.values()))
     imgui.push_font(look.bold, 0)
     imgui.text("Easing")
     imgui.pop_font()
     imgui.same_line()
-    many = len(frames) > 1
-    imgui.text_disabled(f"after {len(frames)} keys" if many else f"after frame {key.frame}")
+    imgui.text_disabled(f"after {count} keys" if count > 1 else f"after frame {key.frame}")
     actions: list[Action] = []
     chosen = _presets(look, key.easing)
     chosen = _editor(look, key.easing) or chosen
     chosen = _numbers(look, key.easing) or chosen
     if chosen is not None:
-        actions.append(do(keys.set_easing, frames, chosen))
-    actions += _turns(look, key, frames)
+        actions.append(do(keys.set_easing, taken, chosen))
+    actions += _turns(look, key, taken)
     if imgui.button("Use for new keys"):
         actions.append(do(keys.ease_new_keys, key.easing))
     tip("Ways from keys that are made later begin like this one")
@@ -178,12 +180,12 @@ def _numbers(look: Look, easing: Easing) -> Easing | None:
     return _curve([_unit(value) for value in values], easing.curve) if changed else None
 
 
-def _turns(look: Look, key: Keyframe, frames: frozenset[int]) -> list[Action]:
+def _turns(look: Look, key: Keyframe, taken: Mapping[int, frozenset[int]]) -> list[Action]:
     label(look, "Whole turns")
     changed, turns = imgui.input_int("##turns", key.turns, 1, 1)
     tip("Full turns on the way to the next key, counter-clockwise; negative ones go clockwise")
     turns = min(max(turns, -MOST_TURNS), MOST_TURNS)
-    return [do(keys.set_turns, frames, turns)] if changed and turns != key.turns else []
+    return [do(keys.set_turns, taken, turns)] if changed and turns != key.turns else []
 
 
 def _curve(values: list[float], current: tuple[float, float, float, float]) -> Easing | None:

@@ -137,7 +137,7 @@ def _draw_row(track: Track, row: FigureRow) -> list[Action]:
             imgui.open_popup(f"menu of key {key.frame}")
         if gesture is None:
             _tell(track, row, key)
-        actions += key_menu(track, key)
+        actions += key_menu(track, identity, key)
     return actions
 
 

@@ -6,7 +6,7 @@ from app.document import PRESETS, Keyframe, Passing
 from app.editor import Action, Project, do
 from app.editor.actions import keys, playback
 from app.ui.shortcuts import BINDINGS
-from app.ui.style import Look, tip
+from app.ui.style import Look, shortened, tip
 from app.ui.timeline.easing_curve import LABELS
 from app.ui.timeline.track import Track
 
@@ -16,17 +16,19 @@ PASSINGS = {
     Passing.STOP: ("Stop", "The motion slows down to rest, and starts again"),
     Passing.HOLD: ("Hold", "The pose stays until the next key"),
 }
+NAME = 9.0  # em: width of a layer's name at most
 FACTORS = ((0.5, "Half as long"), (2.0, "Twice as long"))
 
 
-def key_menu(track: Track, key: Keyframe) -> list[Action]:
-    """Draw the menu of a key, if it is open."""
+def key_menu(track: Track, figure: int, key: Keyframe) -> list[Action]:
+    """Draw the menu of a key of a figure, if it is open."""
     actions: list[Action] = []
     if not imgui.begin_popup(f"menu of key {key.frame}"):
         return actions
     project = track.project
-    frames = project.chosen | {key.frame}
-    many = f" {len(frames)} keys" if len(frames) > 1 else ""
+    taken = project.keys_with(figure, key.frame)
+    count = sum(map(len, taken.values()))
+    many = f" {count} keys" if count > 1 else ""
     delete = BINDINGS["delete"]
     if imgui.menu_item_simple(f"Delete{many}###Delete", delete.keys_in_words):
         actions.append(delete.action)
@@ -36,13 +38,13 @@ def key_menu(track: Track, key: Keyframe) -> list[Action]:
         for passing, (name, hint) in PASSINGS.items():
             chosen = key.shown_passing is passing
             if imgui.menu_item(f"{name}###{passing}", "", chosen)[0]:
-                actions.append(do(keys.set_passing, frames, passing))
+                actions.append(do(keys.set_passing, taken, passing))
             tip(hint)
         imgui.end_menu()
     if imgui.begin_menu("Easing"):
         for name, preset in PRESETS.items():
             if imgui.menu_item(LABELS[name], "", key.easing == preset)[0]:
-                actions.append(do(keys.set_easing, frames, preset))
+                actions.append(do(keys.set_easing, taken, preset))
         imgui.end_menu()
     imgui.separator()
     actions += _time_items(track.look, project)
@@ -78,10 +80,14 @@ def time_menu(look: Look, project: Project) -> list[Action]:
 
 def _time_items(look: Look, project: Project) -> list[Action]:
     actions: list[Action] = []
-    count = len(project.figure.keys)
-    chosen = len(project.chosen)
+    count, chosen = len(project.figure.keys), project.count_chosen
     several = f"{chosen} keys" if chosen > 1 else "all keys"
-    if imgui.menu_item_simple(f"Reverse {several}###Reverse", enabled=count > 1):
+    # The time of a scene is scaled as a whole, but not reversed.
+    is_scene = chosen < 2 and len(project.document.figures) > 1
+    whose = (
+        f"{several} of {shortened(project.figure.name, NAME * look.em)}" if is_scene else several
+    )
+    if imgui.menu_item_simple(f"Reverse {whose}###Reverse", enabled=max(count, chosen) > 1):
         actions.append(do(keys.reverse))
     if imgui.begin_menu(f"Scale time of {several}###Scale time"):
         actions += [

@@ -6,10 +6,10 @@ from imgui_bundle import ImVec2, imgui
 from imgui_bundle import icons_fontawesome_6 as icons
 
 from app.document import Figure, is_visible, layer_commands
-from app.editor import Action, do, layering
-from app.editor.actions import editing, playback
+from app.editor import Action, SwitchDrag, TimeGesture, do, layering
+from app.editor.actions import editing, timeline_pointing
 from app.ui.style import SMALL, begin_tip, ink, shortened
-from app.ui.timeline.track import THIN, FigureRow, Track, in_hand
+from app.ui.timeline.track import THIN, FigureRow, Track, in_hand, is_pressed, write_tag
 
 HATCH = 0.55  # em between the lines over a time in which a figure is hidden
 EYE = 0.62  # em: half the width of the mark where a figure is shown or hidden
@@ -134,9 +134,13 @@ def _draw_switch(track: Track, row: FigureRow, frame: int, *, visible: bool) -> 
     is_at_key = not is_below and frame in row.figure.key_frames
     left, half = x + (BESIDE * em if is_at_key else 0.0), EYE * em
     low, high = ImVec2(left, middle - half), ImVec2(left + 2 * half, middle + half)
-    clicked = track.button(f"switch {frame}", low, high, right=True)
+    gesture = track.project.timing.gesture
+    track.button(f"switch {_origin(gesture, row.figure, frame)}", low, high, right=True)
+    is_held = isinstance(gesture, SwitchDrag) and _is_held(gesture, row.figure, frame)
     draw_list = imgui.get_window_draw_list()
-    colour = ink(palette.text if in_hand() else palette.anchor)
+    if in_hand():
+        imgui.set_mouse_cursor(imgui.MouseCursor_.resize_ew)
+    colour = ink(palette.text if in_hand() or is_held else palette.anchor)
     draw_list.add_line(ImVec2(x, row.top + 2), ImVec2(x, row.bottom - 2), colour, 1.5)
     imgui.push_font(None, SMALL * SMALL * imgui.get_style().font_size_base)
     icon = icons.ICON_FA_EYE if visible else icons.ICON_FA_EYE_SLASH
@@ -146,11 +150,22 @@ def _draw_switch(track: Track, row: FigureRow, frame: int, *, visible: bool) -> 
     menu = f"menu of switch {frame}"
     if imgui.is_item_clicked(imgui.MouseButton_.right):
         imgui.open_popup(menu)
-    elif clicked:
-        actions += [do(layering.choose, row.figure.id), do(playback.scrub, frame)]
-    if track.project.timing.gesture is None and begin_tip():
+    elif is_pressed():
+        document = track.project.document
+        drag = SwitchDrag(
+            figure=row.figure.id,
+            switch=frame,
+            at=frame,
+            start=track.pointed,
+            before=document,
+            after=document,
+        )
+        actions.append(do(timeline_pointing.begin, drag, track.strip))
+    if is_held and isinstance(gesture, SwitchDrag) and gesture.at != gesture.switch:
+        write_tag(track, x, f"{frame}  ({frame - gesture.switch:+d})")
+    if gesture is None and begin_tip():
         imgui.text_unformatted(f"{'Shown' if visible else 'Hidden'} from frame {frame} on")
-        imgui.text_disabled("Click to go there, right click to take it away")
+        imgui.text_disabled("Click to go there, drag to move it, right click to take it away")
         imgui.end_tooltip()
     if imgui.begin_popup(menu):
         if imgui.menu_item_simple("Delete"):
@@ -158,3 +173,15 @@ def _draw_switch(track: Track, row: FigureRow, frame: int, *, visible: bool) -> 
             actions.append(do(editing.edit, command))
         imgui.end_popup()
     return actions
+
+
+def _is_held(gesture: SwitchDrag, figure: Figure, frame: int) -> bool:
+    """Tell whether it is what happens to a figure at this frame that is dragged."""
+    return gesture.figure == figure.id and gesture.at == frame
+
+
+def _origin(gesture: TimeGesture | None, figure: Figure, frame: int) -> int:
+    """Return where a mark was before it was dragged, so that its button stays the same one."""
+    if isinstance(gesture, SwitchDrag) and _is_held(gesture, figure, frame):
+        return gesture.switch
+    return frame

@@ -146,9 +146,18 @@ def draw_overview(track: Track, frame: int) -> list[Action]:
         rounding,
     )
     middle = (top + bottom) / 2
-    for key in track.project.figure.keys:
-        x = track.left + (key.frame - low) * per_frame
-        draw_list.add_circle_filled(ImVec2(x, middle), 0.11 * em, ink(palette.text, 0.8), 8)
+    # Each frame once, however many figures have a key there; those of the active one over them.
+    own = track.project.figure.key_frames
+    others = {
+        key.frame for row in track.rows if not row.figure.still for key in row.figure.keys
+    } - own
+    for frames_of, radius, colour in (
+        (others, 0.09 * em, ink(palette.dim)),
+        (own, 0.11 * em, ink(palette.text, 0.8)),
+    ):
+        for at in frames_of:
+            x = track.left + (at - low) * per_frame
+            draw_list.add_circle_filled(ImVec2(x, middle), radius, colour, 8)
     x = track.left + (frame - low) * per_frame
     draw_list.add_line(ImVec2(x, top), ImVec2(x, bottom), ink(palette.accent), 1.5)
     delta = imgui.get_io().mouse_delta.x

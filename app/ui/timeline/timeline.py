@@ -2,7 +2,18 @@
 
 from imgui_bundle import ImVec2, imgui
 
-from app.editor import Action, EdgeDrag, KeyDrag, MarkerDrag, Scrub, Session, do
+from app.editor import (
+    Action,
+    EdgeDrag,
+    KeyDrag,
+    MarkerDrag,
+    Scrub,
+    Session,
+    SwitchDrag,
+    TimeGesture,
+    do,
+    layering,
+)
 from app.editor.actions import editing, playback, timeline_pointing
 from app.editor.tools import pointing
 from app.ui.shortcuts import with_key
@@ -98,13 +109,23 @@ def _go_on(track: Track) -> list[Action]:
     moves = [do(timeline_pointing.move, track.pointed, row)] if goes_on else []
     if imgui.is_mouse_down(imgui.MouseButton_.left):
         return [*moves, *_pull(track)] if goes_on else []
-    if isinstance(gesture, KeyDrag) and not goes_on and not gesture.copies:
-        # A click: the key alone, and its pose.
-        alone = do(editing.choose_keys, frozenset({gesture.pressed}))
-        return [do(timeline_pointing.end), alone, do(playback.scrub, gesture.pressed)]
-    if isinstance(gesture, MarkerDrag) and not goes_on:
-        return [do(timeline_pointing.end), do(playback.scrub, gesture.marker)]
+    if not goes_on:
+        moves = _click(gesture)
     return [*moves, do(timeline_pointing.end)]
+
+
+def _click(gesture: TimeGesture) -> list[Action]:
+    """Return what a press on something does that is let go where it was."""
+    match gesture:
+        case KeyDrag(pressed=frame, copies=False):
+            # The key alone, and its pose.
+            return [do(editing.choose_keys, frozenset({frame})), do(playback.scrub, frame)]
+        case MarkerDrag(marker=frame):
+            return [do(playback.scrub, frame)]
+        case SwitchDrag(figure=figure, switch=frame):
+            return [do(layering.choose, figure), do(playback.scrub, frame)]
+        case _:
+            return []
 
 
 def _pull(track: Track) -> list[Action]:
@@ -114,7 +135,7 @@ def _pull(track: Track) -> list[Action]:
     if not beyond:
         return []
     strip = track.strip.panned(PULL * beyond / track.look.em)
-    if isinstance(track.project.timing.gesture, KeyDrag | EdgeDrag | MarkerDrag):
+    if isinstance(track.project.timing.gesture, KeyDrag | EdgeDrag | MarkerDrag | SwitchDrag):
         return [do(timeline_pointing.look_at, strip)] if strip.frame(track.width / 2) > 0 else []
     return [
         do(timeline_pointing.look_at, strip.kept_near(track.project.document.frames, track.width))
@@ -150,7 +171,9 @@ def _hint(track: Track) -> str:
         seconds = in_seconds(gesture.by, track.project.document.fps)
         return f"{what} by {gesture.by:+d} frames, {seconds}: Esc takes it back"
     if gesture is not None:
-        return "Esc takes it back" if isinstance(gesture, EdgeDrag | MarkerDrag) else ""
+        return (
+            "Esc takes it back" if isinstance(gesture, EdgeDrag | MarkerDrag | SwitchDrag) else ""
+        )
     return _hint_of_place(track)
 
 

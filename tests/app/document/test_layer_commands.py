@@ -7,6 +7,7 @@ from numpy.testing import assert_allclose
 
 from app.document import handle_commands as handles
 from app.document import layer_commands as layers
+from app.document import scene_commands as scenes
 from app.document.layering import Attachment, Switch
 from app.document.queries.clips import clip_of
 from app.document.queries.fronts import fronts_at, is_visible
@@ -105,6 +106,27 @@ def test_a_layer_is_seen_as_its_switches_say():
         Switch(20, visible=True),
     )
     assert is_visible(disc_document().figures[0], 5)
+
+
+def test_what_is_seen_when_moves_and_is_stretched_with_all_time():
+    document = layers.switch_at(0, 12, visible=False)(disc_document())
+    document = layers.switch_at(0, 20, visible=True)(document)
+
+    def frames(document):
+        return [switch.frame for switch in document.figures[0].switches]
+
+    assert frames(layers.move_switch(0, 12, 15)(document)) == [0, 15, 20]
+    passed = layers.move_switch(0, 12, 30)(document)
+    assert frames(passed) == [0, 20, 30]
+    assert [switch.visible for switch in passed.figures[0].switches] == [True, True, False]
+    assert layers.move_switch(0, 12, 12)(document) is document
+    with pytest.raises(LissomError, match="neither shown nor hidden at frame 13"):
+        layers.move_switch(0, 13, 14)(document)
+    with pytest.raises(LissomError, match="at frame 20 after frame 20"):
+        layers.move_switch(0, 12, 20)(document)
+    assert frames(scenes.scale_time(2.0)(document)) == [0, 24, 40]
+    short = scenes.scale_time(0.02)(document).figures[0]
+    assert short.switches == (Switch(0, visible=True),)
 
 
 def test_depth_holds_from_a_key_on():

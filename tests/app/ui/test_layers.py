@@ -8,10 +8,12 @@ from imgui_bundle import ImVec2
 from layered import openraster
 from PIL import Image, ImageDraw
 
-from app.document import figure_commands, key_commands, layer_commands
+from app.document import PRESETS, Passing, figure_commands, key_commands, layer_commands
 from app.document.keyframe import Target
 from app.editor import layering
-from app.editor.actions import editing, playback, posing
+from app.editor.actions import editing, keys, playback, posing, timeline_pointing
+from app.editor.poses import copying
+from app.editor.timeline_view import Strip
 
 WIDTH, HEIGHT = 240, 200
 
@@ -345,6 +347,136 @@ def test_where_a_layer_is_hidden_is_marked_on_its_row(window, keyed, play):
 
     play(delete)
     assert [switch.frame for switch in keyed.document.figure(body).switches] == [0]
+
+
+def test_what_is_done_to_a_key_is_done_to_all_chosen_ones_of_other_rows(window, keyed, play):
+    arm, body = identity(keyed, "arm"), identity(keyed, "body")
+    before = keyed.document
+    chosen = {arm: frozenset({12, 24}), body: frozenset({0})}
+    window.act(editing.choose_keys_of, chosen)
+
+    def ease(rows):
+        rows.click("arm", "key 12", 1)
+        rows.robot.set_ref("//$FOCUSED")
+        rows.robot.menu_click("Easing/In-out")
+
+    play(ease)
+    assert keyed.chosen_of == chosen
+
+    def told(what):
+        return {
+            figure.name: [what(key) for key in figure.keys]
+            for figure in keyed.document.figures
+            if not figure.still
+        }
+
+    eased = told(lambda key: key.easing == PRESETS["in-out"])
+    assert eased == {"body": [True, False], "arm": [False, True, True]}
+    window.act(keys.set_turns, keyed.keys_with(body, 0), 2)
+    assert told(lambda key: key.turns) == {"body": [2, 0], "arm": [0, 2, 2]}
+    window.act(keys.pass_otherwise)
+    passed = told(lambda key: key.passing is Passing.CORNER)
+    assert passed == {"body": [True, False], "arm": [False, True, True]}
+    # One that is not chosen is alone.
+    assert keyed.keys_with(body, 18) == {body: {18}}
+    for _ in range(3):
+        window.act(editing.undo)
+    assert keyed.document is before
+
+
+def test_keys_of_several_rows_run_backwards_and_are_stretched_together(window, keyed):
+    arm, body = identity(keyed, "arm"), identity(keyed, "body")
+    window.act(editing.choose_keys_of, {arm: frozenset({0, 24}), body: frozenset({18})})
+    window.act(keys.reverse)
+    assert (frames_of(keyed, "arm"), frames_of(keyed, "body")) == ((0, 12, 24), (0, 6))
+    assert keyed.chosen_of == {arm: {0, 24}, body: {6}}
+    window.act(editing.undo)
+    window.act(editing.choose_keys_of, {arm: frozenset({12, 24}), body: frozenset({18})})
+    window.act(keys.scale, 0.5)
+    assert (frames_of(keyed, "arm"), frames_of(keyed, "body")) == ((0, 12, 18), (0, 15))
+    assert keyed.chosen_of == {arm: {12, 18}, body: {15}}
+
+
+def test_keys_of_several_rows_are_copied_and_pasted_each_on_its_own(window, keyed):
+    arm, body = identity(keyed, "arm"), identity(keyed, "body")
+    window.act(keys.set_turns, {arm: frozenset({12})}, 1)
+    before = keyed.document
+    window.act(editing.choose_keys_of, {arm: frozenset({12}), body: frozenset({0, 18})})
+    window.run(lambda robot: robot.key_press(int(window.Key.mod_ctrl) | int(window.Key.c)))
+    window.act(layering.choose, identity(keyed, "wall"))
+    window.act(playback.seek, 30)
+    window.run(lambda robot: robot.key_press(int(window.Key.mod_ctrl) | int(window.Key.v)))
+    window.settle()
+    assert (frames_of(keyed, "arm"), frames_of(keyed, "body")) == ((0, 12, 24, 42), (0, 18, 30, 48))
+    assert keyed.document.figure(arm).key(42).turns == 1
+    assert keyed.chosen_of == {arm: {42}, body: {30, 48}}
+    assert not copying.can_paste_here(window.session)
+    window.act(editing.undo)
+    assert keyed.document is before
+    # The rest can be pasted where one of the layers is gone.
+    window.act(layering.remove, body)
+    window.act(playback.seek, 40)
+    window.act(copying.paste)
+    assert frames_of(keyed, "arm") == (0, 12, 24, 40)
+
+
+def test_where_a_layer_comes_to_be_seen_is_dragged_in_time(window, keyed, play):
+    body = identity(keyed, "body")
+    for frame, visible in ((6, False), (20, True)):
+        window.act(editing.edit, layer_commands.switch_at(body, frame, visible=visible))
+    before = keyed.document
+
+    def frames():
+        return [switch.frame for switch in keyed.document.figure(body).switches]
+
+    assert frames() == [0, 6, 20]
+    play(lambda rows: rows.drag("body", "switch 6", 11))
+    assert frames() == [0, 11, 20]
+    assert keyed.document.figure(body).key_frames == {0, 18}
+    # It is not put where there is another one, but beyond.
+    play(lambda rows: rows.drag("body", "switch 11", 20))
+    assert frames() == [0, 19, 20]
+    play(lambda rows: rows.drag("body", "switch 19", 26))
+    assert frames() == [0, 20, 26]
+    assert [switch.visible for switch in keyed.document.figure(body).switches] == [
+        True,
+        True,
+        False,
+    ]
+
+    def give_up(rows):
+        rows.robot.mouse_move(rows.name("body", "switch 20"))
+        rows.robot.mouse_down(0)
+        rows.go_to(30, rows.place("body", "switch 20").y)
+        assert frames() == [0, 26, 30]
+        rows.robot.key_press(int(window.Key.escape))
+        rows.robot.mouse_up(0)
+
+    play(give_up)
+    assert frames() == [0, 20, 26]
+    for _ in range(3):
+        window.act(editing.undo)
+    assert keyed.document is before
+
+
+def test_the_overview_shows_the_keys_of_all_layers(window, keyed):
+    window.act(timeline_pointing.look_at, Strip(start=-1.0, scale=4.0))
+    window.frames(3)
+    found = []
+
+    def find(robot):
+        robot.set_ref("###Timeline")
+        found.append(robot.item_info("**/overview").rect_full)
+
+    window.run(find)
+    strip = np.s_[int(found[0].min.y) + 1 : int(found[0].max.y) - 1]
+    before = np.asarray(window.picture()).astype(int)[strip]
+    figure = keyed.document.figure(identity(keyed, "body"))
+    window.act(editing.edit, key_commands.insert_key(figure.id, 33, figure.keys[0].pose))
+    window.frames(2)
+    changed = np.abs(np.asarray(window.picture()).astype(int)[strip] - before).max(axis=(0, 2)) > 20
+    # A dot of a few pixels.
+    assert 1 <= np.count_nonzero(changed) <= 6
 
 
 def test_rows_scroll_where_there_are_many(window, keyed):

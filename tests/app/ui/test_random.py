@@ -377,10 +377,10 @@ class Walk:
             if self.chance(0.5)
             else Easing(tuple(map(float, self.rng.random(4))))
         )
-        self.act(keys.set_easing, self.some_keys(), easing)
+        self.act(keys.set_easing, {0: self.some_keys()}, easing)
 
     def change_turns(self) -> None:
-        self.act(keys.set_turns, self.some_keys(), int(self.rng.integers(-2, 3)))
+        self.act(keys.set_turns, {0: self.some_keys()}, int(self.rng.integers(-2, 3)))
 
     def change_variant(self) -> None:
         # The costlier ones are left again soon.

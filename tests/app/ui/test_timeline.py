@@ -320,7 +320,7 @@ def test_the_paths_of_selected_handles_are_shown_and_follow_the_keys(window, pro
     without, _ = mark_all(window.session, project, shown, PALETTES["dark"])
     assert len(with_path) > len(without)
     # In a corner at frame 12 the path is another one.
-    keys.set_passing(window.session, frozenset({12}), Passing.CORNER)
+    keys.set_passing(window.session, {0: frozenset({12})}, Passing.CORNER)
     project.selected = frozenset({1})
     window.settle()
     assert np.abs(project.paths.value.places - paths.places)[6:20].max() > 0.1
@@ -666,7 +666,7 @@ def test_new_keys_get_the_easing_that_was_chosen_for_them(window, project, play)
         hand.robot.item_click("//$FOCUSED/Use for new keys")
         hand.robot.key_press(int(window.Key.escape))
 
-    keys.set_easing(window.session, frozenset({24}), PRESETS["out"])
+    keys.set_easing(window.session, {0: frozenset({24})}, PRESETS["out"])
     window.frames(2)
     play(choose)
     keys.insert_at(window.session, 60)
@@ -684,7 +684,7 @@ def test_undo_and_redo_name_their_step_and_show_where_it_was(window, project):
     def here():
         return playback.current_frame(session, project)
 
-    keys.set_easing(session, frozenset({24}), HOLD)
+    keys.set_easing(session, {0: frozenset({24})}, HOLD)
     editing.edit_figure(session, key_commands.move_keys, frozenset({12}), -2)
     keys.set_fps(session, 12.0)
     playback.scrub(session, 60)

@@ -46,10 +46,10 @@ def test_a_pose_is_pasted_at_another_frame_as_one_step(session):
 def test_the_one_chosen_key_is_copied_wherever_the_playhead_is(session):
     editing.choose_keys(session, frozenset({6}))
     copying.copy(session)
-    assert session.copied.keys == (session.project.figure.key(6),)
+    assert session.copied[0].keys == (session.project.figure.key(6),)
     editing.choose_keys(session, frozenset())
     copying.copy(session)
-    assert session.copied.keys[0].pose is session.project.figure.key(0).pose
+    assert session.copied[0].keys[0].pose is session.project.figure.key(0).pose
 
 
 def test_several_keys_are_pasted_with_their_ways_and_distances(session):
@@ -155,4 +155,4 @@ def test_a_pose_that_no_key_holds_is_copied_and_gives_way_to_a_pasted_one(sessio
     assert project.unkeyed is unkeyed
     project.chosen = frozenset()
     copying.copy(session)
-    assert session.copied.keys[0].pose is unkeyed
+    assert session.copied[0].keys[0].pose is unkeyed
