@@ -33,3 +33,13 @@ class Baseline(StrEnum):
     """
 
     ARAP = "arap"
+    FFMP = "ffmp"
+    SIG13 = "sig13"
+    HANDLES = "handles"
+    CONFORMAL = "conformal"
+    MESH_ETA = "mesh-eta"
+
+    @property
+    def needs_maps(self) -> bool:
+        """Whether its keyframes must be harmonic maps; positions of a mesh do not do."""
+        return self in {Baseline.HANDLES, Baseline.CONFORMAL}

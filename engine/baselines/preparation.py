@@ -6,14 +6,21 @@ from itertools import pairwise
 
 import numpy.typing as npt
 
-from engine.arrays import Complexes
+from engine.arrays import Complexes, as_points
 from engine.baselines.arap import ArapInbetweens
+from engine.baselines.blended_metric import FlattenedInbetweens
+from engine.baselines.ffmp import FfmpInbetweens
+from engine.baselines.flattening import Flattening
 from engine.baselines.frames import MeshFrame, MeshInbetweens
+from engine.baselines.harmonic import ConformalInbetweens, HandleInbetweens, require_holomorphic
+from engine.baselines.mesh_eta import MeshEtaInbetweens
 from engine.baselines.mesh_keyframes import MeshKeyframe, mesh_keyframes
 from engine.baselines.poisson import PoissonStep
 from engine.baselines.triangulated_domain import TriangulatedDomain
+from engine.deform import Deformer, Handles
 from engine.errors import EngineError
-from engine.maps import HarmonicMap
+from engine.interpolation import Variant, prepare
+from engine.maps import Boundary, Bounds, HarmonicMap
 from engine.variant import Baseline
 
 
@@ -63,9 +70,12 @@ def prepare_baseline(
     points: npt.ArrayLike,
     triangles: npt.ArrayLike,
     *,
+    outline: npt.ArrayLike | None = None,
     anchor: complex | None = None,
     turns: npt.ArrayLike | None = None,
     principal: bool = False,
+    handles: npt.ArrayLike | None = None,
+    bounds: Bounds = Bounds(),
     loop: bool = False,
 ) -> PreparedBaseline:
     """Prepare the in-betweens of keyframes by a method that the paper compares its own with.
@@ -74,17 +84,24 @@ def prepare_baseline(
     ----------
     baseline : Baseline or str
     keyframes : sequence of HarmonicMap, or of complex of shape (n,); length q ≥ 2
-        Maps of the domain, or where the vertices are in each keyframe.
+        Maps of the domain, or where the vertices are in each keyframe; a baseline that `needs_maps`
+        must be given maps.
     points : complex, shape (n,)
         The vertices of the domain.
     triangles : int, shape (m, 3)
+    outline : complex, shape (p,), optional
+        The domain's boundary, inside the cage of the maps: for baselines that `needs_maps`.
     anchor : complex, optional
         The vertex next to it becomes the anchor; by default the one farthest from the border.
     turns : int, shape (q − 1,), or (q,) in a loop, optional
         Whole turns between neighbouring keyframes beyond the shorter way.
     principal : bool
-        With ARAP and mesh η: whether the angles are those between −π and π of each triangle by
-        itself, without regard to its neighbours: the version that fails.
+        Whether the angles of ARAP and mesh η are those between −π and π of each triangle by itself,
+        without regard to its neighbours: the version that fails.
+    handles : complex, shape (h,), optional
+        Points of the domain that are led straight, for the baseline of that name.
+    bounds : Bounds
+        That the same baseline obeys.
     loop : bool
         Whether the last keyframe leads on to the first one, which is at time q again.
 
@@ -95,28 +112,106 @@ def prepare_baseline(
     """
     baseline = _known_baseline(baseline)
     domain = TriangulatedDomain.of(points, triangles, anchor)
-    positions = [each(domain.points) if callable(each) else each for each in keyframes]
-    around = mesh_keyframes(
-        domain,
-        [*positions, *positions[:1]] if loop else positions,
-        turns=turns,
-        principal=principal,
-    )
-    return PreparedBaseline(
-        baseline=baseline,
-        domain=domain,
-        intervals=_mesh_intervals(domain, around),
-    )
+    around = [*keyframes, *keyframes[:1]] if loop else list(keyframes)
+    intervals: Sequence[MeshInbetweens]
+    if baseline.needs_maps:
+        maps = _maps_over_one_cage(baseline, around)
+        boundary = Boundary.sample(*_polygons(baseline, outline, maps[0]), maps[0].holes)
+        if baseline is Baseline.HANDLES:
+            intervals = _by_handles(domain, boundary, maps, handles, bounds)
+        else:
+            intervals = _conformal(domain, boundary, maps, turns)
+    else:
+        positions = [each(domain.points) if callable(each) else each for each in around]
+        keys = mesh_keyframes(domain, positions, turns=turns, principal=principal)
+        intervals = _on_mesh(baseline, domain, keys)
+    return PreparedBaseline(baseline=baseline, domain=domain, intervals=tuple(intervals))
 
 
-def _mesh_intervals(
-    domain: TriangulatedDomain, keyframes: Sequence[MeshKeyframe]
-) -> tuple[MeshInbetweens, ...]:
+def _on_mesh(
+    baseline: Baseline, domain: TriangulatedDomain, keyframes: Sequence[MeshKeyframe]
+) -> list[MeshInbetweens]:
+    """Prepare a method that knows the keyframes by their triangles only."""
+    pairs = list(pairwise(keyframes))
+    if baseline is Baseline.SIG13:
+        flattening = Flattening.on(domain)
+        return [FlattenedInbetweens.of(*pair, flattening) for pair in pairs]
     step = PoissonStep.on(domain)
-    return tuple(
-        ArapInbetweens(first=first, second=second, step=step)
-        for first, second in pairwise(keyframes)
+    if baseline is Baseline.ARAP:
+        return [ArapInbetweens(first=first, second=second, step=step) for first, second in pairs]
+    if baseline is Baseline.FFMP:
+        return [FfmpInbetweens.of(*pair, step) for pair in pairs]
+    return [MeshEtaInbetweens.of(*pair, step) for pair in pairs]
+
+
+def _by_handles(
+    domain: TriangulatedDomain,
+    boundary: Boundary,
+    maps: Sequence[HarmonicMap],
+    points: npt.ArrayLike | None,
+    bounds: Bounds,
+) -> list[MeshInbetweens]:
+    places = as_points(() if points is None else points, "handles")
+    if not len(places):
+        raise EngineError(
+            "Handles that are led from key to key are needed, and none is given; name points of "
+            "the domain as handles."
+        )
+    deformer = Deformer(boundary=boundary, handles=Handles.place(boundary, places), bounds=bounds)
+    return [
+        HandleInbetweens(domain=domain, deformer=deformer, first=first, second=second)
+        for first, second in pairwise(maps)
+    ]
+
+
+def _conformal(
+    domain: TriangulatedDomain,
+    boundary: Boundary,
+    maps: Sequence[HarmonicMap],
+    turns: npt.ArrayLike | None,
+) -> list[MeshInbetweens]:
+    require_holomorphic(maps, boundary)
+    prepared = prepare(
+        maps,
+        domain.points,
+        outline=boundary.outline,
+        variant=Variant.NU,
+        triangles=domain.mesh.triangles,
+        anchor=domain.points[domain.anchor],
+        turns=turns,
     )
+    return [
+        ConformalInbetweens(domain=domain, prepared=prepared, start=start)
+        for start in range(len(maps) - 1)
+    ]
+
+
+def _maps_over_one_cage(
+    baseline: Baseline, keyframes: Sequence[HarmonicMap | Complexes]
+) -> list[HarmonicMap]:
+    """Refuse keyframes that are no maps, or not of one cage."""
+    maps = [each for each in keyframes if isinstance(each, HarmonicMap)]
+    if len(maps) < len(keyframes):
+        raise EngineError(
+            f"The method {baseline} is for keyframes that are harmonic maps; positions of a mesh "
+            "do not do. Choose another method."
+        )
+    if len(maps) < 2:
+        raise EngineError(f"In-betweens need at least two keyframes, not {len(maps)}.")
+    for number, f in enumerate(maps):
+        if not f.span.equals(maps[0].span):
+            raise EngineError(
+                f"Keyframe {number} has another cage than keyframe 0; they must share it."
+            )
+    return maps
+
+
+def _polygons(
+    baseline: Baseline, outline: npt.ArrayLike | None, f: HarmonicMap
+) -> tuple[Complexes, Complexes]:
+    if outline is None:
+        raise EngineError(f"The method {baseline} needs the domain's outline.")
+    return as_points(outline, "outline", at_least=3), f.cage
 
 
 def _known_baseline(baseline: Baseline | str) -> Baseline:

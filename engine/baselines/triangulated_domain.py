@@ -72,8 +72,9 @@ class TriangulatedDomain:
     gradient : complex128, sparse, shape (m, n)
         ∂φ_j/∂z of the hat functions: times the positions of the vertices it is f_z of each
         triangle, and its conjugate times them is f_z̄.
-    pairs : intp, shape (e, 2)
-        The two triangles at each inner edge.
+    twins : intp, shape (e, 2)
+        The two half-edges that an inner edge consists of; number 3 t + k leads from corner k of
+        triangle t to its next.
     border : bool, shape (n,)
         Whether a vertex is on the border.
     loops : int
@@ -89,7 +90,7 @@ class TriangulatedDomain:
     mesh: Mesh
     areas: Floats
     gradient: csr_array
-    pairs: Indices
+    twins: Indices
     border: Booleans
     loops: int
     anchor: int
@@ -119,7 +120,8 @@ class TriangulatedDomain:
         points = as_points(points, "points", at_least=3)
         corners = _oriented(points, _as_corners(triangles, len(points)))
         mesh = Mesh(vertices=points, triangles=corners.astype(np.int32))
-        edges, sides, pairs = _adjacency(corners, len(points))
+        edges, sides, twins = _adjacency(corners, len(points))
+        pairs = twins // 3
         _require_whole(corners, pairs, len(points))
         areas = mesh.areas()
         border = np.zeros(len(points), dtype=np.bool_)
@@ -130,7 +132,7 @@ class TriangulatedDomain:
             mesh=mesh,
             areas=freeze(areas),
             gradient=_gradient(points, corners, areas),
-            pairs=freeze(pairs),
+            twins=freeze(twins),
             border=freeze(border),
             # Euler: V − E + F = 2 − (loops), for a plane mesh without its outside.
             loops=2 - (len(points) - len(edges) + len(corners)),
@@ -148,6 +150,11 @@ class TriangulatedDomain:
     def corners(self) -> Indices:
         """The vertices of each triangle, intp (m, 3)."""
         return self.mesh.triangles.astype(np.intp)
+
+    @property
+    def pairs(self) -> Indices:
+        """The two triangles at each inner edge, intp (e, 2)."""
+        return self.twins // 3
 
     @property
     def around_anchor(self) -> Indices:
@@ -178,11 +185,15 @@ class TriangulatedDomain:
         return csr_array((self.gradient.conj().T @ weighted).real)
 
 
-def factorised(matrix: csr_array | csc_array) -> SuperLU:
-    """Return the factors of a symmetric positive definite matrix."""
+def factorised(matrix: csr_array | csc_array, *, ordered: bool = False) -> SuperLU:
+    """Return the factors of a symmetric positive definite matrix.
+
+    If its rows and columns are in an order in which factors fill in little already, no such order
+    is looked for.
+    """
     return splu(
         csc_array(matrix),
-        permc_spec="MMD_AT_PLUS_A",
+        permc_spec="NATURAL" if ordered else "MMD_AT_PLUS_A",
         diag_pivot_thresh=0.0,
         options={"SymmetricMode": True},
     )
@@ -233,7 +244,7 @@ def _oriented(points: Complexes, corners: Indices) -> Indices:
 
 
 def _adjacency(corners: Indices, count: int) -> tuple[Indices, Indices, Indices]:
-    """Return all edges (e, 2), those on the border (b, 2), and the triangles at inner ones."""
+    """Return all edges (e, 2), those on the border (b, 2), and the half-edges of inner ones."""
     ends = np.stack([corners, np.roll(corners, -1, axis=1)], axis=-1).reshape(-1, 2)
     low, high = ends.min(axis=1), ends.max(axis=1)
     keys = low * count + high
@@ -249,8 +260,7 @@ def _adjacency(corners: Indices, count: int) -> tuple[Indices, Indices, Indices]
         )
     edges = np.column_stack([low, high])[order[starts]]
     inner = starts[shared == 2]
-    pairs = np.column_stack([order[inner] // 3, order[inner + 1] // 3])
-    return edges, edges[shared == 1], pairs
+    return edges, edges[shared == 1], np.column_stack([order[inner], order[inner + 1]])
 
 
 def _require_whole(corners: Indices, pairs: Indices, count: int) -> None:

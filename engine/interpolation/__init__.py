@@ -10,7 +10,7 @@ from engine.interpolation.inbetweens import Frame, Inbetweens, IntegratedInbetwe
 from engine.interpolation.keyframe_samples import KeyframeSamples, sample_keyframes
 from engine.interpolation.passing import Course, End, Joint, Tangent, shortened
 from engine.interpolation.preparation import Prepared, prepare, prepare_inbetweens
-from engine.interpolation.scaling import Scaling
+from engine.interpolation.scaling import PointSamples, Scaling, Worst, looseness
 from engine.interpolation.sites import Sites, prepare_sites
 from engine.variant import Variant
 
@@ -22,12 +22,15 @@ __all__ = [
     "IntegratedInbetweens",
     "Joint",
     "KeyframeSamples",
+    "PointSamples",
     "Prepared",
     "Scaling",
     "Sites",
     "Tangent",
     "Variant",
+    "Worst",
     "chebyshev",
+    "looseness",
     "prepare",
     "prepare_inbetweens",
     "prepare_sites",

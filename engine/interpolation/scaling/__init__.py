@@ -5,7 +5,13 @@ Out: the factor ρ at any time.
 Imports: `engine.maps`, `engine.interpolation.passing`, `engine.interpolation.periods`.
 """
 
-from engine.interpolation.scaling.sharp import BESIDE_KEY, PointSamples, SharpScaling
+from engine.interpolation.scaling.sharp import (
+    BESIDE_KEY,
+    PointSamples,
+    SharpScaling,
+    Worst,
+    looseness,
+)
 from engine.interpolation.scaling.smooth import Scaling
 
-__all__ = ["BESIDE_KEY", "PointSamples", "Scaling", "SharpScaling"]
+__all__ = ["BESIDE_KEY", "PointSamples", "Scaling", "SharpScaling", "Worst", "looseness"]

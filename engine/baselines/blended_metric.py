@@ -1,0 +1,66 @@
+"""Planar shape interpolation with bounded distortion (Chen, Weber, Keren and Ben-Chen 2013)."""
+
+from dataclasses import dataclass
+from typing import Self
+
+import numpy as np
+
+from engine.arrays import Floats, freeze
+from engine.baselines.flattening import Flattening, edge_lengths
+from engine.baselines.frames import MeshFrame
+from engine.baselines.mesh_keyframes import MeshKeyframe
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class FlattenedInbetweens:
+    """The pull-back metrics Jᵀ J are blended linearly, and what comes out is made flat.
+
+    On a mesh the metric of a triangle is the squared lengths of its edges, so that these are
+    blended. The blend's conformal distortion is below the larger of the keyframes' in every
+    triangle, but it is not flat; the flattening is discretely conformal, and keeps the lengths
+    between neighbours on the border. What it adds to a triangle's conformal distortion goes to 0
+    with the triangle's size; to the isometric distortion it may add anything.
+
+    The pose that a metric leaves open is the anchor's: its position and arg f_z around it are
+    linear in time.
+
+    Parameters
+    ----------
+    first, second : MeshKeyframe
+    flattening : Flattening
+    squared : float64, shape (2, m, 3)
+        Lengths of the half-edges in both keyframes, squared.
+    """
+
+    first: MeshKeyframe
+    second: MeshKeyframe
+    flattening: Flattening
+    squared: Floats
+
+    @classmethod
+    def of(cls, first: MeshKeyframe, second: MeshKeyframe, flattening: Flattening) -> Self:
+        """Work out the metrics of both keyframes."""
+        lengths = [edge_lengths(flattening.domain, key.positions) for key in (first, second)]
+        return cls(
+            first=first, second=second, flattening=flattening, squared=freeze(np.square(lengths))
+        )
+
+    def blended_lengths(self, time: float) -> Floats:
+        """Return the lengths (m, 3) of the half-edges before the flattening."""
+        lengths: Floats = np.sqrt((1.0 - time) * self.squared[0] + time * self.squared[1])
+        return lengths
+
+    def frame(self, time: float) -> MeshFrame:
+        """Return the in-between at a time in [0, 1]."""
+        first, second, domain = self.first, self.second, self.flattening.domain
+        flat = self.flattening.flatten(self.blended_lengths(time))
+        fz, fzbar = domain.derivatives(flat.positions)
+        angle = (1.0 - time) * first.anchor_angle + time * second.anchor_angle
+        turn = np.exp(1j * (angle - np.angle(domain.anchor_fz(fz))))
+        anchor = (1.0 - time) * first.anchor_position + time * second.anchor_position
+        return MeshFrame(
+            positions=anchor + turn * flat.positions,
+            fz=turn * fz,
+            fzbar=turn * fzbar,
+            angle_defect=flat.defect,
+        )

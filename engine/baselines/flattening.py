@@ -1,0 +1,237 @@
+"""Plane metrics of a mesh that are discretely conformal to given ones.
+
+Two metrics of a mesh are discretely conformal if their edges' lengths differ by a factor for each
+end, e^{(u_i + u_j)/2} (Luo 2004; Springborn, Schröder and Pinkall 2008). The angles around each
+vertex inside sum to 2π where a convex function of u is least; its gradient there is the angle
+defect, its Hessian half the cotangent Laplacian.
+"""
+
+from dataclasses import dataclass
+from typing import NamedTuple, Self
+
+import numpy as np
+from scipy.sparse import csc_array
+
+from engine.arrays import Booleans, Complexes, Floats, Indices, freeze
+from engine.baselines.triangulated_domain import TriangulatedDomain, factorised
+from engine.errors import EngineError
+
+MOST_STEPS = 40
+SHORTEST = 2.0**-20  # part of a Newton step
+ENOUGH = 1e-10  # angle defect, in radians, at which the search ends
+
+
+class Flat(NamedTuple):
+    """A metric that is flat inside.
+
+    Parameters
+    ----------
+    positions : complex128, shape (n,)
+        Of the vertices in the plane, the anchor at 0, turned anyhow.
+    defect : float
+        The largest angle defect inside that is left, in radians.
+    """
+
+    positions: Complexes
+    defect: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Flattening:
+    """Makes metrics of a simply connected mesh flat, with their lengths on the border kept.
+
+    Half-edge k of a triangle leads from its corner k to the next one.
+
+    Parameters
+    ----------
+    domain : TriangulatedDomain
+    inner : intp, shape (i,)
+        Vertices that are not on the border, in an order in which factors fill in little.
+    place : intp, shape (n,)
+        Of each vertex among those; −1 on the border.
+    hinges : intp, shape (m, 2)
+        The half-edge by which each triangle hangs on the one before it on the way through all, and
+        the twin of that.
+    reached : intp, shape (n,)
+        A half-edge from or to each vertex, the other end of which is its parent on the ways.
+    forward : bool, shape (n,)
+        Whether that leads to the vertex.
+    """
+
+    domain: TriangulatedDomain
+    inner: Indices
+    place: Indices
+    hinges: Indices
+    reached: Indices
+    forward: Booleans
+
+    @classmethod
+    def on(cls, domain: TriangulatedDomain) -> Self:
+        """Prepare a mesh, once for all frames.
+
+        Raises
+        ------
+        EngineError
+            If the mesh has holes: around them a flat metric need not close.
+        """
+        if domain.loops > 1:
+            raise EngineError(
+                f"This mesh has {domain.loops - 1} holes; the method of Chen et al. (2013) is for "
+                "meshes without. Choose another."
+            )
+        inner = np.flatnonzero(~domain.border)
+        if len(inner):
+            laplacian = domain.laplacian()[inner][:, inner]
+            inner = inner[np.argsort(factorised(laplacian).perm_c)]
+        place = np.full(len(domain.points), -1)
+        place[inner] = np.arange(len(inner))
+        reached, forward = _reached(domain)
+        return cls(
+            domain=domain,
+            inner=freeze(inner),
+            place=freeze(place),
+            hinges=freeze(_hinges(domain)),
+            reached=freeze(reached),
+            forward=freeze(forward),
+        )
+
+    def flatten(self, lengths: Floats) -> Flat:
+        """Lay a metric out in the plane.
+
+        Parameters
+        ----------
+        lengths : float64, shape (m, 3)
+            Of half-edges k, from corner k to the next; equal in twins.
+
+        Notes
+        -----
+        Newton's method on a convex function, some 5 steps. Where a length is more than the other
+        two together the function goes on convex, with the angles 0, 0 and π (Springborn et al.
+        2008), so that a metric on the way need not be one.
+        """
+        corners, inner = self.domain.corners, self.inner
+        logarithms = np.zeros(len(self.place))
+        angles, cotangents = _angles(lengths)
+        defect = self._defects(angles)
+        for _ in range(MOST_STEPS):
+            if np.abs(defect).max(initial=0.0) <= ENOUGH:
+                break
+            direction = factorised(self._hessian(cotangents), ordered=True).solve(-defect)
+            slope, part = float(direction @ defect), 1.0
+            while part > SHORTEST:
+                tried = logarithms.copy()
+                tried[inner] += part * direction
+                angles, cotangents = _angles(_scaled(lengths, tried, corners))
+                after = self._defects(angles)
+                # The function is convex: it has fallen if its slope has not risen far above 0.
+                if float(direction @ after) <= -0.5 * slope:
+                    break
+                part /= 2
+            if part <= SHORTEST:
+                break
+            logarithms, defect = tried, after
+        scaled = _scaled(lengths, logarithms, corners)
+        angles, _ = _angles(scaled)
+        worst = float(np.abs(self._defects(angles)).max(initial=0.0))
+        return Flat(self._laid_out(scaled, angles), worst)
+
+    def _defects(self, angles: Floats) -> Floats:
+        """Return 2π less the sum of the angles (m, 3) around each inner vertex, (i,)."""
+        sums = np.bincount(self.domain.corners.ravel(), angles.ravel())
+        return np.asarray(2 * np.pi - sums[self.inner])
+
+    def _hessian(self, cotangents: Floats) -> csc_array:
+        """Return half the cotangent Laplacian at the inner vertices, given those of the corners."""
+        start = self.place[self.domain.corners]
+        end = np.roll(start, -1, axis=1)
+        weights = 0.5 * np.roll(cotangents, 1, axis=1)  # opposite to half-edge k is corner k + 2
+        count = len(self.inner)
+        diagonal = sum(
+            np.bincount(ends[ends >= 0], weights[ends >= 0], minlength=count)
+            for ends in (start, end)
+        )
+        both = (start >= 0) & (end >= 0)
+        rows, columns, values = start[both], end[both], weights[both]
+        every = np.arange(count)
+        return csc_array(
+            (
+                np.concatenate([diagonal, -values, -values]),
+                (
+                    np.concatenate([every, rows, columns]),
+                    np.concatenate([every, columns, rows]),
+                ),
+            ),
+            shape=(count, count),
+        )
+
+    def _laid_out(self, lengths: Floats, angles: Floats) -> Complexes:
+        """Return the positions (n,) of a flat metric, the anchor at 0."""
+        # Directions of the half-edges against the first of their triangle.
+        turned = np.pi - angles
+        own = np.stack(
+            [np.zeros(len(angles)), turned[:, 1], turned[:, 1] + turned[:, 2]], axis=1
+        ).ravel()
+        hinge, twin = self.hinges.T
+        # Twins lead in opposite directions.
+        direction = self.domain.crossings.sums(
+            np.where(hinge == twin, 0.0, own[twin] + np.pi - own[hinge])
+        )
+        edges = lengths.ravel() * np.exp(1j * (np.repeat(direction, 3) + own))
+        steps = np.where(self.forward, edges[self.reached], -edges[self.reached])
+        steps[self.domain.anchor] = 0.0
+        return self.domain.ways.positions(steps)
+
+
+def edge_lengths(domain: TriangulatedDomain, positions: Complexes) -> Floats:
+    """Return the length (m, 3) of each half-edge, from corner k to the next."""
+    at = positions[domain.corners]
+    return np.abs(np.roll(at, -1, axis=1) - at)
+
+
+def _scaled(lengths: Floats, logarithms: Floats, corners: Indices) -> Floats:
+    factors = np.exp(logarithms / 2)[corners]
+    scaled: Floats = lengths * factors * np.roll(factors, -1, axis=1)
+    return scaled
+
+
+def _angles(lengths: Floats) -> tuple[Floats, Floats]:
+    """Return the angles (m, 3) at the corners of triangles, and their cotangents.
+
+    By the half-angle formula, with what the triangle inequality leaves cut off at 0.
+    """
+    half = lengths.sum(axis=1, keepdims=True) / 2
+    left = np.maximum(half - lengths, 0.0)  # without half-edge k
+    # Opposite to corner k is half-edge k + 1; those at it are k and k + 2.
+    opposite, after, before = (np.roll(left, shift, axis=1) for shift in (-1, 0, 1))
+    sine, cosine = np.sqrt(after * before), np.sqrt(half * opposite)
+    angles = 2.0 * np.arctan2(sine, cosine)
+    product = 2.0 * sine * cosine
+    cotangents = np.zeros_like(angles)
+    np.divide(cosine**2 - sine**2, product, out=cotangents, where=product > 0)
+    return angles, cotangents
+
+
+def _hinges(domain: TriangulatedDomain) -> Indices:
+    """Return by which half-edges triangles hang on their parents; the root's are both its first."""
+    count = len(domain.areas)
+    twins = np.concatenate([domain.twins, domain.twins[:, ::-1]])
+    child, parent = (twins // 3).T
+    used = twins[domain.crossings.parent[child] == parent]
+    root = domain.crossings.order[0]
+    hinges = np.full((count, 2), 3 * root)
+    used = used[used[:, 0] // 3 != root]
+    hinges[used[:, 0] // 3] = used
+    return hinges
+
+
+def _reached(domain: TriangulatedDomain) -> tuple[Indices, Booleans]:
+    """Return a half-edge between each vertex and its parent, and whether it leads to the vertex."""
+    corners, parent = domain.corners, domain.ways.parent
+    start, end = corners.ravel(), np.roll(corners, -1, axis=1).ravel()
+    reached = np.zeros(len(parent), dtype=np.intp)
+    forward = np.ones(len(parent), dtype=np.bool_)
+    for vertex, other, leads in ((start, end, False), (end, start, True)):
+        used = np.flatnonzero(parent[vertex] == other)
+        reached[vertex[used]] = used
+        forward[vertex[used]] = leads
+    return reached, forward

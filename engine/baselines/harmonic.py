@@ -1,0 +1,94 @@
+"""Methods whose in-betweens are harmonic maps: blended handles, and conformal interpolation."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from engine.baselines.frames import MeshFrame
+from engine.baselines.triangulated_domain import TriangulatedDomain
+from engine.deform import Deformer
+from engine.errors import EngineError
+from engine.interpolation import Prepared
+from engine.maps import Boundary, HarmonicMap, derivatives_of
+
+HOLOMORPHIC = 1e-6  # largest k of a map that counts as holomorphic
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class HandleInbetweens:
+    """The shape is deformed anew, by handles whose targets move straight from key to key.
+
+    Chen and Weber (2015) keep their bounds in each frame, but handles that go straight go where
+    nobody would pull them. A keyframe comes out as far as it is a pose of least energy for these
+    handles: the search begins at the keyframe that is nearer in time, and may end elsewhere.
+
+    Parameters
+    ----------
+    domain : TriangulatedDomain
+    deformer : Deformer
+        With the handles and the bounds.
+    first, second : HarmonicMap
+    """
+
+    domain: TriangulatedDomain
+    deformer: Deformer
+    first: HarmonicMap
+    second: HarmonicMap
+
+    def frame(self, time: float) -> MeshFrame:
+        """Return the in-between at a time in [0, 1]."""
+        handles = self.deformer.handles
+        targets = (1.0 - time) * self.first(handles.points) + time * self.second(handles.points)
+        start = self.deformer.resume(self.first if time < 0.5 else self.second)
+        state, _ = self.deformer.settle(start, handles.wish(targets))
+        positions = state.map(self.domain.points)
+        fz, fzbar = self.domain.derivatives(positions)
+        return MeshFrame(positions=positions, fz=fz, fzbar=fzbar)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class ConformalInbetweens:
+    """Conformal maps stay conformal: log f' is blended (Weber and Gotsman 2010).
+
+    Departs from their paper: f' is integrated, not fitted in the span of the Cauchy coordinates,
+    so that the keyframes come out exactly.
+
+    Parameters
+    ----------
+    domain : TriangulatedDomain
+    prepared : Prepared
+        All keyframes by the ν variant, which for holomorphic ones blends log f' alone.
+    start : int
+        The keyframe at time 0.
+    """
+
+    domain: TriangulatedDomain
+    prepared: Prepared
+    start: int
+
+    def frame(self, time: float) -> MeshFrame:
+        """Return the in-between at a time in [0, 1]."""
+        positions = self.prepared.frame(self.start + time).positions
+        fz, fzbar = self.domain.derivatives(positions)
+        return MeshFrame(positions=positions, fz=fz, fzbar=fzbar)
+
+
+def require_holomorphic(maps: Sequence[HarmonicMap], boundary: Boundary) -> None:
+    """Refuse keyframes that are not conformal.
+
+    Raises
+    ------
+    EngineError
+        If a map has k > 1e-6 somewhere on the boundary, and hence in the domain.
+    """
+    for number, (fz, fzbar) in enumerate(zip(*derivatives_of(maps, boundary.points), strict=True)):
+        k = np.abs(fzbar) / np.abs(fz)
+        worst = int(k.argmax())
+        if k[worst] > HOLOMORPHIC:
+            z = boundary.points[worst]
+            raise EngineError(
+                f"Keyframe {number} is not holomorphic: at ({z.real:.6g}, {z.imag:.6g}) its "
+                f"conformal distortion k is {k[worst]:.3g}, and must be 0. Conformal interpolation "
+                "is for conformal keyframes; choose another method."
+            )

@@ -1,0 +1,87 @@
+"""The paper's own method on meshes: scaled η in each triangle, and a Poisson step (Section 9.1)."""
+
+from dataclasses import dataclass, replace
+from typing import Self
+
+import numpy as np
+
+from engine.arrays import Complexes, freeze
+from engine.baselines.frames import MeshFrame
+from engine.baselines.mesh_keyframes import MeshKeyframe
+from engine.baselines.poisson import PoissonStep
+from engine.interpolation import PointSamples, Worst, looseness
+from engine.maps import distortion
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class MeshEtaInbetweens:
+    """log f_z and η are blended linearly in each triangle, and η scaled by one ρ (Figure 11).
+
+    f_z and f_z̄ then keep the keyframes' bounds in every triangle, but are no map's; the nearest map
+    is taken. Of discrete harmonic keyframes what that costs goes to 0 with the size of the
+    triangles (Section 9.1); of others it need not.
+
+    ρ is the least of what the triangles allow, Equations (16) to (18), with the same passage from
+    the worst bounds beside a keyframe as `engine.interpolation.scaling.sharp.SharpScaling`.
+
+    Parameters
+    ----------
+    first, second : MeshKeyframe
+    step : PoissonStep
+    eta : complex128, shape (2, m)
+        Of the keyframes.
+    samples : PointSamples
+        What ρ depends on, of each triangle.
+    worst : Worst
+        Of all triangles.
+    """
+
+    first: MeshKeyframe
+    second: MeshKeyframe
+    step: PoissonStep
+    eta: Complexes
+    samples: PointSamples
+    worst: Worst
+
+    @classmethod
+    def of(cls, first: MeshKeyframe, second: MeshKeyframe, step: PoissonStep) -> Self:
+        """Work out η and the bounds of both keyframes."""
+        fz, fzbar = (
+            np.array(part) for part in ((first.fz, second.fz), (first.fzbar, second.fzbar))
+        )
+        none = np.empty((0, fz.shape[1]), dtype=np.complex128)
+        samples = PointSamples.of(fz, fzbar.conj(), none, none)
+        return cls(
+            first=first,
+            second=second,
+            step=step,
+            eta=freeze(distortion.eta(fz, fzbar)),
+            samples=samples,
+            worst=Worst(
+                k=float(samples.k.max()),
+                sigma_a=float(samples.sigma_a.max()),
+                sigma_b=float(samples.sigma_b.min()),
+            ),
+        )
+
+    def rho(self, time: float) -> float:
+        """Return the scaling of η at a time, 1 at keyframes."""
+        if not 0.0 < time < 1.0:
+            return 1.0
+        weights = np.array([1.0 - time, time])[:, None, None]
+        share = float(looseness(np.array([time]))[0])
+        tight, loose = (
+            min(1.0, float(self.samples.bounded(worst).ratios(weights).min()))
+            for worst in (None, self.worst)
+        )
+        return float(tight ** (1.0 - share) * loose**share)
+
+    def frame(self, time: float) -> MeshFrame:
+        """Return the in-between at a time in [0, 1]."""
+        first, second, rest = self.first, self.second, 1.0 - time
+        modulus = np.abs(first.fz) ** rest * np.abs(second.fz) ** time
+        fz = modulus * np.exp(1j * (rest * first.angles + time * second.angles))
+        rho = self.rho(time)
+        fzbar = rho * (rest * self.eta[0] + time * self.eta[1]) / fz.conj()
+        anchor = rest * first.anchor_position + time * second.anchor_position
+        return replace(self.step.integrate(fz, fzbar, anchor), rho=rho)
