@@ -12,6 +12,12 @@ over the boundary is taken. p is real-linear in small changes of h, so that this
 iteration with 2 m + 2 real constraints for m holes; it depends analytically on t, and comes as a
 few functions of the place times series in time.
 
+The smallest change of h is a combination of the functions that stand for the constraints: δh ↦
+∮ F e^h δh dz is the product with one of them. F e^h and G e^±h being smooth around a hole, all of
+these are nearly sums of the few that stand for ∮ (z − c_j)^k δh dz with |k| small, whatever the
+keyframes are. h is sought among those, which are worked out once: it closes the periods to rounding
+all the same, and is as small as can be to some 1e-4 of itself.
+
 The metric variant wants ln |f_z^t| on the boundary, Equation (13), and gets it but for a constant
 around each hole (`engine.dirichlet`). There h has the least ∫ (Re h − what is lacking)² ds under
 closed periods, and turns nothing at the anchor.
@@ -22,7 +28,7 @@ Not in the paper, whose domains are simply connected.
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import NamedTuple, Self
+from typing import NamedTuple, Self, TypeVar
 
 import numpy as np
 import numpy.typing as npt
@@ -41,9 +47,13 @@ CLOSED = 1e-14  # of the diagonal: where the iteration may end
 MOST_STEPS = 15
 HALVINGS = 8
 ROUNDING = 1e-13  # of the diagonal: periods below are rounding
+INDEPENDENT = 1e-13  # of the largest: constraints below depend on the others
+MOMENTS = 3  # powers of z − c_j on either side, −3 to 2
 SHORTEST = 2.0**-5  # pieces of time are not halved below this
 TOLERANCE = 1e-11  # of the series in time
 LEFT_OUT = 2e-11  # of the modes: the periods are closed as far
+
+type_ = TypeVar("type_", Floats, Complexes)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -96,13 +106,13 @@ class Residual:
 
 
 class Open(NamedTuple):
-    """An in-between before its correction, at the nodes of the loops around the holes.
+    """In-betweens before their correction, at times (t,) and the nodes of the loops around holes.
 
     Parameters
     ----------
-    fz, g : complex128, shape (c,)
+    fz, g : complex128, shape (t, c)
         f_z and conj(f_z̄).
-    lacking : float64, shape (holes,), or None
+    lacking : float64, shape (t, holes), or None
         Constants that the real part of h is to make good on the boundary of each hole; None for
         the smallest h.
     """
@@ -142,8 +152,9 @@ class PeriodClosing:
 
     Parameters
     ----------
-    boundary : Boundary
     loops : Loops
+    size : float
+        Diagonal of the domain.
     basis : complex128, shape (c, b)
         Functions of the span at the nodes of the loops, orthonormal on the boundary.
     on_boundary : complex128, shape (m, b)
@@ -152,24 +163,33 @@ class PeriodClosing:
         The same at the anchor.
     coefficients : complex128, shape (n, b)
         The same in the span.
+    at_nodes : complex128, shape (b, s)
+        The same at the nodes of the paths.
+    slopes : complex64, shape (b, s)
+        Their derivatives there.
     inverse : float64, shape (2b, 2b)
         Of the Gram matrix of the real parts on the boundary, and the imaginary one at the anchor.
     shares : float64, shape (holes, 2b)
         Integral of the real part over the boundary of a hole, over the length of the whole.
     """
 
-    boundary: Boundary
     loops: Loops
+    size: float
     basis: Complexes
     on_boundary: Complexes
     at_anchor: Complexes
     coefficients: Complexes
+    at_nodes: Complexes
+    slopes: npt.NDArray[np.complex64]
     inverse: Floats
     shares: Floats
 
     @classmethod
-    def of(cls, boundary: Boundary, loops: Loops, anchor: complex) -> Self:
-        """Prepare the boundary of a domain with holes."""
+    def of(cls, boundary: Boundary, loops: Loops, nodes: Complexes) -> Self:
+        """Prepare the boundary of a domain with holes, and paths through nodes (s,).
+
+        The first node is the anchor.
+        """
         span = boundary.span
         count = len(span.vertices)  # logarithms are not single-valued functions
         samples = span.coordinates(boundary.points)[:, :count]
@@ -177,91 +197,108 @@ class PeriodClosing:
         _, lengths, directions = scipy.linalg.svd(root * samples, full_matrices=False)
         kept = lengths > RANK * lengths[0]
         own = directions[kept].conj().T / lengths[kept]
-        on_boundary = samples @ own
-        reals = root * np.hstack([on_boundary.real, -on_boundary.imag])
-        at_anchor = (span.coordinates(np.array([anchor]))[:, :count] @ own)[0]
-        turn = np.concatenate([at_anchor.imag, at_anchor.real])
-        # Im h is 0 at the anchor; without that an imaginary constant would be free.
-        gram = reals.T @ reals + np.outer(turn, turn)
-        gram[np.diag_indices_from(gram)] += RIDGE * np.trace(gram) / len(gram)
-        ends = pairwise([*boundary.starts[1:], len(boundary.points)])
-        logs = np.zeros((len(span) - count, own.shape[1]))
+        on_boundary, at_anchor = samples @ own, (span.coordinates(nodes[:1])[:, :count] @ own)[0]
+        at_loops = span.coordinates(loops.nodes)[:, :count] @ own
+        gram, shares = _real_parts(on_boundary, at_anchor, boundary)
+        constants = as_complex(scipy.linalg.solve(gram, shares.T, assume_a="pos"))
+        moments = np.vstack([_moments(at_loops, loops, span.centres), at_anchor])
+        few, _ = np.linalg.qr(_unit(np.hstack([moments.conj().T, constants])))
+        on_boundary, at_anchor = on_boundary @ few, at_anchor @ few
+        gram, shares = _real_parts(on_boundary, at_anchor, boundary)
+        logs = np.zeros((len(span) - count, few.shape[1]))
+        coefficients = np.vstack([own @ few, logs])
+        values, slopes = span.evaluate(coefficients, nodes, orders=(0, 1))
         return cls(
-            boundary=boundary,
             loops=loops,
-            basis=freeze(span.coordinates(loops.nodes)[:, :count] @ own),
+            size=boundary.size,
+            basis=freeze(at_loops @ few),
             on_boundary=freeze(on_boundary),
             at_anchor=freeze(at_anchor),
-            coefficients=freeze(np.vstack([own, logs])),
+            coefficients=freeze(coefficients),
+            at_nodes=freeze(np.ascontiguousarray(values.T)),
+            slopes=freeze(slopes.T.astype(np.complex64, order="C")),
             inverse=freeze(scipy.linalg.inv(gram)),
-            shares=freeze(np.array([(root * reals)[a:b].sum(axis=0) for a, b in ends])),
+            shares=freeze(shares),
         )
 
     @property
     def nbytes(self) -> int:
         """Memory that the arrays take, in bytes."""
-        arrays = (self.basis, self.on_boundary, self.coefficients, self.inverse)
-        return sum(array.nbytes for array in arrays)
+        arrays = (self.basis, self.on_boundary, self.coefficients, self.inverse, self.at_nodes)
+        return sum(array.nbytes for array in arrays) + self.slopes.nbytes
 
     def close(
         self,
-        opened: Callable[[float], Open],
-        points: Complexes,
+        opened: Callable[[Floats], Open],
         *,
         sign: int,
         breaks: Sequence[float] = (0.0, 1.0),
-        to_conformal: bool = False,
     ) -> Closing:
         """Close the periods of in-betweens at all times.
 
         Parameters
         ----------
         opened : callable
-            Returns the in-between at a time in [0, 1] before its correction.
-        points : complex128, shape (s,)
-            Where the correction is wanted; the first is the anchor.
+            Returns the in-betweens at times (t,) in [0, 1] before their correction.
         sign : {1, -1}
             1 keeps ν, −1 keeps η.
         breaks : sequence of float
             From 0 to 1: where the in-betweens may have kinks in time.
-        to_conformal : bool
-            Whether not h is wanted, but what leads on from there to the correction of f_z alone,
-            without f_z̄.
         """
+        return self._in_series(
+            lambda times: self.correction(opened(times), sign)[0], breaks=breaks, vanishing=True
+        )
+
+    def to_conformal(self, opened: Callable[[Floats], Open], *, sign: int) -> Closing:
+        """Return what leads on from there to the correction of f_z alone, without f_z̄."""
+
+        def further(times: Floats) -> Floats:
+            here = opened(times)
+            alone = here._replace(g=np.zeros_like(here.g))
+            return self.correction(alone, sign)[0] - self.correction(here, sign)[0]
+
+        return self._in_series(further, breaks=(0.0, 1.0), vanishing=False)
+
+    def _in_series(
+        self,
+        corrections: Callable[[Floats], Floats],
+        *,
+        breaks: Sequence[float],
+        vanishing: bool,
+    ) -> Closing:
+        """Write corrections (t, 2b) in few functions."""
         largest = 0.0
 
-        def solved(here: Open) -> Floats:
-            parts, _ = self.correction(here, sign)
-            if to_conformal:
-                parts = self.correction(here._replace(g=0.0 * here.g), sign)[0] - parts
+        def found(times: Floats) -> Floats:
+            nonlocal largest
+            parts = corrections(times).T
+            largest = max(largest, float(np.abs(self.on_boundary @ as_complex(parts)).max()))
             return parts
 
-        def corrections(times: Floats) -> Floats:
-            nonlocal largest
-            found = np.array([solved(opened(float(time))) for time in times]).T
-            h = self.on_boundary @ as_complex(found)
-            largest = max(largest, float(np.abs(h).max()))
-            return found
-
         forms, series = separate(
-            corrections,
+            found,
             tolerance=TOLERANCE,
             left_out=LEFT_OUT,
             shortest=SHORTEST,
             breaks=breaks,
-            vanishing=not to_conformal,
+            vanishing=vanishing,
         )
-        functions = self.coefficients @ as_complex(forms)
-        values, slopes = self.boundary.span.evaluate(functions, points, orders=(0, 1))
+        parts = as_complex(forms)
         return Closing(
             series=series,
-            functions=freeze(functions),
-            residual=Residual.of(series, values, slopes),
+            functions=freeze(self.coefficients @ parts),
+            residual=Residual(
+                series=series,
+                modes=freeze(parts.T @ self.at_nodes),
+                modes_z=freeze(parts.T.astype(np.complex64) @ self.slopes),
+            ),
             largest=largest,
         )
 
-    def correction(self, opened: Open, sign: int) -> tuple[Floats, float]:
-        """Return h by its parts (2b,) in the basis, and the largest period left over the diagonal.
+    def correction(self, opened: Open, sign: int) -> tuple[Floats, Floats]:
+        """Return h by its parts (t, 2b) in the basis, and the largest period left at each time.
+
+        The latter, (t,), is over the diagonal.
 
         Parameters
         ----------
@@ -270,63 +307,92 @@ class PeriodClosing:
             1 keeps ν, −1 keeps η.
         """
         fz, g, lacking = opened
-        goal = np.zeros(len(self.inverse))
+        goal = np.zeros((len(fz), len(self.inverse)))
         if lacking is not None:
-            goal = self.inverse @ (lacking @ self.shares)
-        parts, size = goal, self.boundary.size
+            goal = lacking @ self.shares @ self.inverse
+        parts, size = goal, self.size
         periods, rows = self._linearised(fz, g, parts, sign)
         anchor = np.concatenate([self.at_anchor, 1j * self.at_anchor])
         # With something lacking h may stretch the anchor, but not turn it.
-        fixed = [anchor.imag] if lacking is not None else [anchor.imag, anchor.real]
+        fixed = np.array([anchor.imag] if lacking is not None else [anchor.imag, anchor.real])
+        fixed = np.broadcast_to(fixed, (len(fz), *fixed.shape))
+        moving = np.ones(len(fz), np.bool_)
         for _ in range(MOST_STEPS):
-            gap = float(np.abs(periods).max())
-            constraints = np.vstack([rows.real, rows.imag, *fixed])
-            wanted = np.zeros(len(constraints))
-            linear = rows @ parts - periods
-            wanted[: 2 * len(periods)] = np.concatenate([linear.real, linear.imag])
-            if np.abs(constraints @ parts - wanted).max() <= CLOSED * size:
+            gap = np.abs(periods).max(axis=1)
+            constraints = np.concatenate([rows.real, rows.imag, fixed], axis=1)
+            linear = _applied(rows, parts) - periods
+            wanted = np.zeros(constraints.shape[:2])
+            wanted[:, : 2 * periods.shape[1]] = np.hstack([linear.real, linear.imag])
+            moving &= np.abs(_applied(constraints, parts) - wanted).max(axis=1) > CLOSED * size
+            if not moving.any():
                 break
             spread = constraints if lacking is None else constraints @ self.inverse
-            multipliers, *_ = np.linalg.lstsq(
-                spread @ constraints.T, wanted - constraints @ goal, rcond=None
+            across = np.linalg.pinv(
+                spread @ constraints.swapaxes(1, 2), rcond=INDEPENDENT, hermitian=True
             )
-            step = goal + spread.T @ multipliers - parts
+            multipliers = _applied(across, wanted - _applied(constraints, goal))
+            step = goal + _applied(spread.swapaxes(1, 2), multipliers) - parts
+            step[~moving] = 0.0
             for _ in range(HALVINGS):
                 tried = self._linearised(fz, g, parts + step, sign)
-                if not np.abs(tried[0]).max() > max(gap, ROUNDING * size):
+                is_nearer = np.abs(tried[0]).max(axis=1) <= np.maximum(gap, ROUNDING * size)
+                if is_nearer.all():
                     break
-                step = step / 2
+                step[~is_nearer] /= 2
             else:
-                break
+                moving &= is_nearer
+                step[~is_nearer] = 0.0
+                tried = self._linearised(fz, g, parts + step, sign)
             parts, (periods, rows) = parts + step, tried
-            if np.abs(step).max() <= CLOSED:
-                break
-        return parts, float(np.abs(periods).max()) / size
+            moving &= np.abs(step).max(axis=1) > CLOSED
+        return parts, np.abs(periods).max(axis=1) / size
 
     def _linearised(
         self, fz: Complexes, g: Complexes, parts: Floats, sign: int
     ) -> tuple[Complexes, Complexes]:
-        """Return the periods (holes,) with h, and what its parts change of them, (holes, 2b)."""
-        h = self.basis @ as_complex(parts)
-        growth = np.exp(h)
+        """Return the periods (t, holes) with h, and what its parts change of them.
+
+        The latter is (t, holes, 2b).
+        """
+        growth = np.exp(as_complex(parts.T).T @ self.basis.T)
         f_now = fz * growth
         g_now = g * growth if sign > 0 else g / growth
-        both = np.column_stack([f_now, g_now])
-        of_f, of_g = self.loops.integrals(both).T
-        by_f = self._moments(f_now)
-        by_g = sign * self._moments(g_now).conj()
-        return of_f + of_g.conj(), np.hstack([by_f + by_g, 1j * (by_f - by_g)])
+        of_f, of_g = self.loops.integrals(f_now), self.loops.integrals(g_now)
+        by_f = self.loops.products(f_now, self.basis)
+        by_g = sign * self.loops.products(g_now, self.basis).conj()
+        return of_f + of_g.conj(), np.concatenate([by_f + by_g, 1j * (by_f - by_g)], axis=2)
 
-    def _moments(self, values: Complexes) -> Complexes:
-        """Integrate values (c,) times each function of the basis over each loop, (holes, b)."""
-        each = values * self.loops.differentials
-        ends = [*self.loops.starts[1:], len(each)]
-        return np.array(
-            [
-                each[start:end] @ self.basis[start:end]
-                for start, end in zip(self.loops.starts, ends, strict=True)
-            ]
-        )
+
+def _moments(values: Complexes, loops: Loops, centres: Complexes) -> Complexes:
+    """Integrate functions (c, b) times low powers of z − c_j over each loop, (moments, b)."""
+    away = loops.nodes - np.repeat(centres, loops.counts)
+    powers = np.array([away**power for power in range(-MOMENTS, MOMENTS)])
+    return loops.products(powers, values).reshape(-1, values.shape[1])
+
+
+def _unit(columns: Complexes) -> Complexes:
+    scaled: Complexes = columns / np.linalg.norm(columns, axis=0)
+    return scaled
+
+
+def _real_parts(
+    on_boundary: Complexes, at_anchor: Complexes, boundary: Boundary
+) -> tuple[Floats, Floats]:
+    """Return the Gram matrix (2b, 2b) of the functions' real parts, and `PeriodClosing.shares`."""
+    root = np.sqrt(boundary.weights)[:, None]
+    reals = root * np.hstack([on_boundary.real, -on_boundary.imag])
+    turn = np.concatenate([at_anchor.imag, at_anchor.real])
+    # Im h is 0 at the anchor; without that an imaginary constant would be free.
+    gram = reals.T @ reals + np.outer(turn, turn)
+    gram[np.diag_indices_from(gram)] += RIDGE * np.trace(gram) / len(gram)
+    ends = pairwise([*boundary.starts[1:], len(boundary.points)])
+    return gram, np.array([(root * reals)[a:b].sum(axis=0) for a, b in ends])
+
+
+def _applied(matrices: type_, vectors: type_) -> type_:
+    """Return the product of each matrix (t, r, n) with its vector (t, n), (t, r)."""
+    product: type_ = (matrices @ vectors[:, :, None])[:, :, 0]
+    return product
 
 
 def as_complex(parts: Floats) -> Complexes:

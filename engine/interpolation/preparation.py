@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
-from engine.arrays import Complexes, Integers
+from engine.arrays import Complexes, Floats, Integers
 from engine.dirichlet import Extension, HilbertTransform
 from engine.errors import EngineError
 from engine.interpolation.blends import EtaBlend, MetricResidual, NuBlend
@@ -254,17 +254,20 @@ def _closings(
         return ()
     at_loops = _blend(variant, passage.at(sites.paths.around))
 
-    def opened(time: float) -> Open:
-        here = at_loops.derivatives(time)
-        return Open(here.fz, here.g, None if metric is None else metric.lacking_at(time))
+    def opened(times: Floats) -> Open:
+        here = [at_loops.derivatives(float(time)) for time in times]
+        return Open(
+            np.array([each.fz for each in here]),
+            np.array([each.g for each in here]),
+            None if metric is None else metric.lacking_at(times),
+        )
 
     sign = 1 if variant is Variant.NU else -1
     breaks = (0.0, 1.0) if metric is None else tuple(metric.residual.series.breaks)
-    points = sites.paths.nodes
-    closing = sites.closing.close(opened, points, sign=sign, breaks=breaks)
+    closing = sites.closing.close(opened, sign=sign, breaks=breaks)
     if variant is not Variant.SCALED_ETA:
         return (closing,)
-    return closing, sites.closing.close(opened, points, sign=sign, to_conformal=True)
+    return closing, sites.closing.to_conformal(opened, sign=sign)
 
 
 def _known(variant: Variant | str) -> Variant:

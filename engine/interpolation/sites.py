@@ -123,17 +123,16 @@ def prepare_sites(
         network = replace(network, places=network.places[: len(points)])
     else:
         network = mesh_network(outline, points, _as_triangles(triangles), root, holes=inner)
-    closing: PeriodClosing | None = None
     if inner:
         network = with_loops(network, outline, inner, loops)
-        closing = PeriodClosing.of(boundary, loops, complex(root[0]))
+    paths = lay_paths(network, corners, cages)
     return Sites(
         diameter=diameter(outline),
         points=points,
-        paths=lay_paths(network, corners, cages),
+        paths=paths,
         boundary=boundary,
         loops=loops,
-        closing=closing,
+        closing=PeriodClosing.of(boundary, loops, paths.nodes) if inner else None,
     )
 
 

@@ -69,8 +69,19 @@ class Loops:
             starts=freeze(np.cumsum([0, *map(len, nodes)])[: len(nodes)].astype(np.intp)),
         )
 
+    @property
+    def counts(self) -> Indices:
+        """How many nodes each loop has, (holes,)."""
+        counts: Indices = np.diff(self.starts, append=len(self.nodes))
+        return counts
+
     def integrals(self, values: Complexes) -> Complexes:
-        """Integrate over each loop: (c, ...) to (holes, ...)."""
-        each = values * self.differentials.reshape(-1, *[1] * (values.ndim - 1))
-        sums: Complexes = np.add.reduceat(each, self.starts, axis=0)
+        """Integrate over each loop: (..., c) to (..., holes)."""
+        sums: Complexes = np.add.reduceat(values * self.differentials, self.starts, axis=-1)
         return sums
+
+    def products(self, values: Complexes, functions: Complexes) -> Complexes:
+        """Integrate values (t, c) times functions (c, b) over each loop, (t, holes, b)."""
+        each, ends = values * self.differentials, self.starts + self.counts
+        loops = [slice(start, end) for start, end in zip(self.starts, ends, strict=True)]
+        return np.stack([each[:, own] @ functions[own] for own in loops], axis=1)

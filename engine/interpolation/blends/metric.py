@@ -55,9 +55,9 @@ class MetricResidual(NamedTuple):
     residual: Residual
     lacking: Floats
 
-    def lacking_at(self, time: float) -> Floats:
-        """Return how much the real part stays below at a time, (holes,)."""
-        missing: Floats = self.lacking @ self.residual.series(time)
+    def lacking_at(self, times: Floats) -> Floats:
+        """Return how much the real part stays below at times (t,), (t, holes)."""
+        missing: Floats = self.residual.series.at(times).T @ self.lacking.T
         return missing
 
     @classmethod

@@ -227,14 +227,17 @@ class SharpScaling:
         points = np.concatenate(sampled)
         starts = np.cumsum([0, *map(len, sampled[:-1])])
         columns = np.array([f.columns for f in maps]).swapaxes(0, 1)  # Φ of all, and then Ψ of all
-        values, slopes = span.evaluate(columns.reshape(-1, len(span)).T, points, orders=(1, 2))
-        modes = [span.evaluate(each.functions, points, orders=(0, 1)) for each in closings]
+        columns = columns.reshape(-1, len(span)).T
+        modes = [each.functions for each in closings]
+        derivatives = span.evaluate(np.hstack([columns, *modes]), points, orders=(0, 1, 2))
+        values, first, second = (each.T for each in derivatives)
+        keys = columns.shape[1]
         curves = OutlineCurves.through(
             points,
-            np.vstack([values.T, *(mode[0].T for mode in modes)]),
-            np.vstack([slopes.T, *(mode[1].T for mode in modes)]),
+            np.vstack([first[:keys], values[keys:]]),
+            np.vstack([second[:keys], first[keys:]]),
             starts=starts,
-            counts=(len(maps), modes[0][0].shape[1] if modes else 0),
+            counts=(len(maps), modes[0].shape[1] if modes else 0),
         )
         samples = curves.samples_of(curves.coefficients[0])
         worst = _worst(curves, samples)
