@@ -107,6 +107,15 @@ class Passage:
             residual.add_to(logarithm, logarithm_z, time)
         return logarithm, logarithm_z
 
+    def log_fz_at(self, times: Floats) -> Complexes:
+        """Return the former at times (t,), (t, s)."""
+        weights = self.course.at(times).T
+        logarithms: Complexes = weights @ np.array([key.log_fz for key in self.keyframes])
+        logarithms.imag += 2 * np.pi * (weights @ self.sheets)[:, None]
+        for residual in self.residuals:
+            logarithms += residual.at_times(times)
+        return logarithms
+
 
 def weighted(arrays: Sequence[Complexes], weights: Floats) -> Complexes:
     """Return Σ w_i a_i; an array whose weight is 0 is not touched."""

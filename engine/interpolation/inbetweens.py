@@ -5,7 +5,7 @@ from typing import Protocol, Self
 
 import numpy as np
 
-from engine.arrays import Complexes, freeze
+from engine.arrays import Complexes, Floats, freeze
 from engine.interpolation.derivatives import Derivatives, Passage, weighted
 from engine.interpolation.periods import Residual
 from engine.interpolation.scaling import Scaling
@@ -18,6 +18,9 @@ class Blend(Protocol):
     @property
     def nbytes(self) -> int:
         """Memory beyond the keyframes' own, in bytes."""
+
+    def values(self, times: Floats) -> tuple[Complexes, Complexes]:
+        """Return f_z and conj(f_z̄) at times (t,) and the nodes of the paths, each (t, s)."""
 
     def derivatives(self, time: float) -> Derivatives:
         """Return the in-between's derivatives at the nodes of the paths."""
@@ -95,16 +98,16 @@ class IntegratedInbetweens:
         blended = self.blend.derivatives(time)
         keyframes, weights = self.passage.keyframes, self.passage.course(time)
         paths = self.sites.paths
-        phi = paths.integrals(paths.step_integrals(blended.fz, blended.fzz))
+        alone = paths.step_integrals(blended.fz, blended.fzz)
+        scaled = paths.step_integrals(blended.g, blended.gz).conj()
+        if self.opening is not None:
+            scaled += alone
+            alone = paths.step_integrals(*self._conformal(blended, time))
+            scaled -= alone
+        phi, conj_psi = paths.integrals(alone), paths.integrals(scaled)
         phi += weighted([key.phi_error for key in keyframes], weights)
-        psi = paths.integrals(paths.step_integrals(blended.g, blended.gz))
-        psi += weighted([key.psi_error for key in keyframes], weights)
-        if self.opening is None:
-            return phi, psi.conj()
-        fz, fzz = self._conformal(blended, time)
-        alone = paths.integrals(paths.step_integrals(fz, fzz))
-        alone += weighted([key.phi_error for key in keyframes], weights)
-        return alone, phi - alone + psi.conj()
+        conj_psi += weighted([key.psi_error for key in keyframes], weights).conj()
+        return phi, conj_psi
 
     def derivative_parts(self, time: float) -> tuple[Complexes, Complexes, Complexes]:
         """Return f_z for ρ = 0, what ρ adds to it, and f_z̄ before its scaling, at the points."""

@@ -2,7 +2,6 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import partial
 
 import numpy as np
 
@@ -94,14 +93,13 @@ def sample_keyframes(
     values, first_order, second_order = span.evaluate(coefficients, paths.nodes, orders=(0, 1, 2))
     # Φ and Ψ themselves go on from turn to turn around a hole: a log(z − c) has an argument, which
     # the span leaves out since it cancels in f.
-    for centre, logs in zip(span.centres, coefficients[len(span.vertices) :], strict=True):
-        away = paths.nodes - centre
-        arguments = continue_logarithm(away, 1 / away, paths, partial(np.add, -centre)).imag
-        values += 1j * np.multiply.outer(arguments, logs)
     ends = np.concatenate([[0], paths.places])
+    values = values[ends]
+    values.imag += sites.arguments @ coefficients[len(span.vertices) :].real
+    values.real -= sites.arguments @ coefficients[len(span.vertices) :].imag
     columns = [slice(2 * i, 2 * i + 2) for i in range(len(maps))]
     return tuple(
-        _samples(f, paths, values[ends, c], first_order[:, c], second_order[:, c])
+        _samples(f, paths, values[:, c], first_order[:, c], second_order[:, c])
         for f, c in zip(maps, columns, strict=True)
     )
 

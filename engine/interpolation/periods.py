@@ -26,7 +26,7 @@ Not in the paper, whose domains are simply connected.
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import NamedTuple, Self, TypeVar
 
@@ -53,7 +53,7 @@ SHORTEST = 2.0**-5  # pieces of time are not halved below this
 TOLERANCE = 1e-11  # of the series in time
 LEFT_OUT = 2e-11  # of the modes: the periods are closed as far
 
-type_ = TypeVar("type_", Floats, Complexes)
+Numbers = TypeVar("Numbers", Floats, Complexes)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -104,6 +104,11 @@ class Residual:
         single = coefficients.astype(np.float32)
         logarithm_z.view(np.float64)[:] += single @ self.modes_z.view(np.float32)
 
+    def at_times(self, times: Floats) -> Complexes:
+        """Return what is added to log f_z at times (t,), (t, s)."""
+        values: Complexes = self.series.at(times).T @ self.modes
+        return values
+
 
 class Open(NamedTuple):
     """In-betweens before their correction, at times (t,) and the nodes of the loops around holes.
@@ -142,6 +147,20 @@ class Closing:
     functions: Complexes
     residual: Residual
     largest: float
+
+    def leading(self, left_out: float) -> tuple[Complexes, PiecewiseSeries]:
+        """Return the functions (n, i), and their series, that make h but for a small rest.
+
+        Parameters
+        ----------
+        left_out : float
+            Of the rest, on the boundary.
+        """
+        coefficients = self.series.coefficients
+        sizes = np.sqrt((coefficients**2).sum(axis=(0, 1)))
+        kept = sizes > min(left_out, sizes.max())
+        series = replace(self.series, coefficients=freeze(coefficients[:, :, kept]))
+        return self.functions[:, kept], series
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -389,9 +408,9 @@ def _real_parts(
     return gram, np.array([(root * reals)[a:b].sum(axis=0) for a, b in ends])
 
 
-def _applied(matrices: type_, vectors: type_) -> type_:
+def _applied(matrices: Numbers, vectors: Floats) -> Numbers:
     """Return the product of each matrix (t, r, n) with its vector (t, n), (t, r)."""
-    product: type_ = (matrices @ vectors[:, :, None])[:, :, 0]
+    product: Numbers = (matrices @ vectors[:, :, None])[:, :, 0]
     return product
 
 

@@ -255,12 +255,8 @@ def _closings(
     at_loops = _blend(variant, passage.at(sites.paths.around))
 
     def opened(times: Floats) -> Open:
-        here = [at_loops.derivatives(float(time)) for time in times]
-        return Open(
-            np.array([each.fz for each in here]),
-            np.array([each.g for each in here]),
-            None if metric is None else metric.lacking_at(times),
-        )
+        lacking = None if metric is None else metric.lacking_at(times)
+        return Open(*at_loops.values(times), lacking)
 
     sign = 1 if variant is Variant.NU else -1
     breaks = (0.0, 1.0) if metric is None else tuple(metric.residual.series.breaks)

@@ -2,11 +2,12 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 import numpy.typing as npt
 
-from engine.arrays import Complexes, as_points
+from engine.arrays import Complexes, Floats, as_points, freeze
 from engine.errors import EngineError
 from engine.geometry import Hole, deepest_point, diameter, require_inside
 from engine.interpolation.periods import PeriodClosing
@@ -15,6 +16,7 @@ from engine.paths import (
     ON_OUTLINE,
     IntegrationPaths,
     Loops,
+    continue_logarithm,
     lay_paths,
     mesh_network,
     scattered_network,
@@ -39,6 +41,8 @@ class Sites:
         On which keyframes are proven free of folds.
     loops : Loops
         Around the holes, at the nodes `paths.around`.
+    arguments : float64, shape (1 + m, holes)
+        Of z − c_j at the anchor and the points, continued along the paths.
     closing : PeriodClosing or None
         Of in-betweens around the holes; None where there are none.
     """
@@ -48,6 +52,7 @@ class Sites:
     paths: IntegrationPaths
     boundary: Boundary
     loops: Loops
+    arguments: Floats
     closing: PeriodClosing | None
 
     @property
@@ -69,7 +74,13 @@ class Sites:
     def nbytes(self) -> int:
         """Memory that the arrays take, in bytes."""
         closing = 0 if self.closing is None else self.closing.nbytes
-        return self.points.nbytes + self.boundary.nbytes + self.paths.nbytes + closing
+        return (
+            self.points.nbytes
+            + self.boundary.nbytes
+            + self.paths.nbytes
+            + self.arguments.nbytes
+            + closing
+        )
 
 
 def prepare_sites(
@@ -132,8 +143,20 @@ def prepare_sites(
         paths=paths,
         boundary=boundary,
         loops=loops,
+        arguments=freeze(_arguments(paths, boundary.span.centres)),
         closing=PeriodClosing.of(boundary, loops, paths.nodes) if inner else None,
     )
+
+
+def _arguments(paths: IntegrationPaths, centres: Complexes) -> Floats:
+    """Return the arguments (1 + m, holes) of z − c_j, continued from the anchor to the points."""
+    ends = np.concatenate([[0], paths.places])
+    continued = np.empty((len(ends), len(centres)))
+    for column, centre in enumerate(centres):
+        away = paths.nodes - centre
+        logarithms = continue_logarithm(away, 1 / away, paths, partial(np.add, -centre))
+        continued[:, column] = logarithms.imag[ends]
+    return continued
 
 
 def _single(anchor: npt.ArrayLike) -> Complexes:

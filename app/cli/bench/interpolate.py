@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
-from typing import Self
+from typing import NamedTuple, Self
 
 import numpy as np
 
@@ -11,7 +11,7 @@ from app.cli.bench.table import Row, Table, measure
 from app.storage import decode_picture, sample_images
 from engine.arrays import Complexes, Integers
 from engine.dirichlet import Extension, HilbertTransform
-from engine.domain import Domain, build_domain
+from engine.domain import CutOut, Domain, build_domain
 from engine.domain.meshing import Mesh, triangulate
 from engine.interpolation import (
     Inbetweens,
@@ -22,10 +22,12 @@ from engine.interpolation import (
     prepare_sites,
     sample_keyframes,
 )
-from engine.maps import HarmonicMap
+from engine.maps import HarmonicMap, Span
 from engine.paths import root_sheets
+from engine.streaming import Positions, Series, build_series, finish
 
 SIZES = (10_000, 50_000, 500_000)
+TRIANGLES = 100_000  # of the ring
 MIDDLE = 0.4  # of the interval
 INTEGRATED = (Variant.NU, Variant.ETA, Variant.SCALED_ETA, Variant.METRIC)
 
@@ -80,7 +82,13 @@ def bent(cage: Complexes) -> HarmonicMap:
 
 def sites_of(domain: Domain, mesh: Mesh) -> Sites:
     """Lay the paths along the edges of a mesh."""
-    return prepare_sites(domain.outline, domain.cage, mesh.vertices, triangles=mesh.triangles)
+    return prepare_sites(
+        domain.outline,
+        domain.cage,
+        mesh.vertices,
+        holes=domain.holes,
+        triangles=mesh.triangles,
+    )
 
 
 def tables() -> Iterator[Table]:
@@ -92,6 +100,7 @@ def tables() -> Iterator[Table]:
     yield _frames(pairs[1])
     yield _preparation(domain, pairs[1])
     yield _growth(domain, pairs)
+    yield _around_a_hole()
 
 
 def _frames(pair: KeyframePair) -> Table:
@@ -168,6 +177,79 @@ def _growth(domain: Domain, pairs: Sequence[KeyframePair]) -> Table:
             for name, seconds in steps.items()
         ]
     return Table(title="Against the number of vertices, metric", rows=tuple(rows))
+
+
+def _around_a_hole() -> Table:
+    """Measure one motion of the sample's ring, with its hole filled and with its hole kept."""
+    picture = decode_picture((sample_images() / "ring.png").read_bytes(), "")
+    rings = [
+        build_domain(picture.rgba, triangles=TRIANGLES, detail="normal", cut_out=CutOut(holes=way))[
+            0
+        ]
+        for way in ("fill", "keep")
+    ]
+    rows = []
+    for variant in INTEGRATED:
+        filled, kept = (_HoledPair.of(domain).cost(variant) for domain in rings)
+        for name, own in (("filled", filled), ("kept", kept)):
+            note = (
+                f"{own.seconds / filled.seconds:.2f} times; "
+                f"a streamed frame {own.frame / filled.frame:.2f} times"
+            )
+            rows.append(Row(name=f"{variant}, hole {name}", seconds=own.seconds, note=note))
+    counts = " and ".join(str(len(Span(cage=d.cage, holes=d.holes))) for d in rings)
+    title = f"A keyframe, its interval and series around a hole ({counts} functions of the maps)"
+    return Table(title=title, rows=tuple(rows))
+
+
+class _Cost(NamedTuple):
+    """Seconds of a keyframe with its interval and series, and of a streamed frame."""
+
+    seconds: float
+    frame: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class _HoledPair:
+    """The ring at rest and bent, as if it had no hole."""
+
+    maps: tuple[HarmonicMap, HarmonicMap]
+    sites: Sites
+    extension: Extension
+
+    @classmethod
+    def of(cls, domain: Domain) -> Self:
+        """Prepare what the intervals of a ring share."""
+        sites = sites_of(domain, domain.mesh)
+        transform = HilbertTransform.on(domain.outline, domain.cage, domain.holes)
+        whole = bent(domain.cage)
+        inside = np.zeros(sum(len(hole.cage) for hole in domain.holes))
+        second = HarmonicMap(
+            cage=domain.cage,
+            phi=np.append(whole.phi, inside),
+            psi=np.append(whole.psi, inside),
+            holes=domain.holes,
+            logs=np.zeros(len(domain.holes)),
+        )
+        maps = (HarmonicMap.identity(domain.cage, domain.holes), second)
+        return cls(maps=maps, sites=sites, extension=transform.at(sites.paths.nodes))
+
+    def cost(self, variant: Variant) -> _Cost:
+        """Measure."""
+        first = sample_keyframes(self.maps[:1], self.sites)
+
+        def prepared() -> Series:
+            keyframes = (*first, *sample_keyframes(self.maps[1:], self.sites))
+            sheets = root_sheets(np.array([key.anchor_fz for key in keyframes]))
+            inbetweens = prepare_inbetweens(
+                variant, self.sites, keyframes, sheets, transform=self.extension
+            )
+            return finish(build_series(Positions.of(inbetweens, self.sites)))
+
+        series = prepared()
+        out = np.empty(series.size, dtype=np.float32)
+        frame = measure(partial(series.values, MIDDLE, out=out), repeats=50)
+        return _Cost(measure(prepared, repeats=3), frame)
 
 
 def _megabytes(count: int) -> str:

@@ -5,7 +5,7 @@ from typing import Self
 
 import numpy as np
 
-from engine.arrays import Complexes, freeze
+from engine.arrays import Complexes, Floats, freeze
 from engine.interpolation.derivatives import Derivatives, Passage, weighted
 
 
@@ -41,6 +41,13 @@ class EtaBlend:
     def nbytes(self) -> int:
         """Memory beyond the passage's own, in bytes."""
         return sum(array.nbytes for array in (*self.conj_eta, *self.conj_eta_z))
+
+    def values(self, times: Floats) -> tuple[Complexes, Complexes]:
+        """Return f_z and conj(f_z̄) at times (t,), each (t, s)."""
+        course = self.passage.eta_course or self.passage.course
+        fz = np.exp(self.passage.log_fz_at(times))
+        weights = course.at(times).T.astype(np.complex128)
+        return fz, weights @ np.array(self.conj_eta) / fz
 
     def derivatives(self, time: float) -> Derivatives:
         """Blend f_z logarithmically and η linearly.

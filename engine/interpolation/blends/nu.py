@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from engine.arrays import Complexes, Floats
 from engine.interpolation.derivatives import Derivatives, Passage, weighted
 
 
@@ -24,6 +25,12 @@ class NuBlend:
     def nbytes(self) -> int:
         """Memory beyond the passage's own, in bytes."""
         return 0
+
+    def values(self, times: Floats) -> tuple[Complexes, Complexes]:
+        """Return f_z and conj(f_z̄) at times (t,), each (t, s)."""
+        nu = np.array([key.nu for key in self.passage.keyframes])
+        fz = np.exp(self.passage.log_fz_at(times))
+        return fz, self.passage.course.at(times).T @ nu * fz
 
     def derivatives(self, time: float) -> Derivatives:
         """Blend f_z logarithmically and ν linearly.

@@ -15,6 +15,7 @@ import numpy as np
 
 from engine.arrays import Booleans, Complexes, Floats, Indices, freeze
 from engine.geometry import box_diagonal, next_on_loop, sample_graded
+from engine.interpolation.chebyshev import PiecewiseSeries
 from engine.interpolation.passing import Course
 from engine.interpolation.periods import Closing
 from engine.maps import Bounds, HarmonicMap
@@ -30,6 +31,7 @@ PARTS = (
 )
 ROUNDS = 8
 TOO_HIGH = 2e-7  # by which a minimum that is found may be too high; taken off
+FAINT = 1e-8  # modes of h and d below this are left out
 GAIN = 1e-7  # by which a stretch must promise to lower ρ to be looked at
 MANY = 4096  # stretches that are refined at a time
 RUN = 16  # times at whose ends all samples are looked at
@@ -113,40 +115,57 @@ class PointSamples:
         count = len(self.log_modulus)
         a = np.exp(_total(weights[:count], self.log_modulus))
         b = np.abs(_total(weights[: len(self.conj_eta)], self.conj_eta)) / a
-        if len(self.opening):
-            return self._around_holes(a, b, _total(weights[count:], self.opening))
         # ρ_k, ρ_a and ρ_b of Section 7.3 have the denominator |f_z̄| in common.
         room = np.minimum(self.k * a, np.minimum(self.sigma_a - a, a - self.sigma_b))
         ratios = np.full(room.shape, CEILING)
         np.divide(room, b, out=ratios, where=b > np.maximum(NEGLIGIBLE * a, room / CEILING))
+        if len(self.opening):
+            self._open(ratios, a, b, _total(weights[count:], self.opening))
         return ratios
 
-    def _around_holes(self, a: Floats, b: Floats, d: Complexes) -> Floats:
-        """Return the same for |F_1| = a, |G_1| = b and F_0 = F_1 e^d.
+    def _open(self, ratios: Floats, a: Floats, b: Floats, d: Complexes) -> None:
+        """Change ratios with |F_1| = a and |G_1| = b to those for F_0 = F_1 e^d, in place.
 
-        |F_ρ|² is a quadratic in ρ, and so is each bound. Where the map for ρ = 0 is beyond a bound
-        there is no telling: the bound is left to the others.
+        With ε ≥ |e^d − 1|, |F_ρ| differs from |F_1| by at most ε |F_1|. Where the bounds have that
+        room no ρ leaves them, and the ratio stays what it is, above 1.
         """
-        # a² |e^d|², and the products of a e^d and a − a e^d.
-        squared, grown = a * a, np.exp(d.real)
-        f0 = squared * grown * grown
-        f1 = squared * grown * np.cos(d.imag) - f0
-        f2 = squared - f0 - 2.0 * f1
-        k = self.k * self.k
-        quadratics = (
-            (-k * f0, -k * f1, b * b - k * f2),
-            (f0 - self.sigma_a**2, f1 + self.sigma_a * b, f2 - b * b),
-            (self.sigma_b**2 - f0, self.sigma_b * b - f1, b * b - f2),
+        most = np.expm1(np.abs(d).max(initial=0.0))
+        bounds = np.array(
+            [np.broadcast_to(bound, a.shape) for bound in (self.k, self.sigma_a, self.sigma_b)]
         )
-        inverse = np.full(a.shape, 1.0 / CEILING)
-        with np.errstate(invalid="ignore"):
-            for c0, c1, c2 in quadratics:
-                # The first ρ at which c0 + 2 c1 ρ + c2 ρ² > 0; where there is none the root is no
-                # number, which `fmax` passes over.
-                root = c1 + np.sqrt(c1 * c1 - c2 * c0)
-                root = np.divide(root, -c0, out=np.zeros_like(root), where=c0 < 0)
-                np.fmax(inverse, root, out=inverse)
-        return 1.0 / inverse
+        _, sigma_a, sigma_b = bounds
+        tight = ratios * (1 - most) < 1.0
+        tight |= (a * (1 + most) > sigma_a) | (a * (1 - most) < sigma_b)
+        ratios[tight] = _opened(a[tight], b[tight], d[tight], bounds[:, tight])
+
+
+def _opened(a: Floats, b: Floats, d: Complexes, bounds: Floats) -> Floats:
+    """Return the largest ρ at points (n,) with |F_1| = a, |G_1| = b and F_0 = F_1 e^d.
+
+    The bounds (3, n) are those of k, sigma_a and sigma_b. |F_ρ|² is a quadratic in ρ, and so is
+    each of them. Where the map for ρ = 0 is beyond a bound there is no telling: the bound is left
+    to the others.
+    """
+    # a² |e^d|², and the products of a e^d and a − a e^d.
+    k, sigma_a, sigma_b = bounds
+    squared, grown = a * a, np.exp(d.real)
+    f0 = squared * grown * grown
+    f1 = squared * grown * np.cos(d.imag) - f0
+    f2 = squared - f0 - 2.0 * f1
+    quadratics = (
+        (-k * k * f0, -k * k * f1, b * b - k * k * f2),
+        (f0 - sigma_a**2, f1 + sigma_a * b, f2 - b * b),
+        (sigma_b**2 - f0, sigma_b * b - f1, b * b - f2),
+    )
+    inverse = np.full(a.shape, 1.0 / CEILING)
+    with np.errstate(invalid="ignore"):
+        for c0, c1, c2 in quadratics:
+            # The first ρ at which c0 + 2 c1 ρ + c2 ρ² > 0; where there is none the root is no
+            # number, which `fmax` passes over.
+            root = c1 + np.sqrt(c1 * c1 - c2 * c0)
+            root = np.divide(root, -c0, out=np.zeros_like(root), where=c0 < 0)
+            np.fmax(inverse, root, out=inverse)
+    return 1.0 / inverse
 
 
 def _total(weights: Floats, values: type_) -> type_:
@@ -198,7 +217,7 @@ class SharpScaling:
         At the outline's samples (p,), in order along it, its vertices among them.
     worst : Worst
         Of the keyframes; with the given bounds, where the course is not straight.
-    closings : tuple of Closing
+    closings : tuple of PiecewiseSeries
         Around holes those of h and of d.
     """
 
@@ -206,7 +225,7 @@ class SharpScaling:
     curves: "OutlineCurves"
     samples: PointSamples
     worst: Worst
-    closings: tuple[Closing, ...] = ()
+    closings: tuple[PiecewiseSeries, ...] = ()
 
     @classmethod
     def of(
@@ -228,7 +247,8 @@ class SharpScaling:
         starts = np.cumsum([0, *map(len, sampled[:-1])])
         columns = np.array([f.columns for f in maps]).swapaxes(0, 1)  # Φ of all, and then Ψ of all
         columns = columns.reshape(-1, len(span)).T
-        modes = [each.functions for each in closings]
+        leading = [each.leading(FAINT) for each in closings]
+        modes = [functions for functions, _ in leading]
         derivatives = span.evaluate(np.hstack([columns, *modes]), points, orders=(0, 1, 2))
         values, first, second = (each.T for each in derivatives)
         keys = columns.shape[1]
@@ -243,7 +263,13 @@ class SharpScaling:
         worst = _worst(curves, samples)
         if not course.is_straight:
             worst = worst.widened(bounds)
-        return cls(course=course, curves=curves, samples=samples, worst=worst, closings=closings)
+        return cls(
+            course=course,
+            curves=curves,
+            samples=samples,
+            worst=worst,
+            closings=tuple(series for _, series in leading),
+        )
 
     def __call__(self, times: Floats) -> Floats:
         """Return ρ in (0, 1] at times (s,) in (0, 1), in ascending order.
@@ -286,7 +312,7 @@ class SharpScaling:
     def _weights(self, times: Floats) -> Floats:
         """Return the weights of keyframes and modes at times (s,), for any points: (…, s, 1)."""
         keys = self.course.at(times[:, None])
-        series = [each.series.at(times)[..., None] for each in self.closings]
+        series = [each.at(times)[..., None] for each in self.closings]
         return np.concatenate([keys, *series])
 
     def _promising(self, chosen: Indices, ratios: Floats) -> Booleans:
@@ -397,8 +423,11 @@ class OutlineCurves:
         count, modes = self.counts
         functions, terms = np.split(coefficients, [2 * count], axis=1)
         if weights is not None and len(weights):
-            sums = np.add.reduceat(weights * terms, [0, modes], axis=1)
-            functions = np.concatenate([functions, sums], axis=1)
+            sums = [
+                np.einsum("jc,kjc->kc", weights[own], terms[:, own])[:, None]
+                for own in (slice(modes), slice(modes, None))
+            ]
+            functions = np.concatenate([functions, *sums], axis=1)
         values = np.repeat(functions[-1][:, :, None], places.shape[1], axis=2)
         for node, coefficient in zip(nodes[-2::-1], functions[-2::-1], strict=True):
             values *= places - node[:, None]

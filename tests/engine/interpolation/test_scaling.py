@@ -121,6 +121,34 @@ def test_each_bound_is_just_reached_where_it_alone_counts(bound):
     assert_allclose(reached[bound], limits[bound], rtol=1e-12, atol=0)
 
 
+def test_around_holes_no_smaller_rho_leaves_the_bounds_and_no_larger_one_obeys_them():
+    rng = np.random.default_rng(3)
+    count = 400
+    a, b = rng.uniform(0.5, 2.0, count), rng.uniform(0.0, 0.8, count)
+    d = rng.normal(0, 0.03, count) + 1j * rng.normal(0, 0.03, count)
+    bounds = {"k": 0.45, "sigma_a": 2.3, "sigma_b": 0.35}
+    samples = PointSamples(
+        log_modulus=np.log(a)[None],
+        conj_eta=(a * b + 0j)[None],
+        opening=d[None],
+        **{name: np.full(count, bound) for name, bound in bounds.items()},
+    )
+    (ratios,) = samples.ratios(np.ones((2, 1, 1)))
+    assert 0.2 < (ratios < 1).mean() < 0.9
+
+    def room(rho):
+        fz, g = a * np.abs(rho + (1 - rho) * np.exp(d)), rho * b
+        left = (bounds["k"] * fz - g, bounds["sigma_a"] - fz - g, fz - g - bounds["sigma_b"])
+        return np.min(left, axis=0)
+
+    largest = np.minimum(ratios, 1.0)
+    told = room(0 * a) > 0
+    for share in np.linspace(0.0, 1.0, 33):
+        assert (room(share * largest)[told] > -1e-9).all()
+    binding = told & (ratios < 1)
+    assert (room(1.001 * largest)[binding] < 0).all()
+
+
 def test_rho_of_a_pair_that_can_be_worked_out():
     # From the identity k^t = t k |f_z|^(1 − 2t)..., largest where |f_z| is: at the right end.
     shape = bar()

@@ -5,6 +5,8 @@ from functools import cache
 
 import numpy as np
 import pytest
+from holed_shapes import inner_points as holed_points
+from holed_shapes import ring
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from interpolation_shapes import bar, bent, inner_points, letter_l, narrow_u, random_map
@@ -13,7 +15,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 from engine.dirichlet.hilbert import HilbertTransform
 from engine.errors import EngineError
 from engine.interpolation import Variant, chebyshev, prepare
-from engine.maps import distortion
+from engine.maps import HarmonicMap, distortion
 from engine.streaming import Distortions, Positions, build_series, finish
 from engine.streaming.build import DEGREES, MOST_ATTEMPTS, MOST_ROWS
 from engine.streaming.channels import Sample
@@ -267,3 +269,32 @@ def test_chebyshev_coefficients_and_their_basis(degree):
     for x in (-1.0, -0.3, 0.77, 1.0):
         found = chebyshev.basis(x, degree + 1) @ expected
         assert_allclose(found, np.polynomial.chebyshev.chebval(x, expected), rtol=0, atol=1e-12)
+
+
+@pytest.mark.parametrize("variant", ["nu", "scaled-eta", "metric"])
+def test_a_hole_alone_adds_no_rows(variant):
+    """A streamed frame costs what its rows say: with a hole the same as without."""
+    shape = ring()
+    whole = [
+        HarmonicMap.identity(shape.cage),
+        HarmonicMap(cage=shape.cage, phi=np.exp(0.4j * shape.cage), psi=0.1 * shape.cage),
+    ]
+    hole = np.zeros(len(shape.holes[0].cage))
+    holed = [
+        HarmonicMap(
+            cage=shape.cage,
+            phi=np.append(f.phi, hole),
+            psi=np.append(f.psi, hole),
+            holes=shape.holes,
+            logs=np.zeros(1),
+        )
+        for f in whole
+    ]
+    rows = []
+    for maps in (whole, holed):
+        motion = prepare(
+            maps, holed_points(shape), outline=shape.outline, variant=variant, anchor=shape.anchor
+        )
+        series = finish(build_series(Positions.of(motion.intervals[0], motion.sites)))
+        rows.append([len(piece.rows) for piece in series.pieces])
+    assert rows[0] == rows[1]
