@@ -229,7 +229,7 @@ class _HoledPair:
             phi=np.append(whole.phi, inside),
             psi=np.append(whole.psi, inside),
             holes=domain.holes,
-            logs=np.zeros(len(domain.holes)),
+            logs=np.zeros(len(domain.holes), dtype=np.complex128),
         )
         maps = (HarmonicMap.identity(domain.cage, domain.holes), second)
         return cls(maps=maps, sites=sites, extension=transform.at(sites.paths.nodes))
