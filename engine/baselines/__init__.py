@@ -14,6 +14,7 @@ Keyframe i is at time i. `prepared.domain` has the mesh, its triangles counter-c
 in-between of the same mesh.
 """
 
+from engine.baselines.boundary_keyframes import discrete_harmonic, harmonic_coordinate_maps
 from engine.baselines.frames import MeshFrame
 from engine.baselines.preparation import PreparedBaseline, prepare_baseline
 from engine.baselines.triangulated_domain import TriangulatedDomain
@@ -24,5 +25,7 @@ __all__ = [
     "MeshFrame",
     "PreparedBaseline",
     "TriangulatedDomain",
+    "discrete_harmonic",
+    "harmonic_coordinate_maps",
     "prepare_baseline",
 ]
