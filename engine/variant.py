@@ -43,3 +43,8 @@ class Baseline(StrEnum):
     def needs_maps(self) -> bool:
         """Whether its keyframes must be harmonic maps; positions of a mesh do not do."""
         return self in {Baseline.HANDLES, Baseline.CONFORMAL}
+
+    @property
+    def unwraps(self) -> bool:
+        """Whether it blends an angle of each triangle, which has a branch to choose."""
+        return self in {Baseline.ARAP, Baseline.MESH_ETA}

@@ -9,7 +9,7 @@ import re
 from pathlib import Path
 
 from app.errors import LissomError
-from engine.variant import Variant
+from engine.variant import Baseline, Variant
 
 DETAILS = ("coarse", "normal", "fine")
 HOLES = ("keep", "fill")
@@ -17,6 +17,7 @@ DEFAULT_DETAIL = "normal"
 DEFAULT_TRIANGLES = 100_000
 DEFAULT_TOLERANCE = 18
 VARIANTS = tuple(Variant)
+METHODS = (*Variant, *Baseline)
 FRAMINGS = ("canvas", "fit")
 
 

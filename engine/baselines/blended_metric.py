@@ -12,7 +12,7 @@ from engine.baselines.mesh_keyframes import MeshKeyframe
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class FlattenedInbetweens:
+class FlatInbetweens:
     """The pull-back metrics Jᵀ J are blended linearly, and what comes out is made flat.
 
     On a mesh the metric of a triangle is the squared lengths of its edges, so that these are

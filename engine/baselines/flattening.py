@@ -75,9 +75,10 @@ class Flattening:
             If the mesh has holes: around them a flat metric need not close.
         """
         if domain.loops > 1:
+            count = domain.loops - 1
             raise EngineError(
-                f"This mesh has {domain.loops - 1} holes; the method of Chen et al. (2013) is for "
-                "meshes without. Choose another."
+                f"This mesh has {count} {'hole' if count == 1 else 'holes'}; the method of Chen et "
+                "al. (2013) is for meshes without. Choose another."
             )
         inner = np.flatnonzero(~domain.border)
         if len(inner):

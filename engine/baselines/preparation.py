@@ -8,7 +8,7 @@ import numpy.typing as npt
 
 from engine.arrays import Complexes, as_points
 from engine.baselines.arap import ArapInbetweens
-from engine.baselines.blended_metric import FlattenedInbetweens
+from engine.baselines.blended_metric import FlatInbetweens
 from engine.baselines.ffmp import FfmpInbetweens
 from engine.baselines.flattening import Flattening
 from engine.baselines.frames import MeshFrame, MeshInbetweens
@@ -71,7 +71,7 @@ def prepare_baseline(
     triangles: npt.ArrayLike,
     *,
     outline: npt.ArrayLike | None = None,
-    anchor: complex | None = None,
+    anchor: npt.ArrayLike | None = None,
     turns: npt.ArrayLike | None = None,
     principal: bool = False,
     handles: npt.ArrayLike | None = None,
@@ -135,7 +135,7 @@ def _on_mesh(
     pairs = list(pairwise(keyframes))
     if baseline is Baseline.SIG13:
         flattening = Flattening.on(domain)
-        return [FlattenedInbetweens.of(*pair, flattening) for pair in pairs]
+        return [FlatInbetweens.of(*pair, flattening) for pair in pairs]
     step = PoissonStep.on(domain)
     if baseline is Baseline.ARAP:
         return [ArapInbetweens(first=first, second=second, step=step) for first, second in pairs]

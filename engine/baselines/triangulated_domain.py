@@ -99,7 +99,7 @@ class TriangulatedDomain:
 
     @classmethod
     def of(
-        cls, points: npt.ArrayLike, triangles: npt.ArrayLike, anchor: complex | None = None
+        cls, points: npt.ArrayLike, triangles: npt.ArrayLike, anchor: npt.ArrayLike | None = None
     ) -> Self:
         """Check a mesh and find its ways.
 
@@ -295,8 +295,8 @@ def _farthest(points: Complexes, border: Booleans) -> int:
     return int(np.argmax(distances))
 
 
-def _nearest(points: Complexes, anchor: complex) -> int:
-    place = as_points(np.reshape(np.asarray(anchor), (-1,)), "anchor", at_least=1)
+def _nearest(points: Complexes, anchor: npt.ArrayLike) -> int:
+    place = as_points(np.ravel(anchor), "anchor")
     if len(place) != 1:
         raise EngineError(
             f"One anchor is needed, not {len(place)}; leave it out to have one found."

@@ -1,63 +1,60 @@
-"""`lissom interpolate`: in-betweens of harmonic maps at points, from file to file."""
+"""`lissom interpolate`: in-betweens of keyframes at points, from file to file."""
 
 import argparse
+from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
-from app.cli.hole_arrays import HOLE_ARRAYS, read_holes
+from app.cli.keyframes import Keyframes, read_keyframes
 from app.document import NATURAL
 from app.errors import LissomError
-from app.storage import check_writable, read_arrays, write_arrays
-from engine.interpolation import prepare
-from engine.maps import Bounds, HarmonicMap
+from app.storage import check_writable, write_arrays
+from engine.baselines import Baseline, prepare_baseline
+from engine.interpolation import Variant, prepare
+from engine.maps import Bounds
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Read maps, interpolate them and write the in-betweens."""
+    """Read keyframes, interpolate them and write the in-betweens."""
     check_writable(arguments.out)
-    data = read_arrays(
-        arguments.maps,
-        required=("outline", "cage", "phi", "psi", "points"),
-        optional=("anchor", "triangles", "turns", "logs", *HOLE_ARRAYS),
-    )
-    phi, psi, holes = data["phi"], data["psi"], read_holes(data)
-    count = data["cage"].size + sum(len(hole.cage) for hole in holes)
-    if phi.ndim != 2 or phi.shape != psi.shape or phi.shape[1] != count:
-        raise LissomError(
-            "phi and psi must both be of shape (keyframes, cage vertices); they are of shape "
-            f"{phi.shape} and {psi.shape}, with {count} vertices of the cage and those in holes"
-        )
-    logs = data.get("logs", np.zeros((len(phi), len(holes))))
-    if logs.shape != (len(phi), len(holes)):
-        raise LissomError(
-            f"logs must be of shape (keyframes, holes), ({len(phi)}, {len(holes)}), not "
-            f"{logs.shape}"
-        )
+    given = read_keyframes(arguments.keyframes)
+    _require_in_range(arguments.times, given.count, loop=arguments.loop)
+    if arguments.variant in tuple(Baseline):
+        results = _compared(arguments, given)
+    else:
+        results = _harmonic(arguments, given)
+    write_arrays(arguments.out, {"times": np.array(arguments.times), **results})
+    return 0
+
+
+def _harmonic(arguments: argparse.Namespace, given: Keyframes) -> dict[str, npt.NDArray[Any]]:
+    """Interpolate by a variant of the paper's own."""
     if arguments.bounds and not arguments.through:
         raise LissomError("--bounds is what --through keeps; say --through as well")
-    _require_in_range(arguments.times, len(phi), loop=arguments.loop)
-    bounds = NATURAL.bounds
-    if arguments.bounds:
-        k, sigma_a, sigma_b = arguments.bounds
-        bounds = Bounds(k=k, sigma_a=sigma_a, sigma_b=sigma_b)
+    if arguments.principal:
+        raise LissomError("--principal is for arap and mesh-eta; leave it out")
+    outline = given.outline
+    if outline is None:
+        meshes = ", ".join(each for each in Baseline if not each.needs_maps)
+        raise LissomError(
+            f"{arguments.variant} is for keyframes that are harmonic maps, and these are poses of "
+            f"a mesh; choose one of {meshes}"
+        )
     prepared = prepare(
-        [
-            HarmonicMap(cage=data["cage"], phi=a, psi=b, holes=holes, logs=c)
-            for a, b, c in zip(phi, psi, logs, strict=True)
-        ],
-        data["points"],
-        outline=data["outline"],
-        variant=arguments.variant,
-        triangles=data.get("triangles"),
-        anchor=data.get("anchor"),
-        turns=data.get("turns"),
+        given.maps,
+        given.points,
+        outline=outline,
+        variant=Variant(arguments.variant),
+        triangles=given.triangles,
+        anchor=given.anchor,
+        turns=given.turns,
         through=arguments.through,
         loop=arguments.loop,
-        bounds=bounds,
+        bounds=_bounds(arguments),
     )
     frames = [prepared.frame(time) for time in arguments.times]
     results = {
-        "times": np.array(arguments.times),
         "anchor": np.array(prepared.sites.anchor),
         "positions": np.array([frame.positions for frame in frames]),
         "fz": np.array([frame.fz for frame in frames]),
@@ -67,8 +64,55 @@ def run(arguments: argparse.Namespace) -> int:
         results["rho"] = np.array([frame.rho for frame in frames])
     if arguments.through:
         results["tangents"] = np.array(prepared.tangents)
-    write_arrays(arguments.out, results)
-    return 0
+    return results
+
+
+def _compared(arguments: argparse.Namespace, given: Keyframes) -> dict[str, npt.NDArray[Any]]:
+    """Interpolate by a method that the paper compares with."""
+    baseline = Baseline(arguments.variant)
+    if given.triangles is None:
+        raise LissomError(f"{baseline} needs the array 'triangles', of the points")
+    if arguments.through:
+        raise LissomError(f"{baseline} cannot pass through keyframes; leave --through out")
+    if arguments.bounds and baseline is not Baseline.HANDLES:
+        raise LissomError(f"{baseline} keeps no bounds; leave --bounds out")
+    if arguments.principal and not baseline.unwraps:
+        raise LissomError("--principal is for arap and mesh-eta; leave it out")
+    if baseline is Baseline.HANDLES and given.handles is None:
+        raise LissomError(
+            "handles needs the array 'handles', the points that are led straight from key to key"
+        )
+    prepared = prepare_baseline(
+        baseline,
+        given.maps or given.poses,
+        given.points,
+        given.triangles,
+        outline=given.outline,
+        anchor=given.anchor,
+        turns=given.turns,
+        principal=arguments.principal,
+        handles=given.handles,
+        bounds=_bounds(arguments),
+        loop=arguments.loop,
+    )
+    frames = [prepared.frame(time) for time in arguments.times]
+    domain = prepared.domain
+    results: dict[str, npt.NDArray[Any]] = {
+        "anchor": np.array(domain.points[domain.anchor]),
+        "triangles": domain.mesh.triangles,
+    }
+    for name in ("positions", "fz", "fzbar", "rho", "poisson_error", "angle_defect"):
+        values = [getattr(frame, name) for frame in frames]
+        if values[0] is not None:
+            results[name] = np.array(values)
+    return results
+
+
+def _bounds(arguments: argparse.Namespace) -> Bounds:
+    if not arguments.bounds:
+        return NATURAL.bounds
+    k, sigma_a, sigma_b = arguments.bounds
+    return Bounds(k=k, sigma_a=sigma_a, sigma_b=sigma_b)
 
 
 def _require_in_range(times: tuple[float, ...], keyframes: int, *, loop: bool) -> None:
