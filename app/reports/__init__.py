@@ -5,7 +5,7 @@ Out: certificates, curves over time, and pictures of them.
 Imports: `app.motion`, `app.storage`.
 """
 
-from app.reports.certification import Report, certify_clip
+from app.reports.certification import IntervalReport, Report, certify_clip
 from app.reports.curve_picture import draw_curves
 from app.reports.curves import TIMES, Curves, broken_lines, measure_curves, write_curves
 from app.reports.domain_preview import draw_preview
@@ -13,6 +13,7 @@ from app.reports.domain_preview import draw_preview
 __all__ = [
     "TIMES",
     "Curves",
+    "IntervalReport",
     "Report",
     "broken_lines",
     "certify_clip",

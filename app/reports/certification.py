@@ -4,12 +4,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from app.document import Clip, Extremes, Variant, intervals, transits
+from app.document import Clip, Extremes, Variant, intervals, time_of, transits
 from app.motion import Animation
+from engine.interpolation import Proof, prove
 from engine.maps import Boundary, Certificate, certify
 
-# Times in each interval. In-betweens are analytic in time: their extremes cannot hide between.
-TIMES = 65
+TIMES = 65  # in each interval, at which in-betweens are measured
 # Of the larger k, σ_a or σ_b: what the quadrature and the integral equation may add.
 ACCURACY = 1e-6
 
@@ -19,7 +19,9 @@ class IntervalReport:
     """One interval: what its in-betweens reach, beside what its two keys do.
 
     `limits` is what they are to keep: the keys' own distortion, but where the motion passes through
-    a key, the figure's bounds, or what the keys around have beyond them.
+    a key, the figure's bounds, or what the keys around have beyond them. `proof` encloses the
+    in-betweens at all times; None where there are holes. `unsettled` are the frames about which it
+    cannot tell that they do not fold.
     """
 
     first: int
@@ -28,6 +30,24 @@ class IntervalReport:
     keys: Extremes
     correction: float
     limits: Extremes
+    proof: Proof | None
+    unsettled: tuple[int, ...]
+
+    @property
+    def excess(self) -> Extremes | None:
+        """By how much what is proven is beyond the limits."""
+        if self.proof is None:
+            return None
+        return Extremes(
+            k=max(self.proof.k - self.limits.k, 0.0),
+            sigma_a=max(self.proof.sigma_a - self.limits.sigma_a, 0.0),
+            sigma_b=max(self.limits.sigma_b - self.proof.sigma_b, 0.0),
+        )
+
+    @property
+    def may_fold(self) -> bool:
+        """Whether some in-between folds, or is not proven not to."""
+        return self.proof is not None and not self.proof.never_folds
 
     @property
     def is_within(self) -> bool:
@@ -56,14 +76,14 @@ class Report:
 
     @property
     def certified(self) -> bool:
-        """Whether all keyframes are certified and all in-betweens within their bounds."""
+        """Whether keyframes are certified, and in-betweens within their bounds and never fold."""
         return all(certificate.certified for _, certificate in self.keys) and all(
-            interval.is_within for interval in self.intervals
+            interval.is_within and not interval.may_fold for interval in self.intervals
         )
 
 
 def certify_clip(clip: Clip, variant: Variant | None = None) -> Report:
-    """Measure the distortion of a figure over time and space.
+    """Prove and measure the distortion of a figure over time and space.
 
     Parameters
     ----------
@@ -74,8 +94,9 @@ def certify_clip(clip: Clip, variant: Variant | None = None) -> Report:
     Notes
     -----
     |ν| and log σ_a are subharmonic, so that the worst distortion of every in-between is on the
-    outline; there it is taken at graded samples, some hundred an edge, the same for keys and
-    in-betweens.
+    outline; there it is measured at graded samples, some hundred an edge, the same for keys and
+    in-betweens. The proof leaves nothing out between samples and times, and is of the in-betweens
+    as they are defined; what is measured is as they are worked out.
     """
     domain = clip.figure.domain
     boundary = Boundary.sample(domain.outline, domain.cage, domain.holes)
@@ -102,6 +123,7 @@ def certify_clip(clip: Clip, variant: Variant | None = None) -> Report:
         for t in np.linspace(0.0, 1.0, TIMES)[1:-1]:
             frame = inbetweens.frame(float(t))
             reached = reached.joined(Extremes.measured(frame.fz, frame.fzbar))
+        proof = prove(inbetweens, animation.variant, boundary, clip.figure.bounds)
         reports.append(
             IntervalReport(
                 first=clip.keys[first].frame,
@@ -110,6 +132,26 @@ def certify_clip(clip: Clip, variant: Variant | None = None) -> Report:
                 keys=bound,
                 correction=inbetweens.correction,
                 limits=limits,
+                proof=proof,
+                unsettled=() if proof is None else _frames(clip, first, proof.unsettled),
             )
         )
     return Report(keys=keys, intervals=tuple(reports))
+
+
+def _frames(
+    clip: Clip, interval: int, stretches: tuple[tuple[float, float], ...]
+) -> tuple[int, ...]:
+    """Return the frames of an interval nearest to which stretches of its time, [0, 1], are."""
+    start = clip.keys[interval].frame
+    following = clip.keys[(interval + 1) % len(clip.keys)].frame
+    end = following if following > start else following + (clip.period or 0)
+    found = []
+    for frame in range(start, end + 1):
+        ends = max(frame - 0.5, start), min(frame + 0.5, end)
+        since, until = (
+            1.0 if at == end else time_of(clip, at).weight if at > start else 0.0 for at in ends
+        )
+        if any(first <= until and last >= since for first, last in stretches):
+            found.append(frame)
+    return tuple(found)

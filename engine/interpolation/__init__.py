@@ -1,7 +1,8 @@
 """Interpolation of harmonic keyframes: every variant of the paper behind `prepare`.
 
 In: harmonic maps of one domain, points, a variant, times.
-Out: positions, f_z and f_z̄ of the points at any time; series in time.
+Out: positions, f_z and f_z̄ of the points at any time; series in time;
+proof that they keep their bounds.
 Imports: `engine.paths`, `engine.dirichlet`, `engine.maps`.
 """
 
@@ -10,6 +11,7 @@ from engine.interpolation.inbetweens import Frame, Inbetweens, IntegratedInbetwe
 from engine.interpolation.keyframe_samples import KeyframeSamples, sample_keyframes
 from engine.interpolation.passing import Course, End, Joint, Tangent, shortened
 from engine.interpolation.preparation import Prepared, prepare, prepare_inbetweens
+from engine.interpolation.proof import Proof, prove
 from engine.interpolation.scaling import PointSamples, Scaling, Worst, looseness
 from engine.interpolation.sites import Sites, prepare_sites
 from engine.variant import Variant
@@ -24,6 +26,7 @@ __all__ = [
     "KeyframeSamples",
     "PointSamples",
     "Prepared",
+    "Proof",
     "Scaling",
     "Sites",
     "Tangent",
@@ -34,6 +37,7 @@ __all__ = [
     "prepare",
     "prepare_inbetweens",
     "prepare_sites",
+    "prove",
     "sample_keyframes",
     "shortened",
 ]

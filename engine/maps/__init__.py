@@ -9,7 +9,13 @@ from engine.maps import distortion
 from engine.maps.boundary import Boundary
 from engine.maps.bounds import Bounds, Limits
 from engine.maps.cauchy import cauchy_coordinates, cauchy_derivatives, evaluate
-from engine.maps.certificate import Certificate, certify, certify_segments, segment_enclosures
+from engine.maps.certificate import (
+    Certificate,
+    Enclosures,
+    certify,
+    certify_segments,
+    segment_enclosures,
+)
 from engine.maps.harmonic_map import HarmonicMap, derivatives_of
 from engine.maps.span import Span
 
@@ -17,6 +23,7 @@ __all__ = [
     "Boundary",
     "Bounds",
     "Certificate",
+    "Enclosures",
     "HarmonicMap",
     "Limits",
     "Span",

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from app.document import clip_of
-from app.reports import Report, certify_clip
+from app.reports import IntervalReport, Report, certify_clip
 from app.storage import load_project
 
 
@@ -60,15 +60,45 @@ def _block(report: Report) -> dict[str, Any]:
                 "sigma_a_keys": interval.keys.sigma_a,
                 "sigma_b_keys": interval.keys.sigma_b,
                 "correction": interval.correction,
+                "proven": _proof_of(interval),
             }
             for interval in report.intervals
         ],
     }
 
 
+def _proof_of(interval: IntervalReport) -> dict[str, Any] | None:
+    proof, excess = interval.proof, interval.excess
+    if proof is None or excess is None:
+        return None
+    return {
+        "k": _finite(proof.k),
+        "sigma_a": _finite(proof.sigma_a),
+        "sigma_b": proof.sigma_b,
+        "excess": [_finite(excess.k), _finite(excess.sigma_a), excess.sigma_b],
+        "never_folds": proof.never_folds,
+        "unsettled_frames": list(interval.unsettled),
+    }
+
+
 def _finite(value: float) -> float | None:
     """Return the number, or None (JSON null) where nothing is proven: JSON has no infinity."""
     return value if math.isfinite(value) else None
+
+
+def _proof_lines(interval: IntervalReport) -> list[str]:
+    """Return what is proven of an interval, and where it is not."""
+    proof, excess = interval.proof, interval.excess
+    if proof is None or excess is None:
+        return [f"{'  proven':<16} nothing: around holes in-betweens are only measured"]
+    pairs = zip((proof.k, proof.sigma_a, proof.sigma_b), ("+", "+", "-"), excess, strict=True)
+    figures = " ".join(f"{f'{value:.4f} ({sign}{by:.4f})':>18}" for value, sign, by in pairs)
+    verdict = "NOT PROVEN" if interval.may_fold else "never folds"
+    lines = [f"{'  proven':<16} {figures}  {verdict}"]
+    if interval.unsettled:
+        frames = ", ".join(map(str, interval.unsettled))
+        lines.append(f"{'  look at':<16} frame{'s' * (len(interval.unsettled) > 1)} {frames}")
+    return lines
 
 
 def _as_table(report: Report) -> str:
@@ -86,7 +116,11 @@ def _as_table(report: Report) -> str:
         figures = " ".join(f"{f'{reached:.4f} ({own:.4f})':>18}" for reached, own in pairs)
         verdict = "within" if interval.is_within else "OVER"
         lines.append(f"{f'{interval.first} to {interval.last}':<16} {figures}  {verdict}")
-    lines.append("In brackets: the worse of the two keyframes.")
+        lines += _proof_lines(interval)
+    lines.append(
+        "In brackets: the worse of the two keyframes; of what is proven, how far that is beyond it"
+        " (or beyond the figure's bounds, where the motion passes through a key)."
+    )
     largest = max((interval.correction for interval in report.intervals), default=0.0)
     if largest > 0:
         lines.append(

@@ -6,10 +6,11 @@ from app.cli.options import add_variant_option, input_file
 
 EPILOG = """\
 Keyframes are certified: their k, sigma_a and sigma_b hold at every point of the shape, not only at
-samples. For each interval between two keys the extremes of the in-betweens over time and space
-stand beside the two keys' own. The exit status is 0 if every keyframe is certified and every
-interval is within its keyframes' bounds, or within the figure's where the motion passes through its
-keys, 1 if not.
+samples. For each interval between two keys the extremes of the in-betweens over time and space, as
+measured, stand beside the two keys' own; below them what is proven of every moment and every point.
+Frames that fold, or that cannot be proven not to, are named. The exit status is 0 if every keyframe
+is certified, every in-between is proven not to fold, and every interval is within its keyframes'
+bounds, or within the figure's where the motion passes through its keys; 1 if not.
 
 examples:
   lissom certify wave.lissom

@@ -3,13 +3,14 @@
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cache
 from operator import mul
 from typing import Self
 
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
-from engine.arrays import Floats, freeze
+from engine.arrays import Floats, Indices, freeze
 from engine.interpolation.scaling.sharp import SharpScaling
 
 # Time is stretched to u, t = 1 / (1 + exp(−STRETCH sinh(u / STRETCH))), so that a window of
@@ -27,6 +28,7 @@ MIDDLE = (3, -25, 150, 150, -25, 3)  # over 256, of six samples: the polynomial 
 # What the difference from the sharp ρ is enlarged by, since it is seen at the samples only.
 CAUTION = 1.25
 ROUNDING = 2e-7
+STRIPS = 32  # of each sample's surroundings, on which ρ is bounded from above
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -91,6 +93,54 @@ class Scaling:
         logarithm -= _dot(mean, self.excess[window].tolist())
         return math.exp(min(logarithm, 0.0))
 
+    def upper_bounds(self) -> "UpperBounds":
+        """Return what is proven of ρ on pieces of time."""
+        offsets = (np.arange(STRIPS) + 0.5) / STRIPS - 0.5
+        fits, means = (np.array(each) for each in zip(*map(_weights, offsets), strict=True))
+        width = 2 * HALF_WINDOW + 1
+        windows = sliding_window_view(self.logarithms, width)
+        excess = sliding_window_view(self.excess, width)
+        # The weights sum to 1, so that of the values only their range counts.
+        reach = [
+            steepness * np.ptp(each, axis=1)
+            for steepness, each in zip(_steepness(), (windows, excess), strict=True)
+        ]
+        highest = (
+            windows @ fits.T - excess @ means.T + ((reach[0] + reach[1]) / (2 * STRIPS))[:, None]
+        )
+        return UpperBounds(highest=freeze(np.minimum(highest.ravel(), 0.0)))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class UpperBounds:
+    """Upper bounds of ln ρ.
+
+    Parameters
+    ----------
+    highest : float64, shape (s,)
+        On strips of the stretched time, from half a sample before the first window's middle on.
+    """
+
+    highest: Floats
+
+    def on(self, starts: Floats, ends: Floats) -> Floats:
+        """Return the largest that ρ may be from one time to another, (c,) each."""
+        pairs, which = np.unique(np.stack([starts, ends]), axis=1, return_inverse=True)
+        # By the strips before and behind, against rounding.
+        first = np.maximum(self._strip(pairs[0]) - 1, 0)
+        last = np.minimum(self._strip(pairs[1]) + 2, len(self.highest) - 1)
+        bounds = np.stack([first, last], axis=1).ravel()
+        rho = np.exp(np.maximum.reduceat(self.highest, bounds)[::2])
+        rho[(pairs[0] <= 0.0) | (pairs[1] >= 1.0)] = 1.0
+        found: Floats = rho[which]
+        return found
+
+    def _strip(self, times: Floats) -> Indices:
+        with np.errstate(divide="ignore"):
+            u = STRETCH * np.arcsinh((np.log(times) - np.log1p(-times)) / STRETCH)
+        place = np.clip((u + FARTHEST) / SPACING, -1.0, round(2 * FARTHEST / SPACING) + 1.0)
+        return np.asarray((place + 1.5) * STRIPS, dtype=np.intp)
+
 
 def time_of(u: Floats) -> Floats:
     """Return the times in (0, 1) of stretched ones."""
@@ -142,6 +192,18 @@ def _weights(offset: float) -> tuple[list[float], list[float]]:
     whole = m0 * c0 + m1 * c1 + m2 * c2
     fit = [(c0 * b + c1 * x + c2 * y) / whole for b, x, y in zip(bump, first, second, strict=True)]
     return fit, [b / m0 for b in bump]
+
+
+@cache
+def _steepness() -> tuple[float, float]:
+    """Return how fast a fit and a mean may change with the offset, over the range of the values."""
+    offsets = np.linspace(-0.5, 0.5, 1025)
+    fits, means = (np.array(each) for each in zip(*map(_weights, offsets), strict=True))
+    # The weights are smooth; the margin covers what their steepest place is off the samples.
+    return tuple(
+        1.05 * float(np.abs(np.diff(each, axis=0)).sum(axis=1).max()) * 1024 / 2
+        for each in (fits, means)
+    )  # type: ignore[return-value]
 
 
 def _dot(one: list[float], two: list[float]) -> float:

@@ -1,0 +1,173 @@
+"""In-betweens proven: the boundary times an interval of time, cut until every cell is tight.
+
+f_z of an in-between has no zeros, being an exponential, and no winding; so the extremes of k, σ_a
+and σ_b are on the boundary at every time (Theorem 4 of Chen and Weber 2015). The linear blend has
+f_z without zeros on the boundary at all times, where k < 1 is proven, and so none inside: at the
+keyframes it has none. The proof is of the in-betweens as they are defined; what is drawn differs
+from them by rounding, and with the metric variant by the accuracy of the integral equation.
+"""
+
+from dataclasses import dataclass
+from math import inf
+
+import numpy as np
+
+from engine.arrays import Booleans
+from engine.interpolation.inbetweens import Inbetweens
+from engine.interpolation.proof.blended import Cells, Enclose, blended, through
+from engine.interpolation.proof.pieces import Subdivision
+from engine.maps import Boundary, Bounds, Enclosures
+from engine.variant import Variant
+
+# Cells are cut until the enclosure is this close to what is attained: of k, and of σ over the
+# largest stretch.
+TIGHTNESS = 0.0005
+PARTS = 4  # into which time is cut at first
+SHORTEST = 2.0**-24  # pieces of time are not cut below this
+DEEPEST = 40
+NAMED = 2.0**-8  # how short a stretch of time is that is named as one where something folds
+MOST_CELLS = 400_000  # that are looked at
+BLOCK = 8192  # cells at a time
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Proof:
+    """What is proven of the in-betweens of two keyframes, for the closed domain and all times.
+
+    Parameters
+    ----------
+    k, sigma_a, sigma_b : float
+        k and σ_a are never larger, σ_b is never smaller; infinite, and 0, where nothing is proven.
+    unsettled : tuple of (float, float)
+        Stretches of time, from 0 to 1, in which an in-between folds or is not proven not to, or
+        some enclosure is not within `TIGHTNESS` of what is attained.
+    """
+
+    k: float
+    sigma_a: float
+    sigma_b: float
+    unsettled: tuple[tuple[float, float], ...]
+
+    @property
+    def never_folds(self) -> bool:
+        """Whether every in-between is proven to be locally injective."""
+        return self.k < 1 and self.sigma_b > 0
+
+
+def prove(
+    inbetweens: Inbetweens, variant: Variant, boundary: Boundary, bounds: Bounds = Bounds()
+) -> Proof | None:
+    """Enclose the distortion of in-betweens.
+
+    Parameters
+    ----------
+    inbetweens : Inbetweens
+        Of a domain without holes.
+    variant : Variant
+        Theirs.
+    boundary : Boundary
+    bounds : Bounds
+        Those that the in-betweens were prepared with.
+
+    Returns
+    -------
+    Proof, or None where there are holes: the proof does not know what closes their periods.
+    """
+    if boundary.holes:
+        return None
+    pieces = Subdivision.of([key.map for key in inbetweens.passage.keyframes], boundary)
+    with np.errstate(over="ignore", invalid="ignore"):
+        if variant is Variant.METRIC and not inbetweens.passage.course.is_straight:
+            return _bisect(pieces, through(pieces, inbetweens.passage, bounds), bounds)
+        return _bisect(pieces, blended(pieces, inbetweens, variant), None)
+
+
+def _bisect(pieces: Subdivision, enclose: Enclose, bounds: Bounds | None) -> Proof:
+    """Cut cells until they are tight; with bounds, until these are kept, too."""
+    attained = Enclosures(*map(np.array, (0.0, 0.0, inf)))
+    if bounds is not None:
+        attained = Enclosures(*map(np.array, (bounds.k, bounds.sigma_a, bounds.sigma_b)))
+    proven = Enclosures(*map(np.array, (0.0, 0.0, inf)))
+    cuts = np.linspace(0.0, 1.0, PARTS + 1) if bounds is None else np.array([0.0, 1.0])
+    count = len(pieces.halves)
+    pending = Cells(
+        np.tile(np.arange(count), len(cuts) - 1),
+        np.repeat(cuts[:-1], count),
+        np.repeat(cuts[1:], count),
+    )
+    looked_at, unsettled = 0, []
+    for depth in range(DEEPEST):
+        found = [
+            enclose(pending.at(slice(i, i + BLOCK))) for i in range(0, len(pending.piece), BLOCK)
+        ]
+        enclosed = _together([block.enclosed for block in found])
+        attained = _worst(attained, _together([block.attained for block in found]))
+        tight, unfolded = _are_tight(enclosed, attained), (enclosed.k < 1) & (enclosed.sigma_b > 0)
+        by_time = np.concatenate([block.by_time for block in found])
+        long = pending.end - pending.start > NAMED
+        # What is as bad as anywhere may still be so for a short time only.
+        by_time |= tight & long
+        loose = ~(tight & (unfolded | ~long))
+        unsettled.append(pending.at(~loose & ~unfolded))
+        rest = pending.at(loose)
+        looked_at += len(pending.piece)
+        ends = depth == DEEPEST - 1 or looked_at + 2 * len(rest.piece) > MOST_CELLS
+        if ends or not len(rest.piece):
+            break
+        proven = _worst(proven, Enclosures(*(part[~loose] for part in enclosed)))
+        pending = _cut(pieces, rest, by_time[loose] & (rest.end - rest.start > SHORTEST))
+    k, sigma_a, sigma_b = (float(part[0]) for part in _worst(proven, enclosed))
+    return Proof(
+        k=k,
+        sigma_a=sigma_a,
+        sigma_b=sigma_b if k < 1 else 0.0,
+        unsettled=_merged([*unsettled, rest]),
+    )
+
+
+def _cut(pieces: Subdivision, chosen: Cells, by_time: Booleans) -> Cells:
+    """Halve cells, some in time and the others in place."""
+    pieces.halve(chosen.piece[~by_time])
+    in_time, in_place = chosen.at(by_time), chosen.at(~by_time)
+    middle = (in_time.start + in_time.end) / 2
+    half = pieces.halves[in_place.piece]
+    return Cells(
+        np.concatenate([in_time.piece, in_time.piece, half, half + 1]),
+        np.concatenate([in_time.start, middle, in_place.start, in_place.start]),
+        np.concatenate([middle, in_time.end, in_place.end, in_place.end]),
+    )
+
+
+def _are_tight(enclosed: Enclosures, attained: Enclosures) -> Booleans:
+    """Tell which cells are no worse than what is attained anywhere; not a number is not."""
+    slack = TIGHTNESS * attained.sigma_a
+    tight: Booleans = enclosed.k <= attained.k + TIGHTNESS
+    tight &= enclosed.sigma_a <= attained.sigma_a + slack
+    tight &= enclosed.sigma_b >= attained.sigma_b - slack
+    return tight
+
+
+def _together(parts: list[Enclosures]) -> Enclosures:
+    return Enclosures(*map(np.concatenate, zip(*parts, strict=True)))
+
+
+def _worst(one: Enclosures, other: Enclosures) -> Enclosures:
+    """Return the extremes of both; not a number stays so."""
+    return Enclosures(
+        np.append(one.k, other.k).max(keepdims=True),
+        np.append(one.sigma_a, other.sigma_a).max(keepdims=True),
+        np.append(one.sigma_b, other.sigma_b).min(keepdims=True),
+    )
+
+
+def _merged(parts: list[Cells]) -> tuple[tuple[float, float], ...]:
+    """Return the stretches of time that cells cover together."""
+    starts, ends = (np.concatenate([getattr(p, end) for p in parts]) for end in ("start", "end"))
+    order = np.argsort(starts)
+    stretches: list[tuple[float, float]] = []
+    for start, end in zip(starts[order].tolist(), ends[order].tolist(), strict=True):
+        if stretches and start <= stretches[-1][1]:
+            stretches[-1] = stretches[-1][0], max(end, stretches[-1][1])
+        else:
+            stretches.append((start, end))
+    return tuple(stretches)

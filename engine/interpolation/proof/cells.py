@@ -1,0 +1,159 @@
+"""Enclosures of the distortion on a piece of the boundary during a piece of time.
+
+What a variant blends is a polynomial in time, and along a piece a polynomial in the place, but for
+what is bounded (`engine.interpolation.proof.pieces`): on such a cell it is Σ B_ab c_ab with
+Bernstein's B_ab ≥ 0 of sum 1. Convex functions of it are at most the largest of their values at the
+control values c_ab. With x ≤ Σ B x_ab and g ≤ Σ B g_ab, and x ≤ x⁺, g ≥ g⁻ ≥ 0 on the cell,
+
+    x g ≤ x⁺ g + g⁻ x − x⁺ g⁻ ≤ max_ab (x⁺ g_ab + g⁻ x_ab) − x⁺ g⁻,
+
+since (x⁺ − x) (g − g⁻) ≥ 0. What an enclosure is too large by falls with the square of the cell.
+"""
+
+from math import inf
+from typing import Generic, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from engine.arrays import Floats
+from engine.interpolation.proof.pieces import number
+from engine.maps import Enclosures
+
+LARGEST_LOGARITHM = 300.0  # what is beyond overflows: nothing is proven there
+
+
+class Patch(NamedTuple, Generic[number]):
+    """A quantity on cells.
+
+    Parameters
+    ----------
+    controls : float64 or complex128, shape (c, d, b)
+        Along time, and along the place.
+    error : float64, shape (c,)
+        By how much the truth may be elsewhere.
+    """
+
+    controls: npt.NDArray[number]
+    error: Floats
+
+    @property
+    def highest(self) -> Floats:
+        """Upper bounds of the absolute value, as control values."""
+        sizes: Floats = np.abs(self.controls) + self.error[:, None, None]
+        return sizes
+
+    def elevated(self) -> "Patch[number]":
+        """Return the same, linear along the place, as a quadratic."""
+        first, last = self.controls[..., :1], self.controls[..., -1:]
+        return Patch(np.concatenate([first, (first + last) / 2, last], axis=2), self.error)
+
+    def corners(self) -> "Patch[number]":
+        """Return the values at the cells' corners, which are attained, as cells (4c,)."""
+        at_corners = self.controls[:, [0, -1]][:, :, [0, -1]]
+        return Patch(at_corners.reshape(-1, 1, 1), np.zeros(at_corners.size))
+
+
+def linear(conformal: Patch[np.complex128], anticonformal: Patch[np.complex128]) -> Enclosures:
+    """Enclose of f_z and conj(f_z̄)."""
+    mean = conformal.controls.mean(axis=(1, 2))
+    size = np.abs(mean)
+    turned = (
+        conformal.controls
+        * np.divide(mean.conj(), size, out=np.zeros_like(mean), where=size > 0)[:, None, None]
+    )
+    a = turned.real - conformal.error[:, None, None]  # at least |f_z|
+    b = anticonformal.highest
+    return Enclosures(
+        k=_largest(_ratio(b, a)),
+        sigma_a=_largest(conformal.highest + b),
+        sigma_b=_least(a - b),
+    )
+
+
+def from_nu(log_modulus: Patch[np.float64], nu: Patch[np.complex128]) -> Enclosures:
+    """Enclose of ln |f_z| and ν."""
+    log_a, error = _bounded(log_modulus)
+    y = nu.highest
+    most = _largest(y)[:, None, None]
+    a = np.exp(log_a + error)
+    least = np.exp(_least(log_a - error))[:, None, None]
+    bent = most * a + least * y - most * least  # at least |f_z| |ν|
+    below = _tangent(log_a, error)
+    smaller = (1.0 - most) * below - least * y + most * least
+    return Enclosures(
+        k=_largest(y),
+        sigma_a=_largest(a + bent),
+        sigma_b=np.where(most[:, 0, 0] < 1, _least(smaller), _least(-bent)),
+    )
+
+
+def from_eta(log_modulus: Patch[np.float64], eta: Patch[np.complex128], rho: Floats) -> Enclosures:
+    """Enclose of ln |f_z| and η, scaled by at most ρ (c,)."""
+    log_a, error = _bounded(log_modulus.elevated())
+    y = rho[:, None, None] * eta.highest
+    most = _largest(y)[:, None, None]
+    highest = _largest(log_a + error)[:, None, None]
+
+    def over(power: int) -> Floats:
+        # At least |η| / |f_z|^power.
+        inverse, least = np.exp(-power * (log_a - error)), np.exp(-power * highest)
+        bent: Floats = most * inverse + least * y - most * least
+        return bent
+
+    b = over(1)
+    return Enclosures(
+        k=_largest(over(2)),
+        sigma_a=_largest(np.exp(log_a + error) + b),
+        sigma_b=_least(_tangent(log_a, error) - b),
+    )
+
+
+def from_metric(trace: Patch[np.float64], eta: Patch[np.complex128]) -> Enclosures:
+    """Enclose of 𝒜 and η, Equations (10) to (12): 𝒜 ± 2 |η| = σ² and |η| / 𝒜 = k / (1 + k²)."""
+    y, error = eta.highest, trace.error[:, None, None]
+    share = _largest(_ratio(y, trace.controls - error))
+    return Enclosures(
+        k=k_of(share),
+        sigma_a=np.sqrt(_largest(trace.controls + error + 2 * y)),
+        sigma_b=np.sqrt(np.maximum(_least(trace.controls - error - 2 * y), 0.0)),
+    )
+
+
+def k_of(share: Floats) -> Floats:
+    """Return k of |η| / 𝒜 = k / (1 + k²), infinite from 1/2 on."""
+    inside = share < 0.5
+    root = np.sqrt(1.0 - 4.0 * np.where(inside, share, 0.0) ** 2)
+    k: Floats = np.where(inside, 2.0 * share / (1.0 + root), inf)
+    return k
+
+
+def _bounded(log_modulus: Patch[np.float64]) -> tuple[Floats, Floats]:
+    """Return control values and errors of a logarithm that do not overflow."""
+    error = np.minimum(log_modulus.error, LARGEST_LOGARITHM)[:, None, None]
+    log_a: Floats = np.clip(log_modulus.controls, -LARGEST_LOGARITHM, LARGEST_LOGARITHM)
+    return log_a, error
+
+
+def _tangent(log_a: Floats, error: Floats) -> Floats:
+    """Return control values of something that is at most |f_z|: its tangent in the logarithm."""
+    middle = log_a.mean(axis=(1, 2), keepdims=True)
+    below: Floats = np.exp(middle) * (1.0 + log_a - error - middle)
+    return below
+
+
+def _ratio(numerator: Floats, denominator: Floats) -> Floats:
+    positive = denominator > 0
+    quotient = np.full(np.broadcast(numerator, denominator).shape, inf)
+    np.divide(numerator, denominator, out=quotient, where=positive)
+    return quotient
+
+
+def _largest(values: Floats) -> Floats:
+    found: Floats = values.max(axis=(1, 2))
+    return found
+
+
+def _least(values: Floats) -> Floats:
+    found: Floats = values.min(axis=(1, 2))
+    return found

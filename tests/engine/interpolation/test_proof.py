@@ -1,0 +1,206 @@
+"""In-betweens are proven: nothing at any time is beyond an enclosure, and enclosures are tight."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from interpolation_shapes import bar, inner_points, letter_l, random_map, scattered_on
+
+from engine.interpolation import Course, Variant, prepare
+from engine.interpolation.passing import Joint, Tangent
+from engine.interpolation.proof import bisection, prove
+from engine.interpolation.proof.bisection import TIGHTNESS
+from engine.interpolation.proof.blended import controls_on
+from engine.interpolation.proof.cells import Patch, from_eta, from_metric, from_nu, linear
+from engine.interpolation.proof.pieces import Subdivision
+from engine.maps import Boundary, Bounds, distortion
+from engine.maps.harmonic_map import HarmonicMap
+
+OUTLINE, CAGE = SHAPE = letter_l()
+BOUNDARY = Boundary.sample(OUTLINE, CAGE)
+POINTS = np.concatenate([inner_points(OUTLINE, 30, 0), scattered_on(OUTLINE, 500)])
+TIMES = np.concatenate([np.linspace(0, 1, 17), np.random.default_rng(3).uniform(0, 1, 4)])
+ACCURACY = 1e-4  # relative, of the metric variant's integral equation near a cage vertex
+
+
+def measured(interval, times=TIMES):
+    """Return the largest k and σ_a and the smallest σ_b at the points."""
+    frames = [interval.frame(float(time)) for time in times]
+    found = [
+        (
+            distortion.k(f.fz, f.fzbar),
+            distortion.sigma_a(f.fz, f.fzbar),
+            distortion.sigma_b(f.fz, f.fzbar),
+        )
+        for f in frames
+    ]
+    k, sigma_a, sigma_b = (np.array(each) for each in zip(*found, strict=True))
+    return k.max(), sigma_a.max(), sigma_b.min()
+
+
+@pytest.mark.parametrize("variant", Variant)
+@pytest.mark.parametrize("seed", [1, 4])
+def test_nothing_is_beyond_what_is_proven_and_that_is_tight(variant, seed):
+    maps = [random_map(SHAPE, 2 * seed + i, k=0.5, bend=0.8) for i in range(2)]
+    (interval,) = prepare(maps, POINTS, outline=OUTLINE, variant=variant).intervals
+    k, sigma_a, sigma_b = measured(interval)
+    proof = prove(interval, variant, BOUNDARY)
+    slack = ACCURACY if variant is Variant.METRIC else 1e-9
+    assert proof.k >= k * (1 - slack)
+    assert proof.sigma_a >= sigma_a * (1 - slack)
+    assert proof.never_folds == (k < 1) == (proof.unsettled == ())
+    assert proof.sigma_b <= max(sigma_b * (1 + slack), 0.0)
+    if proof.never_folds:
+        assert proof.sigma_b >= sigma_b - 3 * TIGHTNESS * sigma_a
+        assert proof.k <= k + 3 * TIGHTNESS + 1e-3
+    assert proof.sigma_a <= sigma_a * (1 + 3 * TIGHTNESS + 1e-3)
+
+
+@pytest.mark.parametrize("variant", Variant)
+def test_motion_through_keyframes_is_proven(variant):
+    maps = [random_map(SHAPE, seed, k=0.3, bend=0.5) for seed in (1, 2, 5, 8)]
+    bounds = Bounds(k=0.6, sigma_a=4, sigma_b=0.2)
+    prepared = prepare(maps, POINTS, outline=OUTLINE, variant=variant, through=True, bounds=bounds)
+    for interval in prepared.intervals:
+        k, sigma_a, sigma_b = measured(interval, TIMES[::4])
+        proof = prove(interval, variant, BOUNDARY, bounds)
+        assert proof.k >= k - ACCURACY
+        assert proof.sigma_a >= sigma_a * (1 - ACCURACY)
+        assert proof.sigma_b <= max(sigma_b * (1 + ACCURACY), 0.0)
+        assert proof.never_folds == (proof.unsettled == ())
+        for start, end in proof.unsettled:
+            # It does fold there, or nearly.
+            assert measured(interval, np.linspace(start, end, 7))[0] > 0.9
+        if variant is Variant.METRIC:
+            # It keeps the bounds, or what its keyframes have beyond them.
+            own = [f.derivatives(BOUNDARY.points) for f in maps]
+            assert proof.k <= max(0.6, *(distortion.k(*f).max() for f in own)) + 2 * TIGHTNESS
+            assert proof.never_folds
+
+
+def test_what_folds_between_its_keyframes_is_not_proven():
+    outline, cage = bar()
+    maps = [HarmonicMap.identity(cage), HarmonicMap(cage=cage, phi=-1.0 * cage, psi=0.0 * cage)]
+    boundary = Boundary.sample(outline, cage)
+    points = np.array([0.1, -1.3])
+    linearly, by_nu = (
+        prove(prepare(maps, points, outline=outline, variant=v).intervals[0], v, boundary)
+        for v in (Variant.LINEAR, Variant.NU)
+    )
+    assert not linearly.never_folds
+    assert linearly.sigma_b == 0
+    assert (linearly.unsettled[0][0], linearly.unsettled[-1][1]) == pytest.approx(
+        (0.5, 0.5), abs=0.01
+    )
+    assert by_nu.never_folds
+    assert by_nu.k == pytest.approx(0, abs=1e-8)
+    assert (by_nu.sigma_a, by_nu.sigma_b) == pytest.approx((1, 1), abs=2 * TIGHTNESS)
+
+
+def test_times_that_cannot_be_settled_are_named(monkeypatch):
+    monkeypatch.setattr(bisection, "MOST_CELLS", 1)
+    maps = [HarmonicMap.identity(CAGE), random_map(SHAPE, 3, k=0.5, bend=0.8)]
+    (interval,) = prepare(maps, POINTS[:2], outline=OUTLINE, variant="eta").intervals
+    proof = prove(interval, Variant.ETA, BOUNDARY)
+    assert proof.unsettled
+    monkeypatch.undo()
+    better = prove(interval, Variant.ETA, BOUNDARY)
+    assert better.unsettled == ()
+    assert better.k <= proof.k
+    assert better.sigma_b >= proof.sigma_b
+
+
+@pytest.mark.parametrize("name", ["log_modulus", "nu", "conj_eta", "trace", "conformal"])
+def test_curves_along_a_piece_hold_everywhere_on_it(name):
+    maps = [random_map(SHAPE, seed, k=0.8, bend=1.0) for seed in range(3)]
+    pieces = Subdivision.of(maps, BOUNDARY)
+    pieces.halve(np.arange(0, len(BOUNDARY.points), 3))
+    pieces.halve(np.arange(len(BOUNDARY.points), len(pieces.halves), 2))
+    controls, errors = getattr(pieces.derivatives(0), name)()
+    assert controls.shape[:2] == errors.shape == (len(pieces.halves), 3)
+    for s in (0.0, 0.21, 0.5, 0.83, 1.0):
+        points = pieces.starts + s * (pieces.ends - pieces.starts)
+        basis = [1 - s, s] if controls.shape[2] == 2 else [(1 - s) ** 2, 2 * s * (1 - s), s * s]
+        for key, f in enumerate(maps):
+            fz, g = f.derivatives(points)[0], f.derivatives(points)[1].conj()
+            truth = {
+                "log_modulus": np.log(np.abs(fz)),
+                "nu": g / fz,
+                "conj_eta": fz * g,
+                "trace": np.abs(fz) ** 2 + np.abs(g) ** 2,
+                "conformal": fz,
+            }[name]
+            assert (np.abs(controls[:, key] @ basis - truth) <= errors[:, key]).all()
+    assert np.median(errors[errors < np.inf]) < 1e-3
+
+
+def bernstein(degree, x):
+    n = np.arange(degree + 1)
+    return np.array([1, 3, 3, 1] if degree == 3 else [1, 2, 1] if degree == 2 else [1, 1]) * (
+        x[..., None] ** n * (1 - x[..., None]) ** (degree - n)
+    )
+
+
+@settings(max_examples=60, deadline=None)
+@given(st.integers(0, 2**32 - 1), st.sampled_from([1, 3]))
+def test_cells_enclose_what_is_blended_on_them(seed, degree):
+    rng = np.random.default_rng(seed)
+    size = 10 ** rng.uniform(-3, 0)
+
+    def patch(middle, columns, *, is_complex):
+        shape = (1, degree + 1, columns)
+        noise = rng.normal(size=shape) + (1j * rng.normal(size=shape) if is_complex else 0)
+        return Patch(middle + size * noise, np.array([0.0]))
+
+    s, t = rng.uniform(size=(2, 200))
+
+    def values(patch):
+        return np.einsum(
+            "pd,db,pb->p",
+            bernstein(degree, t),
+            patch.controls[0],
+            bernstein(patch.controls.shape[2] - 1, s),
+        )
+
+    a = patch(rng.normal(), 2, is_complex=False)
+    nu = patch(rng.uniform(0, 0.9) * np.exp(1j * rng.uniform(0, 7)), 2, is_complex=True)
+    eta = patch(0.3 * (rng.normal() + 1j * rng.normal()), 3, is_complex=True)
+    trace = patch(rng.uniform(0.5, 3), 3, is_complex=False)
+    f, g = patch(1j, 2, is_complex=True), patch(0.5, 2, is_complex=True)
+    rho = np.array([rng.uniform(0.1, 1)])
+    size_a = np.exp(values(a))
+    pairs = [
+        (from_nu(a, nu), size_a, size_a * np.abs(values(nu))),
+        (from_eta(a, eta, rho), size_a, rho * np.abs(values(eta)) / size_a),
+        (linear(f, g), np.abs(values(f)), np.abs(values(g))),
+    ]
+    squares = values(trace), 2 * np.abs(values(eta))
+    if (squares[0] > squares[1]).all():
+        largest, least = np.sqrt(squares[0] + squares[1]), np.sqrt(squares[0] - squares[1])
+        pairs.append((from_metric(trace, eta), (largest + least) / 2, (largest - least) / 2))
+    for (k, sigma_a, sigma_b), fz, fzbar in pairs:
+        assert k[0] >= (fzbar / fz).max() - 1e-12
+        assert sigma_a[0] >= (fz + fzbar).max() - 1e-12
+        assert sigma_b[0] <= max((fz - fzbar).min(), 0) + 1e-12
+
+
+def test_a_course_is_cut_exactly():
+    course = Course.between(Tangent(Joint(1.0, 2.0), 0.7, 0.7), 0.0)
+    start, end = np.array([0.0, 0.3]), np.array([1.0, 0.35])
+    controls = controls_on(course, start, end)
+    for x in (0.0, 0.4, 1.0):
+        weights = np.einsum("d,cdq->cq", bernstein(3, np.array(x)), controls)
+        np.testing.assert_allclose(weights, course.at(start + x * (end - start)).T, atol=1e-14)
+
+
+def test_the_bound_on_rho_is_above_it_and_near():
+    maps = [random_map(SHAPE, seed, k=0.6, bend=1.0) for seed in (3, 6)]
+    (interval,) = prepare(maps, POINTS[:2], outline=OUTLINE, variant="scaled-eta").intervals
+    rng = np.random.default_rng(0)
+    starts = np.concatenate([rng.uniform(size=300), [0.0, 1e-9, 0.999999]])
+    ends = np.minimum(starts + 10.0 ** rng.uniform(-9, -2, len(starts)), 1.0)
+    above = interval.scale.upper_bounds().on(starts, ends)
+    for start, end, bound in zip(starts, ends, above, strict=True):
+        rho = [interval.scale(float(time)) for time in np.linspace(start, end, 20)]
+        assert bound >= max(rho) - 1e-15
+        assert bound <= max(rho) + 0.02
