@@ -7,7 +7,7 @@ from functools import partial
 import numpy as np
 
 from app.cli.bench.table import Row, Table, measure
-from app.document import Document, Meshing, Pose, Variant
+from app.document import Document, Figure, Meshing, Pose, Variant
 from app.motion import PoseSampler
 from app.render import Renderer, Scene, fit_view
 from app.render.gpu import (
@@ -42,9 +42,8 @@ class Interval:
     second: Pose
 
     @classmethod
-    def of(cls, document: Document, triangles: int) -> "Interval":
+    def of(cls, figure: Figure, triangles: int) -> "Interval":
         """Lay the paths of a mesh of so many triangles."""
-        figure = document.figures[0]
         mesh = triangulate(figure.domain.outline, triangles)
         sampler = PoseSampler(replace(figure.domain, mesh=mesh), anchor=figure.anchor)
         return cls(sampler=sampler, first=figure.keys[0].pose, second=figure.keys[1].pose)
@@ -65,19 +64,20 @@ class Interval:
 
 def tables() -> Iterator[Table]:
     """Measure frames, building, growth and drawing."""
-    document = _giraffe()
+    figure = posed_giraffe().figures[0]
     for triangles in SIZES[1:]:
-        interval = Interval.of(document, triangles)
+        interval = Interval.of(figure, triangles)
         series = {variant: interval.build(variant) for variant in VARIANTS}
         yield _frames(interval, series)
         if triangles == SIZES[1]:
             yield _heat(interval)
             yield _building(interval, series)
             yield _drawing(interval, series)
-    yield from _growth([Interval.of(document, triangles) for triangles in SIZES])
+    yield from _growth([Interval.of(figure, triangles) for triangles in SIZES])
 
 
-def _giraffe() -> Document:
+def posed_giraffe() -> Document:
+    """Return the giraffe with its first two keys."""
     folder = sample_images()
     document = open_picture(folder / "giraffe.png", Meshing(triangles=1000)).document
     script = load_pose_script(folder / "giraffe.json")
@@ -94,12 +94,12 @@ def _frames(interval: Interval, series: dict[Variant, Series]) -> Table:
         Row(name="linear blend, float32", seconds=linear, note="both keyframes in one product"),
         Row(
             name="linear blend, float32, as a·(1 − t) + b·t",
-            seconds=_played(lambda t: np.float32(1 - t) * ends[0] + np.float32(t) * ends[1]),
+            seconds=seconds_played(lambda t: np.float32(1 - t) * ends[0] + np.float32(t) * ends[1]),
         ),
     ]
     out = np.empty(2 * count, dtype=np.float32)
     for variant in VARIANTS[1:]:
-        played = _played(partial(_write, series[variant], out))
+        played = seconds_played(partial(_write, series[variant], out))
         direct = measure(partial(interval.inbetweens(variant).offsets, 0.6))
         note = f"the direct path takes {direct / played:.0f} times as long"
         rows.append(Row(name=f"series, {variant}", seconds=played, note=note))
@@ -115,7 +115,7 @@ def _linear_blend(series: Series) -> tuple[float, Singles]:
     def blend(time: float) -> None:
         np.dot(np.array([1.0 - time, time], dtype=np.float32), ends, out=out)
 
-    return _played(blend), ends
+    return seconds_played(blend), ends
 
 
 def _write(series: Series, out: Singles, time: float) -> None:
@@ -130,7 +130,7 @@ def _heat(interval: Interval) -> Table:
         rows += [
             Row(
                 name=f"{variant}, series",
-                seconds=_played(partial(_streamed_k, series)),
+                seconds=seconds_played(partial(_streamed_k, series)),
                 note=_extent(series, len(interval.mesh.vertices)),
             ),
             Row(
@@ -174,7 +174,7 @@ def _growth(intervals: list[Interval]) -> Iterator[Table]:
     for interval in intervals:
         series = interval.build(Variant.METRIC)
         out = np.empty(series.size, dtype=np.float32)
-        frames.append(_played(partial(_write, series, out)))
+        frames.append(seconds_played(partial(_write, series, out)))
         builds.append(measure(partial(interval.build, Variant.METRIC), repeats=1))
     for title, times in (("A frame", frames), ("Building the series", builds)):
         rows = [
@@ -224,7 +224,7 @@ def _drawing(interval: Interval, series: dict[Variant, Series]) -> Table:
                 renderer.draw(target, view, scene)
                 context.finish()
 
-            rows.append(Row(name=f"{variant}, {name}", seconds=_played(draw)))
+            rows.append(Row(name=f"{variant}, {name}", seconds=seconds_played(draw)))
         for pose in poses:
             pose.release()
     title = f"Vertices of {len(mesh.triangles):,} triangles placed, {context.info['GL_RENDERER']}"
@@ -233,7 +233,7 @@ def _drawing(interval: Interval, series: dict[Variant, Series]) -> Table:
     return Table(title=title, rows=tuple(rows))
 
 
-def _played(frame: Callable[[float], object]) -> float:
+def seconds_played(frame: Callable[[float], object]) -> float:
     """Return the seconds of a frame while an interval plays."""
 
     def play() -> None:
