@@ -65,13 +65,14 @@ def mesh_keyframes(
     ------
     EngineError
         If there are fewer than two keyframes, or one has not as many positions as the domain, or
-        folds.
+        folds, or winds around a hole.
 
     Notes
     -----
     Otherwise the angles are continued from the anchor across inner edges (Section 7.2 of the paper;
-    Choi and Szymczak 2003), which is right as long as f_z turns by less than π from a triangle to
-    the next, and the anchor's own angles are as in `root_sheets`.
+    Choi and Szymczak 2003), and the anchor's own are as in `root_sheets`. Across an edge there is
+    no doubt: where nothing folds f_z turns an edge to less than π/2 from where the map takes it,
+    which is the same for the triangles on both sides. Around a hole the sum may be a whole turn.
     """
     if len(positions) < 2:
         raise EngineError(f"In-betweens need at least two keyframes, not {len(positions)}.")
@@ -81,18 +82,19 @@ def mesh_keyframes(
         _require_unfolded(domain, each, np.abs(fz) - np.abs(fzbar), number)
     at_anchor = np.array([domain.anchor_fz(fz) for fz, _ in derivatives])
     sheets = 2 * np.pi * root_sheets(at_anchor, turns)
-    keyframes = []
+    keyframes: list[MeshKeyframe] = []
     for position, (fz, fzbar), anchor, sheet in zip(
         checked, derivatives, at_anchor, sheets, strict=True
     ):
         angle = float(np.angle(anchor) + sheet)
-        angles = np.angle(fz) if principal else _continued(domain, fz, anchor) + angle
+        continued = _continued(domain, fz, anchor)
+        _require_unwound(domain, fz, continued, len(keyframes))
         keyframes.append(
             MeshKeyframe(
                 positions=position,
                 fz=freeze(fz),
                 fzbar=freeze(fzbar),
-                angles=freeze(angles),
+                angles=freeze(np.angle(fz) if principal else continued + angle),
                 anchor_position=complex(position[domain.anchor]),
                 anchor_angle=angle,
             )
@@ -111,6 +113,22 @@ def _continued(domain: TriangulatedDomain, fz: Complexes, anchor: complex) -> Fl
     sheets = np.round((crossings.sums(turns) - principal) / (2 * np.pi))
     angles: Floats = principal + 2 * np.pi * sheets
     return angles
+
+
+def _require_unwound(
+    domain: TriangulatedDomain, fz: Complexes, angles: Floats, number: int
+) -> None:
+    """Refuse angles that grow by a whole turn on the way around a hole: they have no logarithm."""
+    one, other = domain.pairs.T
+    rest = angles[other] - angles[one] - np.angle(fz[other] * fz[one].conj())
+    wound = np.flatnonzero(np.abs(rest) > np.pi)
+    if len(wound):
+        at = domain.points[domain.corners[one[wound[0]]]].mean()
+        raise EngineError(
+            f"Keyframe {number} winds around a hole: on the way around it, past ({at.real:.6g}, "
+            f"{at.imag:.6g}), it turns by {abs(rest[wound[0]]) / (2 * np.pi):.0f} whole turns more "
+            "than the domain. Pose it so that it does not."
+        )
 
 
 def _checked(domain: TriangulatedDomain, values: npt.ArrayLike, number: int) -> Complexes:

@@ -19,8 +19,10 @@ from engine.baselines.poisson import PoissonStep
 from engine.baselines.triangulated_domain import TriangulatedDomain
 from engine.deform import Deformer, Handles
 from engine.errors import EngineError
+from engine.geometry import diameter, require_inside
 from engine.interpolation import Variant, prepare
 from engine.maps import Boundary, Bounds, HarmonicMap
+from engine.paths import ON_OUTLINE
 from engine.variant import Baseline
 
 
@@ -90,7 +92,8 @@ def prepare_baseline(
         The vertices of the domain.
     triangles : int, shape (m, 3)
     outline : complex, shape (p,), optional
-        The domain's boundary, inside the cage of the maps: for baselines that `needs_maps`.
+        The domain's boundary, inside the cage of the maps, around the vertices: for baselines that
+        `needs_maps`.
     anchor : complex, optional
         The vertex next to it becomes the anchor; by default the one farthest from the border.
     turns : int, shape (q − 1,), or (q,) in a loop, optional
@@ -113,6 +116,16 @@ def prepare_baseline(
     baseline = _known_baseline(baseline)
     domain = TriangulatedDomain.of(points, triangles, anchor)
     around = [*keyframes, *keyframes[:1]] if loop else list(keyframes)
+    if outline is not None:
+        outline = as_points(outline, "outline", at_least=3)
+        holes = around[0].holes if around and isinstance(around[0], HarmonicMap) else ()
+        require_inside(
+            outline,
+            domain.points,
+            "point",
+            holes=[hole.outline for hole in holes],
+            tolerance=ON_OUTLINE * diameter(outline),
+        )
     intervals: Sequence[MeshInbetweens]
     if baseline.needs_maps:
         maps = _maps_over_one_cage(baseline, around)

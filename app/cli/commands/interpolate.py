@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from app.cli.console import notice
 from app.cli.keyframes import Keyframes, read_keyframes
 from app.document import NATURAL
 from app.errors import LissomError
@@ -13,6 +14,8 @@ from app.storage import check_writable, write_arrays
 from engine.baselines import Baseline, prepare_baseline
 from engine.interpolation import Variant, prepare
 from engine.maps import Bounds
+
+UNFINISHED = 1e-8  # angle defect, in radians, that is worth a word
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -105,6 +108,9 @@ def _compared(arguments: argparse.Namespace, given: Keyframes) -> dict[str, npt.
         values = [getattr(frame, name) for frame in frames]
         if values[0] is not None:
             results[name] = np.array(values)
+    defect = max(results.get("angle_defect", np.zeros(1)))
+    if defect > UNFINISHED:
+        notice(f"a mesh could not be flattened: angles of {defect:.2g} radians are left over")
     return results
 
 
