@@ -28,7 +28,8 @@ class PreparedInterval(NamedTuple):
     """The in-betweens of some poses, which it keeps alive so that their identities stay theirs.
 
     `kept` tells how much of its velocity the motion has at both ends. The series of the
-    positions and of f_z and f_z̄ are None until they are built.
+    positions and of f_z and f_z̄ are None until they are built; `extents` are the bytes that they
+    took when they last were, 0 where that is not known.
     """
 
     poses: tuple[Pose, ...]
@@ -36,6 +37,7 @@ class PreparedInterval(NamedTuple):
     kept: tuple[float, float]
     series: Series | None = None
     distortions: Series | None = None
+    extents: tuple[int, int] = (0, 0)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

@@ -38,7 +38,7 @@ class Build:
         self.series: Series | None = None
         inbetweens, sites = motion.ready[pair].inbetweens, motion.sampler.sites
         self._steps = _steps(
-            partial(Distortions.of, inbetweens)
+            partial(Distortions.of, inbetweens, sites)
             if distortions
             else partial(Positions.of, inbetweens, sites)
         )
@@ -85,7 +85,8 @@ def next_build(
             if distortions and not heat:
                 continue
             if series is None:
-                if used + _expected(motion, distortions=distortions) > budget:
+                known = prepared.extents[distortions]
+                if used + (known or _expected(motion, distortions=distortions)) > budget:
                     return None
                 return Build(motion, pair, distortions=distortions)
             used += series.nbytes
@@ -95,7 +96,7 @@ def next_build(
 def with_series(
     motion: Motion, build: Build, clip: Clip, frame: int, *, budget: int = BUDGET
 ) -> Motion:
-    """Return a motion that has what was built; the series farthest from `frame` make room for it.
+    """Return a motion that has what was built; those farthest from `frame` make room.
 
     A motion that has moved on to other keys, or to another figure, is returned as it is.
     """
@@ -104,15 +105,16 @@ def with_series(
         return motion
     ready = dict(motion.ready)
     prepared = ready[build.pair]
+    places, distortions = prepared.extents
     changed = (
-        prepared._replace(distortions=series)
+        prepared._replace(distortions=series, extents=(places, series.nbytes))
         if build.distortions
-        else prepared._replace(series=series)
+        else prepared._replace(series=series, extents=(series.nbytes, distortions))
     )
     ready[build.pair] = changed
     if motion.knows(clip):
         for pair in reversed(_by_nearness(clip, frame)):
-            if memory(ready.values()) > budget and pair != build.pair:
+            if memory(ready.values()) > budget:
                 ready[pair] = ready[pair]._replace(series=None, distortions=None)
     return replace(motion, ready=MappingProxyType(ready))
 

@@ -35,8 +35,13 @@ def to_coefficients(degree: int) -> Floats:
 def basis(x: float, count: int) -> Floats:
     """Return T_0 … T_(count − 1) at x in [−1, 1], (count,)."""
     # Several times faster than a recurrence in Python, and exact at both ends.
-    values: Floats = np.cos(np.arange(count) * math.acos(max(-1.0, min(1.0, x))))
+    values: Floats = np.cos(_orders(count) * math.acos(max(-1.0, min(1.0, x))))
     return values
+
+
+@cache
+def _orders(count: int) -> Floats:
+    return freeze(np.arange(float(count)))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

@@ -1,11 +1,12 @@
 """In-betweens of two keyframes by one variant, as functions of time from one to the other."""
 
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, replace
 from typing import Protocol, Self
 
 import numpy as np
 
-from engine.arrays import Complexes, Floats, freeze
+from engine.arrays import Complexes, Floats, Indices, freeze
 from engine.interpolation.derivatives import Derivatives, Passage, weighted
 from engine.interpolation.periods import Residual
 from engine.interpolation.scaling import Scaling
@@ -24,6 +25,9 @@ class Blend(Protocol):
 
     def derivatives(self, time: float) -> Derivatives:
         """Return the in-between's derivatives at the nodes of the paths."""
+
+    def at(self, which: Indices) -> Self:
+        """Return the same at some of the nodes only."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -86,65 +90,24 @@ class IntegratedInbetweens:
         """Return ρ; 1 where Ψ is not scaled."""
         return 1.0 if self.scale is None else self.scale(time)
 
-    def parts(self, time: float) -> tuple[Complexes, Complexes]:
-        """Return Φ and conj(Ψ), each (m,), both 0 at the anchor and Ψ before its scaling.
-
-        f is the anchor's position + Φ + ρ conj(Ψ). Without ρ both parts are analytic in time; ρ is
-        smooth, but bends within a small part of the interval. Around holes, where ρ scales Φ a
-        little, too, the parts are the map for ρ = 0 and what is added to it for ρ = 1.
-        """
-        # What the quadrature lacks of the keyframes is known, and blended like them: the keyframes
-        # come out exactly, without a jump in time.
-        blended = self.blend.derivatives(time)
-        keyframes, weights = self.passage.keyframes, self.passage.course(time)
-        paths = self.sites.paths
-        alone = paths.step_integrals(blended.fz, blended.fzz)
-        scaled = paths.step_integrals(blended.g, blended.gz).conj()
-        if self.opening is not None:
-            scaled += alone
-            alone = paths.step_integrals(*self._conformal(blended, time))
-            scaled -= alone
-        phi, conj_psi = paths.integrals(alone), paths.integrals(scaled)
-        phi += weighted([key.phi_error for key in keyframes], weights)
-        conj_psi += weighted([key.psi_error for key in keyframes], weights).conj()
-        return phi, conj_psi
-
-    def derivative_parts(self, time: float) -> tuple[Complexes, Complexes, Complexes]:
-        """Return f_z for ρ = 0, what ρ adds to it, and f_z̄ before its scaling, at the points."""
-        blended, places = self.blend.derivatives(time), self.sites.paths.places
-        fz, fzbar = blended.fz[places], blended.g[places].conj()
-        if self.opening is None:
-            return fz, np.zeros_like(fz), fzbar
-        alone = self._conformal(blended, time)[0][places]
-        return alone, fz - alone, fzbar
-
-    def _conformal(self, blended: Derivatives, time: float) -> tuple[Complexes, Complexes]:
-        """Return f_z and its derivative for ρ = 0, each (s,)."""
-        logarithm, logarithm_z = np.zeros_like(blended.fz), np.zeros_like(blended.fz)
-        if self.opening is not None:
-            self.opening.add_to(logarithm, logarithm_z, time)
-        growth = np.exp(logarithm)
-        return blended.fz * growth, (blended.fzz + blended.fz * logarithm_z) * growth
+    def derivatives_at(self, which: Indices) -> "PointDerivatives":
+        """Return f_z and f_z̄ of some of the points as functions of time."""
+        nodes = self.sites.paths.places[which]
+        return PointDerivatives(
+            blend=self.blend.at(nodes),
+            scale=self.scale,
+            opening=None if self.opening is None else self.opening.at(nodes),
+        )
 
     def offsets(self, time: float) -> Complexes:
         """Return f − f(anchor) at the points, (m,)."""
-        if self.opening is not None:
-            alone, scaled = self.parts(time)
-            return alone + self.rho(time) * scaled
-        return self._offsets(self.blend.derivatives(time), time, self.rho(time))
+        rho = self.rho(time)
+        return self._offsets(_blended(self.blend, self.opening, time, rho), time, rho)
 
     def frame(self, time: float) -> Frame:
         """Return the in-between at a time in [0, 1]."""
         rho = self.rho(time)
-        if self.opening is not None:
-            alone, scaled, fzbar = self.derivative_parts(time)
-            return Frame(
-                positions=self.passage.anchor_position(time) + self.offsets(time),
-                fz=alone + rho * scaled,
-                fzbar=rho * fzbar,
-                rho=rho,
-            )
-        blended = self.blend.derivatives(time)
+        blended = _blended(self.blend, self.opening, time, rho)
         places = self.sites.paths.places
         return Frame(
             positions=self.passage.anchor_position(time) + self._offsets(blended, time, rho),
@@ -154,7 +117,7 @@ class IntegratedInbetweens:
         )
 
     def _offsets(self, blended: Derivatives, time: float, rho: float) -> Complexes:
-        """Return what `parts` gives, added up; one sum along the paths serves both."""
+        """Return Φ + ρ conj(Ψ), both 0 at the anchor; one sum along the paths serves both."""
         keyframes, weights = self.passage.keyframes, self.passage.course(time)
         paths = self.sites.paths
         steps = paths.step_integrals(blended.fz, blended.fzz)
@@ -162,12 +125,56 @@ class IntegratedInbetweens:
         np.conj(conj_psi, out=conj_psi)
         conj_psi *= rho
         steps += conj_psi
+        # What the quadrature lacks of the keyframes is known, and blended like them: the keyframes
+        # come out exactly, without a jump in time.
         errors = weighted([key.psi_error for key in keyframes], weights)
         np.conj(errors, out=errors)
         errors *= rho
         errors += weighted([key.phi_error for key in keyframes], weights)
         errors += paths.integrals(steps)
         return errors
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class PointDerivatives:
+    """f_z and f_z̄ of in-betweens at some points (p,), without their paths.
+
+    Parameters
+    ----------
+    blend : Blend
+        At the points.
+    scale : Scaling or None
+    opening : Residual or None
+        At the points.
+    """
+
+    blend: Blend
+    scale: Scaling | None
+    opening: Residual | None
+
+    def __call__(self, time: float) -> tuple[Complexes, Complexes]:
+        """Return both, each (p,), at a time in [0, 1]."""
+        rho = 1.0 if self.scale is None else self.scale(time)
+        blended = _blended(self.blend, self.opening, time, rho)
+        return blended.fz, rho * blended.g.conj()
+
+
+def _blended(blend: Blend, opening: Residual | None, time: float, rho: float) -> Derivatives:
+    """Return the derivatives of a blend, Ψ' and Ψ'' before their scaling by ρ.
+
+    Around holes ρ scales Φ a little, too: Φ' is the mean of that for ρ = 0, F e^d, and that for
+    ρ = 1, F (`engine.interpolation.scaling`).
+    """
+    blended = blend.derivatives(time)
+    if opening is None:
+        return blended
+    d, d_z = np.zeros_like(blended.fz), np.zeros_like(blended.fz)
+    opening.add_to(d, d_z, time)
+    alone = (1.0 - rho) * np.exp(d)
+    share = rho + alone
+    return replace(
+        blended, fz=blended.fz * share, fzz=blended.fzz * share + blended.fz * alone * d_z
+    )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -220,6 +227,16 @@ class LinearInbetweens:
             fzbar=weighted(self.fzbar, weights),
             rho=None,
         )
+
+    def derivatives_at(self, which: Indices) -> Callable[[float], tuple[Complexes, Complexes]]:
+        """Return f_z and f_z̄ of some of the points as functions of time."""
+        fz, fzbar = ([each[which] for each in known] for known in (self.fz, self.fzbar))
+
+        def blended(time: float) -> tuple[Complexes, Complexes]:
+            weights = self.passage.course(time)
+            return weighted(fz, weights), weighted(fzbar, weights)
+
+        return blended
 
     def _positions(self, time: float) -> Complexes:
         keyframes = self.passage.keyframes

@@ -6,8 +6,9 @@ programs, of a whole motion within a tolerance.
 Imports: `engine.interpolation`.
 """
 
-from engine.streaming.build import MOST_ROWS, build_series, finish
+from engine.streaming.build import build_series, finish
 from engine.streaming.channels import Channels, Distortions, Positions
+from engine.streaming.cutting import MOST_ROWS
 from engine.streaming.series import Series, SeriesPiece
 from engine.streaming.targets import ShapeTargets, build_targets
 

@@ -1,99 +1,105 @@
 """What is streamed of the in-betweens of two keyframes: real numbers at every point."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import NamedTuple, Protocol, TypeGuard
+from typing import Protocol, Self
 
 import numpy as np
 
-from engine.arrays import Complexes, Floats
-from engine.interpolation import Inbetweens, IntegratedInbetweens, Sites
+from engine.arrays import Complexes, Floats, Indices
+from engine.interpolation import Inbetweens, Sites
+from engine.maps import distortion
 
 ROUNDING = 2.0**-21  # what sums of some float32 numbers lose, relative to the largest
-
-
-class Sample(NamedTuple):
-    """The values (c,) at a time as they are without ρ, and the part (c,) that ρ scales.
-
-    The latter is None where there is no ρ.
-    """
-
-    values: Floats
-    scaled: Floats | None
+PROBED = 500  # points that tell how all of them depend on time
 
 
 class Channels(Protocol):
-    """Numbers that depend on time in [0, 1]: `values + (rho − 1) * scaled`, both parts analytic."""
-
-    @property
-    def inbetweens(self) -> Inbetweens:
-        """Where they come from; of two keyframes."""
+    """Numbers (c,) that depend on time in [0, 1]."""
 
     @property
     def tolerance(self) -> float:
         """The largest error that a series may have, in units of the numbers."""
 
-    def sample(self, time: float) -> Sample:
+    def sample(self, time: float) -> Floats:
         """Work the numbers out on the direct path."""
+
+    def probe(self, time: float) -> Floats:
+        """Return some numbers (p,) that depend on time as all of them do, and cost far less.
+
+        Functions of time in which these are written to the tolerance do for all numbers.
+        """
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Positions:
-    """Where the points are: x and y of each of them in turn, c = 2m."""
+    """Where the points are: x and y of each of them in turn, c = 2m.
+
+    They are integrals of f_z and f_z̄ along the paths, and so are written in the functions of time
+    in which those are.
+    """
 
     inbetweens: Inbetweens
     tolerance: float
+    derivatives: Callable[[float], tuple[Complexes, Complexes]]
+    length: float
 
     @classmethod
-    def of(cls, inbetweens: Inbetweens, sites: Sites, *, relative: float = 1e-6) -> "Positions":
+    def of(cls, inbetweens: Inbetweens, sites: Sites, *, relative: float = 1e-6) -> Self:
         """Allow an error of a part of the diameter, or what float32 can hold if that is more."""
         largest = max(float(np.abs(key.positions).max()) for key in inbetweens.passage.ends)
-        tolerance = max(relative * sites.diameter, ROUNDING * largest)
-        return cls(inbetweens=inbetweens, tolerance=tolerance)
+        return cls(
+            inbetweens=inbetweens,
+            tolerance=max(relative * sites.diameter, ROUNDING * largest),
+            derivatives=inbetweens.derivatives_at(_some(len(sites.points))),
+            length=sites.diameter,
+        )
 
-    def sample(self, time: float) -> Sample:
+    def sample(self, time: float) -> Floats:
         """Integrate along the paths; the keyframes are returned as they are."""
-        inbetweens = self.inbetweens
-        psi: Complexes | None = None
-        if scales(inbetweens):
-            phi, psi = inbetweens.parts(time)
-            offsets = phi + psi
-        else:
-            offsets = inbetweens.offsets(time)
-        places = inbetweens.passage.anchor_position(time) + offsets
+        passage = self.inbetweens.passage
         if time in (0.0, 1.0):
-            places = inbetweens.passage.ends[int(time)].positions
-        return Sample(_reals(places), None if psi is None else _reals(psi))
+            return _reals(passage.ends[int(time)].positions)
+        return _reals(passage.anchor_position(time) + self.inbetweens.offsets(time))
+
+    def probe(self, time: float) -> Floats:
+        """Return f_z and f_z̄ of some points, in units of length, and the anchor."""
+        fz, fzbar = self.derivatives(time)
+        anchor = self.inbetweens.passage.anchor_position(time)
+        return _reals(np.concatenate([self.length * fz, self.length * fzbar, [anchor]]))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Distortions:
     """f_z of each point in turn and then f_z̄, c = 4m; real before imaginary part."""
 
-    inbetweens: Inbetweens
     tolerance: float
+    all_points: Callable[[float], tuple[Complexes, Complexes]]
+    some_points: Callable[[float], tuple[Complexes, Complexes]]
 
     @classmethod
-    def of(cls, inbetweens: Inbetweens, *, relative: float = 1e-5) -> "Distortions":
+    def of(cls, inbetweens: Inbetweens, sites: Sites, *, relative: float = 1e-5) -> Self:
         """Allow an error of a part of the largest stretch of the two keyframes."""
-        frames = [inbetweens.frame(time) for time in (0.0, 1.0)]
-        largest = max(float((np.abs(f.fz) + np.abs(f.fzbar)).max()) for f in frames)
-        return cls(inbetweens=inbetweens, tolerance=relative * largest)
+        everywhere = inbetweens.derivatives_at(np.arange(len(sites.points)))
+        stretches = [distortion.sigma_a(*everywhere(time)).max() for time in (0.0, 1.0)]
+        return cls(
+            tolerance=relative * float(max(stretches)),
+            all_points=everywhere,
+            some_points=inbetweens.derivatives_at(_some(len(sites.points))),
+        )
 
-    def sample(self, time: float) -> Sample:
+    def sample(self, time: float) -> Floats:
         """Blend the derivatives."""
-        inbetweens = self.inbetweens
-        if not scales(inbetweens):
-            frame = inbetweens.frame(time)
-            return Sample(_reals(np.concatenate([frame.fz, frame.fzbar])), None)
-        alone, added, fzbar = inbetweens.derivative_parts(time)
-        values = np.concatenate([alone + added, fzbar])
-        scaled = np.concatenate([added, fzbar])
-        return Sample(_reals(values), _reals(scaled))
+        return _reals(np.concatenate(self.all_points(time)))
+
+    def probe(self, time: float) -> Floats:
+        """Blend those of some points."""
+        return _reals(np.concatenate(self.some_points(time)))
 
 
-def scales(inbetweens: Inbetweens) -> TypeGuard[IntegratedInbetweens]:
-    """Tell whether Ψ is scaled by a ρ."""
-    return isinstance(inbetweens, IntegratedInbetweens) and inbetweens.scale is not None
+def _some(count: int) -> Indices:
+    """Return some of so many points, spread over all of them."""
+    return np.linspace(0, count - 1, min(PROBED, count)).round().astype(np.intp)
 
 
 def _reals(values: Complexes) -> Floats:

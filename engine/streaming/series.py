@@ -2,55 +2,46 @@
 
 from bisect import bisect_right
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
 from engine.arrays import Floats, Singles
 from engine.errors import EngineError
-from engine.interpolation import Scaling, chebyshev
+from engine.interpolation import chebyshev
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class SeriesPiece:
     """The motion from one time to another: Σ_j w_j(t) rows_j.
 
-    The first two rows are the values at both ends, with the weights of a linear blend. The other
-    rows' weights vanish at keyframes.
+    The first and the last row are the values at both ends, with the weights of a linear blend. The
+    other rows' weights vanish at both.
 
     Parameters
     ----------
     start, end : float
     functions : float64, shape (n, r)
         Chebyshev coefficients of the weights.
-    scaled_functions : float64, shape (n, r), or None
-        Of what is added to the weights, times ρ(t) − 1; None where Ψ is not scaled.
     rows : float32, shape (r, c)
+        Pieces that follow each other share the row between them.
     """
 
     start: float
     end: float
     functions: Floats
-    scaled_functions: Floats | None
     rows: Singles
 
-    @property
-    def nbytes(self) -> int:
-        """Memory that the arrays take, in bytes."""
-        scaled = 0 if self.scaled_functions is None else self.scaled_functions.nbytes
-        return self.rows.nbytes + self.functions.nbytes + scaled
-
-    def weights(self, time: float, rho: float) -> Singles:
+    def weights(self, time: float) -> Singles:
         """Return the weights (r,) at a time from `start` to `end`, exact at keyframes."""
         if time in (0.0, 1.0):
             keyframe = np.zeros(len(self.rows), dtype=np.float32)
-            keyframe[int(time)] = 1.0
+            keyframe[-int(time)] = 1.0
             return keyframe
         x = (2 * time - self.start - self.end) / (self.end - self.start)
-        polynomials = chebyshev.basis(x, len(self.functions))
-        exact = polynomials @ self.functions
-        if self.scaled_functions is not None:
-            exact += (rho - 1.0) * (polynomials @ self.scaled_functions)
-        return exact.astype(np.float32)
+        # Twice as fast as the operator @.
+        weights: Floats = np.dot(chebyshev.basis(x, len(self.functions)), self.functions)
+        return weights.astype(np.float32)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -61,15 +52,11 @@ class Series:
     ----------
     pieces : tuple of SeriesPiece
         In the order of time. Between them there may be stretches that are left to the direct path.
-    rho : Scaling or None
-        None where Ψ is not scaled.
     error : float
-        The largest difference from the direct path that was found between the nodes, in units of
-        the values.
+        The largest difference from the direct path that was found, in units of the values.
     """
 
     pieces: tuple[SeriesPiece, ...]
-    rho: Scaling | None
     error: float
 
     @property
@@ -80,8 +67,13 @@ class Series:
     @property
     def nbytes(self) -> int:
         """Memory that the arrays take, in bytes."""
-        own = sum(piece.nbytes for piece in self.pieces)
-        return own + (0 if self.rho is None else self.rho.nbytes)
+        whole: int = sum(piece.rows.nbytes + piece.functions.nbytes for piece in self.pieces)
+        shared: int = sum(
+            after.rows[0].nbytes
+            for before, after in pairwise(self.pieces)
+            if np.may_share_memory(before.rows, after.rows)
+        )
+        return whole - shared
 
     def covers(self, time: float) -> bool:
         """Tell whether the series knows the values at a time."""
@@ -100,8 +92,7 @@ class Series:
         piece = self._piece_at(time)
         if piece is None:
             raise EngineError(f"The series does not cover the time {time:g}; take the direct path.")
-        rho = 1.0 if self.rho is None else self.rho(time)
-        return piece, piece.weights(time, rho)
+        return piece, piece.weights(time)
 
     def values(self, time: float, out: Singles | None = None) -> Singles:
         """Return the values (c,) at a time in [0, 1]: one small matrix-vector product.
@@ -116,10 +107,13 @@ class Series:
         return np.dot(weights, piece.rows, out=out)
 
     def _piece_at(self, time: float) -> SeriesPiece | None:
-        starts = [piece.start for piece in self.pieces]
-        index = bisect_right(starts, time) - 1
+        index = bisect_right(self.pieces, time, key=_start) - 1
         if index < 0:
             return None
         # Where a piece ends and none follows, it knows the value yet.
         piece = self.pieces[index]
         return piece if time <= piece.end else None
+
+
+def _start(piece: SeriesPiece) -> float:
+    return piece.start

@@ -126,7 +126,7 @@ def _heat(interval: Interval) -> Table:
     rows = []
     for variant in VARIANTS[1:]:
         inbetweens = interval.inbetweens(variant)
-        series = finish(build_series(Distortions.of(inbetweens)))
+        series = finish(build_series(Distortions.of(inbetweens, interval.sampler.sites)))
         rows += [
             Row(
                 name=f"{variant}, series",

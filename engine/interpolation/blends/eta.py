@@ -5,7 +5,7 @@ from typing import Self
 
 import numpy as np
 
-from engine.arrays import Complexes, Floats, freeze
+from engine.arrays import Complexes, Floats, Indices, freeze
 from engine.interpolation.derivatives import Derivatives, Passage, weighted
 
 
@@ -65,3 +65,11 @@ class EtaBlend:
         gz *= inverse
         g *= inverse
         return Derivatives(fz=fz, fzz=logarithm_z * fz, g=g, gz=gz)
+
+    def at(self, which: Indices) -> Self:
+        """Return the same at some of the nodes only."""
+        return type(self)(
+            passage=self.passage.at(which),
+            conj_eta=tuple(freeze(values[which]) for values in self.conj_eta),
+            conj_eta_z=tuple(freeze(values[which]) for values in self.conj_eta_z),
+        )

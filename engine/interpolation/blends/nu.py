@@ -1,10 +1,11 @@
 """The ν variant (Sections 5.1 and 5.2)."""
 
 from dataclasses import dataclass
+from typing import Self
 
 import numpy as np
 
-from engine.arrays import Complexes, Floats
+from engine.arrays import Complexes, Floats, Indices
 from engine.interpolation.derivatives import Derivatives, Passage, weighted
 
 
@@ -48,3 +49,7 @@ class NuBlend:
         logarithm_z *= fz
         nu *= fz
         return Derivatives(fz=fz, fzz=logarithm_z, g=nu, gz=nu_z)
+
+    def at(self, which: Indices) -> Self:
+        """Return the same at some of the nodes only."""
+        return type(self)(passage=self.passage.at(which))

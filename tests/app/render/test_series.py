@@ -32,18 +32,17 @@ def bending(rest: Complexes, rows: int = 7) -> Series:
         count = rows - 2 + index
         waves = [8 * np.exp(1j * (rest.real / 20 + k)) * rest.imag / HEIGHT for k in range(count)]
         functions = rng.normal(size=(5, rows + index)) / rows
-        functions[:, :2] = 0.5 * np.array([[1, 1], [-1, 1], [0, 0], [0, 0], [0, 0]])
-        values = np.array([*ends, *waves]).astype(np.complex64).view(np.float32)
+        functions[:, [0, -1]] = 0.5 * np.array([[1, 1], [-1, 1], [0, 0], [0, 0], [0, 0]])
+        values = np.array([ends[0], *waves, ends[1]]).astype(np.complex64).view(np.float32)
         pieces.append(
             SeriesPiece(
                 start=start,
                 end=start + 0.5,
                 functions=functions,
-                scaled_functions=None,
                 rows=values,
             )
         )
-    return Series(pieces=tuple(pieces), rho=None, error=0.0)
+    return Series(pieces=tuple(pieces), error=0.0)
 
 
 def blob_mesh(easel: Easel) -> tuple[GpuMesh, Complexes]:
@@ -83,7 +82,7 @@ def test_the_shader_places_vertices_as_the_processor_does(easel, rows):
         placed = np.frombuffer(feedback.read(), np.float32)
         assert_allclose(placed, series.values(time), rtol=0, atol=1e-6 * SIZE)
         if time in (0.0, 1.0):
-            assert_array_equal(placed, series.pieces[-int(time)].rows[int(time)])
+            assert_array_equal(placed, series.pieces[-int(time)].rows[-int(time)])
     for owned in (binding, feedback, target, program, source):
         owned.release()
 

@@ -60,12 +60,14 @@ def test_intervals_are_prepared_one_at_a_time_and_keyframes_shared(variant):
         assert whole.nbytes >= sites.nbytes + sum(key.nbytes for key in keys) + held
 
 
-@pytest.mark.parametrize("variant", ["nu", "eta", "scaled-eta", "metric"])
-def test_parts_add_up_to_the_positions(variant):
+@pytest.mark.parametrize("variant", Variant)
+def test_derivatives_at_some_points_are_those_of_the_frame(variant):
     piece = between(variant=variant).intervals[0]
-    phi, conj_psi = piece.parts(0.75)
-    positions = piece.passage.anchor_position(0.75) + phi + piece.rho(0.75) * conj_psi
-    assert_allclose(positions, piece.frame(0.75).positions, rtol=0, atol=1e-12)
+    which = np.array([7, 3, 0])
+    fz, fzbar = piece.derivatives_at(which)(0.75)
+    frame = piece.frame(0.75)
+    assert_allclose(fz, frame.fz[which], rtol=1e-12, atol=0)
+    assert_allclose(fzbar, frame.fzbar[which], rtol=1e-12, atol=1e-15)
 
 
 @pytest.mark.parametrize("variant", ["nu", "scaled-eta", "metric"])

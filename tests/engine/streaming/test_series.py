@@ -1,6 +1,6 @@
 """Series in time against the direct path, and what they cost."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 
 import numpy as np
@@ -17,8 +17,8 @@ from engine.errors import EngineError
 from engine.interpolation import Variant, chebyshev, prepare
 from engine.maps import HarmonicMap, distortion
 from engine.streaming import Distortions, Positions, build_series, finish
-from engine.streaming.build import DEGREES, MOST_ATTEMPTS, MOST_ROWS
-from engine.streaming.channels import Sample
+from engine.streaming.cutting import MOST_ROWS
+from engine.streaming.functions import DEGREES, MOST_ATTEMPTS
 
 SHAPES = {"bar": bar(), "letter L": letter_l(), "narrow U": narrow_u(0.1)}
 cases = st.tuples(st.sampled_from(sorted(SHAPES)), st.integers(0, 10_000))
@@ -46,6 +46,21 @@ def direct(between, time):
 
 def as_complex(values):
     return values.astype(float).view(complex)
+
+
+@dataclass(frozen=True)
+class Curves:
+    """Values that have nothing to do with maps."""
+
+    function: object
+    tolerance: float = 1e-6
+    probe: object = None
+
+    def __post_init__(self):
+        object.__setattr__(self, "probe", self.probe or self.sample)
+
+    def sample(self, time):
+        return np.asarray(self.function(time), dtype=float)
 
 
 @pytest.mark.parametrize("variant", Variant)
@@ -77,7 +92,7 @@ def test_keyframes_are_exact_to_float32(variant):
 def test_distortions_are_those_of_the_direct_path(variant):
     motion = prepared("letter L", variant, random_pair("letter L", 8))
     between = motion.intervals[0]
-    series = finish(build_series(Distortions.of(between)))
+    series = finish(build_series(Distortions.of(between, motion.sites)))
     for time in np.random.default_rng(0).random(12):
         fz, fzbar = as_complex(series.values(time)).reshape(2, -1)
         frame = direct(between, time)
@@ -97,38 +112,50 @@ def test_a_scaled_map_far_from_its_bounds_has_its_rho_in_the_series():
     maps[1] = type(maps[0])(cage=cage, phi=grown, psi=0.4 * grown)
     motion = prepared("bar", "scaled-eta", maps)
     between = motion.intervals[0]
+    assert min(between.rho(time) for time in (0.25, 0.5, 0.75)) < 0.9
     series = finish(build_series(Positions.of(between, motion.sites)))
-    assert series.rho is not None
     for time in np.random.default_rng(3).random(60):
-        exact = between.rho(time)
-        assert_allclose(series.rho(time), exact, rtol=0, atol=2e-6)
-    assert min(series.rho(time) for time in (0.25, 0.5, 0.75)) < 0.9
-    assert series.rho(0.0) == series.rho(1.0) == 1.0
+        expected = direct(between, time).positions
+        atol = 1e-6 * motion.sites.diameter
+        assert_allclose(as_complex(series.values(time)), expected, rtol=0, atol=atol)
 
 
-@pytest.mark.parametrize(
-    "options",
-    [
-        ({"bend": 0.5}, {"bend": -0.4}),  # conformal: there is nothing to scale
-        ({"stretch": 1.4}, {"stretch": 1.4, "turn": 1.0}),  # rigid: no need to
-    ],
-)
-def test_a_rho_that_changes_nothing_is_left_out(options):
-    maps = [bent(SHAPES["bar"], **option) for option in options]
-    motion = prepared("bar", "scaled-eta", maps)
-    assert finish(build_series(Positions.of(motion.intervals[0], motion.sites))).rho is None
+def extreme_pair(kind):
+    """Return keys at the edge of what is locally injective, or of very different sizes."""
+    _, cage = SHAPES["bar"]
+    curl = (np.exp(0.7j * cage) - 1) / 0.7j
+    amounts = {
+        "k .95": ((1, 0.95), (1, -0.95j)),
+        "k .99": ((1, 0.99), (1, -0.99)),
+        "from 20 to .05": ((20, 8), (0.05, 0.01)),
+    }
+    (phi0, psi0), (phi1, psi1) = amounts[kind]
+    return [
+        HarmonicMap(cage=cage, phi=phi0 * cage, psi=psi0 * cage),
+        HarmonicMap(cage=cage, phi=phi1 * curl, psi=psi1 * curl),
+    ]
 
 
-@dataclass(frozen=True)
-class Curves:
-    """Values that have nothing to do with maps."""
-
-    function: object
-    tolerance: float = 1e-6
-    inbetweens: object = None
-
-    def sample(self, time):
-        return Sample(np.asarray(self.function(time), dtype=float), None)
+@pytest.mark.parametrize("variant", ["nu", "scaled-eta", "metric"])
+@pytest.mark.parametrize("kind", ["k .95", "k .99", "from 20 to .05"])
+def test_extreme_keys_are_streamed_as_accurately_and_from_few_samples(variant, kind):
+    motion = prepared("bar", variant, extreme_pair(kind))
+    between = motion.intervals[0]
+    channels = Positions.of(between, motion.sites)
+    times = []
+    counted = Curves(lambda t: times.append(t) or channels.sample(t), channels.tolerance)
+    counted = replace(counted, probe=channels.probe)
+    series = finish(build_series(counted))
+    assert len(times) < 40
+    missing = 1.0 - sum(piece.end - piece.start for piece in series.pieces)
+    assert missing < 1e-3
+    rng = np.random.default_rng(7)
+    beside = 10.0 ** -rng.uniform(1, 6, 8)
+    for time in [*rng.random(8), *beside, *(1 - beside)]:
+        if series.covers(time):
+            found = as_complex(series.values(time))
+            expected = direct(between, time).positions
+            assert_allclose(found, expected, rtol=0, atol=channels.tolerance)
 
 
 def test_points_that_move_alike_share_their_functions_of_time():
@@ -225,7 +252,7 @@ def test_building_goes_in_small_steps_that_may_take_turns():
     @dataclass(frozen=True)
     class Counted:
         source: Positions
-        inbetweens = property(lambda self: self.source.inbetweens)
+        probe = property(lambda self: self.source.probe)
         tolerance = property(lambda self: self.source.tolerance)
 
         def sample(self, time):
