@@ -7,7 +7,7 @@ import numpy as np
 
 from engine.arrays import Floats
 from engine.streaming.channels import Channels
-from engine.streaming.cutting import Motion, cut
+from engine.streaming.cutting import SampledMotion, cut
 from engine.streaming.functions import TimeFunctions
 from engine.streaming.series import Series
 
@@ -50,7 +50,7 @@ def build_series(channels: Channels) -> Generator[None, None, Series]:
                 yield
         inner = np.array(sorted(set(values) - {0.0, 1.0}))
         known = np.array([values[time] for time in (0.0, 1.0, *inner.tolist())])
-        motion = Motion.through(functions, inner, known)
+        motion = SampledMotion.through(functions, inner, known)
         pieces = yield from cut(motion, tolerance)
         found = Series(pieces=pieces, error=0.0)
         error = 0.0

@@ -29,7 +29,7 @@ SAFETY, LEAST, MOST = 0.9, 0.2, 2.5  # of the length that is tried next
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Motion:
+class SampledMotion:
     """A motion in few functions of time: (1 − t, t, c_1(t), …, c_r(t)) · matrix · values.
 
     Parameters
@@ -79,7 +79,7 @@ class _Cut(NamedTuple):
     forms: Floats  # (k, 2 + r)
 
 
-def cut(motion: Motion, tolerance: float) -> Generator[None, None, tuple[SeriesPiece, ...]]:
+def cut(motion: SampledMotion, tolerance: float) -> Generator[None, None, tuple[SeriesPiece, ...]]:
     """Cut a motion into pieces of at most `MOST_ROWS` rows, each as long as a tolerance allows.
 
     Left out is what its functions leave out, and where the numbers are so large that float32
@@ -113,7 +113,7 @@ def cut(motion: Motion, tolerance: float) -> Generator[None, None, tuple[SeriesP
     return (yield from _pieces(motion, cuts))
 
 
-def _stretches(motion: Motion, columns: Floats, tolerance: float) -> list[Gap]:
+def _stretches(motion: SampledMotion, columns: Floats, tolerance: float) -> list[Gap]:
     """Return the stretches of time that a series can hold."""
     times = np.linspace(0.0, 1.0, MOMENTS)
     largest = np.abs(motion.coordinates(times) @ columns).max(axis=1, initial=0.0)
@@ -129,7 +129,7 @@ def _stretches(motion: Motion, columns: Floats, tolerance: float) -> list[Gap]:
     return found
 
 
-def _attempt(motion: Motion, piece: Gap, forms: Floats, lower: Floats) -> tuple[_Cut, float]:
+def _attempt(motion: SampledMotion, piece: Gap, forms: Floats, lower: Floats) -> tuple[_Cut, float]:
     """Write a piece in two functions of time; return it with its largest error in some columns.
 
     `forms` (r, n) are what the functions are multiplied by in these columns, and `lower` (r, r)
@@ -159,7 +159,9 @@ def _between() -> Floats:
     return freeze(np.asarray(basis @ chebyshev.to_coefficients(DEGREE)))
 
 
-def _pieces(motion: Motion, cuts: list[_Cut]) -> Generator[None, None, tuple[SeriesPiece, ...]]:
+def _pieces(
+    motion: SampledMotion, cuts: list[_Cut]
+) -> Generator[None, None, tuple[SeriesPiece, ...]]:
     """Work out the rows of all pieces; those that follow each other share the one in between."""
     coordinates: list[Floats] = []
     places = []
