@@ -30,7 +30,6 @@ from app.storage import Cut, Origin, Picture, cut_picture
 from engine.domain import CutOut
 from engine.maps import Bounds
 
-OPAQUE = 255
 EXTENTS = 32  # of the motion, which are remembered for undo and redo
 FIT_MARGIN = 0.08  # of the viewport, left free around what is fitted into it
 
@@ -149,7 +148,7 @@ class Puppet:
         """Return a figure as the window has it at first: its keys are shown; in-betweens follow."""
         return cls(
             picture=picture,
-            is_opaque=bool((picture.rgba[..., 3] == OPAQUE).all()),
+            is_opaque=picture.is_opaque,
             coarse=Derived(Motion.at_rest(clip, PosableMesh.coarse(clip.figure.domain))),
             cut=Derived(cut_picture(picture, clip.figure.cut_out), clip.figure.cut_out),
         )

@@ -49,8 +49,10 @@ from app.storage.pictures import (
     Picture,
     decode_mask,
     decode_picture,
+    decode_pictures,
     encode_mask,
     read_picture_file,
+    side_by_side,
 )
 from app.storage.preferences import (
     CHECKER,
@@ -97,6 +99,7 @@ __all__ = [
     "cut_picture",
     "decode_mask",
     "decode_picture",
+    "decode_pictures",
     "draw_thumbnail",
     "encode_mask",
     "find_leftovers",
@@ -119,6 +122,7 @@ __all__ = [
     "save_project",
     "settings_folder",
     "shader_source",
+    "side_by_side",
     "still_figure",
     "without_repeats",
     "write_arrays",

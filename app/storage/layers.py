@@ -1,7 +1,6 @@
 """From a drawing on layers, or several pictures, to figures of one scene."""
 
 from collections.abc import Mapping, Sequence
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple
@@ -26,10 +25,11 @@ from app.storage.pictures import (
     Layer,
     LayeredPicture,
     Picture,
-    decode_picture,
+    decode_pictures,
     read_openraster,
     read_photoshop,
     read_picture_file,
+    side_by_side,
 )
 from engine.arrays import Bytes, readonly
 from engine.domain import CutOut, build_domain, rectangle_domain
@@ -38,8 +38,6 @@ from engine.errors import EngineError
 READERS = {".ora": read_openraster, ".psd": read_photoshop}
 # However many layers share the triangles, each gets so many.
 FEWEST_TRIANGLES = 4_000
-WORKERS = 2
-OPAQUE = 255
 WHOLE = CutOut(background="none")  # only what is transparent is left out
 
 
@@ -98,15 +96,13 @@ def open_pictures(paths: Sequence[Path], meshing: Meshing) -> OpenedScene:
     layers: list[Layer] = []
     taken: set[str] = set()
     notices: list[str] = []
-    pictures = []
-    for path in paths:
-        data = read_picture_file(path)
-        pictures.append((path, data, decode_picture(data, str(path))))
+    files = [(read_picture_file(path), str(path)) for path in paths]
+    pictures = decode_pictures(files)
     size = (
-        max(picture.size[0] for _, _, picture in pictures),
-        max(picture.size[1] for _, _, picture in pictures),
+        max(picture.size[0] for picture in pictures),
+        max(picture.size[1] for picture in pictures),
     )
-    for path, data, picture in pictures:
+    for path, (data, _), picture in zip(paths, files, pictures, strict=True):
         name = layer_commands.numbered_name(path.stem, taken)
         taken.add(name)
         corner = complex((size[0] - picture.size[0]) // 2, (size[1] - picture.size[1]) // 2)
@@ -172,7 +168,7 @@ def layer_figure(
     cut_out = WHOLE if is_cut_out else CutOut()
     domain, still = rectangle_domain(*picture.size), True
     notices: tuple[str, ...] = ("it is opaque all over, and stands still",)
-    if not (is_cut_out and (picture.rgba[..., 3] == OPAQUE).all()):
+    if not (is_cut_out and picture.is_opaque):
         try:
             domain, notices = build_domain(
                 picture.rgba,
@@ -215,15 +211,10 @@ def still_figure(figure: Figure) -> Figure:
 def _scene(drawing: LayeredPicture, meshing: Meshing, *, is_cut_out: bool) -> OpenedScene:
     share = max(FEWEST_TRIANGLES, meshing.triangles // len(drawing.layers))
     each = replace(meshing, triangles=min(meshing.triangles, share))
-    with ThreadPoolExecutor(WORKERS) as pool:
-        made = list(
-            pool.map(
-                lambda numbered: layer_figure(
-                    numbered[1], numbered[0], each, is_cut_out=is_cut_out
-                ),
-                enumerate(drawing.layers),
-            )
-        )
+    made = side_by_side(
+        lambda numbered: layer_figure(numbered[1], numbered[0], each, is_cut_out=is_cut_out),
+        enumerate(drawing.layers),
+    )
     figures = tuple(figure for figure, _ in made)
     if all(figure.still for figure in figures):
         raise LissomError("none of its layers can be posed: there is no shape on any of them")

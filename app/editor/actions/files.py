@@ -1,7 +1,7 @@
 """Opening pictures and projects."""
 
 import os
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from functools import cache, lru_cache
 from pathlib import Path
 from typing import NamedTuple
@@ -18,7 +18,8 @@ from app.editor.session import Session
 from app.storage import (
     OpenedScene,
     Origin,
-    decode_picture,
+    Picture,
+    decode_pictures,
     find_leftovers,
     is_layered,
     load_leftover,
@@ -28,6 +29,7 @@ from app.storage import (
     open_pictures,
     remove_leftover,
     sample_images,
+    side_by_side,
 )
 
 PICTURES = (
@@ -189,11 +191,14 @@ def _foremost(document: Document) -> int:
 
 
 def _scene(opened: OpenedScene) -> Opened:
-    puppets = {
-        identity: Puppet.of(clip_of(opened.document, identity), picture)
-        for identity, picture in opened.pictures.items()
-    }
-    return Opened(opened.document, puppets, opened.notices)
+    return Opened(opened.document, _puppets(opened.document, opened.pictures), opened.notices)
+
+
+def _puppets(document: Document, pictures: Mapping[int, Picture]) -> dict[int, Puppet]:
+    made = side_by_side(
+        lambda identity: Puppet.of(clip_of(document, identity), pictures[identity]), pictures
+    )
+    return dict(zip(pictures, made, strict=True))
 
 
 def _read(path: Path, meshing: Meshing) -> Opened:
@@ -208,14 +213,12 @@ def _read_project(path: Path) -> Opened:
 
 
 def _decoded(document: Document, name: str) -> Opened:
-    puppets = {
-        figure.id: Puppet.of(
-            clip_of(document, figure.id),
-            decode_picture(figure.picture.data, f"the picture of {name}"),
-        )
-        for figure in document.figures
+    files = [(figure.picture.data, f"the picture of {name}") for figure in document.figures]
+    pictures = {
+        figure.id: picture
+        for figure, picture in zip(document.figures, decode_pictures(files), strict=True)
     }
-    return Opened(document, puppets, ())
+    return Opened(document, _puppets(document, pictures), ())
 
 
 def _read_picture(path: Path, meshing: Meshing) -> Opened:

@@ -5,6 +5,7 @@ Out: decoded pictures, and in words what was done to them.
 Imports: `app.errors`, `engine.arrays`.
 """
 
+from app.storage.pictures.cores import side_by_side
 from app.storage.pictures.layered import Layer, LayeredPicture
 from app.storage.pictures.openraster import read_openraster
 from app.storage.pictures.photoshop import read_photoshop
@@ -14,6 +15,7 @@ from app.storage.pictures.picture import (
     Picture,
     decode_mask,
     decode_picture,
+    decode_pictures,
     encode_mask,
     read_picture_file,
     stored_size,
@@ -27,9 +29,11 @@ __all__ = [
     "Picture",
     "decode_mask",
     "decode_picture",
+    "decode_pictures",
     "encode_mask",
     "read_openraster",
     "read_photoshop",
     "read_picture_file",
+    "side_by_side",
     "stored_size",
 ]

@@ -21,7 +21,7 @@ from app.storage.pictures.layered import (
     layered_picture,
     require_room,
 )
-from app.storage.pictures.picture import decode_picture, stored_size
+from app.storage.pictures.picture import decode_pictures, stored_size
 
 MIMETYPE = b"image/openraster"
 LARGEST_XML = 4 * 1024 * 1024
@@ -77,9 +77,9 @@ def _read(archive: zipfile.ZipFile) -> LayeredPicture:
     members = [_member(archive, source, largest) for source in sources]
     sizes = [stored_size(member, name) for member, name in zip(members, sources, strict=True)]
     require_room(sizes)
+    pictures = decode_pictures(list(zip(members, sources, strict=True)))
     found = []
-    for (element, place), member, source in zip(elements, members, sources, strict=True):
-        picture = decode_picture(member, source)
+    for (element, place), member, picture in zip(elements, members, pictures, strict=True):
         name = element.get("name", "").strip() or "layer"
         layer = Layer(
             name=name,

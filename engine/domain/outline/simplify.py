@@ -51,24 +51,20 @@ def _edge_costs(
     n = len(curve)
     spans = min(FARTHEST, n // 3)
     costs = np.empty((spans, n))
-    # Curve, tolerances continued past the end, so that shifts are slices.
-    around, inside, outside = (
-        np.concatenate([values, values[: spans + 1]]) for values in (curve, inner, outer)
-    )
+    # Row s: what is s points further along, and how far away from each point.
+    further = np.arange(n) + np.arange(spans + 1)[:, None]
+    further[further >= n] -= n
+    away, inside, outside = curve[further] - curve, inner[further], outer[further]
     for span in range(1, spans + 1):
-        chord = around[span : span + n] - curve
+        chord = away[span]
         length = np.abs(chord)
-        direction = chord.conj() / np.maximum(length, 1e-300)
-        worst, squares = np.zeros(n), np.zeros(n)
-        for step in range(1, span):
-            offset = (around[step : step + n] - curve) * direction
-            # Left of the chord, the chord passes outside the curve; right of it, inside.
-            tolerance = np.where(offset.imag > 0, outside[step : step + n], inside[step : step + n])
-            # Past an end of the chord the curve turns back: measured from that end.
-            past = np.maximum(np.maximum(-offset.real, offset.real - length), 0)
-            error = np.hypot(offset.imag, past) / tolerance
-            np.maximum(worst, error, out=worst)
-            squares += error**2
+        offset = away[1:span] * (chord.conj() / np.maximum(length, 1e-300))
+        # Left of the chord, the chord passes outside the curve; right of it, inside.
+        tolerance = np.where(offset.imag > 0, outside[1:span], inside[1:span])
+        # Past an end of the chord the curve turns back: measured from that end.
+        past = np.maximum(np.maximum(-offset.real, offset.real - length), 0)
+        error = np.hypot(offset.imag, past) / tolerance
+        worst, squares = error.max(axis=0, initial=0.0), (error**2).sum(axis=0)
         cost = 1 + FIDELITY * squares / max(span - 1, 1)
         cost[length < shortest] += LAST_RESORT
         # One step along the curve is always allowed, so that there is a polygon at all.
@@ -81,19 +77,20 @@ def _edge_costs(
 def _cheapest_round(costs: Floats) -> Indices:
     """Return the vertices, ascending from 0, of the cheapest polygon that starts at point 0."""
     spans, n = costs.shape
-    best = np.full(n + 1, np.inf)
-    best[0] = 0
-    previous = np.zeros(n + 1, dtype=np.intp)
     # Row i: the costs of the edges that end at point i, from the points i - 1, i - 2, …
-    arriving = np.stack([np.roll(costs[span], span + 1) for span in range(spans)], axis=1)
+    span = np.arange(spans)
+    arriving = costs[span, (np.arange(n)[:, None] - span - 1) % n]
+    # Of point i at n - i, so that the points before it follow it; there is nothing before point 0.
+    best = np.full(n + 1 + spans, np.inf)
+    best[n] = 0
+    previous = [0] * (n + 1)
     for end in range(1, n + 1):
-        reach = min(spans, end)
-        total = best[end - reach : end][::-1] + arriving[end % n, :reach]
-        choice = int(total.argmin())
-        best[end], previous[end] = total[choice], end - 1 - choice
+        total = best[n - end + 1 : n - end + 1 + spans] + arriving[end % n]
+        choice = total.argmin()
+        best[n - end], previous[end] = total[choice], end - 1 - int(choice)
     vertices = []
     end = n
     while end > 0:
-        end = int(previous[end])
+        end = previous[end]
         vertices.append(end)
     return np.array(vertices[::-1], dtype=np.intp)

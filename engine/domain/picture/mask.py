@@ -64,8 +64,8 @@ def subject_mask(rgba: Bytes, cut_out: CutOut | None = None) -> Subject:
         raise EngineError(f"A picture must be uint8 (h, w, 4), not {rgba.dtype} {rgba.shape}.")
     if rgba.size == 0:
         raise EngineError("The picture has no pixels; give one with a drawing.")
-    present = rgba[..., 3] > 0
-    visible = rgba[..., 3] >= VISIBLE_ALPHA
+    alpha = np.ascontiguousarray(rgba[..., 3])  # what is looked at often is not to lie scattered
+    present, visible = alpha > 0, alpha >= VISIBLE_ALPHA
     if not visible.any():
         raise EngineError("The picture is fully transparent; give one with a visible drawing.")
     notices: tuple[str, ...] = ()
@@ -74,7 +74,7 @@ def subject_mask(rgba: Bytes, cut_out: CutOut | None = None) -> Subject:
     elif isinstance(cut_out.background, tuple):
         subject, notices = _without_colour(rgba, cut_out.tolerance, cut_out.background)
     elif np.count_nonzero(visible) < OPAQUE_SHARE * visible.size:
-        subject, notices = _without_transparency(rgba[..., 3], visible)
+        subject, notices = _without_transparency(present, visible)
     elif cut_out.background == "none":
         subject = visible
     else:
@@ -128,9 +128,8 @@ def _without_colour(
     return visible & ~flooded, (f"background removed ({flooded.mean():.0%} of the picture)",)
 
 
-def _without_transparency(alpha: Bytes, visible: Booleans) -> tuple[Booleans, tuple[str, ...]]:
+def _without_transparency(present: Booleans, visible: Booleans) -> tuple[Booleans, tuple[str, ...]]:
     """Return all that is not fully transparent; a wide and nearly invisible haze is left out."""
-    present = alpha > 0
     faint = int(np.count_nonzero(present) - np.count_nonzero(visible))
     if np.count_nonzero(present) <= FAINT_GROWTH * np.count_nonzero(visible):
         return present, ()
