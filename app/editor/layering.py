@@ -43,7 +43,9 @@ def choose(session: Session, identity: int) -> None:
     session.hovered = None
 
 
-def figure_at(project: Project, place: complex, *, below: int | None = None) -> int | None:
+def figure_at(
+    project: Project, place: complex, *, below: int | None = None, besides: int | None = None
+) -> int | None:
     """Return the figure that is seen in front at a place of the scene, None where there is none.
 
     Still, hidden and locked ones are passed through.
@@ -54,16 +56,23 @@ def figure_at(project: Project, place: complex, *, below: int | None = None) -> 
     place : complex
     below : int, optional
         Where that figure is there, too, the next one behind it is returned, or at last the first.
+    besides : int, optional
+        A figure that is passed through.
     """
-    found = [each.id for each in reversed(project.document.figures) if _is_at(project, each, place)]
+    found = [
+        each.id
+        for each in reversed(project.document.figures)
+        if each.id != besides and not (each.still or each.locked) and is_at(project, each.id, place)
+    ]
     if below in found:
         return found[(found.index(below) + 1) % len(found)]
     return found[0] if found else None
 
 
-def _is_at(project: Project, figure: Figure, place: complex) -> bool:
-    shown = project.puppets[figure.id].shown
-    if shown is None or figure.still or figure.locked or not is_visible(figure, shown.frame):
+def is_at(project: Project, identity: int, place: complex) -> bool:
+    """Tell whether a figure is seen at a place of the scene."""
+    shown = project.puppets[identity].shown
+    if shown is None or not is_visible(project.document.figure(identity), shown.frame):
         return False
     outline = shown.positions[: len(shown.mesh.domain.outline)]
     return bool(contains(outline, np.array([shown.placement.back(place)]))[0])
@@ -248,10 +257,41 @@ def tint_depth(session: Session, tints: bool) -> None:  # noqa: FBT001 - of an a
     session.tints_depth = tints
 
 
-def hang(session: Session, child: int, parent: int, turns: bool = True) -> None:  # noqa: FBT001, FBT002 - of an action
-    """Hang a layer by its anchor on the one under it; nothing moves at the present frame."""
+def hangs_on(project: Project, identity: int, carrier: int) -> bool:
+    """Tell whether a layer is another one, or hangs on it, directly or by others."""
+    return any(each.id == carrier for each in project.document.carriers(identity))
+
+
+def hang(
+    session: Session,
+    child: int,
+    parent: int,
+    turns: bool = True,  # noqa: FBT001, FBT002 - of an action
+    place: complex | None = None,
+) -> None:
+    """Hang a layer by its anchor on another one; nothing moves at the present frame.
+
+    Parameters
+    ----------
+    session : Session
+    child, parent : int
+        Ids of layers.
+    turns : bool
+        Whether the child turns with the parent.
+    place : complex, optional
+        Of the joint, in the scene; by default the anchor's, or the middle of where they overlap.
+    """
     project = session.project
     if project is None:
+        return
+    if hangs_on(project, parent, child):
+        names = [project.document.figure(identity).name for identity in (parent, child)]
+        session.tell(
+            f"{names[0]} hangs on {names[1]}, so that {names[1]} cannot hang on it: that would be "
+            "a circle. Detach one of the layers between first.",
+            tone="error",
+            topic="joint",
+        )
         return
     posing.drop(session)
     document, frame = project.document, playback.current_frame(session, project)
@@ -265,7 +305,7 @@ def hang(session: Session, child: int, parent: int, turns: bool = True) -> None:
     _put(
         session,
         HANGING,
-        lambda: Joints(document, siblings).hang(child, parent, frame, turns=turns),
+        lambda: Joints(document, siblings).hang(child, parent, frame, place=place, turns=turns),
         done,
         "The layers cannot be joined",
     )

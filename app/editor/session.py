@@ -97,7 +97,17 @@ class StrokeMark:
     keeps: bool
 
 
-Mark = BoxMark | SweepMark | EntryMark | StrokeMark
+@dataclass(frozen=True, slots=True, kw_only=True)
+class JointMark:
+    """The way from an anchor to the pointer, and the layer there, which may be refused."""
+
+    start: complex
+    end: complex
+    parent: int | None
+    is_refused: bool
+
+
+Mark = BoxMark | SweepMark | EntryMark | StrokeMark | JointMark
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -10,7 +10,7 @@ from app.motion.inbetweens import Animation, PoseSampler
 from app.motion.joints import HERE, Joints, Placement, hung_animations, joints_source
 from app.motion.motion_paths import MotionPaths, trace_paths
 from app.motion.paint_order import painted_depths, painted_triangles
-from app.motion.posable_mesh import PosableMesh
+from app.motion.posable_mesh import AttachedPoints, PosableMesh
 from app.motion.prepared import Motion, prepare_motion
 from app.motion.series_queue import Build, next_build, with_series
 from app.motion.shown_frame import Shown, hang_shown, show
@@ -19,6 +19,7 @@ from app.motion.vertices import Placed, Streamed, Vertices
 __all__ = [
     "HERE",
     "Animation",
+    "AttachedPoints",
     "Box",
     "Build",
     "Joints",

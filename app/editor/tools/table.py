@@ -6,6 +6,7 @@ from app.editor.session import Session
 from app.editor.tools.anchoring import Anchoring
 from app.editor.tools.choosing import Choosing
 from app.editor.tools.cutting_tools import Brushing, Pointing
+from app.editor.tools.joining import Joining
 from app.editor.tools.mirroring import Mirroring
 from app.editor.tools.pulling import Pulling
 from app.editor.tools.selecting import Selecting
@@ -16,6 +17,7 @@ CUTTING_TOOLS: Final[tuple[type[Tool], ...]] = (Brushing, Pointing)
 # A press is for the first that takes it; hints are told in this order.
 TOOLS: Final[tuple[type[Tool], ...]] = (
     Mirroring,
+    Joining,
     Choosing,
     Pulling,
     Turning,

@@ -23,6 +23,8 @@ class Spot:
         The one under it.
     on_axis : bool
         Whether it is on the grip of the axis at which poses are flipped.
+    on_anchor : bool
+        Whether it is on the anchor of the figure that is posed.
     on_ring : bool
         Whether it is on the ring around the selected handle.
     on_shape : bool
@@ -36,6 +38,7 @@ class Spot:
     place: complex
     handle: int | None = None
     on_axis: bool = False
+    on_anchor: bool = False
     on_ring: bool = False
     on_shape: bool = False
     figure: int | None = None

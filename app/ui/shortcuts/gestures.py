@@ -29,6 +29,7 @@ GESTURES = (
     Gesture("X or Y in a drag", "Keep to an axis"),
     Gesture(with_key(ALT, "click a handle"), "Delete it"),
     Gesture(with_key(CTRL, "click the shape"), "Put the anchor there"),
+    Gesture("Drag the anchor onto another layer", "Hang this layer on it"),
     Gesture(with_key(SHIFT, "click a handle"), "Select several"),
     Gesture("Drag beside the shape", "Select by a box"),
     Gesture("Right click a handle", "Menu"),

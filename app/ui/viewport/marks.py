@@ -1,13 +1,13 @@
 """What marks the drawing in the viewport: handles, anchor, outline, cage and export frame."""
 
-from functools import partial
+from functools import lru_cache, partial
 
 import numpy as np
 from imgui_bundle import ImVec4, imgui
 
 from app.document import falls_short
 from app.editor import Project, Session
-from app.motion import Box, Shown
+from app.motion import AttachedPoints, Box, PosableMesh, Shown
 from app.render import (
     Colour,
     Disc,
@@ -19,6 +19,8 @@ from app.render import (
 )
 from app.ui.style import Palette, interface_scale
 from engine.arrays import Complexes
+from engine.domain import Domain
+from engine.geometry import deepest_point
 
 FAINT = 3.0  # pixels: the radius of a handle of another layer
 STILL = 0.5  # pixels of the picture: a path that leads no farther is none
@@ -87,10 +89,22 @@ def find_anchor(project: Project, shown: Shown) -> complex | None:
     rest = figure.anchor
     if rest is None and sampler is not None and sampler.anchor is None:
         rest = sampler.sites.anchor
+    if rest is None and len(project.document.figures) > 1:
+        # Before anything moves, it is there to hang the layer by.
+        rest = _deepest_point(figure.domain)
     if rest is None or any(handle.position == rest for handle in figure.handles):
         return None
-    found = shown.mesh.locate(np.array([rest]), shown.mesh.domain.mesh.vertices)
-    return complex(found.on(shown.positions)[0])
+    return complex(_located(shown.mesh, rest).on(shown.positions)[0])
+
+
+@lru_cache(maxsize=64)
+def _deepest_point(domain: Domain) -> complex:
+    return deepest_point(domain.outline, domain.loops[1:])
+
+
+@lru_cache(maxsize=4)
+def _located(mesh: PosableMesh, place: complex) -> AttachedPoints:
+    return mesh.locate(np.array([place]), mesh.domain.mesh.vertices)
 
 
 def _others(project: Project, scale: float) -> tuple[Disc, ...]:

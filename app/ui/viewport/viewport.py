@@ -14,6 +14,7 @@ from app.editor import (
     BoxMark,
     EntryMark,
     Hint,
+    JointMark,
     Project,
     Session,
     StrokeMark,
@@ -31,9 +32,11 @@ from app.ui.style import Look, ink
 from app.ui.viewport.badges import draw_badges, draw_cutting
 from app.ui.viewport.cut_view import draw_brush, draw_stroke
 from app.ui.viewport.entry import draw_entry, typed
+from app.ui.viewport.joint import draw_joint, is_on_anchor
 from app.ui.viewport.marks import moved_loops
 from app.ui.viewport.mirror_axis import axis_grip, draw_axis
 from app.ui.viewport.ring import Ring, draw_ring
+from engine.arrays import Complexes
 from engine.geometry import contains
 
 CTRL, ALT = int(imgui.Key.mod_ctrl), int(imgui.Key.mod_alt)
@@ -77,7 +80,7 @@ def draw(session: Session, look: Look, texture: int | None) -> list[Action]:
     over = imgui.is_window_hovered() or imgui.is_item_active()
     ring = _ring(session, canvas)
     on_ring = ring is not None and on_canvas and hovered is None and ring.is_pointed(look)
-    spot = replace(_spot(canvas, hovered, on_ring=on_ring), on_axis=axis.is_hot)
+    spot = replace(_spot(canvas, look, hovered, on_ring=on_ring), on_axis=axis.is_hot)
     if pressed or _is_canvas_pressed():
         actions.append(do(pointing.press, spot))
     actions += _navigate(canvas, over=over)
@@ -141,9 +144,13 @@ class _Canvas:
         return self.view.to_plane((point - self._corner) * self.density)
 
     def point(self, place: complex) -> ImVec2:
-        on_plane = self.shown.placement.on(np.array([place]))
-        pixel = self.view.to_pixels(on_plane)[0] / self.density + self._corner
-        return ImVec2(pixel.real, pixel.imag)
+        (point,) = self.points(self.shown.placement.on(np.array([place])))
+        return point
+
+    def points(self, on_plane: Complexes) -> list[ImVec2]:
+        """Return the points of the screen at places of the scene."""
+        pixels = self.view.to_pixels(on_plane) / self.density + self._corner
+        return [ImVec2(pixel.real, pixel.imag) for pixel in pixels.tolist()]
 
     def figure(self, *, through: bool) -> int | None:
         """The figure under the pointer, or, `through` the one that is posed, the next behind it."""
@@ -158,12 +165,15 @@ class _Canvas:
         return bool(contains(outline, np.array([place]), holes=holes)[0])
 
 
-def _spot(canvas: _Canvas, handle: int | None, *, on_ring: bool) -> Spot:
+def _spot(canvas: _Canvas, look: Look, handle: int | None, *, on_ring: bool) -> Spot:
     """Return where the pointer is, and what is under it."""
     io, place = imgui.get_io(), canvas.pointer
+    # Places that are so near are under the pointer.
+    reach = GRIP * look.em * canvas.density / canvas.view.scale
     return Spot(
         place=place,
         handle=handle,
+        on_anchor=is_on_anchor(canvas.project, handle, place, reach),
         on_ring=on_ring,
         on_shape=canvas.is_on_shape(place),
         figure=canvas.figure(through=io.key_alt),
@@ -304,6 +314,9 @@ def _go_on(session: Session, look: Look, canvas: _Canvas) -> list[Action]:
             draw_list.add_rect(low, high, ink(accent, 0.8))
         elif isinstance(mark, StrokeMark):
             _draw_stroke(look, canvas, mark)
+        elif isinstance(mark, JointMark):
+            parent = None if mark.parent is None else canvas.project.puppets[mark.parent].shown
+            draw_joint(look, mark, canvas.point, canvas.points, parent)
         elif isinstance(mark, EntryMark):
             draw_entry(look, mark, canvas.point)
     io, pointer = imgui.get_io(), canvas.pointer

@@ -1,5 +1,6 @@
 import io
 import struct
+import warnings
 import zlib
 
 import numpy as np
@@ -18,7 +19,7 @@ from profiles import (
 )
 
 from app.errors import LissomError
-from app.storage.pictures import decode_picture, read_picture_file
+from app.storage.pictures import decode_picture, decode_pictures, read_picture_file
 
 GREY = np.arange(12, dtype=np.uint8).reshape(3, 4) * 20
 RGB = np.stack([GREY, GREY[::-1], 255 - GREY], axis=-1)
@@ -271,3 +272,20 @@ def test_missing_files_and_folders(tmp_path):
         read_picture_file(tmp_path / "nothing.png")
     with pytest.raises(LissomError, match=r"cannot read .*directory"):
         read_picture_file(tmp_path)
+
+
+def test_several_pictures_are_decoded_side_by_side(monkeypatch):
+    rng = np.random.default_rng(3)
+    pixels = [rng.integers(0, 256, (40 + i, 130, 4), dtype=np.uint8) for i in range(12)]
+    files = [(encode(Image.fromarray(each), "PNG"), f"{i}.png") for i, each in enumerate(pixels)]
+    before = list(warnings.filters)
+    for picture, wanted in zip(decode_pictures(files), pixels, strict=True):
+        assert_array_equal(picture.rgba, wanted)
+    # Each is still refused by its own name, and what is told elsewhere stays as it was.
+    files[7] = (files[7][0][:200], "7.png")
+    with pytest.raises(LissomError, match=r"7\.png is damaged"):
+        decode_pictures(files)
+    monkeypatch.setattr(Image, "MAX_IMAGE_PIXELS", 130 * 45)
+    with pytest.raises(LissomError, match=r"6\.png has more than 5,850 pixels"):
+        decode_pictures(files)
+    assert list(warnings.filters) == before

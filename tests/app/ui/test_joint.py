@@ -1,0 +1,201 @@
+"""A layer is hung on another one by a drag from its anchor, with the pointer."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from layered import openraster
+from PIL import Image, ImageDraw
+
+from app.document import figure_commands, key_commands
+from app.editor import layering
+from app.editor.actions import editing, playback, posing
+from app.ui.style import PALETTES
+from app.ui.viewport.marks import find_anchor
+
+WIDTH, HEIGHT = 240, 200
+LAYERS = {
+    "hand": ((175, 60, 225, 100), (250, 220, 40)),
+    "arm": ((85, 70, 200, 95), (200, 40, 40)),
+    "body": ((60, 25, 110, 180), (40, 40, 200)),
+}
+SHOULDER, HIP, BESIDE, PALM = 95 + 118j, 85 + 40j, 20 + 20j, 190 + 118j
+
+
+@pytest.fixture(scope="module")
+def drawing(tmp_path_factory):
+    path = tmp_path_factory.mktemp("joint") / "man.ora"
+    stack = "".join(f'<layer name="{n}" src="data/{i}.png"/>' for i, n in enumerate(LAYERS))
+    pictures = []
+    for box, colour in LAYERS.values():
+        image = Image.new("RGBA", (WIDTH, HEIGHT))
+        ImageDraw.Draw(image).rounded_rectangle(box, 12, fill=(*colour, 255))
+        pictures.append(image)
+    path.write_bytes(openraster((WIDTH, HEIGHT), stack, pictures))
+    return path
+
+
+@pytest.fixture
+def scene(window, drawing):
+    project = window.open(drawing)
+    window.act(layering.choose, identity(project, "arm"))
+    window.settle()
+    return project
+
+
+def identity(project, name):
+    return next(figure.id for figure in project.document.figures if figure.name == name)
+
+
+def on_scene(project, name):
+    shown = project.puppets[identity(project, name)].shown
+    return shown.placement.on(shown.positions)
+
+
+@pytest.fixture
+def drag(window, scene):
+    """Drags from the anchor over places of the scene; returns what was told at each."""
+
+    def drag(*places, key=None, gives_up=False):
+        told = []
+
+        def run(robot):
+            shown = scene.puppet.shown
+            start = find_anchor(scene, shown)
+            start = shown.handle_places[0] if start is None else start
+            robot.mouse_move_to_pos(window.point(complex(start)))
+            told.append(window.session.hint)
+            if key is not None:
+                robot.key_down(int(key))
+            robot.mouse_down(0)
+            for place in places:
+                robot.mouse_move_to_pos(window.point(scene.puppet.shown.placement.back(place)))
+                robot.yield_(3)
+                told.append(window.session.hint)
+            if gives_up:
+                robot.key_press(int(window.Key.escape))
+            robot.mouse_up(0)
+            if key is not None:
+                robot.key_up(int(key))
+
+        window.run(run)
+        window.settle()
+        return told
+
+    return drag
+
+
+def test_the_anchor_is_dragged_onto_another_layer(window, scene, drag):
+    arm, body = identity(scene, "arm"), identity(scene, "body")
+    # In the middle of a motion.
+    figure = scene.document.figure(arm)
+    pose = figure.keys[0].pose
+    cage = figure.domain.cage - 140
+    turned = replace(pose, phi=140 + cage * np.exp(0.3j))
+    scene.history.do(key_commands.insert_key(arm, 24, turned), gesture=None)
+    window.act(playback.seek, 10)
+    window.settle()
+    before, was = scene.document, on_scene(scene, "arm")
+    told = drag(BESIDE, SHOULDER)
+    assert "drag to hang it on another layer" in told[0].lower()
+    assert "over the layer to hang it on" in told[1]
+    assert "to hang arm on body" in told[2]
+    joint = scene.document.figure(arm).attachment
+    assert (joint.to, joint.turns) == (body, True)
+    assert abs(joint.at - SHOULDER) < 1
+    assert np.abs(on_scene(scene, "arm") - was).max() < 1e-6 * WIDTH
+    # One step of undo, which brings back the same document.
+    window.act(editing.undo)
+    assert scene.document is before
+    window.act(editing.redo)
+    assert scene.document.figure(arm).attachment.to == body
+
+
+def test_off_the_layer_itself_the_joint_is_where_both_are(scene, drag):
+    drag(HIP)
+    arm = scene.document.figure(identity(scene, "arm"))
+    assert arm.attachment.to == identity(scene, "body")
+    assert 85 < arm.attachment.at.real < 112
+    assert 100 < arm.attachment.at.imag < 132
+    assert abs(arm.anchor - arm.attachment.at) < 1e-6
+
+
+def test_the_layer_under_the_pointer_is_marked(window, scene):
+    accent = PALETTES["dark"].accent
+    colour = np.array([round(255 * c) for c in (accent.x, accent.y, accent.z)])
+    seen = []
+
+    def look():
+        corner = window.point(60 + 60j)  # at the left edge of the body
+        x, y = round(corner.x), round(corner.y)
+        part = np.asarray(window.picture()).astype(int)[y - 4 : y + 5, x - 9 : x + 10, :3]
+        return int((np.abs(part - colour).max(axis=2) < 12).sum())
+
+    def run(robot):
+        start = complex(find_anchor(scene, scene.puppet.shown))
+        robot.mouse_move_to_pos(window.point(start))
+        robot.mouse_down(0)
+        robot.mouse_move_to_pos(window.point(HIP))
+        robot.yield_(3)
+
+    seen.append(look())
+    window.run(run)
+    seen.append(look())
+    window.run(lambda robot: (robot.key_press(int(window.Key.escape)), robot.mouse_up(0)))
+    seen.append(look())
+    assert seen[0] == seen[2] == 0
+    assert seen[1] > 5
+
+
+def test_esc_and_a_drop_beside_all_layers_leave_it_as_it_was(window, scene, drag):
+    before = scene.document
+    drag(HIP, SHOULDER, gives_up=True)
+    assert window.session.pointer is None
+    drag(HIP, BESIDE)
+    assert scene.document is before
+    assert "over another layer" in window.session.toasts[-1].text
+
+
+def test_a_circle_is_refused_in_words(window, scene, drag):
+    hand, arm, body = (identity(scene, name) for name in ("hand", "arm", "body"))
+    drag(SHOULDER)
+    window.act(layering.choose, hand)
+    window.settle()
+    drag(170 + 118j)
+    assert scene.document.figure(hand).attachment.to == arm
+    before = scene.document
+    window.act(layering.choose, body)
+    window.settle()
+    told = drag(212 + 120j)
+    assert "hangs on body itself" in told[-1]
+    assert scene.document is before
+    assert window.session.toasts[-1].tone == "error"
+    assert "hand hangs on body, so that body cannot hang on it" in window.session.toasts[-1].text
+
+
+def test_a_click_on_the_anchor_adds_a_handle_there_as_ever(window, scene):
+    place = complex(find_anchor(scene, scene.puppet.shown))
+
+    def click(robot):
+        robot.mouse_move_to_pos(window.point(place))
+        robot.mouse_click(0)
+
+    window.run(click)
+    window.settle()
+    (handle,) = scene.figure.handles
+    assert abs(handle.position - place) < 1
+
+
+def test_a_handle_that_is_the_anchor_is_dragged_onto_another_layer_with_ctrl(window, scene, drag):
+    window.act(posing.add_handle, SHOULDER)
+    window.settle()
+    window.act(editing.edit_figure, figure_commands.set_anchor, scene.figure.handles[0].position)
+    window.settle()
+    drag(SHOULDER + 6, HIP, key=window.Key.mod_ctrl)
+    arm = scene.document.figure(identity(scene, "arm"))
+    assert arm.attachment.to == identity(scene, "body")
+    assert abs(arm.attachment.at - SHOULDER) < 1
+    # A click with it takes the anchor back, as ever.
+    window.act(editing.undo)
+    drag(key=window.Key.mod_ctrl)
+    assert scene.figure.anchor is None
