@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import NamedTuple
+from typing import NamedTuple, Self
 
 from app.document import Document, Meshing, PictureFile, new_figure
 from app.storage.pictures import Picture, decode_picture, read_picture_file
@@ -31,11 +31,19 @@ class Cut:
         What is painted on the mesh; straight alpha.
     holes : HoleMap, optional
         None where the subject has too many parts.
+    is_all : bool
+        Whether every pixel is kept.
     """
 
     kept: Booleans
     texture: Bytes
     holes: HoleMap | None
+    is_all: bool
+
+    @classmethod
+    def of(cls, kept: Booleans, texture: Bytes, holes: HoleMap | None = None) -> Self:
+        """Look once whether anything was cut off; pictures are large."""
+        return cls(kept, texture, holes, bool(kept.all()))
 
 
 def open_picture(path: Path, meshing: Meshing, cut_out: CutOut = CutOut()) -> OpenedPicture:
@@ -64,9 +72,9 @@ def cut_picture(picture: Picture, cut_out: CutOut) -> Cut:
         subject = subject_mask(picture.rgba, cut_out)
     except EngineError:
         # Of a project that was saved before a cut-out that cannot be was changed again.
-        return Cut(freeze(picture.rgba[..., 3] > 0), picture.rgba, None)
+        return Cut.of(freeze(picture.rgba[..., 3] > 0), picture.rgba)
     try:
         holes = find_holes(subject.mask)
     except EngineError:
         holes = None
-    return Cut(subject.mask, texture(picture.rgba, subject), holes)
+    return Cut.of(subject.mask, texture(picture.rgba, subject), holes)

@@ -7,6 +7,7 @@ import numpy as np
 
 from engine.arrays import Complexes, Indices, freeze
 from engine.errors import EngineError
+from engine.geometry import next_on_loop
 from engine.interpolation.sites import Sites
 from engine.maps import HarmonicMap, Limits, certify, distortion
 from engine.paths import IntegrationPaths, continue_logarithm
@@ -143,12 +144,20 @@ def _require_unfolded(f: HarmonicMap, sites: Sites, number: int) -> None:
     fz, fzbar = f.derivatives(sites.boundary.points)
     sigma_b = distortion.sigma_b(fz, fzbar)
     worst = int(sigma_b.argmin())
-    if sigma_b[worst] <= 0 or not certificate.winding:
+    if sigma_b[worst] <= 0 or certificate.winding == 0:
         z = sites.boundary.points[worst]
         raise EngineError(
             f"Keyframe {number} folds: at ({z.real:.6g}, {z.imag:.6g}) its smaller stretch sigma_b "
             f"is {sigma_b[worst]:.3g}, and must be clearly above 0. Pose it again within bounds."
         )
+    for hole, turns in enumerate(_turns(fz, sites), start=1):
+        if turns:
+            raise EngineError(
+                f"Keyframe {number} turns the drawing inside out around hole {hole} of "
+                f"{len(sites.loops.starts)}: along its edge f_z winds {turns} times around 0, and "
+                "must not wind. No motion without folds leads there. Pose it again from the "
+                "drawing at rest, by small steps."
+            )
     # By the argument principle, f_z has as many zeros inside as it winds around 0.
     nodes = sites.paths.nodes
     z = nodes[np.abs(f.derivatives(nodes)[0]).argmin()]
@@ -156,3 +165,12 @@ def _require_unfolded(f: HarmonicMap, sites: Sites, number: int) -> None:
         f"Keyframe {number} folds inside: f_z winds {certificate.winding} times around 0 along the "
         f"outline and vanishes near ({z.real:.6g}, {z.imag:.6g}). Pose it again within bounds."
     )
+
+
+def _turns(fz: Complexes, sites: Sites) -> Indices:
+    """Return how often f_z, at the samples of the boundary, winds around 0 along each hole."""
+    starts = sites.boundary.starts
+    following = next_on_loop(starts, len(fz))
+    angles = np.angle(fz[following] / fz)
+    around = np.add.reduceat(angles, starts)[1:] / (2 * np.pi)
+    return np.round(around).astype(np.intp)

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 from app.document import Document, History, Meshing, clip_of
 from app.editor.action import do
-from app.editor.actions import playback, saving
+from app.editor.actions import cutting, playback, saving
 from app.editor.actions.saving import PROJECT
 from app.editor.dialogs import FileDialog, Question
 from app.editor.failures import report, sentence
@@ -102,6 +102,7 @@ class Opened(NamedTuple):
     document: Document
     puppets: dict[int, Puppet]
     notices: tuple[str, ...]
+    is_uncut: bool = False  # an opaque picture, of which no background was removed
 
 
 def ask_open(session: Session) -> None:
@@ -180,6 +181,14 @@ def show(session: Session, path: Path, opened: Opened) -> None:
         playback.toggle_play(session)
     for notice in opened.notices:
         session.tell(sentence(notice))
+    if opened.is_uncut:
+        session.tell(
+            "The whole picture is the drawing. Brush away what does not belong to it, or pick the "
+            "background's colour in the tab Cut-out.",
+            tone="good",
+            label="Cut out",
+            action=do(cutting.begin_or_swap),
+        )
 
 
 def _foremost(document: Document) -> int:
@@ -224,7 +233,9 @@ def _decoded(document: Document, name: str) -> Opened:
 def _read_picture(path: Path, meshing: Meshing) -> Opened:
     document, picture, notices = open_picture(path, meshing)
     identity = document.figures[0].id
-    return Opened(document, {identity: Puppet.of(clip_of(document, identity), picture)}, notices)
+    puppet = Puppet.of(clip_of(document, identity), picture)
+    is_uncut = puppet.is_opaque and puppet.cut.value.is_all
+    return Opened(document, {identity: puppet}, notices, is_uncut)
 
 
 def offer_recovery(session: Session) -> None:

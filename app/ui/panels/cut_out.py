@@ -59,6 +59,8 @@ def draw(session: Session, look: Look) -> list[Action]:
 def _background(session: Session, look: Look, project: Project, cut_out: CutOut) -> list[Action]:
     if not project.puppet.is_opaque and cut_out.background == "auto":
         small(look, "The picture is transparent around the drawing: nothing has to be removed.")
+    elif project.puppet.is_opaque and project.puppet.cut.value.is_all:
+        small(look, "The whole picture is the drawing: pick a colour, or brush the rest away.")
     actions: list[Action] = []
     imgui.begin_disabled(cut_out.mask is not None)
     label(look, "Remove")

@@ -9,6 +9,7 @@ from PIL import Image
 
 from app.editor.actions import cutting, editing, posing, rebuilding
 from app.storage.project_file import load_project, save_project
+from app.ui.style import TOAST
 
 SIZE = 120
 PAPER = (90, 140, 210)
@@ -53,6 +54,30 @@ def kept(project):
 
 
 MIDDLE = complex(SIZE / 2, SIZE / 2)
+
+
+def test_where_nothing_is_cut_out_of_a_photo_the_brush_is_offered(window, tmp_path):
+    rgb = np.random.default_rng(0).integers(0, 256, (SIZE, SIZE, 3), dtype=np.uint8)
+    Image.fromarray(rgb).save(tmp_path / "photo.png")
+    project = window.open(tmp_path / "photo.png")
+    assert kept(project).all()
+    (offer,) = (toast for toast in window.session.toasts if toast.label)
+    assert "whole picture is the drawing" in offer.text
+
+    def accept(robot):
+        robot.item_click(f"//{TOAST}{offer.born}{offer.text}/{offer.label}")
+
+    window.run(accept)
+    assert window.session.cutting == "remove"
+    window.act(cutting.set_brush, 20.0)
+    stroke(window, 10 + 10j, 10 + 100j)
+    rest(window)
+    assert not kept(project).all()
+
+
+def test_where_a_background_was_removed_no_brush_is_offered(window, drawing):
+    assert not kept(drawing).all()
+    assert not any(toast.label for toast in window.session.toasts)
 
 
 def test_each_stroke_is_a_step_and_the_mesh_follows_when_the_brush_rests(window, drawing):

@@ -7,6 +7,7 @@ import pytest
 from holed_shapes import Holed, inner_points, plate, random_map, ring
 from numpy.testing import assert_allclose
 
+from engine.errors import EngineError
 from engine.interpolation import Variant, prepare
 from engine.interpolation.periods import Open, as_complex
 from engine.maps import Boundary, HarmonicMap, distortion
@@ -195,6 +196,27 @@ def test_the_correction_is_the_smallest():
             factor -= complex(((along.conj() * period - across * period.conj()) / determinant)[0])
         other = factor * (motion.sites.boundary.points**power - shape.anchor**power)
         assert np.sqrt(weights @ np.abs(other) ** 2) > 1.001 * smallest
+
+
+def test_a_key_that_is_turned_inside_out_around_a_hole_is_told_as_that():
+    shape = ring()
+    boundary = Boundary.sample(shape.outline, shape.cage, shape.holes)
+    inside = shape.holes[0].cage
+    span = HarmonicMap.identity(shape.cage, shape.holes).span
+    # 1/z folds nowhere, but f_z winds around the hole.
+    samples = span.coordinates(boundary.points)[:, :-1]
+    phi, *_ = np.linalg.lstsq(samples, 1 / boundary.points, rcond=1e-12)
+    turned = HarmonicMap(
+        cage=shape.cage,
+        phi=phi,
+        psi=0 * phi,
+        holes=shape.holes,
+        logs=np.zeros(1, np.complex128),
+    )
+    assert len(phi) == len(shape.cage) + len(inside)
+    at_rest = HarmonicMap.identity(shape.cage, shape.holes)
+    with pytest.raises(EngineError, match="Keyframe 1 turns the drawing inside out around hole 1"):
+        between(shape, [at_rest, turned], "nu")
 
 
 def test_a_motion_through_keys_is_closed_too():
