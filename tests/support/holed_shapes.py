@@ -7,8 +7,9 @@ import numpy as np
 from shapes import regular_polygon
 
 from engine.arrays import Complexes
+from engine.deform import Deformer, Handles, State
 from engine.geometry import Hole, contains
-from engine.maps import Boundary, HarmonicMap
+from engine.maps import Boundary, Bounds, HarmonicMap
 
 
 class Holed(NamedTuple):
@@ -116,3 +117,55 @@ def random_map(shape: Holed, seed: int, size: float = 0.05) -> HarmonicMap:
         holes=shape.holes,
         logs=size * 0.2 * (rng.normal(size=len(shape.holes)) + 1j),
     )
+
+
+def on_circle(radius, degrees):
+    return radius * np.exp(1j * np.deg2rad(np.array(degrees)))
+
+
+AROUND = on_circle(0.75, np.arange(0, 360, 45))
+BOTH = np.concatenate([on_circle(0.9, [0, 90, 180, 270]), on_circle(0.58, [0, 90, 180, 270])])
+KIDNEY = np.array(
+    [0.75, 0.55 + 0.6j, 0.1 + 0.8j, -0.3 + 0.5j, -0.15, -0.3 - 0.5j, 0.1 - 0.8j, 0.55 - 0.6j]
+)
+CRESCENT = np.array(
+    [1, 1 + 0.9j, 0.2 + 1.1j, -0.9 + 1j, -1.3 + 0.3j, -0.8 + 0.25j, -0.1 + 0.1j, 0.6 - 0.3j]
+)
+EGG = np.array([1.3, 0.2 + 0.6j, -0.6, 0.3 - 0.9j])
+SWIRL = np.concatenate([BOTH[:4] * np.exp(0.3j), BOTH[4:] * np.exp(-0.3j) + 0.12 + 0.1j])
+# Handles on the ring, and where they are pulled.
+DRAGS = {
+    "kidney": (AROUND, KIDNEY),
+    "egg": (on_circle(0.75, [0, 90, 180, 270]), EGG),
+    "crescent": (AROUND, CRESCENT),
+    "swirl": (BOTH, SWIRL),
+}
+ON_PLATE = np.array(
+    [
+        -1.55,
+        -0.55 + 0.45j,
+        -0.55 - 0.45j,
+        0.55 + 0.45j,
+        0.55 - 0.45j,
+        1.55,
+        -1.1 + 0.45j,
+        1.1 - 0.45j,
+    ]
+)
+# The plate's handles, bent by 160° and twisted.
+PLATE_DRAGS = {
+    "bent": 1.2j + (1.2 - ON_PLATE.imag) * np.exp(1j * (ON_PLATE.real / 1.2 - np.pi / 2)),
+    "twisted": ON_PLATE * np.exp(0.35j * ON_PLATE.real) + 0.3 * (np.arange(8) == 5),
+}
+
+
+@cache
+def pulled(name: str) -> State:
+    """Return the ring or the plate with its handles pulled as one of the drags says."""
+    if name in DRAGS:
+        boundary, (points, targets) = boundary_of("ring"), DRAGS[name]
+    else:
+        boundary, points, targets = boundary_of("plate", 3), ON_PLATE, PLATE_DRAGS[name]
+    deformer = Deformer(boundary=boundary, handles=Handles.place(boundary, points), bounds=Bounds())
+    state, _ = deformer.settle(deformer.start(), deformer.handles.wish(targets))
+    return state

@@ -43,6 +43,24 @@ BESIDE_KEY = 0.24
 type_ = TypeVar("type_", Floats, Complexes)
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Worst:
+    """The largest k and sigma_a and the smallest sigma_b of the keyframes on the whole outline."""
+
+    k: float
+    sigma_a: float
+    sigma_b: float
+
+    def widened(self, bounds: Bounds) -> "Worst":
+        """Return the looser of some bounds and these, with room for what `TOO_HIGH` takes off."""
+        room = 5 * TOO_HIGH
+        return Worst(
+            k=max(self.k * (1 + room), bounds.k),
+            sigma_a=max(self.sigma_a * (1 + room), bounds.sigma_a),
+            sigma_b=min(self.sigma_b * (1 - room), bounds.sigma_b),
+        )
+
+
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class PointSamples:
     """What ρ depends on at some points, for q keyframes; `...` is any shape.
@@ -56,6 +74,9 @@ class PointSamples:
         The larger k and sigma_a and the smaller sigma_b of the keyframes: Properties 5 to 7.
     opening : complex128, shape (i, ...)
         The modes of d; none without holes.
+    widest : Worst or None
+        Around holes h takes more of a point's own bounds than is left; they are wider by as much
+        as h and d change the map, but not wider than this. None leaves them as they are.
     """
 
     log_modulus: Floats
@@ -64,6 +85,7 @@ class PointSamples:
     sigma_a: Floats
     sigma_b: Floats
     opening: Complexes
+    widest: Worst | None = None
 
     @classmethod
     def of(cls, fz: Complexes, g: Complexes, h: Complexes, d: Complexes) -> Self:
@@ -89,7 +111,7 @@ class PointSamples:
             opening=self.opening.take(chosen, axis=1),
         )
 
-    def bounded(self, worst: "Worst | None") -> Self:
+    def bounded(self, worst: Worst | None) -> Self:
         """Return the same points with the worst bounds of the outline, or with their own."""
         if worst is None:
             return self
@@ -115,28 +137,37 @@ class PointSamples:
         count = len(self.log_modulus)
         a = np.exp(_total(weights[:count], self.log_modulus))
         b = np.abs(_total(weights[: len(self.conj_eta)], self.conj_eta)) / a
+        k, sigma_a, sigma_b = self.k, self.sigma_a, self.sigma_b
+        d = _total(weights[count:], self.opening) if len(self.opening) else None
+        if d is not None and self.widest is not None:
+            keys = len(self.conj_eta)
+            h = _total(weights[keys:count], self.log_modulus[keys:])
+            change = np.exp(np.abs(h) + np.abs(d.real))
+            k = np.minimum(self.widest.k, k * change * change)
+            sigma_a = np.minimum(self.widest.sigma_a, sigma_a * change)
+            sigma_b = np.maximum(self.widest.sigma_b, sigma_b / change)
         # ρ_k, ρ_a and ρ_b of Section 7.3 have the denominator |f_z̄| in common.
-        room = np.minimum(self.k * a, np.minimum(self.sigma_a - a, a - self.sigma_b))
+        room = np.minimum(k * a, np.minimum(sigma_a - a, a - sigma_b))
         ratios = np.full(room.shape, CEILING)
         np.divide(room, b, out=ratios, where=b > np.maximum(NEGLIGIBLE * a, room / CEILING))
-        if len(self.opening):
-            self._open(ratios, a, b, _total(weights[count:], self.opening))
+        if d is not None:
+            bounds = np.array([np.broadcast_to(each, a.shape) for each in (k, sigma_a, sigma_b)])
+            tight = _tight(ratios, a, d, bounds)
+            ratios[tight] = _opened(a[tight], b[tight], d[tight], bounds[:, tight])
         return ratios
 
-    def _open(self, ratios: Floats, a: Floats, b: Floats, d: Complexes) -> None:
-        """Change ratios with |F_1| = a and |G_1| = b to those for F_0 = F_1 e^d, in place.
 
-        With ε ≥ |e^d − 1|, |F_ρ| differs from |F_1| by at most ε |F_1|. Where the bounds have that
-        room no ρ leaves them, and the ratio stays what it is, above 1.
-        """
-        most = np.expm1(np.abs(d).max(initial=0.0))
-        bounds = np.array(
-            [np.broadcast_to(bound, a.shape) for bound in (self.k, self.sigma_a, self.sigma_b)]
-        )
-        _, sigma_a, sigma_b = bounds
-        tight = ratios * (1 - most) < 1.0
-        tight |= (a * (1 + most) > sigma_a) | (a * (1 - most) < sigma_b)
-        ratios[tight] = _opened(a[tight], b[tight], d[tight], bounds[:, tight])
+def _tight(ratios: Floats, a: Floats, d: Complexes, bounds: Floats) -> Booleans:
+    """Tell where another |F_0| than |F_1| = a may change ratios, like all of the shape of `a`.
+
+    With ε ≥ |e^d − 1|, |F_ρ| differs from |F_1| by at most ε |F_1|. Where the bounds have that room
+    no ρ leaves them, and the ratio stays what it is, above 1.
+    """
+    most = np.expm1(np.abs(d).max(initial=0.0))
+    _, sigma_a, sigma_b = bounds
+    tight: Booleans = ratios * (1 - most) < 1.0
+    tight |= (a * (1 + most) > sigma_a) | (a * (1 - most) < sigma_b)
+    return tight
 
 
 def _opened(a: Floats, b: Floats, d: Complexes, bounds: Floats) -> Floats:
@@ -175,24 +206,6 @@ def _total(weights: Floats, values: type_) -> type_:
         return flat.view(values.dtype)
     total: type_ = sum(w * value for w, value in zip(weights, values, strict=True))
     return total
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Worst:
-    """The largest k and sigma_a and the smallest sigma_b of the keyframes on the whole outline."""
-
-    k: float
-    sigma_a: float
-    sigma_b: float
-
-    def widened(self, bounds: Bounds) -> "Worst":
-        """Return the looser of some bounds and these, with room for what `TOO_HIGH` takes off."""
-        room = 5 * TOO_HIGH
-        return Worst(
-            k=max(self.k * (1 + room), bounds.k),
-            sigma_a=max(self.sigma_a * (1 + room), bounds.sigma_a),
-            sigma_b=min(self.sigma_b * (1 - room), bounds.sigma_b),
-        )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -278,18 +291,18 @@ class SharpScaling:
         on the way to become so, are looked at in between.
         """
         if not self.course.is_straight:
-            return self._minima(times, self.worst)
+            return self._minima(times, is_own=False)
         rho, share = np.ones(len(times)), looseness(times)
         tight, loose = share < 1, share > 0
-        rho[tight] = self._minima(times[tight], None) ** (1.0 - share[tight])
-        rho[loose] *= self._minima(times[loose], self.worst) ** share[loose]
+        rho[tight] = self._minima(times[tight], is_own=True) ** (1.0 - share[tight])
+        rho[loose] *= self._minima(times[loose], is_own=False) ** share[loose]
         return rho
 
-    def _minima(self, times: Floats, worst: Worst | None) -> Floats:
+    def _minima(self, times: Floats, *, is_own: bool) -> Floats:
         """Return the minima of the ratios within the given bounds."""
         if not len(times):
             return np.ones(0)
-        samples = self.samples.bounded(worst)
+        samples = self._bounded(self.samples, is_own=is_own)
         starts = np.arange(0, len(times), RUN)
         at_ends = samples.ratios(self._weights(times[np.append(starts, len(times) - 1)]))
         lowest = np.full(len(times), CEILING)
@@ -299,15 +312,20 @@ class SharpScaling:
             if len(chosen):
                 block = slice(start, start + RUN)
                 weights = self._weights(times[block])
-                ratios = self.samples.at(chosen).bounded(worst).ratios(weights)
+                within = self._bounded(self.samples.at(chosen), is_own=is_own)
+                ratios = within.ratios(weights)
                 lowest[block] = ratios.min(axis=1)
                 when, which = np.nonzero(self._promising(chosen, ratios))
                 found.append((start + when, chosen[which]))
         if found:
             when, segment = (np.concatenate(each) for each in zip(*found, strict=True))
             for part in np.array_split(np.arange(len(when)), 1 + len(when) // MANY):
-                self._refine(times, lowest, when[part], segment[part], worst)
+                self._refine(times, lowest, when[part], segment[part], is_own=is_own)
         return np.minimum((1.0 - TOO_HIGH) * lowest, 1.0)
+
+    def _bounded(self, samples: PointSamples, *, is_own: bool) -> PointSamples:
+        """Return samples with their own bounds, wider around holes, or with the worst ones."""
+        return replace(samples, widest=self.worst) if is_own else samples.bounded(self.worst)
 
     def _weights(self, times: Floats) -> Floats:
         """Return the weights of keyframes and modes at times (s,), for any points: (…, s, 1)."""
@@ -326,7 +344,7 @@ class SharpScaling:
         return low
 
     def _refine(
-        self, times: Floats, lowest: Floats, when: Indices, segment: Indices, worst: Worst | None
+        self, times: Floats, lowest: Floats, when: Indices, segment: Indices, *, is_own: bool
     ) -> None:
         """Lower the minima by what is found on segments (c,) at times `when` (c,).
 
@@ -339,7 +357,7 @@ class SharpScaling:
         for _ in range(ROUNDS):
             places = _around(place, width)
             samples = self.curves.at(segment, places, weights[keys:, when, 0])
-            found = samples.bounded(worst).ratios(summed[:, when])
+            found = self._bounded(samples, is_own=is_own).ratios(summed[:, when])
             best, rows = found.argmin(axis=1), np.arange(len(when))
             variation = np.abs(np.diff(found, axis=1)).max(axis=1, initial=0.0)
             np.minimum.at(lowest, when, found[rows, best])

@@ -4,7 +4,16 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from holed_shapes import boundary_of, inner_points, plate, random_map, ring
+from holed_shapes import (
+    DRAGS,
+    boundary_of,
+    inner_points,
+    on_circle,
+    plate,
+    pulled,
+    random_map,
+    ring,
+)
 from numpy.testing import assert_allclose, assert_array_equal
 
 from engine.deform import Deformer, Handles, Status
@@ -12,40 +21,6 @@ from engine.deform.barrier import Barrier, Walls
 from engine.deform.objective import Objective
 from engine.errors import EngineError
 from engine.maps import Boundary, Bounds, HarmonicMap, Limits, certify
-
-
-def on_circle(radius, degrees):
-    return radius * np.exp(1j * np.deg2rad(np.array(degrees)))
-
-
-AROUND = on_circle(0.75, np.arange(0, 360, 45))
-BOTH = np.concatenate([on_circle(0.9, [0, 90, 180, 270]), on_circle(0.58, [0, 90, 180, 270])])
-KIDNEY = np.array(
-    [0.75, 0.55 + 0.6j, 0.1 + 0.8j, -0.3 + 0.5j, -0.15, -0.3 - 0.5j, 0.1 - 0.8j, 0.55 - 0.6j]
-)
-CRESCENT = np.array(
-    [1, 1 + 0.9j, 0.2 + 1.1j, -0.9 + 1j, -1.3 + 0.3j, -0.8 + 0.25j, -0.1 + 0.1j, 0.6 - 0.3j]
-)
-EGG = np.array([1.3, 0.2 + 0.6j, -0.6, 0.3 - 0.9j])
-SWIRL = np.concatenate([BOTH[:4] * np.exp(0.3j), BOTH[4:] * np.exp(-0.3j) + 0.12 + 0.1j])
-DRAGS = {
-    "kidney": (AROUND, KIDNEY),
-    "egg": (on_circle(0.75, [0, 90, 180, 270]), EGG),
-    "crescent": (AROUND, CRESCENT),
-    "swirl": (BOTH, SWIRL),
-}
-ON_PLATE = np.array(
-    [
-        -1.55,
-        -0.55 + 0.45j,
-        -0.55 - 0.45j,
-        0.55 + 0.45j,
-        0.55 - 0.45j,
-        1.55,
-        -1.1 + 0.45j,
-        1.1 - 0.45j,
-    ]
-)
 
 
 def problem(shape, name, seed=3):
@@ -136,12 +111,7 @@ def test_the_prototypes_drags_come_to_certified_rest(name):
 
 
 def test_three_holes_bend():
-    boundary = boundary_of("plate", 3)
-    deformer = Deformer(
-        boundary=boundary, handles=Handles.place(boundary, ON_PLATE), bounds=Bounds()
-    )
-    wanted = 1.2j + (1.2 - ON_PLATE.imag) * np.exp(1j * (ON_PLATE.real / 1.2 - np.pi / 2))
-    state, _ = deformer.settle(deformer.start(), deformer.handles.wish(wanted))
+    state = pulled("bent")
     assert state.status.is_final
     assert state.certificate.certified
     assert state.statistics.handle_error < 0.02
