@@ -20,8 +20,8 @@ class IntervalReport:
 
     `limits` is what they are to keep: the keys' own distortion, but where the motion passes through
     a key, the figure's bounds, or what the keys around have beyond them. `proof` encloses the
-    in-betweens at all times; None where there are holes. `unsettled` are the frames about which it
-    cannot tell that they do not fold.
+    in-betweens at all times. `unsettled` are the frames about which it cannot tell that they do not
+    fold.
     """
 
     first: int
@@ -30,14 +30,12 @@ class IntervalReport:
     keys: Extremes
     correction: float
     limits: Extremes
-    proof: Proof | None
+    proof: Proof
     unsettled: tuple[int, ...]
 
     @property
-    def excess(self) -> Extremes | None:
+    def excess(self) -> Extremes:
         """By how much what is proven is beyond the limits."""
-        if self.proof is None:
-            return None
         return Extremes(
             k=max(self.proof.k - self.limits.k, 0.0),
             sigma_a=max(self.proof.sigma_a - self.limits.sigma_a, 0.0),
@@ -47,7 +45,7 @@ class IntervalReport:
     @property
     def may_fold(self) -> bool:
         """Whether some in-between folds, or is not proven not to."""
-        return self.proof is not None and not self.proof.never_folds
+        return not self.proof.never_folds
 
     @property
     def is_within(self) -> bool:
@@ -133,7 +131,7 @@ def certify_clip(clip: Clip, variant: Variant | None = None) -> Report:
                 correction=inbetweens.correction,
                 limits=limits,
                 proof=proof,
-                unsettled=() if proof is None else _frames(clip, first, proof.unsettled),
+                unsettled=_frames(clip, first, proof.unsettled),
             )
         )
     return Report(keys=keys, intervals=tuple(reports))

@@ -7,8 +7,9 @@ from typing import Protocol, Self
 import numpy as np
 
 from engine.arrays import Complexes, Floats, Indices, freeze
+from engine.interpolation.blends import MetricResidual
 from engine.interpolation.derivatives import Derivatives, Passage, weighted
-from engine.interpolation.periods import Residual
+from engine.interpolation.periods import Closing, Residual
 from engine.interpolation.scaling import Scaling
 from engine.interpolation.sites import Sites
 
@@ -64,18 +65,29 @@ class IntegratedInbetweens:
     blend : Blend
     scale : Scaling or None
         None where Ψ is not scaled.
-    correction : float
-        The largest |h| that closes the periods around holes; 0 where there are none.
-    opening : Residual or None
-        d around holes, where Ψ is scaled (`engine.interpolation.scaling`).
+    metric : MetricResidual or None
+        Of the metric variant.
+    closings : tuple of Closing
+        Of h, which closes the periods around holes, and where Ψ is scaled of d
+        (`engine.interpolation.scaling`); none without holes.
     """
 
     sites: Sites
     passage: Passage
     blend: Blend
     scale: Scaling | None
-    correction: float = 0.0
-    opening: Residual | None = None
+    metric: MetricResidual | None = None
+    closings: tuple[Closing, ...] = ()
+
+    @property
+    def correction(self) -> float:
+        """The largest |h| that closes the periods around holes; 0 where there are none."""
+        return self.closings[0].largest if self.closings else 0.0
+
+    @property
+    def opening(self) -> Residual | None:
+        """What d is at the nodes, around holes where Ψ is scaled."""
+        return self.closings[1].residual if len(self.closings) > 1 else None
 
     @property
     def nbytes(self) -> int:

@@ -237,8 +237,8 @@ def prepare_inbetweens(
         passage=passage,
         blend=_blend(variant, passage),
         scale=scale,
-        correction=closings[0].largest if closings else 0.0,
-        opening=closings[1].residual if len(closings) > 1 else None,
+        metric=metric,
+        closings=closings,
     )
 
 

@@ -67,10 +67,8 @@ def _block(report: Report) -> dict[str, Any]:
     }
 
 
-def _proof_of(interval: IntervalReport) -> dict[str, Any] | None:
+def _proof_of(interval: IntervalReport) -> dict[str, Any]:
     proof, excess = interval.proof, interval.excess
-    if proof is None or excess is None:
-        return None
     return {
         "k": _finite(proof.k),
         "sigma_a": _finite(proof.sigma_a),
@@ -89,8 +87,6 @@ def _finite(value: float) -> float | None:
 def _proof_lines(interval: IntervalReport) -> list[str]:
     """Return what is proven of an interval, and where it is not."""
     proof, excess = interval.proof, interval.excess
-    if proof is None or excess is None:
-        return [f"{'  proven':<16} nothing: around holes in-betweens are only measured"]
     pairs = zip((proof.k, proof.sigma_a, proof.sigma_b), ("+", "+", "-"), excess, strict=True)
     figures = " ".join(f"{f'{value:.4f} ({sign}{by:.4f})':>18}" for value, sign, by in pairs)
     verdict = "NOT PROVEN" if interval.may_fold else "never folds"
@@ -125,6 +121,6 @@ def _as_table(report: Report) -> str:
     if largest > 0:
         lines.append(
             f"Around holes the in-betweens are stretched and turned by up to {largest:.2%} to "
-            "close; what is kept of the bounds is measured above."
+            "close; what is kept of the bounds is proven above."
         )
     return "\n".join(lines)

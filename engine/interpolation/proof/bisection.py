@@ -3,8 +3,10 @@
 f_z of an in-between has no zeros, being an exponential, and no winding; so the extremes of k, σ_a
 and σ_b are on the boundary at every time (Theorem 4 of Chen and Weber 2015). The linear blend has
 f_z without zeros on the boundary at all times, where k < 1 is proven, and so none inside: at the
-keyframes it has none. The proof is of the in-betweens as they are defined; what is drawn differs
-from them by rounding, and with the metric variant by the accuracy of the integral equation.
+keyframes it has none. Around holes all of that holds for the whole boundary.
+
+The proof is of the in-betweens as they are defined; what is drawn differs from them by rounding,
+and with the metric variant by the accuracy of the integral equation.
 """
 
 from dataclasses import dataclass
@@ -14,7 +16,7 @@ import numpy as np
 
 from engine.arrays import Booleans
 from engine.interpolation.inbetweens import Inbetweens
-from engine.interpolation.proof.blended import Cells, Enclose, blended, through
+from engine.interpolation.proof.blended import Cells, Method, method_of
 from engine.interpolation.proof.pieces import Subdivision
 from engine.maps import Boundary, Bounds, Enclosures
 from engine.variant import Variant
@@ -22,7 +24,6 @@ from engine.variant import Variant
 # Cells are cut until the enclosure is this close to what is attained: of k, and of σ over the
 # largest stretch.
 TIGHTNESS = 0.0005
-PARTS = 4  # into which time is cut at first
 SHORTEST = 2.0**-24  # pieces of time are not cut below this
 DEEPEST = 40
 NAMED = 2.0**-8  # how short a stretch of time is that is named as one where something folds
@@ -56,39 +57,28 @@ class Proof:
 
 def prove(
     inbetweens: Inbetweens, variant: Variant, boundary: Boundary, bounds: Bounds = Bounds()
-) -> Proof | None:
+) -> Proof:
     """Enclose the distortion of in-betweens.
 
     Parameters
     ----------
     inbetweens : Inbetweens
-        Of a domain without holes.
     variant : Variant
         Theirs.
     boundary : Boundary
+        Of their domain.
     bounds : Bounds
         Those that the in-betweens were prepared with.
-
-    Returns
-    -------
-    Proof, or None where there are holes: the proof does not know what closes their periods.
     """
-    if boundary.holes:
-        return None
     pieces = Subdivision.of([key.map for key in inbetweens.passage.keyframes], boundary)
     with np.errstate(over="ignore", invalid="ignore"):
-        if variant is Variant.METRIC and not inbetweens.passage.course.is_straight:
-            return _bisect(pieces, through(pieces, inbetweens.passage, bounds), bounds)
-        return _bisect(pieces, blended(pieces, inbetweens, variant), None)
+        return _bisect(pieces, method_of(pieces, inbetweens, variant, boundary, bounds))
 
 
-def _bisect(pieces: Subdivision, enclose: Enclose, bounds: Bounds | None) -> Proof:
-    """Cut cells until they are tight; with bounds, until these are kept, too."""
-    attained = Enclosures(*map(np.array, (0.0, 0.0, inf)))
-    if bounds is not None:
-        attained = Enclosures(*map(np.array, (bounds.k, bounds.sigma_a, bounds.sigma_b)))
-    proven = Enclosures(*map(np.array, (0.0, 0.0, inf)))
-    cuts = np.linspace(0.0, 1.0, PARTS + 1) if bounds is None else np.array([0.0, 1.0])
+def _bisect(pieces: Subdivision, method: Method) -> Proof:
+    """Cut cells until they are tight."""
+    attained, cuts = method.floor, method.cuts
+    proven = Enclosures(np.array([0.0]), np.array([0.0]), np.array([inf]))
     count = len(pieces.halves)
     pending = Cells(
         np.tile(np.arange(count), len(cuts) - 1),
@@ -98,7 +88,8 @@ def _bisect(pieces: Subdivision, enclose: Enclose, bounds: Bounds | None) -> Pro
     looked_at, unsettled = 0, []
     for depth in range(DEEPEST):
         found = [
-            enclose(pending.at(slice(i, i + BLOCK))) for i in range(0, len(pending.piece), BLOCK)
+            method.enclose(pending.at(slice(i, i + BLOCK)))
+            for i in range(0, len(pending.piece), BLOCK)
         ]
         enclosed = _together([block.enclosed for block in found])
         attained = _worst(attained, _together([block.attained for block in found]))

@@ -1,6 +1,7 @@
 """How cells are enclosed: which quantities each variant blends, and by which weights."""
 
 from collections.abc import Callable
+from math import inf
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -11,10 +12,16 @@ from engine.interpolation.inbetweens import Inbetweens, LinearInbetweens
 from engine.interpolation.passing import Course
 from engine.interpolation.proof import cells
 from engine.interpolation.proof.cells import Patch
+from engine.interpolation.proof.correction import Correction
 from engine.interpolation.proof.pieces import EdgeCurves, EndValues, Subdivision
 from engine.interpolation.proof.through import enclose_through
-from engine.maps import Bounds, Enclosures
+from engine.interpolation.scaling import ScalingEnclosures
+from engine.maps import Boundary, Bounds, Enclosures
 from engine.variant import Variant
+
+PARTS = 4  # into which time is cut at first
+SMALL = 1e-4  # what a logarithm may change in time without being looked at more closely
+LEAST = 1.0  # what the changes of a quantity are compared with, at least
 
 AnyCurves = EdgeCurves[Any]
 AnyPatch = Patch[Any]
@@ -40,53 +47,161 @@ class Found(NamedTuple):
     by_time: Booleans
 
 
-Enclose = Callable[[Cells], Found]
+class Method(NamedTuple):
+    """How to prove in-betweens.
+
+    Parameters
+    ----------
+    enclose : callable
+    cuts : float64, shape (b + 1,)
+        Of time, from 0 to 1, over which no cell reaches.
+    floor : Enclosures
+        What need not be undercut.
+    """
+
+    enclose: Callable[[Cells], Found]
+    cuts: Floats
+    floor: Enclosures
 
 
-def blended(pieces: Subdivision, inbetweens: Inbetweens, variant: Variant) -> Enclose:
-    """Return how cells of a variant are enclosed whose quantities are polynomials in time."""
+def method_of(
+    pieces: Subdivision,
+    inbetweens: Inbetweens,
+    variant: Variant,
+    boundary: Boundary,
+    bounds: Bounds,
+) -> Method:
+    """Return how the in-betweens of a variant are proven."""
+    if isinstance(inbetweens, LinearInbetweens):
+        closed = _Closed(None, None, None)
+    else:
+        scale, metric = inbetweens.scale, inbetweens.metric
+        corrections = [
+            Correction(closing, boundary, pieces, metric) for closing in inbetweens.closings
+        ]
+        closed = _Closed(
+            None if scale is None else scale.enclosures(), *[*corrections, None, None][:2]
+        )
+    if variant is Variant.METRIC and not inbetweens.passage.course.is_straight:
+        return _through(pieces, inbetweens.passage, bounds, closed)
+    return _blended(pieces, inbetweens.passage, variant, closed)
+
+
+def _blended(pieces: Subdivision, passage: Passage, variant: Variant, closed: "_Closed") -> Method:
+    """Return the way for quantities that are polynomials in time."""
     known = _Known(pieces, variant)
-    passage = inbetweens.passage
     courses = passage.course, passage.eta_course or passage.course
-    scale = None
-    if not isinstance(inbetweens, LinearInbetweens) and inbetweens.scale is not None:
-        scale = inbetweens.scale.upper_bounds()
 
     def enclose(chosen: Cells) -> Found:
         first, second = (
             _patch(curves.at(chosen.piece), controls_on(course, chosen.start, chosen.end))
             for curves, course in zip(known.curves(), courses, strict=True)
         )
-        rho, at_corners = np.ones(len(chosen.piece)), np.ones(4 * len(chosen.piece))
-        if scale is not None:
-            rho = scale.on(chosen.start, chosen.end)
-            ends = [scale.on(time, time) for time in (chosen.start, chosen.end)]
-            at_corners = np.repeat(np.stack(ends, axis=1).ravel(), 2)
+        by_time = _varies_more_in_time(first, second)
+        if variant is Variant.METRIC and closed.correction is not None:
+            h, _ = closed.correction.on(*chosen)
+            return Found(
+                cells.corrected(first, second, cells.real_range(h)),
+                cells.corrected(first.corners(), second.corners(), cells.real_range(h.corners())),
+                _varies_more_in_time(first, second, h),
+            )
+        first, rho, at_corners = closed.applied(first, chosen)
         return Found(
             _enclosures(variant, first, second, rho),
             _enclosures(variant, first.corners(), second.corners(), at_corners),
-            _varies_more_in_time(first, second),
+            by_time,
         )
 
-    return enclose
+    start = np.array([0.0])
+    return Method(enclose, closed.cuts, Enclosures(start, start, start + inf))
 
 
-def through(pieces: Subdivision, passage: Passage, bounds: Bounds) -> Enclose:
-    """Return how cells of metric in-betweens through keyframes are enclosed, at all times."""
+def _through(pieces: Subdivision, passage: Passage, bounds: Bounds, closed: "_Closed") -> Method:
+    """Return the way for metric in-betweens through keyframes: their bounds hold at all times."""
     known = _Known(pieces, Variant.METRIC)
     course = passage.eta_course or passage.course
+    floor = Enclosures(*(np.array([b]) for b in (bounds.k, bounds.sigma_a, bounds.sigma_b)))
+    correction = closed.correction
 
     def enclose(chosen: Cells) -> Found:
         trace, eta = (curves.at(chosen.piece) for curves in known.curves())
         enclosed = enclose_through(trace, eta, course, bounds)
         key = slice(course.first, course.first + 1)
         none = np.zeros(len(chosen.piece))
-        attained = cells.from_metric(
-            Patch(trace.controls[:, key, :1], none), Patch(eta.controls[:, key, :1], none)
+        whole = Patch(trace.controls[:, key], none), Patch(eta.controls[:, key], none)
+        attained = cells.from_metric(*(patch.corners() for patch in whole))
+        if correction is None:
+            return Found(enclosed, attained, np.zeros(len(chosen.piece), np.bool_))
+        h, in_time = correction.on(*chosen)
+        attained = Enclosures(
+            np.maximum(attained.k, bounds.k),
+            np.maximum(attained.sigma_a, bounds.sigma_a),
+            np.minimum(attained.sigma_b, bounds.sigma_b),
         )
-        return Found(enclosed, attained, np.zeros(len(chosen.piece), np.bool_))
+        return Found(
+            cells.widened(enclosed, cells.real_range(h)),
+            cells.widened(attained, cells.real_range(h.corners())),
+            _is_long(h, in_time),
+        )
 
-    return enclose
+    cuts = closed.cuts if correction is not None else np.array([0.0, 1.0])
+    return Method(enclose, cuts, floor)
+
+
+def _is_long(h: Patch[np.complex128], error: Floats) -> Booleans:
+    """Tell where h changes so much in time that the cells are to be cut in time."""
+    values = h.controls.real
+    in_time = np.ptp(values, axis=1).max(axis=1) + error
+    long: Booleans = (in_time > SMALL) & (in_time > np.ptp(values, axis=2).max(axis=1))
+    return long
+
+
+class _Closed(NamedTuple):
+    """What the scaling of Ψ and the corrections around holes do to cells."""
+
+    scale: ScalingEnclosures | None
+    correction: Correction | None
+    opening: Correction | None
+
+    @property
+    def cuts(self) -> Floats:
+        """Where time is cut first."""
+        cuts = np.linspace(0.0, 1.0, PARTS + 1)
+        for each in (self.correction, self.opening):
+            cuts = cuts if each is None else np.union1d(cuts, each.breaks)
+        return cuts
+
+    def applied(
+        self, log_modulus: Patch[np.float64], chosen: Cells
+    ) -> tuple[Patch[np.float64], Floats, Floats]:
+        """Return ln |f_z|, and what η is scaled by at most, on cells (c,) and at corners (4c,)."""
+        piece, start, end = chosen
+        if self.correction is not None:
+            log_modulus = log_modulus.plus(cells.real_part(self.correction.on(*chosen)[0]))
+        if self.scale is None:
+            return log_modulus, np.ones(len(piece)), np.ones(4 * len(piece))
+        least, most = self.scale.on(start, end)
+        rho = np.stack([self.scale.on(time, time)[1] for time in (start, end)], axis=1)
+        at_corners = np.repeat(rho, 2, axis=1)
+        if self.opening is None:
+            return log_modulus, most, at_corners.ravel()
+        # Around holes f_z is that for ρ = 1 times w = ρ + (1 − ρ) e^d, with |w| ≥ `clear`.
+        d, _ = self.opening.on(*chosen)
+        size = d.highest.max(axis=(1, 2))
+        clear = 1.0 - (1.0 - least) * np.expm1(size)
+        clear = np.where(clear > 0, clear, np.nan)
+        across = np.hypot(
+            *(np.ptp(part, axis=(1, 2)) for part in (d.controls.real, d.controls.imag))
+        )
+        error = (1.0 - least) * np.exp(size) * (across + 2 * d.error) / clear
+        error += np.expm1(size) * (most - least) / clear
+        factor = rho[:, :, None] + (1.0 - rho[:, :, None]) * np.exp(d.controls)
+        grown = Patch(np.log(np.abs(factor)), error)
+        return (
+            log_modulus.plus(grown),
+            most * np.exp(grown.controls.max(axis=(1, 2)) + error),
+            (at_corners * np.abs(factor).reshape(-1, 4)).ravel(),
+        )
 
 
 class _Known:
@@ -166,11 +281,11 @@ def _patch(curves: AnyCurves, weights: Floats) -> AnyPatch:
     )
 
 
-def _varies_more_in_time(first: AnyPatch, second: AnyPatch) -> Booleans:
+def _varies_more_in_time(*patches: AnyPatch) -> Booleans:
     """Tell along which side cells are to be cut."""
-    in_time, in_place = np.zeros(len(first.error)), np.zeros(len(first.error))
-    for patch in (first, second):
-        size = np.abs(patch.controls).max(axis=(1, 2)) + 1e-300
+    in_time, in_place = np.zeros((2, len(patches[0].error)))
+    for patch in patches:
+        size = np.maximum(np.abs(patch.controls).max(axis=(1, 2)), LEAST)
         in_time += np.abs(np.diff(patch.controls, axis=1)).max(axis=(1, 2), initial=0.0) / size
         along = np.abs(np.diff(patch.controls, axis=2)).max(axis=(1, 2), initial=0.0)
         in_place += (along + patch.error) / size

@@ -48,10 +48,32 @@ class Patch(NamedTuple, Generic[number]):
         first, last = self.controls[..., :1], self.controls[..., -1:]
         return Patch(np.concatenate([first, (first + last) / 2, last], axis=2), self.error)
 
+    def plus(self, other: "Patch[number]") -> "Patch[number]":
+        """Return the sum with something linear in time."""
+        raised = other.in_time(self.controls.shape[1])
+        return Patch(self.controls + raised.controls, self.error + raised.error)
+
+    def in_time(self, count: int) -> "Patch[number]":
+        """Return the same, linear in time, with so many control values along it."""
+        share = np.linspace(0.0, 1.0, count)[:, None]
+        first, last = self.controls[:, :1], self.controls[:, -1:]
+        return Patch((1.0 - share) * first + share * last, self.error)
+
     def corners(self) -> "Patch[number]":
         """Return the values at the cells' corners, which are attained, as cells (4c,)."""
         at_corners = self.controls[:, [0, -1]][:, :, [0, -1]]
         return Patch(at_corners.reshape(-1, 1, 1), np.zeros(at_corners.size))
+
+
+def real_part(patch: Patch[np.complex128]) -> Patch[np.float64]:
+    """Return the real part."""
+    return Patch(patch.controls.real, patch.error)
+
+
+def real_range(patch: Patch[np.complex128]) -> Floats:
+    """Return between which the real part is, float64 (2, c)."""
+    values = patch.controls.real
+    return np.stack([_least(values) - patch.error, _largest(values) + patch.error])
 
 
 def linear(conformal: Patch[np.complex128], anticonformal: Patch[np.complex128]) -> Enclosures:
@@ -120,6 +142,44 @@ def from_metric(trace: Patch[np.float64], eta: Patch[np.complex128]) -> Enclosur
     )
 
 
+def corrected(trace: Patch[np.float64], eta: Patch[np.complex128], log: Floats) -> Enclosures:
+    """Enclose of 𝒜 and η, where |f_z| is then multiplied, and |f_z̄| divided, by exp of `log`.
+
+    Parameters
+    ----------
+    trace, eta : Patch
+    log : float64, shape (2, c)
+        Between which the logarithm is.
+    """
+    error = trace.error[:, None, None]
+    least, most = _least(trace.controls - error), _largest(trace.controls + error)
+    size_most, size_least = _largest(eta.highest), _size_least(eta)
+    # The larger root of Equation (13), and |η| over it.
+    a_least, a_most = (
+        np.sqrt((t + np.sqrt(np.maximum(t * t - 4 * y * y, 0.0))) / 2)
+        for t, y in ((least, size_most), (most, size_least))
+    )
+    b = _ratio(size_most, np.where(least >= 2 * size_most, a_least, 0.0))
+    grown, shrunk = np.exp(log), np.exp(-log)
+    return Enclosures(
+        k=_ratio(b, a_least) * shrunk[0] ** 2,
+        sigma_a=(a_most * grown + b * shrunk).max(axis=0),
+        sigma_b=a_least * grown[0] - b * shrunk[0],
+    )
+
+
+def widened(enclosed: Enclosures, log: Floats) -> Enclosures:
+    """Enclose what is enclosed already, corrected by the exp of `log` (2, c) as above."""
+    k, sigma_a, sigma_b = enclosed
+    most = np.abs(log).max(axis=0)
+    b = np.maximum((sigma_a - sigma_b) / 2, 0.0)
+    return Enclosures(
+        k=k * np.exp(-2 * log[0]),
+        sigma_a=sigma_a * np.exp(most),
+        sigma_b=sigma_b * np.exp(np.minimum(log[0], 0.0)) - 2 * b * np.sinh(most),
+    )
+
+
 def k_of(share: Floats) -> Floats:
     """Return k of |η| / 𝒜 = k / (1 + k²), infinite from 1/2 on."""
     inside = share < 0.5
@@ -157,3 +217,11 @@ def _largest(values: Floats) -> Floats:
 def _least(values: Floats) -> Floats:
     found: Floats = values.min(axis=(1, 2))
     return found
+
+
+def _size_least(eta: Patch[np.complex128]) -> Floats:
+    """Return what the absolute value is at least."""
+    mean = eta.controls.mean(axis=(1, 2), keepdims=True)
+    size = np.abs(mean)
+    along = np.divide(mean.conj(), size, out=np.zeros_like(mean), where=size > 0)
+    return np.maximum(_least((eta.controls * along).real) - eta.error, 0.0)

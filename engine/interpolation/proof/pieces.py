@@ -63,6 +63,10 @@ class Subdivision:
         How far they may be from their linear interpolants.
     halves : intp, shape (p,)
         The first of the two pieces that are its halves, −1 where it has none.
+    parents : intp, shape (p,)
+        What it is half of, −1 where it is a segment.
+    loops : intp, shape (p,)
+        The loop of the boundary that it is on, 0 for the outline.
     """
 
     span: Span
@@ -73,6 +77,8 @@ class Subdivision:
     last: Complexes
     epsilon: Floats
     halves: Indices
+    parents: Indices
+    loops: Indices
 
     @classmethod
     def of(cls, maps: Sequence[HarmonicMap], boundary: Boundary) -> Self:
@@ -90,6 +96,8 @@ class Subdivision:
             last=values[following],
             epsilon=bending * (boundary.half_lengths**2 / 2)[:, None],
             halves=np.full(len(values), -1),
+            parents=np.full(len(values), -1),
+            loops=np.searchsorted(boundary.starts, np.arange(len(values)), side="right") - 1,
         )
 
     def halve(self, which: Indices) -> None:
@@ -101,13 +109,15 @@ class Subdivision:
         (values,) = self.span.evaluate(self.coefficients, middles, orders=(1,))
         quarter = self.epsilon[new] / 4
         self.halves[new] = len(self.halves) + 2 * np.arange(len(new))
-        self.starts = _followed(self.starts, self.starts[new], middles)
-        self.ends = _followed(self.ends, middles, self.ends[new])
-        self.first = _followed(self.first, self.first[new], values)
-        self.last = _followed(self.last, values, self.last[new])
-        self.epsilon = _followed(self.epsilon, quarter, quarter)
+        self.starts = followed(self.starts, self.starts[new], middles)
+        self.ends = followed(self.ends, middles, self.ends[new])
+        self.first = followed(self.first, self.first[new], values)
+        self.last = followed(self.last, values, self.last[new])
+        self.epsilon = followed(self.epsilon, quarter, quarter)
         unhalved = np.full(len(new), -1)
-        self.halves = _followed(self.halves, unhalved, unhalved)
+        self.halves = followed(self.halves, unhalved, unhalved)
+        self.parents = followed(self.parents, new, new)
+        self.loops = followed(self.loops, self.loops[new], self.loops[new])
 
     def derivatives(self, since: int) -> "EndValues":
         """Return F and G of the pieces from one on."""
@@ -192,7 +202,7 @@ class EndValues(NamedTuple):
         return EdgeCurves(np.stack([self.g0, self.g1], axis=2), self.eg)
 
 
-def _followed(
+def followed(
     values: npt.NDArray[type_], first: npt.NDArray[type_], second: npt.NDArray[type_]
 ) -> npt.NDArray[type_]:
     """Append entries, alternately from two arrays."""

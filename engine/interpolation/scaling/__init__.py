@@ -12,6 +12,14 @@ from engine.interpolation.scaling.sharp import (
     Worst,
     looseness,
 )
-from engine.interpolation.scaling.smooth import Scaling
+from engine.interpolation.scaling.smooth import Scaling, ScalingEnclosures
 
-__all__ = ["BESIDE_KEY", "PointSamples", "Scaling", "SharpScaling", "Worst", "looseness"]
+__all__ = [
+    "BESIDE_KEY",
+    "PointSamples",
+    "Scaling",
+    "ScalingEnclosures",
+    "SharpScaling",
+    "Worst",
+    "looseness",
+]

@@ -93,7 +93,7 @@ class Scaling:
         logarithm -= _dot(mean, self.excess[window].tolist())
         return math.exp(min(logarithm, 0.0))
 
-    def upper_bounds(self) -> "UpperBounds":
+    def enclosures(self) -> "ScalingEnclosures":
         """Return what is proven of ρ on pieces of time."""
         offsets = (np.arange(STRIPS) + 0.5) / STRIPS - 0.5
         fits, means = (np.array(each) for each in zip(*map(_weights, offsets), strict=True))
@@ -105,35 +105,38 @@ class Scaling:
             steepness * np.ptp(each, axis=1)
             for steepness, each in zip(_steepness(), (windows, excess), strict=True)
         ]
-        highest = (
-            windows @ fits.T - excess @ means.T + ((reach[0] + reach[1]) / (2 * STRIPS))[:, None]
+        middle = windows @ fits.T - excess @ means.T
+        margin = ((reach[0] + reach[1]) / (2 * STRIPS))[:, None]
+        return ScalingEnclosures(
+            lowest=freeze(np.minimum((middle - margin).ravel(), 0.0)),
+            highest=freeze(np.minimum((middle + margin).ravel(), 0.0)),
         )
-        return UpperBounds(highest=freeze(np.minimum(highest.ravel(), 0.0)))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class UpperBounds:
-    """Upper bounds of ln ρ.
+class ScalingEnclosures:
+    """Bounds of ln ρ on strips of the stretched time.
 
     Parameters
     ----------
-    highest : float64, shape (s,)
-        On strips of the stretched time, from half a sample before the first window's middle on.
+    lowest, highest : float64, shape (s,)
+        From half a sample before the first window's middle on.
     """
 
+    lowest: Floats
     highest: Floats
 
-    def on(self, starts: Floats, ends: Floats) -> Floats:
-        """Return the largest that ρ may be from one time to another, (c,) each."""
+    def on(self, starts: Floats, ends: Floats) -> tuple[Floats, Floats]:
+        """Return between which ρ is from one time to another, (c,) each."""
         pairs, which = np.unique(np.stack([starts, ends]), axis=1, return_inverse=True)
         # By the strips before and behind, against rounding.
         first = np.maximum(self._strip(pairs[0]) - 1, 0)
         last = np.minimum(self._strip(pairs[1]) + 2, len(self.highest) - 1)
         bounds = np.stack([first, last], axis=1).ravel()
-        rho = np.exp(np.maximum.reduceat(self.highest, bounds)[::2])
-        rho[(pairs[0] <= 0.0) | (pairs[1] >= 1.0)] = 1.0
-        found: Floats = rho[which]
-        return found
+        least = np.exp(np.minimum.reduceat(self.lowest, bounds)[::2])
+        most = np.exp(np.maximum.reduceat(self.highest, bounds)[::2])
+        most[(pairs[0] <= 0.0) | (pairs[1] >= 1.0)] = 1.0
+        return least[which], most[which]
 
     def _strip(self, times: Floats) -> Indices:
         with np.errstate(divide="ignore"):

@@ -2,6 +2,8 @@
 
 import numpy as np
 import pytest
+from holed_shapes import plate
+from holed_shapes import random_map as holed_map
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from interpolation_shapes import bar, inner_points, letter_l, random_map, scattered_on
@@ -76,6 +78,29 @@ def test_motion_through_keyframes_is_proven(variant):
             own = [f.derivatives(BOUNDARY.points) for f in maps]
             assert proof.k <= max(0.6, *(distortion.k(*f).max() for f in own)) + 2 * TIGHTNESS
             assert proof.never_folds
+
+
+@pytest.mark.parametrize("through", [False, True])
+@pytest.mark.parametrize("variant", [v for v in Variant if v is not Variant.LINEAR])
+def test_in_betweens_around_holes_are_proven(variant, through):
+    shape = plate(2)
+    boundary = Boundary.sample(shape.outline, shape.cage, shape.holes)
+    maps = [holed_map(shape, seed, 0.1) for seed in range(3 if through else 2)]
+    points = boundary.points[::9]
+    prepared = prepare(maps, points, outline=shape.outline, variant=variant, through=through)
+    interval = prepared.intervals[0]
+    assert interval.correction > 1e-3
+    k, sigma_a, sigma_b = measured(interval, np.linspace(0, 1, 9))
+    proof = prove(interval, variant, boundary)
+    slack = 2e-3 if variant is Variant.METRIC else 1e-7
+    assert k * (1 - slack) <= proof.k
+    assert sigma_a * (1 - slack) <= proof.sigma_a
+    assert sigma_b * (1 + slack) >= proof.sigma_b
+    assert proof.never_folds
+    if not (through and variant is Variant.METRIC):
+        assert proof.k <= k + 0.02
+        assert proof.sigma_a <= 1.02 * sigma_a
+        assert proof.sigma_b >= sigma_b - 0.02
 
 
 def test_what_folds_between_its_keyframes_is_not_proven():
@@ -199,8 +224,10 @@ def test_the_bound_on_rho_is_above_it_and_near():
     rng = np.random.default_rng(0)
     starts = np.concatenate([rng.uniform(size=300), [0.0, 1e-9, 0.999999]])
     ends = np.minimum(starts + 10.0 ** rng.uniform(-9, -2, len(starts)), 1.0)
-    above = interval.scale.upper_bounds().on(starts, ends)
-    for start, end, bound in zip(starts, ends, above, strict=True):
+    below, above = interval.scale.enclosures().on(starts, ends)
+    for start, end, least, bound in zip(starts, ends, below, above, strict=True):
         rho = [interval.scale(float(time)) for time in np.linspace(start, end, 20)]
+        assert least <= min(rho) + 1e-15
         assert bound >= max(rho) - 1e-15
+        assert least >= min(rho) - 0.02
         assert bound <= max(rho) + 0.02

@@ -1,0 +1,131 @@
+"""What closes the periods around holes, on cells: h, with the constants that it makes good, and d.
+
+Along a piece of the boundary a function of the span differs from its linear interpolant by at most
+h² max|H''| / 2, with |H''| ≤ Σ |dS_j| / (2π d_j) as in `engine.maps.certificate`; in time a series
+differs from its chord by an eighth of its second derivative, which the coefficients bound.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.polynomial import chebyshev
+
+from engine.arrays import Complexes, Floats, Indices
+from engine.interpolation.blends import MetricResidual
+from engine.interpolation.chebyshev import PiecewiseSeries
+from engine.interpolation.periods import Closing
+from engine.interpolation.proof.cells import Patch
+from engine.interpolation.proof.pieces import Subdivision, followed
+from engine.maps import Boundary
+
+LEFT_OUT = 1e-9  # of h: its smallest modes
+
+
+class Chords(NamedTuple):
+    """Series on pieces of time (c,): values at both ends, and how far off the chord is.
+
+    Parameters
+    ----------
+    ends : float64, shape (c, 2, j)
+    errors : float64, shape (c, j)
+    """
+
+    ends: Floats
+    errors: Floats
+
+
+class TimeSeries:
+    """Series in time with a bound on their second derivatives."""
+
+    def __init__(self, series: PiecewiseSeries) -> None:
+        self.series = series
+        lengths = np.diff(series.breaks)
+        second = chebyshev.chebder(series.coefficients, 2, axis=1)
+        self._bends = np.abs(second).sum(axis=1) * (2.0 / lengths[:, None]) ** 2
+
+    def chords(self, starts: Floats, ends: Floats) -> Chords:
+        """Return the chords of pieces of time, none of which reaches over a break."""
+        middles = (starts + ends) / 2
+        piece = np.searchsorted(self.series.breaks, middles, side="right") - 1
+        piece = np.clip(piece, 0, len(self._bends) - 1)
+        values = np.stack([self.series.at(starts).T, self.series.at(ends).T], axis=1)
+        return Chords(values, self._bends[piece] * ((ends - starts) ** 2 / 8)[:, None])
+
+
+class Correction:
+    """The sum of functions of the span times series, on pieces of the boundary.
+
+    Parameters
+    ----------
+    closing : Closing
+    boundary : Boundary
+    pieces : Subdivision
+        At the beginning, when its pieces are the boundary's segments.
+    metric : MetricResidual, optional
+        What its modes lack around holes is taken off.
+    """
+
+    def __init__(
+        self,
+        closing: Closing,
+        boundary: Boundary,
+        pieces: Subdivision,
+        metric: MetricResidual | None = None,
+    ) -> None:
+        self._functions, series = closing.leading(LEFT_OUT)
+        self._series = TimeSeries(series)
+        self._pieces, self._span = pieces, boundary.span
+        count = len(boundary.span.vertices)
+        bending = boundary.span.bending(self._functions)[:count]
+        kernel = np.sqrt(boundary.bending_kernel[:, :count] / (2 * np.pi))
+        self._errors = (kernel @ bending) * (boundary.half_lengths**2 / 2)[:, None]
+        values = self._values(boundary.points)
+        self._ends = np.stack([values, values[boundary.following]], axis=1)
+        self._metric = None if metric is None else TimeSeries(metric.residual.series)
+        # By the loops of the boundary, of which the outline lacks nothing.
+        self._lacking = np.zeros((0, 0))
+        if metric is not None:
+            self._lacking = np.vstack([0.0 * metric.lacking[:1], metric.lacking])
+
+    @property
+    def breaks(self) -> Floats:
+        """Where time is to be cut."""
+        own = self._series.series.breaks
+        return own if self._metric is None else np.union1d(own, self._metric.series.breaks)
+
+    def on(
+        self, piece: Indices, starts: Floats, ends: Floats
+    ) -> tuple[Patch[np.complex128], Floats]:
+        """Return it on cells, linear in time and along the piece, and what of its error is time's.
+
+        The latter, float64 (c,), is due to the pieces of time, the rest to those of the boundary.
+        """
+        self._catch_up()
+        modes, errors = self._ends[piece], self._errors[piece]
+        chords = self._series.chords(starts, ends)
+        controls = np.einsum("caj,cbj->cab", chords.ends, modes)
+        in_place = (np.abs(chords.ends).max(axis=1) * errors).sum(axis=1) + LEFT_OUT
+        in_time = (chords.errors * (np.abs(modes).max(axis=1) + errors)).sum(axis=1)
+        if self._metric is not None:
+            lacking = self._lacking[self._pieces.loops[piece]]
+            missing = self._metric.chords(starts, ends)
+            controls = controls - np.einsum("caj,cj->ca", missing.ends, lacking)[:, :, None]
+            in_time += (missing.errors * np.abs(lacking)).sum(axis=1)
+        return Patch(controls, in_place + in_time), in_time
+
+    def _catch_up(self) -> None:
+        """Learn the pieces that were added since."""
+        pieces = self._pieces
+        parents = pieces.parents[len(self._errors) :: 2]
+        if not len(parents):
+            return
+        middles = self._values((pieces.starts[parents] + pieces.ends[parents]) / 2)
+        first, last = self._ends[parents, 0], self._ends[parents, 1]
+        halves = np.stack([first, middles], axis=1), np.stack([middles, last], axis=1)
+        self._ends = followed(self._ends, *halves)
+        quarter = self._errors[parents] / 4
+        self._errors = followed(self._errors, quarter, quarter)
+
+    def _values(self, points: Complexes) -> Complexes:
+        (values,) = self._span.evaluate(self._functions, points, orders=(0,))
+        return values
