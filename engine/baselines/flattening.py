@@ -18,6 +18,8 @@ from engine.errors import EngineError
 
 MOST_STEPS = 40
 SHORTEST = 2.0**-20  # part of a Newton step
+FARTHEST = 2.0  # by which a logarithm changes in a step
+FLOOR = 1e-9  # of the Hessian's diagonal, where all triangles around a vertex are beyond flat
 ENOUGH = 1e-10  # angle defect, in radians, at which the search ends
 
 
@@ -46,7 +48,7 @@ class Flattening:
     ----------
     domain : TriangulatedDomain
     inner : intp, shape (i,)
-        Vertices that are not on the border, in an order in which factors fill in little.
+        Vertices that are not on the border.
     place : intp, shape (n,)
         Of each vertex among those; −1 on the border.
     hinges : intp, shape (m, 2)
@@ -81,9 +83,6 @@ class Flattening:
                 "al. (2013) is for meshes without. Choose another."
             )
         inner = np.flatnonzero(~domain.border)
-        if len(inner):
-            laplacian = domain.laplacian()[inner][:, inner]
-            inner = inner[np.argsort(factorised(laplacian).perm_c)]
         place = np.full(len(domain.points), -1)
         place[inner] = np.arange(len(inner))
         reached, forward = _reached(domain)
@@ -117,8 +116,8 @@ class Flattening:
         for _ in range(MOST_STEPS):
             if np.abs(defect).max(initial=0.0) <= ENOUGH:
                 break
-            direction = factorised(self._hessian(cotangents), ordered=True).solve(-defect)
-            slope, part = float(direction @ defect), 1.0
+            direction = factorised(self._hessian(cotangents)).solve(-defect)
+            slope, part = float(direction @ defect), min(1.0, FARTHEST / np.abs(direction).max())
             while part > SHORTEST:
                 tried = logarithms.copy()
                 tried[inner] += part * direction
@@ -156,7 +155,7 @@ class Flattening:
         every = np.arange(count)
         return csc_array(
             (
-                np.concatenate([diagonal, -values, -values]),
+                np.concatenate([np.maximum(diagonal, FLOOR), -values, -values]),
                 (
                     np.concatenate([every, rows, columns]),
                     np.concatenate([every, columns, rows]),
