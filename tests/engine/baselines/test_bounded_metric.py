@@ -9,8 +9,10 @@ from meshed_shapes import k_of, meshed_bar, s_to_u, stretched_pair
 from numpy.testing import assert_allclose
 
 from engine.baselines import prepare_baseline
+from engine.baselines.flattening import Flattening, _angles, edge_lengths
 from engine.domain.meshing import triangulate
 from engine.interpolation import prepare
+from engine.maps import distortion
 
 MESH = meshed_bar()
 
@@ -100,3 +102,31 @@ def test_the_lengths_differ_from_the_blend_by_a_factor_of_each_end():
     assert_allclose(rows @ logarithms, ratio, rtol=0, atol=1e-7)
     assert_allclose(logarithms[domain.border], 0, rtol=0, atol=1e-7)
     assert np.abs(logarithms).max() > 0.01
+
+
+def test_of_affine_keyframes_the_metric_is_blended_linearly_and_is_flat_already():
+    keys = [MESH.vertices, (1.5 + 1j) * MESH.vertices + 0.8j * MESH.vertices.conj()]
+    frame = prepared(keys).frame(0.3)
+    trace = np.abs(frame.fz) ** 2 + np.abs(frame.fzbar) ** 2
+    assert_allclose(trace, 0.7 + 0.3 * (1.5**2 + 1 + 0.8**2), rtol=1e-9, atol=0)
+    eta = distortion.eta(frame.fz, frame.fzbar)
+    assert_allclose(eta, 0.3 * 0.8j * (1.5 - 1j), rtol=0, atol=1e-9)
+
+
+def test_the_hessian_is_the_derivative_of_the_angle_defects():
+    mesh = meshed_bar(80)
+    domain = prepared([f(mesh.vertices) for f in s_to_u()], mesh).domain
+    flattening = Flattening.on(domain)
+    lengths = edge_lengths(domain, s_to_u()[1](mesh.vertices))
+
+    def moved(step, vertex):
+        factor = np.ones(len(domain.points))
+        factor[vertex] = np.exp(step / 2)
+        ends = factor[domain.corners] * np.roll(factor[domain.corners], -1, axis=1)
+        return flattening._defects(_angles(lengths * ends)[0])
+
+    hessian = flattening._hessian(_angles(lengths)[1]).toarray()
+    h = 1e-5
+    for column, vertex in enumerate(flattening.inner):
+        differences = (moved(h, vertex) - moved(-h, vertex)) / (2 * h)
+        assert_allclose(hessian[:, column], differences, rtol=0, atol=1e-8)
