@@ -93,7 +93,8 @@ def _proof_lines(interval: IntervalReport) -> list[str]:
     lines = [f"{'  proven':<16} {figures}  {verdict}"]
     if interval.unsettled:
         frames = ", ".join(map(str, interval.unsettled))
-        lines.append(f"{'  look at':<16} frame{'s' * (len(interval.unsettled) > 1)} {frames}")
+        what = "  may fold" if interval.may_fold else "  less tight"
+        lines.append(f"{what:<16} frame{'s' * (len(interval.unsettled) > 1)} {frames}")
     return lines
 
 

@@ -34,7 +34,7 @@ def test_frames_that_fold_are_named(capsys):
     status, said = certified(capsys, "--variant", "linear")
     assert status == 1
     assert "NOT PROVEN" in said
-    assert "look at        frames 12, 13, 14, 15, 16, 17, 18\n" in said
+    assert "may fold       frames 12, 13, 14, 15, 16, 17, 18\n" in said
     _, said = certified(capsys, "--variant", "linear", "--json")
     first, second, _ = json.loads(said)["intervals"]
     assert not first["proven"]["never_folds"]
