@@ -102,7 +102,15 @@ def _from_coefficients(path: Path) -> Keyframes:
 
 
 def _from_boundary(path: Path) -> Keyframes:
-    data = read_arrays(path, required=("outline", "cage", "boundary", "points"), optional=OPTIONAL)
+    data = read_arrays(
+        path,
+        required=("outline", "cage", "boundary", "points"),
+        optional=(*OPTIONAL, *HOLE_ARRAYS),
+    )
+    if read_holes(data):
+        raise LissomError(
+            "keyframes by where the boundary goes are for domains without holes; give phi and psi"
+        )
     boundary = data["boundary"]
     if boundary.ndim != 2:
         raise LissomError(
@@ -110,7 +118,10 @@ def _from_boundary(path: Path) -> Keyframes:
         )
     maps, error = harmonic_coordinate_maps(data["outline"], data["cage"], list(boundary))
     if error > NEAR:
-        notice(f"the outline is met within {100 * error:.2g} % of the diameter, beside corners")
+        notice(
+            "the keyframes take the outline where it was wanted within "
+            f"{100 * error:.2g} % of the diameter"
+        )
     return Keyframes(maps=maps, points=data["points"], outline=data["outline"], **_options(data))
 
 

@@ -14,7 +14,8 @@ domain. The one NPZ file holds
   phi, psi   (q, n)  complex  coefficients of the keyframes f = Phi + conj(Psi), q >= 2
   boundary   (q, p)  complex  instead: where the outline's vertices go, its edges straight, and the
                               inside by harmonic coordinates
-  positions  (q, m)  complex  instead of all these: where the points of a mesh go
+  positions  (q, m)  complex  instead of all these, with triangles: where the points of a mesh go;
+                              points are then those of the first keyframe unless they are there
   hole_outlines, hole_outline_sizes, hole_cages, hole_cage_sizes, hole_centres
                               optional: the holes, as lissom domain writes them; phi and psi then
                               have the coefficients of the cage first, then of each hole's
@@ -52,8 +53,9 @@ OUT.npz gets times (s,), anchor, and one row for each time of
                                             keyframes
   tangents              (q,)    float64     with --through: how much of the full velocity is left
                                             at each keyframe, from 0, a stop, to 1; 1 at ends
-With a method on meshes fz and fzbar are (s, t), of the triangles (t, 3) that are written as well,
-all counter-clockwise, and there are
+With any of these methods the anchor is a vertex, by default the one farthest from the border; fz
+and fzbar are (s, t), of the triangles (t, 3) that are written as well, all counter-clockwise; and
+there are
   poisson_error         (s,)    float64     with arap, ffmp and mesh-eta: by how much, relative to
                                             it, the blend is no map's (root mean square)
   angle_defect          (s,)    float64     with sig13: the largest angle, in radians, by which the

@@ -156,6 +156,23 @@ def test_keyframes_by_where_the_boundary_goes(write, tmp_path, capsys, variant):
     assert_allclose(frames["positions"][2, corner], bowed[0], rtol=0, atol=0.01)
 
 
+def test_keyframes_by_the_boundary_are_refused_around_holes(write, tmp_path, capsys):
+    square = np.array([1, 1j, -1, -1j]) * 0.2
+    arrays = {
+        "outline": OUTLINE,
+        "cage": CAGE,
+        "boundary": np.array([OUTLINE, OUTLINE]),
+        "points": MESH.vertices,
+        "hole_outlines": square[::-1],
+        "hole_outline_sizes": np.array([4]),
+        "hole_cages": 0.8 * square[::-1],
+        "hole_cage_sizes": np.array([4]),
+        "hole_centres": np.zeros(1, dtype=complex),
+    }
+    said = error_of(capsys, [write(arrays)], tmp_path / "out.npz", "metric")
+    assert "for domains without holes" in said
+
+
 FLIPPED = MESH.triangles.copy()
 FLIPPED[3] = FLIPPED[3, ::-1]
 FOLDED = POSES["positions"].copy()
