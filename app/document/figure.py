@@ -92,7 +92,7 @@ class Figure:
         else are in pixels of the canvas, y up.
     still : bool
         Whether it is a picture that is never deformed, such as a background. Its domain is all of
-        it, cut out by nothing.
+        it, whatever is cut out.
     reference : bool
         Whether it is there for the person only, and not exported.
     locked : bool

@@ -58,7 +58,7 @@ class FileDialog:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Question:
-    """A question with up to three answers, the last of which is to do nothing."""
+    """A question with some answers; another one that is always there is to do nothing."""
 
     title: str
     text: str

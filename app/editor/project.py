@@ -27,6 +27,7 @@ from app.render import View, fit_view
 from app.reports import Curves
 from app.solving import Drag, Renewal, Rig
 from app.storage import Cut, Origin, Picture, cut_picture
+from engine.arrays import Bytes
 from engine.domain import CutOut
 from engine.maps import Bounds
 
@@ -132,6 +133,8 @@ class Puppet:
         The series that the worker makes when it has nothing else to do.
     cut : Derived
         What is left of the picture, as the newest cut-out has it.
+    small : Derived
+        That made small, for the list of layers.
     """
 
     picture: Picture
@@ -142,6 +145,7 @@ class Puppet:
     shown: Shown | None = None
     rig: Rig | None = None
     build: Derived[Clip, Build | None] = field(default_factory=lambda: Derived(None))
+    small: Derived[Cut, Bytes | None] = field(default_factory=lambda: Derived(None))
 
     @classmethod
     def of(cls, clip: Clip, picture: Picture) -> Self:

@@ -21,7 +21,7 @@ from app.render.scene import (
     Scene,
     Wireframe,
 )
-from app.render.thumbnails import Thumbnail, Thumbnails
+from app.render.thumbnails import LayerPictures, Thumbnail, Thumbnails
 from app.render.view import View, canvas_view, fit_view
 
 __all__ = [

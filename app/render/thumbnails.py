@@ -1,4 +1,4 @@
-"""Small pictures of files, as textures for the window."""
+"""Small pictures of files and of layers, as textures for the window."""
 
 from pathlib import Path
 from typing import NamedTuple
@@ -6,6 +6,7 @@ from typing import NamedTuple
 import moderngl
 
 from app.storage import read_thumbnail
+from engine.arrays import Bytes
 
 
 class Thumbnail(NamedTuple):
@@ -55,9 +56,50 @@ class Thumbnails:
 
     def _read(self, path: Path) -> moderngl.Texture | None:
         small = read_thumbnail(path)
-        if small is None:
-            return None
-        texture = self._context.texture((small.shape[1], small.shape[0]), 4, small.tobytes())
-        texture.repeat_x = texture.repeat_y = False
-        texture.build_mipmaps()
-        return texture
+        return None if small is None else _texture(self._context, small)
+
+
+class LayerPictures:
+    """Owner of one small texture for each layer whose picture was asked for.
+
+    Parameters
+    ----------
+    context : moderngl.Context
+    """
+
+    def __init__(self, context: moderngl.Context) -> None:
+        self._context = context
+        self._textures: dict[int, tuple[Bytes, moderngl.Texture]] = {}
+        self._wanted: set[int] = set()
+
+    def begin_frame(self) -> None:
+        """Let those go that were not asked for in the last frame."""
+        for identity in self._textures.keys() - self._wanted:
+            self._textures.pop(identity)[1].release()
+        self._wanted.clear()
+
+    def get(self, identity: int, small: Bytes) -> Thumbnail:
+        """Return the small picture of a layer, uint8 (h, w, 4), by the layer's id, as a texture."""
+        known = self._textures.get(identity)
+        if known is None or known[0] is not small:
+            if known is not None:
+                known[1].release()
+            known = self._textures[identity] = small, _texture(self._context, small)
+        self._wanted.add(identity)
+        return Thumbnail(known[1].glo, known[1].size)
+
+    def textures(self) -> list[moderngl.Texture]:
+        """Return all that are ready."""
+        return [texture for _, texture in self._textures.values()]
+
+    def release(self) -> None:
+        """Let all textures go."""
+        self._wanted.clear()
+        self.begin_frame()
+
+
+def _texture(context: moderngl.Context, small: Bytes) -> moderngl.Texture:
+    texture = context.texture((small.shape[1], small.shape[0]), 4, small.tobytes())
+    texture.repeat_x = texture.repeat_y = False
+    texture.build_mipmaps()
+    return texture

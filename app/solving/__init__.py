@@ -8,6 +8,7 @@ Imports: `app.motion`, `app.storage`.
 from app.solving.drag import Drag, Rig, pose_at
 from app.solving.flipping import flip_poses, flipped_targets
 from app.solving.renewal import Renewal, go_on
+from app.solving.replacing import begin_replacing
 from app.solving.script import load_pose_script
 from app.solving.script_solver import pose_document
 
@@ -15,6 +16,7 @@ __all__ = [
     "Drag",
     "Renewal",
     "Rig",
+    "begin_replacing",
     "flip_poses",
     "flipped_targets",
     "go_on",

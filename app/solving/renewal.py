@@ -1,13 +1,23 @@
-"""Other bounds or another domain under the same animation: its keys are solved again."""
+"""Other bounds, another domain or picture under the same animation: its keys are solved again."""
 
 from dataclasses import dataclass, replace
+from functools import reduce
 
 import numpy as np
 
-from app.document import Command, Figure, Meshing, Pose, figure_commands
+from app.document import (
+    Command,
+    Document,
+    Figure,
+    Meshing,
+    Pose,
+    Target,
+    figure_commands,
+    layer_commands,
+)
 from app.solving.drag import Rig, fit_map, pins_of
 from engine.arrays import Bytes
-from engine.domain import Domain, build_domain
+from engine.domain import build_domain
 from engine.errors import EngineError
 from engine.geometry import contains
 from engine.maps import Bounds, HarmonicMap, certify
@@ -18,7 +28,7 @@ AT_REST = 1e-3  # pixels that coefficients of the drawing at rest may lack
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Renewal:
-    """A figure on its way to other bounds or another domain.
+    """A figure on its way to other bounds, another domain or another picture.
 
     Parameters
     ----------
@@ -26,11 +36,13 @@ class Renewal:
     bounds : Bounds
         Of the poses to come.
     meshing : Meshing, optional
-        What the domain is built anew with; None keeps it.
+        What the domain of its picture is built anew with; None builds none.
     pulls : bool
         Whether poses that are within the bounds already are pulled to their targets again, too.
-    domain : Domain, optional
-        The new one, once it is built.
+    into : Figure, optional
+        The figure with the new domain, all poses at rest, once that is built.
+    replaces : bool
+        Whether that is another picture's.
     rig : Rig, optional
         None before the first key.
     poses : tuple of Pose
@@ -45,7 +57,8 @@ class Renewal:
     bounds: Bounds
     meshing: Meshing | None = None
     pulls: bool = True
-    domain: Domain | None = None
+    into: Figure | None = None
+    replaces: bool = False
     rig: Rig | None = None
     poses: tuple[Pose, ...] = ()
     outside: tuple[str, ...] = ()
@@ -60,22 +73,36 @@ class Renewal:
     def progress(self) -> float:
         """The part of its steps that is done, 0 to 1."""
         builds = self.meshing is not None
-        done = len(self.poses) + (self.domain is not None)
+        done = len(self.poses) + (builds and self.into is not None)
         return done / (len(self.before.poses) + builds)
 
     @property
     def now(self) -> str:
         """What the next step does, in words."""
-        if self.meshing is not None and self.domain is None:
+        if self.meshing is not None and self.into is None:
             return "Building the domain"
         return f"Solving pose {len(self.poses) + 1} of {len(self.before.poses)}"
 
     @property
     def command(self) -> Command:
         """What makes one step of undo of all of it."""
-        if self.meshing is None or self.domain is None:
-            return figure_commands.set_bounds(self.before.id, self.bounds, self.poses)
-        return figure_commands.replace_domain(self.before.id, self.domain, self.meshing, self.poses)
+        identity, into = self.before.id, self.into
+        if into is None:
+            return figure_commands.set_bounds(identity, self.bounds, self.poses)
+        if self.replaces:
+            posed = figure_commands.set_bounds(identity, self.bounds, self.poses)
+            return _joined("Replace picture", layer_commands.replace_figure(identity, into), posed)
+        domain = figure_commands.replace_domain(identity, into.domain, into.meshing, self.poses)
+        return _joined(domain.label, domain, layer_commands.keep_joints(identity))
+
+
+def _joined(label: str, *commands: Command) -> Command:
+    """Return commands that are done after each other, as one."""
+
+    def change(document: Document) -> Document:
+        return reduce(lambda before, command: command(before), commands, document)
+
+    return Command(label, change)
 
 
 def go_on(renewal: Renewal, picture: Bytes) -> Renewal:
@@ -93,11 +120,11 @@ def go_on(renewal: Renewal, picture: Bytes) -> Renewal:
     EngineError, LissomError
         If there is no domain, or a handle lies outside of it.
     """
-    if renewal.meshing is not None and renewal.domain is None:
+    if renewal.meshing is not None and renewal.into is None:
         return _with_domain(renewal, picture, renewal.meshing)
-    rig = renewal.rig or Rig.of(replace(renewal.before, bounds=renewal.bounds))
+    rig = renewal.rig or Rig.of(replace(renewal.into or renewal.before, bounds=renewal.bounds))
     index = len(renewal.poses)
-    pose = _solved(renewal, rig, renewal.before.poses[index])
+    pose = _solved(renewal, rig, index)
     outside = renewal.outside
     if not pose.certificate.certified:
         outside = (*outside, _in_words(renewal.before, index))
@@ -122,19 +149,27 @@ def _with_domain(renewal: Renewal, picture: Bytes, meshing: Meshing) -> Renewal:
     before = renewal.before
     domain = domain.moved(before.corner)
     rest = HarmonicMap.identity(domain.cage, domain.holes)
-    keys = tuple(replace(key, pose=key.pose.with_map(rest)) for key in before.keys)
-    rig = Rig.of(replace(before, domain=domain, keys=keys, library=(), bounds=renewal.bounds))
-    return replace(renewal, domain=domain, rig=rig, notices=notices)
+    into = replace(
+        before,
+        domain=domain,
+        meshing=meshing,
+        keys=tuple(replace(key, pose=key.pose.with_map(rest)) for key in before.keys),
+        library=tuple(replace(kept, pose=kept.pose.with_map(rest)) for kept in before.library),
+    )
+    return replace(renewal, into=into, notices=notices)
 
 
-def _solved(renewal: Renewal, rig: Rig, pose: Pose) -> Pose:
+def _solved(renewal: Renewal, rig: Rig, index: int) -> Pose:
     """Return a pose over the rig's cage, within its bounds, pulled to its targets."""
     boundary, bounds = rig.deformer.boundary, rig.deformer.bounds
-    first = (
-        renewal.before.map_of(pose)
-        if renewal.domain is None
-        else _carried_over(renewal.before, pose, rig)
-    )
+    before, into = renewal.before, renewal.into
+    old = before.poses[index]
+    pose, pins, shape = old, pins_of(before, old), before.map_of(old)
+    first = shape
+    if into is not None:
+        pose, first = into.poses[index], _carried_over(before, old, rig)
+        if before.anchor is not None and into.anchor is not None:
+            pins = tuple(carried(pin, shape, before.anchor, into.anchor) for pin in pins)
     if not renewal.pulls and certify(first, boundary, bounds).certified:
         return pose
     try:
@@ -142,13 +177,20 @@ def _solved(renewal: Renewal, rig: Rig, pose: Pose) -> Pose:
     except EngineError:
         # It folds over the new cage: from the drawing at rest every pose can be reached.
         state = rig.deformer.start()
-    state, _ = rig.deformer.settle(
-        state, rig.wish(pose.targets, pins_of(renewal.before, pose)), at_most=MOST_STEPS
-    )
+    wish = rig.wish(pose.targets, pins)
+    state, _ = rig.deformer.settle(state, wish, at_most=MOST_STEPS)
     certificate = certify(state.map, boundary, bounds)
-    if renewal.domain is None and not certificate.certified:
+    if into is None and not certificate.certified:
         return replace(pose, certificate=certify(first, boundary, bounds))
     return replace(pose.with_map(state.map), certificate=certificate)
+
+
+def carried(target: Target, shape: HarmonicMap, place: complex, to: complex) -> Target:
+    """Return the target of a point that is moved at rest, turned as a pose is around it."""
+    if to == place:
+        return target
+    fz = complex(shape.derivatives(np.array([place]))[0][0])
+    return replace(target, position=target.position + fz / abs(fz) * (to - place))
 
 
 def _carried_over(figure: Figure, pose: Pose, rig: Rig) -> HarmonicMap:

@@ -42,10 +42,12 @@ from app.storage.layers import (
     open_pictures,
     read_layered,
     still_figure,
+    still_picture,
 )
 from app.storage.opening import Cut, cut_picture, open_picture
 from app.storage.pictures import (
     Layer,
+    LayeredPicture,
     Picture,
     decode_mask,
     decode_picture,
@@ -67,7 +69,7 @@ from app.storage.preferences import (
     settings_folder,
 )
 from app.storage.project_file import load_project, save_project
-from app.storage.thumbnail import draw_thumbnail, read_thumbnail
+from app.storage.thumbnail import draw_thumbnail, read_thumbnail, shrink
 
 __all__ = [
     "CHECKER",
@@ -80,6 +82,7 @@ __all__ = [
     "Cut",
     "JsonObject",
     "Layer",
+    "LayeredPicture",
     "OpenedScene",
     "Origin",
     "Picture",
@@ -122,8 +125,10 @@ __all__ = [
     "save_project",
     "settings_folder",
     "shader_source",
+    "shrink",
     "side_by_side",
     "still_figure",
+    "still_picture",
     "without_repeats",
     "write_arrays",
     "write_atomically",

@@ -191,11 +191,18 @@ def layer_figure(
     return figure, tuple(f"{layer.name}: {notice}" for notice in notices)
 
 
+def still_picture(data: bytes, picture: Picture) -> Figure:
+    """Return the figure of a picture that stands still, its lower left corner at 0."""
+    file = PictureFile(data=data, suffix=picture.suffix, size=picture.size)
+    made = new_figure(file, rectangle_domain(*picture.size), Meshing(), WHOLE)
+    return replace(made, still=True)
+
+
 def still_figure(figure: Figure) -> Figure:
-    """Return the figure as a picture that stands still where it was drawn."""
+    """Return the figure as a picture that stands still where it was drawn, cut out as it is."""
     domain = rectangle_domain(*figure.picture.size).moved(figure.corner)
     return replace(
-        new_figure(figure.picture, domain, figure.meshing),
+        new_figure(figure.picture, domain, figure.meshing, figure.cut_out),
         id=figure.id,
         name=figure.name,
         corner=figure.corner,

@@ -8,7 +8,7 @@ from PIL import Image, ImageOps
 
 from app.storage.pictures import DECODER_ERRORS, FORMATS
 from app.storage.project_file import load_thumbnail
-from engine.arrays import Bytes
+from engine.arrays import Bytes, readonly
 
 SIDE = 320  # pixels
 # Larger pictures take so long to decode (0.3 s) that the window would stand still. JPEG files are
@@ -24,6 +24,14 @@ def draw_thumbnail(rgba: Bytes, side: int = SIDE) -> bytes:
     file = io.BytesIO()
     small.save(file, "PNG")
     return file.getvalue()
+
+
+def shrink(rgba: Bytes, side: int) -> Bytes:
+    """Return what is drawn on a picture, uint8 (h, w, 4), made small: its sides at most `side`."""
+    image = Image.fromarray(rgba)
+    drawn = image.crop(image.getchannel("A").getbbox())
+    drawn.thumbnail((side, side))
+    return readonly(np.asarray(drawn))
 
 
 def read_thumbnail(path: Path) -> Bytes | None:

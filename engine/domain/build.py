@@ -4,12 +4,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from engine.arrays import Bytes, Complexes, Floats
+from engine.arrays import Booleans, Bytes, Complexes, Floats
 from engine.domain.meshing import Mesh, triangulate, with_limbs_on_top
 from engine.domain.outline import Detail, enclose
 from engine.domain.picture import CutOut, Subject, matted, subject_mask
 from engine.errors import EngineError
-from engine.geometry import Hole, deepest_point
+from engine.geometry import Hole, contains, deepest_point
 
 FEWEST_TRIANGLES = 1_000
 MOST_TRIANGLES = 2_000_000
@@ -47,6 +47,25 @@ class Domain:
             for hole in self.holes
         )
         return Domain(outline=self.outline + by, cage=self.cage + by, mesh=mesh, holes=holes)
+
+    def contains(self, points: Complexes) -> Booleans:
+        """Tell for each point (p,) whether it lies in the domain."""
+        return contains(self.outline, points, holes=self.loops[1:])
+
+    def nearest(self, points: Complexes) -> Complexes:
+        """Return points (p,) of the domain: those outside are exchanged for the nearest middles.
+
+        Those are the middles of triangles, and each is given once.
+        """
+        places = points.copy()
+        middles = self.mesh.vertices[self.mesh.triangles].mean(axis=1)
+        free = np.ones(len(middles), dtype=np.bool_)
+        for index in np.flatnonzero(~self.contains(points)):
+            distances = np.where(free, np.abs(middles - points[index]), np.inf)
+            taken = int(distances.argmin())
+            free[taken] = False
+            places[index] = middles[taken]
+        return places
 
     @property
     def loops(self) -> tuple[Complexes, ...]:

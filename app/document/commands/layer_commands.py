@@ -28,8 +28,28 @@ def add_figure(document: Document, figure: Figure, index: int | None = None) -> 
 
 @command("Replace layer")
 def replace_figure(document: Document, identity: int, figure: Figure) -> Document:
-    """Put another figure with the same id in a figure's place; others hang on it as before."""
-    return document.with_figure(replace(figure, id=identity))
+    """Put another figure with the same id in a figure's place.
+
+    What hangs on it does so as before, or at the nearest points where it is not there any more.
+    """
+    size = document.canvas
+    changed = keep_joints(identity)(document.with_figure(replace(figure, id=identity)))
+    return changed if changed.canvas == size else replace(changed, size=size)
+
+
+@command("Keep joints")
+def keep_joints(document: Document, identity: int) -> Document:
+    """Let what hangs on a figure hang on the nearest points of it where its shape has shrunk."""
+    domain = document.figure(identity).domain
+    for child in document.figures:
+        joint = child.attachment
+        if joint is None or joint.to != identity:
+            continue
+        (at,) = domain.nearest(np.array([joint.at]))
+        if at != joint.at:
+            moved = replace(child, attachment=replace(joint, at=complex(at)))
+            document = document.with_figure(moved)
+    return document
 
 
 @command("Duplicate layer")

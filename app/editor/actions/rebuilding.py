@@ -32,7 +32,7 @@ def choose_bounds(session: Session, bounds: Bounds) -> None:
         cancel(session)
         editing.edit_figure(session, figure_commands.set_bounds, bounds)
     elif bounds != project.figure.bounds:
-        _begin(session, Renewal(before=project.figure, bounds=bounds, pulls=False))
+        begin(session, Renewal(before=project.figure, bounds=bounds, pulls=False))
 
 
 def loosen(session: Session) -> None:
@@ -73,7 +73,7 @@ def solve_again(session: Session) -> None:
     """Pull every key's handles to their places again, within the bounds of now."""
     if session.project:
         figure = session.project.figure
-        _begin(session, Renewal(before=figure, bounds=figure.bounds))
+        begin(session, Renewal(before=figure, bounds=figure.bounds))
 
 
 def rebuild(session: Session) -> None:
@@ -82,7 +82,7 @@ def rebuild(session: Session) -> None:
     if project:
         figure = project.figure
         meshing = project.meshing or figure.meshing
-        _begin(session, Renewal(before=figure, bounds=figure.bounds, meshing=meshing))
+        begin(session, Renewal(before=figure, bounds=figure.bounds, meshing=meshing))
 
 
 def keep_up(session: Session) -> None:
@@ -117,7 +117,8 @@ def cancel(session: Session) -> None:
         project.renewal = None
 
 
-def _begin(session: Session, renewal: Renewal) -> None:
+def begin(session: Session, renewal: Renewal) -> None:
+    """Begin what replaces a figure's poses, in place of what is under way."""
     posing.drop(session)
     if session.project:
         _go_on(session, session.project, renewal)
@@ -140,6 +141,9 @@ def _go_on(session: Session, project: Project, renewal: Renewal) -> None:
 
     def failed(error: Exception) -> None:
         project.renewal = None
+        if renewal.replaces:
+            report(session, "The picture was not replaced", error)
+            return
         builds = renewal.meshing is not None
         if builds:
             project.unbuildable = renewal.before
@@ -162,9 +166,11 @@ def _accept(session: Session, project: Project, renewal: Renewal) -> None:
     else:
         gesture = object()
         project.history.do(renewal.command, gesture=gesture)
-        if renewal.domain is not None:
+        if renewal.into is not None:
             project.history.pose(None, gesture=gesture)
             project.meshing = None
+    if renewal.replaces:
+        editing.follow_figures(project)
     for number, notice in enumerate(renewal.notices):
         # After every stroke: what was said of the one before is no news any more.
         session.tell(sentence(notice), topic=f"rebuilt {number}")

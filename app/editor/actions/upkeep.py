@@ -29,7 +29,8 @@ from app.motion import (
     with_series,
 )
 from app.reports import measure_curves
-from app.storage import Cut, cut_picture
+from app.storage import Cut, cut_picture, shrink
+from engine.arrays import Bytes
 from engine.domain import CutOut
 
 STILL = 0.15  # seconds after which the playhead is taken to stay where it is
@@ -37,6 +38,8 @@ SKETCHING, REFINING, STREAMING = "In-betweens", "Finer in-betweens", "Smooth pla
 MOST_UNASKED = 1000  # frames whose extent is measured before anybody asks
 CUTTING = "Cutting out"
 MEASURING, SPANNING = "Measuring", "Measuring the motion"
+SHRINKING = "Small pictures"
+SMALL_SIDE = 96  # pixels of a picture in the list of layers
 HANGING, TRACING = "Joints", "Motion paths"
 
 
@@ -83,6 +86,7 @@ def missing(session: Session, project: Project) -> Iterator[Derivation[Any, Any]
     """Yield what the worker is to derive next: what is missed most, of any figure."""
     document = project.document
     yield from _cut(project)
+    yield from _shrink(project)
     clips = [(clip_of(document, figure), puppet) for figure, puppet in project.puppets.items()]
     movable = [(clip, puppet) for clip, puppet in clips if not puppet.coarse.has_failed(clip)]
     # First of all: they are watched while the hand moves, and are of few points only.
@@ -124,6 +128,20 @@ def _cut(project: Project) -> Iterator[Derivation[CutOut, Cut]]:
                 source=figure.cut_out,
                 work=partial(cut_picture, project.puppets[figure.id].picture, figure.cut_out),
                 complaint="The picture cannot be cut out so",
+            )
+
+
+def _shrink(project: Project) -> Iterator[Derivation[Cut, Bytes | None]]:
+    """Yield the small pictures that the list of layers shows; of one figure it needs none."""
+    for puppet in project.puppets.values() if len(project.puppets) > 1 else ():
+        cut, small = puppet.cut.value, puppet.small
+        if not (small.follows(cut) or small.has_failed(cut)):
+            yield Derivation(
+                kind=SHRINKING,
+                into=small,
+                source=cut,
+                work=partial(shrink, cut.texture, SMALL_SIDE),
+                complaint="The picture of a layer cannot be made small",
             )
 
 

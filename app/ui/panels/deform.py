@@ -244,7 +244,7 @@ def _keys(session: Session, look: Look, project: Project) -> list[Action]:
 
 
 def _solving(project: Project) -> list[Action]:
-    if project.renewal is not None and project.renewal.meshing is None:
+    if project.renewal is not None and project.renewal.into is None:
         imgui.progress_bar(project.renewal.progress, ImVec2(FILL, 0), project.renewal.now)
         return [do(rebuilding.cancel)] if imgui.button("Cancel###stop", ImVec2(FILL, 0)) else []
     is_possible = project.renewal is None and bool(project.figure.handles)

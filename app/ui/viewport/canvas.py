@@ -18,6 +18,7 @@ from app.render import (
     shader_is_faster,
 )
 from app.render.gpu import GpuMesh, GpuPicture, PosedMesh, RenderTarget
+from app.storage import Picture
 from app.ui.style import PALETTES
 from app.ui.viewport.backdrop import background, measure_brightness
 from app.ui.viewport.cut_view import CutView, mark_holes
@@ -104,7 +105,9 @@ class _Drawing:
     def __init__(self, renderer: Renderer, project: Project) -> None:
         self.project = project
         self._renderer = renderer
-        self._pictures: dict[int, GpuPicture] = {}
+        # By figures' ids and their pictures: a layer's may be replaced, or a new one get the id of
+        # one that is gone.
+        self._pictures: dict[tuple[int, Picture], GpuPicture] = {}
         self._meshes: dict[PosableMesh, GpuMesh] = {}
         self._drawn_meshes: dict[tuple[PosableMesh, int], DrawnMesh] = {}
         self._heated: dict[PosedMesh, tuple[Vertices, HeatMap]] = {}
@@ -130,11 +133,14 @@ class _Drawing:
 
     def refresh(self) -> None:
         """Bring the pictures up to what is cut out of them now."""
-        for figure, picture in self._pictures.items():
-            # A layer may be gone; undo brings it back.
-            puppet = self.project.puppets.get(figure)
-            if puppet is not None:
-                picture.write(puppet.cut.value.texture)
+        puppets = self.project.puppets
+        for figure, picture in list(self._pictures):
+            puppet = puppets.get(figure)
+            if puppet is None or puppet.picture is not picture:
+                # Undo brings it back; it has no mesh any more.
+                self._pictures.pop((figure, picture)).release()
+            else:
+                self._pictures[figure, picture].write(puppet.cut.value.texture)
 
     def tint(self, pose: PosedMesh, values: Floats) -> None:
         """Upload other values of the vertices."""
@@ -151,7 +157,7 @@ class _Drawing:
 
     def cut_view(self) -> CutView:
         """Return what is drawn of the active figure while it is cut out."""
-        if self._cut_view is None or self._cut_view.figure != self.project.active:
+        if self._cut_view is None or self._cut_view.puppet is not self.project.puppet:
             self._forget_cut_view()
             self._cut_view = CutView(self._renderer, self.project, self.project.active)
         return self._cut_view
@@ -179,10 +185,11 @@ class _Drawing:
         return self._meshes[mesh]
 
     def _picture(self, figure: int) -> GpuPicture:
-        if figure not in self._pictures:
-            pixels = self.project.puppets[figure].cut.value.texture
-            self._pictures[figure] = GpuPicture(self._renderer.programs.context, pixels)
-        return self._pictures[figure]
+        puppet = self.project.puppets[figure]
+        if (figure, puppet.picture) not in self._pictures:
+            drawn = GpuPicture(self._renderer.programs.context, puppet.cut.value.texture)
+            self._pictures[figure, puppet.picture] = drawn
+        return self._pictures[figure, puppet.picture]
 
 
 def _inputs(session: Session, project: Project) -> tuple[object, ...]:

@@ -51,20 +51,24 @@ class CutView:
     project : Project
     figure : int
         Its id.
+
+    Attributes
+    ----------
+    puppet : Puppet
+        The figure as the window had it then.
     """
 
     def __init__(self, renderer: Renderer, project: Project, figure: int) -> None:
-        self.figure = figure
-        self._puppet = project.puppets[figure]
-        self._kept = self._puppet.cut.value.kept
-        picture = self._puppet.picture
+        self.puppet = project.puppets[figure]
+        self._kept = self.puppet.cut.value.kept
+        picture = self.puppet.picture
         corners = project.document.figure(figure).corner + _corners(*picture.size)
         self._sheet = _Sheet(renderer, picture.rgba, corners)
         self._veil = _Sheet(renderer, _veil(self._kept), corners)
 
     def meshes(self) -> tuple[PosedMesh, ...]:
         """Return the picture, and the veil over what is removed of it now."""
-        kept = self._puppet.cut.value.kept
+        kept = self.puppet.cut.value.kept
         if kept is not self._kept:
             self._kept = kept
             self._veil.write(_veil(kept))

@@ -52,6 +52,7 @@ class Shell:
         self._themed: tuple[str, float] | None = None
         self._dialogs = Dialogs()
         self._actions: list[Action] = []
+        self._asked: list[Action] = []
         self._awake_until = 0.0
 
     def runner_params(self) -> hello_imgui.RunnerParams:
@@ -86,7 +87,7 @@ class Shell:
 
     def ask(self, action: Action) -> None:
         """Do something at the end of the next frame."""
-        self._actions.append(action)
+        self._asked.append(action)
 
     def release(self) -> None:
         """Close what is open beside the window."""
@@ -164,8 +165,8 @@ class Shell:
         if self._themed != self._theme:
             self._apply_theme()
         self._docking.begin_frame(interface_scale(session.preferences.scale))
-        # The tab that shows it asks for it in every frame.
-        session.export_frame = None
+        # The tabs that show them ask for them in every frame.
+        session.export_frame = session.pointed_layer = None
         playback.halt_at_end(session)
         # Panels are to see the frame that it is by now.
         self._attempt(partial(upkeep.maintain, session))
@@ -186,7 +187,8 @@ class Shell:
         self._actions.append(do(editing.hold, held or int(imgui.is_mouse_down(LEFT))))
 
     def _apply_actions(self) -> None:
-        actions, self._actions = self._actions, []
+        # What panels saw of the pointer comes first: what was dropped there depends on it.
+        actions, self._actions, self._asked = self._actions + self._asked, [], []
         for action in actions:
             self._attempt(partial(action.apply, self.session))
         # After the actions, so that a pull goes on with the newest wish; before the picture is

@@ -16,7 +16,7 @@ import glfw  # isort: skip
 from app.document import Pose
 from app.editor import Action, FileDialog, Session, do, layering
 from app.errors import LissomError
-from app.render import Renderer, Textures, Thumbnail, Thumbnails
+from app.render import LayerPictures, Renderer, Textures, Thumbnail, Thumbnails
 from app.render.gpu import is_software
 from app.storage import app_icon
 from app.ui.panel import Panel
@@ -27,6 +27,7 @@ from app.ui.window.exporter import Exporter
 from app.ui.window.modifiers import release_stuck_modifiers
 from app.ui.window.shell import Shell
 from app.ui.window.title import NAME, window_title
+from engine.arrays import Bytes
 
 SIZE = (1280, 800)
 APPLICATION = "lissom"  # the name of its desktop entry
@@ -74,6 +75,7 @@ class Window:
         self.session = session
         self._connect = connect
         self._thumbnails: Thumbnails | None = None
+        self._layer_pictures: LayerPictures | None = None
         self._canvas: Canvas | None = None
         self._exporter: Exporter | None = None
         self._renderer: Renderer | None = None
@@ -134,6 +136,8 @@ class Window:
     def textures(self) -> Textures:
         """Return the textures that the panels show, by their OpenGL names."""
         textures = [] if self._thumbnails is None else self._thumbnails.textures()
+        if self._layer_pictures is not None:
+            textures += self._layer_pictures.textures()
         if self._canvas is not None and self._canvas.target is not None:
             textures.append(self._canvas.target.texture)
             textures += [target.texture for target in self._canvas.pose_pictures.targets]
@@ -161,7 +165,12 @@ class Window:
             ),
             Panel(title="Timeline", icon=icons.ICON_FA_FILM, place="bottom", draw=timeline.draw),
             Panel(title="Handle", icon=icons.ICON_FA_CIRCLE_DOT, place="side", draw=handle.draw),
-            Panel(title="Layers", icon=icons.ICON_FA_LAYER_GROUP, place="side", draw=layers.draw),
+            Panel(
+                title="Layers",
+                icon=icons.ICON_FA_LAYER_GROUP,
+                place="side",
+                draw=lambda session, look: layers.draw(session, look, self._layer_picture),
+            ),
             Panel(
                 title="Poses",
                 icon=icons.ICON_FA_PERSON_RUNNING,
@@ -187,12 +196,16 @@ class Window:
     def _pose_picture(self, pose: Pose, side: int) -> int | None:
         return self._canvas.pose_pictures.get(pose, side) if self._canvas else None
 
+    def _layer_picture(self, identity: int, small: Bytes) -> Thumbnail | None:
+        return self._layer_pictures.get(identity, small) if self._layer_pictures else None
+
     def _start(self) -> None:
         renderer = self._renderer = self._connect()
         self.session.full_detail = not is_software(renderer.programs.context)
         self._canvas = Canvas(renderer)
         self._exporter = Exporter(renderer)
         self._thumbnails = Thumbnails(renderer.programs.context)
+        self._layer_pictures = LayerPictures(renderer.programs.context)
 
     def _accept_files(self) -> None:
         """Open what is dropped on the window."""
@@ -211,13 +224,15 @@ class Window:
 
     def _release(self) -> None:
         self._shell.release()
-        for owner in (self._exporter, self._canvas, self._thumbnails, self._renderer):
+        owners = (self._exporter, self._canvas, self._thumbnails, self._layer_pictures)
+        for owner in (*owners, self._renderer):
             if owner is not None:
                 owner.release()
 
     def _begin_frame(self) -> None:
-        if self._thumbnails is None:
+        if self._thumbnails is None or self._layer_pictures is None:
             return
+        self._layer_pictures.begin_frame()
         if self._thumbnails.is_behind:
             # There are more to be read.
             hello_imgui.request_refresh()

@@ -14,6 +14,6 @@ def test_a_layer_that_is_built_anew_stays_where_it_is(tmp_path):
     renewal = Renewal(before=head, bounds=head.bounds, meshing=Meshing(triangles=5_000))
     while not renewal.is_over:
         renewal = go_on(renewal, opened.pictures[head.id].rgba)
-    assert abs(renewal.domain.outline.mean() - head.domain.outline.mean()) < 1
+    assert abs(renewal.into.domain.outline.mean() - head.domain.outline.mean()) < 1
     (again,) = renewal.command(opened.document).figures
     assert again.corner == head.corner == 60 + 160j

@@ -5,13 +5,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from imgui_bundle import ImVec2
-from layered import openraster
+from layered import blob, openraster
 from PIL import Image, ImageDraw
 
-from app.document import PRESETS, Passing, figure_commands, key_commands, layer_commands
+from app.document import PRESETS, Attachment, Passing, figure_commands, key_commands, layer_commands
 from app.document.keyframe import Target
 from app.editor import layering
-from app.editor.actions import editing, keys, playback, posing, timeline_pointing
+from app.editor.actions import editing, keys, playback, posing, saving, timeline_pointing
 from app.editor.poses import copying
 from app.editor.timeline_view import Strip
 
@@ -514,3 +514,134 @@ def test_handles_are_shown_of_the_layer_that_is_chosen_even_while_in_betweens_ar
     hand = window.point(190 + 118j)
     part = np.s_[int(hand.y) - 8 : int(hand.y) + 8, int(hand.x) - 8 : int(hand.x) + 8]
     assert np.abs(after[part] - before[part]).max() > 30
+
+
+def saved(path, image):
+    image.save(path)
+    return path
+
+
+def pixel(window, place):
+    """The colour on the screen at a place of the canvas."""
+    at = window.point(place)
+    return tuple(int(part) for part in np.asarray(window.picture())[int(at.y), int(at.x), :3])
+
+
+@pytest.fixture
+def posed(window, scene):
+    """The scene with the arm hung on the body, and raised by a handle at frame 24."""
+    arm, body = identity(scene, "arm"), identity(scene, "body")
+    joint = Attachment(to=body, at=95 + 118j)
+    window.act(editing.edit, layer_commands.attach(arm, 95 + 118j, joint))
+    window.act(posing.add_handle, 190 + 118j)
+    window.act(playback.seek, 24)
+    window.act(posing.wish, {0: Target(position=170 + 160j)})
+    window.settle()
+    assert len(scene.figure.keys) == 2
+    return scene
+
+
+def test_another_picture_keeps_handles_keys_and_joints(window, posed, tmp_path):
+    arm = identity(posed, "arm")
+    window.act(layering.rename, arm, "limb")
+    window.act(layering.fade, arm, 0.75)
+    window.act(layering.move, arm, 1)
+    before = posed.document
+    green = saved(tmp_path / "green.png", painted((85, 66, 205, 99), (30, 180, 60, 255)))
+    window.act(layering.replace_picture, arm, green)
+    window.settle()
+    figure, old = posed.document.figure(arm), before.figure(arm)
+    assert posed.history.undo_label == "Replace picture"
+    assert figure.picture is not old.picture
+    assert (figure.name, figure.opacity, figure.handles) == ("limb", 0.75, old.handles)
+    assert posed.document.figures.index(figure) == 1
+    assert (figure.anchor, figure.attachment) == (old.anchor, old.attachment)
+    assert [key.frame for key in figure.keys] == [0, 24]
+    for key, earlier in zip(figure.keys, old.keys, strict=True):
+        assert key.pose.certificate.certified
+        assert key.pose.targets == earlier.pose.targets
+        places = [
+            f.map_of(k.pose)(np.array([190 + 118j]))[0] for f, k in ((figure, key), (old, earlier))
+        ]
+        assert abs(places[0] - places[1]) < 4
+    window.act(playback.seek, 0)
+    window.settle()
+    red, green, blue = pixel(window, 180 + 118j)
+    assert green > 1.5 * max(red, blue)
+    window.act(editing.undo)
+    assert posed.document is before
+    window.settle()
+    assert pixel(window, 180 + 118j)[0] > 150
+    window.act(editing.redo)
+    window.settle()
+    path = tmp_path / "man.lissom"
+    window.act(saving.write, path, None)
+    window.settle()
+    again = window.open(path).document.figure(arm)
+    assert again.picture.sha256 == figure.picture.sha256
+    assert (again.corner, again.attachment) == (figure.corner, figure.attachment)
+
+
+def test_what_is_outside_of_another_picture_comes_into_it(window, posed, tmp_path):
+    arm, body = identity(posed, "arm"), identity(posed, "body")
+    window.act(layering.choose, arm)
+    before = posed.document
+    # Smaller than the layer: it comes where the middle of the arm was, from 105 to 180.
+    short = saved(tmp_path / "short.png", blob(76, 24))
+    window.act(layering.replace_picture, arm, short)
+    window.settle()
+    figure = posed.document.figure(arm)
+    assert abs(figure.domain.outline.mean() - (142 + 117j)) < 3
+    points = np.array([figure.anchor, *(handle.position for handle in figure.handles)])
+    assert figure.domain.contains(points).all()
+    assert figure.handles[0].position.real < 182
+    rest, raised = figure.keys
+    assert abs(rest.pose.targets[0].position - figure.handles[0].position) < 1e-9
+    assert raised.pose.targets[0].position != before.figure(arm).keys[1].pose.targets[0].position
+    assert figure.attachment == before.figure(arm).attachment
+    # The body without the place where the arm hangs.
+    legs = saved(tmp_path / "legs.png", painted((60, 120, 110, 180), (40, 40, 200, 255)))
+    window.act(layering.replace_picture, body, legs)
+    window.settle()
+    joint = posed.document.figure(arm).attachment
+    assert posed.document.figure(body).domain.contains(np.array([joint.at])).all()
+    assert joint.at.imag < 82
+    assert not posed.joints.has_failed(posed.joints.source)
+    assert posed.joints.value is not None
+    for _ in range(2):
+        window.act(editing.undo)
+    assert posed.document is before
+
+
+def test_a_picture_that_cannot_take_the_place_of_a_layers_changes_nothing(window, posed, tmp_path):
+    arm, wall = identity(posed, "arm"), identity(posed, "wall")
+    before = posed.document
+    empty = saved(tmp_path / "empty.png", Image.new("RGBA", (60, 50)))
+    for path, told in ((empty, "there is no shape on it"), (tmp_path / "none.png", "none.png")):
+        window.session.toasts = []
+        window.act(layering.replace_picture, arm, path)
+        window.settle()
+        (toast,) = window.session.toasts
+        assert toast.text.startswith("The picture of arm was not replaced")
+        assert told in toast.text
+    assert posed.document is before
+    # A still layer takes any picture.
+    path = saved(tmp_path / "sky.png", Image.new("RGBA", (240, 200), (90, 160, 250, 255)))
+    window.act(layering.replace_picture, wall, path)
+    window.settle()
+    assert posed.document.figure(wall).still
+    assert pixel(window, 20 + 20j) == (90, 160, 250)
+    window.session.toasts = []
+
+
+def test_a_layer_that_comes_after_one_is_gone_shows_its_own_picture(window, scene, tmp_path):
+    gone = max(figure.id for figure in scene.document.figures)
+    window.act(layering.remove, gone)
+    window.settle()
+    path = saved(tmp_path / "dot.png", blob(60, 40, (250, 220, 0)))
+    window.act(layering.add, [path])
+    window.settle()
+    added = scene.document.figures[-1]
+    assert (added.id, added.name, added.corner) == (gone, "dot", 90 + 80j)
+    assert scene.active == added.id
+    assert pixel(window, 120 + 100j) == (250, 220, 0)

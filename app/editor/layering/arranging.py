@@ -1,0 +1,131 @@
+"""Which layer is posed, in what order they lie, and when they are seen."""
+
+import numpy as np
+
+from app.document import is_visible, layer_commands
+from app.editor.actions import editing, playback, posing
+from app.editor.project import Project
+from app.editor.session import Session
+from engine.geometry import contains
+
+
+def choose(session: Session, identity: int) -> None:
+    """Let a figure be the one whose handles and keys are shown and changed."""
+    project = session.project
+    if project is None or identity == project.active:
+        return
+    posing.drop(session)
+    project.active = identity
+    project.selected = project.chosen = frozenset()
+    project.meshing = project.drafted_bounds = None
+    session.hovered = None
+
+
+def figure_at(
+    project: Project, place: complex, *, below: int | None = None, besides: int | None = None
+) -> int | None:
+    """Return the figure that is seen in front at a place of the scene, None where there is none.
+
+    Still, hidden and locked ones are passed through.
+
+    Parameters
+    ----------
+    project : Project
+    place : complex
+    below : int, optional
+        Where that figure is there, too, the next one behind it is returned, or at last the first.
+    besides : int, optional
+        A figure that is passed through.
+    """
+    found = [
+        each.id
+        for each in reversed(project.document.figures)
+        if each.id != besides and not (each.still or each.locked) and is_at(project, each.id, place)
+    ]
+    if below in found:
+        return found[(found.index(below) + 1) % len(found)]
+    return found[0] if found else None
+
+
+def is_at(project: Project, identity: int, place: complex) -> bool:
+    """Tell whether a figure is seen at a place of the scene."""
+    shown = project.puppets[identity].shown
+    if shown is None or not is_visible(project.document.figure(identity), shown.frame):
+        return False
+    outline = shown.positions[: len(shown.mesh.domain.outline)]
+    return bool(contains(outline, np.array([shown.placement.back(place)]))[0])
+
+
+def rename(session: Session, identity: int, name: str) -> None:
+    """Give a layer another name."""
+    if session.project and name.strip():
+        editing.edit(session, layer_commands.rename_figure(identity, name))
+
+
+def move(session: Session, identity: int, index: int) -> None:
+    """Put a layer at an index in the order from back to front."""
+    editing.edit(session, layer_commands.move_figure(identity, index))
+
+
+def show(session: Session, identity: int) -> None:
+    """Hide a layer, or show it again."""
+    if session.project:
+        hidden = session.project.document.figure(identity).hidden
+        editing.edit(session, layer_commands.set_hidden(identity, hidden=not hidden))
+
+
+def lock(session: Session, identity: int) -> None:
+    """Let clicks on the drawing pass through a layer, or stop at it again."""
+    if session.project:
+        locked = session.project.document.figure(identity).locked
+        editing.edit(session, layer_commands.set_locked(identity, locked=not locked))
+
+
+def refer(session: Session, identity: int) -> None:
+    """Leave a layer out of exports, or take it in again."""
+    if session.project:
+        reference = session.project.document.figure(identity).reference
+        editing.edit(session, layer_commands.set_reference(identity, reference=not reference))
+
+
+def fade(session: Session, identity: int, opacity: float) -> None:
+    """Set how opaque a layer is."""
+    editing.edit(session, layer_commands.set_opacity(identity, opacity))
+
+
+def switch_here(session: Session, identity: int) -> None:
+    """Show or hide a layer from the present frame on: the other way than it is there."""
+    project = session.project
+    if project:
+        frame = playback.current_frame(session, project)
+        figure = project.document.figure(identity)
+        visible = not is_visible(figure, frame)
+        editing.edit(session, layer_commands.switch_at(identity, frame, visible=visible))
+
+
+def unswitch_here(session: Session, identity: int) -> None:
+    """Take back that a layer is shown or hidden from the present frame on."""
+    project = session.project
+    if project:
+        frame = playback.current_frame(session, project)
+        editing.edit(session, layer_commands.switch_at(identity, frame, visible=None))
+
+
+def duplicate(session: Session, identity: int) -> None:
+    """Put a copy of a layer in front of it, and choose it."""
+    project = session.project
+    if project is None:
+        return
+    free = layer_commands.free_identity(project.document)
+    editing.edit(session, layer_commands.duplicate_figure(identity))
+    choose(session, free)
+
+
+def remove(session: Session, identity: int) -> None:
+    """Delete a layer."""
+    editing.edit(session, layer_commands.remove_figure(identity))
+
+
+def tint_depth(session: Session, tints: bool) -> None:  # noqa: FBT001 - of an action
+    """Show what of the drawing is in front, and what behind."""
+    session.tints_depth = tints

@@ -1,0 +1,80 @@
+"""Hanging one layer on another, and letting it go."""
+
+from app.document import Attachment, layer_commands
+from app.editor.actions import editing, playback, posing
+from app.editor.layering.working import put
+from app.editor.project import Project
+from app.editor.session import Session
+from app.motion import Joints
+
+HANGING = "Hanging a layer"
+
+
+def hangs_on(project: Project, identity: int, carrier: int) -> bool:
+    """Tell whether a layer is another one, or hangs on it, directly or by others."""
+    return any(each.id == carrier for each in project.document.carriers(identity))
+
+
+def hang(
+    session: Session,
+    child: int,
+    parent: int,
+    turns: bool = True,  # noqa: FBT001, FBT002 - of an action
+    place: complex | None = None,
+) -> None:
+    """Hang a layer by its anchor on another one; nothing moves at the present frame.
+
+    Parameters
+    ----------
+    session : Session
+    child, parent : int
+        Ids of layers.
+    turns : bool
+        Whether the child turns with the parent.
+    place : complex, optional
+        Of the joint, in the scene; by default the anchor's, or the middle of where they overlap.
+    """
+    project = session.project
+    if project is None:
+        return
+    if hangs_on(project, parent, child):
+        names = [project.document.figure(identity).name for identity in (parent, child)]
+        session.tell(
+            f"{names[0]} hangs on {names[1]}, so that {names[1]} cannot hang on it: that would be "
+            "a circle. Detach one of the layers between first.",
+            tone="error",
+            topic="joint",
+        )
+        return
+    posing.drop(session)
+    document, frame = project.document, playback.current_frame(session, project)
+    samplers = {figure: puppet.coarse.value.sampler for figure, puppet in project.puppets.items()}
+    siblings = {figure: sampler for figure, sampler in samplers.items() if sampler is not None}
+
+    def done(joint: tuple[complex, Attachment]) -> None:
+        if session.project is project and project.document is document:
+            editing.edit(session, layer_commands.attach(child, *joint))
+
+    put(
+        session,
+        HANGING,
+        lambda: Joints(document, siblings).hang(child, parent, frame, place=place, turns=turns),
+        done,
+        "The layers cannot be joined",
+    )
+
+
+def let_hang(session: Session, child: int) -> None:
+    """Let a layer hang on nothing any more; nothing moves at the present frame."""
+    project = session.project
+    shown = project.puppets[child].shown if project else None
+    if project and shown is not None:
+        editing.edit(session, layer_commands.detach(child, *shown.placement))
+
+
+def turn_with(session: Session, child: int, turns: bool) -> None:  # noqa: FBT001 - of an action
+    """Let a layer turn with the one that it hangs on, or keep its own turn; nothing moves now."""
+    project = session.project
+    joint = project.document.figure(child).attachment if project else None
+    if joint is not None and turns != joint.turns:
+        hang(session, child, joint.to, turns)

@@ -1,0 +1,224 @@
+"""Pictures that become layers, or take the place of a layer's own."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import NamedTuple
+
+from app.document import Figure, Meshing, layer_commands
+from app.editor.action import Action, do
+from app.editor.actions import editing, files, rebuilding
+from app.editor.dialogs import FileDialog, Question
+from app.editor.failures import sentence
+from app.editor.layering.arranging import choose
+from app.editor.layering.working import put
+from app.editor.session import Session
+from app.errors import LissomError
+from app.solving import Renewal, begin_replacing
+from app.storage import (
+    Layer,
+    LayeredPicture,
+    Picture,
+    decode_picture,
+    is_layered,
+    layer_figure,
+    read_layered,
+    read_picture_file,
+    still_figure,
+    still_picture,
+)
+
+RISING, ADDING, REPLACING = "Finding a shape", "Adding a layer", "Replacing a picture"
+
+
+class _Made(NamedTuple):
+    """A figure, its decoded picture, and what was done, in words."""
+
+    figure: Figure
+    picture: Picture
+    notices: tuple[str, ...]
+
+
+def stand_still(session: Session, identity: int) -> None:
+    """Make a layer a still picture, without handles and keys."""
+    if session.project:
+        still = still_figure(session.project.document.figure(identity))
+        command = layer_commands.replace_figure(identity, still)
+        editing.edit(session, replace(command, label="Make still"))
+
+
+def stand_up(session: Session, identity: int) -> None:
+    """Let a still picture be posed: the shape that is drawn on it, as it was drawn."""
+    project = session.project
+    if project is None:
+        return
+    figure, picture = project.document.figure(identity), project.puppets[identity].picture
+    layer = Layer(
+        name=figure.name,
+        data=figure.picture.data,
+        picture=picture,
+        corner=figure.corner,
+        visible=not figure.hidden,
+        opacity=figure.opacity,
+    )
+    meshing = session.meshing
+
+    def work() -> Figure:
+        made = _shape(layer, identity, meshing).figure
+        return replace(
+            made, reference=figure.reference, locked=figure.locked, switches=figure.switches
+        )
+
+    def done(made: Figure) -> None:
+        if session.project is project:
+            command = layer_commands.replace_figure(identity, made)
+            editing.edit(session, replace(command, label="Let be posed"))
+            choose(session, identity)
+
+    put(session, RISING, work, done, f"{figure.name} cannot be posed")
+
+
+def _shape(layer: Layer, identity: int, meshing: Meshing) -> _Made:
+    """Return the figure of a layer that can be posed."""
+    # Where nothing is transparent, a plain background is taken off first.
+    is_cut_out = bool((layer.picture.rgba[..., 3] == 0).any())
+    made, notices = layer_figure(layer, identity, meshing, is_cut_out=is_cut_out)
+    if made.still:
+        raise LissomError(f"there is no shape on it ({'; '.join(notices)})")
+    return _Made(made, layer.picture, (*layer.picture.notices, *notices))
+
+
+def replace_picture(session: Session, identity: int, path: Path) -> None:
+    """Let a layer have another picture; its handles, keys and joints stay."""
+    project = session.project
+    if project is None:
+        return
+    before, canvas = project.document.figure(identity), project.document.canvas
+
+    def work() -> tuple[Renewal, _Made]:
+        data = read_picture_file(path)
+        picture = decode_picture(data, path.name)
+        if before.still:
+            made = _Made(still_picture(data, picture), picture, picture.notices)
+        else:
+            layer = Layer(name=before.name, data=data, picture=picture)
+            made = _shape(layer, identity, before.meshing)
+        return begin_replacing(before, made.figure, canvas), made
+
+    def done(begun: tuple[Renewal, _Made]) -> None:
+        renewal, made = begun
+        if session.project is not project:
+            return
+        project.pictures[made.figure.picture] = made.picture
+        rebuilding.begin(session, renewal)
+        if renewal.before in project.document.figures:
+            choose(session, identity)
+            for notice in made.notices:
+                session.tell(sentence(notice))
+
+    put(session, REPLACING, work, done, f"The picture of {before.name} was not replaced")
+
+
+def add(session: Session, paths: Sequence[Path]) -> None:
+    """Add pictures, and the layers of drawings, as layers in front of all others."""
+    project = session.project
+    if project is None:
+        return
+    meshing, canvas = session.meshing, project.document.canvas
+
+    def work() -> tuple[list[_Made], list[str]]:
+        made: list[_Made] = []
+        told: list[str] = []
+        for path in paths:
+            drawing = _drawing(path)
+            told += drawing.notices
+            across, up = ((ours - its) // 2 for ours, its in zip(canvas, drawing.size, strict=True))
+            for layer in drawing.layers:
+                moved = replace(layer, corner=layer.corner + complex(across, up))
+                figure, notices = layer_figure(moved, 0, meshing, is_cut_out=is_layered(path))
+                made.append(_Made(figure, layer.picture, layer.picture.notices + notices))
+        return made, told
+
+    def done(read: tuple[list[_Made], list[str]]) -> None:
+        if session.project is not project:
+            return
+        made, told = read
+        gesture = object()
+        for figure, picture, _ in made:
+            identity = layer_commands.free_identity(project.document)
+            project.pictures[figure.picture] = picture
+            command = layer_commands.add_figure(replace(figure, id=identity))
+            project.history.do(command, gesture=gesture)
+        editing.follow_figures(project)
+        choose(session, identity)
+        for notice in (*told, *(notice for each in made for notice in each.notices)):
+            session.tell(sentence(notice))
+
+    put(session, ADDING, work, done, "The layer cannot be added")
+
+
+def _drawing(path: Path) -> LayeredPicture:
+    """Read a drawing on layers, or a picture as one of a single layer."""
+    if is_layered(path):
+        return read_layered(path)
+    data = read_picture_file(path)
+    picture = decode_picture(data, path.name)
+    layer = Layer(name=path.stem.strip() or "layer", data=data, picture=picture)
+    return LayeredPicture(size=picture.size, layers=(layer,), notices=())
+
+
+def ask(session: Session) -> None:
+    """Ask for a picture that becomes another layer."""
+    session.dialog = FileDialog(
+        title="Add a picture as a layer",
+        folder=session.usual_folder,
+        suffixes=(*files.PICTURES, *files.LAYERED),
+        writes=False,
+        chosen=lambda path: do(add, [path]),
+    )
+
+
+def ask_replace(session: Session, identity: int) -> None:
+    """Ask for a picture that takes the place of a layer's own."""
+    if session.project:
+        name = session.project.document.figure(identity).name
+        session.dialog = FileDialog(
+            title=f"Replace the picture of {name}",
+            folder=session.usual_folder,
+            suffixes=files.PICTURES,
+            writes=False,
+            chosen=lambda path: do(replace_picture, identity, path),
+        )
+
+
+def point_at(session: Session, identity: int) -> None:
+    """Note on which layer's row the pointer is in this frame."""
+    session.pointed_layer = identity
+
+
+def drop(session: Session, paths: Sequence[Path]) -> None:
+    """Open what was dropped on the window; ask whether pictures are to join the open scene."""
+    kinds = (*files.PICTURES, *files.LAYERED)
+    pictures = [path for path in paths if path.suffix.lower() in kinds and not path.is_dir()]
+    project = session.project
+    if project is None or not pictures or len(pictures) < len(paths):
+        files.open_dropped(session, paths)
+        return
+    (first, *others) = pictures
+    what = f"{len(pictures)} pictures" if others else first.name
+    is_one = not others and not is_layered(first)
+    answers: list[tuple[str, Action]] = [
+        ("New layer" if is_one else "New layers", do(add, pictures)),
+        ("New scene", do(files.open_dropped, pictures)),
+    ]
+    text = "New layers lie in front of the others and share their timeline."
+    if is_one:
+        onto = session.pointed_layer
+        identity = project.active if onto is None else onto
+        name = project.document.figure(identity).name
+        answers.insert(onto is None, (f"Replace {name}", do(replace_picture, identity, first)))
+        text = (
+            "A new layer lies in front of the others and shares their timeline. A layer whose "
+            "picture is replaced keeps its handles, keys and joints."
+        )
+    session.dialog = Question(title=f"Add {what} to this scene?", text=text, answers=tuple(answers))

@@ -1,0 +1,91 @@
+"""Another picture under the same handles, keys and joints."""
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+import numpy as np
+
+from app.document import Figure, Pose
+from app.solving.renewal import Renewal, carried
+from engine.arrays import Complexes
+from engine.domain import Domain
+from engine.maps import HarmonicMap
+
+
+def begin_replacing(before: Figure, made: Figure, canvas: tuple[int, int]) -> Renewal:
+    """Return a figure on its way to another picture.
+
+    A picture of the same size lies where the old one did, and one of the canvas's size fills it;
+    else the middle of the new shape comes where that of the old one was. Handles and the anchor
+    stay where they are, or come to the nearest places of the new shape.
+
+    Parameters
+    ----------
+    before : Figure
+    made : Figure
+        The new picture, its lower left corner at 0, as a figure of its own.
+    canvas : tuple of int
+        Width and height of the scene.
+    """
+    corner = _corner(before, made, canvas)
+    domain = made.domain.moved(corner)
+    places = _places(before, domain)
+    handles = tuple(replace(handle, position=places[handle.position]) for handle in before.handles)
+    into = replace(
+        before,
+        picture=made.picture,
+        corner=corner,
+        cut_out=made.cut_out,
+        is_stale=False,
+        domain=domain,
+        handles=handles,
+        anchor=None if before.anchor is None else places[before.anchor],
+        keys=tuple(
+            replace(key, pose=_at_rest(before, key.pose, domain, places)) for key in before.keys
+        ),
+        library=tuple(
+            replace(kept, pose=_at_rest(before, kept.pose, domain, places))
+            for kept in before.library
+        ),
+        unknown={
+            name: value
+            for name, value in before.unknown.items()
+            if name not in {"picture", "domain"}
+        },
+    )
+    return Renewal(before=before, bounds=before.bounds, into=into, replaces=True)
+
+
+def _corner(before: Figure, made: Figure, canvas: tuple[int, int]) -> complex:
+    """Return where the lower left corner of the new picture comes, in whole pixels."""
+    if made.picture.size == before.picture.size:
+        return before.corner
+    if made.picture.size == canvas:
+        return 0j
+    by = _middle(before.domain.outline) - _middle(made.domain.outline)
+    return complex(round(by.real), round(by.imag))
+
+
+def _middle(outline: Complexes) -> complex:
+    x, y = outline.real, outline.imag
+    return complex(x.min() + x.max(), y.min() + y.max()) / 2
+
+
+def _places(before: Figure, domain: Domain) -> Mapping[complex, complex]:
+    """Return where handles and the anchor come, by where they were."""
+    old = [handle.position for handle in before.handles]
+    if before.anchor is not None and before.anchor not in old:
+        old.append(before.anchor)
+    points = np.array(old, dtype=np.complex128)
+    pairs = zip(points.tolist(), domain.nearest(points).tolist(), strict=True)
+    return dict(pairs)
+
+
+def _at_rest(before: Figure, pose: Pose, domain: Domain, places: Mapping[complex, complex]) -> Pose:
+    """Return a pose over the new domain, at rest, with its wishes moved as the handles are."""
+    rest, shape = HarmonicMap.identity(domain.cage, domain.holes), before.map_of(pose)
+    targets = {}
+    for identity, target in pose.targets.items():
+        place = before.handle(identity).position
+        targets[identity] = carried(target, shape, place, places[place])
+    return replace(pose.with_map(rest), targets=targets)
