@@ -4,6 +4,8 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Generic, TypeVar
 
+from app.editor.jobs import LaneName
+
 Source = TypeVar("Source")
 Value = TypeVar("Value")
 
@@ -72,6 +74,8 @@ class Derivation(Generic[Source, Value]):
         What is said where that fails.
     done : callable, optional
         Takes the value in place of `into`.
+    lane : str
+        Of the worker.
     """
 
     kind: str
@@ -80,3 +84,4 @@ class Derivation(Generic[Source, Value]):
     work: Callable[[], Value]
     complaint: str
     done: Callable[[Value], None] | None = None
+    lane: LaneName = "display"

@@ -259,6 +259,7 @@ class Project:
     flip: Flip | None = None
     blend: PoseBlend | None = None
     kept: str | None = None  # the pose of the library that is picked
+    listed: int | None = None  # the figure that the list of layers was scrolled to
     awaits_extent: bool = False  # whether the camera fits the motion once that is measured
     gesture: object | None = None
     held: int = 0

@@ -186,6 +186,7 @@ class Session:
     dialog: Dialog | None = None
     system_dialogs: bool = False  # whether the system's own file dialogs are used
     export: ExportRun | None = None
+    named_layer: int | None = None  # for which a name is asked
     pointed_layer: int | None = None  # on whose row in the list the pointer is
     export_frame: Box | None = None  # shown in the viewport while the export's settings are
     keeps_aspect: bool = True  # of an export whose size is entered

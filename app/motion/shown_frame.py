@@ -126,20 +126,32 @@ def show(
                 handles=handles,
                 is_current=True,
             )
-    if earlier is None:
+    return _show_roughly(clip, frame, motions[-1].mesh, earlier)
+
+
+def _show_roughly(clip: Clip, frame: int, mesh: PosableMesh, earlier: Shown | None) -> Shown:
+    """Return what to draw where nothing is prepared: the two keys, blended roughly.
+
+    What was drawn of another domain stays meanwhile.
+    """
+    domain = clip.figure.domain
+    if earlier is not None:
+        if earlier.mesh.source is not domain:
+            return replace(earlier, is_current=False)
+        if earlier.clip == clip and earlier.frame == frame and not earlier.is_current:
+            return earlier
+        mesh = mesh if mesh.source is domain else earlier.mesh
+    if mesh.source is not domain:
         raise ValueError("none of the motions is of the figure's domain")
-    if earlier.mesh.source is not clip.figure.domain:
-        return replace(earlier, is_current=False)
-    if earlier.clip == clip and earlier.frame == frame and not earlier.is_current:
-        return earlier
-    mesh = motions[-1].mesh if motions[-1].mesh.source is clip.figure.domain else earlier.mesh
-    triangles = painted_triangles(mesh.domain.mesh, clip, frame)
     return Shown(
         clip=clip,
         frame=frame,
         pose=None,
         mesh=mesh,
-        vertices=Placed(positions=_between_keys(clip, frame, mesh), triangles=triangles),
+        vertices=Placed(
+            positions=_between_keys(clip, frame, mesh),
+            triangles=painted_triangles(mesh.domain.mesh, clip, frame),
+        ),
         handles=_locate(clip, mesh, earlier),
         is_current=False,
     )

@@ -35,6 +35,7 @@ __all__ = [
     "HandleMark",
     "HandleStyle",
     "Heat",
+    "LayerPictures",
     "Line",
     "Renderer",
     "Scene",

@@ -78,6 +78,7 @@ def derive(session: Session, derivation: Derivation[Any, Any]) -> None:
             work=derivation.work,
             done=derivation.done or partial(into.take, source),
             failed=failed,
+            lane=derivation.lane,
         )
     )
 
@@ -132,8 +133,8 @@ def _cut(project: Project) -> Iterator[Derivation[CutOut, Cut]]:
 
 
 def _shrink(project: Project) -> Iterator[Derivation[Cut, Bytes | None]]:
-    """Yield the small pictures that the list of layers shows; of one figure it needs none."""
-    for puppet in project.puppets.values() if len(project.puppets) > 1 else ():
+    """Yield the small pictures that the list of layers shows."""
+    for puppet in project.puppets.values():
         cut, small = puppet.cut.value, puppet.small
         if not (small.follows(cut) or small.has_failed(cut)):
             yield Derivation(
@@ -142,6 +143,8 @@ def _shrink(project: Project) -> Iterator[Derivation[Cut, Bytes | None]]:
                 source=cut,
                 work=partial(shrink, cut.texture, SMALL_SIDE),
                 complaint="The picture of a layer cannot be made small",
+                # It takes a few milliseconds, and is not to wait until all in-betweens are there.
+                lane="hand",
             )
 
 

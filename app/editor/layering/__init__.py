@@ -6,11 +6,13 @@ Imports: `app.editor`, `app.document`, `app.motion`, `app.solving`, `app.storage
 """
 
 from app.editor.layering.arranging import (
+    ask_name,
     choose,
     duplicate,
     fade,
     figure_at,
     is_at,
+    list_active,
     lock,
     move,
     refer,
@@ -36,6 +38,7 @@ from app.editor.layering.pictures import (
 __all__ = [
     "add",
     "ask",
+    "ask_name",
     "ask_replace",
     "choose",
     "drop",
@@ -46,6 +49,7 @@ __all__ = [
     "hangs_on",
     "is_at",
     "let_hang",
+    "list_active",
     "lock",
     "move",
     "point_at",

@@ -111,6 +111,17 @@ def unswitch_here(session: Session, identity: int) -> None:
         editing.edit(session, layer_commands.switch_at(identity, frame, visible=None))
 
 
+def list_active(session: Session) -> None:
+    """Note that the list of layers shows the one that is posed."""
+    if session.project:
+        session.project.listed = session.project.active
+
+
+def ask_name(session: Session, identity: int | None) -> None:
+    """Ask for a layer's name where layers are listed; None asks for none any more."""
+    session.named_layer = identity
+
+
 def duplicate(session: Session, identity: int) -> None:
     """Put a copy of a layer in front of it, and choose it."""
     project = session.project
@@ -122,8 +133,15 @@ def duplicate(session: Session, identity: int) -> None:
 
 
 def remove(session: Session, identity: int) -> None:
-    """Delete a layer."""
+    """Delete a layer; where it was the one that is posed, its neighbour is now."""
+    project = session.project
+    if project is None:
+        return
+    order = [figure.id for figure in project.document.figures]
+    index, was_active = order.index(identity), identity == project.active
     editing.edit(session, layer_commands.remove_figure(identity))
+    if was_active:
+        choose(session, (order[:index][-1:] or order[index + 1 :])[0])
 
 
 def tint_depth(session: Session, tints: bool) -> None:  # noqa: FBT001 - of an action

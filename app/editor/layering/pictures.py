@@ -29,6 +29,7 @@ from app.storage import (
 )
 
 RISING, ADDING, REPLACING = "Finding a shape", "Adding a layer", "Replacing a picture"
+LONGEST = 28  # characters of a name on a button
 
 
 class _Made(NamedTuple):
@@ -216,6 +217,7 @@ def drop(session: Session, paths: Sequence[Path]) -> None:
         onto = session.pointed_layer
         identity = project.active if onto is None else onto
         name = project.document.figure(identity).name
+        name = name if len(name) <= LONGEST else f"{name[: LONGEST - 1].rstrip()}…"
         answers.insert(onto is None, (f"Replace {name}", do(replace_picture, identity, first)))
         text = (
             "A new layer lies in front of the others and shares their timeline. A layer whose "

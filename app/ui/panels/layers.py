@@ -1,112 +1,41 @@
 """The layers of the scene: which there are, what is in front, what hangs on what."""
 
 from imgui_bundle import ImVec2, imgui
-from imgui_bundle import icons_fontawesome_6 as icons
 
 from app.document import Figure, is_visible
 from app.editor import Action, Project, Session, do, layering
-from app.editor.actions import playback
-from app.ui.style import (
-    FILL,
-    Look,
-    Scale,
-    heading,
-    icon_button,
-    label,
-    shortened,
-    slider,
-    small,
-    tip,
-)
+from app.editor.actions import playback, rebuilding
+from app.ui.panels.layer_list import Pictures, draw_list
+from app.ui.style import FILL, Look, Scale, heading, label, shortened, slider, small, tip
 
 PERCENT = Scale(left=0, right=100)
-MOVED = "layer"  # what is dragged from row to row
 NOTHING = "nothing"
 
 
-def draw(session: Session, look: Look) -> list[Action]:
-    """Draw the list of layers, and the settings of the chosen one."""
+def draw(session: Session, look: Look, pictures: Pictures) -> list[Action]:
+    """Draw the list of layers, and the settings of the chosen one.
+
+    Parameters
+    ----------
+    session : Session
+    look : Look
+    pictures : callable
+        Returns the texture of a layer's small picture, by the layer's id.
+    """
     project = session.project
     if project is None:
         return []
-    actions = _bar(project, look)
-    frame = playback.current_frame(session, project)
-    for figure in reversed(project.document.figures):
-        actions += _row(project, look, figure, frame)
+    actions = draw_list(session, look, project, pictures)
     if len(project.document.figures) == 1:
         small(look, "Drop another picture here, or open an .ora or .psd file, for more layers.")
-    heading(look, project.figure.name)
+    renewal = project.renewal
+    if renewal is not None and renewal.replaces:
+        imgui.progress_bar(renewal.progress, ImVec2(FILL, 0), renewal.now)
+        if imgui.button("Cancel###stop", ImVec2(FILL, 0)):
+            actions.append(do(rebuilding.cancel))
+    heading(look, shortened(project.figure.name, imgui.get_content_region_avail().x))
+    frame = playback.current_frame(session, project)
     return actions + _settings(project, look, project.figure, frame)
-
-
-def _bar(project: Project, look: Look) -> list[Action]:
-    """Draw the buttons for whole layers."""
-    actions = []
-    active, figures = project.active, project.document.figures
-    index = figures.index(project.figure)
-    if icon_button(look, icons.ICON_FA_PLUS, "add layer", "Add a picture as a layer"):
-        actions.append(do(layering.ask))
-    imgui.same_line()
-    if icon_button(look, icons.ICON_FA_CLONE, "copy layer", "Duplicate the layer"):
-        actions.append(do(layering.duplicate, active))
-    imgui.same_line()
-    hint = "Bring the layer forward"
-    is_last = index == len(figures) - 1
-    if icon_button(look, icons.ICON_FA_ARROW_UP, "raise", hint, enabled=not is_last):
-        actions.append(do(layering.move, active, index + 1))
-    imgui.same_line()
-    hint = "Send the layer back"
-    if icon_button(look, icons.ICON_FA_ARROW_DOWN, "lower", hint, enabled=index > 0):
-        actions.append(do(layering.move, active, index - 1))
-    imgui.same_line()
-    hint = "Delete the layer"
-    if icon_button(look, icons.ICON_FA_TRASH, "delete layer", hint, enabled=len(figures) > 1):
-        actions.append(do(layering.remove, active))
-    return actions
-
-
-def _row(project: Project, look: Look, figure: Figure, frame: int) -> list[Action]:
-    actions = []
-    identity = figure.id
-    eye = icons.ICON_FA_EYE_SLASH if figure.hidden else icons.ICON_FA_EYE
-    hint = "Show the layer" if figure.hidden else "Hide the layer, also in exports"
-    if icon_button(look, eye, f"eye {identity}", hint, active=figure.hidden):
-        actions.append(do(layering.show, identity))
-    imgui.same_line(0, 0)
-    key = icons.ICON_FA_LOCK if figure.locked else icons.ICON_FA_LOCK_OPEN
-    hint = "Let clicks reach the layer" if figure.locked else "Let clicks pass through the layer"
-    if icon_button(look, key, f"lock {identity}", hint, active=figure.locked):
-        actions.append(do(layering.lock, identity))
-    imgui.same_line()
-    is_seen = is_visible(figure, frame)
-    imgui.push_style_color(imgui.Col_.text, look.palette.text if is_seen else look.palette.dim)
-    icon = icons.ICON_FA_IMAGE if figure.still else icons.ICON_FA_PERSON
-    text = f"{icon}  {shortened(figure.name, imgui.get_content_region_avail().x - 3 * look.em)}"
-    size = ImVec2(0, imgui.get_frame_height())
-    imgui.push_style_var(imgui.StyleVar_.selectable_text_align, ImVec2(0, 0.5))
-    # A selectable begins at the line's text, which the buttons before it have put lower.
-    imgui.set_cursor_pos_y(imgui.get_cursor_pos_y() - imgui.get_style().frame_padding.y)
-    if imgui.selectable(f"{text}###row {identity}", identity == project.active, 0, size)[0]:
-        actions.append(do(layering.choose, identity))
-    imgui.pop_style_var()
-    imgui.pop_style_color()
-    return actions + _drag(project, figure)
-
-
-def _drag(project: Project, figure: Figure) -> list[Action]:
-    """Let a row be dragged to the place of another one."""
-    actions = []
-    if imgui.begin_drag_drop_source():
-        imgui.set_drag_drop_payload_py_id(MOVED, figure.id)
-        imgui.text(figure.name)
-        imgui.end_drag_drop_source()
-    if imgui.begin_drag_drop_target():
-        payload = imgui.accept_drag_drop_payload_py_id(MOVED)
-        if payload is not None:
-            index = project.document.figures.index(figure)
-            actions.append(do(layering.move, payload.data_id, index))
-        imgui.end_drag_drop_target()
-    return actions
 
 
 def _settings(project: Project, look: Look, figure: Figure, frame: int) -> list[Action]:

@@ -4,7 +4,7 @@ from imgui_bundle import hello_imgui, imgui
 from imgui_bundle import icons_fontawesome_6 as icons
 
 from app.document import LINEAR, PRESETS
-from app.editor import Session, do
+from app.editor import Session, do, layering
 from app.editor.actions import (
     cutting,
     editing,
@@ -78,6 +78,16 @@ def _undone(session: Session) -> str | None:
 
 def _redone(session: Session) -> str | None:
     return session.project.history.redo_label if session.project else None
+
+
+def _rename_layer(session: Session) -> None:
+    """Ask for the name of the layer that is posed, in the list of layers."""
+    if session.project is None:
+        return
+    for panel in hello_imgui.get_runner_params().docking_params.dockable_windows:
+        if panel.label.endswith("###Layers"):
+            panel.focus_window_at_next_frame = True
+    layering.ask_name(session, session.project.active)
 
 
 def _reset_layout(_: Session) -> None:
@@ -260,6 +270,15 @@ BINDINGS: dict[str, Binding] = {
         keys=(Key.delete, Key.backspace),
         icon=icons.ICON_FA_TRASH,
         possible=_edits,
+    ),
+    "rename layer": Binding(
+        label="Rename layer",
+        action=do(_rename_layer),
+        menu="Edit",
+        keys=(Key.f2,),
+        icon=icons.ICON_FA_PEN,
+        hint="Give the layer that is posed another name",
+        parted=True,
     ),
     "suggest handles": Binding(
         label="Suggest handles",

@@ -184,14 +184,19 @@ def segments(
     return chosen
 
 
-def show_picture(texture: int, size: tuple[int, int], corner: ImVec2, room: ImVec2) -> None:
+def show_picture(
+    texture: int, size: tuple[int, int], corner: ImVec2, room: ImVec2, *, opacity: float = 1.0
+) -> None:
     """Draw a texture of so many pixels as large as there is room for it, in the middle."""
     scale = min(room.x / size[0], room.y / size[1])
     width, height = scale * size[0], scale * size[1]
     x = corner.x + (room.x - width) / 2
     y = corner.y + (room.y - height) / 2
     imgui.get_window_draw_list().add_image(
-        imgui.ImTextureRef(texture), ImVec2(x, y), ImVec2(x + width, y + height)
+        imgui.ImTextureRef(texture),
+        ImVec2(x, y),
+        ImVec2(x + width, y + height),
+        col=imgui.IM_COL32(255, 255, 255, round(255 * opacity)),
     )
 
 

@@ -10,8 +10,16 @@ from PIL import Image, ImageDraw
 
 from app.document import PRESETS, Attachment, Passing, figure_commands, key_commands, layer_commands
 from app.document.keyframe import Target
-from app.editor import layering
-from app.editor.actions import editing, keys, playback, posing, saving, timeline_pointing
+from app.editor import do, layering
+from app.editor.actions import (
+    close_dialog,
+    editing,
+    keys,
+    playback,
+    posing,
+    saving,
+    timeline_pointing,
+)
 from app.editor.poses import copying
 from app.editor.timeline_view import Strip
 
@@ -85,7 +93,9 @@ def test_the_list_of_layers(window, scene):
 
     def click(*items):
         for item in items:
-            window.run(lambda robot, item=item: robot.item_click(f"Layers/###{item}"))
+            in_list = item.split()[0] in {"row", "eye", "lock"}
+            path = f"**/###{item}" if in_list else f"###{item}"
+            window.run(lambda robot, path=path: (robot.set_ref("Layers"), robot.item_click(path)))
             window.settle()
 
     click(f"row {body}")
@@ -107,6 +117,230 @@ def test_the_list_of_layers(window, scene):
     window.settle()
     assert names() == ["wall", "body", "arm"]
     assert not scene.document.figure(arm).hidden
+
+
+class LayerList:
+    """The robot's pointer on the list of layers."""
+
+    def __init__(self, robot):
+        self.robot = robot
+        robot.set_ref("Layers")
+
+    def row(self, identity):
+        return self.robot.item_info(f"**/###row {identity}").rect_full
+
+    def click(self, identity, button=0):
+        self.robot.item_click(f"**/###row {identity}", button)
+
+    def menu(self, identity, item):
+        self.click(identity, 1)
+        self.robot.item_click(f"//$FOCUSED/{item}")
+
+    def drag(self, identity, to, share):
+        """Drag a row to a share of another one's height, from its top on."""
+        self.robot.mouse_move(f"**/###row {identity}")
+        self.robot.mouse_down(0)
+        target = self.row(to)
+        x, height = target.get_center().x, target.max.y - target.min.y
+        for y in (target.get_center().y, target.min.y + share * height):
+            self.robot.mouse_move_to_pos(ImVec2(x, y))
+            self.robot.yield_(2)
+        self.robot.mouse_up(0)
+        self.robot.yield_(2)
+
+
+@pytest.fixture
+def listed(window, scene):
+    assert window.session.project is scene
+
+    def play(what):
+        window.run(lambda robot: what(LayerList(robot)))
+        window.frames(3)
+
+    return play
+
+
+def test_a_row_is_dragged_between_two_others(window, scene, listed):
+    wall, body, arm = (figure.id for figure in scene.document.figures)
+
+    def order():
+        return [figure.id for figure in scene.document.figures]
+
+    listed(lambda rows: rows.drag(arm, body, 0.8))
+    assert order() == [wall, arm, body]
+    listed(lambda rows: rows.drag(wall, body, 0.2))
+    assert order() == [arm, body, wall]
+    listed(lambda rows: rows.drag(wall, body, 0.2))
+    assert order() == [arm, body, wall]
+    assert scene.history.undo_label == "Move layer"
+
+    def give_up(rows):
+        rows.robot.mouse_move(f"**/###row {wall}")
+        rows.robot.mouse_down(0)
+        rows.robot.mouse_move_to_pos(rows.row(arm).get_center())
+        rows.robot.yield_(2)
+        rows.robot.key_press(int(window.Key.escape))
+        rows.robot.mouse_up(0)
+
+    listed(give_up)
+    assert order() == [arm, body, wall]
+    window.act(editing.undo)
+    window.act(editing.undo)
+    assert order() == [wall, body, arm]
+
+
+def test_a_layer_is_named_by_a_double_click_by_f2_and_from_its_menu(window, scene, listed):
+    arm, body = identity(scene, "arm"), identity(scene, "body")
+
+    def enter(rows, text, key=window.Key.enter):
+        rows.robot.yield_(3)
+        rows.robot.key_chars(text)
+        rows.robot.key_press(int(key))
+
+    def twice(rows):
+        rows.robot.item_double_click(f"**/###row {body}")
+        enter(rows, "trunk")
+
+    listed(twice)
+    assert scene.figure.name == "trunk"
+
+    def by_key(rows):
+        rows.robot.key_press(int(window.Key.f2))
+        enter(rows, "torso")
+
+    # From another tab, too.
+    window.show_tab("Export")
+    listed(by_key)
+    assert scene.document.figure(body).name == "torso"
+    window.act(layering.choose, arm)
+    window.show_tab("Layers")
+
+    def by_menu(rows):
+        rows.menu(body, "Rename…")
+        # A name that is taken is not accepted; Esc leaves it as it was.
+        enter(rows, "arm")
+        rows.robot.key_press(int(window.Key.escape))
+
+    listed(by_menu)
+    assert scene.document.figure(body).name == "torso"
+    assert scene.active == arm
+    assert window.session.named_layer is None
+    for _ in range(2):
+        window.act(editing.undo)
+    assert scene.document.figure(body).name == "body"
+
+
+def test_the_menu_of_a_layer(window, scene, listed):
+    arm, body = identity(scene, "arm"), identity(scene, "body")
+    before = scene.document
+    for item in ("Hide", "Lock", "Reference only", "Duplicate"):
+        listed(lambda rows, item=item: rows.menu(body, item))
+    figure = scene.document.figure(body)
+    assert (figure.hidden, figure.locked, figure.reference) == (True, True, True)
+    assert [each.name for each in scene.document.figures] == ["wall", "body", "body copy", "arm"]
+    for item in ("Show", "Unlock", "Take into exports"):
+        listed(lambda rows, item=item: rows.menu(body, item))
+    figure = scene.document.figure(body)
+    assert (figure.hidden, figure.locked, figure.reference) == (False, False, False)
+    listed(lambda rows: rows.menu(arm, "Replace picture…"))
+    assert window.session.dialog.title == "Replace the picture of arm"
+    window.act(close_dialog)
+    # What hung on a layer that is deleted hangs on it again when that is undone.
+    joint = Attachment(to=body, at=95 + 118j)
+    window.act(editing.edit, layer_commands.attach(arm, 95 + 118j, joint))
+    window.act(layering.choose, body)
+    joined = scene.document
+    listed(lambda rows: rows.menu(body, "Delete"))
+    assert scene.document.figure(arm).attachment is None
+    assert scene.figure.name == "wall"
+    window.act(editing.undo)
+    assert scene.document is joined
+    for _ in range(8):
+        window.act(editing.undo)
+    assert scene.document is before
+
+
+def test_a_layer_is_seen_at_once_where_its_in_betweens_are_not_there_yet(window, keyed):
+    arm = identity(keyed, "arm")
+    window.act(playback.seek, 6)
+    window.settle()
+    window.session.toasts = []
+    window.act(layering.duplicate, arm)
+    assert not window.session.toasts
+    assert keyed.puppet.shown is not None
+    assert keyed.figure.name == "arm copy"
+    window.act(layering.remove, keyed.active)
+    window.act(editing.undo)
+    assert all(puppet.shown is not None for puppet in keyed.puppets.values())
+
+
+def test_the_list_shows_small_pictures(window, scene, listed):
+    window.settle()
+    arm = identity(scene, "arm")
+    found = []
+    listed(lambda rows: found.append(rows.row(arm)))
+    low, high = found[0].min, found[0].max
+
+    def red():
+        part = np.asarray(window.picture()).astype(int)
+        part = part[int(low.y) : int(high.y), int(low.x) : int(high.x)]
+        return np.count_nonzero((part[..., 0] > 160) & (part[..., 1] < 80) & (part[..., 2] < 80))
+
+    shown = red()
+    assert shown > 100
+    window.act(layering.show, arm)
+    assert red() < shown / 4
+    small = scene.puppets[arm].small.value
+    assert max(small.shape[:2]) == 96
+    # Made once, whatever else is done with the layer.
+    window.act(layering.fade, arm, 0.5)
+    window.settle()
+    assert scene.puppets[arm].small.value is small
+
+
+def test_pictures_that_are_dropped_on_a_scene(window, scene, listed, tmp_path, drawing):
+    body = identity(scene, "body")
+    before = scene.document
+    hat = saved(tmp_path / "hat.png", blob(90, 60, (250, 220, 0)))
+    cap = saved(tmp_path / "cap.png", blob(80, 50))
+    window.act(layering.drop, [hat])
+    question = window.session.dialog
+    assert [text for text, _ in question.answers] == ["New layer", "Replace arm", "New scene"]
+    # Enter takes the first one.
+    window.frames(3)
+    window.run(lambda robot: robot.key_press(int(window.Key.enter)))
+    window.settle()
+    assert scene.figure.name == "hat"
+    assert scene.document.figures[-1] is scene.figure
+    # On the row of a layer, that one is meant.
+
+    def over(rows):
+        rows.robot.mouse_move(f"**/###row {body}")
+        window.session.dialog = None
+        window._window.ask(do(layering.drop, [cap]))
+        rows.robot.yield_(3)
+
+    listed(over)
+    texts = [text for text, _ in window.session.dialog.answers]
+    assert texts == ["Replace body", "New layer", "New scene"]
+    window.run(lambda robot: robot.key_press(int(window.Key.enter)))
+    window.settle()
+    assert scene.history.undo_label == "Replace picture"
+    assert scene.document.figure(body).picture.size == (80, 50)
+    for _ in range(2):
+        window.act(editing.undo)
+    assert scene.document is before
+    # Several at once, and a drawing on layers, are one step.
+    window.act(layering.drop, [hat, cap, drawing])
+    texts = [text for text, _ in window.session.dialog.answers]
+    assert texts == ["New layers", "New scene"]
+    window.run(lambda robot: robot.key_press(int(window.Key.enter)))
+    window.settle()
+    names = [figure.name for figure in scene.document.figures]
+    assert names == ["wall", "body", "arm", "hat", "cap", "wall 2", "body 2", "arm 2"]
+    window.act(editing.undo)
+    assert scene.document is before
+    window.session.toasts = []
 
 
 def test_a_layer_that_hangs_follows_live_and_is_posed_around_its_joint(window, scene):

@@ -1,0 +1,110 @@
+"""Another picture under the handles and keys of a figure."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from layered import blob, png
+
+from app.document import handle_commands, key_commands
+from app.document.keyframe import Target
+from app.document.model import Document
+from app.document.settings import Meshing
+from app.solving.drag import Drag, Rig
+from app.solving.renewal import go_on
+from app.solving.replacing import begin_replacing
+from app.storage.layers import layer_figure, still_picture
+from app.storage.pictures import Layer, decode_picture
+
+MESHING = Meshing(triangles=1_000, detail="coarse")
+
+
+def figure_of(image, corner=0j):
+    data = png(image)
+    layer = Layer(name="arm", data=data, picture=decode_picture(data, "arm.png"), corner=corner)
+    figure, _ = layer_figure(layer, 0, MESHING, is_cut_out=True)
+    return figure
+
+
+@pytest.fixture(scope="module")
+def raised():
+    """An ellipse around 90 + 50i with an anchor and two handles, one of them raised at frame 10."""
+    document = Document(figures=(figure_of(blob(120, 40), 30 + 30j),), size=(300, 200))
+    figure = replace(document.figures[0], anchor=50 + 50j)
+    document = document.with_figure(figure)
+    for place in (50 + 50j, 140 + 50j):
+        document = handle_commands.add_handle(0, place)(document)
+    (figure,) = document.figures
+    wishes = {0: Target(position=50 + 50j), 1: Target(position=130 + 75j)}
+    drag = Drag.begin(Rig.of(figure), figure.keys[0].pose).towards(wishes, 300)
+    return key_commands.insert_key(0, 10, drag.pose(wishes))(document)
+
+
+def replaced(document, made):
+    (before,) = document.figures
+    renewal = begin_replacing(before, made, document.canvas)
+    while not renewal.is_over:
+        renewal = go_on(renewal, np.zeros((1, 1, 4), np.uint8))
+    assert renewal.progress == 1
+    after = renewal.command(document)
+    assert after.canvas == document.canvas
+    return after.figures[0]
+
+
+@pytest.mark.parametrize(
+    ("size", "corner"),
+    [((120, 40), 30 + 30j), ((300, 200), 0j), ((60, 80), 60 + 10j), ((62, 20), 59 + 40j)],
+)
+def test_where_another_picture_comes(raised, size, corner):
+    figure = replaced(raised, figure_of(blob(*size)))
+    assert figure.corner == corner
+    assert figure.picture.size == size
+    assert figure.domain.contains(np.array([figure.anchor])).all()
+
+
+def test_the_same_shape_is_posed_as_before(raised):
+    (before,) = raised.figures
+    figure = replaced(raised, figure_of(blob(120, 40, (10, 20, 30))))
+    assert figure.handles == before.handles
+    assert figure.anchor == before.anchor
+    points = np.array([60 + 50j, 90 + 50j, 120 + 52j])
+    for key, old in zip(figure.keys, before.keys, strict=True):
+        assert key.frame == old.frame
+        assert key.pose.certificate.certified
+        moved = figure.map_of(key.pose)(points) - before.map_of(old.pose)(points)
+        assert np.abs(moved).max() < 1
+
+
+def test_what_is_not_on_the_new_shape_comes_onto_it_and_its_wishes_follow(raised):
+    (before,) = raised.figures
+    figure = replaced(raised, figure_of(blob(50, 30)))
+    places = np.array([handle.position for handle in figure.handles])
+    assert figure.domain.contains(places).all()
+    # The anchor is at the first handle still.
+    assert figure.anchor == figure.handles[0].position
+    rest, up = figure.keys
+    for handle, old in zip(figure.handles, before.handles, strict=True):
+        by = handle.position - old.position
+        assert abs(by) > 5
+        assert abs(rest.pose.targets[handle.id].position - handle.position) < 1e-9
+        before_up = before.keys[1].pose.targets[handle.id].position
+        moved = up.pose.targets[handle.id].position - before_up
+        assert abs(abs(moved) - abs(by)) < 1e-9
+    # At the raised end the shape is turned, and so is the way that its wish goes.
+    turned = up.pose.targets[1].position - before.keys[1].pose.targets[1].position
+    assert abs(np.angle(turned / (figure.handles[1].position - before.handles[1].position))) > 0.1
+
+
+def test_a_still_picture_stays_where_it_was_put():
+    still = replace(still_picture(png(blob(40, 20)), decode_picture(png(blob(40, 20)), "a")), id=0)
+    document = Document(figures=(still,))
+    pose = still.keys[0].pose
+    turned = pose.with_map(still.map_of(pose).moved(1j, 50 + 5j))
+    document = key_commands.pose_key(0, 0, turned)(document)
+    data = png(blob(40, 20, (0, 0, 250)))
+    figure = replaced(document, still_picture(data, decode_picture(data, "b")))
+    assert figure.still
+    assert figure.picture.data == data
+    points = np.array([5 + 5j, 30 + 12j])
+    moved = figure.map_of(figure.keys[0].pose)(points)
+    assert np.abs(moved - (1j * points + 50 + 5j)).max() < 1e-6
