@@ -20,6 +20,7 @@ BY_NAME = {"app.cli", "app.cli.bench", "app.cli.commands", "app.cli.usage"}
 # and the ways in to panels and to the parts of the command line.
 VERBS = (
     "app.editor.actions.",
+    "app.editor.layering.",
     "app.editor.tools.",
     "app.document.commands.",
     "app.cli.",

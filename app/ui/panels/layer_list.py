@@ -19,10 +19,12 @@ FEWEST, OTHERS = 4.5, 20.0  # rows at least, and em that are left to the setting
 HIDDEN = 0.35  # opacity of the pictures of layers that are not seen now
 PULL = 0.25  # em by which the list scrolls in each frame while a row is dragged at its edge
 PAPER = imgui.IM_COL32(128, 130, 136, 255)  # on which both dark and light drawings are seen
-Pictures = Callable[[int, Bytes], Thumbnail | None]
+SmallPictures = Callable[[int, Bytes], Thumbnail | None]
 
 
-def draw_list(session: Session, look: Look, project: Project, pictures: Pictures) -> list[Action]:
+def draw_list(
+    session: Session, look: Look, project: Project, pictures: SmallPictures
+) -> list[Action]:
     """Draw the buttons for whole layers, and a row for each layer."""
     actions = _bar(look, project)
     figures = project.document.figures
@@ -94,7 +96,7 @@ def _bar(look: Look, project: Project) -> list[Action]:
 
 
 def _row(
-    session: Session, look: Look, figure: Figure, pictures: Pictures, *, is_seen: bool
+    session: Session, look: Look, figure: Figure, pictures: SmallPictures, *, is_seen: bool
 ) -> list[Action]:
     project = session.project
     if project is None:
@@ -152,7 +154,7 @@ def _picture(
     project: Project,
     figure: Figure,
     left: ImVec2,
-    pictures: Pictures,
+    pictures: SmallPictures,
     *,
     is_seen: bool,
 ) -> None:

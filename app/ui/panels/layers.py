@@ -5,14 +5,14 @@ from imgui_bundle import ImVec2, imgui
 from app.document import Figure, is_visible
 from app.editor import Action, Project, Session, do, layering
 from app.editor.actions import playback, rebuilding
-from app.ui.panels.layer_list import Pictures, draw_list
+from app.ui.panels.layer_list import SmallPictures, draw_list
 from app.ui.style import FILL, Look, Scale, heading, label, shortened, slider, small, tip
 
 PERCENT = Scale(left=0, right=100)
 NOTHING = "nothing"
 
 
-def draw(session: Session, look: Look, pictures: Pictures) -> list[Action]:
+def draw(session: Session, look: Look, pictures: SmallPictures) -> list[Action]:
     """Draw the list of layers, and the settings of the chosen one.
 
     Parameters
