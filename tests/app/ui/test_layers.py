@@ -878,4 +878,4 @@ def test_a_layer_that_comes_after_one_is_gone_shows_its_own_picture(window, scen
     added = scene.document.figures[-1]
     assert (added.id, added.name, added.corner) == (gone, "dot", 90 + 80j)
     assert scene.active == added.id
-    assert pixel(window, 120 + 100j) == (250, 220, 0)
+    assert pixel(window, 138 + 100j) == (250, 220, 0)
