@@ -7,6 +7,7 @@ import numpy as np
 from app.document.figure import Figure
 from app.document.keyframe import Pose
 from app.editor.actions import playback
+from app.editor.project import Project
 from app.editor.session import Session
 from engine.domain.build import Domain
 from engine.domain.validity import require_domain
@@ -15,6 +16,7 @@ from engine.maps.bounds import Bounds
 from engine.maps.certificate import Certificate, certify
 from engine.maps.harmonic_map import HarmonicMap
 
+OPEN = 0.05  # of a layer: what a joint is open, as coarse triangles have it
 SLACK = 1e-6  # of a certificate's numbers, by which rounding may differ
 
 
@@ -37,8 +39,25 @@ def check_invariants(session: Session) -> None:
         assert all(frame in document.frames for frame in frames)
         for key in each.keys:
             check_pose(each, key.pose)
+    check_joints(project)
     if project.unkeyed is not None:
         check_pose(figure, project.unkeyed)
+
+
+def check_joints(project: Project) -> None:
+    """Fail where a layer is not drawn at the point that it hangs by."""
+    for figure in project.document.figures:
+        child, joint = project.puppets[figure.id].shown, figure.attachment
+        parent = None if joint is None else project.puppets[joint.to].shown
+        if joint is None or child is None or parent is None:
+            continue
+        pair = (child, figure), (parent, project.document.figure(joint.to))
+        if not all(each.is_current and each.clip.figure is now for each, now in pair):
+            continue
+        anchor = child.placement.on(np.array([child.hinge(figure.anchor).place]))[0]
+        at = parent.placement.on(np.array([parent.hinge(joint.at).place]))[0]
+        size = np.abs(figure.domain.outline - figure.domain.outline.mean()).max()
+        assert abs(anchor - at) < OPEN * size
 
 
 def check_pose(figure: Figure, pose: Pose) -> None:

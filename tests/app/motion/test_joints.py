@@ -6,13 +6,26 @@ import pytest
 from documents import CENTRE, disc_document, inside
 from numpy.testing import assert_allclose
 
-from app.document import clip_of
+from app.document import History, clip_of, key_commands, scene_commands
 from app.document import layer_commands as layers
 from app.document.keyframe import Keyframe
 from app.document.layering import Attachment
 from app.document.settings import FrameRange
 from app.errors import LissomError
-from app.motion import HERE, Animation, Joints
+from app.motion import (
+    HERE,
+    Animation,
+    Joints,
+    Motion,
+    PosableMesh,
+    Streamed,
+    next_build,
+    prepare_motion,
+    with_series,
+)
+from app.storage import load_project, save_project
+from engine.domain.meshing import triangulate
+from engine.maps import distortion
 
 SIZE = 200.0
 VARIANTS = ("nu", "metric", "scaled-eta")
@@ -69,23 +82,32 @@ def seen(document, figure, frame):
     return Joints(document).placement(figure, frame).on(own)
 
 
+def check_closed(document, frames):
+    """Hold each joint of a document against the points that it joins."""
+    joints = Joints(document)
+    for figure in document.figures:
+        joint = figure.attachment
+        if joint is None:
+            continue
+        for frame in frames:
+            own, carrier = joints.placement(figure.id, frame), joints.placement(joint.to, frame)
+            anchor, _ = exactly(document, figure.id, figure.anchor, frame)
+            at, fz = exactly(document, joint.to, joint.at, frame)
+            there = carrier.on(np.array([at]))[0]
+            assert abs(own.on(np.array([anchor]))[0] - there) < 1e-9 * SIZE
+            if joint.turns:
+                turned = carrier.factor * fz / abs(fz) * np.exp(-1j * joint.rest)
+                assert abs(own.factor - turned) < 1e-9
+
+
 @pytest.mark.parametrize("variant", VARIANTS)
 def test_a_joint_stays_closed_and_turns_with_the_parent(variant):
     document = chain(variant)
-    joints = Joints(document)
     rng = np.random.default_rng(2)
     times = rng.uniform(0, 48, 200 if variant == "nu" else 5)
-    for frame in (*times, 0, 20, 48):
-        for child in (1, 2):
-            figure = document.figure(child)
-            own, carrier = (joints.placement(i, frame) for i in (child, child - 1))
-            anchor, _ = exactly(document, child, figure.anchor, frame)
-            at, fz = exactly(document, child - 1, figure.attachment.at, frame)
-            place = carrier.on(np.array([at]))[0]
-            assert abs(own.on(np.array([anchor]))[0] - place) < 1e-9 * SIZE
-            turned = carrier.factor * fz / abs(fz) * np.exp(-1j * figure.attachment.rest)
-            assert abs(own.factor - turned) < 1e-9
-            assert abs(abs(own.factor) - 1) < 1e-12
+    check_closed(document, (*times, 0, 20, 48))
+    factors = [Joints(document).placement(2, frame).factor for frame in times[:5]]
+    assert_allclose(np.abs(factors), 1, rtol=0, atol=1e-12)
 
 
 def test_what_hangs_on_nothing_is_where_it_is():
@@ -157,3 +179,87 @@ def test_a_joint_must_be_on_both_figures():
     document = layers.detach(2, 1, 0)(chain())
     with pytest.raises(LissomError, match=r"nothing of '2' at \(5000, 0\)"):
         Joints(document).hang(2, 0, 0, place=5000 + 0j, turns=True)
+
+
+def test_joints_stay_closed_in_documents_that_were_changed_undone_and_saved(tmp_path):
+    document, frames = chain(), np.random.default_rng(6).uniform(0, 48, 4)
+    history = History(document, saved=True)
+    changes = (
+        layers.duplicate_figure(1),
+        layers.duplicate_figure(2),
+        layers.move_figure(2, 0),
+        layers.rename_figure(3, "copy"),
+        key_commands.copy_keys(1, {20}, 7),
+        key_commands.move_keys(0, {20}, 5),
+        layers.detach(3, *Joints(document).placement(1, 11.5)),
+        layers.set_hidden(1, hidden=True),
+        scene_commands.set_loop(loop=True),
+        layers.remove_figure(0),
+    )
+    for change in changes:
+        history.do(change)
+        check_closed(history.document, frames)
+    assert len(history.document.figures) == 4
+    for _ in changes:
+        history.undo()
+        check_closed(history.document, frames[:1])
+    assert history.document is document
+    history.redo()
+    save_project(tmp_path / "chain.lissom", history.document)
+    again = load_project(tmp_path / "chain.lissom")
+    assert [figure.attachment for figure in again.figures] == [
+        figure.attachment for figure in history.document.figures
+    ]
+    check_closed(again, frames)
+
+
+@pytest.mark.parametrize("variant", VARIANTS)
+def test_what_hangs_is_as_distorted_as_by_itself(variant):
+    """Its anchor and its turn are all that a joint decides."""
+    hung = chain(variant)
+    rng = np.random.default_rng(9)
+    points = np.array([inside(rng) for _ in range(40)])
+    points = points[np.abs(points - CENTRE) < 0.8 * 90]
+    for child in (1, 2):
+        figure = hung.figure(child)
+        free = hung.with_figure(replace(figure, attachment=None, anchor=None))
+        both = [Animation(clip_of(each, child), points=points) for each in (hung, free)]
+        for frame in rng.uniform(0, 48, 12 if variant == "nu" else 4):
+            one, other = (animation.frame(frame) for animation in both)
+            for measure in (distortion.k, distortion.sigma_a, distortion.sigma_b):
+                values = [measure(each.fz, each.fzbar) for each in (one, other)]
+                assert_allclose(*values, rtol=0, atol=1e-9)
+
+
+def test_a_joint_that_is_streamed_stays_closed_on_the_screen():
+    document = chain()
+    # Joints at vertices of a finer mesh, which series move.
+    domain = document.figures[0].domain
+    mesh = triangulate(domain.outline, 300)
+    middle = mesh.vertices[np.argsort(np.abs(mesh.vertices - CENTRE))[[3, 20]]]
+    for index, figure in enumerate(document.figures):
+        finer = replace(figure, domain=replace(domain, mesh=mesh))
+        if index:
+            joint = replace(figure.attachment, at=complex(middle[1]))
+            finer = replace(finer, anchor=complex(middle[0]), attachment=joint)
+        document = document.with_figure(finer)
+    joints = Joints(document)
+    motions = []
+    for figure in document.figures:
+        clip = clip_of(document, figure.id)
+        motion = Motion.at_rest(clip, PosableMesh.fine(figure.domain))
+        motion = prepare_motion(clip, motion)
+        while build := next_build(motion, clip, 0, heat=False):
+            while build.series is None:
+                build.advance()
+            motion = with_series(motion, build, clip, 0)
+        motions.append((clip, motion))
+    anchor, at = (int(np.argmin(np.abs(mesh.vertices - place))) for place in middle)
+    for frame in np.random.default_rng(3).uniform(0, 48, 200):
+        shown = [motion.vertices(clip, frame) for clip, motion in motions]
+        assert all(isinstance(each, Streamed) for each in shown)
+        places = [
+            joints.placement(number, frame).on(each.positions) for number, each in enumerate(shown)
+        ]
+        for child in (1, 2):
+            assert abs(places[child][anchor] - places[child - 1][at]) < 1e-6 * SIZE

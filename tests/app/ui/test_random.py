@@ -10,13 +10,19 @@ import pytest
 from documents import differences
 from imgui_bundle import imgui
 from invariants import check_invariants
+from layered import openraster
 from PIL import Image, ImageDraw
 
-from app.document.commands import figure_commands, handle_commands, key_commands
+from app.document.commands import (
+    figure_commands,
+    handle_commands,
+    key_commands,
+    layer_commands,
+)
 from app.document.easing import PRESETS, Easing
 from app.document.keyframe import Target
 from app.document.settings import VARIANTS, ExportSettings, FrameRange, Meshing
-from app.editor import jobs
+from app.editor import jobs, layering
 from app.editor.actions import (
     cutting,
     editing,
@@ -41,12 +47,12 @@ MOST_FRAMES = 400  # until the worker has caught up
 REMEMBERED = 20  # actions that are told where the walk fails
 LOOKED_AT, SAVED = 25, 150  # steps between two looks at the invariants, and between two saves
 USUAL, SMALL = (1280, 800), (800, 560)
-MOST_HANDLES, MOST_KEYS = 6, 8
+MOST_HANDLES, MOST_KEYS, MOST_LAYERS = 6, 8, 4
 LAST = 90  # frame beyond which the walk does not go
 # What ends the project is left out; what asks first is answered by Escape.
 LEAVING = {"close", "quit"}
 BOUND = [key for name, binding in BINDINGS.items() if name not in LEAVING for key in binding.keys]
-TABS = ("Handle", "Deform", "Distortion", "Mesh", "Cut-out", "Export")
+TABS = ("Handle", "Layers", "Deform", "Distortion", "Mesh", "Cut-out", "Export")
 WIDGETS = (
     *("button", "invisible_button", "selectable", "checkbox", "begin_combo", "slider_int"),
     *("menu_item", "menu_item_simple", "input_text", "input_int", "input_float"),
@@ -131,6 +137,7 @@ class Walk:
         self.session = window.session
         self.project = window.session.project
         self.path = folder / "walk.lissom"
+        self.picture = draw_bone(folder / "bone.png")
         self.rng = np.random.default_rng(seed)
         self.told = deque(maxlen=REMEMBERED)
         self.is_down = False
@@ -299,14 +306,14 @@ class Walk:
 
     def add_handle(self) -> None:
         shown = self.project.puppet.shown
-        if len(self.document.figures[0].handles) < MOST_HANDLES:
+        if len(self.project.figure.handles) < MOST_HANDLES:
             self.act(posing.add_handle, complex(self.choice(shown.positions)))
 
     def pull(self) -> None:
         shown = self.project.puppet.shown
         wishes = {}
         for handle, place in zip(shown.clip.figure.handles, shown.handle_places, strict=True):
-            if handle in self.document.figures[0].handles and self.chance(0.4):
+            if handle in self.project.figure.handles and self.chance(0.4):
                 far = 1.0 if self.chance(0.05) else 0.05
                 offset = complex(*self.rng.normal(0, far * self.size, 2))
                 turn = float(self.rng.normal()) if self.chance(0.2) else None
@@ -315,7 +322,7 @@ class Walk:
             self.act(posing.wish, wishes)
 
     def change_handle(self) -> None:
-        handles = self.document.figures[0].handles
+        handles = self.project.figure.handles
         if not handles:
             return
         handle = self.choice(handles)
@@ -328,24 +335,30 @@ class Walk:
                 self.act(self.choice((editing.lock, editing.group, editing.ungroup)))
             case 0:
                 name = self.choice(("paw", "tail", "x", f"{self.rng.integers(99)}"))
-                self.edit(handle_commands.rename_handle(0, handle.id, name))
+                self.edit(handle_commands.rename_handle(self.project.active, handle.id, name))
             case 1:
                 weight = float(10 ** self.rng.uniform(-2, 2))
-                self.edit(handle_commands.weigh_handles(0, {handle.id}, weight))
+                self.edit(handle_commands.weigh_handles(self.project.active, {handle.id}, weight))
             case 2:
-                outline = self.document.figures[0].domain.mesh.vertices
-                self.edit(handle_commands.move_handle(0, handle.id, complex(self.choice(outline))))
+                outline = self.project.figure.domain.mesh.vertices
+                self.edit(
+                    handle_commands.move_handle(
+                        self.project.active, handle.id, complex(self.choice(outline))
+                    )
+                )
             case 3:
                 self.act(posing.free_turn, handle.id)
             case 4:
                 self.act(posing.anchor_at, handle.id)
 
     def set_anchor(self) -> None:
-        inside = complex(self.choice(self.document.figures[0].domain.mesh.vertices))
-        self.edit(figure_commands.set_anchor(0, None if self.chance(0.5) else inside))
+        inside = complex(self.choice(self.project.figure.domain.mesh.vertices))
+        self.edit(
+            figure_commands.set_anchor(self.project.active, None if self.chance(0.5) else inside)
+        )
 
     def select(self) -> None:
-        chosen = [handle.id for handle in self.document.figures[0].handles if self.chance(0.5)]
+        chosen = [handle.id for handle in self.project.figure.handles if self.chance(0.5)]
         self.act(editing.select, frozenset(chosen))
 
     def choose_keys(self) -> None:
@@ -355,7 +368,7 @@ class Walk:
         self.act(editing.delete)
 
     def insert_key(self) -> None:
-        if len(self.document.figures[0].keys) < MOST_KEYS:
+        if len(self.project.figure.keys) < MOST_KEYS:
             self.act(keys.insert_at, int(self.rng.integers(LAST)))
 
     def seek(self) -> None:
@@ -365,9 +378,7 @@ class Walk:
         frames = self.some_keys()
         by = int(self.rng.integers(-9, 10))
         if frames and max(frames) + by < LAST:
-            copies = (
-                self.chance(0.3) and len(self.document.figures[0].keys) + len(frames) <= MOST_KEYS
-            )
+            copies = self.chance(0.3) and len(self.project.figure.keys) + len(frames) <= MOST_KEYS
             verb = key_commands.copy_keys if copies else key_commands.move_keys
             self.edit(verb(frames, by))
 
@@ -377,10 +388,12 @@ class Walk:
             if self.chance(0.5)
             else Easing(tuple(map(float, self.rng.random(4))))
         )
-        self.act(keys.set_easing, {0: self.some_keys()}, easing)
+        self.act(keys.set_easing, {self.project.active: self.some_keys()}, easing)
 
     def change_turns(self) -> None:
-        self.act(keys.set_turns, {0: self.some_keys()}, int(self.rng.integers(-2, 3)))
+        self.act(
+            keys.set_turns, {self.project.active: self.some_keys()}, int(self.rng.integers(-2, 3))
+        )
 
     def change_variant(self) -> None:
         # The costlier ones are left again soon.
@@ -412,17 +425,17 @@ class Walk:
 
     def copy_and_paste(self) -> None:
         verbs = (copying.copy, copying.paste, copying.paste_on_selected)
-        if len(self.document.figures[0].keys) < MOST_KEYS:
+        if len(self.project.figure.keys) < MOST_KEYS:
             verb = self.choice((*verbs, flipping.paste, flipping.paste_on_selected))
             self.act(verb)
 
     def use_library(self) -> None:
-        figure = self.document.figures[0]
+        figure = self.project.figure
         if len(figure.library) < 3:
             self.act(library.keep)
         elif self.chance(0.2):
             self.act(library.delete, self.choice(figure.library).name)
-        for kept in self.document.figures[0].library[:1]:
+        for kept in self.project.figure.library[:1]:
             match self.rng.integers(4):
                 case 0:
                     self.act(library.rename, kept.name, f"pose {self.rng.integers(99)}")
@@ -477,6 +490,56 @@ class Walk:
         if not self.session.overlays.onion:
             self.act(viewing.toggle, "onion")
 
+    def change_layers(self) -> None:
+        figures = self.document.figures
+        layer = self.choice(figures)
+        match self.rng.integers(9):
+            case 0:
+                self.act(layering.choose, layer.id)
+            case 1 if len(figures) < MOST_LAYERS:
+                self.act(layering.add, [self.picture])
+            case 2 if len(figures) < MOST_LAYERS:
+                self.act(layering.duplicate, layer.id)
+            case 3 | 1 | 2 if len(figures) > 1:
+                self.act(layering.remove, layer.id)
+            case 4:
+                self.act(layering.move, layer.id, int(self.rng.integers(len(figures))))
+            case 5:
+                verb = self.choice((layering.show, layering.lock, layering.refer))
+                self.act(verb, layer.id)
+            case 6:
+                self.act(layering.rename, layer.id, self.choice(("arm", "leg", "")))
+                self.act(layering.fade, layer.id, float(self.rng.random()))
+            case 7:
+                self.act(self.choice((layering.switch_here, layering.unswitch_here)), layer.id)
+            case 8:
+                self.act(self.choice((layering.stand_still, layering.stand_up)), layer.id)
+
+    def change_joints(self) -> None:
+        child, parent = self.choice(self.document.figures), self.choice(self.document.figures)
+        match self.rng.integers(4):
+            case 0:
+                self.act(layering.let_hang, child.id)
+            case 1:
+                self.act(layering.turn_with, child.id, self.chance(0.5))
+            case _:
+                self.act(layering.hang, child.id, parent.id, self.chance(0.5))
+
+    def change_depth(self) -> None:
+        figure = self.project.figure
+        if not figure.handles:
+            return
+        handle = self.choice(figure.handles)
+        depth = float(self.choice((-1, -0.3, 0, 0.5, 1)))
+        if self.chance(0.5):
+            extent = self.choice((None, float(self.rng.uniform(2, 200))))
+            self.edit(layer_commands.set_front(figure.id, handle.id, depth, extent))
+        else:
+            frame = self.choice(figure.keys).frame
+            front = self.choice((None, depth))
+            self.edit(layer_commands.key_front(figure.id, frame, handle.id, front))
+        self.act(layering.tint_depth, self.chance(0.3))
+
     def cut_out(self) -> None:
         match self.rng.integers(5):
             case 0:
@@ -524,7 +587,7 @@ class Walk:
             self.act(editing.redo)
 
     def some_keys(self) -> frozenset[int]:
-        return frozenset(key.frame for key in self.document.figures[0].keys if self.chance(0.5))
+        return frozenset(key.frame for key in self.project.figure.keys if self.chance(0.5))
 
     @property
     def document(self):
@@ -590,6 +653,9 @@ ALL = (
     (Walk.look_at_time, 1),
     (Walk.change_onion_skin, 1),
     (Walk.change_view, 2),
+    (Walk.change_layers, 3),
+    (Walk.change_joints, 3),
+    (Walk.change_depth, 2),
     (Walk.cut_out, 0.5),
     (Walk.change_export, 1),
     (Walk.undo, 4),
@@ -605,6 +671,15 @@ def draw_bone(path: Path) -> Path:
     for x in (25, 135):
         pen.ellipse((x - 18, 32, x + 18, 68), fill=(90, 140, 200, 255))
     picture.save(path)
+    return path
+
+
+def draw_bones(path: Path) -> Path:
+    """Write a small drawing of two bones that cross, on layers, before a wall."""
+    bone = Image.open(draw_bone(path.with_name("bone.png")))
+    wall = Image.new("RGBA", bone.size, (220, 230, 220, 255))
+    stack = "".join(f'<layer name="{n}" src="data/{n}.png"/>' for n in range(3))
+    path.write_bytes(openraster(bone.size, stack, [bone.rotate(30), bone, wall]))
     return path
 
 
@@ -628,7 +703,8 @@ def workers(monkeypatch):
 @pytest.mark.parametrize("seed", SEEDS)
 def test_random_walk_ends_where_it_began(small_window, workers, tmp_path, seed, request):
     window, monkeypatch = small_window, request.getfixturevalue("monkeypatch")
-    project = window.open(draw_bone(tmp_path / "bone.png"))
+    drawing = draw_bones if seed % 2 else draw_bone
+    project = window.open(drawing(tmp_path / ("bones.ora" if seed % 2 else "bone.png")))
     first = project.document
     if seed % 5:
         keys.set_variant(window.session, "nu")
