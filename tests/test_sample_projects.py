@@ -8,7 +8,7 @@ from numpy.testing import assert_allclose
 
 from app.document.queries.fronts import is_visible
 from app.document.queries.timeline import clip_of, exported_frames
-from app.motion import Animation, Joints
+from app.motion import Animation, Joints, painted_triangles
 from app.reports.certification import certify_clip
 from app.solving.script import load_pose_script
 from app.storage.pictures import read_openraster
@@ -34,6 +34,13 @@ def test_a_sample_is_what_its_script_says(name):
     assert [key.frame for key in document.figures[0].keys] == [key.frame for key in script.keys]
     assert [key.easing for key in document.figures[0].keys] == [key.ease for key in script.keys]
     assert [key.passing for key in document.figures[0].keys] == [key.passing for key in script.keys]
+    names = {handle.name: handle.id for handle in document.figures[0].handles}
+    assert [dict(key.fronts) for key in document.figures[0].keys] == [
+        {names[name]: front for name, front in key.fronts.items()} for key in script.keys
+    ]
+    assert {(handle.front, handle.extent) for handle in document.figures[0].handles} == {
+        (handle.front, handle.extent) for handle in script.handles.values()
+    }
     assert document.figures[0].bounds == script.bounds
     lags = [
         lag
@@ -73,6 +80,23 @@ def test_a_sample_on_layers_is_what_its_script_says(name):
         own = Animation(clip_of(document, laugh.id), points=np.array([laugh.anchor]))
         held = joints.placement(laugh.id, frame).on(own.positions(frame))
         assert_allclose(held, carrier.on(moved), rtol=0, atol=1e-9 * 1500)
+
+
+def test_the_octopus_crosses_its_arms_one_way_and_then_the_other():
+    document = load_project(SAMPLES / "octopus.lissom")
+    clip, mesh = clip_of(document, 0), document.figures[0].domain.mesh
+    places = {handle.name: handle.position for handle in document.figures[0].handles}
+    higher = []
+    for frame in (16, 48):
+        order = painted_triangles(mesh, clip, frame)
+        middles = mesh.vertices[order].mean(axis=1)
+        left, right = (
+            np.flatnonzero(np.abs(middles - places[name]) < 20) for name in ("left 4", "right 4")
+        )
+        # All of one arm is painted over all of the other.
+        assert left.min() > right.max() or right.min() > left.max()
+        higher.append(left.min() > right.max())
+    assert higher == [True, False]
 
 
 @pytest.mark.parametrize("name", NAMES)

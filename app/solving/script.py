@@ -176,9 +176,11 @@ def _figure(script: JsonObject, where: str, usual: Mapping[str, Any]) -> FigureS
     if script.get("attach") is not None:
         own["attach"] = _joint(script["attach"], f"{where}attach")
     visible = as_list(script.get("visible", []), f"{where}visible")
-    own["visible"] = tuple(
-        _switch(switch, f"{where}visible[{index}]") for index, switch in enumerate(visible)
-    )
+    switches = [_switch(switch, f"{where}visible[{index}]") for index, switch in enumerate(visible)]
+    for (before, _), (after, _) in pairwise(switches):
+        if after <= before:
+            raise LissomError(f"{where}visible is out of order: frame {after} after {before}")
+    own["visible"] = tuple(switches)
     return FigureScript(handles=handles, keys=parsed, **own)
 
 

@@ -1,6 +1,7 @@
 """From a new document and a pose script to an animation, solved as the window would solve it."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import replace
 
 import numpy as np
@@ -22,6 +23,7 @@ from app.errors import LissomError
 from app.solving.drag import Drag, Rig
 from app.solving.script import FigureScript, PoseKey, PoseScript
 from app.storage import still_figure
+from engine.errors import EngineError
 from engine.geometry import contains
 
 # A drag that is not at rest by then creeps along a bound.
@@ -62,17 +64,30 @@ def pose_document(
     last = max(part.keys[-1].frame for part in script.figures)
     document = replace(document, frames=FrameRange(0, last), fps=script.fps, loop=script.loop)
     for identity, part in named.items():
-        document = _prepared(document, identity, part)
+        with _whose(part):
+            document = _prepared(document, identity, part)
     if script.figures[0].layer is not None:
         for figure in document.figures:
             if figure.id not in named and not figure.still:
                 document = document.with_figure(still_figure(figure))
     notices: list[str] = []
     for identity, part in named.items():
-        figure, told = _posed(document.figure(identity), part, progress, loop=script.loop)
+        with _whose(part):
+            figure, told = _posed(document.figure(identity), part, progress, loop=script.loop)
         document = document.with_figure(figure)
         notices += told
     return document, tuple(notices)
+
+
+@contextmanager
+def _whose(part: FigureScript) -> Iterator[None]:
+    """Name the layer in errors, where a script has several."""
+    try:
+        yield
+    except (LissomError, EngineError) as error:
+        if part.layer is None:
+            raise
+        raise LissomError(f"layer {part.layer!r}: {error}") from error
 
 
 def _by_figure(document: Document, script: PoseScript) -> dict[int, FigureScript]:
@@ -115,14 +130,23 @@ def _prepared(document: Document, identity: int, part: FigureScript) -> Document
     if part.attach is None:
         return document
     parent = _layer({figure.name: figure for figure in document.figures}, part.attach.to)
-    if not contains(parent.domain.outline, np.array([part.attach.at]))[0]:
+    at = part.attach.at
+    what = f"it is attached at ({at.real:g}, {at.imag:g})"
+    if not _is_on(parent, at):
+        raise LissomError(f"{what}, which is not on {parent.name!r}")
+    if part.anchor is None and not _is_on(document.figure(identity), at):
         raise LissomError(
-            f"{part.layer!r} is attached at ({part.attach.at.real:g}, {part.attach.at.imag:g}), "
-            f"which is not on {parent.name!r}"
+            f"{what}, which is on {parent.name!r} but not on itself; give it an anchor by which it "
+            "hangs there, or choose a point that is on both"
         )
-    anchor = part.attach.at if part.anchor is None else part.anchor
+    anchor = at if part.anchor is None else part.anchor
     joint = Attachment(to=parent.id, at=part.attach.at, turns=part.attach.turns)
     return layer_commands.attach(identity, anchor, joint)(document)
+
+
+def _is_on(figure: Figure, place: complex) -> bool:
+    outline, *holes = figure.domain.loops
+    return bool(contains(outline, np.array([place]), holes=holes)[0])
 
 
 def _posed(

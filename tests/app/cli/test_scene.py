@@ -131,6 +131,35 @@ def test_export_draws_the_scene_or_one_figure_of_it(project):
         ({"attach": {"to": "leg", "at": [1, 2]}}, "there is no layer 'leg'"),
         ({"attach": {"to": "body", "at": [1, 2]}}, "which is not on 'body'"),
         ({"attach": {"to": "arm", "at": [180, 120]}}, "would hang on itself"),
+        (
+            {"attach": {"to": "body", "at": [70, 40]}},
+            "layer 'arm': it is attached at (70, 40), which is on 'body' but not on itself; give",
+        ),
+        ({"attach": {"to": "body"}}, "figures[0].attach lacks the field 'at'"),
+        ({"attach": {"at": [1, 2]}}, "figures[0].attach lacks the field 'to'"),
+        ({"attach": {"to": "wall", "at": [5, 5], "anchor": 1}}, "unknown field 'anchor'"),
+        ({"anchor": [5, 5]}, "layer 'arm': The anchor at (5, 5) lies outside"),
+        ({"handles": {"hand": [5, 5]}}, "layer 'arm': "),
+        (
+            {"handles": {"hand": {"at": [190, 120], "front": 2}}},
+            "layer 'arm': ",
+        ),
+        (
+            {"handles": {"hand": {"at": [190, 120], "extent": -3}}},
+            "layer 'arm': ",
+        ),
+        ({"handles": {"hand": {"front": 1}}}, "figures[0].handle 'hand' lacks the field 'at'"),
+        (
+            {"keys": [{"frame": 0, "front": {"foot": 1}}]},
+            "figures[0].keys[0] names the handle 'foot', but the handles are hand",
+        ),
+        ({"keys": [{"frame": 0, "front": {"hand": "high"}}]}, "figures[0].keys[0].front.hand"),
+        (
+            {"visible": [[4, True], [2, False]]},
+            "figures[0].visible is out of order: frame 2 after 4",
+        ),
+        ({"visible": [[4, 1]]}, "figures[0].visible[0]"),
+        ({"visible": True}, "figures[0].visible"),
     ],
 )
 def test_what_a_drawing_does_not_have_is_told(folder, change, words, capsys):
