@@ -177,9 +177,9 @@ def _figure(script: JsonObject, where: str, usual: Mapping[str, Any]) -> FigureS
         own["attach"] = _joint(script["attach"], f"{where}attach")
     visible = as_list(script.get("visible", []), f"{where}visible")
     switches = [_switch(switch, f"{where}visible[{index}]") for index, switch in enumerate(visible)]
-    for (before, _), (after, _) in pairwise(switches):
-        if after <= before:
-            raise LissomError(f"{where}visible is out of order: frame {after} after {before}")
+    for (frame, _), (later, _) in pairwise(switches):
+        if later <= frame:
+            raise LissomError(f"{where}visible is out of order: frame {later} after {frame}")
     own["visible"] = tuple(switches)
     return FigureScript(handles=handles, keys=parsed, **own)
 
