@@ -23,6 +23,7 @@ COMMANDS = {
     "pose": "Make a project from a picture and a script of handles and keys.",
     "certify": "Tell how far an animation distorts its drawing, and prove its keyframes.",
     "interpolate": "In-betweens of keyframes at points, from file to file.",
+    "figures": "Make the figures of the paper anew, with what was measured beside them.",
     "export": "Render an animation to picture files or video.",
     "thumbnail": "Write the small picture of a project, as file managers ask for it.",
     "desktop": "Enter Lissom into the menu of applications, or take it out again.",

@@ -10,7 +10,7 @@ from app.editor.action import Action, do
 from app.editor.dialogs import Dialog, FileDialog, Question, ShortcutSheet
 from app.editor.failures import sentence
 from app.editor.jobs import Jobs
-from app.editor.project import Flip, PoseBlend, PoseInProgress, Project, Puppet
+from app.editor.project import Flip, PoseBlend, PoseInProgress, Project, Puppet, Twin
 from app.editor.session import (
     BoxMark,
     CurveKind,
@@ -22,6 +22,7 @@ from app.editor.session import (
     JointMark,
     Overlays,
     Session,
+    Split,
     StrokeMark,
     SweepMark,
     Toast,
@@ -67,6 +68,7 @@ __all__ = [
     "Scrub",
     "Session",
     "ShortcutSheet",
+    "Split",
     "Strip",
     "StrokeMark",
     "SweepMark",
@@ -74,6 +76,7 @@ __all__ = [
     "TimeGesture",
     "Toast",
     "ToolInHand",
+    "Twin",
     "do",
     "layering",
     "sentence",

@@ -17,6 +17,7 @@ from app.document import (
     Playhead,
     Pose,
     Target,
+    Variant,
     clip_of,
 )
 from app.editor.action import Action
@@ -114,6 +115,29 @@ class PoseBlend:
 
 
 @dataclass(slots=True, kw_only=True, eq=False)
+class Twin:
+    """A figure by another method, which its own is compared with.
+
+    Parameters
+    ----------
+    original, figure : Figure
+        The figure as it is, and the same by the other method.
+    motion : Derived
+        On the coarse mesh.
+    shown : Shown, optional
+    """
+
+    original: Figure
+    figure: Figure
+    motion: Derived[Clip, Motion]
+    shown: Shown | None = None
+
+    def clip(self, document: Document) -> Clip:
+        """Return it in the time of its scene."""
+        return replace(clip_of(document, self.figure.id), figure=self.figure)
+
+
+@dataclass(slots=True, kw_only=True, eq=False)
 class Puppet:
     """A figure as a window has it.
 
@@ -135,6 +159,8 @@ class Puppet:
         What is left of the picture, as the newest cut-out has it.
     small : Derived
         That made small, for the list of layers.
+    twin : Twin, optional
+        Beside it, while the viewport is split.
     """
 
     picture: Picture
@@ -146,6 +172,7 @@ class Puppet:
     rig: Rig | None = None
     build: Derived[Clip, Build | None] = field(default_factory=lambda: Derived(None))
     small: Derived[Cut, Bytes | None] = field(default_factory=lambda: Derived(None))
+    twin: Twin | None = None
 
     @classmethod
     def of(cls, clip: Clip, picture: Picture) -> Self:
@@ -183,8 +210,8 @@ class Project:
         Let go at a frame that the playhead has left since; the solver brings that pose to rest.
     camera : View, optional
         None fits the picture into the viewport.
-    curves : Derived
-        Distortion over time, of the active figure.
+    curves, twin_curves : Derived
+        Distortion over time, of the active figure and of its twin.
     paths : Derived
         Of the active figure's handles; they are traced while they are shown.
     meshing : Meshing, optional
@@ -232,6 +259,7 @@ class Project:
     posing: PoseInProgress | None = None
     settling: PoseInProgress | None = None
     curves: Derived[Clip, Curves | None] = field(default_factory=lambda: Derived(None))
+    twin_curves: Derived[Clip, Curves | None] = field(default_factory=lambda: Derived(None))
     paths: Derived[Clip, MotionPaths | None] = field(default_factory=lambda: Derived(None))
     meshing: Meshing | None = None
     drafted_bounds: Bounds | None = None
@@ -321,6 +349,21 @@ class Project:
     def is_posing(self) -> bool:
         """Whether a pose is on its way, be it the one that is shown or not."""
         return self.posing is not None or self.settling is not None
+
+    def pair_up(self, variant: Variant | None) -> None:
+        """Let each figure have a twin by a method, or none."""
+        for figure in self.document.figures:
+            puppet = self.puppets[figure.id]
+            twin, coarse = puppet.twin, puppet.coarse.value
+            if variant is None:
+                puppet.twin = None
+                continue
+            if twin is None or twin.motion.value.mesh is not coarse.mesh:
+                motion: Derived[Clip, Motion] = Derived(Motion.at_rest(coarse.clip, coarse.mesh))
+                twin = Twin(original=figure, figure=figure, motion=motion)
+            if twin.original is not figure or twin.figure.variant is not variant:
+                twin.original, twin.figure = figure, replace(figure, variant=variant)
+            puppet.twin = twin
 
     def view(self, screen: tuple[int, int]) -> View:
         """Return what the viewport shows on a screen of this size in pixels."""

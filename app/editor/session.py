@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Literal, Protocol
 
-from app.document import Document, Figure, Keyframe, Meshing
+from app.document import Document, Figure, Keyframe, Meshing, Variant
 from app.editor.action import Action
 from app.editor.dialogs import Dialog
 from app.editor.jobs import Jobs
@@ -33,6 +33,25 @@ class Overlays:
     mirror: bool = False  # the axis at which poses are flipped
     paths: bool = False  # of the selected handles
     heat_map: HeatMap = "none"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Split:
+    """Another method beside the drawing's own: how the viewport is divided.
+
+    Parameters
+    ----------
+    variant : Variant
+        By which all figures are shown in the right part.
+    place : float
+        Of the divider, as a share of the viewport's width.
+    beside : bool
+        Whether the two are side by side, each whole, and not under a divider over one place.
+    """
+
+    variant: Variant
+    place: float = 0.5
+    beside: bool = False
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -191,6 +210,8 @@ class Session:
     export_frame: Box | None = None  # shown in the viewport while the export's settings are
     keeps_aspect: bool = True  # of an export whose size is entered
     curves: CurveKind = "relative"
+    split: Split | None = None  # None shows the drawing alone
+    last_split: Split = Split(variant=Variant.LINEAR)  # as it was when it was put away
     pointer: ToolInHand | None = None
     cutting: CutTool | None = None  # what is in hand that cuts out; None poses
     snaps: bool = False  # whether what the pointer does goes in steps

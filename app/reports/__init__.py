@@ -7,7 +7,15 @@ Imports: `app.motion`, `app.storage`.
 
 from app.reports.certification import IntervalReport, Report, certify_clip
 from app.reports.curve_picture import draw_curves
-from app.reports.curves import TIMES, Curves, broken_lines, measure_curves, write_curves
+from app.reports.curves import (
+    TIMES,
+    Curves,
+    broken_lines,
+    measure_curves,
+    relative_to_keys,
+    worst_points,
+    write_curves,
+)
 from app.reports.domain_preview import draw_preview
 
 __all__ = [
@@ -20,5 +28,7 @@ __all__ = [
     "draw_curves",
     "draw_preview",
     "measure_curves",
+    "relative_to_keys",
+    "worst_points",
     "write_curves",
 ]

@@ -72,7 +72,7 @@ def measure_curves(clip: Clip, motion: Motion) -> Curves:
             ks.append(distortion.k(blended.fz, blended.fzbar))
             taus.append(distortion.tau(blended.fz, blended.fzbar))
             extremes.append(Extremes.measured(blended.fz, blended.fzbar))
-    worst_k, worst_tau = _worst(np.array(ks)), _worst(np.array(taus))
+    worst_k, worst_tau = worst_points(np.array(ks)), worst_points(np.array(taus))
     return Curves(
         clip=clip,
         frames=np.array(frames, dtype=np.float64),
@@ -108,17 +108,25 @@ def write_curves(path: Path, curves: Curves) -> None:
     write_atomically(path, lambda file: file.write(text))
 
 
-def _worst(values: Floats) -> Floats:
+def worst_points(values: Floats) -> Floats:
     """Return the columns (t, p) of the points with the largest values at any time."""
     order = np.argsort(values.max(axis=0))[::-1][:POINTS]
     return values[:, order]
 
 
+def relative_to_keys(values: Floats) -> Floats:
+    """Return values (t, p) from key to key relative to the larger of both, 0 where that is 0.
+
+    The linear scaling of Section 8, with which the curves of a point whose first key is undistorted
+    go from 0 to 1.
+    """
+    largest = np.maximum(values[0], values[-1])
+    relative = np.zeros_like(values)
+    np.divide(values, largest, out=relative, where=largest > 1e-9)
+    return relative
+
+
 def _shares(values: Floats) -> Floats:
-    """Return values (t, p) relative to the larger end of each interval, 0 where that is nothing."""
-    shares = np.zeros_like(values)
-    for start in range(0, len(values), TIMES):
-        block = values[start : start + TIMES]
-        largest = np.maximum(block[0], block[-1])
-        np.divide(block, largest, out=shares[start : start + TIMES], where=largest > 1e-9)
-    return shares
+    """Return values (t, p) of all intervals, each relative to its own keys."""
+    blocks = values.reshape(-1, TIMES, values.shape[1])
+    return np.concatenate([relative_to_keys(block) for block in blocks])

@@ -41,6 +41,7 @@ MEASURING, SPANNING = "Measuring", "Measuring the motion"
 SHRINKING = "Small pictures"
 SMALL_SIDE = 96  # pixels of a picture in the list of layers
 HANGING, TRACING = "Joints", "Motion paths"
+COMPARING = "Other in-betweens"
 
 
 def maintain(session: Session) -> None:
@@ -51,6 +52,7 @@ def maintain(session: Session) -> None:
     posing.settle(session)
     project.extent.recall(extent_source(project.document))
     rebuilding.keep_up(session)
+    project.pair_up(session.split.variant if session.split else None)
     for derivation in missing(session, project):
         derive(session, derivation)
     shortfalls, figure = project.timing.shortfalls, project.figure
@@ -104,6 +106,7 @@ def missing(session: Session, project: Project) -> Iterator[Derivation[Any, Any]
     is_awaited = session.export_frame is not None or project.awaits_extent
     if is_awaited and len(movable) == len(clips):
         yield from _span(project)
+    yield from _compare(session, project)
     for clip, puppet in movable:
         if not _has_fine(clip, puppet) and not puppet.fine.has_failed(clip):
             yield _refine(clip, puppet)
@@ -193,6 +196,26 @@ def _hang(project: Project) -> Iterator[Derivation[Any, Any]]:
     )
 
 
+def _compare(session: Session, project: Project) -> Iterator[Derivation[Clip, Motion]]:
+    """Yield the in-betweens by the method that the viewport shows beside the figures' own."""
+    if session.split is None:
+        return
+    for puppet in project.puppets.values():
+        if puppet.twin is None:
+            continue
+        clip, motion = puppet.twin.clip(project.document), puppet.twin.motion
+        sibling = puppet.coarse.value.sampler
+        if not motion.value.knows(clip) and not motion.has_failed(clip):
+            yield Derivation(
+                kind=COMPARING,
+                into=motion,
+                source=clip,
+                work=partial(prepare_motion, clip, motion.value, sibling, at_most=1),
+                complaint="The in-betweens to compare with cannot be made",
+            )
+            return
+
+
 def _refine(clip: Clip, puppet: Puppet) -> Derivation[Clip, Motion | None]:
     earlier, sibling = puppet.fine.value, puppet.coarse.value.sampler
     return Derivation(
@@ -245,15 +268,21 @@ def _take_series(
 
 def _measure(project: Project) -> Iterator[Derivation[Any, Any]]:
     """Yield what is measured of the in-betweens."""
-    clip, motion, curves = project.clip, project.puppet.coarse.value, project.curves
-    if intervals(clip) and not (curves.follows(clip) or curves.has_failed(clip)):
-        yield Derivation(
-            kind=MEASURING,
-            into=curves,
-            source=clip,
-            work=lambda: measure_curves(clip, motion),
-            complaint="The distortion could not be measured",
-        )
+    twin = project.puppet.twin
+    wanted = [(project.clip, project.puppet.coarse.value, project.curves)]
+    if twin is not None:
+        wanted.append((twin.clip(project.document), twin.motion.value, project.twin_curves))
+    for clip, motion, curves in wanted:
+        is_known = curves.follows(clip) or curves.has_failed(clip) or not motion.knows(clip)
+        if intervals(clip) and not is_known:
+            yield Derivation(
+                kind=MEASURING,
+                into=curves,
+                source=clip,
+                work=partial(measure_curves, clip, motion),
+                complaint="The distortion could not be measured",
+            )
+            return
 
 
 def _span(project: Project) -> Iterator[Derivation[Any, Any]]:
@@ -295,6 +324,25 @@ def _show(session: Session, project: Project) -> None:
     joints = project.joints.value if project.joints.follows(source) else None
     for figure, hung in hang_shown(project.document, shown, joints, poses).items():
         project.puppets[figure].shown = hung
+    _show_twins(project, frame)
+
+
+def _show_twins(project: Project, frame: int) -> None:
+    """Settle what is drawn beside that; what a pose shows is the same in both."""
+    shown = {}
+    for figure, puppet in project.puppets.items():
+        twin = puppet.twin
+        if twin is None or puppet.shown is None:
+            return
+        pose = project.unkeyed if figure == project.active else None
+        earlier = twin.shown or puppet.shown
+        shown[figure] = show(
+            twin.clip(project.document), frame, pose, (twin.motion.value,), earlier
+        )
+    # By the meshes alone: the joints that are followed exactly are of the figures' own methods.
+    for figure, hung in hang_shown(project.document, shown, None, {}).items():
+        if (twin := project.puppets[figure].twin) is not None:
+            twin.shown = hung
 
 
 def _motions(session: Session, project: Project, puppet: Puppet) -> tuple[Motion, ...]:

@@ -5,7 +5,7 @@ from functools import reduce
 from pathlib import Path
 from typing import Any, Literal
 
-from app.document import Meshing
+from app.document import Meshing, Variant
 from app.editor.action import Action
 from app.editor.dialogs import Dialog, FileDialog, ShortcutSheet
 from app.editor.project import view_around
@@ -15,6 +15,7 @@ from app.render import View
 from app.storage import LARGEST_GHOST_STEP, LARGEST_SCALE, MOST_GHOSTS, SMALLEST_SCALE, ThemeName
 
 SCALE_STEP = 0.25
+LEAST_PART = 0.05  # of the viewport's width, that is left to either method
 AROUND_HANDLES = 0.12  # of the figure's diagonal, on each side of the handles that are fitted
 OverlayName = Literal["handles", "wireframe", "outline", "cage", "onion", "mirror", "paths"]
 HEAT_MAPS: tuple[HeatMap, ...] = ("none", "k", "sigma_a", "sigma_b")
@@ -94,6 +95,35 @@ def toggle_heat_map(session: Session) -> None:
 def show_curves(session: Session, kind: CurveKind) -> None:
     """Show the curves of the distortion relative to the keys, or as they are."""
     session.curves = kind
+
+
+def toggle_split(session: Session) -> None:
+    """Show another method beside the drawing's own, or the drawing alone."""
+    if session.split is None:
+        session.split = session.last_split
+    else:
+        session.last_split, session.split = session.split, None
+
+
+def compare_with(session: Session, variant: Variant | None) -> None:
+    """Show a method beside the drawing's own; None shows the drawing alone."""
+    if (variant is None) != (session.split is None):
+        toggle_split(session)
+    if variant is not None and session.split is not None:
+        session.split = replace(session.split, variant=variant)
+
+
+def move_divider(session: Session, place: float) -> None:
+    """Move the divider to a share of the viewport's width."""
+    if session.split is not None:
+        place = min(max(place, LEAST_PART), 1.0 - LEAST_PART)
+        session.split = replace(session.split, place=place)
+
+
+def lay_beside(session: Session, beside: bool) -> None:  # noqa: FBT001 - a panel's two choices
+    """Show the two methods side by side, or under a divider over one place."""
+    if session.split is not None:
+        session.split = replace(session.split, beside=beside)
 
 
 def set_ghosts(session: Session, before: int, after: int, step: int) -> None:

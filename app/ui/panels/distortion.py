@@ -7,11 +7,12 @@ import numpy as np
 from imgui_bundle import ImVec2, ImVec4, imgui, implot
 from imgui_bundle import icons_fontawesome_6 as icons
 
-from app.editor import Action, CurveKind, HeatMap, Project, Session, do
+from app.editor import Action, CurveKind, HeatMap, Project, Session, Twin, do
 from app.editor.actions import playback, saving, viewing
 from app.motion import Shown
 from app.render import heat_ramp
 from app.reports import TIMES, Curves, broken_lines
+from app.ui.methods import METHODS
 from app.ui.style import SMALL, Look, heading, ink, segments, small, tip
 from app.ui.viewport import heat_limits, measure
 from engine.arrays import Floats
@@ -20,12 +21,14 @@ from engine.maps import Bounds
 
 HEAT_MAPS = (("none", "Off"), ("k", "Shear"), ("sigma_a", "Stretch"), ("sigma_b", "Squeeze"))
 NAMES = {"k": "Shear (k)", "sigma_a": "Stretch (σa)", "sigma_b": "Squeeze (σb)"}
+SPLITS = (("divider", "Divider"), ("beside", "Side by side"))
 KINDS = (("relative", "Relative"), ("absolute", "Absolute"))
 BINS = 48
 HISTOGRAM, STRIP = 4.6, 0.45  # em
 PLOT, LARGEST_PLOT = 4.2, 10.0  # em: heights of a plot at least and at most
 FRAMES = 1.35  # em: what the frames take below the lower one
 SEGMENTS = 72  # of one point's line over all time at most, or a few in each interval
+MOST = 2.5  # of one method's own range, that both may take: another may go without bound
 HEADROOM = 1.4  # above the largest value, for the title
 QUIET = (
     implot.Flags_.no_legend
@@ -49,11 +52,36 @@ def draw(session: Session, look: Look) -> list[Action]:
         case "none" | "k" | "sigma_a" | "sigma_b" as chosen:
             actions.append(do(viewing.show_heat_map, chosen))
     _spread(look, project, project.puppet.shown, "k" if heat_map == "none" else heat_map)
+    heading(look, "Compare")
+    actions += _compare(session, look)
     heading(look, "Over time")
     if len(project.figure.keys) < 2:
         small(look, "Make a second key to see how the in-betweens distort.")
         return actions
     return [*actions, *_over_time(session, look, project)]
+
+
+def _compare(session: Session, look: Look) -> list[Action]:
+    """Choose what the viewport shows beside the drawing's own method, and how."""
+    actions: list[Action] = []
+    split = session.split
+    imgui.set_next_item_width(-1)
+    shown = "Nothing" if split is None else METHODS[split.variant].name
+    if imgui.begin_combo("##compared", shown):
+        if imgui.selectable("Nothing", split is None)[0]:
+            actions.append(do(viewing.compare_with, None))
+        for variant, text in METHODS.items():
+            is_chosen = split is not None and split.variant == variant
+            if imgui.selectable(text.title, is_chosen)[0]:
+                actions.append(do(viewing.compare_with, variant))
+            tip(text.what)
+        imgui.end_combo()
+    tip("The same keys by another method, beside this drawing's own")
+    if split is not None:
+        chosen = segments(look, "split", SPLITS, "beside" if split.beside else "divider")
+        if chosen is not None and (chosen == "beside") != split.beside:
+            actions.append(do(viewing.lay_beside, chosen == "beside"))
+    return actions
 
 
 def _style_plots(look: Look) -> None:
@@ -160,9 +188,16 @@ def _over_time(session: Session, look: Look, project: Project) -> list[Action]:
         return actions
     is_stale = curves.clip != project.clip
     height = _plot_height(look)
-    upper, lower = _plots(session.curves, curves, project.figure.bounds)
-    actions += _plot(session, look, curves, upper, height)
-    actions += _plot(session, look, curves, lower, height + FRAMES * look.em)
+    bounds = project.figure.bounds
+    upper, lower = _plots(session.curves, curves, bounds)
+    other_upper, other_lower = None, None
+    twin, twin_curves = project.puppet.twin, project.twin_curves
+    if twin is not None and twin_curves.value is not None:
+        if twin_curves.follows(twin.clip(project.document)):
+            other_upper, other_lower = _plots(session.curves, twin_curves.value, bounds)
+        _tell_both(look, twin, curves, twin_curves.value)
+    actions += _plot(session, look, curves, (upper, other_upper), height)
+    actions += _plot(session, look, curves, (lower, other_lower), height + FRAMES * look.em)
     if session.curves == "relative":
         small(look, "Each point relative to its larger key. Red: theoretical limit.")
     else:
@@ -206,7 +241,7 @@ class _Plot(NamedTuple):
         return self.least + HEADROOM * (largest - self.least)
 
 
-@lru_cache(maxsize=2)
+@lru_cache(maxsize=4)
 def _plots(kind: CurveKind, curves: Curves, bounds: Bounds) -> tuple[_Plot, _Plot]:
     if kind == "relative":
         return (
@@ -229,8 +264,28 @@ def _lines(curves: Curves, values: Floats) -> tuple[Floats, Floats]:
     return frames[:, kept].ravel(), lines[:, kept].ravel()
 
 
-def _plot(session: Session, look: Look, curves: Curves, plot: _Plot, height: float) -> list[Action]:
-    """Draw the curves of the worst points; a click moves the playhead."""
+def _tell_both(look: Look, twin: Twin, own: Curves, other: Curves) -> None:
+    """Tell which curves are whose, and how far each goes."""
+    if other.clip.figure is not twin.figure:
+        small(look, "Measuring the other method…")
+        return
+    palette = look.palette
+    for curves, colour in ((own, palette.accent), (other, palette.warning)):
+        name = METHODS[curves.clip.figure.variant].name
+        (k, sigma_a, _), (*_, sigma_b) = curves.extremes.max(0), curves.extremes.min(0)
+        limits = f"shear {k:.2f}, stretch {sigma_a:.2f}, squeeze {sigma_b:.2f}"
+        imgui.text_colored(colour, f"{name}: {limits}")
+
+
+def _plot(
+    session: Session,
+    look: Look,
+    curves: Curves,
+    plots: tuple[_Plot, _Plot | None],
+    height: float,
+) -> list[Action]:
+    """Draw the curves of the worst points, and another method's; a click moves the playhead."""
+    plot, other = plots
     actions: list[Action] = []
     project, palette = session.project, look.palette
     if project is None or not implot.begin_plot(
@@ -243,7 +298,8 @@ def _plot(session: Session, look: Look, curves: Curves, plot: _Plot, height: flo
         along |= implot.AxisFlags_.no_tick_labels
     implot.setup_axes("", "", along, quiet)
     first, last = float(curves.frames[0]), float(curves.frames[-1])
-    implot.setup_axes_limits(first, last, plot.least, plot.top, implot.Cond_.always)
+    top = plot.top if other is None else min(max(plot.top, other.top), MOST * plot.top)
+    implot.setup_axes_limits(first, last, plot.least, top, implot.Cond_.always)
     keys = implot.Spec()
     keys.line_color = palette.line
     frames = [float(key.frame) for key in project.figure.keys]
@@ -251,6 +307,10 @@ def _plot(session: Session, look: Look, curves: Curves, plot: _Plot, height: flo
     line = implot.Spec()
     alpha = 0.10 if curves.clip != project.clip else 0.30
     line.line_color = ImVec4(palette.accent.x, palette.accent.y, palette.accent.z, alpha)
+    if other is not None:
+        line.line_color = ImVec4(palette.warning.x, palette.warning.y, palette.warning.z, alpha)
+        implot.plot_line("##others", other.frames, other.values, line)
+        line.line_color = ImVec4(palette.accent.x, palette.accent.y, palette.accent.z, alpha)
     implot.plot_line("##points", plot.frames, plot.values, line)
     _limit(look, plot.bound, vertical=False)
     now = implot.Spec()

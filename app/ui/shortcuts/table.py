@@ -415,6 +415,16 @@ BINDINGS: dict[str, Binding] = {
         active=lambda session: session.overlays.heat_map != "none",
         in_bar=True,
     ),
+    "split view": Binding(
+        label="Split view",
+        action=do(viewing.toggle_split),
+        menu="View",
+        keys=(Key.u,),
+        icon=icons.ICON_FA_TABLE_COLUMNS,
+        hint="Compare with another method, under a divider that can be dragged",
+        active=lambda session: session.split is not None,
+        in_bar=True,
+    ),
     "onion skin": Binding(
         label="Onion skin",
         action=do(viewing.toggle, "onion"),

@@ -5,23 +5,17 @@ from collections.abc import Callable
 from imgui_bundle import ImVec2, imgui
 from imgui_bundle import icons_fontawesome_6 as icons
 
-from app.document import LAST_FRAME, Variant
+from app.document import LAST_FRAME
 from app.editor import Action, Project, Session, do
 from app.editor.actions import keys, playback, viewing
 from app.storage import LARGEST_GHOST_STEP, MOST_GHOSTS
+from app.ui.methods import METHODS
 from app.ui.shortcuts import BINDINGS, bound_button
 from app.ui.style import Look, icon_button, ink, tip
 from app.ui.timeline.menus import time_menu
 from app.ui.timeline.track import in_seconds
 
 # Names and what they mean.
-VARIANTS: dict[Variant, tuple[str, str]] = {
-    Variant.METRIC: ("Metric – smooth, bounded", "Stretch and shear stay within those of the keys"),
-    Variant.NU: ("Nu (ν) – even shear", "Shear stays within that of the keys, stretch nearly so"),
-    Variant.SCALED_ETA: ("Scaled eta (η) – bounded", "As eta, held within the limits of the keys"),
-    Variant.ETA: ("Eta (η) – may overshoot", "May leave the limits of the keys; for comparison"),
-    Variant.LINEAR: ("Linear – may fold", "Every point goes straight; for comparison"),
-}
 GAP, TIGHT, WIDE = 0.35, 0.1, 1.1  # em between what belongs together closely, and less so
 FRAMES = 13.0  # em: room that the numbers of frames need
 SLOWEST, FASTEST = 1.0, 240.0  # frames per second that dragging reaches
@@ -211,11 +205,11 @@ def _onion_skin(session: Session, look: Look) -> list[Action]:
 def _variant(project: Project) -> list[Action]:
     actions: list[Action] = []
     current = project.figure.variant
-    if imgui.begin_combo("##variant", VARIANTS[current][0].split(" –")[0]):
-        for variant, (name, what) in VARIANTS.items():
-            if imgui.selectable(name, variant == current)[0]:
+    if imgui.begin_combo("##variant", METHODS[current].name):
+        for variant, text in METHODS.items():
+            if imgui.selectable(text.title, variant == current)[0]:
                 actions.append(do(keys.set_variant, variant))
-            tip(what)
+            tip(text.what)
         imgui.end_combo()
     tip("How in-betweens are made")
     return actions

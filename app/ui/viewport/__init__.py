@@ -7,5 +7,6 @@ Imports: `app.ui.style`, `app.ui.shortcuts`, `app.render`.
 
 from app.ui.viewport import viewport
 from app.ui.viewport.canvas import Canvas, heat_limits, measure
+from app.ui.viewport.split_view import SplitTextures
 
-__all__ = ["Canvas", "heat_limits", "measure", "viewport"]
+__all__ = ["Canvas", "SplitTextures", "heat_limits", "measure", "viewport"]

@@ -1,6 +1,7 @@
 """What the viewport shows: the drawing, its ghosts, and all that marks it."""
 
-from collections.abc import Collection
+from collections.abc import Collection, Mapping
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
@@ -29,6 +30,7 @@ from engine.maps import distortion
 
 GHOST_BEFORE, GHOST_AFTER = (0.93, 0.36, 0.36), (0.30, 0.62, 0.98)
 GHOST_OPACITY = 0.38
+TWIN = -2  # number of the poses of what is shown beside the drawing
 SMALL_PICTURE = -1  # number of the poses that are drawn for the library; ghosts count from 1
 
 
@@ -42,8 +44,8 @@ class Canvas:
 
     def __init__(self, renderer: Renderer) -> None:
         self._renderer = renderer
-        self._target: RenderTarget | None = None
-        self._retired: RenderTarget | None = None
+        self._targets: list[RenderTarget] = []
+        self._retired: list[RenderTarget] = []
         self._drawing: _Drawing | None = None
         self._drawn: tuple[object, ...] = ()
         self.pose_pictures = PosePictures(renderer)
@@ -51,12 +53,17 @@ class Canvas:
     @property
     def texture(self) -> int | None:
         """OpenGL's name of the picture; None before the first one."""
-        return None if self._target is None else self._target.texture.glo
+        return self._targets[0].texture.glo if self._targets else None
 
     @property
-    def target(self) -> RenderTarget | None:
-        """Where the picture is."""
-        return self._target
+    def twin_texture(self) -> int | None:
+        """The same of the picture by another method; None where the viewport is not split."""
+        return self._targets[1].texture.glo if len(self._targets) > 1 else None
+
+    @property
+    def targets(self) -> tuple[RenderTarget, ...]:
+        """Where the pictures are."""
+        return tuple(self._targets)
 
     def draw(self, session: Session) -> None:
         """Draw the project of a session as it is shown now."""
@@ -64,33 +71,41 @@ class Canvas:
         if project is None or project.puppet.shown is None:
             self.pose_pictures.release()
             return
-        self._fit_target(session.screen)
+        twins = [puppet.twin for puppet in project.puppets.values()]
+        is_split = all(twin is not None and twin.shown is not None for twin in twins)
+        is_split &= session.cutting is None
+        self._fit_targets(session.screen, 1 + is_split)
         if self._drawing is None or self._drawing.project is not project:
             self._forget_drawing()
             self._drawing = _Drawing(self._renderer, project)
         posable = partial(self._drawing.drawn_mesh, project.active, number=SMALL_PICTURE)
         self.pose_pictures.draw(session, project, posable)
         inputs = _inputs(session, project)
-        if self._target is not None and inputs != self._drawn:
+        if inputs != self._drawn:
+            view = project.view(session.screen)
             scene = _scene(session, project, project.puppet.shown, self._drawing)
-            self._renderer.draw(self._target, project.view(session.screen), scene)
+            self._renderer.draw(self._targets[0], view, scene)
+            if is_split:
+                twin = _twin_scene(session, project, scene, self._drawing)
+                self._renderer.draw(self._targets[1], view, twin)
             self._drawn = inputs
 
     def release(self) -> None:
         """Let everything go."""
         self.pose_pictures.release()
         self._forget_drawing()
-        for target in filter(None, (self._target, self._retired)):
+        for target in (*self._targets, *self._retired):
             target.release()
-        self._target = self._retired = None
+        self._targets, self._retired = [], []
 
-    def _fit_target(self, size: tuple[int, int]) -> None:
-        if self._target is not None and self._target.size == size:
+    def _fit_targets(self, size: tuple[int, int], count: int) -> None:
+        if len(self._targets) == count and self._targets[0].size == size:
             return
-        # ImGui may still show the last one in this frame.
-        if self._retired is not None:
-            self._retired.release()
-        self._retired, self._target = self._target, RenderTarget(self._renderer.programs, size)
+        # ImGui may still show the last ones in this frame.
+        for target in self._retired:
+            target.release()
+        self._retired = self._targets
+        self._targets = [RenderTarget(self._renderer.programs, size) for _ in range(count)]
         self._drawn = ()
 
     def _forget_drawing(self) -> None:
@@ -197,6 +212,7 @@ def _inputs(session: Session, project: Project) -> tuple[object, ...]:
     return (
         *(puppet.shown for puppet in project.puppets.values()),
         *(puppet.cut.value for puppet in project.puppets.values()),
+        *(puppet.twin.shown for puppet in project.puppets.values() if puppet.twin),
         project.puppet.coarse.value
         if session.overlays.onion
         else project.puppet.coarse.value.sampler,
@@ -255,21 +271,7 @@ def _scene(session: Session, project: Project, shown: Shown, drawing: _Drawing) 
             meshes=drawing.cut_view().meshes(),
             discs=mark_holes(project, palette, scale) if session.cutting == "holes" else (),
         )
-    poses = []
-    # In the order of the document: what comes later is in front.
-    for figure in project.document.figures:
-        shows = project.puppets[figure.id].shown
-        if shows is not None and is_visible(figure, shows.frame):
-            pose = drawing.drawn_mesh(figure.id, shows.mesh).pose(
-                shows.vertices, placement=shows.placement, opacity=figure.opacity
-            )
-            poses.append(pose)
-            if session.tints_depth:
-                clip, rest = shows.clip, shows.mesh.domain.mesh
-                depths = painted_depths(rest, clip, shows.frame)
-                drawing.tint(pose, depths if figure.id == project.active else 0 * depths)
-            elif overlays.heat_map != "none":
-                drawing.heat(pose, shows, overlays.heat_map)
+    shows = {figure: puppet.shown for figure, puppet in project.puppets.items()}
     heat = None
     if session.tints_depth:
         heat = Heat(low=-1.0, high=1.0, contours=0, strength=0.5)
@@ -282,7 +284,7 @@ def _scene(session: Session, project: Project, shown: Shown, drawing: _Drawing) 
         background=background(
             session.preferences.backdrop, palette, drawing.brightness, pixel_scale(session)
         ),
-        meshes=tuple(poses),
+        meshes=_posed(session, project, shows, drawing),
         heat=heat,
         wireframe=wireframe,
         ghosts=_ghosts(session, project, shown, drawing) if overlays.onion else (),
@@ -291,12 +293,48 @@ def _scene(session: Session, project: Project, shown: Shown, drawing: _Drawing) 
     )
 
 
+def _twin_scene(session: Session, project: Project, scene: Scene, drawing: _Drawing) -> Scene:
+    """Return the same scene by the method that is compared, without the poses around."""
+    shows = {figure: puppet.twin.shown for figure, puppet in project.puppets.items() if puppet.twin}
+    meshes = _posed(session, project, shows, drawing, number=TWIN)
+    return replace(scene, meshes=meshes, ghosts=())
+
+
+def _posed(
+    session: Session,
+    project: Project,
+    shows: Mapping[int, Shown | None],
+    drawing: _Drawing,
+    *,
+    number: int = 0,
+) -> tuple[PosedMesh, ...]:
+    """Return what is seen of the figures, in the order of the document: the last is in front."""
+    heat_map = session.overlays.heat_map
+    poses = []
+    for figure in project.document.figures:
+        shown = shows[figure.id]
+        if shown is None or not is_visible(figure, shown.frame):
+            continue
+        pose = drawing.drawn_mesh(figure.id, shown.mesh, number).pose(
+            shown.vertices, placement=shown.placement, opacity=figure.opacity
+        )
+        poses.append(pose)
+        if session.tints_depth:
+            depths = painted_depths(shown.mesh.domain.mesh, shown.clip, shown.frame)
+            drawing.tint(pose, depths if figure.id == project.active else 0 * depths)
+        elif heat_map != "none":
+            drawing.heat(pose, shown, heat_map)
+    return tuple(poses)
+
+
 def _meshes(puppet: Puppet) -> set[PosableMesh]:
     """Return the meshes on which a figure is shown, or may be soon."""
     meshes = {
         motion.mesh for motion in (puppet.coarse.value, puppet.fine.value) if motion is not None
     }
-    return meshes if puppet.shown is None else meshes | {puppet.shown.mesh}
+    twin = puppet.twin
+    shows = (puppet.shown, None if twin is None else twin.shown)
+    return meshes | {shown.mesh for shown in shows if shown is not None}
 
 
 def _ghosts(

@@ -36,6 +36,7 @@ from app.ui.viewport.joint import draw_joint, is_on_anchor
 from app.ui.viewport.marks import moved_loops
 from app.ui.viewport.mirror_axis import axis_grip, draw_axis
 from app.ui.viewport.ring import Ring, draw_ring
+from app.ui.viewport.split_view import SplitTextures, divide, draw_divider, draw_pictures
 from engine.arrays import Complexes
 from engine.geometry import contains
 
@@ -46,10 +47,15 @@ GRIP = 0.75  # em: radius within which a handle is grabbed
 SMALLEST_ZOOM, LARGEST_ZOOM = 0.02, 64.0
 
 
-def draw(session: Session, look: Look, texture: int | None) -> list[Action]:
-    """Show the picture that was drawn of the project, and take what the pointer does there."""
+def draw(session: Session, look: Look, pictures: SplitTextures) -> list[Action]:
+    """Show the pictures that were drawn of the project, and take what the pointer does there.
+
+    Where the viewport is divided into two, `pictures` has the other method's picture, too.
+    """
     corner = imgui.get_window_pos()
-    room = imgui.get_window_size()
+    whole = imgui.get_window_size()
+    parts = divide(session, corner, whole)
+    room = parts.room
     imgui.set_cursor_screen_pos(corner)
     density = imgui.get_io().display_framebuffer_scale.x or 1.0
     screen = (max(1, round(room.x * density)), max(1, round(room.y * density)))
@@ -60,20 +66,20 @@ def draw(session: Session, look: Look, texture: int | None) -> list[Action]:
     if (
         project is None
         or project.puppet.shown is None
-        or texture is None
+        or pictures.own is None
         or min(room.x, room.y) < 1
     ):
         return actions
-    opposite = ImVec2(corner.x + room.x, corner.y + room.y)
-    imgui.get_window_draw_list().add_image(
-        imgui.ImTextureRef(texture), corner, opposite, ImVec2(0, 1), ImVec2(1, 0)
-    )
+    draw_pictures(parts, pictures.own, pictures.twin)
     canvas = _Canvas(project, project.puppet.shown, project.view(session.screen), corner, density)
     # Before the canvas: what comes first gets the pointer. Were they laid over it, a press in the
     # frame in which the pointer arrives would be the canvas's, or nobody's.
+    imgui.push_clip_rect(corner, corner + room, intersect_with_current_clip_rect=True)
     hovered, pressed, over_handles = _handles(session, look, canvas)
     axis = _axis(session, look, canvas)
     pressed = pressed or axis.is_pressed
+    imgui.pop_clip_rect()
+    actions += draw_divider(session, look, parts, whole.x)
     imgui.set_cursor_screen_pos(corner)
     imgui.invisible_button("canvas", room, _ANY_BUTTON)
     on_canvas = imgui.is_item_hovered()
@@ -134,7 +140,9 @@ class _Canvas:
     def pixel(self) -> complex:
         """The pixel of the picture under the pointer."""
         mouse = imgui.get_mouse_pos()
-        return (complex(mouse.x, mouse.y) - self._corner) * self.density
+        pixel = (complex(mouse.x, mouse.y) - self._corner) * self.density
+        # Of a picture beside it, the same pixel.
+        return complex(pixel.real % self.view.size[0], pixel.imag)
 
     def place(self, point: complex) -> complex:
         """Return the place under a point of the screen, as the figure is by itself."""

@@ -22,7 +22,7 @@ from app.storage import app_icon
 from app.ui.panel import Panel
 from app.ui.panels import cut_out, deform, distortion, domain, export, handle, layers, poses
 from app.ui.timeline import timeline
-from app.ui.viewport import Canvas, viewport
+from app.ui.viewport import Canvas, SplitTextures, viewport
 from app.ui.window.exporter import Exporter
 from app.ui.window.modifiers import release_stuck_modifiers
 from app.ui.window.shell import Shell
@@ -138,8 +138,8 @@ class Window:
         textures = [] if self._thumbnails is None else self._thumbnails.textures()
         if self._layer_pictures is not None:
             textures += self._layer_pictures.textures()
-        if self._canvas is not None and self._canvas.target is not None:
-            textures.append(self._canvas.target.texture)
+        if self._canvas is not None:
+            textures += [target.texture for target in self._canvas.targets]
             textures += [target.texture for target in self._canvas.pose_pictures.targets]
         return {texture.glo: texture for texture in textures}
 
@@ -161,7 +161,7 @@ class Window:
                 title="Viewport",
                 icon=icons.ICON_FA_IMAGE,
                 place="MainDockSpace",
-                draw=lambda session, look: viewport.draw(session, look, self._texture),
+                draw=lambda session, look: viewport.draw(session, look, self._pictures),
             ),
             Panel(title="Timeline", icon=icons.ICON_FA_FILM, place="bottom", draw=timeline.draw),
             Panel(title="Handle", icon=icons.ICON_FA_CIRCLE_DOT, place="side", draw=handle.draw),
@@ -190,8 +190,10 @@ class Window:
         ]
 
     @property
-    def _texture(self) -> int | None:
-        return self._canvas.texture if self._canvas else None
+    def _pictures(self) -> SplitTextures:
+        if self._canvas is None:
+            return SplitTextures(None, None)
+        return SplitTextures(self._canvas.texture, self._canvas.twin_texture)
 
     def _pose_picture(self, pose: Pose, side: int) -> int | None:
         return self._canvas.pose_pictures.get(pose, side) if self._canvas else None

@@ -1,0 +1,102 @@
+"""The methods that are compared, each from two keyframes to in-betweens at any time."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Protocol
+
+from app.cli.figures.shapes import Pair
+from engine.arrays import Complexes
+from engine.baselines import Baseline, prepare_baseline
+from engine.interpolation import Variant, prepare
+
+
+class Inbetween(Protocol):
+    """An in-between: where the vertices are, and derivatives wherever the method has them."""
+
+    @property
+    def positions(self) -> Complexes:
+        """Of the vertices, (v,)."""
+
+    @property
+    def fz(self) -> Complexes:
+        """f_z at vertices or in triangles, the same at all times, (p,)."""
+
+    @property
+    def fzbar(self) -> Complexes:
+        """f_z̄ at the same places."""
+
+
+FrameAt = Callable[[float], Inbetween]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ComparedMethod:
+    """A way to in-betweens.
+
+    Parameters
+    ----------
+    name : str
+        As it stands beside its pictures.
+    colour : str
+        Of its curves.
+    prepare : callable
+        From a pair to its in-betweens.
+    """
+
+    name: str
+    colour: str
+    prepare: Callable[[Pair], FrameAt]
+
+
+def of_variant(variant: Variant) -> Callable[[Pair], FrameAt]:
+    """Return the preparation of one of our variants."""
+
+    def prepare_pair(pair: Pair) -> FrameAt:
+        domain = pair.shape.domain
+        return prepare(
+            (pair.first, pair.second),
+            domain.mesh.vertices,
+            outline=domain.outline,
+            variant=variant,
+            triangles=domain.mesh.triangles,
+            anchor=pair.anchor,
+        ).frame
+
+    return prepare_pair
+
+
+def of_baseline(baseline: Baseline) -> Callable[[Pair], FrameAt]:
+    """Return the preparation of one of the methods that ours are compared with."""
+
+    def prepare_pair(pair: Pair) -> FrameAt:
+        domain = pair.shape.domain
+        return prepare_baseline(
+            baseline,
+            (pair.first, pair.second),
+            domain.mesh.vertices,
+            domain.mesh.triangles,
+            outline=domain.outline,
+            anchor=pair.anchor,
+            handles=pair.handles if baseline is Baseline.HANDLES else None,
+            bounds=pair.bounds,
+        ).frame
+
+    return prepare_pair
+
+
+LINEAR = ComparedMethod(name="linear", colour="#8a8f99", prepare=of_variant(Variant.LINEAR))
+NU = ComparedMethod(name="ν", colour="#3fa796", prepare=of_variant(Variant.NU))
+ETA = ComparedMethod(name="η", colour="#f2a541", prepare=of_variant(Variant.ETA))
+SCALED_ETA = ComparedMethod(
+    name="scaled η", colour="#7d5ba6", prepare=of_variant(Variant.SCALED_ETA)
+)
+METRIC = ComparedMethod(name="metric", colour="#4a5be0", prepare=of_variant(Variant.METRIC))
+ARAP = ComparedMethod(name="ARAP", colour="#d9534f", prepare=of_baseline(Baseline.ARAP))
+FFMP = ComparedMethod(name="FFMP", colour="#c77d2e", prepare=of_baseline(Baseline.FFMP))
+SIG13 = ComparedMethod(
+    name="Chen et al. 2013", colour="#2e7d8c", prepare=of_baseline(Baseline.SIG13)
+)
+HANDLES = ComparedMethod(name="handles", colour="#6b7a3a", prepare=of_baseline(Baseline.HANDLES))
+MESH_ETA = ComparedMethod(name="mesh η", colour="#a04a8c", prepare=of_baseline(Baseline.MESH_ETA))
+# All that are timed.
+METHODS = (LINEAR, NU, ETA, SCALED_ETA, METRIC, ARAP, FFMP, MESH_ETA, HANDLES, SIG13)

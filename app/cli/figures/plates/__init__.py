@@ -1,0 +1,35 @@
+"""The figures, a module each.
+
+In: a studio.
+Out: plates: a picture, a caption, and the numbers beside them.
+Imports: `app.cli.figures` without its page.
+"""
+
+from app.cli.figures.plates import (
+    figure_1,
+    figure_3,
+    figure_4,
+    figure_5,
+    figure_6,
+    figure_7,
+    figure_8,
+    figure_9,
+    figure_10,
+    figure_11,
+)
+from app.cli.figures.plates.plate import Plate, Studio
+
+MAKERS = {
+    1: figure_1.make,
+    3: figure_3.make,
+    4: figure_4.make,
+    5: figure_5.make,
+    6: figure_6.make,
+    7: figure_7.make,
+    8: figure_8.make,
+    9: figure_9.make,
+    10: figure_10.make,
+    11: figure_11.make,
+}
+
+__all__ = ["MAKERS", "Plate", "Studio"]

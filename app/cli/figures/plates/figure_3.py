@@ -1,0 +1,90 @@
+"""Figure 3: a square that turns while it is stretched, and which way the stretch turns."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from app.cli.figures.easel import alike, box_of
+from app.cli.figures.methods import METRIC, NU, SCALED_ETA
+from app.cli.figures.plates.plate import Plate, Studio
+from app.cli.figures.shapes import Pair, square
+from app.cli.figures.sheet import INK, as_png, new_sheet, show
+from app.cli.figures.track import Tracked
+from engine.maps import HarmonicMap, distortion
+
+TIME = 0.8
+MU = -1 / 3
+TRIANGLES = 400  # the maps are affine
+CAPTION = (
+    "Interpolation of the stretch direction. The square (a) is stretched along y by both keyframes "
+    "(b) and (e), μ = −1/3, and (e) is also turned by a right angle. At t = 0.8 the ν variant (c) "
+    "stretches it in another direction, and less; scaled η (d) and metric keep the direction."
+)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class StretchSeen:
+    """How a method stretches the square at t = 0.8.
+
+    Parameters
+    ----------
+    name : str
+    direction : float
+        By how many degrees the direction of the stretch is off the keyframes'.
+    k : float
+    """
+
+    name: str
+    direction: float
+    k: float
+
+
+def pair() -> Pair:
+    """Return the square, stretched, and stretched and turned."""
+    shape = square(TRIANGLES)
+    cage = shape.domain.cage
+    centre = shape.domain.outline.mean()
+    first = HarmonicMap(cage=cage, phi=cage, psi=MU * (cage - centre))
+    return Pair(shape=shape, first=first, second=first.moved(1j, centre - 1j * centre))
+
+
+def measure() -> tuple[StretchSeen, ...]:
+    """Measure ν, scaled η and metric."""
+    both = pair()
+    found = []
+    for method in (NU, SCALED_ETA, METRIC):
+        frame = Tracked(both, method).frame(TIME)
+        mu = distortion.mu(frame.fz, frame.fzbar)
+        off = np.degrees(np.abs(np.angle(mu / MU)) / 2)
+        found.append(
+            StretchSeen(name=method.name, direction=float(off.max()), k=float(np.abs(mu).max()))
+        )
+    return tuple(found)
+
+
+def make(studio: Studio) -> Plate:
+    """Draw the figure."""
+    both = pair()
+    nu, eta = Tracked(both, NU), Tracked(both, SCALED_ETA)
+    identity = HarmonicMap.identity(both.shape.domain.cage)
+    rest = Tracked(Pair(shape=both.shape, first=identity, second=both.first), NU)
+    sheet = new_sheet(12, 2.8)
+    panels = (
+        ("(a) Ω", rest, 0.0),
+        ("(b) f⁰", nu, 0.0),
+        ("(c) ν, t = 0.8", nu, TIME),
+        ("(d) scaled η, t = 0.8", eta, TIME),
+        ("(e) f¹", nu, 1.0),
+    )
+    boxes = alike([box_of(track.frame(time).positions) for _, track, time in panels])
+    panels_in_a_row = sheet.subplots(1, len(panels))
+    for axes, (title, track, time), box in zip(panels_in_a_row, panels, boxes, strict=True):
+        show(axes, studio.easel, track, time, box=box)
+        axes.set_title(title, color=INK, fontsize=10)
+    return Plate(
+        title="Stretch direction",
+        caption=CAPTION,
+        picture=as_png(sheet),
+        heads=("t = 0.8", "direction off by", "k (keys: 0.3333)"),
+        rows=tuple((one.name, f"{one.direction:.4f}°", f"{one.k:.4f}") for one in measure()),
+    )

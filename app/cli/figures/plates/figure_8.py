@@ -1,0 +1,102 @@
+"""Figure 8: the dragon's tail between two keyframes that both differ from the drawing."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from app.cli.figures.easel import alike, box_of
+from app.cli.figures.methods import METRIC, SCALED_ETA, SIG13
+from app.cli.figures.plates.plate import Plate, Studio
+from app.cli.figures.shapes import Pair, sample
+from app.cli.figures.sheet import INK, as_png, new_sheet, show
+from app.cli.figures.track import Tracked
+from engine.arrays import Complexes
+from engine.maps import HarmonicMap
+
+TIME = 0.5
+NEAR = 0.04  # of the width: what turns with the tip of the tail
+CAPTION = (
+    "Dragon with a moving tail: Ω in the first picture and f⁰ ≠ Id in the second. Scaled η blends "
+    "the angle of the tail linearly and metric does not; metric and Chen et al. (2013) look alike."
+)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Tail:
+    """Where a method's in-betweens are at t = 0.5.
+
+    Parameters
+    ----------
+    name : str
+    turned : float
+        Which part of its way the tip of the tail has turned.
+    from_metric : float
+        The largest distance from the metric variant, as a part of the diameter.
+    """
+
+    name: str
+    turned: float
+    from_metric: float
+
+
+def pair(triangles: int) -> Pair:
+    """Return two keys of the dragon with its tail high and low."""
+    return sample("dragon", 1, 2, triangles)
+
+
+def measure(tracks: tuple[Tracked, ...]) -> tuple[Tail, ...]:
+    """Measure methods, of which the first is metric."""
+    both = tracks[0].pair
+    rest = both.shape.domain.mesh.vertices
+    tip = int(rest.real.argmax())
+    reference = tracks[0].frame(TIME).positions
+    size = abs(box_of(reference).upper - box_of(reference).lower)
+    found = []
+    for track in tracks:
+        first, now, last = (track.frame(time).positions for time in (0.0, TIME, 1.0))
+        found.append(
+            Tail(
+                name=track.method.name,
+                turned=_turn(rest, first, now, tip) / _turn(rest, first, last, tip),
+                from_metric=float(np.abs(now - reference).max() / size),
+            )
+        )
+    return tuple(found)
+
+
+def make(studio: Studio) -> Plate:
+    """Draw the figure."""
+    both = pair(studio.triangles)
+    tracks = tuple(Tracked(both, method) for method in (METRIC, SCALED_ETA, SIG13))
+    metric, eta, chen = tracks
+    rest = Tracked(replace(both, first=HarmonicMap.identity(both.first.cage)), METRIC)
+    panels = (
+        ("Ω", rest, 0.0),
+        ("f⁰", metric, 0.0),
+        ("scaled η", eta, TIME),
+        ("metric", metric, TIME),
+        ("Chen et al. 2013", chen, TIME),
+        ("f¹", metric, 1.0),
+    )
+    boxes = alike([box_of(track.frame(time).positions) for _, track, time in panels])
+    sheet = new_sheet(14, 2.6)
+    columns = sheet.subplots(1, len(panels))
+    for axes, (title, track, time), box in zip(columns, panels, boxes, strict=True):
+        show(axes, studio.easel, track, time, box=box)
+        axes.set_title(title, color=INK, fontsize=11)
+    return Plate(
+        title="The dragon's tail",
+        caption=CAPTION,
+        picture=as_png(sheet),
+        heads=("t = 0.5", "of the tail's turn", "from metric, of the diameter"),
+        rows=tuple(
+            (one.name, f"{one.turned:.3f}", f"{one.from_metric:.2%}") for one in measure(tracks)
+        ),
+    )
+
+
+def _turn(rest: Complexes, first: Complexes, second: Complexes, tip: int) -> float:
+    """Return by how many radians the neighbourhood of a vertex turns from one pose to another."""
+    near = np.abs(rest - rest[tip]) < NEAR * np.ptp(rest.real)
+    before, after = (positions[near] - positions[near].mean() for positions in (first, second))
+    return float(np.angle(np.vdot(before, after)))

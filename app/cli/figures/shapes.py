@@ -1,0 +1,238 @@
+"""Shapes of this project, and two keyframes for each: what the figures are drawn from.
+
+Places are in pixels, y up, as everywhere.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.interpolate import CubicSpline
+
+from app.storage import cut_picture, decode_picture, load_project, sample_images
+from engine.arrays import Bytes, Complexes, Floats
+from engine.deform import Deformer, Handles
+from engine.domain import Domain, build_domain, mesh_inside
+from engine.geometry import edges
+from engine.maps import Boundary, Bounds, HarmonicMap
+
+# The middle of the letter S in its picture; handles are laid on both sides of it.
+S_MIDDLE = (
+    *(586 + 798j, 493 + 893j, 343 + 918j, 183 + 863j, 123 + 728j, 203 + 598j, 343 + 523j),
+    *(483 + 448j, 563 + 318j, 503 + 183j, 343 + 128j, 193 + 153j, 93 + 248j),
+)
+S_RAIL = 50.0  # pixels from the middle to the handles
+S_GROWTH = 1.2  # of the logarithm of the size, from end to end
+S_BOUNDS = Bounds(k=0.08, sigma_a=5.0, sigma_b=0.2)
+PLACES = 11  # of handles along the middle
+ENDS = 0.05  # of its length, left free of handles
+LEG = 2  # places along each leg of the U that do not turn
+STEPS = 8  # of the way on which the deformer is led
+SOFTNESS = 0.1  # of handles
+RING_TURN, RING_GROWTH, RING_NU = 4.9, 0.8, 0.1
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Shape:
+    """A drawing on a mesh.
+
+    Parameters
+    ----------
+    picture : uint8, shape (h, w, 4)
+        Straight alpha; its lower left corner is the origin of the plane.
+    domain : Domain
+    """
+
+    picture: Bytes
+    domain: Domain
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Pair:
+    """A shape and two keyframes of it.
+
+    Its `anchor` is what in-betweens are tied to; None leaves it to each method. `handles` are the
+    places by which a deformer made the keyframes within `bounds`, where it did.
+    """
+
+    shape: Shape
+    first: HarmonicMap
+    second: HarmonicMap
+    anchor: complex | None = None
+    handles: Complexes | None = None
+    bounds: Bounds = Bounds()
+
+
+def square(triangles: int) -> Shape:
+    """Return the square [−1, 1]² of Figure 3, 100 pixels a unit, with a checker on it."""
+    return _block(200, 200, cells=8, triangles=triangles)
+
+
+def beam(triangles: int) -> Shape:
+    """Return a bar of 6 by 1, with a checker on it."""
+    return _block(600, 100, cells=24, triangles=triangles)
+
+
+def letter_s(triangles: int) -> Pair:
+    """Return the letter S and what the deformer makes of it on the way to a U.
+
+    The U is larger at one end: where a shape turns and grows, the blended Jacobians of ARAP belong
+    to no map. Its bound on k is tight, so that all of it is sheared nearly as far as its worst
+    point, and what other methods add to it shows.
+    """
+    shape = _sample_picture("s", triangles)
+    domain = shape.domain
+    boundary = Boundary.sample(domain.outline, domain.cage)
+    middle = _along(S_MIDDLE)
+    places = _rails(middle, np.full(PLACES, S_RAIL))
+    handles = Handles.place(boundary, places, np.full(len(places), SOFTNESS))
+    deformer = Deformer(boundary=boundary, handles=handles, bounds=S_BOUNDS)
+    turns = np.zeros(PLACES - 2)
+    turns[LEG:-LEG] = np.pi / (len(turns) - 2 * LEG)
+    state, target = deformer.start(), places
+    for share in np.linspace(0, 1, STEPS + 1)[1:]:
+        sizes = np.exp(share * S_GROWTH * np.linspace(-0.5, 0.5, PLACES))
+        target = _rails(_turned(middle, turns, sizes, float(share)), sizes * S_RAIL)
+        state, _ = deformer.follow(state, handles.wish(target))
+    state, _ = deformer.settle(state, handles.wish(target))
+    return Pair(
+        shape=shape,
+        first=HarmonicMap.identity(domain.cage),
+        second=state.map,
+        anchor=complex(middle[PLACES // 2]),
+        handles=places,
+        bounds=S_BOUNDS,
+    )
+
+
+def bar_to_ring(triangles: int) -> Pair:
+    """Return the bar, and the bar wound up to a ring that is thicker at one end.
+
+    ν is −0.1 in the first and 0.1 in the second, everywhere: the stretch turns by a right angle.
+    """
+    shape = _sample_picture("bar", triangles)
+    cage, outline = shape.domain.cage, shape.domain.outline
+    middle = complex(outline.mean())
+    rate = complex(RING_GROWTH, RING_TURN) / float(np.ptp(outline.real))
+    phi = (np.exp(rate * (cage - middle)) - 1) / rate
+    return Pair(
+        shape=shape,
+        first=HarmonicMap(cage=cage, phi=cage - middle, psi=-RING_NU * (cage - middle)),
+        second=HarmonicMap(cage=cage, phi=phi, psi=RING_NU * phi),
+        anchor=middle,
+    )
+
+
+def sample(name: str, first: int, second: int, triangles: int) -> Pair:
+    """Return two keys of a sample project, by their numbers, with as many triangles.
+
+    Its poses are the deformer's, and certified.
+    """
+    path = sample_images() / f"{name}.lissom"
+    document = load_project(path)
+    (figure,) = document.figures
+    domain = figure.domain
+    mesh = mesh_inside(*domain.loops, triangles=triangles)
+    domain = Domain(outline=domain.outline, cage=domain.cage, mesh=mesh, holes=domain.holes)
+    picture = decode_picture(figure.picture.data, f"the picture of {path}")
+    poses = [figure.keys[index].pose for index in (first, second)]
+    return Pair(
+        shape=Shape(picture=cut_picture(picture, figure.cut_out).texture, domain=domain),
+        first=figure.map_of(poses[0]),
+        second=figure.map_of(poses[1]),
+        anchor=figure.anchor,
+        handles=np.array([handle.position for handle in figure.handles]),
+        bounds=figure.bounds,
+    )
+
+
+def spiral(shape: Shape, *, turn: float, growth: float, nu: float) -> HarmonicMap:
+    """Return a map that winds a shape up along x and lets it grow on the way, with ν everywhere.
+
+    Parameters
+    ----------
+    turn : float
+        In radians, over the whole length.
+    growth : float
+        Of ln |f_z|, over the whole length; it is 0 at the left end.
+    nu : float
+        conj(f_z̄) / f_z; k is its modulus.
+    """
+    cage, outline = shape.domain.cage, shape.domain.outline
+    rate = complex(growth, turn) / float(np.ptp(outline.real))
+    start = complex(outline.real.min(), outline.imag.mean())
+    phi = (np.exp(rate * (cage - start)) - 1) / rate
+    return HarmonicMap(cage=cage, phi=phi + start, psi=nu * phi)
+
+
+def _block(width: int, height: int, *, cells: int, triangles: int) -> Shape:
+    """Return a rectangle about the origin with so many squares of a checker along it."""
+    side = width / cells
+    rows, columns = np.indices((height, width)) // side
+    share = columns / (cells - 1)
+    light = np.array([255, 244, 220])
+    warm, cold = np.array([228, 87, 46]), np.array([58, 124, 165])
+    colour = warm + share[..., None] * (cold - warm)
+    rgb = np.where(((rows + columns) % 2 == 0)[..., None], colour, light)
+    picture = np.dstack([rgb, np.full((height, width), 255)]).astype(np.uint8)
+    corners = np.array([0, width, width + 1j * height, 1j * height], dtype=np.complex128)
+    outline = _subdivided(corners, height / 5)
+    # Half a side off, so that the cage keeps its corners at the outline's.
+    cage = _subdivided(_grown(corners, height / 16), height / 5)
+    domain = Domain(outline=outline, cage=cage, mesh=mesh_inside(outline, triangles=triangles))
+    return Shape(picture=picture, domain=domain)
+
+
+def _subdivided(polygon: Complexes, longest: float) -> Complexes:
+    parts = []
+    for start, side in zip(polygon, edges(polygon), strict=True):
+        count = int(np.ceil(abs(side) / longest))
+        parts.append(start + side * np.arange(count) / count)
+    return np.concatenate(parts)
+
+
+def _grown(corners: Complexes, by: float) -> Complexes:
+    middle = corners.mean()
+    offset = corners - middle
+    grown: Complexes = corners + by * (np.sign(offset.real) + 1j * np.sign(offset.imag))
+    return grown
+
+
+def _sample_picture(name: str, triangles: int) -> Shape:
+    picture = decode_picture((sample_images() / f"{name}.png").read_bytes(), "")
+    domain, _ = build_domain(picture.rgba, triangles=triangles, detail="normal")
+    return Shape(picture=picture.rgba, domain=domain)
+
+
+def _rails(middle: Complexes, widths: Floats) -> Complexes:
+    """Return places on both sides of a curve, (2 PLACES,)."""
+    along = np.gradient(middle)
+    across = 1j * along / np.abs(along) * widths
+    return np.concatenate([middle + across, middle - across])
+
+
+def _along(middle: Sequence[complex]) -> Complexes:
+    """Return evenly spaced places along a smooth curve, but for its ends."""
+    through = np.array(middle)
+    knots = np.concatenate([[0.0], np.cumsum(np.sqrt(np.abs(np.diff(through))))])
+    curve = CubicSpline(knots, through)(np.linspace(0, knots[-1], 2001))
+    lengths = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(curve)))])
+    wanted = np.linspace(ENDS, 1 - ENDS, PLACES) * lengths[-1]
+    places: Complexes = np.interp(wanted, lengths, curve.real) + 1j * np.interp(
+        wanted, lengths, curve.imag
+    )
+    return places
+
+
+def _turned(middle: Complexes, turns: Floats, sizes: Floats, share: float) -> Complexes:
+    """Return the chain (PLACES,) whose turns are a share of the way to others; its middle stays."""
+    steps = np.diff(middle)
+    own = np.angle(steps[1:] / steps[:-1])
+    angles = np.concatenate([[0.0], np.cumsum(own + share * (turns - own))])
+    lengths = np.abs(steps) * np.sqrt(sizes[1:] * sizes[:-1])
+    chain = np.concatenate([[0.0], np.cumsum(lengths * np.exp(1j * angles))])
+    half = PLACES // 2
+    before, after = (np.gradient(each)[half] for each in (middle, chain))
+    turn = before / after
+    turned: Complexes = middle[half] + (chain - chain[half]) * turn / abs(turn)
+    return turned

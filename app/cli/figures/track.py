@@ -1,0 +1,118 @@
+"""What a method does to a pair: frames, and how far they distort the shape (Section 8)."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from app.cli.figures.methods import ComparedMethod, Inbetween
+from app.cli.figures.shapes import Pair
+from app.reports import relative_to_keys, worst_points
+from engine.arrays import Complexes, Floats
+from engine.domain.meshing import Mesh
+from engine.maps import distortion
+
+TIMES = 41  # of the curves
+FOLDED = np.inf  # τ where a map is not injective
+
+
+class Tracked:
+    """The in-betweens of a pair by one method.
+
+    Parameters
+    ----------
+    pair : Pair
+    method : ComparedMethod
+    times : int
+        At how many times, even from 0 to 1, the distortion is looked at.
+    """
+
+    def __init__(self, pair: Pair, method: ComparedMethod, times: int = TIMES) -> None:
+        self.pair = pair
+        self.method = method
+        self.times: Floats = np.linspace(0.0, 1.0, times)
+        self._motion = method.prepare(pair)
+
+    def frame(self, time: float) -> Inbetween:
+        """Return the in-between at a time in [0, 1]."""
+        return self._motion(time)
+
+    @cached_property
+    def frames(self) -> tuple[Inbetween, ...]:
+        """The in-betweens at all times."""
+        return tuple(self._motion(float(time)) for time in self.times)
+
+    @cached_property
+    def k(self) -> Floats:
+        """Conformal distortion (t, p)."""
+        return np.array([distortion.k(frame.fz, frame.fzbar) for frame in self.frames])
+
+    @cached_property
+    def tau(self) -> Floats:
+        """Isometric distortion (t, p), infinite where a map folds."""
+        values = []
+        for frame in self.frames:
+            least = distortion.sigma_b(frame.fz, frame.fzbar)
+            with np.errstate(divide="ignore"):
+                tau = distortion.tau(frame.fz, frame.fzbar)
+            values.append(np.where(least > 0, tau, FOLDED))
+        return np.array(values)
+
+    @cached_property
+    def k_shares(self) -> Floats:
+        """Conformal distortion of the 100 worst points, relative to their larger keys, (t, 100)."""
+        return relative_to_keys(worst_points(self.k))
+
+    @cached_property
+    def tau_shares(self) -> Floats:
+        """Likewise τ − 1, (t, 100)."""
+        return relative_to_keys(worst_points(self.tau - 1.0))
+
+    def measured(self, name: str = "") -> "Measured":
+        """Return the numbers that stand beside the pictures, by default under the method's name."""
+        mesh = self.pair.shape.domain.mesh
+        areas = np.array([area_of(mesh, frame.positions) for frame in self.frames])
+        ends = np.minimum(areas[0], areas[-1])
+        return Measured(
+            name=name or self.method.name,
+            k=float(self.k_shares.max()),
+            tau=float(self.tau_shares.max()),
+            k_of_all=float(self.k.max() / max(self.k[0].max(), self.k[-1].max())),
+            tau_of_all=float(
+                (self.tau.max() - 1) / (max(self.tau[0].max(), self.tau[-1].max()) - 1)
+            ),
+            area=float(areas.min() / ends),
+        )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Measured:
+    """How far a method's in-betweens are from the keyframes'.
+
+    Parameters
+    ----------
+    name : str
+        Of the method, or of the pair.
+    k, tau : float
+        The largest k and τ − 1 of the 100 worst points, each relative to the larger key of its
+        point: at most 1 where distortion is bounded point by point.
+    k_of_all, tau_of_all : float
+        The largest k and τ − 1 of all points relative to the largest of both keys: at most 1 where
+        it is bounded as a whole.
+    area : float
+        The least area over time, relative to the smaller key.
+    """
+
+    name: str
+    k: float
+    tau: float
+    k_of_all: float
+    tau_of_all: float
+    area: float
+
+
+def area_of(mesh: Mesh, positions: Complexes) -> float:
+    """Return the signed area of a posed mesh."""
+    corners = positions[mesh.triangles]
+    first, second = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
+    return float((first.conj() * second).imag.sum() / 2)

@@ -1,0 +1,49 @@
+"""What is said to `lissom figures`."""
+
+import argparse
+from pathlib import Path
+
+FIGURES = (1, 3, 4, 5, 6, 7, 8, 9, 10, 11)
+TRIANGLES = 6_000
+LARGEST = 10_000
+
+EPILOG = """\
+Makes the figures of the paper anew with Lissom's own drawings: DIR/figure_N.png, and one page,
+DIR/figures.html, with captions and measured numbers. Figure 9 times every method, the slowest with
+seconds a frame: --largest 100000 takes many minutes.
+
+It needs matplotlib: pip install 'lissom[figures]'
+
+examples:
+  lissom figures --out figures
+  lissom figures --out figures --only 5
+  lissom figures --out figures --only 9 --largest 100000
+"""
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare the options of `lissom figures`."""
+    parser.epilog = EPILOG
+    parser.add_argument("--out", metavar="DIR", type=Path, required=True, help="where to write")
+    parser.add_argument(
+        "--only",
+        metavar="N",
+        type=int,
+        choices=FIGURES,
+        action="append",
+        help=f"make this figure, of {', '.join(map(str, FIGURES))}; may be said again",
+    )
+    parser.add_argument(
+        "--triangles",
+        metavar="N",
+        type=int,
+        default=TRIANGLES,
+        help="of each drawing, 1000 to 2000000 (default: %(default)s)",
+    )
+    parser.add_argument(
+        "--largest",
+        metavar="N",
+        type=int,
+        default=LARGEST,
+        help="vertices of the largest mesh in figure 9, at least 1000 (default: %(default)s)",
+    )

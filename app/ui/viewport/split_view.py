@@ -1,0 +1,122 @@
+"""Two methods in one viewport: under a divider over one place, or side by side."""
+
+from typing import NamedTuple
+
+from imgui_bundle import ImVec2, imgui
+from imgui_bundle import icons_fontawesome_6 as icons
+
+from app.document import Variant
+from app.editor import Action, Project, Session, do
+from app.editor.actions import viewing
+from app.ui.methods import METHODS
+from app.ui.style import Look, ink, tip
+
+GRIP, LINE = 0.55, 0.12  # em: half the width that takes the pointer, and the line's
+KNOB = 0.85  # em: radius of what is seen of the grip
+
+
+class SplitTextures(NamedTuple):
+    """OpenGL's names of the picture, and of the one by another method where there is one."""
+
+    own: int | None
+    twin: int | None
+
+
+class Parts(NamedTuple):
+    """Where the two pictures are on the screen: corner, and width and height of each.
+
+    `room` is what the drawing's own picture takes, with handles and all else.
+    """
+
+    corner: ImVec2
+    room: ImVec2
+    divider: float
+
+
+def divide(session: Session, corner: ImVec2, room: ImVec2) -> Parts:
+    """Return how a viewport is divided."""
+    split = session.split
+    if split is None or session.cutting is not None:
+        return Parts(corner, room, corner.x + room.x)
+    if split.beside:
+        half = ImVec2(room.x / 2, room.y)
+        return Parts(corner, half, corner.x + half.x)
+    return Parts(corner, room, corner.x + split.place * room.x)
+
+
+def draw_pictures(parts: Parts, own: int, twin: int | None) -> None:
+    """Show the drawing, and right of the divider what the other method makes of it."""
+    draw_list = imgui.get_window_draw_list()
+    corner, room = parts.corner, parts.room
+    bottom = corner.y + room.y
+    draw_list.add_image(
+        imgui.ImTextureRef(own),
+        corner,
+        ImVec2(corner.x + room.x, bottom),
+        ImVec2(0, 1),
+        ImVec2(1, 0),
+    )
+    if twin is None:
+        return
+    is_beside = parts.divider >= corner.x + room.x
+    left = 0.0 if is_beside else (parts.divider - corner.x) / room.x
+    end = parts.divider + room.x if is_beside else corner.x + room.x
+    draw_list.add_image(
+        imgui.ImTextureRef(twin),
+        ImVec2(parts.divider, corner.y),
+        ImVec2(end, bottom),
+        ImVec2(left, 1),
+        ImVec2(1, 0),
+    )
+
+
+def draw_divider(session: Session, look: Look, parts: Parts, width: float) -> list[Action]:
+    """Draw the divider with the methods' names beside it; dragged, it moves.
+
+    Before the canvas: what comes first gets the pointer.
+    """
+    split, project = session.split, session.project
+    if split is None or project is None or session.cutting is not None:
+        return []
+    actions: list[Action] = []
+    x, top, height = parts.divider, parts.corner.y, parts.room.y
+    draw_list = imgui.get_window_draw_list()
+    is_hot = False
+    if not split.beside:
+        imgui.set_cursor_screen_pos(ImVec2(x - GRIP * look.em, top))
+        imgui.invisible_button("divider", ImVec2(2 * GRIP * look.em, height))
+        is_hot = imgui.is_item_hovered() or imgui.is_item_active()
+        if is_hot:
+            imgui.set_mouse_cursor(imgui.MouseCursor_.resize_ew)
+        if imgui.is_item_active() and imgui.get_io().mouse_delta.x:
+            place = (imgui.get_mouse_pos().x - parts.corner.x) / width
+            actions.append(do(viewing.move_divider, place))
+        tip("Drag to compare")
+    palette = look.palette
+    colour = palette.accent if is_hot else palette.text
+    draw_list.add_line(
+        ImVec2(x, top), ImVec2(x, top + height), ink(palette.desk, 0.7), 3 * LINE * look.em
+    )
+    draw_list.add_line(ImVec2(x, top), ImVec2(x, top + height), ink(colour), LINE * look.em)
+    if not split.beside:
+        knob = ImVec2(x, top + height / 2)
+        draw_list.add_circle_filled(knob, KNOB * look.em, ink(colour))
+        size = imgui.calc_text_size(icons.ICON_FA_LEFT_RIGHT)
+        corner = ImVec2(x - size.x / 2, knob.y - size.y / 2)
+        draw_list.add_text(corner, ink(palette.desk), icons.ICON_FA_LEFT_RIGHT)
+    _names(look, project, split.variant, x, top)
+    return actions
+
+
+def _names(look: Look, project: Project, variant: Variant, x: float, top: float) -> None:
+    """Write which method is left and which is right of the divider."""
+    pad = 0.5 * look.em
+    own = METHODS[project.figure.variant].name
+    other = METHODS[variant].name
+    draw_list = imgui.get_window_draw_list()
+    for text, left in ((own, x - imgui.calc_text_size(own).x - 3 * pad), (other, x + 3 * pad)):
+        size = imgui.calc_text_size(text)
+        low = ImVec2(left - pad, top + pad)
+        high = ImVec2(left + size.x + pad, top + size.y + 2 * pad)
+        draw_list.add_rect_filled(low, high, ink(look.palette.desk, 0.8), 0.3 * look.em)
+        draw_list.add_text(ImVec2(left, top + 1.5 * pad), ink(look.palette.text), text)

@@ -1,0 +1,151 @@
+"""Two methods in one viewport: what is seen, dragged, measured, and left out of undo."""
+
+import numpy as np
+import pytest
+from imgui_bundle import ImVec2
+
+from app.document import Target, Variant
+from app.editor.actions import playback, posing, viewing
+
+
+@pytest.fixture
+def between(window, bent):
+    """The bar, bent far, half way to its second key."""
+    width, _ = bent.document.canvas
+    wishes = dict(bent.puppet.shown.pose.targets)
+    last = max(wishes)
+    wishes[last] = Target(position=complex(0.35 * width, 0.6 * width))
+    posing.wish(window.session, wishes)
+    window.settle()
+    playback.seek(window.session, 12)
+    window.settle()
+    return bent
+
+
+def divider(window):
+    """Return where the divider is on the screen, and where it begins."""
+    found = []
+
+    def look(robot):
+        grip = robot.item_info("**/divider").rect_full
+        found.append(((grip.min.x + grip.max.x) / 2, grip.min.y))
+
+    window.run(look)
+    return found[0]
+
+
+def press_u(window):
+    window.run(lambda robot: robot.key_press(window.Key.u))
+    window.settle()
+
+
+def test_the_shortcut_splits_the_view_and_puts_it_together_again(window, between):
+    session = window.session
+    depth = between.history.undo_label
+    assert session.split is None
+    alone = window.picture()
+    press_u(window)
+    assert session.split is not None
+    assert session.split.variant is Variant.LINEAR
+    twin = between.puppet.twin
+    own, other = between.puppet.shown.positions, twin.shown.positions
+    # Halfway round, straight ways are shorter than arcs.
+    assert np.abs(own - other).max() > 0.01 * np.ptp(own.real)
+    assert (np.abs(np.asarray(window.picture()).astype(int) - np.asarray(alone)) > 24).any()
+    assert between.history.undo_label == depth
+    press_u(window)
+    assert session.split is None
+    assert between.puppet.twin is None
+
+
+def test_the_divider_is_dragged_and_the_methods_change_sides_there(window, between):
+    session = window.session
+    viewing.toggle_split(session)
+    window.settle()
+    before = session.split.place
+    x, top = divider(window)
+
+    def drag(robot):
+        robot.mouse_move_to_pos(ImVec2(x, top + 60))
+        robot.mouse_down()
+        robot.mouse_move_to_pos(ImVec2(x - 150, top + 60))
+        robot.mouse_up()
+
+    window.run(drag)
+    width = session.screen[0]
+    assert session.split.place == pytest.approx(before - 150 / width, abs=3 / width)
+    assert divider(window)[0] == pytest.approx(x - 150, abs=3)
+    assert session.pointer is None
+    assert len(between.figure.handles) == 2
+
+
+@pytest.mark.usefixtures("between")
+def test_side_by_side_each_method_has_half_of_the_viewport(window):
+    session = window.session
+    whole = session.screen
+    viewing.toggle_split(session)
+    viewing.lay_beside(session, beside=True)
+    window.settle()
+    window.frames(2)
+    assert session.screen[0] == pytest.approx(whole[0] / 2, abs=1)
+    assert session.screen[1] == whole[1]
+    viewing.toggle_split(session)
+    window.frames(3)
+    assert session.screen == whole
+
+
+def test_both_are_measured_and_the_linear_one_leaves_the_bounds(window, between):
+    viewing.toggle_split(window.session)
+    window.show_tab("Distortion")
+    window.settle()
+    own, other = between.curves.value, between.twin_curves.value
+    assert own.k_share.max() <= 1 + 1e-6
+    assert own.tau_share.max() <= 1 + 1e-6
+    assert other.clip.figure.variant is Variant.LINEAR
+    assert other.tau_share.max() > 1.05
+
+
+def test_a_key_looks_the_same_by_every_method_and_posing_goes_on(window, between):
+    session = window.session
+    viewing.compare_with(session, Variant.NU)
+    playback.seek(session, 24)
+    window.settle()
+    np.testing.assert_allclose(
+        between.puppet.shown.positions, between.puppet.twin.shown.positions, rtol=0, atol=1e-9
+    )
+    middle = between.puppet.shown.mesh.domain.mesh.vertices.mean()
+    nearest = np.abs(between.puppet.shown.mesh.domain.mesh.vertices - middle).argmin()
+    posing.add_handle(session, complex(between.puppet.shown.positions[nearest]))
+    window.settle()
+    assert between.puppet.twin.figure.handles == between.figure.handles
+
+
+@pytest.mark.usefixtures("between")
+def test_nothing_is_compared_where_the_panel_says_so(window):
+    session = window.session
+    viewing.compare_with(session, Variant.ETA)
+    assert session.split.variant is Variant.ETA
+    viewing.compare_with(session, None)
+    assert session.split is None
+    viewing.toggle_split(session)
+    assert session.split.variant is Variant.ETA
+    viewing.move_divider(session, 2.0)
+    assert session.split.place == 1 - viewing.LEAST_PART
+
+
+@pytest.mark.parametrize("theme", ["dark", "light"])
+@pytest.mark.usefixtures("between")
+def test_the_names_of_both_methods_stand_at_the_divider(window, theme):
+    session = window.session
+    if session.preferences.theme != theme:
+        viewing.toggle_theme(session)
+    window.frames(3)
+    alone = np.asarray(window.picture()).astype(int)
+    viewing.toggle_split(session)
+    window.settle()
+    x, top = divider(window)
+    changed = np.abs(np.asarray(window.picture()).astype(int) - alone).max(axis=2) > 24
+    assert changed[round(top) : round(top) + 500, round(x) - 1 : round(x) + 2].mean() > 0.5
+    names = changed[round(top) : round(top) + 40]
+    assert names[:, round(x) - 60 : round(x) - 10].mean() > 0.05
+    assert names[:, round(x) + 10 : round(x) + 60].mean() > 0.05
