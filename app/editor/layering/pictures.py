@@ -5,13 +5,14 @@ from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple
 
-from app.document import Figure, Meshing, layer_commands
+from app.document import Figure, Meshing, clip_of, layer_commands
 from app.editor.action import Action, do
 from app.editor.actions import editing, files, rebuilding
 from app.editor.dialogs import FileDialog, Question
 from app.editor.failures import sentence
 from app.editor.layering.arranging import choose
 from app.editor.layering.working import put
+from app.editor.project import Puppet
 from app.editor.session import Session
 from app.errors import LissomError
 from app.solving import Renewal, begin_replacing
@@ -33,11 +34,12 @@ LONGEST = 28  # characters of a name on a button
 
 
 class _Made(NamedTuple):
-    """A figure, its decoded picture, and what was done, in words."""
+    """A figure, its decoded picture, what was done, in words, and the figure as a window has it."""
 
     figure: Figure
     picture: Picture
     notices: tuple[str, ...]
+    puppet: Puppet | None = None
 
 
 def stand_still(session: Session, identity: int) -> None:
@@ -125,9 +127,11 @@ def add(session: Session, paths: Sequence[Path]) -> None:
     project = session.project
     if project is None:
         return
-    meshing, canvas = session.meshing, project.document.canvas
+    meshing, before = session.meshing, project.document
+    canvas = before.canvas
 
     def work() -> tuple[list[_Made], list[str]]:
+        document = before
         made: list[_Made] = []
         told: list[str] = []
         for path in paths:
@@ -136,8 +140,15 @@ def add(session: Session, paths: Sequence[Path]) -> None:
             across, up = ((ours - its) // 2 for ours, its in zip(canvas, drawing.size, strict=True))
             for layer in drawing.layers:
                 moved = replace(layer, corner=layer.corner + complex(across, up))
-                figure, notices = layer_figure(moved, 0, meshing, is_cut_out=is_layered(path))
-                made.append(_Made(figure, layer.picture, layer.picture.notices + notices))
+                identity = layer_commands.free_identity(document)
+                figure, notices = layer_figure(
+                    moved, identity, meshing, is_cut_out=is_layered(path)
+                )
+                document = layer_commands.add_figure(figure)(document)
+                # Here, and not while the window waits: it takes a tenth of a second.
+                puppet = Puppet.of(clip_of(document, identity), layer.picture)
+                notices = layer.picture.notices + notices
+                made.append(_Made(figure, layer.picture, notices, puppet))
         return made, told
 
     def done(read: tuple[list[_Made], list[str]]) -> None:
@@ -145,11 +156,13 @@ def add(session: Session, paths: Sequence[Path]) -> None:
             return
         made, told = read
         gesture = object()
-        for figure, picture, _ in made:
+        for figure, picture, _, puppet in made:
             identity = layer_commands.free_identity(project.document)
             project.pictures[figure.picture] = picture
             command = layer_commands.add_figure(replace(figure, id=identity))
             project.history.do(command, gesture=gesture)
+            if puppet is not None and identity == figure.id:
+                project.puppets[identity] = puppet
         editing.follow_figures(project)
         choose(session, identity)
         for notice in (*told, *(notice for each in made for notice in each.notices)):

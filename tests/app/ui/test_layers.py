@@ -22,6 +22,7 @@ from app.editor.actions import (
 )
 from app.editor.poses import copying
 from app.editor.timeline_view import Strip
+from app.storage import load_project
 
 WIDTH, HEIGHT = 240, 200
 
@@ -96,7 +97,7 @@ def test_the_list_of_layers(window, scene):
             in_list = item.split()[0] in {"row", "eye", "lock"}
             path = f"**/###{item}" if in_list else f"###{item}"
             window.run(lambda robot, path=path: (robot.set_ref("Layers"), robot.item_click(path)))
-            window.settle()
+            window.frames(3)
 
     click(f"row {body}")
     assert scene.active == body
@@ -490,7 +491,7 @@ class Rows:
 def play(window, keyed):
     def play(what):
         window.run(lambda robot: what(Rows(robot, keyed)))
-        window.settle()
+        window.frames(3)
 
     return play
 
@@ -811,7 +812,7 @@ def test_another_picture_keeps_handles_keys_and_joints(window, posed, tmp_path):
     path = tmp_path / "man.lissom"
     window.act(saving.write, path, None)
     window.settle()
-    again = window.open(path).document.figure(arm)
+    again = load_project(path).figure(arm)
     assert again.picture.sha256 == figure.picture.sha256
     assert (again.corner, again.attachment) == (figure.corner, figure.attachment)
 
@@ -847,9 +848,9 @@ def test_what_is_outside_of_another_picture_comes_into_it(window, posed, tmp_pat
     assert posed.document is before
 
 
-def test_a_picture_that_cannot_take_the_place_of_a_layers_changes_nothing(window, posed, tmp_path):
-    arm, wall = identity(posed, "arm"), identity(posed, "wall")
-    before = posed.document
+def test_a_picture_that_cannot_take_the_place_of_a_layers_changes_nothing(window, scene, tmp_path):
+    arm, wall = identity(scene, "arm"), identity(scene, "wall")
+    before = scene.document
     empty = saved(tmp_path / "empty.png", Image.new("RGBA", (60, 50)))
     for path, told in ((empty, "there is no shape on it"), (tmp_path / "none.png", "none.png")):
         window.session.toasts = []
@@ -858,12 +859,12 @@ def test_a_picture_that_cannot_take_the_place_of_a_layers_changes_nothing(window
         (toast,) = window.session.toasts
         assert toast.text.startswith("The picture of arm was not replaced")
         assert told in toast.text
-    assert posed.document is before
+    assert scene.document is before
     # A still layer takes any picture.
     path = saved(tmp_path / "sky.png", Image.new("RGBA", (240, 200), (90, 160, 250, 255)))
     window.act(layering.replace_picture, wall, path)
     window.settle()
-    assert posed.document.figure(wall).still
+    assert scene.document.figure(wall).still
     assert pixel(window, 20 + 20j) == (90, 160, 250)
     window.session.toasts = []
 
