@@ -4,7 +4,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Protocol
 
-from app.cli.figures.shapes import Pair
+from app.cli.figures.shapes import ShapePair
 from engine.arrays import Complexes
 from engine.baselines import Baseline, prepare_baseline
 from engine.interpolation import Variant, prepare
@@ -45,13 +45,13 @@ class ComparedMethod:
 
     name: str
     colour: str
-    prepare: Callable[[Pair], FrameAt]
+    prepare: Callable[[ShapePair], FrameAt]
 
 
-def of_variant(variant: Variant) -> Callable[[Pair], FrameAt]:
+def of_variant(variant: Variant) -> Callable[[ShapePair], FrameAt]:
     """Return the preparation of one of our variants."""
 
-    def prepare_pair(pair: Pair) -> FrameAt:
+    def prepare_pair(pair: ShapePair) -> FrameAt:
         domain = pair.shape.domain
         return prepare(
             (pair.first, pair.second),
@@ -65,10 +65,10 @@ def of_variant(variant: Variant) -> Callable[[Pair], FrameAt]:
     return prepare_pair
 
 
-def of_baseline(baseline: Baseline) -> Callable[[Pair], FrameAt]:
+def of_baseline(baseline: Baseline) -> Callable[[ShapePair], FrameAt]:
     """Return the preparation of one of the methods that ours are compared with."""
 
-    def prepare_pair(pair: Pair) -> FrameAt:
+    def prepare_pair(pair: ShapePair) -> FrameAt:
         domain = pair.shape.domain
         return prepare_baseline(
             baseline,

@@ -48,7 +48,7 @@ class Shape:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Pair:
+class ShapePair:
     """A shape and two keyframes of it.
 
     Its `anchor` is what in-betweens are tied to; None leaves it to each method. `handles` are the
@@ -73,7 +73,7 @@ def beam(triangles: int) -> Shape:
     return _block(600, 100, cells=24, triangles=triangles)
 
 
-def letter_s(triangles: int) -> Pair:
+def letter_s(triangles: int) -> ShapePair:
     """Return the letter S and what the deformer makes of it on the way to a U.
 
     The U is larger at one end: where a shape turns and grows, the blended Jacobians of ARAP belong
@@ -95,7 +95,7 @@ def letter_s(triangles: int) -> Pair:
         target = _rails(_turned(middle, turns, sizes, float(share)), sizes * S_RAIL)
         state, _ = deformer.follow(state, handles.wish(target))
     state, _ = deformer.settle(state, handles.wish(target))
-    return Pair(
+    return ShapePair(
         shape=shape,
         first=HarmonicMap.identity(domain.cage),
         second=state.map,
@@ -105,7 +105,7 @@ def letter_s(triangles: int) -> Pair:
     )
 
 
-def bar_to_ring(triangles: int) -> Pair:
+def bar_to_ring(triangles: int) -> ShapePair:
     """Return the bar, and the bar wound up to a ring that is thicker at one end.
 
     ν is −0.1 in the first and 0.1 in the second, everywhere: the stretch turns by a right angle.
@@ -115,7 +115,7 @@ def bar_to_ring(triangles: int) -> Pair:
     middle = complex(outline.mean())
     rate = complex(RING_GROWTH, RING_TURN) / float(np.ptp(outline.real))
     phi = (np.exp(rate * (cage - middle)) - 1) / rate
-    return Pair(
+    return ShapePair(
         shape=shape,
         first=HarmonicMap(cage=cage, phi=cage - middle, psi=-RING_NU * (cage - middle)),
         second=HarmonicMap(cage=cage, phi=phi, psi=RING_NU * phi),
@@ -123,7 +123,7 @@ def bar_to_ring(triangles: int) -> Pair:
     )
 
 
-def sample(name: str, first: int, second: int, triangles: int) -> Pair:
+def sample(name: str, first: int, second: int, triangles: int) -> ShapePair:
     """Return two keys of a sample project, by their numbers, with as many triangles.
 
     Its poses are the deformer's, and certified.
@@ -136,7 +136,7 @@ def sample(name: str, first: int, second: int, triangles: int) -> Pair:
     domain = Domain(outline=domain.outline, cage=domain.cage, mesh=mesh, holes=domain.holes)
     picture = decode_picture(figure.picture.data, f"the picture of {path}")
     poses = [figure.keys[index].pose for index in (first, second)]
-    return Pair(
+    return ShapePair(
         shape=Shape(picture=cut_picture(picture, figure.cut_out).texture, domain=domain),
         first=figure.map_of(poses[0]),
         second=figure.map_of(poses[1]),

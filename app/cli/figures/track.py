@@ -6,7 +6,7 @@ from functools import cached_property
 import numpy as np
 
 from app.cli.figures.methods import ComparedMethod, Inbetween
-from app.cli.figures.shapes import Pair
+from app.cli.figures.shapes import ShapePair
 from app.reports import relative_to_keys, worst_points
 from engine.arrays import Complexes, Floats
 from engine.domain.meshing import Mesh
@@ -21,13 +21,13 @@ class Tracked:
 
     Parameters
     ----------
-    pair : Pair
+    pair : ShapePair
     method : ComparedMethod
     times : int
         At how many times, even from 0 to 1, the distortion is looked at.
     """
 
-    def __init__(self, pair: Pair, method: ComparedMethod, times: int = TIMES) -> None:
+    def __init__(self, pair: ShapePair, method: ComparedMethod, times: int = TIMES) -> None:
         self.pair = pair
         self.method = method
         self.times: Floats = np.linspace(0.0, 1.0, times)

@@ -4,20 +4,20 @@ from collections.abc import Sequence
 
 from app.cli.figures.methods import ComparedMethod
 from app.cli.figures.plates.plate import BOUNDED, Plate, Studio, bounded_rows
-from app.cli.figures.shapes import Pair
+from app.cli.figures.shapes import ShapePair
 from app.cli.figures.sheet import as_png, new_sheet, plot_shares, show_strip
 from app.cli.figures.track import Measured, Tracked
 
 TIMES = (0.0, 0.25, 0.5, 0.75, 1.0)
 
 
-def measure(pair: Pair, methods: Sequence[ComparedMethod]) -> tuple[Measured, ...]:
+def measure(pair: ShapePair, methods: Sequence[ComparedMethod]) -> tuple[Measured, ...]:
     """Measure methods on a pair."""
     return tuple(Tracked(pair, method).measured() for method in methods)
 
 
 def compare(
-    studio: Studio, pair: Pair, methods: Sequence[ComparedMethod], *, title: str, caption: str
+    studio: Studio, pair: ShapePair, methods: Sequence[ComparedMethod], *, title: str, caption: str
 ) -> Plate:
     """Draw the pictures, and k and τ of the 100 worst points."""
     tracks = [Tracked(pair, method) for method in methods]

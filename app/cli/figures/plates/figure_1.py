@@ -3,7 +3,7 @@
 from app.cli.figures.easel import alike, box_of
 from app.cli.figures.methods import ARAP, HANDLES, LINEAR, METRIC, NU
 from app.cli.figures.plates.plate import BOUNDED, Plate, Studio, bounded_rows
-from app.cli.figures.shapes import Pair, sample
+from app.cli.figures.shapes import ShapePair, sample
 from app.cli.figures.sheet import INK, as_png, new_sheet, show
 from app.cli.figures.track import Measured, Tracked
 
@@ -18,7 +18,7 @@ CAPTION = (
 )
 
 
-def pair(triangles: int) -> Pair:
+def pair(triangles: int) -> ShapePair:
     """Return the giraffe upright and with its head at the ground."""
     return sample("giraffe", 0, 1, triangles)
 

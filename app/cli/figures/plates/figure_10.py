@@ -2,7 +2,7 @@
 
 from app.cli.figures.methods import METRIC
 from app.cli.figures.plates.plate import BOUNDED, Plate, Studio, bounded_rows
-from app.cli.figures.shapes import Pair, bar_to_ring, letter_s, sample
+from app.cli.figures.shapes import ShapePair, bar_to_ring, letter_s, sample
 from app.cli.figures.sheet import as_png, name, new_sheet, show_row
 from app.cli.figures.track import Measured, Tracked
 
@@ -15,7 +15,7 @@ CAPTION = (
 )
 
 
-def pairs(triangles: int) -> dict[str, Pair]:
+def pairs(triangles: int) -> dict[str, ShapePair]:
     """Return the collection, by name."""
     return {
         "giraffe": sample("giraffe", 0, 1, triangles),

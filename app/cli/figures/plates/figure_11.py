@@ -7,7 +7,7 @@ import numpy as np
 from app.cli.figures.easel import alike, box_of
 from app.cli.figures.methods import MESH_ETA, ComparedMethod
 from app.cli.figures.plates.plate import Plate, Studio
-from app.cli.figures.shapes import Pair, Shape, beam, sample
+from app.cli.figures.shapes import Shape, ShapePair, beam, sample
 from app.cli.figures.sheet import INK, as_png, new_sheet, show
 from app.cli.figures.track import Tracked
 from engine.arrays import Complexes
@@ -56,7 +56,7 @@ def make(studio: Studio) -> Plate:
         colour=MESH_ETA.colour,
         prepare=lambda _: _prepared(shape, *keyframes).frame,
     )
-    track = Tracked(Pair(shape=shape, first=still, second=still), method)
+    track = Tracked(ShapePair(shape=shape, first=still, second=still), method)
     sheet = new_sheet(13, 3)
     boxes = alike([box_of(track.frame(time).positions) for time in TIMES])
     for axes, time, box in zip(sheet.subplots(1, len(TIMES)), TIMES, boxes, strict=True):

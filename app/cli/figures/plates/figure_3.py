@@ -7,7 +7,7 @@ import numpy as np
 from app.cli.figures.easel import alike, box_of
 from app.cli.figures.methods import METRIC, NU, SCALED_ETA
 from app.cli.figures.plates.plate import Plate, Studio
-from app.cli.figures.shapes import Pair, square
+from app.cli.figures.shapes import ShapePair, square
 from app.cli.figures.sheet import INK, as_png, new_sheet, show
 from app.cli.figures.track import Tracked
 from engine.maps import HarmonicMap, distortion
@@ -39,13 +39,13 @@ class StretchSeen:
     k: float
 
 
-def pair() -> Pair:
+def pair() -> ShapePair:
     """Return the square, stretched, and stretched and turned."""
     shape = square(TRIANGLES)
     cage = shape.domain.cage
     centre = shape.domain.outline.mean()
     first = HarmonicMap(cage=cage, phi=cage, psi=MU * (cage - centre))
-    return Pair(shape=shape, first=first, second=first.moved(1j, centre - 1j * centre))
+    return ShapePair(shape=shape, first=first, second=first.moved(1j, centre - 1j * centre))
 
 
 def measure() -> tuple[StretchSeen, ...]:
@@ -67,7 +67,7 @@ def make(studio: Studio) -> Plate:
     both = pair()
     nu, eta = Tracked(both, NU), Tracked(both, SCALED_ETA)
     identity = HarmonicMap.identity(both.shape.domain.cage)
-    rest = Tracked(Pair(shape=both.shape, first=identity, second=both.first), NU)
+    rest = Tracked(ShapePair(shape=both.shape, first=identity, second=both.first), NU)
     sheet = new_sheet(12, 2.8)
     panels = (
         ("(a) Ω", rest, 0.0),

@@ -3,7 +3,7 @@
 from app.cli.figures.easel import box_of
 from app.cli.figures.methods import ETA, SCALED_ETA
 from app.cli.figures.plates.plate import BOUNDED, Plate, Studio, bounded_rows
-from app.cli.figures.shapes import Pair, beam, spiral
+from app.cli.figures.shapes import ShapePair, beam, spiral
 from app.cli.figures.sheet import as_png, name, new_sheet, plot_shares, show
 from app.cli.figures.track import Measured, Tracked
 from app.motion import Box
@@ -20,11 +20,13 @@ CAPTION = (
 )
 
 
-def pair(triangles: int) -> Pair:
+def pair(triangles: int) -> ShapePair:
     """Return the bar at rest, and wound up."""
     shape = beam(triangles)
     identity = HarmonicMap.identity(shape.domain.cage)
-    return Pair(shape=shape, first=identity, second=spiral(shape, turn=TURN, growth=GROWTH, nu=NU))
+    return ShapePair(
+        shape=shape, first=identity, second=spiral(shape, turn=TURN, growth=GROWTH, nu=NU)
+    )
 
 
 def measure(triangles: int) -> tuple[Measured, ...]:

@@ -7,7 +7,7 @@ import numpy as np
 from app.cli.figures.methods import ARAP, FFMP, METRIC
 from app.cli.figures.plates.comparison import compare
 from app.cli.figures.plates.plate import Plate, Studio
-from app.cli.figures.shapes import Pair, beam
+from app.cli.figures.shapes import ShapePair, beam
 from engine.baselines import harmonic_coordinate_maps
 
 METHODS = (ARAP, FFMP, METRIC)
@@ -19,7 +19,7 @@ CAPTION = (
 )
 
 
-def pair(triangles: int) -> Pair:
+def pair(triangles: int) -> ShapePair:
     """Return the bar and the bar bent to a horn."""
     shape = beam(triangles)
     outline, cage = shape.domain.outline, shape.domain.cage
@@ -29,7 +29,7 @@ def pair(triangles: int) -> Pair:
     horn = (np.exp(rate * along) - 1) / rate + 1j * across * np.exp(rate * along)
     (first, second), _ = harmonic_coordinate_maps(outline, cage, [outline, horn])
     domain = replace(shape.domain, cage=first.cage)
-    return Pair(
+    return ShapePair(
         shape=replace(shape, domain=domain), first=first, second=second, anchor=complex(middle)
     )
 

@@ -7,7 +7,7 @@ import numpy as np
 from app.cli.figures.easel import alike, box_of
 from app.cli.figures.methods import METRIC, SCALED_ETA, SIG13
 from app.cli.figures.plates.plate import Plate, Studio
-from app.cli.figures.shapes import Pair, sample
+from app.cli.figures.shapes import ShapePair, sample
 from app.cli.figures.sheet import INK, as_png, new_sheet, show
 from app.cli.figures.track import Tracked
 from engine.arrays import Complexes
@@ -39,7 +39,7 @@ class Tail:
     from_metric: float
 
 
-def pair(triangles: int) -> Pair:
+def pair(triangles: int) -> ShapePair:
     """Return two keys of the dragon with its tail high and low."""
     return sample("dragon", 1, 2, triangles)
 

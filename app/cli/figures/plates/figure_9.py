@@ -7,7 +7,7 @@ from functools import partial
 
 from app.cli.figures.methods import METHODS, METRIC, SIG13, ComparedMethod
 from app.cli.figures.plates.plate import Plate, Studio
-from app.cli.figures.shapes import Pair, sample
+from app.cli.figures.shapes import ShapePair, sample
 from app.cli.figures.sheet import INK, as_png, new_sheet, plain
 from engine.interpolation import Variant, prepare
 from engine.streaming import Positions, build_series, finish
@@ -97,7 +97,7 @@ def make(studio: Studio) -> Plate:
     )
 
 
-def _played(pair: Pair) -> Callable[[float], object]:
+def _played(pair: ShapePair) -> Callable[[float], object]:
     """Return what plays the metric variant's series."""
     domain = pair.shape.domain
     prepared = prepare(
