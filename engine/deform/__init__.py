@@ -5,11 +5,11 @@ Out: certified maps whose handles are nearer, with status and statistics.
 Imports: `engine.maps`, `engine.geometry`.
 """
 
-from engine.deform.continuation import ActiveBound
 from engine.deform.deformer import Deformer
 from engine.deform.handles import Handles, Wish
 from engine.deform.newton import line_search, newton_direction
 from engine.deform.objective import Objective
+from engine.deform.rest import ActiveBound
 from engine.deform.state import State, Statistics, Status
 
 __all__ = [

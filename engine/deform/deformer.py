@@ -9,7 +9,7 @@ The objective is the symmetric Dirichlet energy with stiff handles and a barrier
 - a step is cut until its map is certified with a part of the slack left, and where the certificate
   found a bound broken between two samples, a sample is added: the barrier then sees it.
 
-When the hand rests, `continuation` finds the minimum: a few steps from the present map, which is
+When the hand rests, `engine.deform.rest` finds the minimum: first from the present map, which is
 often near it; then, where bounds hold it back, from the shape at rest, since a map that has met
 bounds early hardly leaves them. The pose of least energy is kept.
 """
@@ -23,10 +23,10 @@ import numpy as np
 from engine.arrays import Complexes, Floats
 from engine.deform.barrier import Barrier, Walls
 from engine.deform.certified_step import CertifiedStep, add_samples, take_certified_step
-from engine.deform.continuation import MOST_STEPS, WORTH_A_JUMP, Search, Way, advance, begin_search
 from engine.deform.energy import symmetric_dirichlet
 from engine.deform.handles import Handles, Wish
 from engine.deform.objective import Jet, Objective
+from engine.deform.rest import MOST_STEPS, WORTH_A_JUMP, Search, Way, advance, begin_search
 from engine.deform.state import State, Statistics, Status
 from engine.deform.steering import (
     FULL,
@@ -391,14 +391,16 @@ class Deformer:
             )
             return replace(state, search=following)
         if _is_proven(outcome, shown):
-            return replace(state, status=Status.AT_LIMITS if outcome.active else Status.CONVERGED)
+            return replace(
+                state, status=Status.AT_LIMITS if outcome.optimality.active else Status.CONVERGED
+            )
         return replace(state, status=Status.UNFINISHED)
 
     def _further_ways(
         self, ways: tuple[Way, ...], outcome: Search, shown: float
     ) -> tuple[Way, ...]:
         """Return the ways that are left to search."""
-        if outcome.has_arrived and not outcome.active:
+        if outcome.has_arrived and not outcome.optimality.active:
             return ()
         others = tuple(way for way in ways[1:] if way is not Way.PATH or self._is_tangled(outcome))
         if not others and ways[0] is not Way.HERE and not _is_proven(outcome, shown):
@@ -421,8 +423,8 @@ class Deformer:
             leashed=False,
             refusals=search.refusals,
             samples=len(search.boundary.points),
-            optimality=outcome.optimality,
-            active=outcome.active,
+            optimality=outcome.optimality.measure,
+            active=outcome.optimality.active,
         )
 
     @property

@@ -16,10 +16,14 @@ SUFFICIENT = 1e-4
 # A step stops where this part of the way to the nearest wall is used up.
 TO_THE_WALL = 0.9
 SHORTEST = 1e-6
-# Added to the diagonal, relative to its mean; multiplied until the factorisation succeeds.
-SHIFT, SHIFT_GROWTH = 1e-10, 1e2
+# The diagonal is made larger by this part of itself and of a floor, and by more until the
+# factorisation succeeds. Next to a wall the largest entries are 1e12 times the least, and no step
+# may feel a part of their mean; the floor, so many times the mean entry of the handles', holds what
+# moves nothing: around a tiny hole functions of the span are one and the same.
+SHIFT, SHIFT_GROWTH = 1e-13, 1e2
+FLOOR = 1e5
 # Parts of what the projection removes from the Hessian that are tried to be left in it.
-KEPT_NEGATIVE = (1.0, 0.5)
+KEPT_NEGATIVE = (1.0, 0.5, 0.25, 0.1)
 
 
 class Direction(NamedTuple):
@@ -46,6 +50,12 @@ class Direction(NamedTuple):
         jet = Jet(*(factor * part for part in self.jet))
         return Direction(factor * self.phi, factor * self.psi, jet, factor * self.derivative)
 
+    def plus(self, other: "Direction") -> "Direction":
+        """Return the sum of two directions."""
+        jet = Jet(*(mine + its for mine, its in zip(self.jet, other.jet, strict=True)))
+        derivative = self.derivative + other.derivative
+        return Direction(self.phi + other.phi, self.psi + other.psi, jet, derivative)
+
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Model:
@@ -59,21 +69,26 @@ class Model:
         Its upper triangle.
     factor : float64, shape (u, u)
         Cholesky's, for `lapack.dpotrs`.
+    exact : bool
+        Whether nothing was projected: the objective itself is convex at the map.
     """
 
     objective: Objective
     gradient: Floats
     hessian: Floats
     factor: Floats
+    exact: bool
 
     def stiffened(self, added: Floats) -> "Model":
         """Return the model with a positive semidefinite matrix added to its Hessian."""
         hessian = self.hessian + added
-        return replace(self, hessian=hessian, factor=_factor_shifted(hessian))
+        return replace(
+            self, hessian=hessian, factor=_factor_shifted(hessian, _floor(self.objective))
+        )
 
-    def direction(self, correction: Floats | None = None) -> Direction:
-        """Return the step to the minimum, with a `correction` (u,) added to the gradient."""
-        wanted = self.gradient if correction is None else self.gradient + correction
+    def direction(self, gradient: Floats | None = None) -> Direction:
+        """Return the step to the minimum, or to that of another `gradient` (u,)."""
+        wanted = self.gradient if gradient is None else gradient
         solution, _ = lapack.dpotrs(self.factor, wanted, lower=1)
         # The unknowns are the conjugates (see `objective`).
         change = -np.ascontiguousarray(solution).view(np.complex128).conj()
@@ -94,7 +109,7 @@ def newton_direction(objective: Objective, jet: Jet) -> Direction:
 def newton_models(objective: Objective, jet: Jet) -> Iterator[Model]:
     """Yield quadratic models of the objective at a map, all positive, the last one projected.
 
-    Those before leave in the Hessian all that the projection removes, and half of it, where it
+    Those before leave in the Hessian all that the projection removes, or parts of it, where it
     stays positive: near a minimum steps are Newton's own, and far from it they follow bent valleys
     that the projection crawls along.
     """
@@ -104,10 +119,16 @@ def newton_models(objective: Objective, jet: Jet) -> Iterator[Model]:
     for part in KEPT_NEGATIVE:
         bent = hessian.copy()
         bent[: len(removed), : len(removed)] -= part * removed
-        factor = _factor(bent, SHIFT * float(hessian.diagonal().mean()))
+        factor = _factor(bent, SHIFT, _floor(objective))
         if factor is not None:
             gradient = objective.gradient(jet, radial)
-            yield Model(objective=objective, gradient=gradient, hessian=bent, factor=factor)
+            yield Model(
+                objective=objective,
+                gradient=gradient,
+                hessian=bent,
+                factor=factor,
+                exact=part == 1.0,
+            )
     yield _model(objective, jet, radial, hessian)
 
 
@@ -116,7 +137,8 @@ def _model(objective: Objective, jet: Jet, radial: Radial, hessian: Floats) -> M
         objective=objective,
         gradient=objective.gradient(jet, radial),
         hessian=hessian,
-        factor=_factor_shifted(hessian),
+        factor=_factor_shifted(hessian, _floor(objective)),
+        exact=False,
     )
 
 
@@ -148,12 +170,17 @@ def line_search(
     return 0.0
 
 
-def _factor_shifted(hessian: Floats) -> Floats:
+def _floor(objective: Objective) -> float:
+    """Return what is added to a diagonal before it is shifted by a part of itself."""
+    return FLOOR * float(objective.handles.hessian.diagonal().mean())
+
+
+def _factor_shifted(hessian: Floats, floor: float) -> Floats:
     """Factor a positive semidefinite matrix, given by its upper triangle, with a shift it needs."""
-    shift = SHIFT * float(hessian.diagonal().mean())
+    shift = SHIFT
     # Twelve tries reach far beyond any diagonal: then the numbers themselves are at their end.
     for _ in range(12):
-        factor = _factor(hessian, shift)
+        factor = _factor(hessian, shift, floor)
         if factor is not None:
             return factor
         shift *= SHIFT_GROWTH
@@ -161,10 +188,13 @@ def _factor_shifted(hessian: Floats) -> Floats:
     return np.diag(np.full(len(hessian), np.inf))
 
 
-def _factor(hessian: Floats, shift: float) -> Floats | None:
-    """Factor a matrix given by its upper triangle plus a shift; None if it is not positive."""
+def _factor(hessian: Floats, shift: float, floor: float) -> Floats | None:
+    """Factor a matrix given by its upper triangle, with a part of its diagonal and floor added.
+
+    None if it is not positive.
+    """
     shifted = hessian.copy()
-    np.fill_diagonal(shifted, hessian.diagonal() + shift)
+    np.fill_diagonal(shifted, (1.0 + shift) * hessian.diagonal() + shift * floor)
     # Seen as Fortran order the upper triangle is the lower one.
     factor, failed = lapack.dpotrf(shifted.T, lower=1, overwrite_a=1)
     return None if failed else factor

@@ -152,17 +152,22 @@ class Objective:
         gradient: Floats = by_handles + self.sampled_gradient(jet, radial.a, radial.b_per_b)
         return gradient
 
-    def sampled_gradient(self, jet: Jet, by_a: Floats, b_per_b: Floats) -> Floats:
-        """Return the gradient (u,) of a sum over the samples of functions of a and b.
+    def sampled_gradient(
+        self, jet: Jet, by_a: Floats, b_per_b: Floats, samples: Indices | slice = slice(None)
+    ) -> Floats:
+        """Return the gradient (u,) of a sum over samples of functions of a and b.
 
         Parameters
         ----------
         jet : Jet
         by_a, b_per_b : float64, shape (m,)
             What each sample contributes to the derivative by a, and to that by b over b.
+        samples : Indices or slice
+            Which samples contribute, by default all.
         """
-        by_phi = (by_a * jet.f.conj() / np.abs(jet.f)) @ self.boundary.derivatives
-        by_psi = (b_per_b * jet.g.conj()) @ self.boundary.derivatives
+        rows, f, g = self.boundary.derivatives[samples], jet.f[samples], jet.g[samples]
+        by_phi = (by_a[samples] * f.conj() / np.abs(f)) @ rows
+        by_psi = (b_per_b[samples] * g.conj()) @ rows
         return self._by_unknowns(by_phi, by_psi)
 
     def _by_unknowns(self, by_phi: Complexes, by_psi: Complexes) -> Floats:
@@ -275,17 +280,31 @@ class Objective:
         entries = _entries(radial)
         m, n = len(self.boundary.points), len(self.boundary.span)
         own = np.flatnonzero(self.boundary.weights)
-        stride = max(min(self.stride, len(own) // (SAMPLES_PER_VERTEX * n)), 1)
-        loops = np.searchsorted(own, [*self.boundary.starts, m])
-        first = np.concatenate([np.arange(*loop, stride) for loop in pairwise(loops)])
+        loops = list(pairwise(np.searchsorted(own, [*self.boundary.starts, m])))
+        # A small hole may have no more samples than its cage needs.
+        strides = [
+            max(min(self.stride, (end - start) // (SAMPLES_PER_VERTEX * len(cage))), 1)
+            for (start, end), cage in zip(loops, self.boundary.span.cages, strict=True)
+        ]
+        first = [
+            np.arange(start, end, stride)
+            for (start, end), stride in zip(loops, strides, strict=True)
+        ]
+        middles = own[
+            np.concatenate(
+                [
+                    np.minimum(places + stride // 2, end - 1)
+                    for places, stride, (_, end) in zip(first, strides, loops, strict=True)
+                ]
+            )
+        ]
         density = (radial.aa + radial.bb) / self.boundary.shares
         least = STIFF * float(np.median(density))
-        if stride > 1:
+        if max(strides) > 1:
             most = max(n, int(STIFF_PER_CALM * m / self.stride))
             least = max(least, float(np.partition(density, -most)[-most]))
         stiff = density > least
-        summed = np.add.reduceat(np.where(stiff, 0.0, entries), own[first], axis=1)
-        middles = own[np.minimum(first + stride // 2, len(own) - 1)]
+        summed = np.add.reduceat(np.where(stiff, 0.0, entries), own[np.concatenate(first)], axis=1)
         some = summed[0] > 0
         return _Quadrature(
             np.concatenate([middles[some], np.flatnonzero(stiff)]),

@@ -4,8 +4,8 @@ from dataclasses import dataclass, field
 from enum import Enum
 
 from engine.arrays import Floats
-from engine.deform.continuation import ActiveBound, Search, Way
 from engine.deform.handles import Handles, Wish
+from engine.deform.rest import ActiveBound, Search, Way
 from engine.deform.steering import Schedule
 from engine.maps import Boundary, Certificate, HarmonicMap, Limits
 

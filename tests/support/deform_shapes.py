@@ -5,7 +5,9 @@ from functools import cache
 import numpy as np
 from interpolation_shapes import around, subdivided
 
-from engine.deform import Deformer, Handles
+from engine.deform import Deformer, Handles, Objective
+from engine.deform.rest import Search, Way, advance, begin_search
+from engine.deform.steering import MARGIN
 from engine.maps import Boundary, Bounds
 
 
@@ -36,6 +38,31 @@ def star(bounds: Bounds = Bounds()) -> Deformer:
 def bar(bounds: Bounds = Bounds()) -> Deformer:
     boundary = bar_boundary()
     return Deformer(boundary=boundary, handles=Handles.place(boundary, BAR_POINTS), bounds=bounds)
+
+
+TIGHT = Bounds(k=0.2, sigma_a=1.5, sigma_b=0.6)
+TWISTED = STAR_POINTS * np.exp(1j * np.array([0, 0.7, -0.5, 0.6, -0.8, 0.4]))
+
+
+def search_from_rest(steps: int) -> Search:
+    """Return the search for a twisted star within tight bounds after some steps."""
+    deformer = star(TIGHT)
+    first = deformer.start()
+    search = begin_search(
+        Objective(
+            boundary=deformer.boundary,
+            handles=deformer.handles,
+            wish=deformer.handles.wish(TWISTED),
+        ),
+        first.map,
+        first.certificate,
+        inside=TIGHT.towards_identity(MARGIN),
+        limits=TIGHT,
+        way=Way.REST,
+    )
+    for _ in range(steps):
+        search = advance(search)
+    return search
 
 
 def dense_outline(boundary: Boundary, count: int = 30_000):

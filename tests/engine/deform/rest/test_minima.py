@@ -7,6 +7,8 @@ import pytest
 from deform_shapes import (
     BAR_POINTS,
     STAR_POINTS,
+    TIGHT,
+    TWISTED,
     assert_sound,
     bar,
     dense_outline,
@@ -17,14 +19,12 @@ from scipy.optimize import minimize, nnls
 from shapes import regular_polygon
 
 from engine.deform import Deformer, Handles, Objective, Status
-from engine.deform.continuation import OPTIMAL
+from engine.deform.rest import OPTIMAL
 from engine.deform.steering import MARGIN
 from engine.maps import Boundary, Bounds
 from engine.maps.cauchy import cauchy_coordinates, cauchy_derivatives
 
-TIGHT = Bounds(k=0.2, sigma_a=1.5, sigma_b=0.6)
 ARCHED = BAR_POINTS + np.array([0, 1j, 0])
-TWISTED = STAR_POINTS * np.exp(1j * np.array([0, 0.7, -0.5, 0.6, -0.8, 0.4]))
 
 
 def settled(deformer, targets, state=None):
@@ -240,8 +240,8 @@ def test_coming_to_rest_is_repeated_bit_for_bit():
 
 
 def test_a_search_that_is_given_up_says_so(monkeypatch):
-    monkeypatch.setattr("engine.deform.continuation.MOST_STEPS", 2)
-    monkeypatch.setattr("engine.deform.continuation.MOST_STEPS_HERE", 2)
+    monkeypatch.setattr("engine.deform.rest.search.MOST_STEPS", 2)
+    monkeypatch.setattr("engine.deform.rest.search.MOST_STEPS_HERE", 2)
     state = settled(star(TIGHT), TWISTED)
     assert state.status is Status.UNFINISHED
     assert state.status.is_final

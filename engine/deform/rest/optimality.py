@@ -1,0 +1,84 @@
+"""How far a map is from a minimum within its bounds, and which bounds hold it back.
+
+With the multipliers weight / c of the barrier, the gain that Newton's model expects measures the
+projected gradient; the multipliers times c are the energy that the barrier holds back.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from engine.arrays import Floats
+from engine.deform.barrier import Barrier
+from engine.maps import Boundary, Limits
+
+# A bound is active when moving it all the way to the identity would, to first order, cost more than
+# this part of the energy.
+ACTIVE = 1e-4
+
+
+class ActiveBound(NamedTuple):
+    """A bound that holds back a pose.
+
+    Parameters
+    ----------
+    name : str
+        "k", "sigma_a" or "sigma_b".
+    price : float
+        By how much the energy would fall, to first order, if the bound were moved by 1 away from
+        the identity.
+    place : complex
+        Where on the outline at rest it presses most.
+    """
+
+    name: str
+    price: float
+    place: complex
+
+
+class Optimality(NamedTuple):
+    """How far a map is from a minimum.
+
+    Parameters
+    ----------
+    measure : float
+        Expected gain and complementarity over the energy; 0 at a minimum.
+    gap : float
+        About what the map could still gain, were everything convex.
+    active : tuple of ActiveBound
+    """
+
+    measure: float = np.inf
+    gap: float = np.inf
+    active: tuple[ActiveBound, ...] = ()
+
+    @classmethod
+    def of(
+        cls,
+        a: Floats,
+        b: Floats,
+        *,
+        gain: float,
+        energy: float,
+        boundary: Boundary,
+        barrier: Barrier,
+        bounds: Limits,
+    ) -> "Optimality":
+        """Measure a map by a = |f_z| and b = |f_z̄| (m,) at the samples, and by its last step."""
+        complementarity = 3.0 * barrier.weight * float(boundary.shares.sum())
+        multipliers = boundary.shares * (barrier.weight / barrier.margins(a, b))
+        walls = barrier.walls
+        # The derivatives of c = u² − b² by the bound, away from the identity.
+        prices = multipliers * np.array(
+            [2 * walls.k * a * a, 2 * (a - walls.sigma_b), 2 * (walls.sigma_a - a)]
+        )
+        ways = {"k": bounds.k, "sigma_b": 1.0 - bounds.sigma_b, "sigma_a": bounds.sigma_a - 1.0}
+        return cls(
+            measure=float((gain + complementarity) / energy),
+            gap=gain + 2.0 * complementarity,
+            active=tuple(
+                ActiveBound(name, float(price.sum()), complex(boundary.points[price.argmax()]))
+                for (name, way), price in zip(ways.items(), prices, strict=True)
+                if price.sum() * way > ACTIVE * energy
+            ),
+        )

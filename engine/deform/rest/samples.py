@@ -1,0 +1,94 @@
+"""Samples that are added on the way to rest, and where the walls of all of them stand.
+
+Samples are added where a segment could bulge out farther than a part of the slack at its ends, so
+that the barrier sees what the certificate would find between the samples, before it refuses. The
+walls stand a little inside the bounds, which leaves the room between samples. A sample that is
+added between the two gets a wall of its own around it, and keeps it.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+
+from engine.arrays import Floats, Indices, readonly
+from engine.deform.barrier import Walls
+from engine.deform.objective import Jet, Objective
+from engine.deform.rest.search import Search
+from engine.deform.steering import MARGIN
+from engine.maps import Limits, segment_enclosures
+
+# The wall of a sample that is beyond them stands this part of its way to the bound farther out.
+OUTWARDS = 0.1
+# Segments may bulge by this part of the slack at their ends, or of the margin, before they are cut.
+BULGE_PER_SLACK = 0.25
+BULGE_PER_MARGIN = 0.9
+# No more samples than this many times those of the shape itself, but for segments that did break a
+# bound: as long as those stay, no step is certified.
+MOST_SAMPLES = 4
+
+
+def walls_around(inside: Limits, limits: Limits, a: Floats, b: Floats) -> Walls:
+    """Return the inner walls, moved out a little where a sample is beyond or next to them."""
+    k, sigma_a, sigma_b = b / a, a + b, a - b
+    return Walls(
+        k=np.maximum(inside.k, k + OUTWARDS * (limits.k - k)),
+        sigma_a=np.maximum(inside.sigma_a, sigma_a + OUTWARDS * (limits.sigma_a - sigma_a)),
+        sigma_b=np.minimum(inside.sigma_b, sigma_b + OUTWARDS * (limits.sigma_b - sigma_b)),
+    )
+
+
+def resolved(search: Search, jet: Jet, broken: Indices) -> Search:
+    """Return the search with samples added where segments could bulge, or did."""
+    boundary, limits = search.boundary, search.limits
+    a, b, following = np.abs(jet.f), np.abs(jet.g), boundary.following
+    proven = segment_enclosures(search.map, boundary)
+    worse = (
+        (proven.k, np.maximum(b / a, (b / a)[following]), limits.k, limits.k),
+        (
+            proven.sigma_a,
+            np.maximum(a + b, (a + b)[following]),
+            limits.sigma_a,
+            limits.sigma_a - 1.0,
+        ),
+        (
+            -proven.sigma_b,
+            -np.minimum(a - b, (a - b)[following]),
+            -limits.sigma_b,
+            1 - limits.sigma_b,
+        ),
+    )
+    # By how much each segment bulges more than it may.
+    excess = np.zeros(len(a))
+    for enclosure, ends, limit, way in worse:
+        least = BULGE_PER_MARGIN * MARGIN * abs(way)
+        allowed = np.maximum(BULGE_PER_SLACK * (limit - ends), least)
+        excess = np.maximum(excess, (enclosure - ends) / allowed)
+    excess[broken] = np.inf
+    most = int(MOST_SAMPLES * np.count_nonzero(boundary.weights))
+    room = max(most - len(a), len(broken))
+    worst = np.argsort(-excess, kind="stable")[:room]
+    segments = np.sort(worst[excess[worst] > 1.0])
+    if len(segments) == 0:
+        return search
+    finer = boundary.refined(segments)
+    new = segments + np.arange(len(segments)) + 1
+    added = Objective(boundary=finer, handles=search.handles, wish=search.wish).jet(
+        *search.map.columns
+    )
+    walls = walls_around(search.inside, limits, np.abs(added.f[new]), np.abs(added.g[new]))
+    duals = search.duals
+    if duals is not None:
+        ends = following[segments]
+        between = np.maximum(duals[:, segments], duals[:, ends])
+        duals = readonly(np.insert(duals, segments + 1, between, axis=1))
+    return replace(
+        search,
+        boundary=finer,
+        walls=Walls(
+            *(
+                np.insert(old, segments + 1, its)
+                for old, its in zip(search.walls, walls, strict=True)
+            )
+        ),
+        duals=duals,
+    )
