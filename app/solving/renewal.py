@@ -180,6 +180,10 @@ def _solved(renewal: Renewal, rig: Rig, index: int) -> Pose:
     wish = rig.wish(pose.targets, pins)
     state, _ = rig.deformer.settle(state, wish, at_most=MOST_STEPS)
     certificate = certify(state.map, boundary, bounds)
+    if into is not None and not certificate.certified:
+        # Where the new shape is larger, what was carried over may have no way back into the bounds.
+        state, _ = rig.deformer.settle(rig.deformer.start(), wish, at_most=MOST_STEPS)
+        certificate = certify(state.map, boundary, bounds)
     if into is None and not certificate.certified:
         return replace(pose, certificate=certify(first, boundary, bounds))
     return replace(pose.with_map(state.map), certificate=certificate)

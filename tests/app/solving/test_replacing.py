@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from layered import blob, png
+from PIL import Image, ImageDraw
 
 from app.document import handle_commands, key_commands
 from app.document.keyframe import Target
@@ -13,8 +14,10 @@ from app.document.settings import Meshing
 from app.solving.drag import Drag, Rig
 from app.solving.renewal import go_on
 from app.solving.replacing import begin_replacing
+from app.storage.assets import sample_images
 from app.storage.layers import layer_figure, still_picture
 from app.storage.pictures import Layer, decode_picture
+from app.storage.project_file import load_project
 
 MESHING = Meshing(triangles=1_000, detail="coarse")
 
@@ -108,3 +111,16 @@ def test_a_still_picture_stays_where_it_was_put():
     points = np.array([5 + 5j, 30 + 12j])
     moved = figure.map_of(figure.keys[0].pose)(points)
     assert np.abs(moved - (1j * points + 50 + 5j)).max() < 1e-6
+
+
+def test_a_pose_that_cannot_be_carried_over_is_reached_from_rest():
+    """The head of the sample as an ellipse: carried over, one pose is squeezed below."""
+    document = load_project(sample_images() / "friend.lissom")
+    head = next(figure for figure in document.figures if figure.name == "head")
+    image = Image.new("RGBA", (460, 460))
+    ImageDraw.Draw(image).ellipse((10, 10, 450, 450), fill=(250, 210, 170, 255))
+    renewal = begin_replacing(head, figure_of(image), document.canvas)
+    while not renewal.is_over:
+        renewal = go_on(renewal, np.zeros((1, 1, 4), np.uint8))
+    assert not renewal.outside
+    assert all(pose.certificate.certified for pose in renewal.poses)
