@@ -2,7 +2,7 @@
 
 import argparse
 
-from app.storage import decode_mask, read_picture_file
+from app.storage import decode_mask, read_file
 from engine.domain import CutOut
 
 
@@ -12,6 +12,6 @@ def read_cut_out(arguments: argparse.Namespace) -> CutOut:
     return CutOut(
         tolerance=arguments.tolerance,
         background=arguments.background,
-        mask=None if path is None else decode_mask(read_picture_file(path), str(path)),
+        mask=None if path is None else decode_mask(read_file(path), str(path)),
         holes=arguments.holes,
     )

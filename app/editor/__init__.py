@@ -7,7 +7,7 @@ Imports: every room below but the command line and the panels.
 
 from app.editor import layering
 from app.editor.action import Action, do
-from app.editor.dialogs import Dialog, FileDialog, Question, ShortcutSheet
+from app.editor.dialogs import Dialog, FileDialog, Leftover, Question, Recovery, ShortcutSheet
 from app.editor.failures import sentence
 from app.editor.jobs import Jobs
 from app.editor.project import Flip, PoseBlend, PoseInProgress, Project, Puppet, Twin
@@ -58,6 +58,7 @@ __all__ = [
     "JointMark",
     "KeyBox",
     "KeyDrag",
+    "Leftover",
     "MarkerDrag",
     "Overlays",
     "PoseBlend",
@@ -65,6 +66,7 @@ __all__ = [
     "Project",
     "Puppet",
     "Question",
+    "Recovery",
     "Scrub",
     "Session",
     "ShortcutSheet",

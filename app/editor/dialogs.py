@@ -3,8 +3,10 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
+from typing import NamedTuple
 
 from app.editor.action import Action
+from app.storage import Origin
 
 
 def _no_file(_: str) -> bool:
@@ -70,4 +72,20 @@ class ShortcutSheet:
     """The list of all keys."""
 
 
-Dialog = FileDialog | Question | ShortcutSheet
+class Leftover(NamedTuple):
+    """Unsaved work of an earlier time: its file, its origin, when it was kept, and its bytes."""
+
+    path: Path
+    origin: Origin
+    kept: float
+    size: int
+
+
+@dataclass(frozen=True, slots=True)
+class Recovery:
+    """A choice among all unsaved work of earlier times; what is not chosen stays."""
+
+    candidates: tuple[Leftover, ...]
+
+
+Dialog = FileDialog | Question | ShortcutSheet | Recovery

@@ -1,8 +1,8 @@
 """Worker threads for long computations; of each kind only the newest job counts.
 
-There are three: one for what the person waits for, such as the pose under the hand, one for
-exports, and one for what is shown and may take a second, such as in-betweens. None keeps another
-waiting.
+There are four: one for what the person waits for, such as the pose under the hand, one for
+exports, one for what is shown and may take a second, such as in-betweens, and one for what is to be
+kept. None keeps another waiting, and one that never comes to an end can be left behind.
 """
 
 import atexit
@@ -13,7 +13,10 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Any, Literal, get_args
 
-LaneName = Literal["hand", "export", "display"]
+from app.errors import LissomError
+
+LaneName = Literal["hand", "export", "display", "keep"]
+PATIENCE = 10.0  # seconds that the end of the program waits for what runs
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -31,8 +34,8 @@ class Job:
     failed : callable
         Takes the exception that ended `work`, on the main thread.
     lane : str
-        On which thread it runs: that for what is under the "hand", for an "export", or for what is
-        to be on "display".
+        On which thread it runs: that for what is under the "hand", for an "export", for what is to
+        be on "display", or for what the disk is to "keep".
     """
 
     kind: str
@@ -72,24 +75,38 @@ class Jobs:
         self._is_closed = False
         # The end of the program takes BLAS away, and a thread that is in it crashes.
         atexit.register(self.close)
-        self._lanes = {name: _Lane() for name in get_args(LaneName)}
+        self._lanes: dict[LaneName, _Lane] = {name: _Lane() for name in get_args(LaneName)}
+        self._left: list[_Lane] = []
 
     def put(self, job: Job) -> None:
         """Queue a job in place of an unfinished one of its kind."""
         with self._condition:
             self._forget(job.kind)
             self._waiting.append(job)
-            lane = self._lanes[job.lane]
-            if lane.thread is None:
-                work = partial(self._work, lane, job.lane)
-                lane.thread = threading.Thread(target=work, name=job.lane, daemon=True)
-                lane.thread.start()
+            self._staff(job.lane)
             self._condition.notify_all()
 
     def drop(self, kind: str) -> None:
         """Make an unfinished job of this kind stale."""
         with self._condition:
             self._forget(kind)
+
+    def leave(self, kind: str) -> None:
+        """Give up a job of this kind that may never end; what waits behind it goes on elsewhere.
+
+        Its result is thrown away, and it has failed as far as anybody is told.
+        """
+        with self._condition:
+            for name, lane in self._lanes.items():
+                job = lane.running
+                if job is not None and job.kind == kind and not lane.is_stale:
+                    lane.is_stale = True
+                    self._left.append(lane)
+                    self._lanes[name] = _Lane()
+                    given_up = LissomError("it was cancelled")
+                    self._finished.append((kind, partial(job.failed, given_up)))
+                    if any(waiting.lane == name for waiting in self._waiting):
+                        self._staff(name)
 
     @property
     def kinds(self) -> tuple[str, ...]:
@@ -135,15 +152,37 @@ class Jobs:
                 timeout,
             )
 
-    def close(self) -> None:
-        """Drop what waits, and end the threads when what runs is done."""
+    def close(self, patience: float = PATIENCE) -> bool:
+        """Drop what waits, and end the threads when what runs is done.
+
+        Parameters
+        ----------
+        patience : float
+            Seconds to wait for that.
+
+        Returns
+        -------
+        bool
+            Whether all have ended. If not, the program must end without taking anything down that
+            they may use.
+        """
         with self._condition:
             self._is_closed = True
             self._waiting.clear()
             self._condition.notify_all()
-        for lane in self._lanes.values():
-            if lane.thread is not None:
-                lane.thread.join()
+        end = time.monotonic() + patience
+        threads = [lane.thread for lane in (*self._lanes.values(), *self._left) if lane.thread]
+        for thread in threads:
+            thread.join(max(0.0, end - time.monotonic()))
+        return not any(thread.is_alive() for thread in threads)
+
+    def _staff(self, name: LaneName) -> None:
+        """Give a lane its thread."""
+        lane = self._lanes[name]
+        if lane.thread is None:
+            work = partial(self._work, lane, name)
+            lane.thread = threading.Thread(target=work, name=name, daemon=True)
+            lane.thread.start()
 
     def _forget(self, kind: str) -> None:
         self._waiting = [job for job in self._waiting if job.kind != kind]
@@ -155,8 +194,8 @@ class Jobs:
     def _work(self, lane: _Lane, name: LaneName) -> None:
         while True:
             with self._condition:
-                while (job := self._next(name)) is None:
-                    if self._is_closed:
+                while (job := self._next(name)) is None or lane in self._left:
+                    if self._is_closed or lane in self._left:
                         return
                     self._condition.wait()
                 self._waiting.remove(job)

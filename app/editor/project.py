@@ -27,7 +27,7 @@ from app.motion import Box, Build, Joints, Motion, MotionPaths, PosableMesh, Sho
 from app.render import View, fit_view
 from app.reports import Curves
 from app.solving import Drag, Renewal, Rig
-from app.storage import Cut, Origin, Picture, cut_picture
+from app.storage import Cut, Hold, Origin, Picture, cut_picture
 from engine.arrays import Bytes
 from engine.domain import CutOut
 from engine.maps import Bounds
@@ -235,12 +235,19 @@ class Project:
         Of the figures that hang on others; None where nothing does.
     extent : Derived
         Of the motion; where the settings of an export are shown it is measured first, else last.
+    hold : Hold, optional
+        By which other windows see that its file is open here.
+    read_as : str, optional
+        What the file held when it was opened or saved here last; None for a new one.
     to_save : tuple, optional
-        Where to save it, and what to do then, as soon as its pose has settled.
+        Where to save it, what to do then, and the clock's seconds when that was asked for: it is
+        done as soon as its pose has settled.
     moved_at : float
         The clock's seconds when the playhead was last seen to move.
     autosaved : Document, optional
         The one that the autosave holds, from the time `autosaved_at` on.
+    changed_at : float, optional
+        The clock's seconds when it was first seen to differ from that.
     chosen_of : mapping of int to frozenset of int
         The frames of the chosen keys of figures, by their ids; figures without any are not in it.
     gesture : object, optional
@@ -275,10 +282,13 @@ class Project:
     extent: Derived[tuple[object, ...], Box | None] = field(
         default_factory=lambda: Derived(None, remembers=EXTENTS)
     )
-    to_save: tuple[Path, Action | None] | None = None
+    hold: Hold | None = None
+    read_as: str | None = None
+    to_save: tuple[Path, Action | None, float] | None = None
     moved_at: float = -inf
     autosaved: Document | None = None
     autosaved_at: float = 0.0
+    changed_at: float | None = None
     playhead: Playhead = field(default_factory=Playhead)
     timing: Timing = field(default_factory=Timing)
     selected: frozenset[int] = frozenset()  # ids of handles

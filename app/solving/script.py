@@ -18,11 +18,13 @@ from app.storage import (
     as_point,
     as_text,
     as_whole,
+    read_file,
     without_repeats,
 )
 from engine.maps import Bounds
 
 SCHEMA = 1
+LARGEST = 32 * 1024 * 1024  # bytes
 SCENE_FIELDS = ("schema", "fps", "loop", "variant", "bounds")
 OWN_FIELDS = ("anchor", "handles", "keys")
 FIGURE_FIELDS = ("layer", "variant", "bounds", *OWN_FIELDS, "attach", "visible")
@@ -96,9 +98,7 @@ def load_pose_script(path: Path) -> PoseScript:
         If the file is missing, is not JSON, or says anything that a pose script cannot say.
     """
     try:
-        text = path.read_text(encoding="utf-8-sig")
-    except OSError as error:
-        raise LissomError(f"cannot read {path}: {error.strerror or error}") from error
+        text = read_file(path, largest=LARGEST).decode("utf-8-sig")
     except UnicodeDecodeError as error:
         raise LissomError(f"{path} is not a text file in UTF-8") from error
     try:

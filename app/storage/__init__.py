@@ -11,13 +11,18 @@ from app.storage.autosave import (
     Autosave,
     Origin,
     find_leftovers,
+    leftover_origin,
     load_leftover,
     remove_leftover,
 )
 from app.storage.files import (
+    Hold,
+    HoldError,
     atomic_file,
     check_writable,
+    clear_abandoned,
     read_arrays,
+    read_file,
     write_arrays,
     write_atomically,
 )
@@ -53,7 +58,6 @@ from app.storage.pictures import (
     decode_picture,
     decode_pictures,
     encode_mask,
-    read_picture_file,
     side_by_side,
 )
 from app.storage.preferences import (
@@ -68,7 +72,7 @@ from app.storage.preferences import (
     save_preferences,
     settings_folder,
 )
-from app.storage.project_file import load_project, save_project
+from app.storage.project_file import load_project, project_digest, save_project
 from app.storage.thumbnail import draw_thumbnail, read_thumbnail, shrink
 
 __all__ = [
@@ -80,6 +84,8 @@ __all__ = [
     "SMALLEST_SCALE",
     "Autosave",
     "Cut",
+    "Hold",
+    "HoldError",
     "JsonObject",
     "Layer",
     "LayeredPicture",
@@ -99,6 +105,7 @@ __all__ = [
     "as_whole",
     "atomic_file",
     "check_writable",
+    "clear_abandoned",
     "cut_picture",
     "decode_mask",
     "decode_picture",
@@ -109,15 +116,17 @@ __all__ = [
     "flattened",
     "is_layered",
     "layer_figure",
+    "leftover_origin",
     "load_leftover",
     "load_preferences",
     "load_project",
     "open_layered",
     "open_picture",
     "open_pictures",
+    "project_digest",
     "read_arrays",
+    "read_file",
     "read_layered",
-    "read_picture_file",
     "read_thumbnail",
     "remove_leftover",
     "sample_images",

@@ -7,7 +7,6 @@ process ends, whereas a process's number is soon given to another one and proves
 import json
 import os
 import secrets
-import sys
 from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
@@ -15,18 +14,14 @@ from types import MappingProxyType
 from typing import NamedTuple
 
 from app.document import Document
-from app.storage.project_file import load_project, save_project
-
-if sys.platform == "win32":
-    import msvcrt
-else:
-    import fcntl
+from app.errors import LissomError
+from app.storage.files import is_locked, lock
+from app.storage.project_file import load_member, load_project, save_project
 
 SECONDS = 20.0  # between a change and its autosave, at least
-# What the system says of a lock that is held; other errors mean that it knows no locks there.
-HELD = (BlockingIOError, PermissionError)
 # The member of the file that tells where the work came from; projects that are saved have none.
 ORIGIN = "origin.json"
+LARGEST_ORIGIN = 100_000  # bytes
 
 
 class Origin(NamedTuple):
@@ -57,16 +52,23 @@ class Autosave:
 
         Raises
         ------
-        LissomError, OSError
+        LissomError
             If the file cannot be written.
         """
-        self._path.parent.mkdir(parents=True, exist_ok=True)
+        try:
+            self._path.parent.mkdir(parents=True, exist_ok=True)
+        except OSError as error:
+            raise LissomError(
+                f"the folder {self._path.parent} cannot be made: {error.strerror or error}"
+            ) from error
         if self._lock is None:
             # Without locks other windows offer this work while it is still in use, which loses
             # nothing; hidden after a crash, it would be lost.
             with suppress(OSError):
                 self._lock = os.open(_lock_of(self._path), os.O_RDWR | os.O_CREAT, 0o600)
-                _hold(self._lock)
+                # Another window that looks for what is left holds it for a moment.
+                while not lock(self._lock):
+                    pass
         told = json.dumps({"name": origin.name, "path": origin.path and str(origin.path)}).encode()
         # One file with both, so that they are of one time however this ends.
         members = MappingProxyType({**document.attachments, ORIGIN: told})
@@ -85,7 +87,7 @@ def find_leftovers(folder: Path) -> list[Path]:
     """Return what windows kept that are gone, the newest first."""
     found = {}
     for path in folder.glob("unsaved-*.lissom"):
-        if not _is_held(_lock_of(path)):
+        if not is_locked(_lock_of(path)):
             with suppress(FileNotFoundError):  # its window has just forgotten it
                 found[path] = path.stat().st_mtime
     return sorted(found, key=lambda path: found[path], reverse=True)
@@ -103,6 +105,11 @@ def load_leftover(path: Path) -> tuple[Document, Origin]:
     attachments = dict(document.attachments)
     origin = _origin(attachments.pop(ORIGIN, b""))
     return replace(document, attachments=MappingProxyType(attachments)), origin
+
+
+def leftover_origin(path: Path) -> Origin:
+    """Return where work came from that a window kept, without reading the work itself."""
+    return _origin(load_member(path, ORIGIN, LARGEST_ORIGIN) or b"")
 
 
 def remove_leftover(path: Path) -> None:
@@ -126,27 +133,3 @@ def _origin(told: bytes) -> Origin:
 
 def _lock_of(path: Path) -> Path:
     return path.with_suffix(".lock")
-
-
-def _is_held(lock: Path) -> bool:
-    try:
-        descriptor = os.open(lock, os.O_RDWR)
-    except OSError:
-        return False
-    try:
-        _hold(descriptor)
-    except HELD:
-        return True
-    except OSError:
-        return False
-    finally:
-        os.close(descriptor)
-    return False
-
-
-def _hold(descriptor: int) -> None:
-    """Lock an open file until it is closed, by whatever ends the process too."""
-    if sys.platform == "win32":
-        msvcrt.locking(descriptor, msvcrt.LK_NBLCK, 1)
-    else:
-        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)

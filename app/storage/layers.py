@@ -20,6 +20,7 @@ from app.document import (
     new_figure,
 )
 from app.errors import LissomError
+from app.storage.files import read_file
 from app.storage.opening import OpenedPicture
 from app.storage.pictures import (
     Layer,
@@ -28,7 +29,6 @@ from app.storage.pictures import (
     decode_pictures,
     read_openraster,
     read_photoshop,
-    read_picture_file,
     side_by_side,
 )
 from engine.arrays import Bytes, readonly
@@ -62,7 +62,7 @@ def read_layered(path: Path) -> LayeredPicture:
     LissomError
         If the file is missing, damaged, or holds no layers that can be used.
     """
-    data = read_picture_file(path)
+    data = read_file(path)
     try:
         return READERS[path.suffix.lower()](data)
     except LissomError as error:
@@ -96,7 +96,7 @@ def open_pictures(paths: Sequence[Path], meshing: Meshing) -> OpenedScene:
     layers: list[Layer] = []
     taken: set[str] = set()
     notices: list[str] = []
-    files = [(read_picture_file(path), str(path)) for path in paths]
+    files = [(read_file(path), str(path)) for path in paths]
     pictures = decode_pictures(files)
     size = (
         max(picture.size[0] for picture in pictures),

@@ -5,7 +5,8 @@ from pathlib import Path
 from typing import NamedTuple, Self
 
 from app.document import Document, Meshing, PictureFile, new_figure
-from app.storage.pictures import Picture, decode_picture, read_picture_file
+from app.storage.files import read_file
+from app.storage.pictures import Picture, decode_picture
 from engine.arrays import Booleans, Bytes, freeze
 from engine.domain import CutOut, HoleMap, build_domain, find_holes, subject_mask, texture
 from engine.errors import EngineError
@@ -54,7 +55,7 @@ def open_picture(path: Path, meshing: Meshing, cut_out: CutOut = CutOut()) -> Op
     LissomError, EngineError
         If the file is no picture, or has no subject that can be outlined.
     """
-    data = read_picture_file(path)
+    data = read_file(path)
     picture = decode_picture(data, str(path))
     domain, remedies = build_domain(
         picture.rgba, triangles=meshing.triangles, detail=meshing.detail, cut_out=cut_out

@@ -10,13 +10,14 @@ from typing import Any, Literal
 
 from app.document import LINEAR, Easing
 from app.errors import LissomError
-from app.storage.files import write_atomically
+from app.storage.files import read_file, write_atomically
 
 ThemeName = Literal["dark", "light"]
 SMALLEST_SCALE, LARGEST_SCALE = 0.75, 3.0
 MOST_RECENT = 10
 MOST_GHOSTS, LARGEST_GHOST_STEP = 6, 24
 CHECKER = "checker"
+LARGEST = 1024 * 1024  # bytes
 _COLOUR = re.compile("#[0-9a-f]{6}")
 
 
@@ -41,6 +42,8 @@ class Preferences:
         Files opened or saved last, the newest first.
     folder : Path, optional
         Where a file was chosen last.
+    exported : Path, optional
+        The folder that was exported into last.
     """
 
     theme: ThemeName = "dark"
@@ -53,6 +56,13 @@ class Preferences:
     ghost_step: int = 4
     recent: tuple[Path, ...] = ()
     folder: Path | None = None
+    exported: Path | None = None
+
+    @property
+    def written(self) -> frozenset[Path]:
+        """The folders in which something was written last."""
+        chosen = (self.folder, self.exported, *(path.parent for path in self.recent))
+        return frozenset(folder for folder in chosen if folder is not None)
 
     def with_recent(self, path: Path) -> "Preferences":
         """Return the preferences with a file as the most recent one."""
@@ -80,8 +90,8 @@ def settings_folder() -> Path:
 def load_preferences(folder: Path) -> Preferences:
     """Read the preferences; what is missing or makes no sense is as it is at first."""
     try:
-        content = json.loads((folder / "preferences.json").read_text(encoding="utf-8"))
-    except (OSError, ValueError, RecursionError):
+        content = json.loads(read_file(folder / "preferences.json", largest=LARGEST))
+    except (LissomError, ValueError, RecursionError):
         return Preferences()
     return _understood(content) if isinstance(content, dict) else Preferences()
 
@@ -109,7 +119,11 @@ def _understood(content: dict[str, Any]) -> Preferences:
 
     recent = content.get("recent")
     paths = recent if isinstance(recent, list) else []
-    folder, backdrop = content.get("folder"), str(content.get("backdrop"))
+    folder, exported = (
+        Path(told) if isinstance(told := content.get(name), str) else None
+        for name in ("folder", "exported")
+    )
+    backdrop = str(content.get("backdrop"))
     return Preferences(
         theme="light" if content.get("theme") == "light" else "dark",
         scale=float(number("scale", SMALLEST_SCALE, LARGEST_SCALE)),
@@ -120,7 +134,8 @@ def _understood(content: dict[str, Any]) -> Preferences:
         ghosts_after=int(number("ghosts_after", 0, MOST_GHOSTS)),
         ghost_step=int(number("ghost_step", 1, LARGEST_GHOST_STEP)),
         recent=tuple(Path(path) for path in paths if isinstance(path, str))[:MOST_RECENT],
-        folder=Path(folder) if isinstance(folder, str) else None,
+        folder=folder,
+        exported=exported,
     )
 
 

@@ -22,13 +22,14 @@ from dataclasses import replace
 from math import isfinite
 from pathlib import Path
 from types import MappingProxyType
+from typing import IO
 
 import numpy as np
 
 from app.document import Document, Figure, PictureFile
 from app.errors import EXPECTED_ERRORS, LissomError
 from app.storage.archive import MEBIBYTE, Archive, array_member, write_archive
-from app.storage.files import write_atomically
+from app.storage.files import require_file, sync_folder, tail_digest, write_atomically
 from app.storage.json_values import JsonObject, as_object, as_text, as_whole, without_repeats
 from app.storage.pictures import stored_size
 from app.storage.project_json import SCHEMA, read_document, read_size, write_document
@@ -62,7 +63,7 @@ DAMAGE = (
 )
 
 
-def save_project(path: Path, document: Document, *, thumbnail: bytes | None = None) -> None:
+def save_project(path: Path, document: Document, *, thumbnail: bytes | None = None) -> str:
     """Write a project file; at any moment the old or the new one is whole.
 
     Parameters
@@ -72,6 +73,11 @@ def save_project(path: Path, document: Document, *, thumbnail: bytes | None = No
     document : Document
     thumbnail : bytes, optional
         A small PNG picture of the animation.
+
+    Returns
+    -------
+    str
+        What `project_digest` returns as long as nobody else writes there.
 
     Raises
     ------
@@ -88,7 +94,32 @@ def save_project(path: Path, document: Document, *, thumbnail: bytes | None = No
         members[THUMBNAIL] = thumbnail
     # Later versions may know better, but never what this one writes.
     members = {**document.attachments, **members}
-    write_atomically(path, lambda file: write_archive(file, members))
+
+    def write(file: IO[bytes]) -> str:
+        write_archive(file, members)
+        return tail_digest(file)
+
+    digest = write_atomically(path, write)
+    sync_folder(path.parent)
+    return digest
+
+
+def project_digest(path: Path) -> str | None:
+    """Return what tells the contents of a project file from others; None where there is none.
+
+    Raises
+    ------
+    LissomError
+        If it cannot be read.
+    """
+    try:
+        require_file(path)
+        with path.open("rb") as file:
+            return tail_digest(file)
+    except FileNotFoundError:
+        return None
+    except OSError as error:
+        raise LissomError(f"cannot read {path}: {error.strerror or error}") from error
 
 
 def load_project(path: Path) -> Document:
@@ -101,8 +132,9 @@ def load_project(path: Path) -> Document:
         message says which.
     """
     try:
+        size = require_file(path)
         with zipfile.ZipFile(path) as file:
-            return _read(Archive(file, path.stat().st_size))
+            return _read(Archive(file, size))
     except OSError as error:
         raise LissomError(f"cannot read {path}: {error.strerror or error}") from error
     except EXPECTED_ERRORS as error:
@@ -113,9 +145,15 @@ def load_project(path: Path) -> Document:
 
 def load_thumbnail(path: Path) -> bytes | None:
     """Read only the small PNG picture of a project; None where it has none, or is no project."""
+    return load_member(path, THUMBNAIL, LARGEST_THUMBNAIL)
+
+
+def load_member(path: Path, name: str, largest: int) -> bytes | None:
+    """Read only one member of a project; None where it has none such, or is no project."""
     try:
+        size = require_file(path)
         with zipfile.ZipFile(path) as file:
-            return Archive(file, path.stat().st_size).read(THUMBNAIL, largest=LARGEST_THUMBNAIL)
+            return Archive(file, size).read(name, largest=largest)
     except (OSError, *EXPECTED_ERRORS, *DAMAGE):
         return None
 

@@ -11,7 +11,7 @@ from PIL import Image
 
 from app.document.settings import Meshing
 from app.editor.action import do
-from app.editor.actions import files
+from app.editor.actions import files, saving
 from app.editor.jobs import Jobs
 from app.editor.project import Project
 from app.editor.session import Session
@@ -71,6 +71,7 @@ class Harness:
         fresh = Session(clock=self.clock, jobs=self.session.jobs, folder=self.folder)
         self.session.jobs.settle()
         self.session.jobs.deliver()
+        saving.put_project(self.session, None)
         for field in fields(Session):
             if field.name not in {"screen", "full_detail"}:
                 setattr(self.session, field.name, getattr(fresh, field.name))
@@ -86,7 +87,7 @@ class Harness:
 
         What is open is given up.
         """
-        self.session.project = None
+        saving.put_project(self.session, None)
         files.open_file(self.session, path)
         self.settle()
         assert self.session.project is not None, [toast.text for toast in self.session.toasts]

@@ -16,8 +16,8 @@ from app.storage import (
     check_writable,
     decode_picture,
     is_layered,
+    read_file,
     read_layered,
-    read_picture_file,
     write_arrays,
     write_atomically,
 )
@@ -71,7 +71,7 @@ def _read(path: Path, layer: str | None) -> tuple[Picture, complex]:
     if not is_layered(path):
         if layer is not None:
             raise LissomError(f"{path} has no layers; leave --layer out")
-        return decode_picture(read_picture_file(path), str(path)), 0j
+        return decode_picture(read_file(path), str(path)), 0j
     drawing = read_layered(path)
     names = [each.name for each in drawing.layers]
     told = ", ".join(map(repr, reversed(names)))

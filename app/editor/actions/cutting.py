@@ -18,7 +18,7 @@ from app.storage import (
     cut_picture,
     decode_mask,
     encode_mask,
-    read_picture_file,
+    read_file,
     write_atomically,
 )
 from engine.domain import Mask, Stroke
@@ -153,7 +153,7 @@ def load_mask(session: Session, path: Path) -> None:
     session.jobs.put(
         Job(
             kind=READING,
-            work=lambda: decode_mask(read_picture_file(path), path.name),
+            work=lambda: decode_mask(read_file(path), path.name),
             done=take,
             failed=lambda error: report(session, f"{path.name} cannot be loaded", error),
         )

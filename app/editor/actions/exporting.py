@@ -126,6 +126,8 @@ def start(session: Session, out: Path) -> None:
     def begun(run: ExportRun) -> None:
         session.export = run
         project.export_to = out
+        folder = out.parent if EXPORT_FORMATS[settings.format].suffixes else out
+        session.preferences = replace(session.preferences, exported=folder)
         # Another pose is another picture, which may not take this one's place without a question.
         project.replaceable = None if EXPORT_FORMATS[settings.format].is_still else out
 

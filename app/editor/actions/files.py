@@ -2,6 +2,7 @@
 
 import os
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from functools import cache, lru_cache
 from pathlib import Path
 from typing import NamedTuple
@@ -10,23 +11,27 @@ from app.document import Document, History, Meshing, clip_of
 from app.editor.action import do
 from app.editor.actions import cutting, playback, saving
 from app.editor.actions.saving import PROJECT
-from app.editor.dialogs import FileDialog, Question
+from app.editor.dialogs import FileDialog, Leftover, Question, Recovery
 from app.editor.failures import report, sentence
 from app.editor.jobs import Job
 from app.editor.project import Project, Puppet
 from app.editor.session import Session
 from app.storage import (
+    Hold,
+    HoldError,
     OpenedScene,
     Origin,
     Picture,
     decode_pictures,
     find_leftovers,
     is_layered,
+    leftover_origin,
     load_leftover,
     load_project,
     open_layered,
     open_picture,
     open_pictures,
+    project_digest,
     remove_leftover,
     sample_images,
     side_by_side,
@@ -103,6 +108,7 @@ class Opened(NamedTuple):
     puppets: dict[int, Puppet]
     notices: tuple[str, ...]
     is_uncut: bool = False  # an opaque picture, of which no background was removed
+    read_as: str | None = None
 
 
 def ask_open(session: Session) -> None:
@@ -162,20 +168,55 @@ def open_dropped(session: Session, paths: Sequence[Path]) -> None:
 
 
 def show(session: Session, path: Path, opened: Opened) -> None:
-    """Make what was read the project of the window."""
+    """Make what was read the project of the window, unless it is open in another one: ask then."""
     # A sample is the person's to play with, not to save over.
-    is_sample = path.parent == sample_images()
-    is_project = path.suffix.lower() == PROJECT and not is_sample
+    if path.suffix.lower() != PROJECT or path.parent == sample_images():
+        _show(session, path, opened, None)
+        return
+    try:
+        hold = saving.hold_file(session, path)
+    except HoldError as error:
+        session.dialog = Question(
+            title="Open elsewhere",
+            text=f"{path.name} is open already {error}. What is saved here and there takes the "
+            "place of each other.",
+            answers=(
+                ("Open a copy", do(show_copy, path, opened)),
+                ("Open anyway", do(show_anyway, path, opened)),
+            ),
+        )
+        return
+    _show(session, path, opened, path, hold)
+
+
+def show_copy(session: Session, path: Path, opened: Opened) -> None:
+    """Make what was read the project of the window, as a new one that is to be saved elsewhere."""
+    _show(session, path, opened, None)
+
+
+def show_anyway(session: Session, path: Path, opened: Opened) -> None:
+    """Make what was read the project of the window, though another one has it open."""
+    _show(session, path, opened, path)
+
+
+def _show(
+    session: Session, path: Path, opened: Opened, own: Path | None, hold: Hold | None = None
+) -> None:
+    """Make what was read the project of the window; `own` is the file that it is saved in."""
     session.autosave.forget()
-    session.pointer = session.cutting = None
-    session.project = Project(
-        name=path.stem,
-        history=History(opened.document, saved=True),
-        puppets=opened.puppets,
-        active=_foremost(opened.document),
-        path=path if is_project else None,
+    saving.put_project(
+        session,
+        Project(
+            name=path.stem,
+            history=History(opened.document, saved=True),
+            puppets=opened.puppets,
+            active=_foremost(opened.document),
+            path=own,
+            read_as=opened.read_as,
+            hold=hold,
+        ),
     )
-    if not is_sample:
+    if path.parent != sample_images():
         session.preferences = session.preferences.with_recent(path)
     elif any(len(figure.keys) > 1 for figure in opened.document.figures):
         playback.toggle_play(session)
@@ -218,7 +259,9 @@ def _read(path: Path, meshing: Meshing) -> Opened:
 
 
 def _read_project(path: Path) -> Opened:
-    return _decoded(load_project(path), path.name)
+    # Before, so that what somebody saves meanwhile is taken for a change, and never for ours.
+    digest = project_digest(path)
+    return _decoded(load_project(path), path.name)._replace(read_as=digest)
 
 
 def _decoded(document: Document, name: str) -> Opened:
@@ -239,17 +282,27 @@ def _read_picture(path: Path, meshing: Meshing) -> Opened:
 
 
 def offer_recovery(session: Session) -> None:
-    """Ask whether to open what was not saved when Lissom ended last."""
-    leftovers = find_leftovers(session.folder)
-    if leftovers:
-        session.dialog = Question(
-            title="Unsaved work",
-            text="Lissom ended unexpectedly last time. Your unsaved work was kept.",
-            answers=(
-                ("Open", do(recover, leftovers[0])),
-                ("Discard", do(throw_away, leftovers[0])),
-            ),
-        )
+    """Ask what to do with what was not saved when Lissom ended before, if there is any."""
+    candidates = leftovers(session)
+    if candidates:
+        session.dialog = Recovery(candidates)
+
+
+def show_recovery(session: Session) -> None:
+    """Show what was not saved when Lissom ended before, or tell that there is nothing."""
+    offer_recovery(session)
+    if not isinstance(session.dialog, Recovery):
+        session.tell("There is no unsaved work of an earlier time.")
+
+
+def leftovers(session: Session) -> tuple[Leftover, ...]:
+    """Return the unsaved work of windows that are gone, the newest first."""
+    found = []
+    for path in find_leftovers(session.folder):
+        with suppress(OSError):  # another window has just taken it
+            status = path.stat()
+            found.append(Leftover(path, leftover_origin(path), status.st_mtime, status.st_size))
+    return tuple(found)
 
 
 def recover(session: Session, path: Path) -> None:
@@ -270,21 +323,24 @@ def _read_leftover(path: Path) -> tuple[Opened, Origin]:
 
 
 def throw_away(session: Session, path: Path) -> None:
-    """Delete unsaved work."""
+    """Delete unsaved work, and go on with what else there is."""
     remove_leftover(path)
     session.tell("The unsaved work was discarded.")
+    offer_recovery(session)
 
 
 def show_recovered(session: Session, path: Path, opened: Opened, origin: Origin) -> None:
     """Make unsaved work the project of the window, under its own name and unsaved."""
-    session.pointer = session.cutting = None
-    session.project = Project(
-        name=origin.name,
-        history=History(opened.document, saved=False),
-        puppets=opened.puppets,
-        active=_foremost(opened.document),
-        path=origin.path,
-        is_recovered=True,
+    saving.put_project(
+        session,
+        Project(
+            name=origin.name,
+            history=History(opened.document, saved=False),
+            puppets=opened.puppets,
+            active=_foremost(opened.document),
+            path=origin.path,
+            is_recovered=True,
+        ),
     )
     session.autosave.write(opened.document, origin)
     remove_leftover(path)

@@ -12,15 +12,21 @@ from app.editor.session import Session
 from app.reports import draw_curves, write_curves
 from app.storage import (
     SECONDS,
+    Hold,
+    HoldError,
+    clear_abandoned,
     draw_thumbnail,
     flattened,
+    project_digest,
     save_preferences,
     save_project,
     write_atomically,
 )
 
 PROJECT = ".lissom"
+SETTLING = 5.0  # seconds that a project waits for its pose before it is saved as it is
 SAVING, AUTOSAVING, WRITING = "Saving", "Autosaving", "Saving preferences"
+CLEARING = "Clearing up"
 
 
 def save(session: Session) -> None:
@@ -45,39 +51,109 @@ def save_then(session: Session, then: Action | None) -> None:
 
 
 def write(session: Session, path: Path, then: Action | None) -> None:
-    """Save the project in a file."""
+    """Save the project in a file, as soon as its pose has settled."""
     project = session.project
     if project is None:
         return
     if project.is_posing and not (project.posing is not None and project.posing.is_held):
         # To settle afterwards would be a change again, which nobody made.
-        project.to_save = (path, then)
+        project.to_save = (path, then, session.clock())
         return
-    document = project.document
+    _write_now(session, project, path, then)
+
+
+def replace_changed(session: Session, path: Path, then: Action | None) -> None:
+    """Save the project in a file, whatever somebody else has saved there since."""
+    if session.project is not None:
+        session.project.read_as = None
+        write(session, path, then)
+
+
+def _write_now(session: Session, project: Project, path: Path, then: Action | None) -> None:
+    document, known = project.document, project.read_as if path == project.path else None
     textures = {figure: puppet.cut.value.texture for figure, puppet in project.puppets.items()}
 
-    def work() -> None:
+    def work() -> str:
+        if known is not None and project_digest(path) not in (None, known):
+            raise _ChangedError
         picture = flattened(document, textures)
-        save_project(path, document, thumbnail=draw_thumbnail(picture))
+        return save_project(path, document, thumbnail=draw_thumbnail(picture))
 
-    def done(_: None) -> None:
+    def done(digest: str) -> None:
         project.history.mark_saved(document)
         project.name, project.path, project.is_recovered = path.stem, path, False
+        project.read_as = digest
+        _hold_saved(session, project, path)
         session.preferences = session.preferences.with_recent(path)
         session.tell(f"Saved {path.name}.", tone="good")
         if then is not None:
             # There may be changes again.
             unless_unsaved(session, then)
 
-    session.jobs.put(
-        Job(
-            kind=SAVING,
-            work=work,
-            done=done,
-            failed=lambda error: report(session, "The project was not saved", error),
-            lane="hand",
+    def failed(error: Exception) -> None:
+        if not isinstance(error, _ChangedError):
+            report(session, "The project was not saved", error)
+        elif session.project is project:
+            session.dialog = Question(
+                title="Changed by somebody else",
+                text=f"{path.name} is not as it was when you opened or saved it: another window or "
+                "program has changed it since.",
+                answers=(
+                    ("Save under another name", do(_ask_where, then)),
+                    ("Replace it", do(replace_changed, path, then)),
+                ),
+            )
+
+    session.jobs.put(Job(kind=SAVING, work=work, done=done, failed=failed, lane="keep"))
+
+
+class _ChangedError(Exception):
+    """The file is not as it was when it was opened or saved here last."""
+
+
+def hold_file(session: Session, path: Path) -> Hold | None:
+    """Let other windows see that a project is open here; tell where that is not possible.
+
+    Raises
+    ------
+    HoldError
+        If it is open in another window.
+    """
+    project = session.project
+    if project is not None and project.hold is not None and project.hold.path == path:
+        return project.hold
+    try:
+        return Hold(path)
+    except OSError as error:
+        reason = error.strerror or str(error)
+        session.tell(
+            f"Whether {path.name} is open in another window cannot be seen in {path.parent} "
+            f"({reason}). You are asked before it replaces what somebody else has saved."
         )
-    )
+        return None
+
+
+def put_project(session: Session, project: Project | None) -> None:
+    """Make a project that of the window, or none; let others have the file of the one before."""
+    before, session.project = session.project, project
+    session.pointer = session.cutting = None
+    hold = before.hold if before is not None else None
+    if hold is not None and (project is None or project.hold is not hold):
+        hold.release()
+
+
+def _hold_saved(session: Session, project: Project, path: Path) -> None:
+    """Hold the file that a project was saved in, in place of the one before."""
+    if session.project is not project or (project.hold is not None and project.hold.path == path):
+        return
+    before = project.hold
+    try:
+        project.hold = hold_file(session, path)
+    except HoldError as error:
+        project.hold = None
+        session.tell(f"{path.name} is open elsewhere, too: {error}.", tone="error")
+    if before is not None:
+        before.release()
 
 
 def ask_curves_csv(session: Session) -> None:
@@ -138,7 +214,7 @@ def close(session: Session) -> None:
 
 def give_up(session: Session) -> None:
     """Close the project, whatever it holds."""
-    session.project = session.pointer = session.cutting = None
+    put_project(session, None)
     session.autosave.forget()
 
 
@@ -150,18 +226,42 @@ def quit_lissom(session: Session) -> None:
 def leave(session: Session) -> None:
     """Close the window."""
     session.autosave.forget()
+    if session.project is not None and session.project.hold is not None:
+        session.project.hold.release()
+        session.project.hold = None
     session.quitting = True
 
 
 def maintain(session: Session) -> None:
     """Write what is due: a project that has settled, unsaved work, preferences; once a frame."""
     project = session.project
-    if project is not None and not project.is_posing and project.to_save is not None:
-        path, then = project.to_save
-        project.to_save = None
-        write(session, path, then)
+    if project is not None and project.to_save is not None:
+        path, then, since = project.to_save
+        if not project.is_posing or session.clock() - since >= SETTLING:
+            project.to_save = None
+            _write_now(session, project, path, then)
     autosave(session)
     write_preferences(session)
+
+
+def clear_up(session: Session) -> None:
+    """Remove what was left half written where this person works; at the start."""
+    folders = {session.folder, *session.preferences.written}
+
+    def work() -> None:
+        for folder in folders:
+            clear_abandoned(folder)
+
+    session.jobs.put(
+        Job(
+            kind=CLEARING,
+            # They may lie on a slow disk.
+            work=work,
+            done=lambda _: None,
+            failed=lambda error: report(session, "What was left half written stays", error),
+            lane="keep",
+        )
+    )
 
 
 def write_preferences(session: Session) -> None:
@@ -176,7 +276,7 @@ def write_preferences(session: Session) -> None:
             work=lambda: save_preferences(folder, preferences),
             done=lambda _: None,
             failed=lambda error: report(session, "The preferences cannot be kept", error),
-            lane="hand",
+            lane="keep",
         )
     )
 
@@ -184,21 +284,45 @@ def write_preferences(session: Session) -> None:
 def autosave(session: Session) -> None:
     """Keep changes that are not saved, every now and then."""
     project = session.project
-    now = session.clock()
-    if project is None or project.is_posing:
+    if project is None:
         return
     if project.history.is_saved:
         if project.autosaved is not None:
             project.autosaved = None
             session.autosave.forget()
+        project.changed_at = None
         return
-    is_due = now - project.autosaved_at >= SECONDS and project.autosaved is not project.document
-    if is_due and AUTOSAVING not in session.jobs.kinds:
+    if project.autosaved is project.document:
+        project.changed_at = None
+        return
+    now = session.clock()
+    if project.changed_at is None:
+        project.changed_at = now
+    # Not while the hand moves, which it would disturb; but a hand that moves on and on is no
+    # reason to lose what was done before.
+    may_write = not project.is_posing or now - project.changed_at >= SECONDS
+    is_due = now - project.autosaved_at >= SECONDS
+    if is_due and may_write and AUTOSAVING not in session.jobs.kinds:
         _autosave_now(session, project, now)
 
 
+def keep_now(session: Session) -> None:
+    """Keep changes that are not saved at once, on this thread: it may be the last thing done.
+
+    Raises
+    ------
+    LissomError
+        If they cannot be kept.
+    """
+    project = session.project
+    if project is None or project.history.is_saved:
+        return
+    session.autosave.write(project.document, project.origin)
+    project.autosaved, project.autosaved_at = project.document, session.clock()
+
+
 def _autosave_now(session: Session, project: Project, now: float) -> None:
-    document, origin = project.document, project.origin
+    document, origin, earlier = project.document, project.origin, project.autosaved
     project.autosaved, project.autosaved_at = document, now
 
     def done(_: None) -> None:
@@ -206,12 +330,19 @@ def _autosave_now(session: Session, project: Project, now: float) -> None:
         if session.project is not project or project.autosaved is not document:
             session.autosave.forget()
 
+    def failed(error: Exception) -> None:
+        # There may be room again next time.
+        if project.autosaved is document:
+            project.autosaved = earlier
+        report(session, "Unsaved work cannot be kept", error)
+
     session.jobs.put(
         Job(
             kind=AUTOSAVING,
             work=lambda: session.autosave.write(document, origin),
             done=done,
-            failed=lambda error: report(session, "Unsaved work cannot be kept", error),
+            failed=failed,
+            lane="keep",
         )
     )
 

@@ -64,6 +64,11 @@ def maintain(session: Session) -> None:
         _fit_motion(session, project)
 
 
+def give_up(session: Session, kind: str) -> None:
+    """End a job that takes too long, or never ends; what it was for is told to have failed."""
+    session.jobs.leave(kind)
+
+
 def derive(session: Session, derivation: Derivation[Any, Any]) -> None:
     """Let the worker derive a value, unless it is at it."""
     if derivation.kind in session.jobs.kinds:

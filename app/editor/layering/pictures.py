@@ -23,8 +23,8 @@ from app.storage import (
     decode_picture,
     is_layered,
     layer_figure,
+    read_file,
     read_layered,
-    read_picture_file,
     still_figure,
     still_picture,
 )
@@ -99,7 +99,7 @@ def replace_picture(session: Session, identity: int, path: Path) -> None:
     before, canvas = project.document.figure(identity), project.document.canvas
 
     def work() -> tuple[Renewal, _Made]:
-        data = read_picture_file(path)
+        data = read_file(path)
         picture = decode_picture(data, path.name)
         if before.still:
             made = _Made(still_picture(data, picture), picture, picture.notices)
@@ -175,7 +175,7 @@ def _drawing(path: Path) -> LayeredPicture:
     """Read a drawing on layers, or a picture as one of a single layer."""
     if is_layered(path):
         return read_layered(path)
-    data = read_picture_file(path)
+    data = read_file(path)
     picture = decode_picture(data, path.name)
     layer = Layer(name=path.stem.strip() or "layer", data=data, picture=picture)
     return LayeredPicture(size=picture.size, layers=(layer,), notices=())

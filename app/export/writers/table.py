@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import closing, contextmanager
+from pathlib import Path
 from types import MappingProxyType
 from typing import IO, Final
 
@@ -75,6 +76,7 @@ def open_writer(plan: ExportPlan) -> Iterator[FrameWriter]:
         with (
             atomic_file(data_file(plan.out)) as data,
             atomic_file(plan.out) as file,
+            _removed_at_end(data_file(plan.out)),
             closing(DATA_WRITERS[plan.format](file, data, plan)) as writer,
         ):
             yield writer
@@ -84,3 +86,13 @@ def open_writer(plan: ExportPlan) -> Iterator[FrameWriter]:
             closing(FILE_WRITERS[plan.format](file, plan)) as writer,
         ):
             yield writer
+
+
+@contextmanager
+def _removed_at_end(data: Path) -> Iterator[None]:
+    """Remove earlier data before their picture is replaced: they are there only with their own."""
+    yield
+    try:
+        data.unlink(missing_ok=True)
+    except OSError as error:
+        raise LissomError(f"cannot replace {data}: {error.strerror or error}") from error

@@ -79,8 +79,20 @@ def create_context(backend: Backend | None = None) -> moderngl.Context:
 
 
 def window_context() -> moderngl.Context:
-    """Return the OpenGL context of the window that is current."""
-    return moderngl.create_context(require=OPENGL)
+    """Return the OpenGL context of the window that is current.
+
+    Raises
+    ------
+    LissomError
+        If it cannot draw what Lissom draws; the message says what to install.
+    """
+    try:
+        return moderngl.create_context(require=OPENGL)
+    except Exception as error:  # moderngl's loaders raise nothing more specific
+        raise LissomError(
+            f"the window has no OpenGL to draw with: {error} ({REMEDIES['native']}); the command "
+            "line works without a window"
+        ) from error
 
 
 def is_software(context: moderngl.Context) -> bool:

@@ -17,7 +17,6 @@ from app.storage.pictures.picture import (
     decode_picture,
     decode_pictures,
     encode_mask,
-    read_picture_file,
     stored_size,
 )
 
@@ -33,7 +32,6 @@ __all__ = [
     "encode_mask",
     "read_openraster",
     "read_photoshop",
-    "read_picture_file",
     "side_by_side",
     "stored_size",
 ]

@@ -100,12 +100,17 @@ def layered_picture(
     return LayeredPicture(size=size, layers=tuple(layers), notices=tuple(notices))
 
 
+def require_few(count: int) -> None:
+    """Refuse more layers than there is room for, before anything of them is read."""
+    if count > MOST_LAYERS:
+        raise LissomError(
+            f"it has {count:,} layers; Lissom takes up to {MOST_LAYERS}: merge some of them"
+        )
+
+
 def require_room(sizes: Sequence[tuple[int, int]]) -> None:
     """Refuse more layers, or larger ones, than there is room for, before they are decoded."""
-    if len(sizes) > MOST_LAYERS:
-        raise LissomError(
-            f"it has {len(sizes)} layers; Lissom takes up to {MOST_LAYERS}: merge some of them"
-        )
+    require_few(len(sizes))
     if sum(width * height for width, height in sizes) > MOST_PIXELS:
         raise LissomError(
             f"its layers have more than {MOST_PIXELS:,} pixels together; crop or scale it first"

@@ -19,12 +19,15 @@ from app.storage.pictures.layered import (
     LayeredPicture,
     corner_from_top,
     layered_picture,
+    require_few,
     require_room,
 )
 from app.storage.pictures.picture import decode_pictures, stored_size
 
 MIMETYPE = b"image/openraster"
 LARGEST_XML = 4 * 1024 * 1024
+# By which all pictures together may outgrow twice the file; they are packed already.
+MOST_UNPACKED = 16 * 1024 * 1024
 LARGEST_SIDE = 65_535
 NORMAL = {"", "svg:src-over"}
 DAMAGE = (RuntimeError, NotImplementedError, zipfile.BadZipFile, zlib.error, EOFError, KeyError)
@@ -67,19 +70,24 @@ def _read(archive: zipfile.ZipFile) -> LayeredPicture:
     notices: list[str] = []
     # The stack counts from the front.
     elements = list(_layers(stack, _Place(), notices, 0))[::-1]
+    require_few(len(elements))
     sources = []
     for element, _ in elements:
         source = element.get("src", "")
         if source not in archive.NameToInfo:
             raise LissomError(f"it lacks {source or 'the picture of a layer'}")
         sources.append(source)
-    largest = max(1 << 20, sum(member.compress_size for member in archive.infolist()))
-    members = [_member(archive, source, largest) for source in sources]
-    sizes = [stored_size(member, name) for member, name in zip(members, sources, strict=True)]
-    require_room(sizes)
-    pictures = decode_pictures(list(zip(members, sources, strict=True)))
+    distinct = list(dict.fromkeys(sources))
+    packed = sum(member.compress_size for member in archive.infolist())
+    if sum(archive.getinfo(source).file_size for source in distinct) > 2 * packed + MOST_UNPACKED:
+        raise LissomError("its pictures would unpack to more than any drawing")
+    members = {source: _member(archive, source, max(1 << 20, packed)) for source in distinct}
+    require_room([stored_size(members[source], source) for source in sources])
+    decoded = decode_pictures([(members[source], source) for source in distinct])
+    pictures = dict(zip(distinct, decoded, strict=True))
     found = []
-    for (element, place), member, picture in zip(elements, members, pictures, strict=True):
+    for (element, place), source in zip(elements, sources, strict=True):
+        member, picture = members[source], pictures[source]
         name = element.get("name", "").strip() or "layer"
         layer = Layer(
             name=name,

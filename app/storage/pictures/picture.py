@@ -7,7 +7,6 @@ import zlib
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 from PIL import Image, ImageFile, ImageOps, UnidentifiedImageError
@@ -80,20 +79,6 @@ class Picture:
         """Whether nothing of it is transparent."""
         # Row by row: the first one of most drawings tells.
         return all(bool((row[:, 3] == OPAQUE).all()) for row in self.rgba)
-
-
-def read_picture_file(path: Path) -> bytes:
-    """Return the bytes of a picture file.
-
-    Raises
-    ------
-    LissomError
-        If the file is missing or unreadable.
-    """
-    try:
-        return path.read_bytes()
-    except OSError as error:
-        raise LissomError(f"cannot read {path}: {error.strerror or error}") from error
 
 
 def decode_picture(data: bytes, name: str) -> Picture:

@@ -7,14 +7,13 @@ from imgui_bundle import ImColor, imgui, imspinner
 
 from app.document import Extremes, find_shortfall, loosened
 from app.editor import Action, Project, Session, do
-from app.editor.actions import rebuilding
+from app.editor.actions import rebuilding, upkeep
 from app.ui.style import Look, shortened, tip
 
 WORDS = {"k": "Shear", "σa": "Stretch", "σb": "Squeeze"}
 LEAST_ROOM = 6.0  # em: narrower, a hint is left out
 SLOW = 0.3  # seconds after which a job is told of; shorter ones would only flicker
-
-
+ENDLESS = 5.0  # seconds after which a job can be given up
 SLOWED, STOPPED = 0.5, 0.05  # of the velocity at a key, below which that is told
 MOST_TOLD = 3  # keys
 
@@ -63,6 +62,7 @@ def draw_status(session: Session, look: Look) -> list[Action]:
     if slow:
         _spinner(look)
         imgui.text_unformatted(f"{slow[0]}…")
+        actions += _cancel(session, look)
     elif room > LEAST_ROOM * look.em:
         imgui.text_disabled(shortened(hint, room))
     imgui.same_line(end)
@@ -107,6 +107,17 @@ def slow_down(session: Session) -> str:
     where = f"{', '.join(told[:-1])} and {told[-1]}" if len(told) > 1 else told[0]
     noun = "frame" if len(frames) == 1 else "frames"
     return f"The motion {verb} at {noun} {where} to keep within the stretch limit"
+
+
+def _cancel(session: Session, look: Look) -> list[Action]:
+    """Offer to end what runs for so long that it may never end."""
+    endless = session.jobs.running_for(ENDLESS)
+    if not endless:
+        return []
+    imgui.same_line(0, 0.8 * look.em)
+    is_pressed = imgui.small_button("Cancel")
+    tip(f"Give this up: {endless[0]}")
+    return [do(upkeep.give_up, endless[0])] if is_pressed else []
 
 
 def _warn(session: Session, look: Look, text: str, remedy: Remedy) -> list[Action]:

@@ -5,10 +5,20 @@ from itertools import combinations_with_replacement
 
 from imgui_bundle import ImVec2, imgui
 
-from app.editor import Action, Dialog, FileDialog, Question, Session, ShortcutSheet, do
+from app.editor import (
+    Action,
+    Dialog,
+    FileDialog,
+    Question,
+    Recovery,
+    Session,
+    ShortcutSheet,
+    do,
+)
 from app.editor.actions import answer, browse, close_dialog, use_own_dialogs
 from app.ui.dialogs.file_browser import FileBrowser, LookUp
 from app.ui.dialogs.native_dialog import NativeDialog
+from app.ui.dialogs.recovery import draw_recovery
 from app.ui.shortcuts import BINDINGS, GESTURES
 from app.ui.style import Look, heading, main_button
 
@@ -27,10 +37,10 @@ class Dialogs:
         """Draw the open dialog, if there is one."""
         self._follow_session(session)
         dialog = session.dialog
-        _use_keyboard(is_used=isinstance(dialog, Question))
+        _use_keyboard(is_used=isinstance(dialog, (Question, Recovery)))
         if dialog is None:
             return []
-        title = "Keys and mouse" if isinstance(dialog, ShortcutSheet) else dialog.title
+        title = _title(dialog)
         imgui.open_popup(f"{title}###dialog")
         viewport = imgui.get_main_viewport()
         middle = viewport.get_center()
@@ -76,9 +86,20 @@ class Dialogs:
                 return [*_waiting(look), *self._native.poll(session.clock())]
             case FileDialog():
                 return self._browser.draw(dialog, session, look, thumbnail)
+            case Recovery():
+                return draw_recovery(dialog, look)
             case ShortcutSheet():
                 _shortcuts(look)
                 return []
+
+
+def _title(dialog: Dialog) -> str:
+    match dialog:
+        case Recovery():
+            return "Unsaved work"
+        case ShortcutSheet():
+            return "Keys and mouse"
+    return dialog.title
 
 
 def _use_keyboard(*, is_used: bool) -> None:

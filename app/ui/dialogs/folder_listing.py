@@ -30,8 +30,11 @@ class Entry:
 
     @property
     def changed_in_words(self) -> str:
-        """Day and minute of the last change, in the local time."""
-        return time.strftime("%Y-%m-%d  %H:%M", time.localtime(self.changed))
+        """Day and minute of the last change, in the local time; nothing if no calendar has them."""
+        try:
+            return time.strftime("%Y-%m-%d  %H:%M", time.localtime(self.changed))
+        except (OverflowError, ValueError, OSError):
+            return ""  # of clocks that went wild
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

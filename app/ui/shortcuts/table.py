@@ -139,6 +139,9 @@ BINDINGS: dict[str, Binding] = {
         keys=(CTRL | SHIFT | int(Key.c),),
         hint="Put the picture of the pose on the clipboard",
     ),
+    "unsaved work": Binding(
+        label="Unsaved work…", action=do(files.show_recovery), menu="File", parted=True
+    ),
     "close": Binding(
         label="Close",
         action=do(saving.close),

@@ -3,7 +3,9 @@
 import io
 import os
 import sys
+import traceback
 from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
 
 import numpy as np
@@ -15,7 +17,8 @@ import glfw  # isort: skip
 
 from app.document import Pose
 from app.editor import Action, FileDialog, Session, do, layering
-from app.errors import LissomError
+from app.editor.actions import saving
+from app.errors import EXPECTED_ERRORS, LissomError
 from app.render import LayerPictures, Renderer, Textures, Thumbnail, Thumbnails
 from app.render.gpu import is_software
 from app.storage import app_icon
@@ -147,13 +150,31 @@ class Window:
         """Draw the viewport's picture, and go on with an export; once a frame."""
         if self._canvas is None or self._renderer is None:
             return
-        self._canvas.draw(self.session)
+        try:
+            self._canvas.draw(self.session)
+        except Exception as error:  # noqa: BLE001 - part of the frame guard
+            self._tell_of_drawing(error)
         if self._exporter is not None:
             self._exporter.go_on(self.session)
         # ImGui draws to whatever is bound, and that is to be the screen.
         screen = self._renderer.programs.context.screen
         if screen is not None:
             screen.use()
+
+    def _tell_of_drawing(self, error: Exception) -> None:
+        """Tell that OpenGL fails, as when its driver was reset, and keep the work at once."""
+        session = self.session
+        project = session.project
+        if project is not None and project.autosaved is not project.document:
+            with suppress(*EXPECTED_ERRORS):
+                saving.keep_now(session)
+        session.tell(
+            f"The picture cannot be drawn: {error}. Unsaved work was kept. If the picture does not "
+            "come back, save and start Lissom again.",
+            tone="error",
+            topic="drawing",
+            details="".join(traceback.format_exception(error)),
+        )
 
     def _panels(self) -> list[Panel]:
         return [

@@ -133,6 +133,6 @@ def test_where_the_system_knows_no_locks_work_is_offered_rather_than_hidden(
     def no_locks(_):
         raise OSError(38, "Function not implemented")
 
-    monkeypatch.setattr("app.storage.autosave._hold", no_locks)
+    monkeypatch.setattr("app.storage.autosave.lock", no_locks)
     autosave.write(disc_document(), UNKNOWN)
     assert len(find_leftovers(tmp_path)) == 1

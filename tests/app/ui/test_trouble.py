@@ -51,7 +51,7 @@ def test_a_full_disk_loses_nothing(window, project, tmp_path, monkeypatch):
     def full(*_):
         raise OSError(errno.ENOSPC, "No space left on device")
 
-    monkeypatch.setattr("app.storage.files.os.fsync", full)
+    monkeypatch.setattr("app.storage.files.atomic.os.fsync", full)
     saving.write(window.session, path, None)
     window.settle()
     assert any("No space left" in text for text in texts(window))

@@ -239,7 +239,7 @@ def test_disk_that_gets_full_midway_ends_the_export(window, project, tmp_path, m
         sync(file)
 
     with monkeypatch.context() as patch:
-        patch.setattr("app.storage.files.os.fsync", full_after_three)
+        patch.setattr("app.storage.files.atomic.os.fsync", full_after_three)
         begin(window, out, count=1)
         finish(window)
     (text,) = (text for text in texts(window) if "export" in text)

@@ -19,7 +19,8 @@ from profiles import (
 )
 
 from app.errors import LissomError
-from app.storage.pictures import decode_picture, decode_pictures, read_picture_file
+from app.storage.files import read_file
+from app.storage.pictures import decode_picture, decode_pictures
 
 GREY = np.arange(12, dtype=np.uint8).reshape(3, 4) * 20
 RGB = np.stack([GREY, GREY[::-1], 255 - GREY], axis=-1)
@@ -269,9 +270,9 @@ def test_a_decompression_bomb_is_refused_before_it_is_decoded(monkeypatch):
 
 def test_missing_files_and_folders(tmp_path):
     with pytest.raises(LissomError, match=r"cannot read .*No such file"):
-        read_picture_file(tmp_path / "nothing.png")
-    with pytest.raises(LissomError, match=r"cannot read .*directory"):
-        read_picture_file(tmp_path)
+        read_file(tmp_path / "nothing.png")
+    with pytest.raises(LissomError, match=r"cannot read .*it is a folder"):
+        read_file(tmp_path)
 
 
 def test_several_pictures_are_decoded_side_by_side(monkeypatch):

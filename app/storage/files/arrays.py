@@ -1,0 +1,89 @@
+"""Named arrays as NPZ files."""
+
+import math
+import zipfile
+import zlib
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from app.errors import LissomError
+from app.storage.files.atomic import write_atomically
+from app.storage.files.reading import MEBIBYTE, require_file
+
+# By which the arrays that are read may outgrow the file.
+MOST_UNPACKED = 1024 * MEBIBYTE
+HEADERS = {(1, 0): np.lib.format.read_array_header_1_0, (2, 0): np.lib.format.read_array_header_2_0}
+NUMERIC = "biufc"
+# What zipfile and NumPy raise on damaged files.
+DAMAGE = (
+    ValueError,
+    EOFError,
+    KeyError,
+    RuntimeError,
+    SyntaxError,
+    TypeError,
+    OverflowError,
+    NotImplementedError,
+    zipfile.BadZipFile,
+    zlib.error,
+)
+
+
+def write_arrays(path: Path, arrays: Mapping[str, npt.ArrayLike]) -> None:
+    """Write named arrays as an NPZ file, atomically and under exactly this name."""
+    contents: dict[str, Any] = {name: np.asarray(values) for name, values in arrays.items()}
+    write_atomically(path, lambda file: np.savez(file, **contents))
+
+
+def read_arrays(
+    path: Path, *, required: tuple[str, ...], optional: tuple[str, ...] = ()
+) -> dict[str, npt.NDArray[Any]]:
+    """Read named arrays from an NPZ file.
+
+    Returns
+    -------
+    dict
+        The required arrays and those of the optional ones that the file holds.
+
+    Raises
+    ------
+    LissomError
+        If the file is missing, is not an NPZ file, is damaged, would unpack to too much, or lacks a
+        required array.
+    """
+    try:
+        size = require_file(path)
+        with zipfile.ZipFile(path) as archive:
+            members = {
+                member.filename.removesuffix(".npy"): member for member in archive.infolist()
+            }
+            missing = [name for name in required if name not in members]
+            if missing:
+                raise LissomError(
+                    f"{path} lacks the array {missing[0]!r}; it holds {sorted(members)[:50]}"
+                )
+            wanted = [name for name in (*required, *optional) if name in members]
+            unpacked = sum(members[name].file_size for name in wanted)
+            if unpacked > size + MOST_UNPACKED:
+                raise LissomError(f"{path} would unpack to {unpacked:,} bytes, more than any case")
+            return {name: _read_array(archive, members[name]) for name in wanted}
+    except OSError as error:
+        raise LissomError(f"cannot read {path}: {error.strerror or error}") from error
+    except DAMAGE as error:
+        raise LissomError(f"{path} is not an NPZ file of numeric arrays, or is damaged") from error
+
+
+def _read_array(archive: zipfile.ZipFile, member: zipfile.ZipInfo) -> npt.NDArray[Any]:
+    # By hand: NumPy's reader would believe any shape and allocate it.
+    with archive.open(member) as stream:
+        shape, is_fortran, dtype = HEADERS[np.lib.format.read_magic(stream)](stream)
+        if dtype.kind not in NUMERIC or any(side < 0 for side in shape):
+            raise ValueError(f"{member.filename} is no numeric array")
+        if math.prod(shape) * dtype.itemsize != member.file_size - stream.tell():
+            raise ValueError(f"{member.filename} is cut short")
+        content = bytearray(stream.read(member.file_size))
+    return np.frombuffer(content, dtype).reshape(shape, order="F" if is_fortran else "C")

@@ -1,0 +1,159 @@
+"""Writing files so that the person's work is never half there.
+
+What is written is in a hidden file beside its place first, and locked as long as it is written: one
+that nobody holds was left by a process that was killed, and is removed by the next that comes.
+"""
+
+import os
+import re
+import secrets
+import stat
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
+from functools import cache
+from pathlib import Path
+from typing import IO, TypeVar
+
+from app.errors import LissomError
+from app.storage.files.locks import lock, open_to_lock
+
+T = TypeVar("T")
+NEW_FILE = os.O_RDWR | os.O_CREAT | os.O_EXCL | getattr(os, "O_BINARY", 0)
+PART = re.compile(r"\.lissom-[0-9a-f]{16}\.part")
+
+
+def write_atomically(path: Path, write: Callable[[IO[bytes]], T]) -> T:
+    """Write a file so that at any moment the old or the new one is whole.
+
+    Parameters
+    ----------
+    path : Path
+        Used exactly as given; an existing file is replaced. Of a link, that is what it points to.
+    write : callable
+        Writes the contents to the open binary file that it is handed, which can be read as well.
+
+    Returns
+    -------
+    object
+        What `write` returns.
+
+    Raises
+    ------
+    LissomError
+        As `check_writable`, or if the disk refuses.
+    """
+    with atomic_file(path) as file:
+        return write(file)
+
+
+@contextmanager
+def atomic_file(path: Path) -> Iterator[IO[bytes]]:
+    """Open a file that takes the place of `path` when the `with` block ends without an error.
+
+    Raises
+    ------
+    LissomError
+        As `write_atomically`; an `OSError` of the block counts as the disk's refusal.
+    """
+    check_writable(path)
+    target = Path(os.path.realpath(path))
+    _clear_once(target.parent)
+    temporary = None
+    try:
+        # The file that is replaced hands on its permissions. Those of a new one are the system's
+        # affair: to ask for the umask would change it for all threads.
+        mode = stat.S_IMODE(target.stat().st_mode) if target.exists() else None
+        temporary, descriptor = _new_part(target.parent, 0o666 if mode is None else 0o600)
+        with os.fdopen(descriptor, "w+b") as file:
+            yield file
+            file.flush()
+            os.fsync(file.fileno())
+            if mode is not None:
+                temporary.chmod(mode)
+            if sys.platform != "win32":
+                # As long as it is locked: else another process may take it for abandoned.
+                temporary.replace(target)
+        if sys.platform == "win32":
+            # What is open cannot be moved there.
+            temporary.replace(target)
+    except OSError as error:
+        raise LissomError(f"cannot write {path}: {error.strerror or error}") from error
+    finally:
+        if temporary is not None:
+            temporary.unlink(missing_ok=True)
+
+
+def clear_abandoned(folder: Path) -> None:
+    """Remove what processes left half written in a folder that were killed.
+
+    What another process still writes stays, and so does all where the disk knows no locks.
+    """
+    try:
+        with os.scandir(folder) as found:
+            parts = [Path(entry.path) for entry in found if PART.fullmatch(entry.name)]
+    except OSError:
+        return
+    for part in parts:
+        with suppress(OSError):
+            _remove_abandoned(part)
+
+
+def sync_folder(folder: Path) -> None:
+    """Let the disk note what a folder holds now, so that a new file is there if power fails."""
+    with suppress(OSError):  # not every system can
+        descriptor = os.open(folder, os.O_RDONLY)
+        try:
+            os.fsync(descriptor)
+        finally:
+            os.close(descriptor)
+
+
+@cache
+def _clear_once(folder: Path) -> None:
+    """Clear a folder when this process writes there first: an export has thousands of files."""
+    clear_abandoned(folder)
+
+
+def _remove_abandoned(part: Path) -> None:
+    if sys.platform == "win32":
+        # What another process has open cannot be removed there.
+        part.unlink()
+        return
+    descriptor = open_to_lock(part)
+    try:
+        if lock(descriptor):
+            part.unlink()
+    finally:
+        os.close(descriptor)
+
+
+def _new_part(folder: Path, mode: int) -> tuple[Path, int]:
+    """Return a new hidden file, open for writing and locked."""
+    while True:
+        part = folder / f".lissom-{secrets.token_hex(8)}.part"
+        descriptor = os.open(part, NEW_FILE, mode)
+        with suppress(OSError):  # without locks nobody removes it
+            if not lock(descriptor) or not os.fstat(descriptor).st_nlink:
+                # Another process came between, and took it for abandoned.
+                os.close(descriptor)
+                continue
+        return part, descriptor
+
+
+def check_writable(path: Path) -> None:
+    """Refuse an output path that cannot work, before any long computation.
+
+    Raises
+    ------
+    LissomError
+        If it is a folder, or a link that leads in a circle, or its folder is missing.
+    """
+    if path.is_dir():
+        raise LissomError(f"cannot write {path}: it is a folder; name a file")
+    target = Path(os.path.realpath(path))
+    if target.is_symlink():
+        raise LissomError(f"cannot write {path}: it is a link that leads in a circle")
+    if not target.parent.is_dir():
+        folder = target.parent if path.is_symlink() else path.parent
+        raise LissomError(f"cannot write {path}: the folder {folder} does not exist")

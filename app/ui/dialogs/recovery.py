@@ -1,0 +1,57 @@
+"""The choice among unsaved work of earlier times."""
+
+from imgui_bundle import ImVec2, imgui
+
+from app.editor import Action, Leftover, Recovery, do
+from app.editor.actions import answer, close_dialog, files
+from app.ui.dialogs.folder_listing import Entry
+from app.ui.style import Look, main_button, shortened, tip
+
+WIDEST = 18.0  # em, of a name
+TALLEST = 20.0  # em, of all rows; the others are scrolled to
+
+
+def draw_recovery(recovery: Recovery, look: Look) -> list[Action]:
+    """Draw what there is, each with what can be done with it."""
+    actions: list[Action] = []
+    imgui.push_text_wrap_pos(30 * look.em)
+    imgui.text_unformatted(
+        "Lissom ended unexpectedly. Your unsaved work was kept; what you do not open or discard "
+        "stays here, and is in the menu File under Unsaved work."
+    )
+    imgui.pop_text_wrap_pos()
+    imgui.dummy(ImVec2(0, 0.4 * look.em))
+    flags = imgui.TableFlags_.sizing_fixed_fit | imgui.TableFlags_.scroll_y
+    row = imgui.get_frame_height_with_spacing()
+    height = min(len(recovery.candidates) * row + 0.5 * look.em, TALLEST * look.em)
+    if imgui.begin_table("unsaved work", 3, flags, ImVec2(36 * look.em, height)):
+        for index, leftover in enumerate(recovery.candidates):
+            imgui.push_id(index)
+            actions += _row(leftover, look, is_main=index == 0)
+            imgui.pop_id()
+        imgui.end_table()
+    imgui.dummy(ImVec2(0, 0.4 * look.em))
+    if imgui.button("Later"):
+        actions.append(do(close_dialog))
+    return actions
+
+
+def _row(leftover: Leftover, look: Look, *, is_main: bool) -> list[Action]:
+    actions: list[Action] = []
+    entry = Entry(path=leftover.path, is_folder=False, size=leftover.size, changed=leftover.kept)
+    imgui.table_next_column()
+    imgui.align_text_to_frame_padding()
+    origin = leftover.origin
+    imgui.text_unformatted(shortened(origin.name, WIDEST * look.em))
+    tip(str(origin.path) if origin.path else "Never saved")
+    imgui.table_next_column()
+    imgui.text_disabled(f"{entry.changed_in_words}   {entry.size_in_words}   ")
+    imgui.table_next_column()
+    if main_button(look, "Open") if is_main else imgui.button("Open"):
+        actions.append(do(answer, do(files.recover, leftover.path)))
+    if is_main:
+        imgui.set_item_default_focus()
+    imgui.same_line()
+    if imgui.button("Discard"):
+        actions.append(do(answer, do(files.throw_away, leftover.path)))
+    return actions

@@ -1,0 +1,44 @@
+"""Long campaigns against everything that may go wrong; each prints what it tried and measured.
+
+`python -m tests.campaigns --seed 1` runs all of them, `--only kills` one. The tests run short ones.
+"""
+
+import argparse
+import importlib
+import sys
+import time
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "support"))
+
+from app.cli.blas import use_one_thread
+
+# Of each campaign, what its amount counts, and how much of it is asked for.
+CAMPAIGNS = {
+    "kills": ("processes killed", 1200),
+}
+
+
+def run() -> None:
+    """Run the campaigns that are asked for."""
+    use_one_thread()
+    parser = argparse.ArgumentParser(prog="python -m tests.campaigns", description=__doc__)
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--only", choices=list(CAMPAIGNS), help="one campaign")
+    parser.add_argument("--amount", type=int, help="other than usual; see the table in this file")
+    arguments = parser.parse_args()
+    for name, (what, usual) in CAMPAIGNS.items():
+        if arguments.only not in (None, name):
+            continue
+        amount = arguments.amount or usual
+        print(f"{name}: {amount} {what}, seed {arguments.seed}", flush=True)
+        begun = time.perf_counter()
+        module = importlib.import_module(f"tests.campaigns.{name}")
+        for title, figures in module.campaign(arguments.seed, amount):
+            told = ", ".join(f"{label} {value:.4g}" for label, value in figures.items())
+            print(f"  {title}: {told}", flush=True)
+        print(f"  {(time.perf_counter() - begun) / 60:.1f} minutes", flush=True)
+
+
+if __name__ == "__main__":
+    run()
