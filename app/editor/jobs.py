@@ -16,6 +16,7 @@ from typing import Any, Literal, get_args
 from app.errors import LissomError
 
 LaneName = Literal["hand", "export", "display", "keep"]
+CANCELLED = "it was cancelled"
 PATIENCE = 10.0  # seconds that the end of the program waits for what runs
 
 
@@ -97,14 +98,16 @@ class Jobs:
         Its result is thrown away, and it has failed as far as anybody is told.
         """
         with self._condition:
+            for each in [each for each in self._waiting if each.kind == kind]:
+                self._waiting.remove(each)
+                self._finished.append((kind, partial(each.failed, LissomError(CANCELLED))))
             for name, lane in self._lanes.items():
                 job = lane.running
                 if job is not None and job.kind == kind and not lane.is_stale:
                     lane.is_stale = True
                     self._left.append(lane)
                     self._lanes[name] = _Lane()
-                    given_up = LissomError("it was cancelled")
-                    self._finished.append((kind, partial(job.failed, given_up)))
+                    self._finished.append((kind, partial(job.failed, LissomError(CANCELLED))))
                     if any(waiting.lane == name for waiting in self._waiting):
                         self._staff(name)
 

@@ -6,6 +6,8 @@ from pathlib import Path
 import numpy as np
 from PIL import Image, ImageOps
 
+from app.errors import LissomError
+from app.storage.files import require_file
 from app.storage.pictures import DECODER_ERRORS, FORMATS
 from app.storage.project_file import load_thumbnail
 from engine.arrays import Bytes, readonly
@@ -15,6 +17,7 @@ SIDE = 320  # pixels
 # decoded at a fraction of their size.
 MOST_PIXELS = 8_000_000
 PROJECT = ".lissom"
+BOMBS = (Image.DecompressionBombError, Image.DecompressionBombWarning)
 
 
 def draw_thumbnail(rgba: Bytes, side: int = SIDE) -> bytes:
@@ -45,12 +48,13 @@ def read_thumbnail(path: Path) -> Bytes | None:
         return None
     formats = ("PNG",) if is_project else tuple(FORMATS)
     try:
+        require_file(path)
         with Image.open(path if content is None else io.BytesIO(content), formats=formats) as image:
             image.draft("RGB", (SIDE, SIDE))
             if image.width * image.height > MOST_PIXELS:
                 return None
             small = image.convert("RGBA")
-    except (*DECODER_ERRORS, Image.DecompressionBombError, Image.DecompressionBombWarning):
+    except (LissomError, *DECODER_ERRORS, *BOMBS):
         return None
     small.thumbnail((SIDE, SIDE))
     return np.asarray(ImageOps.exif_transpose(small))

@@ -1,6 +1,7 @@
 """Named arrays as NPZ files."""
 
 import math
+import tokenize
 import zipfile
 import zlib
 from collections.abc import Mapping
@@ -27,6 +28,7 @@ DAMAGE = (
     SyntaxError,
     TypeError,
     OverflowError,
+    tokenize.TokenError,
     NotImplementedError,
     zipfile.BadZipFile,
     zlib.error,

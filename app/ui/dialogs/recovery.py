@@ -7,7 +7,8 @@ from app.editor.actions import answer, close_dialog, files
 from app.ui.dialogs.folder_listing import Entry
 from app.ui.style import Look, main_button, shortened, tip
 
-WIDEST = 18.0  # em, of a name
+WIDEST = 14.0  # em, of a name
+WIDTH, TOLD_AT, BUTTONS_AT = 36.0, 14.5, 27.5  # em
 TALLEST = 20.0  # em, of all rows; the others are scrolled to
 
 
@@ -21,15 +22,14 @@ def draw_recovery(recovery: Recovery, look: Look) -> list[Action]:
     )
     imgui.pop_text_wrap_pos()
     imgui.dummy(ImVec2(0, 0.4 * look.em))
-    flags = imgui.TableFlags_.sizing_fixed_fit | imgui.TableFlags_.scroll_y
     row = imgui.get_frame_height_with_spacing()
     height = min(len(recovery.candidates) * row + 0.5 * look.em, TALLEST * look.em)
-    if imgui.begin_table("unsaved work", 3, flags, ImVec2(36 * look.em, height)):
-        for index, leftover in enumerate(recovery.candidates):
-            imgui.push_id(index)
-            actions += _row(leftover, look, is_main=index == 0)
-            imgui.pop_id()
-        imgui.end_table()
+    imgui.begin_child("unsaved work", ImVec2(WIDTH * look.em, height))
+    for index, leftover in enumerate(recovery.candidates):
+        imgui.push_id(index)
+        actions += _row(leftover, look, is_main=index == 0)
+        imgui.pop_id()
+    imgui.end_child()
     imgui.dummy(ImVec2(0, 0.4 * look.em))
     if imgui.button("Later"):
         actions.append(do(close_dialog))
@@ -39,14 +39,13 @@ def draw_recovery(recovery: Recovery, look: Look) -> list[Action]:
 def _row(leftover: Leftover, look: Look, *, is_main: bool) -> list[Action]:
     actions: list[Action] = []
     entry = Entry(path=leftover.path, is_folder=False, size=leftover.size, changed=leftover.kept)
-    imgui.table_next_column()
     imgui.align_text_to_frame_padding()
     origin = leftover.origin
     imgui.text_unformatted(shortened(origin.name, WIDEST * look.em))
     tip(str(origin.path) if origin.path else "Never saved")
-    imgui.table_next_column()
+    imgui.same_line(TOLD_AT * look.em)
     imgui.text_disabled(f"{entry.changed_in_words}   {entry.size_in_words}   ")
-    imgui.table_next_column()
+    imgui.same_line(BUTTONS_AT * look.em)
     if main_button(look, "Open") if is_main else imgui.button("Open"):
         actions.append(do(answer, do(files.recover, leftover.path)))
     if is_main:

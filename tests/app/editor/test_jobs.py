@@ -161,6 +161,70 @@ def test_jobs_tell_how_long_they_run():
     assert jobs.settle()
 
 
+@pytest.fixture
+def stuck():
+    """Work that does not end before the test does, and a wait until it has begun."""
+    begun, end = threading.Event(), threading.Event()
+
+    def work():
+        begun.set()
+        end.wait()
+
+    yield work, begun.wait
+    end.set()
+
+
+def test_a_job_that_never_ends_can_be_left_and_the_others_go_on(stuck):
+    work, has_begun = stuck
+    jobs, results = Jobs(), []
+    failures = []
+    jobs.put(Job(kind="stuck", work=work, done=results.append, failed=failures.append, lane="hand"))
+    has_begun()
+    jobs.put(job("next", lambda: 2, results, lane="hand"))
+    jobs.leave("nothing of that kind")
+    assert results == failures == []
+    jobs.leave("stuck")
+    assert jobs.settle()
+    jobs.deliver()
+    assert results == [("next", 2)]
+    (failure,) = failures
+    assert "cancelled" in str(failure)
+    jobs.put(job("later", lambda: 3, results, lane="hand"))
+    assert jobs.settle()
+    jobs.deliver()
+    assert results == [("next", 2), ("later", 3)]
+
+
+def test_what_was_left_delivers_nothing_when_it_ends_after_all():
+    jobs, results = Jobs(), []
+    begun, end, over = threading.Event(), threading.Event(), threading.Event()
+
+    def work():
+        begun.set()
+        end.wait()
+        over.set()
+
+    jobs.put(Job(kind="slow", work=work, done=results.append, failed=results.append))
+    begun.wait()
+    jobs.leave("slow")
+    jobs.deliver()
+    results.clear()
+    end.set()
+    over.wait()
+    assert jobs.close()
+    jobs.deliver()
+    assert results == []
+
+
+def test_closing_does_not_wait_for_ever(stuck):
+    work, has_begun = stuck
+    jobs = Jobs()
+    jobs.put(job("stuck", work, []))
+    has_begun()
+    jobs.leave("stuck")
+    assert not jobs.close(patience=0.05)
+
+
 def test_closing_waits_for_what_runs_and_drops_what_waits():
     jobs, begun, results = Jobs(), threading.Event(), []
     gate = threading.Event()

@@ -1,6 +1,7 @@
 """Sprite sheets as an engine reads them: by the JSON beside the PNG."""
 
 import json
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -105,3 +106,24 @@ def test_what_does_not_fit_on_a_sheet_is_refused_and_leaves_nothing(tmp_path, mo
 def test_data_lie_beside_their_sheet(tmp_path):
     assert data_file(tmp_path / "a.png") == tmp_path / "a.json"
     assert data_file(tmp_path / "v1.2") == tmp_path / "v1.2.json"
+
+
+@pytest.mark.parametrize("calls", [1, 2])
+def test_a_sheet_that_is_replaced_half_way_never_has_the_data_of_another(
+    tmp_path, monkeypatch, calls
+):
+    exported(tmp_path)
+    before = [path.read_bytes() for path in (tmp_path / "walk.png", tmp_path / "walk.json")]
+    replace, left = Path.replace, [calls]
+
+    def stopped(self, target):
+        left[0] -= 1
+        if not left[0]:
+            raise OSError(5, "Input/output error")
+        return replace(self, target)
+
+    monkeypatch.setattr(Path, "replace", stopped)
+    with pytest.raises(LissomError, match="Input/output"):
+        exported(tmp_path, padding=9)
+    sheet, data = tmp_path / "walk.png", tmp_path / "walk.json"
+    assert not data.exists() or [sheet.read_bytes(), data.read_bytes()] == before

@@ -1,13 +1,32 @@
+import errno
+import io
 import os
 import stat
+import struct
+import zipfile
 from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
 
 import numpy as np
 import pytest
+from documents import disc_document, full_document
 from numpy.testing import assert_array_equal
 
 from app.errors import LissomError
-from app.storage.files import read_arrays, write_arrays, write_atomically
+from app.storage.files import (
+    Hold,
+    HoldError,
+    atomic_file,
+    clear_abandoned,
+    lock,
+    read_arrays,
+    read_file,
+    write_arrays,
+    write_atomically,
+)
+from app.storage.files.reading import LARGEST_FILE
+from app.storage.project_file import load_project, save_project
+from app.storage.thumbnail import read_thumbnail
 
 
 def test_arrays_come_back_under_exactly_the_given_name(tmp_path):
@@ -145,3 +164,183 @@ def test_what_is_no_array_file_is_refused(tmp_path):
     np.savez(path, a=np.array([{"pickled": 1}], dtype=object))
     with pytest.raises(LissomError, match="not an NPZ file of numeric arrays"):
         read_arrays(path, required=("a",))
+
+
+def abandoned(folder):
+    """What a process leaves that is killed while it writes."""
+    path = folder / ".lissom-0123456789abcdef.part"
+    path.write_bytes(b"half")
+    return path
+
+
+def test_what_a_killed_process_left_half_written_is_removed_where_the_next_one_writes(tmp_path):
+    part = abandoned(tmp_path)
+    other = tmp_path / ".lissom-mine.part"
+    other.write_bytes(b"not Lissom's")
+    write_atomically(tmp_path / "a", lambda file: file.write(b"new"))
+    assert not part.exists()
+    assert other.exists()
+
+
+def test_what_another_process_still_writes_is_not_removed(tmp_path):
+    with atomic_file(tmp_path / "a") as file:
+        file.write(b"slow")
+        clear_abandoned(tmp_path)
+    assert (tmp_path / "a").read_bytes() == b"slow"
+
+
+def test_a_part_that_was_taken_for_abandoned_before_it_was_locked_is_made_again(
+    tmp_path, monkeypatch
+):
+    taken = []
+
+    def lock_too_late(descriptor):
+        if not taken:
+            (part,) = tmp_path.iterdir()
+            taken.append(part)
+            part.unlink()
+        return lock(descriptor)
+
+    monkeypatch.setattr("app.storage.files.atomic.lock", lock_too_late)
+    write_atomically(tmp_path / "a", lambda file: file.write(b"new"))
+    assert (tmp_path / "a").read_bytes() == b"new"
+    assert taken
+
+
+def test_where_the_disk_knows_no_locks_files_are_written_and_nothing_is_removed(
+    tmp_path, monkeypatch
+):
+    def no_locks(_):
+        raise OSError(errno.ENOLCK, "No locks available")
+
+    part = abandoned(tmp_path)
+    monkeypatch.setattr("app.storage.files.atomic.lock", no_locks)
+    write_atomically(tmp_path / "a", lambda file: file.write(b"new"))
+    assert (tmp_path / "a").read_bytes() == b"new"
+    assert part.exists()
+
+
+class FullDisk(io.FileIO):
+    """A file on a disk that takes so many more bytes."""
+
+    room = 0
+
+    def write(self, data):
+        FullDisk.room -= len(bytes(data))
+        if FullDisk.room < 0:
+            raise OSError(errno.ENOSPC, "No space left on device")
+        return super().write(data)
+
+
+def test_a_disk_that_gets_full_at_any_byte_leaves_the_old_file_whole(tmp_path, monkeypatch):
+    path = tmp_path / "a.lissom"
+    save_project(path, full_document())
+    size = path.stat().st_size
+    save_project(path, disc_document())
+    before = path.read_bytes()
+    monkeypatch.setattr("app.storage.files.atomic.os.fdopen", FullDisk)
+    for room in np.unique(np.linspace(0, size - 1, 24, dtype=int)):
+        FullDisk.room = room
+        with pytest.raises(LissomError, match="No space left"):
+            save_project(path, full_document())
+        assert path.read_bytes() == before
+        assert list(tmp_path.iterdir()) == [path]
+
+
+def test_what_never_ends_is_not_read(tmp_path):
+    pipe = tmp_path / "pipe.png"
+    os.mkfifo(pipe)
+    for read in (read_file, load_project, lambda path: read_arrays(path, required=())):
+        for path in (pipe, Path("/dev/zero")):
+            with pytest.raises(LissomError, match="not an ordinary file"):
+                read(path)
+    assert read_thumbnail(pipe) is None
+
+
+def test_a_file_that_is_too_large_is_not_read(tmp_path):
+    path = tmp_path / "large.png"
+    with path.open("wb") as file:
+        file.truncate(LARGEST_FILE + 1)
+    with pytest.raises(LissomError, match="more than"):
+        read_file(path)
+
+
+def npz(path, content, *, size=None, method=zipfile.ZIP_STORED):
+    with zipfile.ZipFile(path, "w", method) as archive:
+        archive.writestr("a.npy", content)
+    if size is not None:
+        packed = path.read_bytes()
+        path.write_bytes(packed.replace(struct.pack("<L", len(content)), struct.pack("<L", size)))
+    return path
+
+
+def npy(array, shape=None):
+    file = io.BytesIO()
+    np.save(file, array)
+    content = file.getvalue()
+    return content if shape is None else content.replace(*shape)
+
+
+@pytest.mark.parametrize(
+    "content",
+    [
+        npy(np.zeros(5), (b"(5,), }           ", b"(99999999999,), } ")),
+        npy(np.zeros(5), (b"(5,)", b"(-5,)")),
+        npy(np.zeros(5), (b"'<f8'", b"'|O' ")),
+        npy(np.array(["text"])),
+        npy(np.zeros(2, dtype=[("x", "f8")])),
+        npy(np.zeros(5))[:-1],
+        npy(np.zeros(5)) + b"more",
+        b"",
+        b"\x93NUMPY\x01\x00\x02\x00((",
+        b"\x93NUMPY\x09\x00",
+    ],
+)
+def test_arrays_that_are_not_what_they_say_are_refused(tmp_path, content):
+    with pytest.raises(LissomError, match="not an NPZ file"):
+        read_arrays(npz(tmp_path / "case.npz", content), required=("a",))
+
+
+def test_packed_arrays_are_unpacked_within_limits(tmp_path, monkeypatch):
+    content = npy(np.zeros(100_000))
+    path = npz(tmp_path / "case.npz", content, method=zipfile.ZIP_DEFLATED)
+    assert len(read_arrays(path, required=("a",))["a"]) == 100_000
+    monkeypatch.setattr("app.storage.files.arrays.MOST_UNPACKED", 700_000)
+    with pytest.raises(LissomError, match="would unpack to"):
+        read_arrays(path, required=("a",))
+    damaged = bytearray(path.read_bytes())
+    damaged[60] ^= 0xFF
+    path.write_bytes(damaged)
+    monkeypatch.undo()
+    with pytest.raises(LissomError, match="damaged"):
+        read_arrays(path, required=("a",))
+
+
+def test_one_holds_a_file_and_others_are_told_who(tmp_path):
+    path = tmp_path / "a.lissom"
+    hold = Hold(path)
+    with pytest.raises(HoldError, match=r"by .* on .*, since 20"):
+        Hold(path)
+    hold.release()
+    assert list(tmp_path.iterdir()) == []
+    Hold(path).release()
+
+
+def test_a_lock_file_that_a_dead_process_left_holds_nothing(tmp_path):
+    path = tmp_path / "a.lissom"
+    hold = Hold(path)
+    # What the system does when a process ends.
+    os.close(hold._descriptor)
+    assert len(list(tmp_path.iterdir())) == 1
+    Hold(path).release()
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("told", [b"", b"[" * 999, b"{}", b'{"who": "a\\u0007", "since": 1e308}'])
+def test_nonsense_in_a_lock_file_is_told_as_what_is_known(tmp_path, told):
+    hold = Hold(tmp_path / "a.lissom")
+    (beside,) = tmp_path.iterdir()
+    beside.write_bytes(told)
+    with pytest.raises(HoldError, match="in another window"):
+        Hold(tmp_path / "a.lissom")
+    hold.release()

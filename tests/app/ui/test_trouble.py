@@ -1,15 +1,31 @@
 """What goes wrong is told in words, and the window lives on."""
 
 import errno
+import os
+import threading
+from contextlib import suppress
+from dataclasses import replace
 
 import pytest
+from harness import MOST_FRAMES
 
-from app.editor.actions import exporting, files, posing, saving
-from app.editor.dialogs import FileDialog
+from app.document.keyframe import Target
+from app.editor.actions import exporting, files, posing, saving, upkeep
+from app.editor.dialogs import FileDialog, Question, Recovery
 from app.storage.assets import sample_images
-from app.storage.autosave import SECONDS, Autosave, find_leftovers, load_leftover
-from app.storage.project_file import load_project
+from app.storage.autosave import (
+    SECONDS,
+    Autosave,
+    Origin,
+    find_leftovers,
+    load_leftover,
+    remove_leftover,
+)
+from app.storage.files import Hold, HoldError
+from app.storage.project_file import load_project, save_project
+from app.ui.bars.status import ENDLESS
 from app.ui.timeline import timeline
+from app.ui.viewport.canvas import Canvas
 from app.ui.window.title import window_title
 
 
@@ -56,7 +72,7 @@ def test_a_full_disk_loses_nothing(window, project, tmp_path, monkeypatch):
     window.settle()
     assert any("No space left" in text for text in texts(window))
     assert path.read_bytes() == before
-    assert list(tmp_path.iterdir()) == [path]
+    assert [each for each in tmp_path.iterdir() if each.suffix != ".lock"] == [path]
     assert window.session.project is project
 
 
@@ -136,7 +152,7 @@ def test_recovered_work_has_its_name_and_goes_back_to_its_file_once_that_was_sho
     window.settle()
     crash(window, project)
 
-    window.run(lambda robot: robot.item_click("//###dialog/Open"))
+    window.run(lambda robot: robot.item_click("//###dialog/**/Open"))
     window.settle()
     recovered = window.session.project
     assert window_title(window.session) == "posed.lissom* – Lissom"
@@ -146,7 +162,7 @@ def test_recovered_work_has_its_name_and_goes_back_to_its_file_once_that_was_sho
     assert path.read_bytes() == saved
     # A second crash finds it again.
     assert crash(window, recovered) == (recovered.name, path)
-    window.run(lambda robot: robot.item_click("//###dialog/Open"))
+    window.run(lambda robot: robot.item_click("//###dialog/**/Open"))
     window.settle()
 
     window.act(saving.save)
@@ -175,7 +191,257 @@ def test_recovered_work_on_a_picture_has_its_name_and_no_file(window, project):
     window.act(posing.add_handle, complex(*project.document.canvas) / 2)
     window.settle()
     assert crash(window, project) == ("bar", None)
-    window.run(lambda robot: robot.item_click("//###dialog/Open"))
+    window.run(lambda robot: robot.item_click("//###dialog/**/Open"))
     window.settle()
     assert window_title(window.session) == "bar* – Lissom"
     assert window.session.project.path is None
+
+
+@pytest.fixture
+def saved(window, project, tmp_path):
+    """A project that is saved in a file, and open."""
+    path = tmp_path / "a.lissom"
+    saving.write(window.session, path, None)
+    window.settle()
+    assert window.session.project is project
+    return path
+
+
+def question(window):
+    dialog = window.session.dialog
+    assert isinstance(dialog, Question)
+    return dialog
+
+
+def answer(window, text):
+    window.run(lambda robot: robot.item_click(f"//###dialog/**/{text}"))
+    window.settle()
+
+
+def test_a_file_that_another_window_has_open_is_opened_only_after_a_question(window, saved):
+    saving.put_project(window.session, None)
+    other = Hold(saved)
+    files.open_file(window.session, saved)
+    window.settle()
+    assert window.session.project is None
+    assert "a.lissom is open already by" in question(window).text
+    answer(window, "Cancel")
+    assert window.session.project is None
+
+    files.open_file(window.session, saved)
+    window.settle()
+    answer(window, "Open a copy")
+    assert window.session.project.path is None
+    assert window.session.project.name == "a"
+
+    files.open_file(window.session, saved)
+    window.settle()
+    answer(window, "Open anyway")
+    assert window.session.project.path == saved
+    other.release()
+
+
+def test_a_file_is_held_while_it_is_open_and_no_longer(window, saved, tmp_path):
+    with pytest.raises(HoldError):
+        Hold(saved)
+    # It is no other window's.
+    files.open_file(window.session, saved)
+    window.settle()
+    assert window.session.dialog is None
+    elsewhere = tmp_path / "b.lissom"
+    saving.write(window.session, elsewhere, None)
+    window.settle()
+    Hold(saved).release()
+    with pytest.raises(HoldError):
+        Hold(elsewhere)
+    window.act(saving.give_up)
+    Hold(elsewhere).release()
+    assert {path.name for path in tmp_path.iterdir()} == {"a.lissom", "b.lissom"}
+
+
+def test_where_no_lock_can_be_had_the_file_opens_and_that_is_told(window, saved, monkeypatch):
+    def no_locks(_):
+        raise OSError(errno.ENOLCK, "No locks available")
+
+    saving.put_project(window.session, None)
+    monkeypatch.setattr("app.storage.files.hold.lock", no_locks)
+    files.open_file(window.session, saved)
+    window.settle()
+    assert window.session.project.path == saved
+    assert any("No locks available" in text for text in texts(window))
+
+
+def test_what_somebody_else_saved_meanwhile_is_replaced_only_after_a_question(
+    window, project, saved
+):
+    other = load_project(saved)
+    ours = replace(other, fps=12.0)
+    save_project(saved, ours)
+    theirs = saved.read_bytes()
+    window.act(posing.add_handle, complex(*project.document.canvas) / 2)
+    window.settle()
+    window.act(saving.save)
+    window.settle()
+    assert "another window or program has changed it" in question(window).text
+    answer(window, "Save under another name")
+    assert isinstance(window.session.dialog, FileDialog)
+    window.session.dialog = None
+    assert saved.read_bytes() == theirs
+    assert not project.history.is_saved
+    window.act(saving.save)
+    window.settle()
+    answer(window, "Replace it")
+    assert len(load_project(saved).figures[0].handles) == 1
+    window.act(posing.add_handle, complex(*project.document.canvas) / 3)
+    window.settle()
+    window.act(saving.save)
+    window.settle()
+    assert window.session.dialog is None
+    assert len(load_project(saved).figures[0].handles) == 2
+
+
+def test_a_file_that_was_only_copied_or_touched_is_no_other_one(window, project, saved):
+    content = saved.read_bytes()
+    saved.unlink()
+    saved.write_bytes(content)
+    os.utime(saved, (2e9, 2e9))
+    window.act(posing.add_handle, complex(*project.document.canvas) / 2)
+    window.settle()
+    window.act(saving.save)
+    window.settle()
+    assert window.session.dialog is None
+    assert len(load_project(saved).figures[0].handles) == 1
+
+
+def test_a_folder_that_was_removed_is_told_and_the_work_stays(window, project, saved):
+    for path in saved.parent.iterdir():
+        path.unlink()
+    saved.parent.rmdir()
+    window.act(posing.add_handle, complex(*project.document.canvas) / 2)
+    window.settle()
+    window.act(saving.save)
+    window.settle()
+    assert any("does not exist" in text for text in texts(window))
+    assert not project.history.is_saved
+    saved.parent.mkdir()
+    window.act(saving.save)
+    window.settle()
+    assert project.history.is_saved
+    assert saved.exists()
+
+
+def test_unsaved_work_that_could_not_be_kept_is_kept_as_soon_as_there_is_room(
+    window, project, monkeypatch
+):
+    def full(*_):
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    window.act(posing.add_handle, complex(*project.document.canvas) / 2)
+    window.settle()
+    window.session.autosave.forget()
+    with monkeypatch.context() as patch:
+        patch.setattr("app.storage.files.atomic.os.fsync", full)
+        project.autosaved = None
+        window.clock.now += SECONDS
+        window.settle()
+    assert any("Unsaved work cannot be kept" in text for text in texts(window))
+    assert list(window.folder.glob("unsaved-*.lissom")) == []
+    window.clock.now += SECONDS
+    window.settle()
+    assert len(list(window.folder.glob("unsaved-*.lissom"))) == 1
+
+
+def test_every_unsaved_work_is_offered_whenever_it_was_kept(window, project):
+    for number, time in enumerate((1e9, 1e18, -1e9)):
+        path = window.folder / f"unsaved-{number}.lissom"
+        keeper = Autosave(window.folder)
+        keeper._path = path
+        keeper.write(project.document, Origin(f"work {number}", None))
+        os.close(keeper._lock)
+        with suppress(OSError, OverflowError):
+            os.utime(path, (time, time))
+    saving.put_project(window.session, None)
+    files.offer_recovery(window.session)
+    window.frames(3)
+    dialog = window.session.dialog
+    assert isinstance(dialog, Recovery)
+    assert {each.origin.name for each in dialog.candidates} == {"work 0", "work 1", "work 2"}
+    answer(window, "Discard")
+    assert len(window.session.dialog.candidates) == 2
+    answer(window, "Later")
+    assert window.session.dialog is None
+    window.act(files.show_recovery)
+    assert len(window.session.dialog.candidates) == 2
+    answer(window, "Open")
+    assert window.session.project is not None
+    assert len(find_leftovers(window.folder)) == 1
+    remove_leftover(find_leftovers(window.folder)[0])
+    window.act(files.show_recovery)
+    assert any("no unsaved work" in text for text in texts(window))
+
+
+def test_a_worker_that_never_ends_can_be_cancelled_and_nothing_waits_for_it(
+    window, project, tmp_path, monkeypatch
+):
+    end = threading.Event()
+    monkeypatch.setattr(window.session.jobs, "_clock", window.clock)
+    monkeypatch.setattr("app.editor.actions.files.open_picture", lambda *_: end.wait())
+    files.open_file(window.session, sample_images() / "bar.png")
+    window.frames(3)
+    # What is kept does not wait for it.
+    saving.write(window.session, tmp_path / "a.lissom", None)
+    for _ in range(MOST_FRAMES):
+        window.frames()
+        if (tmp_path / "a.lissom").exists():
+            break
+    window.clock.now += ENDLESS
+    window.frames(3)
+    assert window.session.jobs.running_for(ENDLESS) == ("Opening bar.png",)
+    window.run(lambda robot: robot.item_click("//**/Cancel"))
+    window.settle()
+    assert any("bar.png cannot be opened: it was cancelled" in text for text in texts(window))
+    assert window.session.project is project
+    end.set()
+
+
+def test_a_save_does_not_wait_for_ever_for_a_pose_that_never_settles(
+    window, project, tmp_path, monkeypatch
+):
+    end = threading.Event()
+    window.act(posing.add_handle, complex(*project.document.canvas) / 2)
+    window.settle()
+    monkeypatch.setattr("app.editor.actions.posing.steps._take_steps", lambda *_: end.wait())
+    posing.wish(window.session, {0: Target(position=complex(*project.document.canvas) / 3)})
+    window.act(saving.write, tmp_path / "a.lissom", None)
+    window.frames(3)
+    assert not (tmp_path / "a.lissom").exists()
+    window.clock.now += saving.SETTLING
+    for _ in range(MOST_FRAMES):
+        window.frames()
+        if project.path is not None:
+            break
+    assert (tmp_path / "a.lissom").exists()
+    window.act(upkeep.give_up, "Posing")
+    end.set()
+    window.settle()
+    assert any("cancelled" in text for text in texts(window))
+
+
+def test_a_graphics_driver_that_fails_is_told_and_the_work_is_kept(window, project, monkeypatch):
+    window.act(posing.add_handle, complex(*project.document.canvas) / 2)
+    window.settle()
+    window.session.autosave.forget()
+    project.autosaved = None
+
+    def lost(*_):
+        raise RuntimeError("the context was lost")
+
+    with monkeypatch.context() as patch:
+        patch.setattr(Canvas, "draw", lost)
+        window.frames(3)
+    assert any("the context was lost" in text for text in texts(window))
+    (kept,) = window.folder.glob("unsaved-*.lissom")
+    assert len(load_leftover(kept)[0].figures[0].handles) == 1
+    window.session.toasts = []
+    window.frames(3)
+    assert texts(window) == []
