@@ -16,6 +16,8 @@ from app.cli.blas import use_one_thread
 # Of each campaign, what its amount counts, and how much of it is asked for.
 CAMPAIGNS = {
     "kills": ("processes killed", 1200),
+    "shapes": ("shapes", 500),
+    "readers": ("files tampered with", 22_000),
 }
 
 

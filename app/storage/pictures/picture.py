@@ -33,6 +33,7 @@ FORMATS = {
 FORMATS_IN_WORDS = "PNG, JPEG, GIF, WebP, AVIF, TIFF, BMP, TGA, PPM or ICO"
 # Pillow's decoders let all of these through on damaged files.
 DECODER_ERRORS = (
+    RuntimeError,
     OSError,
     ValueError,
     SyntaxError,

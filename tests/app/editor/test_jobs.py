@@ -240,6 +240,8 @@ def test_closing_waits_for_what_runs_and_drops_what_waits():
     assert begun.wait(10)
     closing = threading.Thread(target=jobs.close)
     closing.start()
+    while not jobs._is_closed:
+        pass
     assert closing.is_alive()
     gate.set()
     closing.join(10)

@@ -260,6 +260,18 @@ def test_what_is_no_picture_is_refused(data, message):
         decode_picture(data, "drawing")
 
 
+def test_a_damaged_avif_is_refused_wherever_the_damage_is():
+    whole = encode(Image.linear_gradient("L").convert("RGB"), "AVIF")
+    refused = 0
+    for at in range(0, len(whole), len(whole) // 16):
+        damaged = whole[:at] + bytes([whole[at] ^ 0xFF]) + whole[at + 1 :]
+        try:
+            decode_picture(damaged, "drawing")
+        except LissomError:
+            refused += 1
+    assert refused > 4
+
+
 def test_a_decompression_bomb_is_refused_before_it_is_decoded(monkeypatch):
     data = encode(Image.new("L", (400, 300)), "PNG")
     for most in (100_000, 40_000):  # Pillow's warning, and its error at twice as much

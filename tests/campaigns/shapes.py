@@ -1,0 +1,210 @@
+"""Random and degenerate shapes, dragged at random, with in-betweens of every variant.
+
+Every map that would be shown is certified, and held against samples; no number is NaN; no frame
+folds but of the two variants that promise no bounds.
+"""
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+import numpy as np
+from PIL import Image, ImageDraw
+
+from engine.arrays import Complexes, Integers
+from engine.deform import Deformer, Handles
+from engine.domain import build_domain, mesh_inside
+from engine.errors import EngineError
+from engine.interpolation import prepare
+from engine.maps import Boundary, Bounds, HarmonicMap
+from engine.variant import Variant
+
+CANVAS = 160
+TRIANGLES = 1500
+STEPS = 10  # of a drag, each of which is shown
+BOUNDS = (
+    Bounds(),
+    Bounds(k=0.3, sigma_a=1.5, sigma_b=0.7),
+    Bounds(k=0.99, sigma_a=50.0, sigma_b=0.02),
+)
+SCALES = (1.0, 1.0, 1.0, 1e-6, 1e6)
+SAMPLES = 4000  # of the outline, against which a certificate is held
+ROUNDING = 1e-9
+UNBOUNDED = {Variant.LINEAR, Variant.ETA}  # which promise no bounds
+
+
+class Shape(NamedTuple):
+    """What is deformed: its outline and cage, and a mesh of it."""
+
+    outline: Complexes
+    cage: Complexes
+    vertices: Complexes
+    triangles: Integers
+
+
+def campaign(seed: int, amount: int) -> Iterator[tuple[str, dict[str, float]]]:
+    """Drag so many shapes, and yield the figures of each kind of them."""
+    kinds = (("drawn", drawn_shape, 0.8), ("degenerate", degenerate_shape, 0.2))
+    for name, make, share in kinds:
+        total: dict[str, float] = {}
+        for number in range(round(share * amount)):
+            rng = np.random.default_rng([seed, number, len(name)])
+            try:
+                shape = make(rng, number)
+            except EngineError:
+                figures = {"refused in words": 1.0}
+            else:
+                figures = {"shapes": 1.0, **stress(shape, rng)}
+            for label, value in figures.items():
+                total[label] = total.get(label, 0.0) + value
+        yield f"{name} shapes", total
+    rng = np.random.default_rng([seed, 300])
+    yield "300 handles", stress(drawn_shape(rng, 0), rng, handles=300)
+    yield "200 keyframes", stress(drawn_shape(rng, 1), rng, keys=200)
+
+
+def stress(
+    shape: Shape, rng: np.random.Generator, *, handles: int = 0, keys: int = 3
+) -> dict[str, float]:
+    """Drag a shape to some keyframes, and look at the in-betweens of every variant."""
+    bounds = BOUNDS[rng.integers(len(BOUNDS))]
+    scale = SCALES[rng.integers(len(SCALES))]
+    outline, cage, vertices = (scale * each for each in shape[:3])
+    boundary = Boundary.sample(outline, cage)
+    count = handles or int(rng.integers(1, 9))
+    inside = rng.choice(vertices, size=min(count, len(vertices)), replace=False)
+    deformer = Deformer(boundary=boundary, handles=Handles.place(boundary, inside), bounds=bounds)
+    size = np.ptp(outline.real) + np.ptp(outline.imag)
+    state, shown, maps = deformer.start(), 0, []
+    for number in range(keys):
+        to = inside + 0.4 * size * rng.normal(size=len(inside)) * np.exp(1j * rng.uniform(0, 6.3))
+        wish = deformer.handles.wish(to)
+        for _ in range(STEPS if keys < 50 else 1):
+            state = deformer.step(state, wish)
+            if number < 3:
+                check_state(deformer, state, bounds)
+            shown += 1
+        maps.append(state.map)
+    frames, folds = in_betweens(maps, boundary.outline, vertices, shape.triangles, rng)
+    return {
+        "maps shown": shown,
+        "frames": frames,
+        "folds of variants without bounds": folds,
+    }
+
+
+def check_state(deformer: Deformer, state: object, bounds: Bounds) -> None:
+    """Hold the certificate of a state against samples of its map on the outline."""
+    certificate = state.certificate
+    assert certificate.certified
+    assert bounds.allow(k=certificate.k, sigma_a=certificate.sigma_a, sigma_b=certificate.sigma_b)
+    outline = deformer.boundary.outline
+    each = max(2, SAMPLES // len(outline))
+    side = np.roll(outline, -1) - outline
+    points = (outline[:, None] + side[:, None] * np.arange(each) / each).ravel()
+    a, b = (np.abs(values) for values in state.map.derivatives(points))
+    assert np.isfinite(a).all()
+    assert np.isfinite(b).all()
+    assert (b / a).max() <= certificate.k + ROUNDING
+    assert (a + b).max() <= certificate.sigma_a * (1 + ROUNDING)
+    assert (a - b).min() >= certificate.sigma_b * (1 - ROUNDING)
+
+
+def in_betweens(
+    maps: list[HarmonicMap],
+    outline: Complexes,
+    vertices: Complexes,
+    triangles: Integers,
+    rng: np.random.Generator,
+) -> tuple[int, int]:
+    """Return how many frames were looked at, and how many of those fold that may."""
+    count = folds = 0
+    for variant in Variant:
+        prepared = prepare(
+            maps,
+            vertices,
+            outline=outline,
+            variant=variant,
+            triangles=triangles,
+            through=bool(rng.integers(2)),
+        )
+        times = [*rng.uniform(0, len(maps) - 1, 3), float(len(maps) - 1)]
+        for time in times:
+            frame = prepared.frame(time)
+            assert np.isfinite(frame.positions).all()
+            stretch = np.abs(frame.fz) - np.abs(frame.fzbar)
+            assert np.isfinite(stretch).all()
+            is_folded = bool((stretch <= 0).any()) or bool(
+                (areas(frame.positions, triangles) <= 0).any()
+            )
+            count += 1
+            folds += is_folded
+            assert variant in UNBOUNDED or not is_folded, f"{variant} folds at {time}"
+    return count, folds
+
+
+def areas(positions: Complexes, triangles: Integers) -> np.ndarray:
+    """Return the signed areas of triangles, relative to the largest."""
+    a, b, c = positions[triangles].T
+    doubled = ((b - a).conj() * (c - a)).imag
+    return doubled / np.abs(doubled).max()
+
+
+def drawn_shape(rng: np.random.Generator, number: int) -> Shape:
+    """Return the domain of a picture of random blobs and limbs."""
+    image = Image.new("L", (CANVAS, CANVAS))
+    draw = ImageDraw.Draw(image)
+    centre = rng.uniform(50, 110, 2)
+    for _ in range(rng.integers(1, 5)):
+        radii = rng.uniform(8, 35, 2)
+        draw.ellipse((*(centre - radii), *(centre + radii)), fill=255)
+        end = np.clip(centre + rng.normal(0, 45, 2), 4, CANVAS - 4)
+        draw.line((*centre, *end), fill=255, width=int(rng.integers(2, 22)))
+        centre = end
+    return pictured(np.asarray(image), "coarse" if number % 2 else "normal")
+
+
+def pictured(grey: np.ndarray, detail: str) -> Shape:
+    """Return the domain of a mask."""
+    rgba = np.zeros((*grey.shape, 4), dtype=np.uint8)
+    rgba[..., 3] = grey
+    domain, _ = build_domain(rgba, triangles=TRIANGLES, detail=detail)
+    return Shape(domain.outline, domain.cage, domain.mesh.vertices, domain.mesh.triangles)
+
+
+def degenerate_shape(rng: np.random.Generator, number: int) -> Shape:
+    """Return a sliver, a triangle, a needle, an island of one pixel, or limbs of one pixel."""
+    match number % 5:
+        case 0:
+            return polygon(np.array([0, 1, 0.5 + rng.uniform(0.01, 1.0) * 1j]))
+        case 1:
+            return polygon(np.array([0, 1, 1 + 0.02j, 0.02j]) + rng.normal(0, 0.003, 4))
+        case 2:
+            grey = np.zeros((40, 40), dtype=np.uint8)
+            grey[tuple(rng.integers(2, 38, 2))] = 255
+            return pictured(grey, "fine")
+        case 3:
+            grey = np.zeros((120, 120), dtype=np.uint8)
+            grey[50:70, 50:70] = 255
+            grey[60, 5:115] = 255
+            grey[5:115, 60 : 60 + rng.integers(1, 3)] = 255
+            return pictured(grey, "fine")
+    spikes = 2 * int(rng.integers(3, 9))
+    radii = np.where(np.arange(spikes) % 2, 1.0, rng.uniform(0.05, 0.3))
+    return polygon(radii * np.exp(2j * np.pi * np.arange(spikes) / spikes))
+
+
+def polygon(corners: Complexes) -> Shape:
+    """Return the domain of a polygon, its cage at a distance from it, without more vertices."""
+    turned = corners if _area(corners) > 0 else corners[::-1]
+    along = np.roll(turned, -1) - turned
+    normals = -1j * along / np.abs(along)
+    before = np.roll(normals, 1)
+    # Parallel to each side, at the same distance from it.
+    corner = (normals + before) / (1 + (normals * before.conj()).real)
+    cage = turned + 0.02 * np.abs(along).min() * corner
+    mesh = mesh_inside(turned, triangles=TRIANGLES)
+    return Shape(turned.astype(complex), cage, mesh.vertices, mesh.triangles)
+
+
+def _area(corners: Complexes) -> float:
+    return float((corners.conj() * np.roll(corners, -1)).imag.sum())
