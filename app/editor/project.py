@@ -56,6 +56,9 @@ class PoseInProgress:
         Whether the person still pulls.
     steps : int
         Newton steps towards the present wish.
+    found : Pose, optional
+        Where the solver is with a pose that the playhead has left: the document has it as soon as
+        its in-betweens are ready, so that what is shown stays exact.
     """
 
     frame: int
@@ -65,6 +68,7 @@ class PoseInProgress:
     drag: Drag | None = None
     is_held: bool = True
     steps: int = 0
+    found: Pose | None = None
 
     @property
     def is_at_rest(self) -> bool:

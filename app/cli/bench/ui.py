@@ -61,6 +61,7 @@ def tables(extent: Extent | None = None) -> Iterator[Table]:
         yield from _frames(stage, extent)
         yield _latency(stage, extent)
         yield _release(stage, extent)
+        yield _playhead(stage, extent)
     yield idle.table(extent.idle)
 
 
@@ -408,6 +409,48 @@ def _release(stage: _Driver, extent: Extent) -> Table:
         _row(name, column) for name, column in zip(names, zip(*times, strict=True), strict=True)
     )
     return Table(title="From the release of a handle", rows=tuple(rows))
+
+
+def _playhead(stage: _Driver, extent: Extent) -> Table:
+    """Measure from moving the playhead, as soon as a handle is let go, to the exact in-between."""
+    project = stage.project
+    times, rough = [], []
+    for number in range(extent.repeats):
+        drag = _Drag(stage)
+        for move in range(10):
+            drag.move(20 * number + move)
+            stage.refresh()
+        drag.let_go()
+        stage.refresh()
+        first, second, *_ = project.figure.keys
+        between = (first.frame + second.frame) // 2 + number
+        moved = time.perf_counter()
+        stage.ask(playback.scrub, between)
+        rough.append(0)
+        while not _shows(project, between, exactly=True):
+            stage.refresh()
+            rough[-1] += _shows(project, between)
+        times.append(time.perf_counter() - moved)
+        stage.settle()
+    return Table(
+        title="From moving the playhead between keys, as a handle is let go",
+        rows=(
+            _row("until the exact in-between is drawn", times),
+            Row(
+                name="pictures before it, rough ones between the right keys",
+                seconds=None,
+                note=f"median {statistics.median(rough):.0f}, most {max(rough)}",
+            ),
+        ),
+    )
+
+
+def _shows(project: Project, frame: int, *, exactly: bool = False) -> bool:
+    """Tell whether a frame of the document as it is now is shown."""
+    shown = project.puppet.shown
+    if shown is None or shown.frame != frame or shown.clip != project.clip:
+        return False
+    return shown.is_current or not exactly
 
 
 def _rests(project: Project) -> bool:

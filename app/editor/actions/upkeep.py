@@ -1,6 +1,7 @@
 """What follows the document by itself: in-betweens, what is measured of them, what is drawn."""
 
 from collections.abc import Iterator
+from dataclasses import replace
 from functools import partial
 from typing import Any
 
@@ -102,9 +103,11 @@ def missing(session: Session, project: Project) -> Iterator[Derivation[Any, Any]
     for clip, puppet in movable:
         if not puppet.coarse.value.knows(clip):
             # Where nobody sees them before the hand rests, they are not worked out for each move.
-            if session.overlays.onion or posing.POSING not in session.jobs.kinds:
-                yield _sketch(clip, puppet, whole=project.is_posing)
+            is_seen = session.overlays.onion or project.posing is None
+            if is_seen or posing.POSING not in session.jobs.kinds:
+                yield _sketch(clip, puppet, whole=project.posing is not None)
             return
+    yield from _settle(session, project)
     if project.is_posing:
         # What follows takes longer than the hand stays where it is.
         return
@@ -165,6 +168,23 @@ def _sketch(clip: Clip, puppet: Puppet, *, whole: bool) -> Derivation[Clip, Moti
         work=lambda: _coarse_motion(clip, earlier, whole=whole),
         complaint="The in-betweens of these keys cannot be made",
     )
+
+
+def _settle(session: Session, project: Project) -> Iterator[Derivation[Clip, Motion]]:
+    """Yield the in-betweens of the pose that the playhead has left, with which it is taken."""
+    clip, puppet, settling = posing.settled_clip(session, project), project.puppet, project.settling
+    if clip is None or settling is None or SKETCHING in session.jobs.kinds:
+        return
+    pose = clip.figure.key(settling.frame).pose
+    if puppet.coarse.failure is not None:
+        posing.take_settled(session, project, settling, pose)
+        return
+
+    def done(motion: Motion) -> None:
+        posing.take_settled(session, project, settling, pose)
+        puppet.coarse.take(clip, motion)
+
+    yield replace(_sketch(clip, puppet, whole=True), done=done)
 
 
 def _trace(session: Session, project: Project) -> Iterator[Derivation[Any, Any]]:

@@ -5,7 +5,7 @@ from itertools import count
 import numpy as np
 
 from app.document.keyframe import Target
-from app.editor.actions import posing
+from app.editor.actions import editing, playback, posing
 
 
 def pull(window, bar, by):
@@ -65,3 +65,27 @@ def test_nothing_moves_once_the_pose_rests(window, bar):
     assert bar.posing is None
     assert bar.document is rested
     np.testing.assert_array_equal(bar.puppet.shown.positions, shown)
+
+
+def test_in_betweens_are_exact_while_the_pose_that_was_left_comes_to_rest(window, bent):
+    window.session.clock = count().__next__
+    wish = pull(window, bent, 80j)
+    window.act(playback.scrub, 12)
+    exact = []
+    while bent.settling is not None:
+        assert window.session.jobs.settle()
+        window.frames()
+        shown = bent.puppet.shown
+        assert (shown.frame, shown.clip) == (12, bent.clip)
+        exact.append(shown.is_current)
+        assert len(exact) < 200
+    # Rough ones before the first exact one, and none after it.
+    assert exact.index(True) <= 2
+    assert all(exact[exact.index(True) :])
+    assert len(exact) > 4
+    pose = bent.figure.key(24).pose
+    assert pose.targets[1] == wish
+    place = bent.figure.map_of(pose)(np.array([bent.figure.handle(1).position]))[0]
+    assert abs(place - wish.position) < 2
+    window.act(editing.undo)
+    assert bent.figure.key(24).pose.targets[1] != wish

@@ -23,6 +23,8 @@ from app.editor.actions.posing.pulling import (
     pull,
     pull_again,
     settle,
+    settled_clip,
+    take_settled,
     wish,
     wishes_of,
 )
@@ -50,7 +52,9 @@ __all__ = [
     "remove_handles",
     "retargeted",
     "settle",
+    "settled_clip",
     "suggest_handles",
+    "take_settled",
     "wish",
     "wishes_of",
 ]

@@ -5,9 +5,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from app.document import Target
+from app.document import Clip, Pose, Target, clip_of
 from app.editor.actions import playback
-from app.editor.actions.posing.steps import POSING, end, follow, retargeted
+from app.editor.actions.posing.steps import POSING, end, follow, hold, holding, retargeted
 from app.editor.project import PoseInProgress, Project
 from app.editor.session import Session
 
@@ -39,10 +39,32 @@ def let_go(session: Session) -> None:
 
 
 def settle(session: Session) -> None:
-    """Bring a pose to rest that the playhead has left; called once a frame."""
+    """End a pose that the playhead has left, and that the solver does not go on with."""
     project = session.project
-    if project and project.settling and POSING not in session.jobs.kinds:
-        end(project, project.settling)
+    settling = project.settling if project else None
+    if project and settling and settling.found is None and POSING not in session.jobs.kinds:
+        end(project, settling)
+
+
+def settled_clip(session: Session, project: Project) -> Clip | None:
+    """Return the clip with the pose that the playhead has left, where the solver has come with it.
+
+    None where the document has that pose already.
+    """
+    settling = project.settling
+    if settling is None or settling.found is None:
+        return None
+    command = holding(session, project, settling.frame, settling.found)
+    return clip_of(command(project.document), project.active)
+
+
+def take_settled(session: Session, project: Project, settling: PoseInProgress, pose: Pose) -> None:
+    """Let the document have what the solver found of a pose, if that is still wanted."""
+    if project is not session.project or settling is not project.settling:
+        return
+    hold(session, project, settling.frame, pose, gesture=settling.gesture)
+    if settling.found is pose:
+        settling.found = None
 
 
 def drop(session: Session) -> None:

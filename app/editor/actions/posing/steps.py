@@ -117,13 +117,13 @@ def _go_on(
     posing.drag = steps.drag
     pose = steps.drag.pose(targets)
     if posing is project.settling:
-        hold(session, project, posing.frame, pose, gesture=posing.gesture)
+        posing.found = pose
     else:
         accept(session, project, posing.frame, pose, gesture=posing.gesture)
     rests = steps.drag.is_over and posing.targets == targets
     if not rests and posing.steps < MOST_STEPS:
         follow(session, project, posing)
-    elif not posing.is_held:
+    elif not posing.is_held and posing is not project.settling:
         end(project, posing)
 
 
@@ -138,14 +138,17 @@ def accept(session: Session, project: Project, frame: int, pose: Pose, gesture: 
 
 def hold(session: Session, project: Project, frame: int, pose: Pose, gesture: object) -> None:
     """Let a key hold a pose; none is left there that no key holds."""
-    if frame in project.figure.key_frames:
-        command = key_commands.pose_key(project.active, frame, pose)
-    else:
-        command = inserting(session, project, frame, pose)
-    project.history.do(command, gesture=gesture)
+    project.history.do(holding(session, project, frame, pose), gesture=gesture)
     unkeyed = project.history.unkeyed
     if unkeyed is not None and (unkeyed.figure, unkeyed.frame) == (project.active, frame):
         project.history.pose(None, gesture=gesture)
+
+
+def holding(session: Session, project: Project, frame: int, pose: Pose) -> Command:
+    """Return the command that lets a key hold a pose."""
+    if frame in project.figure.key_frames:
+        return key_commands.pose_key(project.active, frame, pose)
+    return inserting(session, project, frame, pose)
 
 
 def inserting(session: Session, project: Project, frame: int, pose: Pose) -> Command:
