@@ -69,7 +69,7 @@ from app.document.settings import (
     loosened,
     stretch_of,
 )
-from engine.variant import Variant
+from engine.variant import Baseline, Variant
 
 __all__ = [
     "COARSEST_TOLERANCE",
@@ -90,6 +90,7 @@ __all__ = [
     "VARIANTS",
     "WIDEST_PADDING",
     "Attachment",
+    "Baseline",
     "Clip",
     "Command",
     "Document",

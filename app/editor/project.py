@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Self
 
 from app.document import (
+    Baseline,
     Clip,
     Document,
     Figure,
@@ -125,7 +126,8 @@ class Twin:
     Parameters
     ----------
     original, figure : Figure
-        The figure as it is, and the same by the other method.
+        The figure as it is, and the same by the other variant, where the method is one.
+    method : Variant or Baseline
     motion : Derived
         On the coarse mesh.
     shown : Shown, optional
@@ -133,12 +135,14 @@ class Twin:
 
     original: Figure
     figure: Figure
+    method: Variant | Baseline
     motion: Derived[Clip, Motion]
     shown: Shown | None = None
 
     def clip(self, document: Document) -> Clip:
         """Return it in the time of its scene."""
-        return replace(clip_of(document, self.figure.id), figure=self.figure)
+        baseline = self.method if isinstance(self.method, Baseline) else None
+        return replace(clip_of(document, self.figure.id), figure=self.figure, baseline=baseline)
 
 
 @dataclass(slots=True, kw_only=True, eq=False)
@@ -364,19 +368,22 @@ class Project:
         """Whether a pose is on its way, be it the one that is shown or not."""
         return self.posing is not None or self.settling is not None
 
-    def pair_up(self, variant: Variant | None) -> None:
+    def pair_up(self, method: Variant | Baseline | None) -> None:
         """Let each figure have a twin by a method, or none."""
         for figure in self.document.figures:
             puppet = self.puppets[figure.id]
             twin, coarse = puppet.twin, puppet.coarse.value
-            if variant is None:
+            if method is None:
                 puppet.twin = None
                 continue
             if twin is None or twin.motion.value.mesh is not coarse.mesh:
                 motion: Derived[Clip, Motion] = Derived(Motion.at_rest(coarse.clip, coarse.mesh))
-                twin = Twin(original=figure, figure=figure, motion=motion)
-            if twin.original is not figure or twin.figure.variant is not variant:
-                twin.original, twin.figure = figure, replace(figure, variant=variant)
+                twin = Twin(original=figure, figure=figure, method=figure.variant, motion=motion)
+            if twin.original is not figure or twin.method is not method:
+                twin.original, twin.method = figure, method
+                twin.figure = (
+                    figure if isinstance(method, Baseline) else replace(figure, variant=method)
+                )
             puppet.twin = twin
 
     def view(self, screen: tuple[int, int]) -> View:

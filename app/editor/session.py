@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Literal, Protocol
 
-from app.document import Document, Figure, Keyframe, Meshing, Variant
+from app.document import Baseline, Document, Figure, Keyframe, Meshing, Variant
 from app.editor.action import Action
 from app.editor.dialogs import Dialog
 from app.editor.jobs import Jobs
@@ -41,7 +41,7 @@ class Split:
 
     Parameters
     ----------
-    variant : Variant
+    method : Variant or Baseline
         By which all figures are shown in the right part.
     place : float
         Of the divider, as a share of the viewport's width.
@@ -49,7 +49,7 @@ class Split:
         Whether the two are side by side, each whole, and not under a divider over one place.
     """
 
-    variant: Variant
+    method: Variant | Baseline
     place: float = 0.5
     beside: bool = False
 
@@ -211,7 +211,7 @@ class Session:
     keeps_aspect: bool = True  # of an export whose size is entered
     curves: CurveKind = "relative"
     split: Split | None = None  # None shows the drawing alone
-    last_split: Split = Split(variant=Variant.LINEAR)  # as it was when it was put away
+    last_split: Split = Split(method=Variant.LINEAR)  # as it was when it was put away
     pointer: ToolInHand | None = None
     cutting: CutTool | None = None  # what is in hand that cuts out; None poses
     snaps: bool = False  # whether what the pointer does goes in steps

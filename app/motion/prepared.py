@@ -11,6 +11,7 @@ from types import MappingProxyType
 from typing import NamedTuple
 
 from app.document import Clip, Pose, intervals, resting_pose, time_of, transits
+from app.motion.compared import RememberedFrames, prepare_compared
 from app.motion.inbetweens import PoseSampler
 from app.motion.paint_order import painted_triangles
 from app.motion.posable_mesh import PosableMesh
@@ -33,7 +34,7 @@ class PreparedInterval(NamedTuple):
     """
 
     poses: tuple[Pose, ...]
-    inbetweens: Inbetweens
+    inbetweens: Inbetweens | RememberedFrames
     kept: tuple[float, float]
     series: Series | None = None
     distortions: Series | None = None
@@ -92,7 +93,7 @@ class Motion:
         every = range(len(intervals(clip)))
         return all(self._prepared(clip, interval) is not None for interval in every)
 
-    def inbetweens(self, clip: Clip, interval: int) -> Inbetweens:
+    def inbetweens(self, clip: Clip, interval: int) -> Inbetweens | RememberedFrames:
         """Return the in-betweens of one of a clip's intervals, which must be prepared."""
         prepared = self._prepared(clip, interval)
         if prepared is None:
@@ -157,12 +158,16 @@ def prepare_motion(
         if pair in known or made == at_most:
             continue
         made += 1
+        poses = tuple(key.pose for key in transit.keys)
+        if clip.baseline is not None:
+            compared = prepare_compared(clip, clip.baseline, interval, earlier.mesh.domain)
+            ready[pair] = PreparedInterval(poses, compared, (1.0, 1.0))
+            continue
         sampler = sampler or PoseSampler(
             earlier.mesh.domain, anchor=clip.figure.anchor, sibling=sibling
         )
         inbetweens = sampler.inbetweens_of(transit, figure.bounds, figure.variant)
         kept = sampler.kept(transit, figure.bounds, figure.variant)
-        poses = tuple(key.pose for key in transit.keys)
         ready[pair] = PreparedInterval(poses, inbetweens, kept)
     if sampler is not None:
         sampler.keep_only([pose for prepared in ready.values() for pose in prepared.poses])
@@ -174,4 +179,5 @@ def pair_of(clip: Clip, interval: int) -> Pair:
     transit = transits(clip)[interval]
     maps = [identity for key in transit.keys for identity in (id(key.pose.phi), id(key.pose.psi))]
     joined = (transit.start, transit.end, clip.figure.bounds) if transit.is_joined else ()
-    return *maps, *transit.turns, *joined, clip.figure.variant
+    frames = (clip.frames,) if clip.baseline is not None else ()
+    return *maps, *transit.turns, *joined, clip.baseline or clip.figure.variant, *frames

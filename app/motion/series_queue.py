@@ -6,6 +6,7 @@ from functools import partial
 from types import MappingProxyType
 
 from app.document import Clip, intervals, time_of
+from app.motion.compared import RememberedFrames
 from app.motion.posable_mesh import PosableMesh
 from app.motion.prepared import Motion, Pair, PreparedInterval, pair_of
 from engine.streaming import Channels, Distortions, Positions, Series, build_series
@@ -37,6 +38,8 @@ class Build:
         self.distortions = distortions
         self.series: Series | None = None
         inbetweens, sites = motion.ready[pair].inbetweens, motion.sampler.sites
+        if isinstance(inbetweens, RememberedFrames):
+            raise TypeError("in-betweens for comparison are not streamed")
         self._steps = _steps(
             partial(Distortions.of, inbetweens, sites)
             if distortions

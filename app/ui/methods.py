@@ -1,8 +1,9 @@
 """The methods of interpolation as a person reads of them."""
 
+from itertools import chain
 from typing import NamedTuple
 
-from app.document import Variant
+from app.document import Baseline, Variant
 
 
 class MethodText(NamedTuple):
@@ -18,7 +19,7 @@ class MethodText(NamedTuple):
         return f"{self.name} – {self.trait}"
 
 
-METHODS: dict[Variant, MethodText] = {
+VARIANTS: dict[Variant, MethodText] = {
     Variant.METRIC: MethodText(
         "Metric", "smooth, bounded", "Stretch and shear stay within those of the keys"
     ),
@@ -33,3 +34,27 @@ METHODS: dict[Variant, MethodText] = {
     ),
     Variant.LINEAR: MethodText("Linear", "may fold", "Every point goes straight; for comparison"),
 }
+# For comparison: none of them is certified, and a drawing is not animated by them.
+BASELINES: dict[Baseline, MethodText] = {
+    Baseline.ARAP: MethodText(
+        "ARAP", "may overshoot", "As rigid as possible (Alexa et al. 2000); for comparison"
+    ),
+    Baseline.FFMP: MethodText(
+        "FFMP", "may overshoot", "Ratios of neighbours (Kircher and Garland 2008); for comparison"
+    ),
+    Baseline.SIG13: MethodText(
+        "Chen 2013", "shear bounded", "Flattened metrics (Chen et al. 2013); slow; for comparison"
+    ),
+    Baseline.HANDLES: MethodText(
+        "Straight handles", "wanders", "Handles go straight, poses are solved; slow; for comparison"
+    ),
+    Baseline.CONFORMAL: MethodText(
+        "Conformal",
+        "only without shear",
+        "For keys without any shear (Weber and Gotsman 2010); for comparison",
+    ),
+    Baseline.MESH_ETA: MethodText(
+        "Eta on the mesh", "nearly bounded", "Scaled eta in each triangle; for comparison"
+    ),
+}
+METHODS: dict[Variant | Baseline, MethodText] = dict(chain(VARIANTS.items(), BASELINES.items()))

@@ -15,7 +15,7 @@ in-between of the same mesh.
 """
 
 from engine.baselines.boundary_keyframes import discrete_harmonic, harmonic_coordinate_maps
-from engine.baselines.frames import MeshFrame
+from engine.baselines.frames import MeshFrame, MeshInbetweens
 from engine.baselines.preparation import PreparedBaseline, prepare_baseline
 from engine.baselines.triangulated_domain import TriangulatedDomain
 from engine.variant import Baseline
@@ -23,6 +23,7 @@ from engine.variant import Baseline
 __all__ = [
     "Baseline",
     "MeshFrame",
+    "MeshInbetweens",
     "PreparedBaseline",
     "TriangulatedDomain",
     "discrete_harmonic",

@@ -6,6 +6,7 @@ from app.document.figure import Figure
 from app.document.keyframe import Keyframe
 from app.document.model import Document
 from app.document.settings import FrameRange
+from engine.variant import Baseline
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -20,11 +21,14 @@ class Clip:
     frames : FrameRange
         Of the scene.
     loop : bool
+    baseline : Baseline, optional
+        A method that the figure's own variant is compared with, in place of it.
     """
 
     figure: Figure
     frames: FrameRange
     loop: bool
+    baseline: Baseline | None = None
 
     @property
     def keys(self) -> tuple[Keyframe, ...]:

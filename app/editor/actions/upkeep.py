@@ -53,7 +53,7 @@ def maintain(session: Session) -> None:
     posing.settle(session)
     project.extent.recall(extent_source(project.document))
     rebuilding.keep_up(session)
-    project.pair_up(session.split.variant if session.split else None)
+    project.pair_up(session.split.method if session.split else None)
     for derivation in missing(session, project):
         derive(session, derivation)
     shortfalls, figure = project.timing.shortfalls, project.figure

@@ -5,7 +5,7 @@ from functools import reduce
 from pathlib import Path
 from typing import Any, Literal
 
-from app.document import Meshing, Variant
+from app.document import Baseline, Meshing, Variant
 from app.editor.action import Action
 from app.editor.dialogs import Dialog, FileDialog, ShortcutSheet
 from app.editor.project import view_around
@@ -105,12 +105,12 @@ def toggle_split(session: Session) -> None:
         session.last_split, session.split = session.split, None
 
 
-def compare_with(session: Session, variant: Variant | None) -> None:
+def compare_with(session: Session, method: Variant | Baseline | None) -> None:
     """Show a method beside the drawing's own; None shows the drawing alone."""
-    if (variant is None) != (session.split is None):
+    if (method is None) != (session.split is None):
         toggle_split(session)
-    if variant is not None and session.split is not None:
-        session.split = replace(session.split, variant=variant)
+    if method is not None and session.split is not None:
+        session.split = replace(session.split, method=method)
 
 
 def move_divider(session: Session, place: float) -> None:

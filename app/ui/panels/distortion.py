@@ -66,14 +66,14 @@ def _compare(session: Session, look: Look) -> list[Action]:
     actions: list[Action] = []
     split = session.split
     imgui.set_next_item_width(-1)
-    shown = "Nothing" if split is None else METHODS[split.variant].name
+    shown = "Nothing" if split is None else METHODS[split.method].name
     if imgui.begin_combo("##compared", shown):
         if imgui.selectable("Nothing", split is None)[0]:
             actions.append(do(viewing.compare_with, None))
-        for variant, text in METHODS.items():
-            is_chosen = split is not None and split.variant == variant
+        for method, text in METHODS.items():
+            is_chosen = split is not None and split.method == method
             if imgui.selectable(text.title, is_chosen)[0]:
-                actions.append(do(viewing.compare_with, variant))
+                actions.append(do(viewing.compare_with, method))
             tip(text.what)
         imgui.end_combo()
     tip("The same keys by another method, beside this drawing's own")
@@ -266,12 +266,12 @@ def _lines(curves: Curves, values: Floats) -> tuple[Floats, Floats]:
 
 def _tell_both(look: Look, twin: Twin, own: Curves, other: Curves) -> None:
     """Tell which curves are whose, and how far each goes."""
-    if other.clip.figure is not twin.figure:
+    if (other.clip.figure, other.clip.baseline or twin.method) != (twin.figure, twin.method):
         small(look, "Measuring the other method…")
         return
     palette = look.palette
     for curves, colour in ((own, palette.accent), (other, palette.warning)):
-        name = METHODS[curves.clip.figure.variant].name
+        name = METHODS[curves.clip.baseline or curves.clip.figure.variant].name
         (k, sigma_a, _), (*_, sigma_b) = curves.extremes.max(0), curves.extremes.min(0)
         limits = f"shear {k:.2f}, stretch {sigma_a:.2f}, squeeze {sigma_b:.2f}"
         imgui.text_colored(colour, f"{name}: {limits}")

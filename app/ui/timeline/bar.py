@@ -9,7 +9,7 @@ from app.document import LAST_FRAME
 from app.editor import Action, Project, Session, do
 from app.editor.actions import keys, playback, viewing
 from app.storage import LARGEST_GHOST_STEP, MOST_GHOSTS
-from app.ui.methods import METHODS
+from app.ui.methods import VARIANTS
 from app.ui.shortcuts import BINDINGS, bound_button
 from app.ui.style import Look, icon_button, ink, tip
 from app.ui.timeline.menus import time_menu
@@ -205,8 +205,8 @@ def _onion_skin(session: Session, look: Look) -> list[Action]:
 def _variant(project: Project) -> list[Action]:
     actions: list[Action] = []
     current = project.figure.variant
-    if imgui.begin_combo("##variant", METHODS[current].name):
-        for variant, text in METHODS.items():
+    if imgui.begin_combo("##variant", VARIANTS[current].name):
+        for variant, text in VARIANTS.items():
             if imgui.selectable(text.title, variant == current)[0]:
                 actions.append(do(keys.set_variant, variant))
             tip(text.what)

@@ -5,7 +5,7 @@ from typing import NamedTuple
 from imgui_bundle import ImVec2, imgui
 from imgui_bundle import icons_fontawesome_6 as icons
 
-from app.document import Variant
+from app.document import Baseline, Variant
 from app.editor import Action, Project, Session, do
 from app.editor.actions import viewing
 from app.ui.methods import METHODS
@@ -104,15 +104,15 @@ def draw_divider(session: Session, look: Look, parts: Parts, width: float) -> li
         size = imgui.calc_text_size(icons.ICON_FA_LEFT_RIGHT)
         corner = ImVec2(x - size.x / 2, knob.y - size.y / 2)
         draw_list.add_text(corner, ink(palette.desk), icons.ICON_FA_LEFT_RIGHT)
-    _names(look, project, split.variant, x, top)
+    _names(look, project, split.method, x, top)
     return actions
 
 
-def _names(look: Look, project: Project, variant: Variant, x: float, top: float) -> None:
+def _names(look: Look, project: Project, method: Variant | Baseline, x: float, top: float) -> None:
     """Write which method is left and which is right of the divider."""
     pad = 0.5 * look.em
     own = METHODS[project.figure.variant].name
-    other = METHODS[variant].name
+    other = METHODS[method].name
     draw_list = imgui.get_window_draw_list()
     for text, left in ((own, x - imgui.calc_text_size(own).x - 3 * pad), (other, x + 3 * pad)):
         size = imgui.calc_text_size(text)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from imgui_bundle import ImVec2
 
-from app.document import Target, Variant
+from app.document import Baseline, Target, Variant
 from app.editor.actions import playback, posing, viewing
 
 
@@ -46,7 +46,7 @@ def test_the_shortcut_splits_the_view_and_puts_it_together_again(window, between
     alone = window.picture()
     press_u(window)
     assert session.split is not None
-    assert session.split.variant is Variant.LINEAR
+    assert session.split.method is Variant.LINEAR
     twin = between.puppet.twin
     own, other = between.puppet.shown.positions, twin.shown.positions
     # Halfway round, straight ways are shorter than arcs.
@@ -77,6 +77,36 @@ def test_the_divider_is_dragged_and_the_methods_change_sides_there(window, betwe
     assert divider(window)[0] == pytest.approx(x - 150, abs=3)
     assert session.pointer is None
     assert len(between.figure.handles) == 2
+
+
+@pytest.mark.parametrize("baseline", [Baseline.ARAP, Baseline.SIG13, Baseline.HANDLES])
+def test_methods_for_comparison_play_beside_the_drawing_and_are_measured(window, between, baseline):
+    session = window.session
+    document = between.document
+    viewing.compare_with(session, baseline)
+    window.settle()
+    twin = between.puppet.twin
+    assert twin.shown.is_current
+    assert twin.shown.clip.baseline is baseline
+    own = between.puppet.shown.positions
+    distance = np.abs(own - twin.shown.positions).max() / np.ptp(own.real)
+    assert 1e-5 < distance < 0.5
+    curves = between.twin_curves.value
+    assert curves.clip.baseline is baseline
+    assert np.isfinite(curves.k).all()
+    assert between.document is document
+    # All frames are there before anybody looks.
+    (interval,) = twin.motion.value.ready.values()
+    assert len(interval.inbetweens._frames) >= 23
+
+
+@pytest.mark.usefixtures("between")
+def test_a_method_that_is_not_for_these_keys_says_why(window):
+    viewing.compare_with(window.session, Baseline.CONFORMAL)
+    window.settle()
+    (toast,) = window.session.toasts
+    assert "conformal" in f"{toast.text} {toast.details}".lower()
+    window.session.toasts.clear()
 
 
 @pytest.mark.usefixtures("between")
@@ -124,11 +154,11 @@ def test_a_key_looks_the_same_by_every_method_and_posing_goes_on(window, between
 def test_nothing_is_compared_where_the_panel_says_so(window):
     session = window.session
     viewing.compare_with(session, Variant.ETA)
-    assert session.split.variant is Variant.ETA
+    assert session.split.method is Variant.ETA
     viewing.compare_with(session, None)
     assert session.split is None
     viewing.toggle_split(session)
-    assert session.split.variant is Variant.ETA
+    assert session.split.method is Variant.ETA
     viewing.move_divider(session, 2.0)
     assert session.split.place == 1 - viewing.LEAST_PART
 

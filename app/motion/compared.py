@@ -1,0 +1,77 @@
+"""In-betweens by the methods that the figures' own variants are compared with, on a mesh."""
+
+import numpy as np
+
+from app.document import Clip, intervals, resting_pose, time_of
+from engine.baselines import Baseline, MeshFrame, MeshInbetweens, prepare_baseline
+from engine.domain import Domain
+from engine.maps import HarmonicMap
+
+
+class RememberedFrames:
+    """In-betweens of two keys whose frames are worked out once: some methods take long for one.
+
+    Parameters
+    ----------
+    inbetweens : MeshInbetweens
+    """
+
+    def __init__(self, inbetweens: MeshInbetweens) -> None:
+        self._inbetweens = inbetweens
+        self._frames: dict[float, MeshFrame] = {}
+
+    def frame(self, time: float) -> MeshFrame:
+        """Return the in-between at a time in [0, 1]."""
+        if time not in self._frames:
+            self._frames[time] = self._inbetweens.frame(time)
+        return self._frames[time]
+
+
+def prepare_compared(
+    clip: Clip, baseline: Baseline, interval: int, domain: Domain
+) -> RememberedFrames:
+    """Return a clip's in-betweens by a baseline, with those of all whole frames worked out.
+
+    Through keys the motion has corners: none of these methods passes them at one velocity.
+
+    Parameters
+    ----------
+    clip : Clip
+    baseline : Baseline
+    interval : int
+    domain : Domain
+        With the mesh that is shown.
+
+    Raises
+    ------
+    EngineError
+        If the method is not for these keys.
+    """
+    keys = [clip.keys[index] for index in intervals(clip)[interval]]
+    maps = [
+        HarmonicMap(
+            cage=domain.cage,
+            phi=key.pose.phi,
+            psi=key.pose.psi,
+            holes=domain.holes,
+            logs=key.pose.logs,
+        )
+        for key in keys
+    ]
+    prepared = prepare_baseline(
+        baseline,
+        maps,
+        domain.mesh.vertices,
+        domain.mesh.triangles,
+        outline=domain.outline,
+        anchor=clip.figure.anchor,
+        turns=[keys[0].turns],
+        handles=np.array([handle.position for handle in clip.figure.handles], dtype=np.complex128),
+        bounds=clip.figure.bounds,
+    )
+    remembered = RememberedFrames(prepared.intervals[0])
+    for frame in range(clip.frames.first, clip.frames.last + 1):
+        moment = time_of(clip, frame)
+        if moment.interval == interval and resting_pose(clip, moment) is None:
+            remembered.frame(moment.weight)
+    return remembered
