@@ -10,7 +10,17 @@ from app.editor import Action, Project, Session, do, layering
 from app.editor.actions import playback
 from app.render import Thumbnail
 from app.ui.shortcuts import BINDINGS
-from app.ui.style import SMALL, Look, icon_button, ink, shortened, show_picture, small, tip
+from app.ui.style import (
+    SMALL,
+    Look,
+    begin_tip,
+    icon_button,
+    ink,
+    shortened,
+    show_picture,
+    small,
+    tip,
+)
 from engine.arrays import Bytes
 
 MOVED = "layer"  # what is dragged from row to row
@@ -118,6 +128,7 @@ def _row(
         actions.append(do(layering.point_at, identity))
     is_named = imgui.is_item_hovered() and imgui.is_mouse_double_clicked(imgui.MouseButton_.left)
     actions += _drag(look, project, figure, low, high)
+    _tell(figure)
     chosen, asks = _menu(project, figure)
     actions += chosen
     if is_named or asks or session.named_layer == identity:
@@ -132,6 +143,16 @@ def _row(
     _text(look, figure, left + (WIDE + GAP) * em, ImVec2(high.x, middle), is_seen=is_seen)
     imgui.set_cursor_screen_pos(after)
     return actions
+
+
+def _tell(figure: Figure) -> None:
+    """Explain a row, the last item, in a tooltip; its name may be longer than there is room for."""
+    if imgui.get_drag_drop_payload_py_id() is None and begin_tip():
+        imgui.text_unformatted(figure.name)
+        imgui.text_disabled(
+            "Drag it to change the order, double-click to rename it, right click for more"
+        )
+        imgui.end_tooltip()
 
 
 def _switches(look: Look, figure: Figure) -> list[Action]:
