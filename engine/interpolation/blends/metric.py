@@ -21,8 +21,9 @@ from engine.interpolation.periods import Residual
 from engine.maps import Bounds, derivatives_of
 from engine.paths import IntegrationPaths
 
-TOLERANCE = 1e-10  # of the series' last terms, in ln |f_z|
-LEFT_OUT = 1e-8  # of the modes, in ln |f_z|: two digits more than the points' places need
+TOLERANCE = 1e-9  # of the series' last terms, in ln |f_z|
+# Of the modes, in ln |f_z| and over all nodes: of places it is felt in the ninth digit.
+LEFT_OUT = 3e-7
 # Last Legendre coefficients of the residual on a panel, in ln |f_z|, up to which it may stay; the
 # times at which they are looked at; and how often a panel may be halved.
 RESOLVED, LOOKED_AT, MOST_HALVINGS = 5e-4, (0.03, 0.25, 0.5, 0.75, 0.97), 8
