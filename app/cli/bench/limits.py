@@ -1,8 +1,9 @@
 """The deformer at its limits: hard requests, and how they come to rest; it takes many minutes."""
 
+import json
 import time
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import cycle, pairwise
 
 import numpy as np
@@ -33,15 +34,19 @@ ROW_OF_BOUNDS = (
     Bounds(k=0.95, sigma_a=20.0, sigma_b=0.05),
 )
 DRAWINGS = ("bar", "s", "character", "giraffe")
+# Those that are followed through all of them, and those under which a drag is let go.
+ROWS_OF_REQUESTS = (0, 12, 24, 27, 36, 48, 60)
+RELEASED_BOUNDS = (ROW_OF_BOUNDS[1], ROW_OF_BOUNDS[2], Bounds())
 PATH_ROWS = 20
 # What is left of a motion that can be seen, of the diagonal.
 SEEN = 1e-4
 
 
 def tables() -> Iterator[Table]:
-    """Measure hard requests, and rows of bounds under them."""
+    """Measure hard requests, rows of bounds under them, and releases."""
     yield _hard_requests()
     yield _rows_of_bounds()
+    yield _releases()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -101,25 +106,52 @@ def _hard_requests() -> Table:
 
 def _rows_of_bounds() -> Table:
     """Widen the bounds under the same requests: the energy must not rise."""
-    rises = []
-    for request in list(_requests())[::12]:
+    requests = list(_requests())
+    chosen = {f"request {number}": requests[number] for number in ROWS_OF_REQUESTS}
+    rows = []
+    for name, request in {"the giraffe's bow": _bow(), **chosen}.items():
         energies = []
         for bounds in ROW_OF_BOUNDS:
-            deformer = _Request(
-                boundary=request.boundary,
-                bounds=bounds,
-                points=request.points,
-                targets=request.targets,
-            ).deformer()
+            deformer = replace(request, bounds=bounds).deformer()
             wish = deformer.handles.wish(request.targets)
             energies.append(_energy(deformer.settle(deformer.start(), wish)[0]))
-        rises.append(max(after / before - 1.0 for before, after in pairwise(energies)))
+        rise = max(after / before - 1.0 for before, after in pairwise(energies))
+        rows.append(_fact(f"largest rise of the energy, {name}", f"{max(rise, 0.0):.1e}"))
     return Table(
-        title=f"{len(rises)} requests under {len(ROW_OF_BOUNDS)} bounds, from tight to wide",
-        rows=tuple(
-            _fact(f"largest rise of the energy, request {number}", f"{max(rise, 0.0):.1e}")
-            for number, rise in enumerate(rises)
-        ),
+        title=f"{len(rows)} requests under {len(ROW_OF_BOUNDS)} bounds, from tight to wide",
+        rows=tuple(rows),
+    )
+
+
+def _releases() -> Table:
+    """Let go of a star that was pulled far, and wait until its outline is at rest."""
+    rows = []
+    for count in (50, 100):
+        boundary = star(count)
+        tips = 1.1 * np.exp(2j * np.pi * np.arange(5) / 5)
+        points = np.append(tips, 0.0)
+        targets = points + 0.4 * np.exp(2j * np.arange(6))
+        for bounds in RELEASED_BOUNDS:
+            request = _Request(boundary=boundary, bounds=bounds, points=points, targets=targets)
+            rows.append(
+                _fact(
+                    f"{count} cage vertices, k ≤ {bounds.k:g}",
+                    f"{_rest_after_release(request):.2f}",
+                )
+            )
+    return Table(title="Processor's seconds to rest after release", rows=tuple(rows))
+
+
+def _bow() -> _Request:
+    """Return the bow of the sample giraffe, its key of frame 30."""
+    script = json.loads((sample_images() / "giraffe.json").read_text(encoding="utf-8"))
+    bent = script["keys"][1]["targets"]
+    places = script["handles"]
+    return _Request(
+        boundary=_drawn("giraffe"),
+        bounds=Bounds(),
+        points=np.array([complex(*place) for place in places.values()]),
+        targets=np.array([complex(*bent.get(name, place)) for name, place in places.items()]),
     )
 
 
@@ -127,10 +159,7 @@ def _requests() -> Iterator[_Request]:
     """Yield six kinds of requests on each shape, under bounds that follow each other."""
     bounds = cycle(ROW_OF_BOUNDS[(5 * place) % 8] for place in range(8))
     shapes = [star(25), star(50)]
-    for name in DRAWINGS:
-        picture = decode_picture((sample_images() / f"{name}.png").read_bytes(), "")
-        domain, _ = build_domain(picture.rgba, triangles=1000, detail="coarse")
-        shapes.append(Boundary.sample(domain.outline, domain.cage))
+    shapes += [_drawn(name) for name in DRAWINGS]
     for number, boundary in enumerate(shapes):
         rng = np.random.default_rng(number)
         size = boundary.size
@@ -153,6 +182,12 @@ def _requests() -> Iterator[_Request]:
                 yield _Request(
                     boundary=boundary, bounds=next(bounds), points=places, targets=targets
                 )
+
+
+def _drawn(name: str) -> Boundary:
+    picture = decode_picture((sample_images() / f"{name}.png").read_bytes(), "")
+    domain, _ = build_domain(picture.rgba, triangles=1000, detail="coarse")
+    return Boundary.sample(domain.outline, domain.cage)
 
 
 def _inside(boundary: Boundary, rng: np.random.Generator) -> Complexes:
