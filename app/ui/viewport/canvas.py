@@ -297,7 +297,10 @@ def _twin_scene(session: Session, project: Project, scene: Scene, drawing: _Draw
     """Return the same scene by the method that is compared, without the poses around."""
     shows = {figure: puppet.twin.shown for figure, puppet in project.puppets.items() if puppet.twin}
     meshes = _posed(session, project, shows, drawing, number=TWIN)
-    return replace(scene, meshes=meshes, ghosts=())
+    twin = replace(scene, meshes=meshes, ghosts=())
+    # Handles are where the drawing's own method has them: beside it they would mark nothing.
+    is_beside = session.split is not None and session.split.beside
+    return replace(twin, lines=(), discs=()) if is_beside else twin
 
 
 def _posed(
