@@ -17,7 +17,8 @@ from app.cli.blas import use_one_thread
 CAMPAIGNS = {
     "kills": ("processes killed", 1200),
     "shapes": ("shapes", 500),
-    "readers": ("files tampered with", 22_000),
+    "soak": ("minutes in the window", 30),
+    "readers": ("files tampered with", 11_000),
 }
 
 

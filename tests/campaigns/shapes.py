@@ -80,8 +80,7 @@ def stress(
         wish = deformer.handles.wish(to)
         for _ in range(STEPS if keys < 50 else 1):
             state = deformer.step(state, wish)
-            if number < 3:
-                check_state(deformer, state, bounds)
+            check_state(deformer, state, bounds)
             shown += 1
         maps.append(state.map)
     frames, folds = in_betweens(maps, boundary.outline, vertices, shape.triangles, rng)

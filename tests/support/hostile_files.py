@@ -40,7 +40,7 @@ TRAVERSING = ("../../../../tmp/evil", "/etc/evil", "figures/../../evil", "a\0b",
 SIZES = (0, 1, 0x7FFFFFFF, 0x80000000, 0xFFFFFFFF, 0xFFFF, 0x00FFFFFF)
 RUNS = {"pickle.find_class", "subprocess.Popen", "os.system", "os.exec", "os.fork"}
 MOVES = {"socket.connect", "os.remove", "os.rename", "os.mkdir", "ctypes.dlopen"}
-BOMB = bytes(30_000_000)
+BOMB = bytes(4_000_000)
 
 Step = tuple[int, float, float, int]
 STEPS = st.lists(

@@ -5,6 +5,7 @@ the group's visibility and opacity.
 """
 
 import io
+import struct
 import zipfile
 import zlib
 from collections.abc import Iterator
@@ -30,7 +31,18 @@ LARGEST_XML = 4 * 1024 * 1024
 MOST_UNPACKED = 16 * 1024 * 1024
 LARGEST_SIDE = 65_535
 NORMAL = {"", "svg:src-over"}
-DAMAGE = (RuntimeError, NotImplementedError, zipfile.BadZipFile, zlib.error, EOFError, KeyError)
+DAMAGE = (
+    RuntimeError,
+    NotImplementedError,
+    zipfile.BadZipFile,
+    zlib.error,
+    struct.error,
+    EOFError,
+    KeyError,
+    ValueError,
+    OverflowError,
+    OSError,
+)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
