@@ -75,7 +75,7 @@ def stress(
     deformer = Deformer(boundary=boundary, handles=Handles.place(boundary, inside), bounds=bounds)
     size = np.ptp(outline.real) + np.ptp(outline.imag)
     state, shown, maps = deformer.start(), 0, []
-    for number in range(keys):
+    for _ in range(keys):
         to = inside + 0.4 * size * rng.normal(size=len(inside)) * np.exp(1j * rng.uniform(0, 6.3))
         wish = deformer.handles.wish(to)
         for _ in range(STEPS if keys < 50 else 1):
