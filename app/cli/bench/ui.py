@@ -53,7 +53,7 @@ def tables(extent: Extent | None = None) -> Iterator[Table]:
     extent = extent or Extent()
     yield _start(extent)
     with tempfile.TemporaryDirectory() as folder:
-        stage = _Driver(Path(folder))
+        stage = Driver(Path(folder))
         yield _opening(stage, extent)
         stage.settle()
         files.show(stage.session, Path(folder) / SAMPLE, _giraffe(extent.triangles))
@@ -66,7 +66,7 @@ def tables(extent: Extent | None = None) -> Iterator[Table]:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class _Frame:
+class Frame:
     """Seconds of a frame: by the clock until all of it was drawn, and of the interface alone."""
 
     whole: float
@@ -95,7 +95,7 @@ class _Screen(Offscreen):
         self.paint_seconds += time.thread_time() - begun
 
 
-class _Driver:
+class Driver:
     """The window that is measured, with a clock that can be put forward."""
 
     def __init__(self, folder: Path) -> None:
@@ -120,7 +120,7 @@ class _Driver:
             raise RuntimeError([toast.text for toast in self.session.toasts])
         return self.session.project
 
-    def frame(self, ahead: float = 0.0) -> _Frame:
+    def frame(self, ahead: float = 0.0) -> Frame:
         """Draw a frame, with the session's clock put forward before it."""
         self._ahead += ahead
         drawn = self._window.canvas_seconds + self._screen.paint_seconds
@@ -128,7 +128,7 @@ class _Driver:
         self._screen.frame(painted=True)
         whole, own = time.perf_counter() - begun, time.thread_time() - worked
         drawn = self._window.canvas_seconds + self._screen.paint_seconds - drawn
-        return _Frame(whole=whole, own=own - drawn)
+        return Frame(whole=whole, own=own - drawn)
 
     def until(self, is_true: Callable[[], bool]) -> None:
         """Draw frames, as a screen would show them, until something is true."""
@@ -138,7 +138,7 @@ class _Driver:
                 raise TimeoutError(f"the window did not get on: {self.session.jobs.kinds}")
             self.refresh()
 
-    def refresh(self) -> _Frame:
+    def refresh(self) -> Frame:
         """Draw a frame, and wait until a screen would show the next one."""
         due = time.perf_counter() + REFRESH
         frame = self.frame()
@@ -197,7 +197,7 @@ def _open_window() -> list[float]:
     return times
 
 
-def _opening(stage: _Driver, extent: Extent) -> Table:
+def _opening(stage: Driver, extent: Extent) -> Table:
     """Measure from a dropped picture to a drag."""
     stage.session.meshing = Meshing(triangles=extent.triangles)
     times = [_open_and_drag(stage, sample_images() / PICTURE) for _ in range(extent.repeats)]
@@ -216,7 +216,7 @@ def _opening(stage: _Driver, extent: Extent) -> Table:
     )
 
 
-def _open_and_drag(stage: _Driver, path: Path) -> tuple[float, float]:
+def _open_and_drag(stage: Driver, path: Path) -> tuple[float, float]:
     session = stage.session
     stage.mouse(0j)
     session.project = None
@@ -260,34 +260,35 @@ def _giraffe(triangles: int) -> files.Opened:
     return files.Opened(document, {figure.id: puppet}, ())
 
 
-def _frames(stage: _Driver, extent: Extent) -> Iterator[Table]:
+def _frames(stage: Driver, extent: Extent) -> Iterator[Table]:
     """Measure frames of everything that a person does."""
     count = extent.frames
     runs = {
         "nothing moves": _still(stage, count),
-        "playing, metric": _playing(stage, count),
+        "playing, metric": playing(stage, count),
         "scrubbing": _scrubbing(stage, count),
-        "dragging a handle": _dragging(stage, count),
+        "dragging a handle": dragging(stage, count),
     }
     triangles = len(stage.project.figure.domain.mesh.triangles)
     what = f"{triangles:,} triangles, {SIZE[0]} × {SIZE[1]} pixels"
     yield Table(
         title=f"A frame by the clock until all of it is drawn: {what}, {stage.device}",
-        rows=tuple(_row(name, [frame.whole for frame in run]) for name, run in runs.items()),
+        rows=tuple(row_of(name, [frame.whole for frame in run]) for name, run in runs.items()),
     )
     for title in TABS:
         stage.show_tab(title)
         runs |= {
             f"{title} in front, nothing moves": _still(stage, count // 2),
-            f"{title} in front, playing": _playing(stage, count // 2),
+            f"{title} in front, playing": playing(stage, count // 2),
         }
     yield Table(
         title=f"The interface's own part of a frame, processor time of its thread: {what}",
-        rows=tuple(_row(name, [frame.own for frame in run]) for name, run in runs.items()),
+        rows=tuple(row_of(name, [frame.own for frame in run]) for name, run in runs.items()),
     )
 
 
-def _row(name: str, times: Sequence[float]) -> Row:
+def row_of(name: str, times: Sequence[float]) -> Row:
+    """Return the median of the times of frames, and what most of them keep."""
     return Row(
         name=name,
         seconds=statistics.median(times),
@@ -299,12 +300,12 @@ def _ms(seconds: float) -> str:
     return f"{1e3 * seconds:.1f} ms"
 
 
-def _still(stage: _Driver, count: int) -> list[_Frame]:
+def _still(stage: Driver, count: int) -> list[Frame]:
     stage.settle()
     return [stage.frame() for _ in range(count)]
 
 
-def _playing(stage: _Driver, count: int) -> list[_Frame]:
+def playing(stage: Driver, count: int) -> list[Frame]:
     """Play so that each frame of the window shows another one of the animation."""
     stage.ask(playback.toggle_play)
     stage.settle()
@@ -314,7 +315,7 @@ def _playing(stage: _Driver, count: int) -> list[_Frame]:
     return frames
 
 
-def _scrubbing(stage: _Driver, count: int) -> list[_Frame]:
+def _scrubbing(stage: Driver, count: int) -> list[Frame]:
     frames = []
     for number in range(count):
         stage.ask(playback.scrub, number % stage.project.document.frames.last)
@@ -322,7 +323,7 @@ def _scrubbing(stage: _Driver, count: int) -> list[_Frame]:
     return frames
 
 
-def _dragging(stage: _Driver, count: int) -> list[_Frame]:
+def dragging(stage: Driver, count: int) -> list[Frame]:
     """Drag, with the solver at work beside."""
     drag = _Drag(stage)
     frames = []
@@ -336,7 +337,7 @@ def _dragging(stage: _Driver, count: int) -> list[_Frame]:
 class _Drag:
     """The first handle, pulled around by the mouse in the first frame of the animation."""
 
-    def __init__(self, stage: _Driver) -> None:
+    def __init__(self, stage: Driver) -> None:
         self._stage = stage
         self._project = stage.project
         stage.ask(playback.scrub, self._project.figure.keys[0].frame)
@@ -383,7 +384,7 @@ class _Drag:
         self._stage.settle()
 
 
-def _release(stage: _Driver, extent: Extent) -> Table:
+def _release(stage: Driver, extent: Extent) -> Table:
     """Measure from letting a handle go to a pose that rests, and to the in-betweens around it."""
     times: list[list[float]] = []
     for number in range(extent.repeats):
@@ -406,7 +407,7 @@ def _release(stage: _Driver, extent: Extent) -> Table:
         "until they are exact in full detail",
     )
     rows = (
-        _row(name, column) for name, column in zip(names, zip(*times, strict=True), strict=True)
+        row_of(name, column) for name, column in zip(names, zip(*times, strict=True), strict=True)
     )
     return Table(title="From the release of a handle", rows=tuple(rows))
 
@@ -468,7 +469,7 @@ def _is_fine(project: Project) -> bool:
     return fine is not None and fine.knows(project.clip)
 
 
-def _latency(stage: _Driver, extent: Extent) -> Table:
+def _latency(stage: Driver, extent: Extent) -> Table:
     """Measure from a move of the pointer to the first picture of a pose that was solved for it."""
     drag = _Drag(stage)
     sent: list[tuple[Target | None, float]] = []
@@ -489,7 +490,7 @@ def _latency(stage: _Driver, extent: Extent) -> Table:
     return Table(
         title="From a move of the pointer to a picture that follows it, at 60 frames a second",
         rows=(
-            _row("time until that picture is drawn", seconds),
+            row_of("time until that picture is drawn", seconds),
             Row(
                 name="frames, the one that takes the move included",
                 seconds=None,

@@ -2,7 +2,7 @@
 
 import argparse
 
-PARTS = ("domain", "deform", "interpolate", "streaming", "methods", "export", "ui")
+PARTS = ("domain", "deform", "interpolate", "streaming", "methods", "export", "ui", "scenes")
 # Only when they are asked for: they take many minutes.
 LONG_PARTS = ("limits",)
 

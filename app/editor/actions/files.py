@@ -144,7 +144,7 @@ def open_together(session: Session, paths: Sequence[Path]) -> None:
     session.jobs.put(
         Job(
             kind=f"{OPENING} {len(paths)} pictures",
-            work=lambda: _scene(open_pictures(paths, meshing)),
+            work=lambda: with_puppets(open_pictures(paths, meshing)),
             done=lambda opened: saving.unless_unsaved(session, do(show, paths[0], opened)),
             failed=lambda error: report(session, "The pictures cannot be opened", error),
         )
@@ -240,7 +240,8 @@ def _foremost(document: Document) -> int:
     )
 
 
-def _scene(opened: OpenedScene) -> Opened:
+def with_puppets(opened: OpenedScene) -> Opened:
+    """Return a scene with its figures as a window has them."""
     return Opened(opened.document, _puppets(opened.document, opened.pictures), opened.notices)
 
 
@@ -253,7 +254,7 @@ def _puppets(document: Document, pictures: Mapping[int, Picture]) -> dict[int, P
 
 def _read(path: Path, meshing: Meshing) -> Opened:
     if is_layered(path):
-        return _scene(open_layered(path, meshing))
+        return with_puppets(open_layered(path, meshing))
     is_project = path.suffix.lower() == PROJECT
     return _read_project(path) if is_project else _read_picture(path, meshing)
 

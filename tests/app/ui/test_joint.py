@@ -4,12 +4,14 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from documents import differences
 from layered import openraster
 from PIL import Image, ImageDraw
 
-from app.document import figure_commands, key_commands
+from app.document import clip_of, figure_commands, fronts_at, key_commands, layer_commands
 from app.editor import layering
-from app.editor.actions import editing, playback, posing
+from app.editor.actions import editing, files, playback, posing
+from app.storage import Autosave, Origin
 from app.ui.style import PALETTES
 from app.ui.viewport.marks import find_anchor
 
@@ -199,3 +201,35 @@ def test_a_handle_that_is_the_anchor_is_dragged_onto_another_layer_with_ctrl(win
     window.act(editing.undo)
     drag(key=window.Key.mod_ctrl)
     assert scene.figure.anchor is None
+
+
+def test_unsaved_work_comes_back_with_its_joints_and_depths(window, scene, drag, tmp_path):
+    arm, body = identity(scene, "arm"), identity(scene, "body")
+    drag(SHOULDER)
+    window.act(posing.add_handle, PALM)
+    window.settle()
+    hand = scene.figure.handles[0].id
+    window.act(editing.edit, layer_commands.set_front(arm, hand, -0.5, 70.0))
+    figure = scene.document.figure(body)
+    pose = figure.keys[0].pose
+    turned = replace(pose, phi=90 + (figure.domain.cage - 90) * np.exp(-0.4j))
+    window.act(editing.edit, key_commands.insert_key(body, 12, turned))
+    window.act(editing.edit, key_commands.insert_key(arm, 12, scene.figure.keys[0].pose))
+    window.act(editing.edit, layer_commands.key_front(arm, 12, hand, 1.0))
+    window.act(playback.seek, 6)
+    window.settle()
+    was = {name: on_scene(scene, name) for name in LAYERS}
+    # As another window left it that ended unexpectedly.
+    Autosave(tmp_path).write(scene.document, Origin("man", None))
+    (kept,) = tmp_path.glob("unsaved-*.lissom")
+    window.session.project = None
+    window.act(files.recover, kept)
+    window.settle()
+    again = window.session.project
+    assert not differences(again.document, scene.document)
+    window.act(playback.seek, 6)
+    window.settle()
+    for name, places in was.items():
+        np.testing.assert_allclose(on_scene(again, name), places, rtol=0, atol=1e-3)
+    clip = clip_of(again.document, arm)
+    assert [fronts_at(clip, frame)[0].depth for frame in (6, 12)] == [-0.5, 1.0]

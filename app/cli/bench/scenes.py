@@ -1,0 +1,155 @@
+"""Scenes: opening a drawing on many layers, and many figures beside one of as many triangles."""
+
+import io
+import resource
+import tempfile
+import time
+import tracemalloc
+import zipfile
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+from PIL import Image, ImageDraw
+
+from app.cli.bench.table import Row, Table
+from app.cli.bench.ui import Driver, dragging, playing, row_of
+from app.document import Document, Figure, Meshing, clip_of
+from app.editor import Puppet
+from app.editor.actions import files
+from app.motion import prepare_motion
+from app.storage import Picture, decode_picture, load_project, open_layered, sample_images
+from engine.domain import mesh_inside
+
+SAMPLE = "giraffe.lissom"
+ARMS = 5
+GRAIN = 6  # levels: flat colours would be read too fast
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Extent:
+    """How much is measured: layers and their sides, figures, triangles of each, and frames."""
+
+    layers: int = 20
+    side: int = 2_000
+    figures: int = 10
+    triangles: int = 20_000
+    frames: int = 40
+
+
+def tables(extent: Extent | None = None) -> Iterator[Table]:
+    """Measure scenes as a window has them, without a display."""
+    extent = extent or Extent()
+    with tempfile.TemporaryDirectory() as folder:
+        yield _opening(Path(folder), extent)
+        yield _beside_one(Path(folder), extent)
+    yield _memory(extent)
+
+
+def _opening(folder: Path, extent: Extent) -> Table:
+    """Measure from a file on the disk to figures that can be drawn."""
+    path = folder / "scene.ora"
+    _write_drawing(path, extent)
+    begun = time.perf_counter()
+    opened = open_layered(path, Meshing())
+    read = time.perf_counter() - begun
+    files.with_puppets(opened)
+    shown = time.perf_counter() - begun
+    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 2**20
+    return Table(
+        title=f"Opening an .ora of {extent.layers} layers of {extent.side:,} pixels, on all cores",
+        rows=(
+            Row(name="read, outlined and triangulated", seconds=read),
+            Row(name="and ready to be drawn", seconds=shown),
+            Row(name="peak memory", seconds=None, note=f"{peak:.2f} GiB of the whole process"),
+        ),
+    )
+
+
+def _write_drawing(path: Path, extent: Extent) -> None:
+    """Write a drawing of bodies with arms, each on a layer of the size of the canvas."""
+    rng = np.random.default_rng(0)
+    side = extent.side
+    with zipfile.ZipFile(path, "w") as archive:
+        archive.writestr("mimetype", "image/openraster")
+        names = [f"data/{number}.png" for number in range(extent.layers)]
+        stack = "".join(f'<layer name="{name}" src="{name}"/>' for name in names)
+        archive.writestr(
+            "stack.xml", f'<image w="{side}" h="{side}"><stack>{stack}</stack></image>'
+        )
+        for name in names:
+            image = Image.new("L", (side, side))
+            draw = ImageDraw.Draw(image)
+            middle = side * (0.5 + 0.1 * rng.normal()) * (1 + 1j)
+            for turn in 2 * np.pi * (rng.random() + np.arange(ARMS)) / ARMS:
+                end = middle + 0.3 * side * np.exp(1j * turn)
+                ends = (middle.real, middle.imag, end.real, end.imag)
+                draw.line(ends, fill=255, width=round(0.07 * side))
+            radius = 0.12 * side * (1 + 1j)
+            low, high = middle - radius, middle + radius
+            draw.ellipse((low.real, low.imag, high.real, high.imag), fill=255)
+            alpha = np.asarray(image)[..., None]
+            grain = rng.integers(0, GRAIN, (side, side, 3), dtype=np.uint8)
+            colours = (rng.integers(40, 200, 3, dtype=np.uint8) + grain) * (alpha > 0)
+            file = io.BytesIO()
+            Image.fromarray(np.dstack([colours, alpha])).save(file, "PNG")
+            archive.writestr(name, file.getvalue())
+
+
+def _beside_one(folder: Path, extent: Extent) -> Table:
+    """Play and drag one figure, and then several of as many triangles together."""
+    stage = Driver(folder)
+    rows = []
+    for count, triangles in (
+        (1, extent.figures * extent.triangles),
+        (extent.figures, extent.triangles),
+    ):
+        document, picture = _giraffes(count, triangles)
+        puppets = {
+            each.id: Puppet.of(clip_of(document, each.id), picture) for each in document.figures
+        }
+        files.show(stage.session, folder / SAMPLE, files.Opened(document, puppets, ()))
+        stage.settle()
+        what = f"{count} of {triangles:,} triangles"
+        rows += [
+            (f"{way}, {what}", [frame.whole for frame in run(stage, extent.frames)])
+            for way, run in (("playing", playing), ("dragging", dragging))
+        ]
+    return Table(
+        title=f"A frame by the clock until all of it is drawn, {stage.device}",
+        rows=tuple(row_of(*rows[place]) for place in (0, 2, 1, 3)),
+    )
+
+
+def _giraffes(count: int, triangles: int) -> tuple[Document, Picture]:
+    """Return so many animated giraffes, each with a mesh of its own."""
+    document = load_project(sample_images() / SAMPLE)
+    first = document.figures[0]
+
+    def copy(number: int) -> Figure:
+        mesh = mesh_inside(*first.domain.loops, triangles=triangles)
+        domain = replace(first.domain, mesh=mesh)
+        return replace(first, id=number, name=f"giraffe {number}", domain=domain)
+
+    figures = tuple(copy(number) for number in range(count))
+    picture = decode_picture(first.picture.data, SAMPLE)
+    return replace(document, figures=figures), picture
+
+
+def _memory(extent: Extent) -> Table:
+    """Tell what figures take with their in-betweens, beside the picture that they share."""
+    rows = []
+    for count in sorted({1, max(1, extent.figures // 2), extent.figures}):
+        document, picture = _giraffes(count, extent.triangles)
+        tracemalloc.start()
+        kept = []
+        for figure in document.figures:
+            clip = clip_of(document, figure.id)
+            puppet = Puppet.of(clip, picture)
+            kept.append(prepare_motion(clip, puppet.coarse.value))
+        used = tracemalloc.get_traced_memory()[0] / 2**20
+        tracemalloc.stop()
+        note = f"{used:.1f} MiB, {used / count:.1f} each"
+        rows.append(Row(name=f"{count} of {extent.triangles:,} triangles", seconds=None, note=note))
+    return Table(title="Memory of figures with their in-betweens", rows=tuple(rows))
