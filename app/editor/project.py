@@ -183,12 +183,16 @@ class Puppet:
     twin: Twin | None = None
 
     @classmethod
-    def of(cls, clip: Clip, picture: Picture) -> Self:
-        """Return a figure as the window has it at first: its keys are shown; in-betweens follow."""
+    def of(cls, clip: Clip, picture: Picture, *, among: int = 1) -> Self:
+        """Return a figure as the window has it at first: its keys are shown; in-betweens follow.
+
+        `among` tells how many figures there are.
+        """
+        coarse = PosableMesh.coarse(clip.figure.domain, among=among)
         return cls(
             picture=picture,
             is_opaque=picture.is_opaque,
-            coarse=Derived(Motion.at_rest(clip, PosableMesh.coarse(clip.figure.domain))),
+            coarse=Derived(Motion.at_rest(clip, coarse)),
             cut=Derived(cut_picture(picture, clip.figure.cut_out), clip.figure.cut_out),
         )
 

@@ -11,8 +11,10 @@ from engine.domain import Domain
 from engine.domain.meshing import Mesh, in_order_of, triangulate
 from engine.maps import Span
 
-# Triangles of the mesh that is shown while the full one would be too slow.
+# Triangles of the meshes, of all figures together, that are shown while the full ones would be too
+# slow; and of each, however many share them.
 COARSE_TRIANGLES = 12_000
+FEWEST_TRIANGLES = 4_000
 EDGE = 1e-6  # barycentric weights that rounding may lack of 0
 
 
@@ -76,11 +78,19 @@ class PosableMesh:
         return cls(domain=source, source=source, coordinates=_coordinates(source))
 
     @classmethod
-    def coarse(cls, source: Domain) -> "PosableMesh":
-        """Return a coarse mesh of the same domain, or the figure's own if that is as coarse."""
-        if len(source.mesh.triangles) <= COARSE_TRIANGLES:
+    def coarse(cls, source: Domain, *, among: int = 1) -> "PosableMesh":
+        """Return a coarse mesh of the same domain, or the figure's own if that is as coarse.
+
+        Parameters
+        ----------
+        source : Domain
+        among : int
+            How many figures are drawn together.
+        """
+        wanted = max(FEWEST_TRIANGLES, COARSE_TRIANGLES // among)
+        if len(source.mesh.triangles) <= wanted:
             return cls.fine(source)
-        mesh = triangulate(source.outline, COARSE_TRIANGLES, holes=source.loops[1:])
+        mesh = triangulate(source.outline, wanted, holes=source.loops[1:])
         coarse = replace(source, mesh=in_order_of(mesh, source.mesh))
         return cls(domain=coarse, source=source, coordinates=_coordinates(coarse))
 

@@ -1,6 +1,7 @@
 """Scenes: opening a drawing on many layers, and many figures beside one of as many triangles."""
 
 import io
+import math
 import resource
 import tempfile
 import time
@@ -15,12 +16,13 @@ from PIL import Image, ImageDraw
 
 from app.cli.bench.table import Row, Table
 from app.cli.bench.ui import Driver, dragging, playing, row_of
-from app.document import Document, Figure, Meshing, clip_of
+from app.document import Document, Figure, Meshing, PictureFile, Pose, Variant, clip_of
 from app.editor import Puppet
 from app.editor.actions import files
 from app.motion import prepare_motion
 from app.storage import Picture, decode_picture, load_project, open_layered, sample_images
-from engine.domain import mesh_inside
+from engine.arrays import Complexes
+from engine.domain import Domain, mesh_inside
 
 SAMPLE = "giraffe.lissom"
 ARMS = 5
@@ -107,7 +109,8 @@ def _beside_one(folder: Path, extent: Extent) -> Table:
     ):
         document, picture = _giraffes(count, triangles)
         puppets = {
-            each.id: Puppet.of(clip_of(document, each.id), picture) for each in document.figures
+            each.id: Puppet.of(clip_of(document, each.id), picture, among=count)
+            for each in document.figures
         }
         files.show(stage.session, folder / SAMPLE, files.Opened(document, puppets, ()))
         stage.settle()
@@ -123,18 +126,61 @@ def _beside_one(folder: Path, extent: Extent) -> Table:
 
 
 def _giraffes(count: int, triangles: int) -> tuple[Document, Picture]:
-    """Return so many animated giraffes, each with a mesh of its own."""
+    """Return so many animated giraffes side by side, which together are as large as one."""
     document = load_project(sample_images() / SAMPLE)
     first = document.figures[0]
+    scale = 1 / math.ceil(math.sqrt(count))
+    small = Image.fromarray(decode_picture(first.picture.data, SAMPLE).rgba)
+    small = small.resize([round(scale * side) for side in small.size])
+    data = io.BytesIO()
+    small.save(data, "PNG")
+    file = PictureFile(data=data.getvalue(), suffix=".png", size=small.size)
+    figures = tuple(
+        _smaller(first, file, scale, number, triangles=triangles) for number in range(count)
+    )
+    changed = replace(document, figures=figures, size=document.canvas)
+    return changed, decode_picture(file.data, SAMPLE)
 
-    def copy(number: int) -> Figure:
-        mesh = mesh_inside(*first.domain.loops, triangles=triangles)
-        domain = replace(first.domain, mesh=mesh)
-        return replace(first, id=number, name=f"giraffe {number}", domain=domain)
 
-    figures = tuple(copy(number) for number in range(count))
-    picture = decode_picture(first.picture.data, SAMPLE)
-    return replace(document, figures=figures), picture
+def _smaller(
+    figure: Figure, file: PictureFile, scale: float, number: int, *, triangles: int
+) -> Figure:
+    """Return a figure of this number, with a mesh of its own, in its place among others."""
+    row, column = divmod(number, round(1 / scale))
+    corner = complex(column * file.size[0], row * file.size[1])
+
+    def place(points: Complexes) -> Complexes:
+        return scale * points + corner
+
+    def pose(full: Pose) -> Pose:
+        targets = {
+            identity: replace(target, position=scale * target.position + corner)
+            for identity, target in full.targets.items()
+        }
+        return replace(full, phi=place(full.phi), psi=scale * full.psi, targets=targets)
+
+    outline = place(figure.domain.outline)
+    domain = Domain(
+        outline=outline,
+        cage=place(figure.domain.cage),
+        mesh=mesh_inside(outline, triangles=triangles),
+    )
+    return replace(
+        figure,
+        id=number,
+        name=f"giraffe {number}",
+        picture=file,
+        corner=corner,
+        domain=domain,
+        anchor=None if figure.anchor is None else scale * figure.anchor + corner,
+        handles=tuple(
+            replace(handle, position=scale * handle.position + corner) for handle in figure.handles
+        ),
+        keys=tuple(replace(key, pose=pose(key.pose)) for key in figure.keys),
+        library=(),
+        # Whose in-betweens are soon prepared; frames take no longer with others.
+        variant=Variant.NU,
+    )
 
 
 def _memory(extent: Extent) -> Table:

@@ -240,7 +240,9 @@ def follow_figures(project: Project) -> None:
             decoded = decode_picture(figure.picture.data, figure.name)
             project.pictures[figure.picture] = decoded
         picture = project.pictures[figure.picture]
-        project.puppets[figure.id] = Puppet.of(clip_of(document, figure.id), picture)
+        project.puppets[figure.id] = Puppet.of(
+            clip_of(document, figure.id), picture, among=len(document.figures)
+        )
     if project.active not in project.puppets:
         posable = [figure.id for figure in document.figures if not figure.still]
         project.active = (posable or [figure.id for figure in document.figures])[-1]

@@ -247,7 +247,10 @@ def with_puppets(opened: OpenedScene) -> Opened:
 
 def _puppets(document: Document, pictures: Mapping[int, Picture]) -> dict[int, Puppet]:
     made = side_by_side(
-        lambda identity: Puppet.of(clip_of(document, identity), pictures[identity]), pictures
+        lambda identity: Puppet.of(
+            clip_of(document, identity), pictures[identity], among=len(document.figures)
+        ),
+        pictures,
     )
     return dict(zip(pictures, made, strict=True))
 

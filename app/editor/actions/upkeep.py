@@ -105,7 +105,8 @@ def missing(session: Session, project: Project) -> Iterator[Derivation[Any, Any]
             # Where nobody sees them before the hand rests, they are not worked out for each move.
             is_seen = session.overlays.onion or project.posing is None
             if is_seen or posing.POSING not in session.jobs.kinds:
-                yield _sketch(clip, puppet, whole=project.posing is not None)
+                among = len(project.document.figures)
+                yield _sketch(clip, puppet, whole=project.posing is not None, among=among)
             return
     yield from _settle(session, project)
     if project.is_posing:
@@ -159,13 +160,13 @@ def _shrink(project: Project) -> Iterator[Derivation[Cut, Bytes | None]]:
             )
 
 
-def _sketch(clip: Clip, puppet: Puppet, *, whole: bool) -> Derivation[Clip, Motion]:
+def _sketch(clip: Clip, puppet: Puppet, *, whole: bool, among: int) -> Derivation[Clip, Motion]:
     earlier = puppet.coarse.value
     return Derivation(
         kind=SKETCHING,
         into=puppet.coarse,
         source=clip,
-        work=lambda: _coarse_motion(clip, earlier, whole=whole),
+        work=lambda: _coarse_motion(clip, earlier, whole=whole, among=among),
         complaint="The in-betweens of these keys cannot be made",
     )
 
@@ -385,10 +386,10 @@ def _has_fine(clip: Clip, puppet: Puppet) -> bool:
     return is_own or (fine is not None and fine.knows(clip))
 
 
-def _coarse_motion(clip: Clip, earlier: Motion, *, whole: bool) -> Motion:
+def _coarse_motion(clip: Clip, earlier: Motion, *, whole: bool, among: int) -> Motion:
     domain = clip.figure.domain
     if earlier.mesh.source is not domain:
-        earlier = Motion.at_rest(clip, PosableMesh.coarse(domain))
+        earlier = Motion.at_rest(clip, PosableMesh.coarse(domain, among=among))
     # An interval at a time, so that what is wanted next need not wait long; all at once where the
     # hand has changed those around one key, and the ghosts are to stay together.
     return prepare_motion(clip, earlier, at_most=None if whole else 1)
