@@ -30,7 +30,7 @@ GRAIN = 6  # levels: flat colours would be read too fast
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Extent:
+class SceneExtent:
     """How much is measured: layers and their sides, figures, triangles of each, and frames."""
 
     layers: int = 20
@@ -40,16 +40,16 @@ class Extent:
     frames: int = 40
 
 
-def tables(extent: Extent | None = None) -> Iterator[Table]:
+def tables(extent: SceneExtent | None = None) -> Iterator[Table]:
     """Measure scenes as a window has them, without a display."""
-    extent = extent or Extent()
+    extent = extent or SceneExtent()
     with tempfile.TemporaryDirectory() as folder:
         yield _opening(Path(folder), extent)
         yield _beside_one(Path(folder), extent)
     yield _memory(extent)
 
 
-def _opening(folder: Path, extent: Extent) -> Table:
+def _opening(folder: Path, extent: SceneExtent) -> Table:
     """Measure from a file on the disk to figures that can be drawn."""
     path = folder / "scene.ora"
     _write_drawing(path, extent)
@@ -69,7 +69,7 @@ def _opening(folder: Path, extent: Extent) -> Table:
     )
 
 
-def _write_drawing(path: Path, extent: Extent) -> None:
+def _write_drawing(path: Path, extent: SceneExtent) -> None:
     """Write a drawing of bodies with arms, each on a layer of the size of the canvas."""
     rng = np.random.default_rng(0)
     side = extent.side
@@ -99,7 +99,7 @@ def _write_drawing(path: Path, extent: Extent) -> None:
             archive.writestr(name, file.getvalue())
 
 
-def _beside_one(folder: Path, extent: Extent) -> Table:
+def _beside_one(folder: Path, extent: SceneExtent) -> Table:
     """Play and drag one figure, and then several of as many triangles together."""
     stage = Driver(folder)
     rows = []
@@ -183,7 +183,7 @@ def _smaller(
     )
 
 
-def _memory(extent: Extent) -> Table:
+def _memory(extent: SceneExtent) -> Table:
     """Tell what figures take with their in-betweens, beside the picture that they share."""
     rows = []
     for count in sorted({1, max(1, extent.figures // 2), extent.figures}):

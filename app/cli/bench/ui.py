@@ -66,7 +66,7 @@ def tables(extent: Extent | None = None) -> Iterator[Table]:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Frame:
+class _Frame:
     """Seconds of a frame: by the clock until all of it was drawn, and of the interface alone."""
 
     whole: float
@@ -120,7 +120,7 @@ class Driver:
             raise RuntimeError([toast.text for toast in self.session.toasts])
         return self.session.project
 
-    def frame(self, ahead: float = 0.0) -> Frame:
+    def frame(self, ahead: float = 0.0) -> _Frame:
         """Draw a frame, with the session's clock put forward before it."""
         self._ahead += ahead
         drawn = self._window.canvas_seconds + self._screen.paint_seconds
@@ -128,7 +128,7 @@ class Driver:
         self._screen.frame(painted=True)
         whole, own = time.perf_counter() - begun, time.thread_time() - worked
         drawn = self._window.canvas_seconds + self._screen.paint_seconds - drawn
-        return Frame(whole=whole, own=own - drawn)
+        return _Frame(whole=whole, own=own - drawn)
 
     def until(self, is_true: Callable[[], bool]) -> None:
         """Draw frames, as a screen would show them, until something is true."""
@@ -138,7 +138,7 @@ class Driver:
                 raise TimeoutError(f"the window did not get on: {self.session.jobs.kinds}")
             self.refresh()
 
-    def refresh(self) -> Frame:
+    def refresh(self) -> _Frame:
         """Draw a frame, and wait until a screen would show the next one."""
         due = time.perf_counter() + REFRESH
         frame = self.frame()
@@ -300,12 +300,12 @@ def _ms(seconds: float) -> str:
     return f"{1e3 * seconds:.1f} ms"
 
 
-def _still(stage: Driver, count: int) -> list[Frame]:
+def _still(stage: Driver, count: int) -> list[_Frame]:
     stage.settle()
     return [stage.frame() for _ in range(count)]
 
 
-def playing(stage: Driver, count: int) -> list[Frame]:
+def playing(stage: Driver, count: int) -> list[_Frame]:
     """Play so that each frame of the window shows another one of the animation."""
     stage.ask(playback.toggle_play)
     stage.settle()
@@ -315,7 +315,7 @@ def playing(stage: Driver, count: int) -> list[Frame]:
     return frames
 
 
-def _scrubbing(stage: Driver, count: int) -> list[Frame]:
+def _scrubbing(stage: Driver, count: int) -> list[_Frame]:
     frames = []
     for number in range(count):
         stage.ask(playback.scrub, number % stage.project.document.frames.last)
@@ -323,7 +323,7 @@ def _scrubbing(stage: Driver, count: int) -> list[Frame]:
     return frames
 
 
-def dragging(stage: Driver, count: int) -> list[Frame]:
+def dragging(stage: Driver, count: int) -> list[_Frame]:
     """Drag, with the solver at work beside."""
     drag = _Drag(stage)
     frames = []
@@ -412,7 +412,7 @@ def _release(stage: Driver, extent: Extent) -> Table:
     return Table(title="From the release of a handle", rows=tuple(rows))
 
 
-def _playhead(stage: _Driver, extent: Extent) -> Table:
+def _playhead(stage: Driver, extent: Extent) -> Table:
     """Measure from moving the playhead, as soon as a handle is let go, to the exact in-between."""
     project = stage.project
     times, rough = [], []
@@ -436,7 +436,7 @@ def _playhead(stage: _Driver, extent: Extent) -> Table:
     return Table(
         title="From moving the playhead between keys, as a handle is let go",
         rows=(
-            _row("until the exact in-between is drawn", times),
+            row_of("until the exact in-between is drawn", times),
             Row(
                 name="pictures before it, rough ones between the right keys",
                 seconds=None,

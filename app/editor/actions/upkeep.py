@@ -185,7 +185,8 @@ def _settle(session: Session, project: Project) -> Iterator[Derivation[Clip, Mot
         posing.take_settled(session, project, settling, pose)
         puppet.coarse.take(clip, motion)
 
-    yield replace(_sketch(clip, puppet, whole=True), done=done)
+    among = len(project.document.figures)
+    yield replace(_sketch(clip, puppet, whole=True, among=among), done=done)
 
 
 def _trace(session: Session, project: Project) -> Iterator[Derivation[Any, Any]]:
