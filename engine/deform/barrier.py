@@ -54,30 +54,30 @@ class Barrier:
 
     def slacks(self, a: Floats, b: Floats) -> Floats:
         """Return u − b (3, m) of each bound, positive within the walls."""
-        u, _ = self.distances(a)
+        u = self.distances(a)
         slacks: Floats = u - b
         return slacks
 
     def margins(self, a: Floats, b: Floats) -> Floats:
         """Return c = u² − b² (3, m) of each bound, positive within the walls."""
-        u, _ = self.distances(a)
+        u = self.distances(a)
         margins: Floats = (u - b) * (u + b)
         return margins
 
     def margin_changes(self, a: Floats, b: Floats, da: Floats, db: Floats) -> Floats:
         """Return the change of c (3, m), to first order, for changes of a and b."""
-        u, u_a = self.distances(a)
+        u, u_a = self.distances(a), self._slopes()
         changes: Floats = 2.0 * (u * u_a * da - b * db)
         return changes
 
     def margin_gradient(self, a: Floats, factors: Floats) -> tuple[Floats, Floats]:
         """Return the derivatives (m,) of Σ factor · c over the bounds: by a, and by b over b."""
-        u, u_a = self.distances(a)
+        u, u_a = self.distances(a), self._slopes()
         return (2.0 * factors * u * u_a).sum(axis=0), (-2.0 * factors).sum(axis=0)
 
     def value(self, a: Floats, b: Floats) -> Floats:
         """Return the barrier at each sample; ∞ everywhere where one sample is not within."""
-        u, _ = self.distances(a)
+        u = self.distances(a)
         if not np.all(u > b):
             return np.full(np.shape(a), np.inf)
         density: Floats = -self.weight * np.log((u - b) * (u + b)).sum(axis=0)
@@ -85,7 +85,7 @@ class Barrier:
 
     def derivatives(self, a: Floats, b: Floats) -> Radial:
         """Return the derivatives of the barrier, strictly within the walls."""
-        u, u_a = self.distances(a)
+        u, u_a = self.distances(a), self._slopes()
         c = (u - b) * (u + b)
         central, dual = self.weight / c, self.current_duals(a, b)
         # The part of −y ∇²c that is positive: never less than the barrier itself has.
@@ -117,8 +117,18 @@ class Barrier:
         ahead = margins + self.margin_changes(a, b, da, db)
         return np.maximum(duals + (self.weight - duals * ahead) / margins, 0.1 * duals)
 
-    def distances(self, a: Floats) -> tuple[Floats, Floats]:
-        """Return u and du/da (3, m) of the bounds on k, σ_b and σ_a."""
+    def distances(self, a: Floats) -> Floats:
+        """Return u (3, m) of the bounds on k, σ_b and σ_a."""
         k, sigma_a, sigma_b = self.walls
-        one = np.ones(np.shape(a))
-        return np.array([k * a, a - sigma_b, sigma_a - a]), np.array([k * one, one, -one])
+        distances = np.empty((3, len(a)))
+        np.multiply(k, a, out=distances[0])
+        np.subtract(a, sigma_b, out=distances[1])
+        np.subtract(sigma_a, a, out=distances[2])
+        return distances
+
+    def _slopes(self) -> Floats:
+        """Return du/da (3, m)."""
+        slopes = np.ones((3, len(self.walls.k)))
+        slopes[0] = self.walls.k
+        slopes[2] = -1.0
+        return slopes

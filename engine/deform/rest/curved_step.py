@@ -234,7 +234,7 @@ def _slacks_at(start: _Start, jet: Jet) -> tuple[Floats, Floats]:
     Their product is c; the second is kept positive beyond the walls, where c must be negative.
     """
     b = np.abs(jet.g)
-    u, _ = start.barrier.distances(np.abs(jet.f))
+    u = start.barrier.distances(np.abs(jet.f))
     return u - b, np.maximum(u + b, 0.1 * start.margins / start.slacks)
 
 

@@ -12,7 +12,7 @@ import numpy as np
 
 from engine.arrays import Floats, Indices, readonly
 from engine.deform.barrier import Walls
-from engine.deform.objective import Jet, Objective
+from engine.deform.objective import Jet
 from engine.deform.rest.search import Search
 from engine.deform.steering import MARGIN
 from engine.maps import Limits, segment_enclosures
@@ -72,10 +72,9 @@ def resolved(search: Search, jet: Jet, broken: Indices) -> Search:
         return search
     finer = boundary.refined(segments)
     new = segments + np.arange(len(segments)) + 1
-    added = Objective(boundary=finer, handles=search.handles, wish=search.wish).jet(
-        *search.map.columns
-    )
-    walls = walls_around(search.inside, limits, np.abs(added.f[new]), np.abs(added.g[new]))
+    alone = boundary.span.without_constant(search.map.coefficients)
+    f, g = (finer.derivatives[new] @ alone).T
+    walls = walls_around(search.inside, limits, np.abs(f), np.abs(g))
     duals = search.duals
     if duals is not None:
         ends = following[segments]
