@@ -79,7 +79,7 @@ def test_the_divider_is_dragged_and_the_methods_change_sides_there(window, betwe
     assert len(between.figure.handles) == 2
 
 
-@pytest.mark.parametrize("baseline", [Baseline.ARAP, Baseline.SIG13, Baseline.HANDLES])
+@pytest.mark.parametrize("baseline", [Baseline.ARAP, Baseline.SIG13])
 def test_methods_for_comparison_play_beside_the_drawing_and_are_measured(window, between, baseline):
     session = window.session
     document = between.document
@@ -150,7 +150,6 @@ def test_a_key_looks_the_same_by_every_method_and_posing_goes_on(window, between
     assert between.puppet.twin.figure.handles == between.figure.handles
 
 
-@pytest.mark.usefixtures("between")
 def test_nothing_is_compared_where_the_panel_says_so(window):
     session = window.session
     viewing.compare_with(session, Variant.ETA)
@@ -163,12 +162,10 @@ def test_nothing_is_compared_where_the_panel_says_so(window):
     assert session.split.place == 1 - viewing.LEAST_PART
 
 
-@pytest.mark.parametrize("theme", ["dark", "light"])
 @pytest.mark.usefixtures("between")
-def test_the_names_of_both_methods_stand_at_the_divider(window, theme):
+def test_the_names_of_both_methods_stand_at_the_divider(window):
     session = window.session
-    if session.preferences.theme != theme:
-        viewing.toggle_theme(session)
+    viewing.toggle_theme(session)
     window.frames(3)
     alone = np.asarray(window.picture()).astype(int)
     viewing.toggle_split(session)
