@@ -268,7 +268,13 @@ class PeriodClosing:
             lambda times: self.correction(opened(times), sign)[0], breaks=breaks, vanishing=True
         )
 
-    def to_conformal(self, opened: Callable[[Floats], Open], *, sign: int) -> Closing:
+    def to_conformal(
+        self,
+        opened: Callable[[Floats], Open],
+        *,
+        sign: int,
+        breaks: Sequence[float] = (0.0, 1.0),
+    ) -> Closing:
         """Return what leads on from there to the correction of f_z alone, without f_z̄."""
 
         def further(times: Floats) -> Floats:
@@ -276,7 +282,7 @@ class PeriodClosing:
             alone = here._replace(g=np.zeros_like(here.g))
             return self.correction(alone, sign)[0] - self.correction(here, sign)[0]
 
-        return self._in_series(further, breaks=(0.0, 1.0), vanishing=False)
+        return self._in_series(further, breaks=breaks, vanishing=False)
 
     def _in_series(
         self,

@@ -9,7 +9,7 @@ import numpy.typing as npt
 from engine.arrays import Complexes, Floats, Integers
 from engine.dirichlet import Extension, HilbertTransform
 from engine.errors import EngineError
-from engine.interpolation.blends import EtaBlend, MetricResidual, NuBlend
+from engine.interpolation.blends import EtaBlend, MetricResidual, NuBlend, OutlineMetric
 from engine.interpolation.derivatives import Passage
 from engine.interpolation.inbetweens import (
     Blend,
@@ -21,11 +21,14 @@ from engine.interpolation.inbetweens import (
 from engine.interpolation.keyframe_samples import KeyframeSamples, sample_keyframes
 from engine.interpolation.passing import Course, Joint, Tangent, shortened
 from engine.interpolation.periods import Closing, Open
-from engine.interpolation.scaling import Scaling, SharpScaling
+from engine.interpolation.scaling import MetricRatios, Scaling, SharpScaling, Worst
 from engine.interpolation.sites import Sites, prepare_sites
-from engine.maps import Bounds, HarmonicMap
+from engine.maps import Bounds, HarmonicMap, derivatives_of
 from engine.paths import root_sheets
 from engine.variant import Variant
+
+# Number of times at which the metric variant is looked at around holes: whether it must be scaled.
+LOOKED_AT = 24
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -225,10 +228,16 @@ def prepare_inbetweens(
             eta_course=passage.course,
             residuals=(metric.residual,),
         )
-    closings = _closings(variant, sites, passage, metric)
+    opened = passage
+    closings = _closings(variant, sites, opened, metric)
     if closings:
         passage = replace(passage, residuals=(*passage.residuals, closings[0].residual))
     scale: Scaling | None = None
+    if metric is not None and closings:
+        ratios = _metric_ratios(sites, opened, metric, closings, bounds)
+        if ratios(np.linspace(0.0, 1.0, LOOKED_AT + 2)[1:-1]).min() < 1.0:
+            closings = _closings(variant, sites, opened, metric, is_scaled=True)
+            scale = Scaling.of(_metric_ratios(sites, opened, metric, closings, bounds))
     if variant is Variant.SCALED_ETA:
         scaled = [key.map for key in passage.keyframes]
         scale = Scaling.of(SharpScaling.of(scaled, sites.outline, passage.course, bounds, closings))
@@ -247,7 +256,12 @@ def _blend(variant: Variant, passage: Passage) -> Blend:
 
 
 def _closings(
-    variant: Variant, sites: Sites, passage: Passage, metric: MetricResidual | None
+    variant: Variant,
+    sites: Sites,
+    passage: Passage,
+    metric: MetricResidual | None,
+    *,
+    is_scaled: bool = False,
 ) -> tuple[Closing, ...]:
     """Close the periods of in-betweens around holes: h, and d where Ψ is scaled."""
     if sites.closing is None:
@@ -261,9 +275,40 @@ def _closings(
     sign = 1 if variant is Variant.NU else -1
     breaks = (0.0, 1.0) if metric is None else tuple(metric.residual.series.breaks)
     closing = sites.closing.close(opened, sign=sign, breaks=breaks)
-    if variant is not Variant.SCALED_ETA:
+    if not (is_scaled or variant is Variant.SCALED_ETA):
         return (closing,)
-    return closing, sites.closing.to_conformal(opened, sign=sign)
+    return closing, sites.closing.to_conformal(opened, sign=sign, breaks=breaks)
+
+
+def _metric_ratios(
+    sites: Sites,
+    passage: Passage,
+    metric: MetricResidual,
+    closings: tuple[Closing, ...],
+    bounds: Bounds,
+) -> MetricRatios:
+    """Return the ρ that the metric variant around holes would have."""
+    boundary = sites.boundary
+    course = passage.eta_course or passage.course
+    fz, fzbar = derivatives_of([key.map for key in passage.keyframes], boundary.points)
+    a, b = np.abs(fz), np.abs(fzbar)
+    worst = Worst(k=(b / a).max(), sigma_a=(a + b).max(), sigma_b=(a - b).min())
+    counts = np.diff([*boundary.starts, len(boundary.points)])
+
+    def lacking(times: Floats) -> Floats:
+        missing = metric.lacking_at(times)
+        around = np.column_stack([np.zeros(len(times)), missing])
+        return np.repeat(around, counts, axis=1)
+
+    functions = [closing.functions for closing in closings]
+    (modes,) = boundary.span.evaluate(np.hstack(functions), boundary.points, orders=(0,))
+    parts = np.split(modes, np.cumsum([f.shape[1] for f in functions])[:-1], axis=1)
+    return MetricRatios(
+        metric=OutlineMetric.of(fz, fzbar, course, bounds),
+        lacking=lacking,
+        worst=worst if course.is_straight else worst.widened(bounds),
+        closings=tuple(zip(parts, (each.series for each in closings), strict=True)),
+    )
 
 
 def _known(variant: Variant | str) -> Variant:

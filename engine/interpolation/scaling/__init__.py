@@ -2,9 +2,11 @@
 
 In: keyframes, an outline, the course through the keys, bounds.
 Out: the factor ρ at any time.
-Imports: `engine.maps`, `engine.interpolation.passing`, `engine.interpolation.periods`.
+Imports: `engine.maps`, `engine.interpolation.blends`, `engine.interpolation.passing`,
+    `engine.interpolation.periods`.
 """
 
+from engine.interpolation.scaling.metric import MetricRatios
 from engine.interpolation.scaling.sharp import (
     BESIDE_KEY,
     PointSamples,
@@ -16,6 +18,7 @@ from engine.interpolation.scaling.smooth import Scaling, ScalingEnclosures
 
 __all__ = [
     "BESIDE_KEY",
+    "MetricRatios",
     "PointSamples",
     "Scaling",
     "ScalingEnclosures",

@@ -146,15 +146,26 @@ class PointSamples:
             k = np.minimum(self.widest.k, k * change * change)
             sigma_a = np.minimum(self.widest.sigma_a, sigma_a * change)
             sigma_b = np.maximum(self.widest.sigma_b, sigma_b / change)
-        # ρ_k, ρ_a and ρ_b of Section 7.3 have the denominator |f_z̄| in common.
-        room = np.minimum(k * a, np.minimum(sigma_a - a, a - sigma_b))
-        ratios = np.full(room.shape, CEILING)
-        np.divide(room, b, out=ratios, where=b > np.maximum(NEGLIGIBLE * a, room / CEILING))
-        if d is not None:
-            bounds = np.array([np.broadcast_to(each, a.shape) for each in (k, sigma_a, sigma_b)])
-            tight = _tight(ratios, a, d, bounds)
-            ratios[tight] = _opened(a[tight], b[tight], d[tight], bounds[:, tight])
-        return ratios
+        return allowed(a, b, d, (k, sigma_a, sigma_b))
+
+
+def allowed(
+    a: Floats, b: Floats, d: Complexes | None, limits: tuple[Floats | float, ...]
+) -> Floats:
+    """Return the largest ρ within limits of k, σ_a and σ_b for |F_1| = a, |G_1| = b, F_0 = F_1 e^d.
+
+    Without d it scales G alone.
+    """
+    k, sigma_a, sigma_b = limits
+    # ρ_k, ρ_a and ρ_b of Section 7.3 have the denominator |f_z̄| in common.
+    room = np.minimum(k * a, np.minimum(sigma_a - a, a - sigma_b))
+    ratios = np.full(room.shape, CEILING)
+    np.divide(room, b, out=ratios, where=b > np.maximum(NEGLIGIBLE * a, room / CEILING))
+    if d is not None:
+        bounds = np.array([np.broadcast_to(each, a.shape) for each in limits])
+        tight = _tight(ratios, a, d, bounds)
+        ratios[tight] = _opened(a[tight], b[tight], d[tight], bounds[:, tight])
+    return ratios
 
 
 def _tight(ratios: Floats, a: Floats, d: Complexes, bounds: Floats) -> Booleans:

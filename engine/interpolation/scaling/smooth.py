@@ -11,7 +11,6 @@ import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
 from engine.arrays import Floats, Indices, freeze
-from engine.interpolation.scaling.sharp import SharpScaling
 
 # Time is stretched to u, t = 1 / (1 + exp(−STRETCH sinh(u / STRETCH))), so that a window of
 # constant width in u narrows towards both keyframes, where ρ has to be 1.
@@ -51,7 +50,7 @@ class Scaling:
     excess: Floats
 
     @classmethod
-    def of(cls, sharp: SharpScaling) -> Self:
+    def of(cls, sharp: Callable[[Floats], Floats]) -> Self:
         """Sample a sharp ρ and fit it."""
         count = round(2 * FARTHEST / SPACING) + 1
         u = np.linspace(-FARTHEST, FARTHEST, count)

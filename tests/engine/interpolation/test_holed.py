@@ -225,13 +225,36 @@ def test_handles_pulled_hard_keep_bounds_and_are_closed(name):
             here = fz[1], fzbar[1]
             if variant is Variant.NU:
                 assert (distortion.k(*here) <= pointwise + 1e-9).all()
-            slack = 1.05 if variant is Variant.METRIC else 1.0001
-            assert distortion.k(*here).max() <= slack * most_k
-            assert distortion.sigma_a(*here).max() <= 1.0001 * most_a
-            assert distortion.sigma_b(*here).min() >= 0.9999 * least_b
+            slack = 2e-3 if variant is Variant.METRIC else 1e-4
+            assert distortion.k(*here).max() <= (1 + slack) * most_k
+            assert distortion.sigma_a(*here).max() <= (1 + slack) * most_a
+            assert distortion.sigma_b(*here).min() >= (1 - slack) * least_b
             # Beside a key at rest h takes more than all that is a point's own; what is allowed to
             # the whole drawing is left.
             assert frame.rho is None or frame.rho > 0.45
+
+
+def test_the_metric_variant_folds_nowhere_between_hard_keys():
+    """Closed alone, it leaves its keys' bounds by a third, and folds."""
+    shape, circles, edge, sites, transform = pulled_on("ring")
+    maps = [pulled("crescent").map, pulled("swirl").map]
+    keyframes = sample_keyframes(maps, sites)
+    sheets = root_sheets(np.array([key.anchor_fz for key in keyframes]))
+    motion = prepare_inbetweens(Variant.METRIC, sites, keyframes, sheets, transform=transform)
+    ends = [f.derivatives(along(shape.loops, 40)) for f in maps]
+    (circle,) = circles
+    dz = 2j * np.pi / len(circle) * (circle - circle.mean())
+    for time in np.linspace(0.05, 0.95, 19):
+        frame = motion.frame(time)
+        fz, fzbar = frame.fz[-len(edge) :], frame.fzbar[-len(edge) :]
+        assert distortion.k(fz, fzbar).max() <= 1.002 * max(distortion.k(*e).max() for e in ends)
+        least = min(distortion.sigma_b(*end).min() for end in ends)
+        assert distortion.sigma_b(fz, fzbar).min() >= 0.998 * least
+        around = frame.fz[: len(dz)] @ dz + frame.fzbar[: len(dz)] @ dz.conj()
+        assert abs(around) < 1e-10 * sites.diameter
+    rho = [motion.rho(time) for time in (0.0, 0.5, 1.0)]
+    assert rho[0] == rho[2] == 1.0
+    assert rho[1] < 0.9
 
 
 def test_the_correction_is_the_smallest():
