@@ -100,9 +100,16 @@ def _blended(pieces: Subdivision, passage: Passage, variant: Variant, closed: "_
         by_time = _varies_more_in_time(first, second)
         if variant is Variant.METRIC and closed.correction is not None:
             h, _ = closed.correction.on(*chosen)
+            rho, at_corners, grown = closed.scaling(chosen)
             return Found(
-                cells.corrected(first, second, cells.real_range(h)),
-                cells.corrected(first.corners(), second.corners(), cells.real_range(h.corners())),
+                cells.corrected(first, second, cells.real_range(h), rho, cells.real_range(grown)),
+                cells.corrected(
+                    first.corners(),
+                    second.corners(),
+                    cells.real_range(h.corners()),
+                    at_corners.ravel(),
+                    cells.real_range(grown.corners()),
+                ),
                 _varies_more_in_time(first, second, h),
             )
         first, rho, at_corners = closed.applied(first, chosen)
@@ -138,11 +145,13 @@ def _through(pieces: Subdivision, passage: Passage, bounds: Bounds, closed: "_Cl
             np.maximum(attained.sigma_a, bounds.sigma_a),
             np.minimum(attained.sigma_b, bounds.sigma_b),
         )
-        return Found(
-            cells.widened(enclosed, cells.real_range(h)),
-            cells.widened(attained, cells.real_range(h.corners())),
-            _is_long(h, in_time),
-        )
+        enclosed = cells.widened(enclosed, cells.real_range(h))
+        attained = cells.widened(attained, cells.real_range(h.corners()))
+        if closed.scale is not None:
+            rho, at_corners, grown = closed.scaling(chosen)
+            enclosed = cells.scaled(enclosed, rho, cells.real_range(grown))
+            attained = cells.scaled(attained, at_corners.ravel(), cells.real_range(grown.corners()))
+        return Found(enclosed, attained, _is_long(h, in_time))
 
     cuts = closed.cuts if correction is not None else np.array([0.0, 1.0])
     return Method(enclose, cuts, floor)
@@ -175,16 +184,24 @@ class _Closed(NamedTuple):
         self, log_modulus: Patch[np.float64], chosen: Cells
     ) -> tuple[Patch[np.float64], Floats, Floats]:
         """Return ln |f_z|, and what η is scaled by at most, on cells (c,) and at corners (4c,)."""
-        piece, start, end = chosen
         if self.correction is not None:
             log_modulus = log_modulus.plus(cells.real_part(self.correction.on(*chosen)[0]))
+        most, at_corners, grown = self.scaling(chosen)
+        highest = grown.controls.max(axis=(1, 2)) + grown.error
+        factors = np.exp(grown.controls).reshape(-1, 4)
+        return log_modulus.plus(grown), most * np.exp(highest), (at_corners * factors).ravel()
+
+    def scaling(self, chosen: Cells) -> tuple[Floats, Floats, Patch[np.float64]]:
+        """Return the largest ρ on cells (c,), that at their corners (c, 4), and ln |w| of f_z."""
+        piece, start, end = chosen
+        none = Patch(np.zeros((len(piece), 2, 2)), np.zeros(len(piece)))
         if self.scale is None:
-            return log_modulus, np.ones(len(piece)), np.ones(4 * len(piece))
+            return np.ones(len(piece)), np.ones((len(piece), 4)), none
         least, most = self.scale.on(start, end)
         rho = np.stack([self.scale.on(time, time)[1] for time in (start, end)], axis=1)
         at_corners = np.repeat(rho, 2, axis=1)
         if self.opening is None:
-            return log_modulus, most, at_corners.ravel()
+            return most, at_corners, none
         # Around holes f_z is that for ρ = 1 times w = ρ + (1 − ρ) e^d, with |w| ≥ `clear`.
         d, _ = self.opening.on(*chosen)
         size = d.highest.max(axis=(1, 2))
@@ -196,12 +213,7 @@ class _Closed(NamedTuple):
         error = (1.0 - least) * np.exp(size) * (across + 2 * d.error) / clear
         error += np.expm1(size) * (most - least) / clear
         factor = rho[:, :, None] + (1.0 - rho[:, :, None]) * np.exp(d.controls)
-        grown = Patch(np.log(np.abs(factor)), error)
-        return (
-            log_modulus.plus(grown),
-            most * np.exp(grown.controls.max(axis=(1, 2)) + error),
-            (at_corners * np.abs(factor).reshape(-1, 4)).ravel(),
-        )
+        return most, at_corners, Patch(np.log(np.abs(factor)), error)
 
 
 class _Known:

@@ -70,7 +70,7 @@ def real_part(patch: Patch[np.complex128]) -> Patch[np.float64]:
     return Patch(patch.controls.real, patch.error)
 
 
-def real_range(patch: Patch[np.complex128]) -> Floats:
+def real_range(patch: Patch[number]) -> Floats:
     """Return between which the real part is, float64 (2, c)."""
     values = patch.controls.real
     return np.stack([_least(values) - patch.error, _largest(values) + patch.error])
@@ -142,14 +142,26 @@ def from_metric(trace: Patch[np.float64], eta: Patch[np.complex128]) -> Enclosur
     )
 
 
-def corrected(trace: Patch[np.float64], eta: Patch[np.complex128], log: Floats) -> Enclosures:
+def corrected(
+    trace: Patch[np.float64],
+    eta: Patch[np.complex128],
+    log: Floats,
+    rho: Floats | float = 1.0,
+    log_w: Floats | float = 0.0,
+) -> Enclosures:
     """Enclose of 𝒜 and η, where |f_z| is then multiplied, and |f_z̄| divided, by exp of `log`.
+
+    Then |f_z̄| is multiplied by ρ, and |f_z| by |w|.
 
     Parameters
     ----------
     trace, eta : Patch
     log : float64, shape (2, c)
         Between which the logarithm is.
+    rho : float64, shape (c,)
+        The largest that it is.
+    log_w : float64, shape (2, c)
+        Between which ln |w| is.
     """
     error = trace.error[:, None, None]
     least, most = _least(trace.controls - error), _largest(trace.controls + error)
@@ -160,11 +172,12 @@ def corrected(trace: Patch[np.float64], eta: Patch[np.complex128], log: Floats) 
         for t, y in ((least, size_most), (most, size_least))
     )
     b = _ratio(size_most, np.where(least >= 2 * size_most, a_least, 0.0))
-    grown, shrunk = np.exp(log), np.exp(-log)
+    grown, shrunk = np.exp(log), rho * np.exp(-log)
+    w_least, w_most = np.exp(np.broadcast_to(log_w, log.shape))
     return Enclosures(
-        k=_ratio(b, a_least) * shrunk[0] ** 2,
-        sigma_a=(a_most * grown + b * shrunk).max(axis=0),
-        sigma_b=a_least * grown[0] - b * shrunk[0],
+        k=_ratio(b, a_least) * shrunk[0] / (grown[0] * w_least),
+        sigma_a=(a_most * grown * w_most + b * shrunk).max(axis=0),
+        sigma_b=a_least * grown[0] * w_least - b * shrunk[0],
     )
 
 
@@ -177,6 +190,19 @@ def widened(enclosed: Enclosures, log: Floats) -> Enclosures:
         k=k * np.exp(-2 * log[0]),
         sigma_a=sigma_a * np.exp(most),
         sigma_b=sigma_b * np.exp(np.minimum(log[0], 0.0)) - 2 * b * np.sinh(most),
+    )
+
+
+def scaled(enclosed: Enclosures, rho: Floats, log_w: Floats) -> Enclosures:
+    """Enclose what is enclosed already, with |f_z̄| times ρ (c,) at most and |f_z| times |w|."""
+    k, sigma_a, sigma_b = enclosed
+    w_least, w_most = np.exp(log_w)
+    b = np.maximum((sigma_a - sigma_b) / 2, 0.0)
+    return Enclosures(
+        k=k * rho / w_least,
+        sigma_a=sigma_a * np.maximum(w_most, rho),
+        sigma_b=np.minimum(sigma_b * w_least, sigma_b * w_most)
+        - b * np.maximum(rho - w_least, 0.0),
     )
 
 
