@@ -187,6 +187,8 @@ class _Closed(NamedTuple):
         if self.correction is not None:
             log_modulus = log_modulus.plus(cells.real_part(self.correction.on(*chosen)[0]))
         most, at_corners, grown = self.scaling(chosen)
+        if self.opening is None:
+            return log_modulus, most, at_corners.ravel()
         highest = grown.controls.max(axis=(1, 2)) + grown.error
         factors = np.exp(grown.controls).reshape(-1, 4)
         return log_modulus.plus(grown), most * np.exp(highest), (at_corners * factors).ravel()
