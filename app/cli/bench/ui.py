@@ -30,7 +30,7 @@ from engine.domain import mesh_inside
 SAMPLE, PICTURE = "giraffe.lissom", "dragon.png"
 TABS = ("Handle", "Deform", "Distortion", "Mesh", "Export")
 REFRESH = 1 / 60  # seconds from frame to frame of a screen
-REACH = 40.0  # pixels around a handle in which it is dragged
+REACH = 40.0  # pixels around a handle in which it is dragged, unless told
 PATIENCE = 120.0  # seconds that anything may take
 
 
@@ -38,13 +38,15 @@ PATIENCE = 120.0  # seconds that anything may take
 class Extent:
     """How much is measured: repeats of the start and of opening, frames, moves of the pointer.
 
-    And for how many seconds the window is left alone.
+    And in how many pixels around it a handle is dragged, and for how many seconds the window is
+    left alone.
     """
 
     triangles: int = 100_000
     repeats: int = 3
     frames: int = 60
     moves: int = 100
+    reach: float = REACH
     idle: float = 10.0
 
 
@@ -325,7 +327,7 @@ def _scrubbing(stage: Driver, count: int) -> list[_Frame]:
 
 def dragging(stage: Driver, count: int) -> list[_Frame]:
     """Drag, with the solver at work beside."""
-    drag = _Drag(stage)
+    drag = _Drag(stage, REACH)
     frames = []
     for number in range(count):
         drag.move(number)
@@ -337,8 +339,9 @@ def dragging(stage: Driver, count: int) -> list[_Frame]:
 class _Drag:
     """The first handle, pulled around by the mouse in the first frame of the animation."""
 
-    def __init__(self, stage: Driver) -> None:
+    def __init__(self, stage: Driver, reach: float) -> None:
         self._stage = stage
+        self._reach = reach
         self._project = stage.project
         stage.ask(playback.scrub, self._project.figure.keys[0].frame)
         stage.settle()
@@ -354,7 +357,7 @@ class _Drag:
 
     def move(self, number: int) -> None:
         """Put the mouse where it is in this frame: farther on around a circle."""
-        self._point = self._start + REACH * complex(np.exp(0.1j * number))
+        self._point = self._start + self._reach * complex(np.exp(0.1j * number))
         self._stage.mouse(self._point)
 
     @property
@@ -388,7 +391,7 @@ def _release(stage: Driver, extent: Extent) -> Table:
     """Measure from letting a handle go to a pose that rests, and to the in-betweens around it."""
     times: list[list[float]] = []
     for number in range(extent.repeats):
-        drag = _Drag(stage)
+        drag = _Drag(stage, extent.reach)
         for move in range(10):
             drag.move(20 * number + move)
             stage.refresh()
@@ -417,7 +420,7 @@ def _playhead(stage: Driver, extent: Extent) -> Table:
     project = stage.project
     times, rough = [], []
     for number in range(extent.repeats):
-        drag = _Drag(stage)
+        drag = _Drag(stage, extent.reach)
         for move in range(10):
             drag.move(20 * number + move)
             stage.refresh()
@@ -471,7 +474,7 @@ def _is_fine(project: Project) -> bool:
 
 def _latency(stage: Driver, extent: Extent) -> Table:
     """Measure from a move of the pointer to the first picture of a pose that was solved for it."""
-    drag = _Drag(stage)
+    drag = _Drag(stage, extent.reach)
     sent: list[tuple[Target | None, float]] = []
     frames: list[int] = []
     seconds: list[float] = []

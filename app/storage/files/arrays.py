@@ -18,6 +18,7 @@ from app.storage.files.reading import MEBIBYTE, require_file
 # By which the arrays that are read may outgrow the file.
 MOST_UNPACKED = 1024 * MEBIBYTE
 HEADERS = {(1, 0): np.lib.format.read_array_header_1_0, (2, 0): np.lib.format.read_array_header_2_0}
+TEXT = "US"  # as NumPy tells kinds of arrays by letters
 NUMERIC = "biufc"
 # What zipfile and NumPy raise on damaged files.
 DAMAGE = (
@@ -83,6 +84,9 @@ def _read_array(archive: zipfile.ZipFile, member: zipfile.ZipInfo) -> npt.NDArra
     # By hand: NumPy's reader would believe any shape and allocate it.
     with archive.open(member) as stream:
         shape, is_fortran, dtype = HEADERS[np.lib.format.read_magic(stream)](stream)
+        if dtype.kind in TEXT:
+            name = member.filename.removesuffix(".npy")
+            raise LissomError(f"the array {name!r} holds text; it must hold numbers")
         if dtype.kind not in NUMERIC or any(side < 0 for side in shape):
             raise ValueError(f"{member.filename} is no numeric array")
         if math.prod(shape) * dtype.itemsize != member.file_size - stream.tell():

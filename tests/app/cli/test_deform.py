@@ -121,7 +121,7 @@ DOUBLE = np.array([0.0, 0.0])
         ({"sigma_a_max": 0.9}, "bound on sigma_a"),
         ({"sigma_b_min": 1.0}, "bound on sigma_b"),
         ({"k_max": np.array([0.5, 0.6])}, "k_max must be one number"),
-        ({"k_max": "high"}, "k_max must be one number"),
+        ({"k_max": "high"}, "'k_max' holds text"),
         ({"phi": CAGE}, "both phi and psi"),
         ({"phi": CAGE, "psi": 0.95 * CAGE}, "start map is not certified"),
         ({"phi": CAGE[:4], "psi": CAGE[:4]}, "as many coefficients"),

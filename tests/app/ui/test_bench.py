@@ -5,7 +5,7 @@ import sys
 
 SCRIPT = """
 from app.cli.bench.ui import Extent, tables
-for table in tables(Extent(triangles=2_000, repeats=1, frames=4, moves=3, idle=0.1)):
+for table in tables(Extent(triangles=2_000, repeats=1, frames=4, moves=3, reach=8, idle=0.1)):
     assert all(row.seconds is None or row.seconds > 0 for row in table.rows), table
     print(len(table.rows))
 """
@@ -16,7 +16,7 @@ def test_everything_is_measured():
         [sys.executable, "-c", SCRIPT], capture_output=True, text=True, check=False
     )
     assert result.returncode == 0, result.stderr
-    assert result.stdout.split() == ["2", "2", "4", "14", "2", "3", "1"]
+    assert result.stdout.split() == ["2", "2", "4", "14", "2", "3", "2", "1"]
 
 
 SCENES = """
