@@ -39,6 +39,9 @@ LAPSE = 40.0
 FORMATS = ("png", "gif", "apng", "webp", "mp4", "webm", "spritesheet", "glb", "html")
 # Long enough for several files, short enough for many kills.
 SCOPE = ("--frames", "0:5", "--size", "120x90")
+# Sheets of other frames, whose data tell them apart.
+OTHER_SCOPE = ("--frames", "6:11", "--size", "120x90")
+OLD, NEW = "#ff0000", "#00ff00"
 MODEL_SCOPE = ("--frames", "0:5", "--triangles", "200")
 TOLD = struct.Struct("<qd")
 
@@ -218,9 +221,9 @@ def _kill_exports_of(rng: np.random.Generator, kills: int, name: str) -> tuple[i
         old, new, place = (Path(root) / part for part in ("old", "new", "place"))
         for folder in (old, new, place):
             folder.mkdir()
-        _run(partial(_export, old, name, "#ff0000"))
+        _run(partial(_export, old, name, OLD))
         begun = time.perf_counter()
-        _run(partial(_export, new, name, "#00ff00"))
+        _run(partial(_export, new, name, NEW))
         seconds = time.perf_counter() - begun
         whole = {
             path.name: {path.read_bytes(), (new / path.name).read_bytes()} for path in old.iterdir()
@@ -230,7 +233,7 @@ def _kill_exports_of(rng: np.random.Generator, kills: int, name: str) -> tuple[i
             with spared(place) as mark:
                 for file in old.iterdir():
                     (place / file.name).write_bytes(file.read_bytes())
-                victim = Victim(lambda _: _export(place, name, "#00ff00"))
+                victim = Victim(lambda _: _export(place, name, NEW))
                 time.sleep(rng.uniform(0.2, 1.0) * seconds)
                 was_killed, _ = victim.kill()
                 _check_export(place, new, whole, mark, name)
@@ -256,7 +259,8 @@ def _check_export(
 def _export(folder: Path, name: str, background: str) -> None:
     ending = {"spritesheet": "png"}.get(name, name)
     out = folder if name == "png" else folder / f"a.{ending}"
-    scope = MODEL_SCOPE if name in {"glb", "html"} else (*SCOPE, "--background", background)
+    frames = OTHER_SCOPE if name == "spritesheet" and background == OLD else SCOPE
+    scope = MODEL_SCOPE if name in {"glb", "html"} else (*frames, "--background", background)
     # What is told on the way is another thing.
     project = str(sample_images() / LAYERED)
     with suppress(SystemExit):
