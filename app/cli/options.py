@@ -16,8 +16,8 @@ HOLES = ("keep", "fill")
 DEFAULT_DETAIL = "normal"
 DEFAULT_TRIANGLES = 100_000
 DEFAULT_TOLERANCE = 18
-VARIANTS = tuple(Variant)
-METHODS = (*Variant, *Baseline)
+VARIANTS = tuple(variant.value for variant in Variant)
+METHODS = (*VARIANTS, *(method.value for method in Baseline))
 FRAMINGS = ("canvas", "fit")
 
 

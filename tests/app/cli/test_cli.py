@@ -197,3 +197,12 @@ def test_an_autosave_that_is_written_while_the_person_leaves_is_not_offered(tmp_
     assert left.is_set()
     assert list(tmp_path.rglob("unsaved-*")) == []
     assert len(list(tmp_path.rglob("preferences.json"))) == 1
+
+
+@pytest.mark.parametrize("command", ["export", "certify", "interpolate"])
+def test_the_variants_are_told_as_they_are_written(command, capsys):
+    with pytest.raises(SystemExit):
+        main([command, str(SAMPLE), "--variant", "mu"])
+    said = error_line(capsys.readouterr().err)
+    assert "'scaled-eta'" in said
+    assert "<" not in said
