@@ -287,7 +287,6 @@ def npy(array, shape=None):
         npy(np.zeros(5), (b"(5,), }           ", b"(99999999999,), } ")),
         npy(np.zeros(5), (b"(5,)", b"(-5,)")),
         npy(np.zeros(5), (b"'<f8'", b"'|O' ")),
-        npy(np.array(["text"])),
         npy(np.zeros(2, dtype=[("x", "f8")])),
         npy(np.zeros(5))[:-1],
         npy(np.zeros(5)) + b"more",
@@ -299,6 +298,12 @@ def npy(array, shape=None):
 def test_arrays_that_are_not_what_they_say_are_refused(tmp_path, content):
     with pytest.raises(LissomError, match="not an NPZ file"):
         read_arrays(npz(tmp_path / "case.npz", content), required=("a",))
+
+
+def test_text_in_place_of_numbers_is_told(tmp_path):
+    path = npz(tmp_path / "case.npz", npy(np.array(["text"])))
+    with pytest.raises(LissomError, match="the array 'a' holds text"):
+        read_arrays(path, required=("a",))
 
 
 def test_packed_arrays_are_unpacked_within_limits(tmp_path, monkeypatch):
