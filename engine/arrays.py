@@ -45,6 +45,14 @@ def ragged(counts: Indices) -> tuple[Indices, Indices]:
     return group, place
 
 
+def ratio(numerator: Floats, denominator: Floats) -> Floats:
+    """Return the quotient, infinite where the denominator is not positive."""
+    positive = denominator > 0
+    quotient: Floats = np.full(np.broadcast_shapes(numerator.shape, denominator.shape), np.inf)
+    np.divide(numerator, denominator, out=quotient, where=positive)
+    return quotient
+
+
 def as_points(values: npt.ArrayLike, name: str, *, at_least: int = 0) -> Complexes:
     """Return `values` as read-only complex128 points of shape (n,).
 

@@ -15,9 +15,7 @@ times its size.
 """
 
 import json
-import struct
 import zipfile
-import zlib
 from dataclasses import replace
 from math import isfinite
 from pathlib import Path
@@ -29,7 +27,7 @@ import numpy as np
 from app.document import Document, Figure, PictureFile
 from app.errors import EXPECTED_ERRORS, LissomError
 from app.storage.archive import MEBIBYTE, Archive, array_member, write_archive
-from app.storage.files import require_file, sync_folder, tail_digest, write_atomically
+from app.storage.files import DAMAGED_ZIP, require_file, sync_folder, tail_digest, write_atomically
 from app.storage.json_values import JsonObject, as_object, as_text, as_whole, without_repeats
 from app.storage.pictures import stored_size
 from app.storage.project_json import SCHEMA, read_document, read_size, write_document
@@ -49,18 +47,6 @@ KEYS, POSES = "keys", "poses"  # folders of the maps of a figure
 CENTRES = "hole_centres.npy"
 # Of lists and objects in each other; fields that are not known are kept, and must be writable.
 DEEPEST = 40
-# What zipfile and json raise on damaged files; the first two of them are encryption and a zip
-# method that is not known.
-DAMAGE = (
-    RuntimeError,
-    NotImplementedError,
-    zipfile.BadZipFile,
-    zlib.error,
-    struct.error,
-    EOFError,
-    ValueError,
-    OverflowError,
-)
 
 
 def save_project(path: Path, document: Document, *, thumbnail: bytes | None = None) -> str:
@@ -139,7 +125,7 @@ def load_project(path: Path) -> Document:
         raise LissomError(f"cannot read {path}: {error.strerror or error}") from error
     except EXPECTED_ERRORS as error:
         raise LissomError(f"cannot open {path}: {error}") from error
-    except DAMAGE as error:
+    except DAMAGED_ZIP as error:
         raise LissomError(f"{path} is not a Lissom project, or it is damaged") from error
 
 
@@ -154,7 +140,7 @@ def load_member(path: Path, name: str, largest: int) -> bytes | None:
         size = require_file(path)
         with zipfile.ZipFile(path) as file:
             return Archive(file, size).read(name, largest=largest)
-    except (OSError, *EXPECTED_ERRORS, *DAMAGE):
+    except (OSError, *EXPECTED_ERRORS, *DAMAGED_ZIP):
         return None
 
 

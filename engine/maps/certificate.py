@@ -26,7 +26,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from engine.arrays import Booleans, Complexes, Floats, Indices
+from engine.arrays import Booleans, Complexes, Floats, Indices, ratio
 from engine.errors import EngineError
 from engine.maps.boundary import Boundary
 from engine.maps.bounds import Limits
@@ -204,7 +204,7 @@ def _bisect(
     broken: list[Indices] = []
     for depth in range(DEEPEST + 1):
         a, b = np.abs(segments.first[:, 0]), np.abs(segments.first[:, 1])
-        attained.include(_ratio(b, a), a + b, a - b)
+        attained.include(ratio(b, a), a + b, a - b)
         (k, sigma_a, sigma_b), clear, delta = _enclose(segments)
         # All said positively: what is not a number is neither tight nor within.
         tight = clear & _are_tight(attained, limits, k, sigma_a, sigma_b)
@@ -241,7 +241,7 @@ def _enclose(segments: _Segments) -> tuple[Enclosures, Booleans, Floats]:
     error_g = segments.errors[:, 1] + ROUNDING * (a + a_last)
     both = error_f + error_g
     enclosures = Enclosures(
-        k=np.maximum(_ratio(b + error_g, r - error_f), _ratio(b_last + error_g, r_last - error_f)),
+        k=np.maximum(ratio(b + error_g, r - error_f), ratio(b_last + error_g, r_last - error_f)),
         sigma_a=np.maximum(a + b, a_last + b_last) + both,
         sigma_b=np.minimum(r - b, r_last - b_last) - both,
     )
@@ -288,11 +288,3 @@ def _conclude(proven: _Extremes, turns: Floats, limits: Limits) -> Certificate:
         certified=injective and limits.allow(k=k, sigma_a=proven.sigma_a, sigma_b=sigma_b),
         limits=limits,
     )
-
-
-def _ratio(numerator: Floats, denominator: Floats) -> Floats:
-    """Return the quotient, infinite where the denominator is not positive."""
-    positive = denominator > 0
-    quotient: Floats = np.full(np.shape(numerator), inf)
-    np.divide(numerator, denominator, out=quotient, where=positive)
-    return quotient

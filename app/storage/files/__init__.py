@@ -15,9 +15,10 @@ from app.storage.files.atomic import (
 )
 from app.storage.files.hold import Hold, HoldError
 from app.storage.files.locks import is_locked, lock
-from app.storage.files.reading import read_file, require_file, tail_digest
+from app.storage.files.reading import DAMAGED_ZIP, read_file, require_file, tail_digest
 
 __all__ = [
+    "DAMAGED_ZIP",
     "Hold",
     "HoldError",
     "atomic_file",

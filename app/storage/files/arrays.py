@@ -3,7 +3,6 @@
 import math
 import tokenize
 import zipfile
-import zlib
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -13,27 +12,15 @@ import numpy.typing as npt
 
 from app.errors import LissomError
 from app.storage.files.atomic import write_atomically
-from app.storage.files.reading import MEBIBYTE, require_file
+from app.storage.files.reading import DAMAGED_ZIP, MEBIBYTE, require_file
 
 # By which the arrays that are read may outgrow the file.
 MOST_UNPACKED = 1024 * MEBIBYTE
 HEADERS = {(1, 0): np.lib.format.read_array_header_1_0, (2, 0): np.lib.format.read_array_header_2_0}
 TEXT = "US"  # as NumPy tells kinds of arrays by letters
 NUMERIC = "biufc"
-# What zipfile and NumPy raise on damaged files.
-DAMAGE = (
-    ValueError,
-    EOFError,
-    KeyError,
-    RuntimeError,
-    SyntaxError,
-    TypeError,
-    OverflowError,
-    tokenize.TokenError,
-    NotImplementedError,
-    zipfile.BadZipFile,
-    zlib.error,
-)
+# What NumPy raises besides on damaged files.
+DAMAGE = (*DAMAGED_ZIP, SyntaxError, TypeError, tokenize.TokenError)
 
 
 def write_arrays(path: Path, arrays: Mapping[str, npt.ArrayLike]) -> None:

@@ -3,6 +3,9 @@
 import hashlib
 import os
 import stat
+import struct
+import zipfile
+import zlib
 from pathlib import Path
 from typing import IO
 
@@ -11,6 +14,18 @@ from app.errors import LissomError
 MEBIBYTE = 1024 * 1024
 LARGEST_FILE = 1024 * MEBIBYTE
 TAIL = 1 * MEBIBYTE
+# What zipfile raises on damaged files; the first two are encryption and a method that is not known.
+DAMAGED_ZIP = (
+    RuntimeError,
+    NotImplementedError,
+    zipfile.BadZipFile,
+    zlib.error,
+    struct.error,
+    EOFError,
+    KeyError,
+    ValueError,
+    OverflowError,
+)
 
 
 def require_file(path: Path) -> int:

@@ -5,15 +5,14 @@ the group's visibility and opacity.
 """
 
 import io
-import struct
 import zipfile
-import zlib
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from math import isfinite
 from xml.etree import ElementTree as ET
 
 from app.errors import LissomError
+from app.storage.files import DAMAGED_ZIP
 from app.storage.pictures.layered import (
     DEEPEST,
     Layer,
@@ -31,18 +30,7 @@ LARGEST_XML = 4 * 1024 * 1024
 MOST_UNPACKED = 16 * 1024 * 1024
 LARGEST_SIDE = 65_535
 NORMAL = {"", "svg:src-over"}
-DAMAGE = (
-    RuntimeError,
-    NotImplementedError,
-    zipfile.BadZipFile,
-    zlib.error,
-    struct.error,
-    EOFError,
-    KeyError,
-    ValueError,
-    OverflowError,
-    OSError,
-)
+DAMAGE = (*DAMAGED_ZIP, OSError)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

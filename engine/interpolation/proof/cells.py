@@ -16,7 +16,7 @@ from typing import Generic, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from engine.arrays import Floats
+from engine.arrays import Complexes, Floats, ratio
 from engine.interpolation.proof.pieces import number
 from engine.maps import Enclosures
 
@@ -78,16 +78,10 @@ def real_range(patch: Patch[number]) -> Floats:
 
 def linear(conformal: Patch[np.complex128], anticonformal: Patch[np.complex128]) -> Enclosures:
     """Enclose of f_z and conj(f_z̄)."""
-    mean = conformal.controls.mean(axis=(1, 2))
-    size = np.abs(mean)
-    turned = (
-        conformal.controls
-        * np.divide(mean.conj(), size, out=np.zeros_like(mean), where=size > 0)[:, None, None]
-    )
-    a = turned.real - conformal.error[:, None, None]  # at least |f_z|
+    a = along_mean(conformal.controls, (1, 2)) - conformal.error[:, None, None]  # at least |f_z|
     b = anticonformal.highest
     return Enclosures(
-        k=_largest(_ratio(b, a)),
+        k=_largest(ratio(b, a)),
         sigma_a=_largest(conformal.highest + b),
         sigma_b=_least(a - b),
     )
@@ -134,7 +128,7 @@ def from_eta(log_modulus: Patch[np.float64], eta: Patch[np.complex128], rho: Flo
 def from_metric(trace: Patch[np.float64], eta: Patch[np.complex128]) -> Enclosures:
     """Enclose of 𝒜 and η, Equations (10) to (12): 𝒜 ± 2 |η| = σ² and |η| / 𝒜 = k / (1 + k²)."""
     y, error = eta.highest, trace.error[:, None, None]
-    share = _largest(_ratio(y, trace.controls - error))
+    share = _largest(ratio(y, trace.controls - error))
     return Enclosures(
         k=k_of(share),
         sigma_a=np.sqrt(_largest(trace.controls + error + 2 * y)),
@@ -171,11 +165,11 @@ def corrected(
         np.sqrt((t + np.sqrt(np.maximum(t * t - 4 * y * y, 0.0))) / 2)
         for t, y in ((least, size_most), (most, size_least))
     )
-    b = _ratio(size_most, np.where(least >= 2 * size_most, a_least, 0.0))
+    b = ratio(size_most, np.where(least >= 2 * size_most, a_least, 0.0))
     grown, shrunk = np.exp(log), rho * np.exp(-log)
     w_least, w_most = np.exp(np.broadcast_to(log_w, log.shape))
     return Enclosures(
-        k=_ratio(b, a_least) * shrunk[0] / (grown[0] * w_least),
+        k=ratio(b, a_least) * shrunk[0] / (grown[0] * w_least),
         sigma_a=(a_most * grown * w_most + b * shrunk).max(axis=0),
         sigma_b=a_least * grown[0] * w_least - b * shrunk[0],
     )
@@ -214,6 +208,16 @@ def k_of(share: Floats) -> Floats:
     return k
 
 
+def along_mean(controls: Complexes, axes: int | tuple[int, ...]) -> Floats:
+    """Return components along the mean of control values: the least is at most any |value|."""
+    mean = controls.mean(axis=axes, keepdims=True)
+    size = np.abs(mean)
+    components: Floats = (
+        controls * np.divide(mean.conj(), size, out=np.zeros_like(mean), where=size > 0)
+    ).real
+    return components
+
+
 def _bounded(log_modulus: Patch[np.float64]) -> tuple[Floats, Floats]:
     """Return control values and errors of a logarithm that do not overflow."""
     error = np.minimum(log_modulus.error, LARGEST_LOGARITHM)[:, None, None]
@@ -228,13 +232,6 @@ def _tangent(log_a: Floats, error: Floats) -> Floats:
     return below
 
 
-def _ratio(numerator: Floats, denominator: Floats) -> Floats:
-    positive = denominator > 0
-    quotient = np.full(np.broadcast(numerator, denominator).shape, inf)
-    np.divide(numerator, denominator, out=quotient, where=positive)
-    return quotient
-
-
 def _largest(values: Floats) -> Floats:
     found: Floats = values.max(axis=(1, 2))
     return found
@@ -247,7 +244,4 @@ def _least(values: Floats) -> Floats:
 
 def _size_least(eta: Patch[np.complex128]) -> Floats:
     """Return what the absolute value is at least."""
-    mean = eta.controls.mean(axis=(1, 2), keepdims=True)
-    size = np.abs(mean)
-    along = np.divide(mean.conj(), size, out=np.zeros_like(mean), where=size > 0)
-    return np.maximum(_least((eta.controls * along).real) - eta.error, 0.0)
+    return np.maximum(_least(along_mean(eta.controls, (1, 2))) - eta.error, 0.0)

@@ -12,7 +12,7 @@ import numpy as np
 
 from engine.arrays import Floats
 from engine.interpolation.passing import SPARE, Course, Tangent
-from engine.interpolation.proof.cells import Patch, from_metric, k_of
+from engine.interpolation.proof.cells import Patch, along_mean, from_metric, k_of
 from engine.interpolation.proof.pieces import EdgeCurves
 from engine.maps import Bounds, Enclosures
 
@@ -104,10 +104,7 @@ def _range(curves: EdgeCurves[np.float64], key: int) -> Between:
 def _size_range(curves: EdgeCurves[np.complex128], key: int) -> Between:
     """Return bounds of the absolute value."""
     controls, errors = curves.controls[:, key], curves.errors[:, key]
-    mean = controls.mean(axis=1, keepdims=True)
-    size = np.abs(mean)
-    along = np.divide(mean.conj(), size, out=np.zeros_like(mean), where=size > 0)
-    least = (controls * along).real.min(axis=1) - errors
+    least = along_mean(controls, 1).min(axis=1) - errors
     return Between(least=np.maximum(least, 0.0), most=np.abs(controls).max(axis=1) + errors)
 
 
