@@ -248,18 +248,20 @@ def test_an_interrupted_export_leaves_whole_frames_only(tmp_path):
         project, altered(moving_document(last=3000), export=ExportSettings(framing="canvas"))
     )
     terminal, its_end = pty.openpty()
-    words = [sys.executable, "-m", "app", "export", str(project), "--out", str(out)]
+    # What a shell puts into the background ignores interrupts, and so would its children.
+    words = ["env", "--default-signal=INT"]
+    words += [sys.executable, "-m", "app", "export", str(project), "--out", str(out)]
     with subprocess.Popen(words, stderr=its_end, stdout=subprocess.PIPE) as process:
         os.close(its_end)
         shown = b""
         while b"\r\x1b[K20 of 3001 frames" not in shown:
             shown += os.read(terminal, 1000)
         process.send_signal(signal.SIGINT)
+        while b"interrupted" not in shown:
+            shown += os.read(terminal, 1000)
         assert process.wait() == 130
         assert process.stdout is not None
         assert process.stdout.read() == b""
-    while b"interrupted" not in shown:
-        shown += os.read(terminal, 1000)
     os.close(terminal)
     names = sorted(path.name for path in out.iterdir())
     assert 10 <= len(names) < 3001
