@@ -150,9 +150,7 @@ class Painter:
                 if is_visible(clip.figure, posed.frame)
             )
             scene = Scene(background=self._background, meshes=meshes)
-            width, height = self._view.size
-            pixels = np.empty((height, width, 4), dtype=np.uint8)
-            pixels[:] = np.rint(255 * np.array(self._background.colour))
+            pixels = _filled(self._view.size, self._background.colour)
             for tile in self._tiles:
                 self._renderer.draw(self._target, tile.view, scene)
                 self._read(posed, tile.view, pixels[tile.top :, tile.left :])
@@ -191,6 +189,15 @@ class Painter:
     def release(self) -> None:
         """Let everything go."""
         self._owned.close()
+
+
+def _filled(size: tuple[int, int], colour: Colour) -> Bytes:
+    """Return pixels (h, w, 4) of one colour."""
+    width, height = size
+    pixel = np.rint(255 * np.array(colour)).astype(np.uint8)
+    # Four bytes at a time, which is many times faster than each by itself.
+    pixels = np.full((height, width), pixel.view(np.uint32)[0])
+    return pixels.view(np.uint8).reshape(height, width, 4)
 
 
 def _sides(corner: complex) -> tuple[float, float]:

@@ -5,10 +5,10 @@ Source: https://www.w3.org/TR/png-3/
 
 import io
 import struct
-import zlib
 from typing import IO, Final
 
 import numpy as np
+from zlib_ng import zlib_ng
 
 from app.export.plan import ExportPlan
 from app.export.writers.frame_writer import FrameWriter
@@ -18,12 +18,13 @@ from engine.arrays import Bytes
 SIGNATURE: Final = b"\x89PNG\r\n\x1a\n"
 # Nothing but runs of one byte. In differences of rows hardly anything else repeats, and to look for
 # it takes longer and makes drawings larger, by a tenth and more.
-STRATEGY: Final = zlib.Z_RLE
+_STRATEGY: Final = zlib_ng.Z_RLE
+_LEVEL: Final = 1  # runs are found at any level, and at this one soonest
 _DEPTH, _RGBA = 8, 6
 # Each row as its difference from the one above. To choose among five filters for each row takes
 # longer than all else, and makes drawings no smaller.
 _UP = 2
-_ROWS: Final = 64  # that are compressed at a time
+_PIECE: Final = 2**20  # bytes that are compressed at a time
 # Perceptual intent, the usual one. Programs that manage colours leave a file that does not say what
 # its numbers mean as it is, whatever the screen.
 _PERCEPTUAL: Final = b"\0"
@@ -35,15 +36,17 @@ def save_png(frame: Bytes, file: IO[bytes]) -> None:
     file.write(SIGNATURE)
     file.write(chunk(b"IHDR", struct.pack(">IIBBBBB", width, height, _DEPTH, _RGBA, 0, 0, 0)))
     file.write(chunk(b"sRGB", _PERCEPTUAL))
-    packer = zlib.compressobj(strategy=STRATEGY)
-    above = np.zeros((1, 4 * width), dtype=np.uint8)
-    for top in range(0, height, _ROWS):
-        rows = np.concatenate([above, frame[top : top + _ROWS].reshape(-1, 4 * width)])
-        filtered = np.empty((len(rows) - 1, 1 + 4 * width), dtype=np.uint8)
-        filtered[:, 0] = _UP
-        np.subtract(rows[1:], rows[:-1], out=filtered[:, 1:])
-        above = rows[-1:]
-        if packed := packer.compress(filtered.data):
+    packer = zlib_ng.compressobj(_LEVEL, strategy=_STRATEGY)
+    rows = frame.reshape(height, 4 * width)
+    above = np.zeros(4 * width, dtype=np.uint8)
+    filtered = np.empty((max(1, _PIECE // (4 * width)), 1 + 4 * width), dtype=np.uint8)
+    filtered[:, 0] = _UP
+    for top in range(0, height, len(filtered)):
+        piece = rows[top : top + len(filtered)]
+        np.subtract(piece[0], above, out=filtered[0, 1:])
+        np.subtract(piece[1:], piece[:-1], out=filtered[1 : len(piece), 1:])
+        above = piece[-1]
+        if packed := packer.compress(filtered[: len(piece)].data):
             file.write(chunk(b"IDAT", packed))
     file.write(chunk(b"IDAT", packer.flush()))
     file.write(chunk(b"IEND", b""))
@@ -51,7 +54,7 @@ def save_png(frame: Bytes, file: IO[bytes]) -> None:
 
 def chunk(kind: bytes, data: bytes) -> bytes:
     """Return a chunk of a PNG file."""
-    check = zlib.crc32(data, zlib.crc32(kind))
+    check = zlib_ng.crc32(data, zlib_ng.crc32(kind))
     return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", check)
 
 

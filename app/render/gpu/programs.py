@@ -21,7 +21,7 @@ class ShaderFiles:
     geometry : str
         Empty where the program has no geometry stage.
     constants : tuple of (name, value)
-        Known to the vertex stage.
+        Known to the vertex and the fragment stage.
     """
 
     vertex: tuple[str, ...]
@@ -43,7 +43,7 @@ class Programs:
         if files not in self._compiled:
             self._compiled[files] = self.context.program(
                 vertex_shader=_join(*files.vertex, constants=files.constants),
-                fragment_shader=_join(*files.fragment),
+                fragment_shader=_join(*files.fragment, constants=files.constants),
                 geometry_shader=_join(files.geometry) if files.geometry else None,
             )
         return self._compiled[files]

@@ -1,18 +1,14 @@
 """What a frame is drawn to, and how its pixels come back."""
 
-from typing import Final
-
 import moderngl
 import numpy as np
 
 from app.errors import LissomError
-from app.render.gpu.context import largest_size
+from app.render.gpu.context import finish_drawing, largest_size
 from app.render.gpu.programs import Programs, ShaderFiles
 from engine.arrays import Bytes
 
 Rectangle = tuple[int, int, int, int]
-
-_STRAIGHT: Final = ShaderFiles(vertex=("screen.vert",), fragment=("straight.frag",))
 
 
 class RenderTarget:
@@ -48,6 +44,11 @@ class RenderTarget:
         self.texture.filter = (moderngl.NEAREST, moderngl.NEAREST)
         self.framebuffer = context.framebuffer([self.texture])
         self._programs = programs
+        self._finish = ShaderFiles(
+            vertex=("screen.vert",),
+            fragment=("straight.frag",),
+            constants=(("SAMPLES", oversampling),),
+        )
         self._straight: moderngl.Framebuffer | None = None
 
     def read_straight_rgba(self, part: Rectangle | None = None) -> Bytes:
@@ -67,7 +68,8 @@ class RenderTarget:
         self._straight.scissor = (left, top, width, height)
         context.enable_only(moderngl.NOTHING)
         self.texture.use(0)
-        self._programs.draw_screen(_STRAIGHT, {"frame": 0, "samples": self.oversampling})
+        self._programs.draw_screen(self._finish, {"frame": 0})
+        finish_drawing(context)
         pixels = np.empty((height, width, 4), dtype=np.uint8)
         self._straight.read_into(pixels, (left, top, width, height), components=4)
         return pixels

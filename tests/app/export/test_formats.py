@@ -1,3 +1,4 @@
+import io
 import itertools
 import struct
 import subprocess
@@ -15,7 +16,7 @@ from PIL import Image, ImageSequence
 
 from app.errors import LissomError
 from app.export.run import MOST_QUEUED, export
-from app.export.writers import DATA_WRITERS, FILE_WRITERS, FOLDER_WRITERS, SHAPE_WRITERS, table
+from app.export.writers import DATA_WRITERS, FILE_WRITERS, FOLDER_WRITERS, SHAPE_WRITERS, png, table
 from app.export.writers.png import PngSequence
 from app.export.writers.spritesheet import SpritesheetWriter, sheet_grid
 from app.export_formats import EXPORT_FORMATS
@@ -102,6 +103,14 @@ def test_png_frames_are_exact_and_numbered_from_the_first_ones_own_number(tmp_pa
         assert_array_equal(rgba_frames(plan.out / name)[0], draw(index))
     run(plan_for(tmp_path / "frames", "png", first=12, times=(12.0,)))
     assert (plan.out / "frame_0012.png").is_file()
+
+
+@pytest.mark.parametrize("rows", [1, 3, 8, 100])
+def test_a_png_is_the_same_in_pieces_of_any_size(monkeypatch, rows):
+    pixels = np.random.default_rng(4).integers(0, 256, (8, 5, 4), dtype=np.uint8)
+    monkeypatch.setattr(png, "_PIECE", rows * 4 * 5)
+    with Image.open(io.BytesIO(png.encode_png(pixels))) as image:
+        assert_array_equal(np.asarray(image), pixels)
 
 
 @pytest.mark.parametrize("format_", ["apng", "webp"])
