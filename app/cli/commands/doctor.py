@@ -29,7 +29,7 @@ from app.render.gpu import (
 from app.ui.dialogs import find_system_dialogs
 
 LIBRARIES: Final = (
-    *("numpy", "scipy", "pillow", "shapely", "contourpy"),
+    *("numpy", "scipy", "pillow", "shapely", "contourpy", "zlib-ng"),
     *("moderngl", "glcontext", "glfw", "imgui-bundle"),
 )
 
