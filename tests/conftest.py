@@ -1,7 +1,7 @@
 import hypothesis
 import pytest
 
-from app.cli.blas import use_one_thread
+from app.cli.process import use_one_thread
 
 # As in the program, and before anything imports NumPy.
 use_one_thread()

@@ -7,11 +7,10 @@ import sys
 from collections.abc import Sequence
 from importlib.metadata import version
 
-from app.cli.blas import use_one_thread
 from app.cli.console import Parser, fail
+from app.cli.process import Endings, use_one_thread
 from app.errors import EXPECTED_ERRORS
 
-EXIT_INTERRUPTED = 130
 EXIT_PIPE_CLOSED = 141
 
 # Subcommand → its summary. The module of that name in app.cli.usage declares its options, which is
@@ -38,20 +37,22 @@ def main(argv: Sequence[str] | None = None) -> int:
     words = list(sys.argv[1:] if argv is None else argv)
     if not words or (words[0] not in COMMANDS and not words[0].startswith("-")):
         words = ["window", *words]
+    endings = Endings()
     try:
-        arguments = build_parser(words).parse_args(words)
-        status = int(
-            importlib.import_module(f"app.cli.commands.{arguments.command}").run(arguments)
-        )
-        # Here, and not when Python ends, where nobody could answer for a closed pipe.
-        sys.stdout.flush()
+        with endings:
+            arguments = build_parser(words).parse_args(words)
+            status = int(
+                importlib.import_module(f"app.cli.commands.{arguments.command}").run(arguments)
+            )
+            # Here, and not when Python ends, where nobody could answer for a closed pipe.
+            sys.stdout.flush()
     except EXPECTED_ERRORS as error:
         fail(str(error))
     except MemoryError:
         fail("not enough memory for this; ask for fewer triangles or a smaller picture")
     except KeyboardInterrupt:
-        print("lissom: interrupted", file=sys.stderr)
-        return EXIT_INTERRUPTED
+        print(f"lissom: interrupted by {endings.name}", file=sys.stderr)
+        return endings.status
     except BrokenPipeError:
         # Whoever read the output has seen enough; Python must not try to write the rest at its end.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())

@@ -83,8 +83,8 @@ class Jobs:
         """Queue a job in place of an unfinished one of its kind."""
         with self._condition:
             self._forget(job.kind)
-            self._waiting.append(job)
             self._staff(job.lane)
+            self._waiting.append(job)
             self._condition.notify_all()
 
     def drop(self, kind: str) -> None:
@@ -184,8 +184,10 @@ class Jobs:
         lane = self._lanes[name]
         if lane.thread is None:
             work = partial(self._work, lane, name)
-            lane.thread = threading.Thread(target=work, name=name, daemon=True)
-            lane.thread.start()
+            thread = threading.Thread(target=work, name=name, daemon=True)
+            thread.start()
+            # Only now: where the system has refused it, the next job asks for it again.
+            lane.thread = thread
 
     def _forget(self, kind: str) -> None:
         self._waiting = [job for job in self._waiting if job.kind != kind]
@@ -219,4 +221,6 @@ def _attempt(job: Job) -> Callable[[], None]:
         result = job.work()
     except Exception as error:  # noqa: BLE001 - the job boundary: every failure is reported
         return partial(job.failed, error)
+    except BaseException as error:  # noqa: BLE001 - such as a library's SystemExit
+        return partial(job.failed, RuntimeError(repr(error)))
     return partial(job.done, result)

@@ -253,7 +253,9 @@ class Project:
         What the file held when it was opened or saved here last; None for a new one.
     to_save : tuple, optional
         Where to save it, what to do then, and the clock's seconds when that was asked for: it is
-        done as soon as its pose has settled.
+        done as soon as its pose has settled and no save is under way.
+    after_saving : Action, optional
+        What gives the project up, and waits for a save that is under way.
     moved_at : float
         The clock's seconds when the playhead was last seen to move.
     autosaved : Document, optional
@@ -297,6 +299,7 @@ class Project:
     hold: Hold | None = None
     read_as: str | None = None
     to_save: tuple[Path, Action | None, float] | None = None
+    after_saving: Action | None = None
     moved_at: float = -inf
     autosaved: Document | None = None
     autosaved_at: float = 0.0

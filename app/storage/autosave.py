@@ -7,6 +7,7 @@ process ends, whereas a process's number is soon given to another one and proves
 import json
 import os
 import secrets
+import threading
 from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
@@ -46,15 +47,35 @@ class Autosave:
     def __init__(self, folder: Path) -> None:
         self._path = folder / f"unsaved-{secrets.token_hex(8)}.lissom"
         self._lock: int | None = None
+        self._writing = threading.Lock()
 
     def write(self, document: Document, origin: Origin) -> None:
         """Keep a document and where it came from, in place of an earlier one.
+
+        What another thread still writes is waited for, so that the last one asked for stays.
 
         Raises
         ------
         LissomError
             If the file cannot be written.
         """
+        told = json.dumps({"name": origin.name, "path": origin.path and str(origin.path)}).encode()
+        # One file with both, so that they are of one time however this ends.
+        members = MappingProxyType({**document.attachments, ORIGIN: told})
+        with self._writing:
+            self._prepare()
+            save_project(self._path, replace(document, attachments=members))
+
+    def forget(self) -> None:
+        """Remove what was kept."""
+        self._path.unlink(missing_ok=True)
+        if self._lock is not None:
+            os.close(self._lock)
+            self._lock = None
+            _lock_of(self._path).unlink(missing_ok=True)
+
+    def _prepare(self) -> None:
+        """Make the folder, and take the lock."""
         try:
             self._path.parent.mkdir(parents=True, exist_ok=True)
         except OSError as error:
@@ -69,18 +90,6 @@ class Autosave:
                 # Another window that looks for what is left holds it for a moment.
                 while not lock(self._lock):
                     pass
-        told = json.dumps({"name": origin.name, "path": origin.path and str(origin.path)}).encode()
-        # One file with both, so that they are of one time however this ends.
-        members = MappingProxyType({**document.attachments, ORIGIN: told})
-        save_project(self._path, replace(document, attachments=members))
-
-    def forget(self) -> None:
-        """Remove what was kept."""
-        self._path.unlink(missing_ok=True)
-        if self._lock is not None:
-            os.close(self._lock)
-            self._lock = None
-            _lock_of(self._path).unlink(missing_ok=True)
 
 
 def find_leftovers(folder: Path) -> list[Path]:

@@ -11,7 +11,7 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "support"))
 
-from app.cli.blas import use_one_thread
+from app.cli.process import use_one_thread
 
 # Of each campaign, what its amount counts, and how much of it is asked for.
 CAMPAIGNS = {

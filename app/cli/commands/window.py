@@ -2,13 +2,13 @@
 
 import argparse
 import os
-import signal
 import sys
 import time
 import traceback
 from pathlib import Path
 
 from app.cli.console import fail, notice
+from app.cli.process import PATIENCE, Endings, end_within
 from app.editor import Jobs, Session
 from app.editor.actions import files, saving
 from app.errors import EXPECTED_ERRORS
@@ -21,9 +21,9 @@ from app.ui.window import Window, has_display
 # Seconds after which a worker hands Python's lock over. A frame takes it some twenty times; with
 # the usual 5 ms a job that seldom lets go would leave two frames a second.
 SWITCH = 0.0005
-# What the system sends when the person logs out, and when the terminal is closed.
-ENDINGS = ("SIGTERM", "SIGHUP")
 EXIT_FAILED = 1
+# Seconds that workers have to end: when the person has closed the window, when something else has.
+LEISURE, HURRY = 6.0, 2.0
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -34,8 +34,6 @@ def run(arguments: argparse.Namespace) -> int:
             "'lissom export PROJECT --out DIR'"
         )
     sys.setswitchinterval(SWITCH)
-    for name in ENDINGS:
-        signal.signal(getattr(signal, name, signal.SIGINT), signal.default_int_handler)
     folder = settings_folder()
     session = Session(
         clock=time.perf_counter,
@@ -49,23 +47,45 @@ def run(arguments: argparse.Namespace) -> int:
     files.offer_recovery(session)
     if arguments.file is not None:
         files.open_file(session, arguments.file.resolve())
-    try:
-        Window(session, lambda: Renderer(window_context())).run()
-    finally:
-        have_ended = session.jobs.close()
+    window = Window(session, lambda: Renderer(window_context()))
+    with Endings(window.wake) as endings:
+        status = _show(window, endings)
+        have_ended = session.jobs.close(LEISURE if session.quitting else HURRY)
         if session.quitting:
             # One that was being written when the person left.
             session.autosave.forget()
-        else:
+    if status == EXIT_FAILED or not have_ended:
+        # What a worker that never ends uses must not be taken down under it, and after an exception
+        # nobody knows what may be.
+        sys.stderr.flush()
+        os._exit(status)
+    return status
+
+
+def _show(window: Window, endings: Endings) -> int:
+    """Show the window until it is closed; return the program's exit status."""
+    session, was_open = window.session, False
+
+    def farewell() -> None:
+        nonlocal was_open
+        was_open = True
+        if not session.quitting:
             _keep(session)
-        save_preferences(folder, session.preferences)
-        if not have_ended:
-            # What a worker that never ends uses must not be taken down under it.
-            if sys.exception() is not None:
-                traceback.print_exc()
-            sys.stderr.flush()
-            os._exit(0 if session.quitting else EXIT_FAILED)
-    return 0
+        save_preferences(session.folder, session.preferences)
+        if session.quitting:
+            end_within(PATIENCE, 0)
+        else:
+            end_within(2 * HURRY, endings.status if endings.has_come else EXIT_FAILED)
+
+    try:
+        window.run(is_over=lambda: endings.has_come, farewell=farewell)
+    except Exception:
+        if not was_open:
+            raise
+        traceback.print_exc()
+        notice("the window failed, as told above")
+        return EXIT_FAILED
+    return 0 if session.quitting else endings.status
 
 
 def _make(folder: Path, session: Session) -> None:

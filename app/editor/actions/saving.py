@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from app.editor.action import Action, do
-from app.editor.actions import exporting
+from app.editor.actions import exporting, posing
 from app.editor.dialogs import FileDialog, Question
 from app.editor.failures import report
 from app.editor.jobs import Job
@@ -55,9 +55,12 @@ def write(session: Session, path: Path, then: Action | None) -> None:
     project = session.project
     if project is None:
         return
-    if project.is_posing and not (project.posing is not None and project.posing.is_held):
-        # To settle afterwards would be a change again, which nobody made.
-        project.to_save = (path, then, session.clock())
+    is_settling = project.is_posing and not (project.posing and project.posing.is_held)
+    # To settle afterwards would be a change again, which nobody made; and to save twice at a time
+    # would take the first for another program's.
+    if is_settling or SAVING in session.jobs.kinds:
+        earlier = project.to_save[1] if project.to_save is not None else None
+        project.to_save = (path, then or earlier, session.clock())
         return
     _write_now(session, project, path, then)
 
@@ -194,9 +197,22 @@ def _ask_curves(session: Session, suffix: str) -> None:
 
 
 def unless_unsaved(session: Session, then: Action) -> None:
-    """Do something that gives up the project, but ask first if it has changes."""
+    """Do something that gives up the project, but ask first if it has changes.
+
+    What is being saved is waited for, unless the person insists.
+    """
     project = session.project
-    if project is None or project.history.is_saved:
+    if project is None:
+        then.apply(session)
+        return
+    if SAVING in session.jobs.kinds and project.after_saving is None:
+        project.after_saving = then
+        session.tell("The project is being saved, which comes first.")
+        return
+    project.after_saving = None
+    # A pose that the solver still looks for is not in the document yet.
+    is_changing = posing.POSING in session.jobs.kinds or project.settling is not None
+    if project.history.is_saved and not is_changing:
         then.apply(session)
         return
     name = project.path.name if project.path else "This project"
@@ -235,13 +251,22 @@ def leave(session: Session) -> None:
 def maintain(session: Session) -> None:
     """Write what is due: a project that has settled, unsaved work, preferences; once a frame."""
     project = session.project
-    if project is not None and project.to_save is not None:
+    if project is not None and SAVING not in session.jobs.kinds:
+        _go_on(session, project)
+    autosave(session)
+    write_preferences(session)
+
+
+def _go_on(session: Session, project: Project) -> None:
+    """Do what has waited for a save to end, or for a pose to settle."""
+    if project.to_save is not None:
         path, then, since = project.to_save
         if not project.is_posing or session.clock() - since >= SETTLING:
             project.to_save = None
             _write_now(session, project, path, then)
-    autosave(session)
-    write_preferences(session)
+    elif project.after_saving is not None:
+        then, project.after_saving = project.after_saving, None
+        unless_unsaved(session, then)
 
 
 def clear_up(session: Session) -> None:
@@ -317,6 +342,8 @@ def keep_now(session: Session) -> None:
     project = session.project
     if project is None or project.history.is_saved:
         return
+    # One that waits is older, and must not take its place.
+    session.jobs.drop(AUTOSAVING)
     session.autosave.write(project.document, project.origin)
     project.autosaved, project.autosaved_at = project.document, session.clock()
 

@@ -69,10 +69,10 @@ class Shell:
         calls.load_additional_fonts = self._load_fonts
         calls.setup_imgui_config = self._configure
         calls.setup_imgui_style = self._apply_theme
-        calls.pre_new_frame = self._begin_frame
+        calls.pre_new_frame = partial(self.attempt, self._begin_frame)
         calls.show_menus = self._part("The menu", bars.draw_menus)
         calls.show_status = self._part("The status bar", bars.draw_status)
-        calls.show_gui = self._draw_over_panels
+        calls.show_gui = partial(guard, "The window", self._draw_over_panels, self._report)
         calls.before_imgui_render = self._apply_actions
         calls.confirm_exit = self._may_exit
         options = hello_imgui.EdgeToolbarOptions()
@@ -92,6 +92,15 @@ class Shell:
     def release(self) -> None:
         """Close what is open beside the window."""
         self._dialogs.close()
+
+    def attempt(self, change: Callable[[], None]) -> None:
+        """Do something; where that fails, tell it, and the window lives on."""
+        try:
+            change()
+        except EXPECTED_ERRORS as error:
+            self.session.tell(sentence(str(error)), tone="error")
+        except Exception as error:  # noqa: BLE001 - part of the frame guard
+            self._report(f"That did not work: {error}", traceback.format_exc())
 
     @property
     def look(self) -> Look:
@@ -169,7 +178,7 @@ class Shell:
         session.export_frame = session.pointed_layer = None
         playback.halt_at_end(session)
         # Panels are to see the frame that it is by now.
-        self._attempt(partial(upkeep.maintain, session))
+        self.attempt(partial(upkeep.maintain, session))
         if _is_busy(session):
             self._awake_until = session.clock() + AWAKE
         if session.clock() < self._awake_until:
@@ -190,12 +199,12 @@ class Shell:
         # What panels saw of the pointer comes first: what was dropped there depends on it.
         actions, self._actions, self._asked = self._actions + self._asked, [], []
         for action in actions:
-            self._attempt(partial(action.apply, self.session))
+            self.attempt(partial(action.apply, self.session))
         # After the actions, so that a pull goes on with the newest wish; before the picture is
         # drawn, so that it shows at once how far the solver has come.
-        self._attempt(self.session.jobs.deliver)
-        self._attempt(partial(upkeep.maintain, self.session))
-        self._attempt(partial(saving.maintain, self.session))
+        self.attempt(self.session.jobs.deliver)
+        self.attempt(partial(upkeep.maintain, self.session))
+        self.attempt(partial(saving.maintain, self.session))
         if self.session.quitting:
             hello_imgui.get_runner_params().app_shall_exit = True
 
@@ -203,14 +212,6 @@ class Shell:
         # The window's own close button; the answer comes as an action.
         self._actions.append(do(saving.quit_lissom))
         return False
-
-    def _attempt(self, change: Callable[[], None]) -> None:
-        try:
-            change()
-        except EXPECTED_ERRORS as error:
-            self.session.tell(sentence(str(error)), tone="error")
-        except Exception as error:  # noqa: BLE001 - part of the frame guard
-            self._report(f"That did not work: {error}", traceback.format_exc())
 
 
 def _is_busy(session: Session) -> bool:

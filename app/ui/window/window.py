@@ -6,6 +6,7 @@ import sys
 import traceback
 from collections.abc import Callable
 from contextlib import suppress
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -84,6 +85,7 @@ class Window:
         self._renderer: Renderer | None = None
         self._shell = Shell(session, self._panels(), self._thumbnail)
         self._title = NAME
+        self._is_open = False
 
     def runner_params(self) -> hello_imgui.RunnerParams:
         """Return the parameters to run the window with."""
@@ -93,11 +95,26 @@ class Window:
         calls.before_imgui_render = hello_imgui.sequence_functions(
             calls.before_imgui_render, self.draw_canvas
         )
-        calls.pre_new_frame = hello_imgui.sequence_functions(self._begin_frame, calls.pre_new_frame)
+        calls.pre_new_frame = hello_imgui.sequence_functions(
+            partial(self._shell.attempt, self._begin_frame), calls.pre_new_frame
+        )
         return params
 
-    def run(self) -> None:
+    def run(
+        self,
+        *,
+        is_over: Callable[[], bool] = lambda: False,
+        farewell: Callable[[], None] = lambda: None,
+    ) -> None:
         """Show the window on the screen until the person closes it.
+
+        Parameters
+        ----------
+        is_over : callable
+            Tells, once a frame, whether the window is to close without a question.
+        farewell : callable
+            Called before anything is taken down, which may hang or crash; also where an exception
+            ends the window, and nothing is taken down any more.
 
         Raises
         ------
@@ -125,12 +142,20 @@ class Window:
                 f"the window cannot be opened ({error}): check the display and its OpenGL driver "
                 "with 'lissom doctor'; the command line works without them"
             ) from error
+        self._is_open = True
         try:
-            while not params.app_shall_exit:
+            while not (params.app_shall_exit or is_over()):
                 hello_imgui.manual_render.render()
         finally:
-            self._release()
-            hello_imgui.manual_render.tear_down()
+            self._is_open = False
+            farewell()
+        self._release()
+        hello_imgui.manual_render.tear_down()
+
+    def wake(self) -> None:
+        """Let a window that waits for events go through a frame; any thread may ask for it."""
+        if self._is_open:
+            glfw.post_empty_event()
 
     def ask(self, action: Action) -> None:
         """Do something in the next frame, as if a panel had asked for it."""

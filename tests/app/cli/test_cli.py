@@ -176,7 +176,10 @@ def test_an_autosave_that_is_written_while_the_person_leaves_is_not_offered(tmp_
         def __init__(self, session, _):
             self.session = session
 
-        def run(self):
+        def wake(self):
+            pass
+
+        def run(self, *, farewell, **_):
             session = self.session
 
             def keep():
@@ -188,10 +191,12 @@ def test_an_autosave_that_is_written_while_the_person_leaves_is_not_offered(tmp_
             assert begun.wait(10)
             saving.leave(session)
             left.set()
+            farewell()
 
     monkeypatch.setenv("XDG_CONFIG_HOME", str(tmp_path))
     monkeypatch.setattr(window, "has_display", lambda: True)
     monkeypatch.setattr(window, "Window", LeftWindow)
+    monkeypatch.setattr(window, "end_within", lambda *_: None)
     monkeypatch.setattr(sys, "setswitchinterval", lambda _: None)
     assert main(["window"]) == 0
     assert left.is_set()

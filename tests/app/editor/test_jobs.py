@@ -50,6 +50,32 @@ def test_failure_is_handed_over():
     assert isinstance(results[0][1], ZeroDivisionError)
 
 
+def test_what_would_end_a_thread_fails_as_a_job_and_the_next_one_runs():
+    jobs, results = Jobs(), []
+    jobs.put(job("exit", lambda: sys.exit(3), results))
+    jobs.put(job("sum", lambda: 1 + 1, results))
+    assert jobs.settle()
+    jobs.deliver()
+    assert "SystemExit(3)" in str(results[0][1])
+    assert results[1] == ("sum", 2)
+
+
+def test_a_thread_that_the_system_refuses_is_asked_for_again(monkeypatch):
+    def refuse(_):
+        raise RuntimeError("can't start new thread")
+
+    jobs, results = Jobs(), []
+    with monkeypatch.context() as patch:
+        patch.setattr(threading.Thread, "start", refuse)
+        with pytest.raises(RuntimeError, match="new thread"):
+            jobs.put(job("sum", lambda: 1 + 1, results))
+    assert jobs.kinds == ()
+    jobs.put(job("sum", lambda: 1 + 1, results))
+    assert jobs.settle()
+    jobs.deliver()
+    assert results == [("sum", 2)]
+
+
 def test_newest_of_a_kind_wins(busy):
     jobs, gate = busy
     results = []
@@ -250,7 +276,7 @@ def test_closing_waits_for_what_runs_and_drops_what_waits():
 
 
 PROGRAM = """
-from app.cli.blas import use_one_thread
+from app.cli.process import use_one_thread
 use_one_thread()
 import threading
 import numpy as np

@@ -5,6 +5,7 @@ import ctypes.util
 import os
 import select
 import shutil
+import signal
 import subprocess
 import sys
 import time
@@ -18,6 +19,7 @@ from PIL import ImageGrab
 
 from app.editor.actions import saving, viewing
 from app.storage.assets import sample_images
+from app.storage.autosave import find_leftovers, load_leftover
 from app.storage.preferences import load_preferences
 from app.storage.project_file import load_project
 
@@ -268,11 +270,22 @@ def test_a_person_animates_a_drawing_and_finds_it_again(window, bar, person, tmp
     assert first.imag < 0.2 * height
     assert last.imag > 1.2 * height
     menu = 90 + NEAR, 60 + NEAR
-    with person.starts(sign=menu) as process:
+    with person.starts(path, sign=menu) as process:
         # By this the desktop's entry knows its windows.
         assert person.tell("search", "--onlyvisible", "--class", "^Lissom$").strip()
         assert person.geometry() == (90, 60, 1100, 700)
-        person.quit(process)
+        until(lambda: person.title() == "posed.lissom – Lissom", "the project")
+        person.tell("key", "m")
+        until(lambda: person.title() == "posed.lissom* – Lissom", "a marker")
+        # As the system ends programs when a person logs out.
+        process.terminate()
+        assert "unsaved work was kept" in process.stderr.readline()
+        process.wait()
+    assert process.returncode == 128 + signal.SIGTERM
+    (kept,) = find_leftovers(settings)
+    recovered, origin = load_leftover(kept)
+    assert origin == ("posed", path)
+    assert len(recovered.markers) == 1
 
 
 WATCH = """

@@ -1,0 +1,118 @@
+"""The process that a command runs in: its threads of linear algebra, and the signals that end it.
+
+Python runs handlers of signals only between two of its own steps. A second thread hears of them at
+once, so that a window that waits for events can be woken, and what hangs does not keep the process
+alive.
+"""
+
+import os
+import signal
+import sys
+import threading
+import time
+from collections.abc import Callable
+from types import FrameType, TracebackType
+from typing import Final, Self
+
+ENDINGS: Final = ("SIGINT", "SIGTERM", "SIGHUP")
+PATIENCE: Final = 10.0  # seconds that a process has to end by itself
+_INTERRUPTED: Final = 128  # and the signal's number: the exit status that shells know
+
+
+def use_one_thread() -> None:
+    """Keep BLAS to one thread; call it before NumPy is imported.
+
+    The matrices are small, and a second thread on a busy core can make a solver step fifty times
+    slower. With one thread, results repeat bit for bit.
+    """
+    for variable in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
+        os.environ.setdefault(variable, "1")
+
+
+class Endings:
+    """Hears the signals that end the program while a `with` block lasts; one of them is enough.
+
+    Signals that whoever started the program lets it ignore, as `nohup` does, stay ignored.
+
+    Parameters
+    ----------
+    wake : callable, optional
+        Called on a thread of its own when the first of them comes; whether one has is then looked
+        at now and then. Without it, the block ends with a `KeyboardInterrupt`.
+    """
+
+    def __init__(self, wake: Callable[[], None] | None = None) -> None:
+        self._wake = wake
+        self._number: int | None = None
+        self._before: dict[int, Callable[[int, FrameType | None], object] | int | None] = {}
+        self._pipe: tuple[int, int] | None = None
+        self._wakeup = -1
+
+    @property
+    def has_come(self) -> bool:
+        """Whether a signal has come."""
+        return self._number is not None
+
+    @property
+    def name(self) -> str:
+        """What the signal is called; empty before there is one."""
+        return "" if self._number is None else signal.Signals(self._number).name
+
+    @property
+    def status(self) -> int:
+        """The exit status that tells of the signal."""
+        return _INTERRUPTED + (self._number or signal.SIGINT)
+
+    def __enter__(self) -> Self:
+        """Listen; only the main thread can."""
+        if threading.current_thread() is not threading.main_thread():
+            return self
+        self._pipe = os.pipe()
+        if sys.platform != "win32":
+            os.set_blocking(self._pipe[1], False)
+        self._wakeup = signal.set_wakeup_fd(self._pipe[1], warn_on_full_buffer=False)
+        for name in ENDINGS:
+            number = getattr(signal, name, signal.SIGINT)  # Windows has no SIGHUP
+            if signal.getsignal(number) is not signal.SIG_IGN:
+                self._before[number] = signal.signal(number, self._note)
+        threading.Thread(target=self._listen, args=self._pipe[:1], daemon=True).start()
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        """Leave signals to whoever had them before."""
+        if self._pipe is None:
+            return
+        for number, before in self._before.items():
+            signal.signal(number, signal.SIG_DFL if before is None else before)
+        signal.set_wakeup_fd(self._wakeup)
+        # By which the thread ends as well, unless the process is to end.
+        os.close(self._pipe[1])
+
+    def _note(self, number: int, _: FrameType | None) -> None:
+        is_first, self._number = self._number is None, self._number or number
+        if is_first and self._wake is None:
+            raise KeyboardInterrupt
+
+    def _listen(self, pipe: int) -> None:
+        while (told := os.read(pipe, 1)) and told[0] not in self._before:
+            pass
+        os.close(pipe)
+        if told:
+            if self._wake is not None:
+                self._wake()
+            end_within(PATIENCE, _INTERRUPTED + told[0])
+
+
+def end_within(seconds: float, status: int) -> None:
+    """End the process after so many seconds at the latest, whatever hangs in it."""
+
+    def end() -> None:
+        time.sleep(seconds)
+        os._exit(status)
+
+    threading.Thread(target=end, daemon=True).start()

@@ -1,0 +1,143 @@
+"""Signals end the program soon, whatever it does, and what was not saved is kept first."""
+
+import os
+import signal
+import subprocess
+import sys
+from contextlib import contextmanager
+from pathlib import Path
+
+import pytest
+from documents import disc_document
+
+from app.cli.commands import window
+from app.cli.main import main
+from app.document import History
+from app.document.commands import scene_commands
+from app.editor.project import Project
+from app.errors import LissomError
+from app.storage.autosave import load_leftover
+
+pytestmark = pytest.mark.skipif(os.name == "nt", reason="Windows has no such signals")
+
+# What a command does, as text, between the signals that it hears.
+LISTEN = """
+import sys, threading, time
+from app.cli import process
+def say(*words):
+    print(*words, flush=True)
+wake = None
+{before}
+heard = process.Endings(wake)
+try:
+    with heard:
+        say("ready")
+        {work}
+except KeyboardInterrupt:
+    {after}
+sys.exit(heard.status)
+"""
+
+
+@contextmanager
+def listening(*, work, before="", after="say(heard.name)"):
+    """Start a process that listens to signals, and wait until it does."""
+    with subprocess.Popen(
+        [sys.executable, "-c", LISTEN.format(before=before, work=work, after=after)],
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        cwd=Path(__file__).parents[3],
+        text=True,
+    ) as process:
+        assert process.stdout.readline() == "ready\n"
+        yield process
+
+
+@pytest.mark.parametrize("name", ["SIGINT", "SIGTERM", "SIGHUP"])
+def test_a_signal_ends_a_command_with_the_status_that_shells_know(name):
+    number = getattr(signal, name)
+    with listening(work="time.sleep(60)") as process:
+        process.send_signal(number)
+        assert process.communicate()[0] == f"{name}\n"
+    assert process.returncode == 128 + number
+
+
+def test_what_hangs_after_a_signal_does_not_keep_the_process():
+    with listening(
+        before="process.PATIENCE = 0.1", work="time.sleep(60)", after="time.sleep(60)"
+    ) as process:
+        process.send_signal(signal.SIGTERM)
+        assert process.communicate()[0] == ""
+    assert process.returncode == 143
+
+
+def test_what_waits_is_woken_and_more_signals_change_nothing():
+    before = "waiting = threading.Event(); wake = waiting.set"
+    work = "waiting.wait(); say(heard.has_come); sys.stdin.read()"
+    with listening(before=before, work=work) as process:
+        process.send_signal(signal.SIGHUP)
+        assert process.stdout.readline() == "True\n"
+        process.send_signal(signal.SIGTERM)
+        process.send_signal(signal.SIGINT)
+    assert process.returncode == 129
+
+
+def test_a_signal_that_is_to_be_ignored_is_ignored():
+    before = "import signal; signal.signal(signal.SIGHUP, signal.SIG_IGN)"
+    with listening(before=before, work="time.sleep(60)") as process:
+        process.send_signal(signal.SIGHUP)
+        process.send_signal(signal.SIGTERM)
+        assert process.communicate()[0] == "SIGTERM\n"
+    assert process.returncode == 143
+
+
+class EndedWindow:
+    """A window with unsaved work in it, until an exception or a signal ends it."""
+
+    error = None
+
+    def __init__(self, session, _):
+        self.session = session
+        self._is_woken = False
+
+    def wake(self):
+        self._is_woken = True
+
+    def run(self, *, is_over, farewell):
+        document = disc_document()
+        project = Project(
+            name="disc", history=History(document, saved=True), path=None, puppets={}, active=0
+        )
+        project.history.do(scene_commands.add_marker(0, "unsaved"))
+        self.session.project = project
+        try:
+            if self.error is not None:
+                raise self.error
+            os.kill(os.getpid(), signal.SIGTERM)
+            assert is_over()
+        finally:
+            farewell()
+
+
+@pytest.mark.parametrize(
+    ("error", "status"), [(None, 143), (ZeroDivisionError("a bug"), 1), (LissomError("odd"), 1)]
+)
+def test_what_was_not_saved_is_kept_however_the_window_ends(
+    tmp_path, monkeypatch, capfd, error, status
+):
+    ended = []
+    monkeypatch.setenv("XDG_CONFIG_HOME", str(tmp_path))
+    monkeypatch.setattr(window, "has_display", lambda: True)
+    monkeypatch.setattr(window, "Window", EndedWindow)
+    monkeypatch.setattr(EndedWindow, "error", error)
+    monkeypatch.setattr(window, "end_within", lambda *_: None)
+    monkeypatch.setattr("app.cli.process.end_within", lambda *_: None)
+    monkeypatch.setattr(sys, "setswitchinterval", lambda _: None)
+    monkeypatch.setattr(os, "_exit", ended.append)
+    assert main(["window"]) == status
+    assert ended == [1] * (error is not None)
+    said = capfd.readouterr().err
+    assert "your unsaved work was kept" in said
+    assert error is None or f"{error}" in said
+    (kept,) = tmp_path.rglob("unsaved-*.lissom")
+    assert load_leftover(kept)[0].markers[0].name == "unsaved"

@@ -1,0 +1,138 @@
+"""Whoever quits while something goes on is asked, and nothing is lost by the answer."""
+
+import threading
+
+import pytest
+from imgui_bundle import hello_imgui
+
+from app.document.keyframe import Target
+from app.editor.actions import posing, saving
+from app.editor.dialogs import Question
+from app.storage.project_file import load_project, save_project
+
+
+@pytest.fixture
+def saved(window, bar, tmp_path):
+    """The bar, saved in a file."""
+    path = tmp_path / "a.lissom"
+    saving.write(window.session, path, None)
+    window.settle()
+    assert bar.history.is_saved
+    yield path
+    # It is the window of the other tests, too.
+    hello_imgui.get_runner_params().app_shall_exit = False
+
+
+@pytest.fixture
+def gate(monkeypatch):
+    """Saves wait until it is opened."""
+    gate = threading.Event()
+
+    def waits(*arguments, **options):
+        assert gate.wait(30)
+        return save_project(*arguments, **options)
+
+    monkeypatch.setattr(saving, "save_project", waits)
+    yield gate
+    gate.set()
+
+
+def quit_lissom(window):
+    """Ask the window to close, as its button does."""
+    window.act(saving.quit_lissom)
+
+
+def question(window):
+    dialog = window.session.dialog
+    return dialog.title if isinstance(dialog, Question) else None
+
+
+def answer(window, text):
+    window.run(lambda robot: robot.item_click(f"//###dialog/{text}"))
+
+
+def wish_of(document):
+    return document.figures[0].key(0).pose.targets[1].position
+
+
+def test_a_pose_that_the_solver_still_looks_for_is_not_lost(window, bar, saved):
+    place = wish_of(bar.document)
+    posing.wish(window.session, {1: Target(position=place + 5j)})
+    assert bar.history.is_saved  # nothing of it has come yet
+    saving.quit_lissom(window.session)
+    assert not window.session.quitting
+    assert question(window) == "Unsaved changes"
+    answer(window, "Save")
+    window.settle()
+    assert window.session.quitting
+    assert wish_of(load_project(saved)) == place + 5j
+
+
+def test_two_saves_at_a_time_are_one_after_the_other_and_nobody_elses(window, bar, saved, gate):
+    for step in (3j, 6j):
+        posing.add_handle(window.session, complex(50, 50) + step)
+        window.frames(2)
+        window.act(saving.save)
+    gate.set()
+    window.settle()
+    assert question(window) is None
+    assert bar.history.is_saved
+    assert len(load_project(saved).figures[0].handles) == len(bar.figure.handles)
+
+
+def test_quitting_waits_for_a_save_that_is_under_way_unless_the_person_insists(
+    window, bar, saved, gate
+):
+    posing.add_handle(window.session, complex(50, 50))
+    window.act(saving.save)
+    for title in (None, "Unsaved changes"):
+        quit_lissom(window)
+        assert question(window) == title
+        assert not window.session.quitting
+    answer(window, "Cancel")
+    quit_lissom(window)
+    assert question(window) is None
+    gate.set()
+    window.settle()
+    assert window.session.quitting
+    assert len(load_project(saved).figures[0].handles) == len(bar.figure.handles)
+
+
+@pytest.mark.usefixtures("bar")
+def test_a_save_that_fails_ends_nothing(window, saved):
+    posing.add_handle(window.session, complex(50, 50))
+    window.frames(2)
+    for path in saved.parent.iterdir():
+        path.unlink()
+    saved.parent.rmdir()
+    quit_lissom(window)
+    answer(window, "Save")
+    window.settle()
+    assert not window.session.quitting
+    assert any("does not exist" in toast.text for toast in window.session.toasts)
+    quit_lissom(window)
+    assert question(window) == "Unsaved changes"
+
+
+def test_a_drag_that_goes_on_while_the_window_is_to_close_is_kept(window, bar, saved):
+    start = complex(bar.puppet.shown.handle_places[1])
+
+    def play(robot):
+        robot.mouse_move_to_pos(window.point(start))
+        robot.mouse_down(0)
+        robot.mouse_move_to_pos(window.point(start - 20j))
+        saving.quit_lissom(window.session)
+        robot.yield_(2)
+        robot.mouse_move_to_pos(window.point(start - 25j))
+        robot.mouse_up(0)
+        robot.yield_(2)
+
+    window.run(play)
+    assert window.session.pointer is None
+    saving.quit_lissom(window.session)  # once more
+    answer(window, "Save")
+    window.settle()
+    assert window.session.quitting
+    kept = load_project(saved)
+    assert abs(wish_of(kept) - start) > 10
+    assert wish_of(kept) == wish_of(bar.document)
