@@ -12,6 +12,7 @@ def read_cut_out(arguments: argparse.Namespace) -> CutOut:
     return CutOut(
         tolerance=arguments.tolerance,
         background=arguments.background,
+        enclosed=arguments.enclosed,
         mask=None if path is None else decode_mask(read_file(path), str(path)),
         holes=arguments.holes,
     )

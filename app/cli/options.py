@@ -13,6 +13,7 @@ from engine.variant import Baseline, Variant
 
 DETAILS = ("coarse", "normal", "fine")
 HOLES = ("keep", "fill")
+ENCLOSED = ("auto", "keep", "remove")
 DEFAULT_DETAIL = "normal"
 DEFAULT_TRIANGLES = 100_000
 DEFAULT_TOLERANCE = 18
@@ -55,7 +56,7 @@ def add_meshing_options(parser: argparse.ArgumentParser) -> None:
 
 
 def add_cut_out_options(parser: argparse.ArgumentParser) -> None:
-    """Declare what of a picture is its subject: `background`, `mask`, `tolerance`, `holes`."""
+    """Declare what of a picture is its subject."""
     either = parser.add_mutually_exclusive_group()
     either.add_argument(
         "--background",
@@ -77,6 +78,14 @@ def add_cut_out_options(parser: argparse.ArgumentParser) -> None:
         type=int,
         default=DEFAULT_TOLERANCE,
         help="levels by which the background may vary, 0 to 255 (default: %(default)s)",
+    )
+    parser.add_argument(
+        "--enclosed",
+        choices=ENCLOSED,
+        default=ENCLOSED[0],
+        help="whether parts inside the subject that have the background's colour, such as the gap "
+        "between an arm and the body, are kept or removed too; auto removes vivid colours, but "
+        "not white, grey and black (default: %(default)s)",
     )
     parser.add_argument(
         "--holes",

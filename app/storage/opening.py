@@ -75,7 +75,7 @@ def cut_picture(picture: Picture, cut_out: CutOut) -> Cut:
         # Of a project that was saved before a cut-out that cannot be was changed again.
         return Cut.of(freeze(picture.rgba[..., 3] > 0), picture.rgba)
     try:
-        holes = find_holes(subject.mask)
+        holes = find_holes(subject.mask, subject.enclosed, opens=subject.opens)
     except EngineError:
         holes = None
     return Cut.of(subject.mask, texture(picture.rgba, subject), holes)

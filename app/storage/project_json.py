@@ -48,7 +48,7 @@ from app.storage.json_values import (
 from engine.arrays import Complexes
 from engine.domain import CutOut, Domain, Mask, Stroke
 from engine.domain.outline import Detail
-from engine.domain.picture import Holes
+from engine.domain.picture import Enclosed, Holes
 from engine.maps import Boundary, Bounds, HarmonicMap, certify
 
 SCHEMA = 2
@@ -334,6 +334,7 @@ def _write_cut_out(cut_out: CutOut) -> Json:
     return {
         "tolerance": cut_out.tolerance,
         "background": list(background) if isinstance(background, tuple) else background,
+        "enclosed": cut_out.enclosed,
         "mask": cut_out.mask is not None,
         "strokes": [
             {"points": len(stroke.points), "radius": stroke.radius, "keeps": stroke.keeps}
@@ -369,6 +370,7 @@ def _read_cut_out(
             if isinstance(background, list)
             else as_text(background, f"{where}.background"),
         ),
+        enclosed=cast(Enclosed, as_text(content.get("enclosed", "keep"), f"{where}.enclosed")),
         mask=parts.mask(figure, picture.size) if has_mask else None,
         strokes=tuple(
             Stroke(

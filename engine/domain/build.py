@@ -116,7 +116,7 @@ def build_domain(
         )
     cut_out = cut_out or CutOut()
     subject = subject_mask(rgba, cut_out)
-    enclosure = enclose(subject.mask, detail=detail, holes=cut_out.holes, swapped=cut_out.swapped)
+    enclosure = enclose(subject.mask, detail=detail, holes=cut_out.holes, swapped=subject.swapped)
     loops = [hole.outline for hole in enclosure.holes]
     domain = Domain(
         outline=enclosure.outline,

@@ -272,6 +272,7 @@ def hand_made_cut_out() -> CutOut:
     return CutOut(
         tolerance=7,
         background=(250, 0, 3),
+        enclosed="remove",
         mask=Mask.of(kept),
         strokes=(
             Stroke(points=np.array([10 + 20j, 1 / 3 + 0j]), radius=2.5, keeps=True),

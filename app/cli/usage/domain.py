@@ -33,6 +33,7 @@ examples:
   lissom domain giraffe.png --out giraffe.npz --detail fine --preview preview.png
   lissom domain icon.png --out icon.npz --triangles 5000
   lissom domain cup.png --out cup.npz --holes fill
+  lissom domain donut.jpg --out donut.npz --enclosed remove
   lissom domain friend.ora --layer "left arm" --out arm.npz
   lissom domain photo.jpg --out photo.npz --background "#8fb0d0" --tolerance 40
 """

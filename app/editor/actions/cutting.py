@@ -85,6 +85,11 @@ def set_background(session: Session, background: Any) -> None:
     change(session, background=background, mask=None)
 
 
+def set_enclosed(session: Session, enclosed: Any) -> None:
+    """Set whether parts inside go that have the background's colour."""
+    change(session, enclosed=enclosed)
+
+
 def pick(session: Session, place: complex) -> None:
     """Take the colour of the picture at a place for the background's."""
     project = session.project

@@ -24,6 +24,7 @@ from engine.domain import CutOut
 TOLERANCES = Scale(left=0, right=120)
 BRUSHES = Scale(left=cutting.SMALLEST_BRUSH, right=cutting.LARGEST_BRUSH / 2, logarithmic=True)
 BACKGROUNDS = (("auto", "Automatic"), ("none", "None"), ("colour", "Colour"))
+ENCLOSED = (("auto", "Automatic"), ("keep", "Keep"), ("remove", "Remove"))
 BRUSH_TOOLS: tuple[tuple[CutTool, str, str, str], ...] = (
     ("keep", icons.ICON_FA_PAINTBRUSH, "Keep", "Brush over what belongs to the drawing"),
     ("remove", icons.ICON_FA_ERASER, "Remove", "Brush over what is to go"),
@@ -84,6 +85,15 @@ def _background(session: Session, look: Look, project: Project, cut_out: CutOut)
     entered = slider(look, "tolerance", cut_out.tolerance, TOLERANCES, text="%.0f", hint=hint)
     if entered is not None:
         actions.append(do(cutting.set_tolerance, round(entered.value)))
+    label(look, "Inside")
+    enclosed = segments(look, "enclosed", ENCLOSED, cut_out.enclosed)
+    if enclosed is not None:
+        actions.append(do(cutting.set_enclosed, enclosed))
+    tip(
+        "Parts inside that have the background's colour, as between an arm and the body: automatic "
+        "removes vivid colours, but not white, grey and black, which eyes and paper have too; a "
+        "click below changes one of them"
+    )
     if cut_out.mask is not None:
         small(look, "A mask was loaded: it takes the place of all this.")
     return actions

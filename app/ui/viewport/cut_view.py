@@ -13,7 +13,6 @@ from app.render.gpu import GpuMesh, GpuPicture, PosedMesh, PositionBuffer, singl
 from app.ui.style import Look, Palette, ink
 from app.ui.viewport.marks import plain
 from engine.arrays import Booleans, Bytes, Complexes, Integers
-from engine.domain import CutOut
 
 VEIL = (214, 48, 72, 150)
 FINEST = 1024  # pixels of the veil's longer side
@@ -91,7 +90,9 @@ def mark_holes(project: Project, palette: Palette, scale: float) -> tuple[Disc, 
             centre=middle + figure.corner,
             radius=HOLE * scale,
             fill=plain(
-                palette.accent if _is_filled(figure.cut_out, number, swapped) else palette.panel
+                palette.accent
+                if (figure.cut_out.holes == "fill" or number in holes.shut) != (number in swapped)
+                else palette.panel
             ),
             rim=plain(palette.text),
             rim_width=2.0 * scale,
@@ -137,10 +138,6 @@ def draw_stroke(look: Look, mark: StrokeMark, points: Sequence[ImVec2], scale: f
         draw_list.add_polyline(list(points), ink(colour, STROKE), 2 * radius, 0)
     else:
         draw_list.add_circle_filled(points[0], radius, ink(colour, STROKE))
-
-
-def _is_filled(cut_out: CutOut, number: int, swapped: set[int]) -> bool:
-    return (cut_out.holes == "fill") != (number in swapped)
 
 
 def _corners(width: float, height: float) -> Complexes:

@@ -36,11 +36,14 @@ class HoleMap:
         In cells of the grid.
     middles : dict of int to complex
         Of the holes that are large enough to be kept, by their numbers.
+    shut : frozenset of int
+        Of these, the ones that are parts of the subject where nothing else is said.
     """
 
     grid: WorkingGrid
     piece: WholePiece
     middles: Mapping[int, complex]
+    shut: frozenset[int]
 
     def number_at(self, point: complex) -> int:
         """Return the number of the hole that a point is in, if it can be kept; else 0."""
@@ -48,25 +51,39 @@ class HoleMap:
         return int(numbers[0]) if len(numbers) and int(numbers[0]) in self.middles else 0
 
 
-def find_holes(mask: Booleans) -> HoleMap:
-    """Find the holes of a subject, (h, w), first row on top.
+def find_holes(mask: Booleans, enclosed: Booleans | None = None, *, opens: bool = False) -> HoleMap:
+    """Find the holes of a subject, and those that it could have.
+
+    Parameters
+    ----------
+    mask : bool, shape (h, w)
+        True on the subject, first row on top.
+    enclosed : bool, shape (h, w), optional
+        True on parts inside, that of the mask or not, that could be holes.
+    opens : bool
+        Whether they are where nothing else is said.
 
     Raises
     ------
     EngineError
         If the subject falls into too many parts.
     """
+    if enclosed is not None:
+        mask = mask & ~enclosed
     grid = working_grid(mask)
     piece = join_parts(grid.mask, grid.diagonal)
-    middles = {}
+    middles, shut = {}, set()
     windows = ndimage.find_objects(piece.holes)
     for number, (rows, columns) in enumerate(windows, start=1):
         depth = ndimage.distance_transform_edt(np.pad(piece.holes[rows, columns] == number, 1))
         row, column = np.unravel_index(int(np.argmax(depth)), depth.shape)
         if depth[row, column] >= SMALLEST_HOLE * grid.diagonal:
             cell = complex(columns.start + column - 0.5, rows.start + row - 0.5)
-            middles[number] = complex(grid.to_picture(np.array([cell]))[0])
-    return HoleMap(grid=grid, piece=piece, middles=middles)
+            middle = middles[number] = complex(grid.to_picture(np.array([cell]))[0])
+            pixel = int(len(mask) - middle.imag), int(middle.real)
+            if enclosed is not None and enclosed[pixel] and not opens:
+                shut.add(number)
+    return HoleMap(grid=grid, piece=piece, middles=middles, shut=frozenset(shut))
 
 
 def trace_hole(

@@ -12,6 +12,7 @@ from engine.domain.picture.grid import block_factor, reduce_blocks, repeat_block
 WORKING_SIDE = 1400  # pixels: larger pictures are flooded in blocks
 COLOUR_BIN = 16  # levels: how finely colours are told apart when the border votes
 CHANNEL_WIDTH = 0.006  # of the diagonal: the flood passes no channel that is narrower
+VIVID = 48  # levels between a colour's channels: white, grey and black have fewer
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -22,12 +23,22 @@ class Background:
     ----------
     mask : bool, shape (h, w)
         True on the background.
+    enclosed : bool, shape (h, w)
+        True on what has the same colour, inside of something else, and is no channel.
+    colour : uint8, shape (3,)
     agreement : float
         Share of the border's pixels that have the background's colour.
     """
 
     mask: Booleans
+    enclosed: Booleans
+    colour: Bytes
     agreement: float
+
+    @property
+    def is_vivid(self) -> bool:
+        """Whether the colour is far from white, grey and black."""
+        return int(np.ptp(self.colour.astype(int))) >= VIVID
 
 
 def flood_background(
@@ -54,11 +65,17 @@ def flood_background(
     alike = _alike(rgb, wanted, tolerance)
     agreement = float(_border(alike).mean())
     factor = block_factor(alike.shape, WORKING_SIDE)
-    flooded = _flood(reduce_blocks(alike, factor, np.logical_and))
+    flooded, enclosed = _flood(reduce_blocks(alike, factor, np.logical_and))
     if factor > 1:
-        near = ndimage.binary_dilation(flooded, np.ones((3, 3), dtype=np.bool_))
-        flooded = repeat_blocks(near, factor, alike.shape) & alike
-    return Background(mask=flooded, agreement=agreement)
+        flooded = _refined(flooded, factor, alike)
+        enclosed = _refined(enclosed, factor, alike) & ~flooded
+    return Background(mask=flooded, enclosed=enclosed, colour=wanted, agreement=agreement)
+
+
+def _refined(blocks: Booleans, factor: int, alike: Booleans) -> Booleans:
+    """Return those of the pixels `alike` that are in blocks or beside them."""
+    near = ndimage.binary_dilation(blocks, np.ones((3, 3), dtype=np.bool_))
+    return repeat_blocks(near, factor, alike.shape) & alike
 
 
 def _border(values: np.ndarray) -> np.ndarray:
@@ -85,13 +102,21 @@ def _alike(rgb: Bytes, colour: Bytes, tolerance: int) -> Booleans:
     return alike
 
 
-def _flood(alike: Booleans) -> Booleans:
-    """Flood the pixels `alike` from the border, past no narrow channel."""
+def _flood(alike: Booleans) -> tuple[Booleans, Booleans]:
+    """Flood the pixels `alike` from the border, past no narrow channel, and all other wide places.
+
+    Return both floods.
+    """
     radius = max(1.0, CHANNEL_WIDTH / 2 * float(np.hypot(*alike.shape)))
     wide = _opened(alike, radius)
     flooded = _touching(wide, _frame(wide.shape))
+    enclosed = wide & ~flooded
     thin = alike & ~wide
-    return flooded | (_touching(thin | flooded, flooded) & thin)
+    flooded |= _touching(thin | flooded, flooded) & thin
+    if enclosed.any():
+        thin &= ~flooded
+        enclosed |= _touching(thin | enclosed, enclosed) & thin
+    return flooded, enclosed
 
 
 def _opened(area: Booleans, radius: float) -> Booleans:

@@ -11,6 +11,7 @@ from engine.errors import EngineError
 
 BackgroundColour = tuple[int, int, int]  # red, green, blue, each 0 to 255
 Holes = Literal["keep", "fill"]
+Enclosed = Literal["auto", "keep", "remove"]
 
 SMALLEST_RADIUS, LARGEST_RADIUS = 0.5, 4096.0  # pixels of a stroke
 FARTHEST = 1e5  # pixels from the picture's corner that a stroke may go
@@ -101,6 +102,10 @@ class CutOut:
     background : {"auto", "none"} or tuple of int
         Whether a background is removed from an opaque picture: where most of its border has one
         colour, never, or what has this colour, be it opaque or not.
+    enclosed : {"auto", "keep", "remove"}
+        Whether parts inside the subject that show the background's colour go too, such as the gap
+        between an arm and the body; "auto" removes vivid colours, but not white, grey and black,
+        which eyes, teeth and paper have as well.
     mask : Mask, optional
         What is kept instead; then no background is looked for.
     strokes : tuple of Stroke
@@ -108,11 +113,13 @@ class CutOut:
     holes : {"keep", "fill"}
         Whether large holes of the subject stay holes.
     swapped : tuple of complex
-        Points in those that are treated the other way, in pixels of the picture, y up.
+        Points in holes, and in enclosed parts, that are treated the other way, in pixels of the
+        picture, y up.
     """
 
     tolerance: int = 18
     background: Literal["auto", "none"] | BackgroundColour = "auto"
+    enclosed: Enclosed = "auto"
     mask: Mask | None = None
     strokes: tuple[Stroke, ...] = ()
     holes: Holes = "keep"
@@ -132,6 +139,10 @@ class CutOut:
         elif self.background not in {"auto", "none"}:
             raise EngineError(
                 f"The background is 'auto', 'none' or a colour, not {self.background!r}."
+            )
+        if self.enclosed not in {"auto", "keep", "remove"}:
+            raise EngineError(
+                f"Enclosed parts are one of 'auto', 'keep' and 'remove', not {self.enclosed!r}."
             )
         if self.holes not in {"fill", "keep"}:
             raise EngineError(f"Holes are one of 'fill' and 'keep', not {self.holes!r}.")

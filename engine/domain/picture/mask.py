@@ -2,11 +2,14 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from math import pi
+from typing import NamedTuple
 
 import numpy as np
+from scipy import ndimage
 
 from engine.arrays import Booleans, Bytes, readonly
-from engine.domain.picture.background import flood_background
+from engine.domain.picture.background import Background, flood_background
 from engine.domain.picture.cut_out import BackgroundColour, CutOut, Mask, Stroke, paint
 from engine.errors import EngineError
 
@@ -16,6 +19,8 @@ OPAQUE_SHARE = 0.998  # visible pixels from which on the picture counts as opaqu
 SMALLEST_SIDE = 8  # pixels
 LEAST_AGREEMENT = 0.80  # of the border with the background's colour
 SUBJECT_SHARES = (0.01, 0.97)  # of the picture, between which a removed background is believed
+MOST_ENCLOSED = 0.8  # of the subject: lines on coloured paper enclose more of it
+TOLD_ENCLOSED = 0.012  # radius of a disc, of the picture's diagonal: what is kept of more is told
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -28,6 +33,13 @@ class Subject:
         True on the subject, first row on top.
     cut : bool
         Whether something was removed that the picture itself shows.
+    enclosed : bool, shape (h, w), optional
+        True on parts inside that have the colour of a removed background, kept or not; None where
+        there are none.
+    opens : bool
+        Whether such parts are removed where nothing else was said.
+    swapped : tuple of complex
+        Those points of the cut-out that are in other holes.
     notices : tuple of str
         What had to be done to the picture, in words.
     """
@@ -35,6 +47,9 @@ class Subject:
     mask: Booleans
     cut: bool
     notices: tuple[str, ...]
+    enclosed: Booleans | None = None
+    opens: bool = False
+    swapped: tuple[complex, ...] = ()
 
 
 def subject_mask(rgba: Bytes, cut_out: CutOut | None = None) -> Subject:
@@ -69,22 +84,81 @@ def subject_mask(rgba: Bytes, cut_out: CutOut | None = None) -> Subject:
     if not visible.any():
         raise EngineError("The picture is fully transparent; give one with a visible drawing.")
     notices: tuple[str, ...] = ()
+    background: Background | None = None
     if cut_out.mask is not None:
         subject = _masked(present, cut_out.mask)
     elif isinstance(cut_out.background, tuple):
-        subject, notices = _without_colour(rgba, cut_out.tolerance, cut_out.background)
+        subject, notices, background = _without_colour(rgba, cut_out.tolerance, cut_out.background)
     elif np.count_nonzero(visible) < OPAQUE_SHARE * visible.size:
         subject, notices = _without_transparency(present, visible)
     elif cut_out.background == "none":
         subject = visible
     else:
-        subject, notices = _without_background(rgba[..., :3], cut_out.tolerance)
+        subject, notices, background = _without_background(rgba[..., :3], cut_out.tolerance)
         subject &= visible
+    within = None if background is None else _enclosed(subject, background, cut_out)
+    if within is not None:
+        subject, notices = within.subject, notices + within.notices
     if cut_out.strokes:
         subject, notices = _brushed(subject, cut_out.strokes) & present, ()
     _require_size(subject)
     cut = bool((visible & ~subject).any())
-    return Subject(mask=readonly(subject), cut=cut, notices=notices)
+    if within is None:
+        return Subject(mask=readonly(subject), cut=cut, notices=notices, swapped=cut_out.swapped)
+    return Subject(
+        mask=readonly(subject),
+        cut=cut,
+        notices=notices,
+        enclosed=readonly(within.area & (subject == within.subject)),
+        opens=within.opens,
+        swapped=within.swapped,
+    )
+
+
+class _Within(NamedTuple):
+    """What is left of a subject without the enclosed parts that are removed, and the rest of it."""
+
+    subject: Booleans
+    area: Booleans
+    opens: bool
+    swapped: tuple[complex, ...]
+    notices: tuple[str, ...]
+
+
+def _enclosed(subject: Booleans, background: Background, cut_out: CutOut) -> _Within | None:
+    """Decide which parts inside a subject go with the background that they have the colour of."""
+    area = background.enclosed & subject
+    if not area.any():
+        return None
+    labels, count = ndimage.label(area)
+    sizes = np.bincount(labels.ravel(), minlength=count + 1)[1:]
+    opens = cut_out.enclosed == "remove" or (
+        cut_out.enclosed == "auto"
+        and background.is_vivid
+        and int(sizes.sum()) <= MOST_ENCLOSED * int(np.count_nonzero(subject))
+    )
+    opened = np.full(count + 1, opens and cut_out.holes == "keep")
+    others = []
+    for point in cut_out.swapped:
+        row, column = int(np.floor(len(area) - point.imag)), int(np.floor(point.real))
+        inside = 0 <= row < area.shape[0] and 0 <= column < area.shape[1]
+        number = int(labels[row, column]) if inside else 0
+        if number:
+            opened[number] = cut_out.holes == "fill" or not opens
+        # Where holes are filled, those that are not have to be named.
+        if not number or cut_out.holes == "fill":
+            others.append(point)
+    opened[0] = False
+    told = sizes >= pi * (TOLD_ENCLOSED * np.hypot(*area.shape)) ** 2
+    removed, kept = int(opened[1:].sum()), int((told & ~opened[1:]).sum())
+    notices = []
+    if removed:
+        parts = "1 enclosed part" if removed == 1 else f"{removed} enclosed parts"
+        notices.append(f"{parts} of the background's colour removed too")
+    if kept:
+        parts = "1 enclosed part" if kept == 1 else f"{kept} enclosed parts"
+        notices.append(f"{parts} of the background's colour kept")
+    return _Within(subject & ~opened[labels], area, opens, tuple(others), tuple(notices))
 
 
 def _masked(visible: Booleans, mask: Mask) -> Booleans:
@@ -113,19 +187,21 @@ def _brushed(subject: Booleans, strokes: Sequence[Stroke]) -> Booleans:
 
 def _without_colour(
     rgba: Bytes, tolerance: int, colour: BackgroundColour
-) -> tuple[Booleans, tuple[str, ...]]:
+) -> tuple[Booleans, tuple[str, ...], Background | None]:
     """Return what is left where a colour has flooded the picture from its border."""
     visible = rgba[..., 3] > 0
     rgb = np.where(visible[..., None], rgba[..., :3], np.array(colour, dtype=np.uint8))
-    flooded = flood_background(rgb, tolerance, colour).mask & visible
+    background = flood_background(rgb, tolerance, colour)
+    flooded = background.mask & visible
     name = "#{:02x}{:02x}{:02x}".format(*colour)
     if not flooded.any():
-        return visible, (f"no background of the colour {name} at the picture's border",)
+        return visible, (f"no background of the colour {name} at the picture's border",), None
     if not (visible & ~flooded).any():
         raise EngineError(
             f"Nothing is left without the background of the colour {name}; lower the tolerance."
         )
-    return visible & ~flooded, (f"background removed ({flooded.mean():.0%} of the picture)",)
+    notice = f"background removed ({flooded.mean():.0%} of the picture)"
+    return visible & ~flooded, (notice,), background
 
 
 def _without_transparency(present: Booleans, visible: Booleans) -> tuple[Booleans, tuple[str, ...]]:
@@ -136,19 +212,22 @@ def _without_transparency(present: Booleans, visible: Booleans) -> tuple[Boolean
     return visible, (f"{faint:,} nearly invisible pixels (alpha below {VISIBLE_ALPHA}) left out",)
 
 
-def _without_background(rgb: Bytes, tolerance: int) -> tuple[Booleans, tuple[str, ...]]:
+def _without_background(
+    rgb: Bytes, tolerance: int
+) -> tuple[Booleans, tuple[str, ...], Background | None]:
     """Return what stands before a plain background, or the whole picture."""
     background = flood_background(rgb, tolerance)
     share = 1 - float(background.mask.mean())
     least, most = SUBJECT_SHARES
     if background.agreement >= LEAST_AGREEMENT and least <= share <= most:
-        return ~background.mask, (f"uniform background removed ({1 - share:.0%} of the picture)",)
+        notice = f"uniform background removed ({1 - share:.0%} of the picture)"
+        return ~background.mask, (notice,), background
     if background.agreement < LEAST_AGREEMENT:
         reason = f"only {background.agreement:.0%} of the border has one colour"
     else:
         reason = f"removing the background would leave {share:.1%} of the picture"
     whole = np.ones(rgb.shape[:2], dtype=np.bool_)
-    return whole, (f"opaque picture kept as a whole rectangle: {reason}",)
+    return whole, (f"opaque picture kept as a whole rectangle: {reason}",), None
 
 
 def _require_size(mask: Booleans) -> None:

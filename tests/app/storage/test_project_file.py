@@ -110,8 +110,8 @@ def test_a_stored_file_of_schema_1_opens():
         markers=(),
         library=(),
         mirror=None,
-        # Holes were filled.
-        cut_out=CutOut(tolerance=figure.cut_out.tolerance, holes="fill"),
+        # Holes were filled, and what was enclosed was kept.
+        cut_out=CutOut(tolerance=figure.cut_out.tolerance, enclosed="keep", holes="fill"),
         is_stale=False,
         handles=tuple(replace(handle, front=0.0, extent=None) for handle in figure.handles),
         # Keys of that time have corners.
@@ -332,7 +332,7 @@ def test_every_field_is_needed(tmp_path, members):
     kept |= {"size", "front", "extent", "fronts", "passing", *USUAL_LAYER}
     kept |= {"names", "sheet", "shapes"}  # of exports; earlier versions did not write them
     # Of the cut-out, likewise.
-    kept |= {"background", "mask", "strokes", "holes", "swapped", "stale"}
+    kept |= {"background", "enclosed", "mask", "strokes", "holes", "swapped", "stale"}
     missing = [way for way in ways(known) if way[-1] not in kept]
     assert len(missing) > 60
     for way in missing:

@@ -12,7 +12,7 @@ from app.storage.project_file import load_project, save_project
 from app.ui.style import TOAST
 
 SIZE = 120
-PAPER = (90, 140, 210)
+PAPER = (214, 205, 190)
 
 
 @pytest.fixture
@@ -277,3 +277,24 @@ def test_a_click_keeps_a_hole_or_fills_it(window, tmp_path):
     assert len(project.figure.domain.holes) == 1 - first
     window.act(editing.undo)
     assert project.document is before
+
+
+@pytest.mark.parametrize(("colour", "first"), [((255, 255, 255), 0), ((90, 150, 220), 1)])
+def test_a_click_opens_what_the_background_shows_through(window, tmp_path, colour, first):
+    opaque = pictures.on_plain(pictures.ring(SIZE), colour)
+    Image.fromarray(opaque).save(tmp_path / "ring.png")
+    project = window.open(tmp_path / "ring.png")
+    window.settle()
+    assert len(project.figure.domain.holes) == first
+    window.act(cutting.take_up, "holes")
+    for holes in (1 - first, first):
+        click(window, MIDDLE + 4)
+        rest(window)
+        assert len(project.figure.domain.holes) == holes
+        assert (project.puppet.cut.value.texture[SIZE // 2, SIZE // 2, 3] == 0) == bool(holes)
+    window.act(cutting.set_enclosed, "keep" if first else "remove")
+    rest(window)
+    assert len(project.figure.domain.holes) == 1 - first
+    path = tmp_path / "ring.lissom"
+    save_project(path, project.document)
+    assert not differences(project.document, load_project(path))

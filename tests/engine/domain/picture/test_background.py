@@ -25,6 +25,7 @@ def test_the_flood_takes_what_has_the_colour_of_the_border_and_is_joined_to_it()
     ring[90:110, 90:110] = False
     background = flood_background(on_paper(ring), 18)
     assert_array_equal(background.mask, ~mask)  # the hole has the colour, but no way to it
+    assert_array_equal(background.enclosed, mask & ~ring)
     assert background.agreement == 1
 
 

@@ -8,11 +8,12 @@ from PIL import Image
 from scipy import ndimage
 
 from engine.arrays import Booleans, Bytes
-from engine.domain.picture.cut_out import CutOut, Mask
+from engine.domain.picture.cut_out import BackgroundColour, CutOut, Enclosed, Mask, Stroke
 from engine.domain.picture.mask import subject_mask
 from engine.errors import EngineError
 
 WHITE = (255, 255, 255)
+GREEN = (120, 170, 110)
 
 
 def visible(rgba: Bytes) -> Booleans:
@@ -175,3 +176,74 @@ def test_masks_and_colours_that_are_none_are_refused() -> None:
         subject_mask(rgba, CutOut(background=(0, 300, 0)))
     with pytest.raises(EngineError, match="Nothing is left"):
         subject_mask(pictures.on_plain(rgba, WHITE), CutOut(background=WHITE, tolerance=255))
+
+
+@pytest.mark.parametrize(
+    ("colour", "enclosed", "what"),
+    [
+        (GREEN, "auto", "removed too"),
+        (WHITE, "auto", "kept"),
+        (GREEN, "keep", "kept"),
+        (WHITE, "remove", "removed too"),
+    ],
+)
+def test_what_is_enclosed_goes_with_a_vivid_background_or_when_it_is_told_to(
+    colour: BackgroundColour, enclosed: Enclosed, what: str
+) -> None:
+    ring = pictures.ring(300)
+    filled: Booleans = ndimage.binary_fill_holes(visible(ring))
+    for cut_out in (CutOut(enclosed=enclosed), CutOut(background=colour, enclosed=enclosed)):
+        subject = subject_mask(pictures.on_plain(ring, colour, noise=2.0), cut_out)
+        assert_array_equal(subject.mask, filled if what == "kept" else visible(ring))
+        assert subject.enclosed is not None
+        assert_array_equal(subject.enclosed, filled & ~visible(ring))
+        assert f"1 enclosed part of the background's colour {what}" in subject.notices
+
+
+def test_a_point_treats_what_is_enclosed_the_other_way() -> None:
+    ring = visible(pictures.ring(300))
+    filled: Booleans = ndimage.binary_fill_holes(ring)
+    elsewhere = 20 + 20j
+    for colour, holes, wanted, left in (
+        (GREEN, "keep", filled, (elsewhere,)),
+        (WHITE, "keep", ring, (elsewhere,)),
+        # Where holes are filled, the one that is not has to be named to what fills them.
+        (GREEN, "fill", ring, (150 + 140j, elsewhere)),
+    ):
+        cut_out = CutOut(holes=holes, swapped=(150 + 140j, elsewhere))
+        subject = subject_mask(pictures.on_plain(pictures.painted(ring), colour), cut_out)
+        assert_array_equal(subject.mask, wanted)
+        assert subject.swapped == left
+
+
+def test_lines_on_coloured_paper_enclose_their_drawing() -> None:
+    x, y = pictures.plane(300, 300)
+    radius = np.hypot(x - 150, y - 150)
+    line = (radius < 120) & (radius > 115)
+    subject = subject_mask(pictures.on_plain(pictures.painted(line), GREEN))
+    assert_array_equal(subject.mask, radius < 120)
+    hoop = (radius < 120) & (radius > 95)
+    subject = subject_mask(pictures.on_plain(pictures.painted(hoop), GREEN))
+    assert_array_equal(subject.mask, hoop)
+
+
+def test_a_brush_decides_over_what_is_enclosed() -> None:
+    ring = visible(pictures.ring(300))
+    keep = Stroke(points=np.array([150 + 150j]), radius=120.0, keeps=True)
+    subject = subject_mask(
+        pictures.on_plain(pictures.painted(ring), GREEN), CutOut(strokes=(keep,))
+    )
+    assert subject.mask[150, 150]
+    assert subject.enclosed is not None
+    assert not subject.enclosed[150, 150]
+
+
+def test_eyes_on_green_and_gaps_between_hairs() -> None:
+    """Thin gaps are no holes of their own, but show nothing of a vivid background."""
+    rgba = pictures.painted(np.pad(np.ones((200, 200), dtype=np.bool_), 50))
+    rgba[100:140, 100:108, 3] = 0
+    opaque = pictures.on_plain(rgba, GREEN)
+    opaque[100:140, 150:190, :3] = WHITE
+    subject = subject_mask(opaque)
+    assert not subject.mask[100:140, 100:108].any()
+    assert subject.mask[100:140, 150:190].all()
