@@ -6,5 +6,6 @@ Imports: `engine.maps`, `engine.geometry`.
 """
 
 from engine.dirichlet.hilbert import Extension, HilbertTransform
+from engine.dirichlet.refinement import Refinement
 
-__all__ = ["Extension", "HilbertTransform"]
+__all__ = ["Extension", "HilbertTransform", "Refinement"]

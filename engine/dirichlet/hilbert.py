@@ -109,7 +109,7 @@ class HilbertTransform:
         """
         inside = _strictly_inside(self.loops, points)
         integral = CauchyIntegral.of(self.panels, inside)
-        return Extension(transform=self, points=points, integral=integral)
+        return Extension(transform=self, points=points, inside=inside, integral=integral)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -121,20 +121,16 @@ class Extension:
     Parameters
     ----------
     transform : HilbertTransform
-    points : complex128, shape (t,)
+    points, inside : complex128, shape (t,)
+        And the same but for those on the boundary, which are a hair's breadth from there.
     integral : CauchyIntegral
-        At the points, or a hair's breadth from those that are on the boundary.
+        At the latter.
     """
 
     transform: HilbertTransform
     points: Complexes
+    inside: Complexes
     integral: CauchyIntegral
-
-    def on(self, panels: Panels) -> Self:
-        """Return the extension at the same points from other panels of the same boundary."""
-        transform = HilbertTransform.of(self.loops, panels)
-        integral = CauchyIntegral.of(panels, _strictly_inside(self.loops, self.points))
-        return type(self)(transform=transform, points=self.points, integral=integral)
 
     @property
     def loops(self) -> tuple[Complexes, ...]:

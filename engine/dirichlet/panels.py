@@ -117,6 +117,16 @@ class Panels:
             starts=freeze(firsts[self.starts]),
         )
 
+    def only(self, chosen: Booleans) -> Self:
+        """Return the chosen panels (p,), as if they were one loop."""
+        return type(self)(
+            origin=self.origin[chosen],
+            span=self.span[chosen],
+            power=self.power[chosen],
+            forward=self.forward[chosen],
+            starts=np.zeros(1, dtype=np.intp),
+        )
+
     def __len__(self) -> int:
         """Return the number of panels."""
         return len(self.origin)

@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from engine.arrays import Complexes, Floats
-from engine.dirichlet import Extension
+from engine.dirichlet import Extension, Refinement
 from engine.interpolation.chebyshev import separate
 from engine.interpolation.derivatives import Passage
 from engine.interpolation.passing import Course, Tangent, bernstein, curbed
@@ -70,13 +70,13 @@ class MetricResidual(NamedTuple):
         transform: Extension,
     ) -> "MetricResidual":
         """Solve the Dirichlet problems of the residual between two keyframes."""
-        metric, transform = _resolved(passage, bounds, transform)
+        metric, panels = _resolved(passage, bounds, transform)
         real_parts, series = separate(
             metric.residuals,
             tolerance=TOLERANCE,
             left_out=LEFT_OUT,
         )
-        modes, modes_z, lacking = transform.extend(real_parts)
+        modes, modes_z, lacking = panels.extend(real_parts)
         modes.imag -= modes[0].imag
         # Unbounded there; the steps beside these nodes are so short that it is not missed.
         modes_z[paths.cornered] = 0.0
@@ -85,23 +85,23 @@ class MetricResidual(NamedTuple):
 
 def _resolved(
     passage: Passage, bounds: Bounds, transform: Extension
-) -> tuple["OutlineMetric", Extension]:
-    """Return the metrics at nodes that resolve the residual, and a transform with these nodes.
+) -> tuple["OutlineMetric", Refinement]:
+    """Return the metrics at nodes that resolve the residual, and the panels of these nodes.
 
     The nodes follow the shape. Keyframes at extreme bounds vary faster still beside a vertex of the
     cage, and for them panels are halved there.
     """
     maps = [key.map for key in passage.keyframes]
     course, times = passage.course, np.array(LOOKED_AT)
-    panels = transform.transform.panels
-    metric = OutlineMetric.of(*derivatives_of(maps, transform.nodes), course, bounds)
+    panels = Refinement.of(transform)
+    metric = OutlineMetric.of(*derivatives_of(maps, panels.nodes), course, bounds)
     for _ in range(MOST_HALVINGS):
-        coarse = panels.unresolved(metric.residuals(times), RESOLVED)
+        coarse = panels.panels.unresolved(metric.residuals(times), RESOLVED)
         if not coarse.any():
             break
         panels = panels.halved(coarse)
-        metric = OutlineMetric.of(*derivatives_of(maps, panels.nodes.ravel()), course, bounds)
-    return metric, transform if panels is transform.transform.panels else transform.on(panels)
+        metric = OutlineMetric.of(*derivatives_of(maps, panels.nodes), course, bounds)
+    return metric, panels
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

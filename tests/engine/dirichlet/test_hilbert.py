@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
+from holed_shapes import Holed, plate, ring
 from holed_shapes import inner_points as points_of
-from holed_shapes import plate, ring
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from interpolation_shapes import around, bar, inner_points, letter_l, narrow_u, random_map, spiral
@@ -13,7 +13,9 @@ from engine.dirichlet.cauchy_integral import CauchyIntegral
 from engine.dirichlet.hilbert import HilbertTransform
 from engine.dirichlet.panels import NODES, Panels
 from engine.dirichlet.product_integration import is_near, panel_weights
+from engine.dirichlet.refinement import Refinement
 from engine.dirichlet.skeleton_solver import SkeletonSolver
+from engine.geometry import contains
 from engine.geometry.polygon import box_diagonal, edges
 from engine.interpolation.blends import OutlineMetric
 from engine.interpolation.passing import Course
@@ -197,6 +199,47 @@ def test_halved_panels_tile_the_same_outline():
     assert_allclose(
         without_constant(values), without_constant(entire(points)[0]), rtol=0, atol=1e-6
     )
+
+
+@pytest.mark.parametrize("shape", [Holed(*letter_l(), holes=(), anchor=0.5 + 0.5j), ring()])
+def test_panels_that_are_cut_resolve_what_varies_fast_there(shape):
+    transform = HilbertTransform.on(shape.outline, shape.cage, shape.holes)
+    panels, inner = transform.panels, points_of(shape, 60)
+    points = np.concatenate([inner, *shape.loops])
+    refinement = Refinement.of(transform.at(points))
+    # The longest panel of each loop, and of those that touch no corner.
+    length = np.abs(panels.span)
+    groups = [
+        *np.split(np.arange(len(panels)), panels.starts[1:]),
+        np.flatnonzero(panels.power == 1),
+    ]
+    cut = [group[length[group].argmax()] for group in groups if len(group)]
+    # A pole outside, nearer to each than it is long.
+    poles = [
+        panels.origin[i] + (0.4 - 0.3j * (1 if panels.forward[i] else -1)) * panels.span[i]
+        for i in cut
+    ]
+    assert not contains(shape.outline, np.array(poles), holes=shape.loops[1:]).any()
+
+    def function(z):
+        return 1e-3 / (z[:, None] - poles)
+
+    uncut = transform.at(points).extend(function(transform.nodes).real)
+    for _ in range(3):
+        chosen = np.zeros(len(refinement.panels), dtype=np.bool_)
+        for whole in cut:
+            chosen[np.flatnonzero(refinement.whole == whole)[-1]] = True
+        refinement = refinement.halved(chosen)
+    given = function(refinement.nodes).real
+    found = refinement.extend(given)
+    slopes = -1e-3 / (inner[:, None] - poles) ** 2
+    assert_allclose(found.derivatives[: len(inner)], slopes, rtol=0, atol=2e-4)
+    assert_allclose(
+        without_constant(found.values), without_constant(function(points)), rtol=0, atol=1e-4
+    )
+    assert_allclose(found.lacking, 0.0, rtol=0, atol=1e-5)
+    off = without_constant(uncut.values) - without_constant(function(points))
+    assert np.abs(off).max() > 5e-4
 
 
 def test_far_from_the_origin_corners_are_kept_apart_from_their_rounding():

@@ -1,0 +1,188 @@
+"""The Dirichlet problem where some panels are cut, beside the solver on whole ones.
+
+What polynomials on a whole panel lack of given real parts, e, is small and at home on that panel
+alone. Half of a density is the real part that it has on its own straight panel, so that 2e there
+leaves to the solver of the whole panels what is smooth,
+
+    (1/2 + K) μ = p − 2 K e,      p + e the real parts,
+
+and nothing is factorised anew.
+"""
+
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Self
+
+import numpy as np
+
+from engine.arrays import Booleans, Complexes, Floats, Indices
+from engine.dirichlet.hilbert import Extended, Extension
+from engine.dirichlet.near_field import near_matrix
+from engine.dirichlet.panels import NODES, Panels, end_values
+from engine.dirichlet.product_integration import near_distance
+
+BLOCK = 2048  # points at a time
+FIRM = 1e4  # how much more the ends of a panel weigh than a node, so that they are met
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Refinement:
+    """An extension from real parts that are given at the nodes of panels, some of them cut.
+
+    Parameters
+    ----------
+    extension : Extension
+        From the whole panels.
+    panels : Panels
+        Length p.
+    whole : intp, shape (p,)
+        The number of the whole panel that each is a part of.
+    """
+
+    extension: Extension
+    panels: Panels
+    whole: Indices
+
+    @classmethod
+    def of(cls, extension: Extension) -> Self:
+        """Return an extension's own panels, none of them cut."""
+        panels = extension.transform.panels
+        return cls(extension=extension, panels=panels, whole=np.arange(len(panels)))
+
+    def halved(self, chosen: Booleans) -> Self:
+        """Return panels of which the chosen ones (p,) are cut in the middle."""
+        whole = np.repeat(self.whole, 1 + chosen)
+        return type(self)(extension=self.extension, panels=self.panels.halved(chosen), whole=whole)
+
+    @property
+    def nodes(self) -> Complexes:
+        """Points of the boundary (N,) at which real parts are given."""
+        return self.panels.nodes.ravel()
+
+    def extend(self, real_parts: Floats) -> Extended:
+        """Return holomorphic functions with given real parts on the boundary.
+
+        Parameters
+        ----------
+        real_parts : float64, shape (N, j)
+            At `nodes`.
+
+        Notes
+        -----
+        As `Extension.extend`; time grows with the product of points and cut panels.
+        """
+        is_cut = np.bincount(self.whole)[self.whole] > 1
+        if not is_cut.any():
+            return self.extension.extend(real_parts)
+        transform, columns = self.extension.transform, real_parts.shape[1]
+        given = real_parts.reshape(len(self.panels), NODES, columns)
+        smooth = np.empty((len(transform.panels), NODES, columns))
+        smooth[self.whole[~is_cut]] = given[~is_cut]
+        parts, whole, given = self.panels.only(is_cut), self.whole[is_cut], given[is_cut]
+        lacking = np.empty_like(given)
+        for number in np.unique(whole):
+            own = whole == number
+            smooth[number], lacking[own] = _projected(
+                transform.panels, number, parts.nodes[own], given[own]
+            )
+        local = _Local(parts=parts, whole=whole, densities=2 * lacking)
+        right = smooth.reshape(-1, columns)
+        right -= local.at(transform.nodes, np.repeat(np.arange(len(smooth)), NODES))[0].real
+        means = local.means(transform.panels)
+        right -= (transform.means > 0).T @ means
+        densities = transform.solver(right)
+        values, derivatives = self.extension.integral(densities)
+        added = local.at(self.extension.inside)
+        return Extended(
+            values + added[0], derivatives + added[1], transform.means @ densities + means
+        )
+
+
+def _projected(
+    panels: Panels, number: int, nodes: Complexes, given: Floats
+) -> tuple[Floats, Floats]:
+    """Return polynomials near what is given on the parts (c, NODES, j) of a panel.
+
+    They are returned at the panel's own nodes (NODES, j), and taken off at those of the parts. At
+    the panel's ends nothing is left, so that densities go on there as without the parts.
+    """
+    power, is_forward = panels.power[number], panels.forward[number]
+    arcs = ((nodes - panels.origin[number]) / panels.span[number]).real.ravel()
+    flat, (first, last) = given.reshape(len(arcs), -1), end_values()
+    at_origin, at_end = (0, -1) if is_forward else (-1, 0)
+    ends = np.array([first @ given[at_origin], last @ given[at_end]])
+    matrix, at_ends = _legendre(arcs ** (1 / power)), FIRM * _legendre(np.array([0.0, 1.0]))
+    coefficients = np.linalg.lstsq(
+        np.concatenate([matrix, at_ends]), np.concatenate([flat, FIRM * ends])
+    )[0]
+    at_nodes: Floats = _legendre(panels.arcs()[number] ** (1 / power)) @ coefficients
+    return at_nodes, (flat - matrix @ coefficients).reshape(given.shape)
+
+
+def _legendre(tau: Floats) -> Floats:
+    """Return the Legendre polynomials of [0, 1] below the degree NODES, (t, NODES)."""
+    values = np.polynomial.legendre.legvander(2 * tau - 1, NODES - 1)
+    return np.asarray(values, dtype=np.float64)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class _Local:
+    """Densities (p, NODES, j) on parts of a few whole panels, 0 on all others."""
+
+    parts: Panels
+    whole: Indices
+    densities: Floats
+
+    def at(self, points: Complexes, own: Indices | None = None) -> tuple[Complexes, Complexes]:
+        """Return the Cauchy integral and its derivative at points (t,), each (t, j).
+
+        `own` are the whole panels (t,) that points of the boundary are on; what these contribute
+        there has no real part, and is left out.
+        """
+        columns = self.densities.shape[2]
+        found = np.empty((2, len(points), columns), dtype=np.complex128)
+        for start in range(0, len(points), BLOCK):
+            block = slice(start, start + BLOCK)
+            omitted = None if own is None else own[block, None] == self.whole
+            found[:, block] = self._block(points[block], omitted)
+        return found[0], found[1]
+
+    def _block(self, points: Complexes, omitted: Booleans | None) -> Complexes:
+        parts, columns = self.parts, self.densities.shape[2]
+        nodes, densities = parts.nodes.ravel(), self.densities.reshape(-1, columns)
+        around = (0.5 + near_distance(parts.power)) * np.abs(parts.span)
+        near = np.abs(points[:, None] - (parts.origin + parts.span / 2)) < around
+        plain = ~near
+        if omitted is not None:
+            near &= ~omitted
+            plain &= ~omitted
+        kernel = np.repeat(plain, NODES, axis=1) / (nodes - points[:, None])
+        masses = densities * (parts.differentials().reshape(-1, 1) / (2j * np.pi))
+        rows, columns_near = np.nonzero(near)
+        # Where another part meets it, as in the integral over whole panels; at their ends the jumps
+        # are those of the whole density, with which they cancel.
+        meets = np.diff(self.whole) == 0
+        beside = np.roll(near, 1, axis=1), np.roll(near, -1, axis=1)
+        before = np.append(False, meets) & ~beside[0]
+        following = np.append(meets, False) & ~beside[1]
+        alone = np.array([before[rows, columns_near], following[rows, columns_near]])
+        matrix = near_matrix(parts, points, rows, columns_near, alone)
+        exact = (matrix @ densities).reshape(len(points), 2, 2, columns)
+        slopes = kernel**2 @ masses
+        return np.stack(
+            [
+                kernel @ masses + exact[:, 0, 0] + 1j * exact[:, 0, 1],
+                slopes + exact[:, 1, 0] + 1j * exact[:, 1, 1],
+            ]
+        )
+
+    def means(self, panels: Panels) -> Floats:
+        """Return the means over the loops of holes, (holes, j), of the whole panels' boundary."""
+        lengths = np.abs(panels.differentials()).sum(axis=1)
+        weights = np.abs(self.parts.differentials())
+        means = []
+        for start, end in pairwise([*panels.starts[1:], len(panels)]):
+            here = (self.whole >= start) & (self.whole < end)
+            total = np.tensordot(weights[here], self.densities[here], axes=2)
+            means.append(total / lengths[start:end].sum())
+        return np.array(means).reshape(len(means), self.densities.shape[2])
