@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from app.document import Document, History, Meshing, clip_of
-from app.editor.action import do
+from app.editor.action import Action, do
 from app.editor.actions import cutting, playback, saving
 from app.editor.actions.saving import PROJECT
 from app.editor.dialogs import FileDialog, Leftover, Question, Recovery
@@ -101,13 +101,21 @@ def open_recent(session: Session, path: Path) -> None:
     )
 
 
+class Offer(NamedTuple):
+    """What a person may want to do next."""
+
+    text: str
+    label: str
+    action: Action
+
+
 class Opened(NamedTuple):
     """What reading a file gives."""
 
     document: Document
     puppets: dict[int, Puppet]
     notices: tuple[str, ...]
-    is_uncut: bool = False  # an opaque picture, of which no background was removed
+    offer: Offer | None = None
     read_as: str | None = None
 
 
@@ -222,14 +230,8 @@ def _show(
         playback.toggle_play(session)
     for notice in opened.notices:
         session.tell(sentence(notice))
-    if opened.is_uncut:
-        session.tell(
-            "The whole picture is the drawing. Brush away what does not belong to it, or pick the "
-            "background's colour in the tab Cut-out.",
-            tone="good",
-            label="Cut out",
-            action=do(cutting.begin_or_swap),
-        )
+    if opened.offer:
+        session.tell(tone="good", **opened.offer._asdict())
 
 
 def _foremost(document: Document) -> int:
@@ -281,8 +283,26 @@ def _read_picture(path: Path, meshing: Meshing) -> Opened:
     document, picture, notices = open_picture(path, meshing)
     identity = document.figures[0].id
     puppet = Puppet.of(clip_of(document, identity), picture)
-    is_uncut = puppet.is_opaque and puppet.cut.value.is_all
-    return Opened(document, {identity: puppet}, notices, is_uncut)
+    return Opened(document, {identity: puppet}, notices, _offer(puppet))
+
+
+def _offer(puppet: Puppet) -> Offer | None:
+    """Return what a person may want to do about an opaque picture that was just opened."""
+    cut = puppet.cut.value
+    if puppet.is_opaque and cut.is_all:
+        return Offer(
+            text="The whole picture is the drawing. Brush away what does not belong to it, or pick "
+            "the background's colour in the tab Cut-out.",
+            label="Cut out",
+            action=do(cutting.begin_or_swap),
+        )
+    if cut.holes is not None and cut.holes.shut:
+        return Offer(
+            text="Does the background show through inside the drawing? A click opens it as a hole.",
+            label="Show where",
+            action=do(cutting.take_up, "holes"),
+        )
+    return None
 
 
 def offer_recovery(session: Session) -> None:
