@@ -26,7 +26,15 @@ from engine.deform.certified_step import CertifiedStep, add_samples, take_certif
 from engine.deform.energy import symmetric_dirichlet
 from engine.deform.handles import Handles, Wish
 from engine.deform.objective import Jet, Objective
-from engine.deform.rest import MOST_STEPS, WORTH_A_JUMP, Search, Way, advance, begin_search
+from engine.deform.rest import (
+    MOST_STEPS,
+    WORTH_A_JUMP,
+    Search,
+    Way,
+    advance,
+    begin_search,
+    opens,
+)
 from engine.deform.state import State, Statistics, Status
 from engine.deform.steering import (
     FULL,
@@ -58,7 +66,7 @@ PATH_STEPS = 10
 PATH_REST = 1e-3
 # Steps without progress after which a drag is handed over to the search for the minimum.
 PATIENCE = 4
-# Handles that are wanted this far (of L) from where they are at rest are also led along their way.
+# Handles that are wanted this far (of L) from where they are at rest may be in a tangle.
 FAR = 0.15
 
 
@@ -279,10 +287,10 @@ class Deformer:
     def settle(self, state: State, wish: Wish, *, at_most: int = 600) -> tuple[State, int]:
         """Find the pose of least energy for a wish; return the number of steps too.
 
-        From the present map, from the shape at rest, and, for handles that are wanted far away and
-        past each other, along the straight way there, as long as bounds hold the shape back. At
-        most `at_most` steps are taken. The energy is never above that of the present map, once that
-        is within the bounds.
+        From the present map, from the shape at rest as long as bounds hold it back, and, for
+        handles that are wanted far away and past each other, from the shape at rest within bounds
+        that open on the way. At most `at_most` steps are taken. The energy is never above that of
+        the present map, once that is within the bounds.
         """
         count = 0
         if not (self._goes_on(state, wish) and state.status.is_final):
@@ -291,7 +299,7 @@ class Deformer:
                 if state.status.is_final:
                     return state, count
             if len(wish.positions) > 0 and count < at_most:
-                state = self._begin(state, wish, (Way.HERE, Way.REST, Way.PATH))
+                state = self._begin(state, wish, (Way.HERE, Way.REST, Way.OPENING))
         while count < at_most:
             state, count = self.step(state, wish), count + 1
             if state.status.is_final:
@@ -400,9 +408,12 @@ class Deformer:
         self, ways: tuple[Way, ...], outcome: Search, shown: float
     ) -> tuple[Way, ...]:
         """Return the ways that are left to search."""
-        if outcome.has_arrived and not outcome.optimality.active:
-            return ()
-        others = tuple(way for way in ways[1:] if way is not Way.PATH or self._is_tangled(outcome))
+        free = outcome.has_arrived and not outcome.optimality.active
+        others = tuple(
+            way
+            for way in ways[1:]
+            if (self._is_tangled(outcome) if way is Way.OPENING else not free)
+        )
         if not others and ways[0] is not Way.HERE and not _is_proven(outcome, shown):
             return (Way.HERE,)
         return others
@@ -432,10 +443,14 @@ class Deformer:
         return HarmonicMap.identity(self.boundary.cage, self.boundary.holes)
 
     def _is_tangled(self, outcome: Search) -> bool:
-        """Tell whether handles are wanted far from where they are at rest, past each other."""
+        """Tell whether handles are wanted far from where they are at rest, past each other.
+
+        Then there are many valleys, and those that wide and opening bounds lead to may differ.
+        """
         ways = np.abs(outcome.wish.positions - self.handles.points)
-        return bool(ways.max(initial=0.0) > FAR * self.boundary.size) and not are_correlated(
-            self.handles, outcome.wish.positions
+        far = bool(ways.max(initial=0.0) > FAR * self.boundary.size)
+        return (
+            far and opens(self.bounds) and not are_correlated(self.handles, outcome.wish.positions)
         )
 
     def _is_within(self, certificate: Certificate) -> bool:

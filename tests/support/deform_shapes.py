@@ -44,9 +44,9 @@ TIGHT = Bounds(k=0.2, sigma_a=1.5, sigma_b=0.6)
 TWISTED = STAR_POINTS * np.exp(1j * np.array([0, 0.7, -0.5, 0.6, -0.8, 0.4]))
 
 
-def search_from_rest(steps: int) -> Search:
-    """Return the search for a twisted star within tight bounds after some steps."""
-    deformer = star(TIGHT)
+def search_from_rest(steps: int, way: Way = Way.REST, bounds: Bounds = TIGHT) -> Search:
+    """Return the search for a twisted star within bounds after some steps."""
+    deformer = star(bounds)
     first = deformer.start()
     search = begin_search(
         Objective(
@@ -56,9 +56,9 @@ def search_from_rest(steps: int) -> Search:
         ),
         first.map,
         first.certificate,
-        inside=TIGHT.towards_identity(MARGIN),
-        limits=TIGHT,
-        way=Way.REST,
+        inside=bounds.towards_identity(MARGIN),
+        limits=bounds,
+        way=way,
     )
     for _ in range(steps):
         search = advance(search)

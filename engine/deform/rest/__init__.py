@@ -6,6 +6,7 @@ Imports: `engine.maps`, and the energy, barrier, handles and Newton models of `e
 """
 
 from engine.deform.rest.continuation import advance, begin_search
+from engine.deform.rest.opening import opens
 from engine.deform.rest.optimality import ActiveBound
 from engine.deform.rest.search import MOST_STEPS, OPTIMAL, WORTH_A_JUMP, Search, Way
 
@@ -18,4 +19,5 @@ __all__ = [
     "Way",
     "advance",
     "begin_search",
+    "opens",
 ]

@@ -10,15 +10,16 @@ Weber 2015) of 810 samples and 50 cage vertices takes it 3.8 s, the whole way he
 """
 
 from dataclasses import replace
+from math import inf
 
 import numpy as np
 
 from engine.arrays import Indices, readonly
 from engine.deform.barrier import Barrier, Walls
-from engine.deform.handles import Wish
 from engine.deform.newton import SHORTEST
 from engine.deform.objective import Jet, Objective
 from engine.deform.rest.curved_step import CAUGHT, CurvedStep, curved_step, radial_changes
+from engine.deform.rest.opening import FIRST_REACH, next_reach, room
 from engine.deform.rest.optimality import Optimality
 from engine.deform.rest.samples import resolved, walls_around
 from engine.deform.rest.search import Search, Way
@@ -30,8 +31,8 @@ FIRST_LEAST = 10.0
 # The same from the present map, which stays in its valley.
 HERE_PER_ENERGY = 1e-2
 # The weight falls by this factor when the model expects less than a part of it as a gain: a small
-# part while the weight is above this part of the energy. There the valley is chosen; later the way
-# is a matter of digits.
+# part while the weight is above this part of the energy. There the valley is chosen; later, and
+# from the present map, the way is a matter of digits.
 LOWER = 0.1
 CENTRED = 0.1
 CENTRED_LATE = 1.0
@@ -54,9 +55,6 @@ ROUNDING_SLACK = 1e-11
 REOPENED = 1e-9
 # A step whose map is not certified is halved this many times.
 HALVINGS = 6
-# Far handles go at most this far (of L) in one row of a straight path, in at most so many rows.
-ROW = 0.05
-MOST_ROWS = 20
 
 
 def begin_search(
@@ -82,25 +80,20 @@ def begin_search(
         That the certificates are for, the one at the start included.
     way : Way
     """
-    boundary, wish, handles = objective.boundary, objective.wish, objective.handles
     jet = objective.jet(*harmonic_map.columns)
     energy = objective.energy(jet)
-    rows = 0
-    if way is Way.PATH:
-        farthest = float(np.abs(wish.positions - jet.positions).max(initial=0.0))
-        rows = min(int(np.ceil(farthest / (ROW * boundary.size))), MOST_ROWS)
+    reach = FIRST_REACH if way is Way.OPENING else inf
     return Search(
-        handles=handles,
-        wish=wish,
+        handles=objective.handles,
+        wish=objective.wish,
         way=way,
-        rows=rows,
-        origins=jet.positions,
         map=harmonic_map,
         certificate=certificate,
-        boundary=boundary,
+        boundary=objective.boundary,
         limits=limits,
         inside=inside,
-        walls=walls_around(inside, limits, np.abs(jet.f), np.abs(jet.g)),
+        reach=reach,
+        walls=walls_around(room(inside, reach), limits, np.abs(jet.f), np.abs(jet.g)),
         weight=HERE_PER_ENERGY * energy if way is Way.HERE else _first_weight(energy),
         energy=energy,
     )
@@ -124,7 +117,7 @@ def advance(search: Search) -> Search:
         map=taken[0],
         certificate=taken[1],
         duals=readonly(step.barrier.next_duals(np.abs(jet.f), np.abs(jet.g), *changes)),
-        energy=replace(objective, barrier=None, wish=search.wish).energy(reached),
+        energy=objective.energy(reached),
         steps=search.steps + 1,
         length=step.length,
         caught=search.caught + 1 if step.length < CAUGHT else 0,
@@ -132,24 +125,21 @@ def advance(search: Search) -> Search:
         refusals=refusals,
     )
     search = replace(search, optimality=_optimality(search, reached, step.barrier))
-    return weighed(resolved(search, reached, broken), convex=step.convex)
+    if is_centred(search, convex=step.convex):
+        search = lowered(search) if search.is_open else opened(search, reached)
+    return resolved(search, reached, broken)
 
 
 def _objective(search: Search) -> tuple[Objective, Barrier, Jet]:
     """Return what the next step minimises, and the map as it sees it."""
-    wish, weight = search.wish, search.weight
-    if search.steps < search.rows:
-        wish = _on_the_path(search)
     objective = Objective(
         boundary=search.boundary,
         handles=search.handles,
-        wish=wish,
+        wish=search.wish,
         stride=STRIDE if search.gain > SKETCHED * search.energy else 1,
     )
     jet = objective.jet(*search.map.columns)
-    if search.steps < search.rows:
-        weight = _first_weight(objective.energy(jet))
-    barrier = Barrier(walls=search.walls, weight=weight, duals=search.duals)
+    barrier = Barrier(walls=search.walls, weight=search.weight, duals=search.duals)
     a, b = np.abs(jet.f), np.abs(jet.g)
     too_near = barrier.slacks(a, b) < ROUNDING_SLACK
     if too_near.any():
@@ -162,13 +152,6 @@ def _objective(search: Search) -> tuple[Objective, Barrier, Jet]:
         )
         barrier = replace(barrier, walls=walls)
     return replace(objective, barrier=barrier), barrier, jet
-
-
-def _on_the_path(search: Search) -> Wish:
-    """Return what the handles are asked for in the present row of the straight path."""
-    share = (search.steps + 1) / search.rows
-    targets = search.wish.positions
-    return Wish(search.origins + share * (targets - search.origins), share * search.wish.rotations)
 
 
 def _certified(
@@ -189,8 +172,8 @@ def _certified(
 
 
 def _optimality(search: Search, jet: Jet, barrier: Barrier) -> Optimality:
-    """Return how far the map is from a minimum, where a step led along the asked way."""
-    if search.steps <= search.rows or search.length == 0:
+    """Return how far the map is from a minimum of the present walls, where a step led."""
+    if search.length == 0:
         return Optimality()
     return Optimality.of(
         np.abs(jet.f),
@@ -199,24 +182,33 @@ def _optimality(search: Search, jet: Jet, barrier: Barrier) -> Optimality:
         energy=search.energy,
         boundary=search.boundary,
         barrier=barrier,
-        bounds=search.inside,
+        bounds=search.room,
     )
 
 
-def weighed(search: Search, *, convex: bool) -> Search:
-    """Return the search with the weight of its next step."""
-    if search.steps <= search.rows:
-        return replace(search, weight=_first_weight(search.energy))
-    if search.weight < LATE_PER_ENERGY * search.energy:
+def is_centred(search: Search, *, convex: bool) -> bool:
+    """Tell whether there is little left to gain at the present weight."""
+    if search.way is Way.HERE or search.weight < LATE_PER_ENERGY * search.energy:
         little = CENTRED_LATE
     elif convex or search.optimality.measure > HELD_BACK:
         little = CENTRED
     else:
         little = AT_A_SADDLE * CENTRED
-    if search.length > LONG_ENOUGH and search.gain < little * search.weight:
-        least = LEAST_PER_ENERGY * search.energy / float(search.boundary.shares.sum())
-        return replace(search, weight=max(LOWER * search.weight, least))
-    return search
+    return search.length > LONG_ENOUGH and search.gain < little * search.weight
+
+
+def lowered(search: Search) -> Search:
+    """Return the search with the next weight."""
+    least = LEAST_PER_ENERGY * search.energy / float(search.boundary.shares.sum())
+    return replace(search, weight=max(LOWER * search.weight, least))
+
+
+def opened(search: Search, jet: Jet) -> Search:
+    """Return the search with its walls on the next rung."""
+    weight = max(LOWER * search.weight, FIRST_PER_ENERGY * search.energy)
+    wider = replace(search, reach=next_reach(search.inside, search.reach), weight=weight)
+    walls = walls_around(wider.room, wider.limits, np.abs(jet.f), np.abs(jet.g))
+    return replace(wider, walls=walls)
 
 
 def _first_weight(energy: float) -> float:

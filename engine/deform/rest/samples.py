@@ -74,7 +74,7 @@ def resolved(search: Search, jet: Jet, broken: Indices) -> Search:
     new = segments + np.arange(len(segments)) + 1
     alone = boundary.span.without_constant(search.map.coefficients)
     f, g = (finer.derivatives[new] @ alone).T
-    walls = walls_around(search.inside, limits, np.abs(f), np.abs(g))
+    walls = walls_around(search.room, limits, np.abs(f), np.abs(g))
     duals = search.duals
     if duals is not None:
         ends = following[segments]

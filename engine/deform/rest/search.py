@@ -5,9 +5,10 @@ from enum import Enum
 
 import numpy as np
 
-from engine.arrays import Complexes, Floats
+from engine.arrays import Floats
 from engine.deform.barrier import Walls
 from engine.deform.handles import Handles, Wish
+from engine.deform.rest.opening import room
 from engine.deform.rest.optimality import Optimality
 from engine.maps import Boundary, Certificate, HarmonicMap, Limits
 
@@ -19,7 +20,7 @@ WORTH_A_JUMP = 1e-3
 RELIED_ON = 0.03
 # Steps before all searches for one wish are given up, and before the one from the present map is
 # put off, which is near rest or caught by bounds.
-MOST_STEPS = 250
+MOST_STEPS = 150
 MOST_STEPS_HERE = 60
 # Steps in a row that are hardly taken: the search is caught.
 MOST_CAUGHT = 12
@@ -30,7 +31,7 @@ class Way(Enum):
 
     HERE = "from the present map"
     REST = "from the shape at rest"
-    PATH = "from the shape at rest, along straight paths of the handles"
+    OPENING = "from the shape at rest, within bounds that open on the way"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -42,10 +43,6 @@ class Search:
     handles : Handles
     wish : Wish
     way : Way
-    rows : int
-        Of the straight path of the handles that the search follows first; 0 for none.
-    origins : complex128, shape (h,)
-        Where that path begins.
     map : HarmonicMap
     certificate : Certificate
     boundary : Boundary
@@ -53,7 +50,9 @@ class Search:
     limits : Limits
         What the certificates are for.
     inside : Limits
-        Where the walls of the shape's own samples stand.
+        Where the walls of the shape's own samples stand in the end.
+    reach : float
+        Of the rung that the walls stand on (`opening.room`).
     walls : Walls
     weight : float
         Of the barrier.
@@ -79,13 +78,12 @@ class Search:
     handles: Handles
     wish: Wish
     way: Way
-    rows: int
-    origins: Complexes
     map: HarmonicMap
     certificate: Certificate
     boundary: Boundary
     limits: Limits
     inside: Limits
+    reach: float
     walls: Walls
     weight: float
     energy: float
@@ -100,9 +98,19 @@ class Search:
     before: int = 0
 
     @property
+    def room(self) -> Limits:
+        """Where the walls of the shape's own samples stand now."""
+        return room(self.inside, self.reach)
+
+    @property
+    def is_open(self) -> bool:
+        """Whether the walls stand where they will in the end."""
+        return self.room == self.inside
+
+    @property
     def has_arrived(self) -> bool:
         """Whether the map is a minimum."""
-        return self.optimality.measure <= OPTIMAL
+        return self.is_open and self.optimality.measure <= OPTIMAL
 
     @property
     def is_over(self) -> bool:
@@ -117,4 +125,5 @@ class Search:
     def _cannot_win(self) -> bool:
         """Whether another way has found less energy than this one can come to."""
         low_enough, gap = (1.0 - WORTH_A_JUMP) * self.rival, self.optimality.gap
-        return gap < RELIED_ON * self.energy and self.energy - gap > low_enough
+        relied_on = self.is_open and gap < RELIED_ON * self.energy
+        return relied_on and self.energy - gap > low_enough

@@ -1,14 +1,18 @@
-"""The way to rest: samples that are added, and when the barrier's weight falls."""
+"""The way to rest: samples that are added, when the barrier's weight falls, and walls that open."""
 
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 from deform_shapes import search_from_rest
-from numpy.testing import assert_array_equal
+from numpy.testing import assert_allclose, assert_array_equal
 
 from engine.deform import Objective
-from engine.deform.rest.continuation import AT_A_SADDLE, CENTRED, LOWER, weighed
+from engine.deform.rest import Way, advance, opens
+from engine.deform.rest.continuation import AT_A_SADDLE, CENTRED, LOWER, is_centred, lowered
+from engine.deform.rest.opening import FIRST_REACH
 from engine.deform.rest.samples import resolved
+from engine.maps import Bounds
 
 
 def measured(search):
@@ -56,13 +60,40 @@ def test_the_weight_falls_where_little_is_left_to_gain_but_not_at_a_saddle():
     much = replace(search, gain=2 * CENTRED * search.weight)
     little = replace(search, gain=0.5 * CENTRED * search.weight)
     least = replace(search, gain=0.5 * AT_A_SADDLE * CENTRED * search.weight)
-    assert weighed(much, convex=True).weight == search.weight
-    assert weighed(little, convex=True).weight == LOWER * search.weight
+    assert not is_centred(much, convex=True)
+    assert is_centred(little, convex=True)
     # A saddle: from there a valley may lead on, at this weight.
-    assert weighed(little, convex=False).weight == search.weight
-    assert weighed(least, convex=False).weight == LOWER * search.weight
+    assert not is_centred(little, convex=False)
+    assert is_centred(least, convex=False)
     # A barrier that outweighs the energy shapes the valley itself.
     heavy = replace(little, optimality=search.optimality._replace(measure=2.0))
-    assert weighed(heavy, convex=False).weight == LOWER * search.weight
+    assert is_centred(heavy, convex=False)
     # A step that was cut short says nothing.
-    assert weighed(replace(little, length=0.1), convex=True).weight == search.weight
+    assert not is_centred(replace(little, length=0.1), convex=True)
+    # From the present map the valley is given.
+    assert is_centred(replace(much, way=Way.HERE), convex=False)
+    assert lowered(little).weight == LOWER * search.weight
+
+
+def test_walls_open_from_rungs_that_do_not_depend_on_the_bounds():
+    wide, wider = (
+        search_from_rest(0, Way.OPENING, Bounds(k=k, sigma_a=4.0, sigma_b=0.2)) for k in (0.7, 0.8)
+    )
+    rungs = [wide.room]
+    while not wide.is_open and wide.steps < 60:
+        # As long as walls stand on the same rungs, both go the same way, bit for bit.
+        wide, wider = advance(wide), advance(wider)
+        assert not wide.has_arrived
+        assert wide.certificate.certified
+        if wide.room != rungs[-1]:
+            rungs.append(wide.room)
+        elif wide.room == wider.room:
+            assert_array_equal(wide.map.phi, wider.map.phi)
+    assert len(rungs) >= 3
+    assert_allclose([rungs[0].sigma_a, 1 / rungs[0].sigma_b], np.exp(FIRST_REACH), rtol=1e-12)
+    for tight, looser in pairwise(rungs):
+        assert looser.allow(k=tight.k, sigma_a=tight.sigma_a, sigma_b=tight.sigma_b)
+    assert rungs[-1] == wide.inside
+    # Within bounds as tight as the first rung there is nothing to open.
+    assert not opens(Bounds(k=0.2, sigma_a=1.3, sigma_b=0.8))
+    assert opens(Bounds(k=0.2, sigma_a=1.6, sigma_b=0.8))
