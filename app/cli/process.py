@@ -7,7 +7,6 @@ alive.
 
 import os
 import signal
-import sys
 import threading
 import time
 from collections.abc import Callable
@@ -68,7 +67,7 @@ class Endings:
         if threading.current_thread() is not threading.main_thread():
             return self
         self._pipe = os.pipe()
-        if sys.platform != "win32":
+        if os.name != "nt":
             os.set_blocking(self._pipe[1], False)
         self._wakeup = signal.set_wakeup_fd(self._pipe[1], warn_on_full_buffer=False)
         for name in ENDINGS:

@@ -13,6 +13,18 @@ def sentence(text: str) -> str:
     return text if text.endswith((".", "?", "…")) else f"{text}."
 
 
+def report_once(session: Session, what: str, error: Exception) -> None:
+    """Show what failed that is tried again and again; `mended` lets it be shown anew."""
+    if what not in session.failing:
+        session.failing.add(what)
+        report(session, what, error)
+
+
+def mended(session: Session, what: str) -> None:
+    """Take note that something works that may have failed before."""
+    session.failing.discard(what)
+
+
 def report(session: Session, what: str, error: Exception) -> None:
     """Show what failed, and why; a surprise comes with details to copy."""
     if isinstance(error, EXPECTED_ERRORS):

@@ -12,7 +12,7 @@ from app.editor.jobs import Jobs
 from app.editor.project import Project
 from app.export import ExportPlan, Poses
 from app.motion import Box
-from app.storage import Autosave, Preferences
+from app.storage import Autosave, Preferences, home_folder
 from engine.arrays import Bytes
 
 HeatMap = Literal["none", "k", "sigma_a", "sigma_b"]
@@ -220,6 +220,7 @@ class Session:
     hovered: int | None = None  # the handle under the pointer
     hint: str = ""  # about what is under the pointer
     tints_depth: bool = False  # whether the drawing shows what of it is in front
+    failing: set[str] = field(default_factory=set)  # what cannot be kept, as was told
     quitting: bool = False
 
     def __post_init__(self) -> None:
@@ -231,7 +232,7 @@ class Session:
     def usual_folder(self) -> Path:
         """Where the person's files were last."""
         folder = self.preferences.folder
-        return folder if folder is not None and folder.is_dir() else Path.home()
+        return folder if folder is not None and folder.is_dir() else home_folder()
 
     def tell(
         self,

@@ -4,10 +4,12 @@ import os
 import shutil
 import subprocess
 import sys
+from contextlib import suppress
 from pathlib import Path
 from typing import Final
 
 from app.errors import LissomError
+from app.storage import lock
 
 _PATIENCE: Final = 20  # seconds
 _POWERSHELL: Final = (
@@ -53,6 +55,9 @@ def put_on_clipboard(picture: Path) -> None:
     command = clipboard_program()
     try:
         with picture.open("rb") as file:
+            if sys.platform != "win32":
+                with suppress(OSError):  # without locks another window that starts may remove it
+                    lock(file.fileno())
             # The program may stay to serve the clipboard, so that nothing of it is waited for.
             subprocess.run(  # noqa: S603 - one of those above
                 command,

@@ -15,8 +15,8 @@ from types import MappingProxyType
 from typing import NamedTuple
 
 from app.document import Document
-from app.errors import LissomError
 from app.storage.files import is_locked, lock
+from app.storage.preferences import make_settings_folder
 from app.storage.project_file import load_member, load_project, save_project
 
 SECONDS = 20.0  # between a change and its autosave, at least
@@ -76,12 +76,7 @@ class Autosave:
 
     def _prepare(self) -> None:
         """Make the folder, and take the lock."""
-        try:
-            self._path.parent.mkdir(parents=True, exist_ok=True)
-        except OSError as error:
-            raise LissomError(
-                f"the folder {self._path.parent} cannot be made: {error.strerror or error}"
-            ) from error
+        make_settings_folder(self._path.parent)
         if self._lock is None:
             # Without locks other windows offer this work while it is still in use, which loses
             # nothing; hidden after a crash, it would be lost.
@@ -97,7 +92,7 @@ def find_leftovers(folder: Path) -> list[Path]:
     found = {}
     for path in folder.glob("unsaved-*.lissom"):
         if not is_locked(_lock_of(path)):
-            with suppress(FileNotFoundError):  # its window has just forgotten it
+            with suppress(OSError):  # its window has just forgotten it
                 found[path] = path.stat().st_mtime
     return sorted(found, key=lambda path: found[path], reverse=True)
 

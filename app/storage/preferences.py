@@ -74,10 +74,21 @@ class Preferences:
         return replace(self, recent=tuple(other for other in self.recent if other != path))
 
 
+def home_folder() -> Path:
+    """Return the person's own folder; the topmost one for somebody who has none, as in containers.
+
+    It may not exist.
+    """
+    try:
+        return Path.home()
+    except RuntimeError:
+        return Path(Path.cwd().anchor)
+
+
 def settings_folder() -> Path:
     """Return the folder for settings and unsaved work of this person; it may not exist yet."""
     # By hand, since platformdirs heeds XDG_CONFIG_HOME on macOS too: it would lose settings there.
-    home = Path.home()
+    home = home_folder()
     if sys.platform == "win32":
         return Path(os.environ.get("APPDATA") or home / "AppData" / "Roaming") / "Lissom"
     if sys.platform == "darwin":
@@ -85,6 +96,24 @@ def settings_folder() -> Path:
     # A path that is not absolute is to be ignored, says the standard.
     chosen = Path(os.environ.get("XDG_CONFIG_HOME", ""))
     return (chosen if chosen.is_absolute() else home / ".config") / "lissom"
+
+
+def make_settings_folder(folder: Path) -> None:
+    """Make the folder for settings and unsaved work.
+
+    Raises
+    ------
+    LissomError
+        If that is not possible, or nothing can be written there.
+    """
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise LissomError(
+            f"the folder {folder} cannot be made: {error.strerror or error}"
+        ) from error
+    if not os.access(folder, os.W_OK | os.X_OK):
+        raise LissomError(f"the folder {folder} may not be written to")
 
 
 def load_preferences(folder: Path) -> Preferences:
@@ -97,15 +126,18 @@ def load_preferences(folder: Path) -> Preferences:
 
 
 def save_preferences(folder: Path, preferences: Preferences) -> None:
-    """Write the preferences; where that fails, they are as before next time."""
+    """Write the preferences; where that fails, they are as before next time.
+
+    Raises
+    ------
+    LissomError
+        If it fails.
+    """
     # Paths, alone or in a list, are what JSON does not know.
     content = {**asdict(preferences), "easing": preferences.easing.written()}
     text = json.dumps(content, indent=1, default=str).encode()
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        write_atomically(folder / "preferences.json", lambda file: file.write(text))
-    except (OSError, LissomError):
-        return
+    make_settings_folder(folder)
+    write_atomically(folder / "preferences.json", lambda file: file.write(text))
 
 
 def _understood(content: dict[str, Any]) -> Preferences:

@@ -16,7 +16,7 @@ from contextlib import suppress
 from pathlib import Path
 
 from app.errors import LissomError
-from app.storage import app_icon, decode_picture, draw_thumbnail, write_atomically
+from app.storage import app_icon, decode_picture, draw_thumbnail, home_folder, write_atomically
 
 PROGRAM = "lissom"
 # Below the person's own folder of data.
@@ -101,7 +101,7 @@ def run(arguments: argparse.Namespace) -> int:
 def _data_home() -> Path:
     """Return the person's own folder of data; a path that is not absolute is to be ignored."""
     chosen = Path(os.environ.get("XDG_DATA_HOME", ""))
-    return chosen if chosen.is_absolute() else Path.home() / ".local" / "share"
+    return chosen if chosen.is_absolute() else home_folder() / ".local" / "share"
 
 
 def _install(home: Path) -> None:

@@ -5,6 +5,7 @@ import os
 import sys
 import time
 import traceback
+from contextlib import suppress
 from pathlib import Path
 
 from app.cli.console import fail, notice
@@ -14,7 +15,7 @@ from app.editor.actions import files, saving
 from app.errors import EXPECTED_ERRORS
 from app.render import Renderer
 from app.render.gpu import window_context
-from app.storage import load_preferences, save_preferences, settings_folder
+from app.storage import load_preferences, make_settings_folder, save_preferences, settings_folder
 from app.ui.dialogs import find_system_dialogs
 from app.ui.window import Window, has_display
 
@@ -71,7 +72,8 @@ def _show(window: Window, endings: Endings) -> int:
         was_open = True
         if not session.quitting:
             _keep(session)
-        save_preferences(session.folder, session.preferences)
+        with suppress(*EXPECTED_ERRORS):
+            save_preferences(session.folder, session.preferences)
         if session.quitting:
             end_within(PATIENCE, 0)
         else:
@@ -91,13 +93,12 @@ def _show(window: Window, endings: Endings) -> int:
 def _make(folder: Path, session: Session) -> None:
     """Make the folder for settings and unsaved work; without one, the window opens all the same."""
     try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
+        make_settings_folder(folder)
+    except EXPECTED_ERRORS as error:
         session.tell(
-            f"Unsaved work and settings cannot be kept: the folder {folder} cannot be made "
-            f"({error.strerror}). Save often.",
-            tone="error",
+            f"Unsaved work and settings cannot be kept: {error}. Save often.", tone="error"
         )
+        session.failing |= {saving.NOT_KEPT, saving.NOT_NOTED}
 
 
 def _keep(session: Session) -> None:

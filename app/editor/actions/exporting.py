@@ -1,7 +1,6 @@
 """Exports: asked for here, drawn by the window, a few frames at a time."""
 
 import os
-import secrets
 import subprocess
 import sys
 from collections.abc import Callable, Sequence
@@ -48,6 +47,7 @@ from app.motion import (
     extent_source,
     hung_animations,
 )
+from app.storage import make_settings_folder, passing_picture
 
 PREPARING, COPYING = "Preparing the export", "Copying the picture"
 
@@ -141,8 +141,8 @@ def copy_picture(session: Session) -> None:
         return
     clipboard_program()  # tells what to install where there is none
     posing.drop(session)
-    session.folder.mkdir(parents=True, exist_ok=True)
-    out = session.folder / f"clipboard-{secrets.token_hex(8)}.png"
+    make_settings_folder(session.folder)
+    out = passing_picture(session.folder)
     settings = replace(project.document.export, format="picture")
     request = _request(session, project, out, settings)
     check_request(project.document, request)

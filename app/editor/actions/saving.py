@@ -5,7 +5,7 @@ from pathlib import Path
 from app.editor.action import Action, do
 from app.editor.actions import exporting, posing
 from app.editor.dialogs import FileDialog, Question
-from app.editor.failures import report
+from app.editor.failures import mended, report, report_once
 from app.editor.jobs import Job
 from app.editor.project import Project
 from app.editor.session import Session
@@ -27,6 +27,8 @@ PROJECT = ".lissom"
 SETTLING = 5.0  # seconds that a project waits for its pose before it is saved as it is
 SAVING, AUTOSAVING, WRITING = "Saving", "Autosaving", "Saving preferences"
 CLEARING = "Clearing up"
+NOT_KEPT = "Unsaved work cannot be kept"
+NOT_NOTED = "The preferences cannot be kept"
 
 
 def save(session: Session) -> None:
@@ -299,8 +301,8 @@ def write_preferences(session: Session) -> None:
         Job(
             kind=WRITING,
             work=lambda: save_preferences(folder, preferences),
-            done=lambda _: None,
-            failed=lambda error: report(session, "The preferences cannot be kept", error),
+            done=lambda _: mended(session, NOT_NOTED),
+            failed=lambda error: report_once(session, NOT_NOTED, error),
             lane="keep",
         )
     )
@@ -353,6 +355,7 @@ def _autosave_now(session: Session, project: Project, now: float) -> None:
     project.autosaved, project.autosaved_at = document, now
 
     def done(_: None) -> None:
+        mended(session, NOT_KEPT)
         # In the meantime it may have been saved, or closed.
         if session.project is not project or project.autosaved is not document:
             session.autosave.forget()
@@ -361,7 +364,7 @@ def _autosave_now(session: Session, project: Project, now: float) -> None:
         # There may be room again next time.
         if project.autosaved is document:
             project.autosaved = earlier
-        report(session, "Unsaved work cannot be kept", error)
+        report_once(session, NOT_KEPT, error)
 
     session.jobs.put(
         Job(

@@ -68,6 +68,41 @@ _CODECS: Final[Mapping[str, _Codec]] = MappingProxyType(
 )
 
 
+class _Sink:
+    """A file for PyAV, which drops some errors of what it calls, and takes others for its own.
+
+    Parameters
+    ----------
+    file : binary file
+    """
+
+    def __init__(self, file: IO[bytes]) -> None:
+        self._file = file
+        self._error: OSError | None = None
+        self.tell = file.tell
+
+    def write(self, data: bytes) -> int:
+        """Write something; where that fails, `check` tells it."""
+        try:
+            return self._file.write(data)
+        except OSError as error:
+            self._error = error
+            return len(data)
+
+    def seek(self, offset: int, whence: int = 0) -> int:
+        """Go elsewhere, before which all is written that was to be."""
+        try:
+            return self._file.seek(offset, whence)
+        except OSError as error:
+            self._error = error
+            return offset
+
+    def check(self) -> None:
+        """Raise the error that writing ended with, if it did."""
+        if self._error is not None:
+            raise self._error
+
+
 class VideoWriter(FrameWriter):
     """Writes a video frame by frame.
 
@@ -95,10 +130,11 @@ class VideoWriter(FrameWriter):
         self._background = plan.background
         self._pixels = codec.transparent if plan.background is None else codec.opaque
         self._count = 0
+        self._sink = _Sink(file)
         rate = Fraction(plan.fps).limit_denominator(1001)
         try:
             self._container = av.open(
-                file, "w", format=codec.container, options={"fflags": "+bitexact"}
+                self._sink, "w", format=codec.container, options={"fflags": "+bitexact"}
             )
             stream = self._container.add_stream(codec.name, rate, dict(codec.options))
             self._stream = cast(av.VideoStream, stream)
@@ -136,11 +172,13 @@ class VideoWriter(FrameWriter):
         frame.pts = self._count
         self._count += 1
         self._container.mux(self._stream.encode(frame))
+        self._sink.check()
 
     def finish(self) -> None:
         """Write the last frames and the index."""
         self._container.mux(self._stream.encode(None))
         self._container.close()
+        self._sink.check()
 
     def close(self) -> None:
         """Let the encoder go; it must not outlive its file."""

@@ -1,9 +1,11 @@
 """OpenGL contexts without a window, and what of them works on this machine."""
 
 import ctypes
+import subprocess
 import sys
 from contextlib import suppress
 from dataclasses import dataclass
+from functools import cache
 from typing import Any, Final, Literal, get_args
 
 import moderngl
@@ -154,6 +156,27 @@ def _create(backend: Backend) -> moderngl.Context:
         raise LissomError(f"{backend}: {error} ({REMEDIES[backend]})") from error
 
 
+# Makes a context of a library with attributes, and nothing else.
+_TRIAL: Final = """
+import ctypes, sys
+library, *pairs = sys.argv[1:]
+make = ctypes.CDLL(library).OSMesaCreateContextAttribs
+make.restype = ctypes.c_void_p
+make((ctypes.c_int * (len(pairs) + 1))(*map(int, pairs), 0), None)
+"""
+
+
+@cache
+def _survives(library: str, pairs: tuple[int, ...]) -> bool:
+    """Tell whether OSMesa lives on when it makes a context: without a driver it crashes in it.
+
+    Another process tries, since that would be the end of this one.
+    """
+    command = [sys.executable, "-I", "-S", "-c", _TRIAL, library, *map(str, pairs)]
+    done = subprocess.run(command, capture_output=True, check=False)  # noqa: S603 - Python itself
+    return done.returncode == 0
+
+
 class _OSMesa:
     """Mesa's off-screen context, in the form in which moderngl takes a context of our own."""
 
@@ -173,6 +196,8 @@ class _OSMesa:
         }
         pairs = [number for pair in wanted.items() for number in pair]
         attributes = (ctypes.c_int * (len(pairs) + 1))(*pairs, 0)
+        if not _survives(self._library._name, tuple(pairs)):  # noqa: SLF001 - by which it was found
+            raise LissomError("it crashes on this machine")
         self._context = self._library.OSMesaCreateContextAttribs(attributes, None)
         if not self._context:
             raise LissomError("no context with OpenGL 3.3")

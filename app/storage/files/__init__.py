@@ -10,6 +10,7 @@ from app.storage.files.atomic import (
     atomic_file,
     check_writable,
     clear_abandoned,
+    passing_picture,
     sync_folder,
     write_atomically,
 )
@@ -26,6 +27,7 @@ __all__ = [
     "clear_abandoned",
     "is_locked",
     "lock",
+    "passing_picture",
     "read_arrays",
     "read_file",
     "require_file",

@@ -4,9 +4,12 @@ What is written is in a hidden file beside its place first, and locked as long a
 that nobody holds was left by a process that was killed, and is removed by the next that comes.
 """
 
+import errno
+import io
 import os
 import re
 import secrets
+import shutil
 import stat
 import sys
 from collections.abc import Callable, Iterator
@@ -20,7 +23,41 @@ from app.storage.files.locks import lock, open_to_lock
 
 T = TypeVar("T")
 NEW_FILE = os.O_RDWR | os.O_CREAT | os.O_EXCL | getattr(os, "O_BINARY", 0)
-PART = re.compile(r"\.lissom-[0-9a-f]{16}\.part")
+PART = re.compile(r"\.lissom-[0-9a-f]{16}\.part(\.png)?")
+# What the system says where there is no room: on the disk, for this person, in one file.
+NO_ROOM = {errno.ENOSPC, errno.EFBIG, getattr(errno, "EDQUOT", errno.ENOSPC)}
+NOT_ALLOWED = {errno.EACCES, errno.EPERM, errno.EROFS}
+
+
+class NoRoomError(LissomError):
+    """There is no room for a file; the message tells how much it takes and how much is free.
+
+    Parameters
+    ----------
+    path : Path
+    cause : OSError
+        What the system says.
+    needed : int
+        Bytes, as far as is known.
+    is_whole : bool
+        Whether that is all that it takes.
+    """
+
+    def __init__(self, path: Path, cause: OSError, needed: int, *, is_whole: bool = False) -> None:
+        self.cause = cause
+        more, free = "" if is_whole else " or more", ""
+        with suppress(OSError):
+            room = shutil.disk_usage(os.path.realpath(path.parent)).free
+            # Where it is the disk that is full, and not what this person may have of it.
+            free = f", and {_size(room)} are free there" if cause.errno == errno.ENOSPC else ""
+        super().__init__(
+            f"cannot write {path}: {cause.strerror}: it takes {_size(needed)}{more}{free}; make "
+            "room or choose another folder"
+        )
+
+
+def _size(count: int) -> str:
+    return f"{count / 1e6:,.1f} MB" if count >= 1e6 else f"{count / 1e3:,.1f} KB"
 
 
 def write_atomically(path: Path, write: Callable[[IO[bytes]], T]) -> T:
@@ -43,8 +80,16 @@ def write_atomically(path: Path, write: Callable[[IO[bytes]], T]) -> T:
     LissomError
         As `check_writable`, or if the disk refuses.
     """
-    with atomic_file(path) as file:
-        return write(file)
+    try:
+        with atomic_file(path) as file:
+            return write(file)
+    except NoRoomError as error:
+        with suppress(OSError):
+            whole = io.BytesIO()
+            write(whole)
+            needed = len(whole.getbuffer())
+            raise NoRoomError(path, error.cause, needed, is_whole=True) from error
+        raise
 
 
 @contextmanager
@@ -78,7 +123,7 @@ def atomic_file(path: Path) -> Iterator[IO[bytes]]:
             # What is open cannot be moved there.
             temporary.replace(target)
     except OSError as error:
-        raise LissomError(f"cannot write {path}: {error.strerror or error}") from error
+        raise _refusal(path, error, temporary) from error
     finally:
         if temporary is not None:
             temporary.unlink(missing_ok=True)
@@ -97,6 +142,14 @@ def clear_abandoned(folder: Path) -> None:
     for part in parts:
         with suppress(OSError):
             _remove_abandoned(part)
+
+
+def passing_picture(folder: Path) -> Path:
+    """Return where a picture may be written that is soon given away.
+
+    Like what is half written it is removed at the next start, unless somebody holds a lock on it.
+    """
+    return folder / f"{_part_name()}.png"
 
 
 def sync_folder(folder: Path) -> None:
@@ -131,7 +184,7 @@ def _remove_abandoned(part: Path) -> None:
 def _new_part(folder: Path, mode: int) -> tuple[Path, int]:
     """Return a new hidden file, open for writing and locked."""
     while True:
-        part = folder / f".lissom-{secrets.token_hex(8)}.part"
+        part = folder / _part_name()
         descriptor = os.open(part, NEW_FILE, mode)
         with suppress(OSError):  # without locks nobody removes it
             if not lock(descriptor) or not os.fstat(descriptor).st_nlink:
@@ -141,13 +194,29 @@ def _new_part(folder: Path, mode: int) -> tuple[Path, int]:
         return part, descriptor
 
 
+def _part_name() -> str:
+    return f".lissom-{secrets.token_hex(8)}.part"
+
+
+def _refusal(path: Path, error: OSError, temporary: Path | None) -> LissomError:
+    """Say in words that the system refuses to write a file, and what to do."""
+    reason = error.strerror or str(error)
+    if error.errno in NO_ROOM:
+        written = temporary.stat().st_size if temporary is not None else 0
+        return NoRoomError(path, error, written)
+    if error.errno in NOT_ALLOWED:
+        reason += f": its folder {path.parent} may not be written to; choose another one"
+    return LissomError(f"cannot write {path}: {reason}")
+
+
 def check_writable(path: Path) -> None:
     """Refuse an output path that cannot work, before any long computation.
 
     Raises
     ------
     LissomError
-        If it is a folder, or a link that leads in a circle, or its folder is missing.
+        If it is a folder, or a link that leads in a circle, or a file that may only be read, or its
+        folder is missing.
     """
     if path.is_dir():
         raise LissomError(f"cannot write {path}: it is a folder; name a file")
@@ -157,3 +226,8 @@ def check_writable(path: Path) -> None:
     if not target.parent.is_dir():
         folder = target.parent if path.is_symlink() else path.parent
         raise LissomError(f"cannot write {path}: the folder {folder} does not exist")
+    if target.exists() and not os.access(target, os.W_OK):
+        # To put another file in its place would be possible where the folder may be written to.
+        raise LissomError(
+            f"cannot write {path}: it may only be read; choose another name, or allow to write it"
+        )

@@ -11,6 +11,7 @@ from imgui_bundle import icons_fontawesome_6 as icons
 from app.editor import Action, FileDialog, Session, do
 from app.editor.actions import browse, choose, close_dialog
 from app.render import Thumbnail
+from app.storage import home_folder
 from app.ui.dialogs.folder_listing import Entry, Listing, read_folder
 from app.ui.dialogs.places import Place, recent_places, usual_places
 from app.ui.shortcuts import in_words
@@ -192,7 +193,7 @@ def _way(dialog: FileDialog, look: Look, width: float) -> FileDialog:
         return _enter(dialog, dialog.folder.parent)
     imgui.same_line(0, 0)
     if icon_button(look, icons.ICON_FA_HOUSE, "home", "Your own folder"):
-        return _enter(dialog, Path.home())
+        return _enter(dialog, home_folder())
     imgui.same_line()
     room = width - (imgui.get_cursor_pos_x() - start)
     style = imgui.get_style()

@@ -9,6 +9,8 @@ from typing import NamedTuple
 
 from imgui_bundle import icons_fontawesome_6 as icons
 
+from app.storage import home_folder
+
 MOST_RECENT = 5
 # Their names on the disk where nobody says otherwise, and in the file in which a desktop does.
 FOLDERS = (
@@ -29,7 +31,7 @@ class Place(NamedTuple):
 
 def usual_places() -> tuple[Place, ...]:
     """Return the person's own folder, and those in it that a system makes for everybody."""
-    home = Path.home()
+    home = home_folder()
     named = _named_by_desktop(home)
     places = [Place(home, "Home", icons.ICON_FA_HOUSE)]
     for name, key, icon in FOLDERS:

@@ -5,7 +5,6 @@ import os
 import sys
 import traceback
 from collections.abc import Callable
-from contextlib import suppress
 from functools import partial
 from pathlib import Path
 
@@ -139,8 +138,9 @@ class Window:
             hello_imgui.manual_render.setup_from_runner_params(params)
         except RuntimeError as error:
             raise LissomError(
-                f"the window cannot be opened ({error}): check the display and its OpenGL driver "
-                "with 'lissom doctor'; the command line works without them"
+                f"the window cannot be opened ({error}): it needs a display with OpenGL 3.3; "
+                "'lissom doctor' tells what there is, LIBGL_ALWAYS_SOFTWARE=1 draws without a "
+                "graphics card, and the command line needs no display"
             ) from error
         self._is_open = True
         try:
@@ -190,12 +190,15 @@ class Window:
         """Tell that OpenGL fails, as when its driver was reset, and keep the work at once."""
         session = self.session
         project = session.project
+        kept = "Unsaved work was kept"
         if project is not None and project.autosaved is not project.document:
-            with suppress(*EXPECTED_ERRORS):
+            try:
                 saving.keep_now(session)
+            except EXPECTED_ERRORS as reason:
+                kept = f"Unsaved work could not be kept ({reason})"
         session.tell(
-            f"The picture cannot be drawn: {error}. Unsaved work was kept. If the picture does not "
-            "come back, save and start Lissom again.",
+            f"The picture cannot be drawn: {error}. {kept}. If the picture does not come back, "
+            "save and start Lissom again.",
             tone="error",
             topic="drawing",
             details="".join(traceback.format_exception(error)),

@@ -6,8 +6,10 @@ import av
 import numpy as np
 import pytest
 from exports import plan_for, run
+from full_disk import FullDisk
 from numpy.testing import assert_allclose
 
+from app.errors import LissomError
 from app.render.view import canvas_view
 from engine.arrays import Bytes, Floats
 
@@ -145,3 +147,16 @@ def test_what_is_opaque_needs_no_alpha(tmp_path):
     for format_ in ("mp4", "webm", "mov"):
         frame = decoded(exported(tmp_path, format_, transparent=False))[0]
         assert not frame.format.name.startswith("yuva")
+
+
+@pytest.mark.parametrize("format_", ["mp4", "webm", "mov"])
+@pytest.mark.parametrize("room", [0, 3000])
+def test_a_full_disk_is_told_in_words_whatever_pyav_makes_of_it(
+    tmp_path, monkeypatch, capfd, format_, room
+):
+    monkeypatch.setattr("app.storage.files.atomic.os.fdopen", FullDisk)
+    FullDisk.room = room
+    with pytest.raises(LissomError, match="No space left on device: it takes"):
+        exported(tmp_path, format_, transparent=False)
+    assert list(tmp_path.iterdir()) == []
+    assert capfd.readouterr().err == ""

@@ -42,6 +42,18 @@ def test_a_forced_backend_has_no_fallback(monkeypatch):
     assert "apt install libosmesa6" in probe("osmesa").problem
 
 
+@NEEDS_OSMESA
+def test_a_library_that_crashes_crashes_somebody_else(monkeypatch):
+    """As OSMesa does where it finds no driver."""
+    monkeypatch.setattr(context_module, "_TRIAL", "import os; os.abort()")
+    context_module._survives.cache_clear()
+    try:
+        with pytest.raises(LissomError, match="osmesa: it crashes on this machine"):
+            create_context("osmesa")
+    finally:
+        context_module._survives.cache_clear()
+
+
 def test_where_nothing_works_the_error_names_the_packages(monkeypatch):
     def create_context_of_moderngl(**_):
         raise Exception("not loaded")  # noqa: TRY002 - as moderngl's loaders do

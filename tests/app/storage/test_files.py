@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from documents import disc_document, full_document
+from full_disk import FullDisk
 from numpy.testing import assert_array_equal
 
 from app.errors import LissomError
@@ -19,6 +20,7 @@ from app.storage.files import (
     atomic_file,
     clear_abandoned,
     lock,
+    passing_picture,
     read_arrays,
     read_file,
     write_arrays,
@@ -220,16 +222,15 @@ def test_where_the_disk_knows_no_locks_files_are_written_and_nothing_is_removed(
     assert part.exists()
 
 
-class FullDisk(io.FileIO):
-    """A file on a disk that takes so many more bytes."""
-
-    room = 0
-
-    def write(self, data):
-        FullDisk.room -= len(bytes(data))
-        if FullDisk.room < 0:
-            raise OSError(errno.ENOSPC, "No space left on device")
-        return super().write(data)
+def test_a_picture_that_was_to_be_given_away_is_cleared_like_what_is_half_written(tmp_path):
+    path = passing_picture(tmp_path)
+    write_atomically(path, lambda file: file.write(b"whole"))
+    with path.open("rb") as file:
+        assert lock(file.fileno())
+        clear_abandoned(tmp_path)
+        assert path.exists()
+    clear_abandoned(tmp_path)
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_a_disk_that_gets_full_at_any_byte_leaves_the_old_file_whole(tmp_path, monkeypatch):
@@ -241,7 +242,8 @@ def test_a_disk_that_gets_full_at_any_byte_leaves_the_old_file_whole(tmp_path, m
     monkeypatch.setattr("app.storage.files.atomic.os.fdopen", FullDisk)
     for room in np.unique(np.linspace(0, size - 1, 24, dtype=int)):
         FullDisk.room = room
-        with pytest.raises(LissomError, match="No space left"):
+        # To the byte, however few of them were written.
+        with pytest.raises(LissomError, match=f"No space left .*it takes {size / 1e3:.1f} KB, and"):
             save_project(path, full_document())
         assert path.read_bytes() == before
         assert list(tmp_path.iterdir()) == [path]

@@ -6,9 +6,11 @@ from pathlib import Path
 
 import pytest
 
+from app.errors import LissomError
 from app.storage.preferences import (
     MOST_RECENT,
     Preferences,
+    home_folder,
     load_preferences,
     save_preferences,
     settings_folder,
@@ -79,11 +81,22 @@ def test_a_later_version_may_know_more(tmp_path):
     assert load_preferences(tmp_path) == CHOSEN
 
 
-def test_a_folder_that_cannot_be_written_does_no_harm(tmp_path):
+def test_a_folder_that_cannot_be_written_is_told_and_does_no_harm(tmp_path):
     folder = tmp_path / "file"
     folder.write_bytes(b"")
-    save_preferences(folder, CHOSEN)
+    with pytest.raises(LissomError, match=r"the folder .*file cannot be made: File exists"):
+        save_preferences(folder, CHOSEN)
     assert load_preferences(folder) == Preferences()
+
+
+def test_whoever_has_no_folder_of_their_own_has_the_topmost_one(monkeypatch):
+    def nobody(_):
+        raise RuntimeError("Could not determine home directory.")
+
+    monkeypatch.setattr(Path, "home", classmethod(nobody))
+    monkeypatch.delenv("XDG_CONFIG_HOME", raising=False)
+    assert home_folder() == Path(Path.cwd().anchor)
+    assert settings_folder().is_relative_to(home_folder())
 
 
 def test_recent_files_are_the_newest_ones_once_each():
