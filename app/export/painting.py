@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Mapping
-from contextlib import ExitStack
+from contextlib import ExitStack, suppress
 from dataclasses import replace
 from typing import Final, NamedTuple
 
@@ -13,6 +13,7 @@ from app.errors import EXPECTED_ERRORS, LissomError
 from app.export.framing import shown_box
 from app.export.plan import ExportPlan
 from app.export.poses import Poses
+from app.export.thinning import Thinning
 from app.motion import Placed, box_around, painted_triangles
 from app.render import TRANSPARENT, Backdrop, Colour, DrawnMesh, Renderer, Scene, View
 from app.render.gpu import (
@@ -21,13 +22,18 @@ from app.render.gpu import (
     GpuMesh,
     GpuPicture,
     RenderTarget,
+    is_software,
     largest_size,
 )
 from engine.arrays import Bytes
+from engine.domain.meshing import Mesh
 
 _SMALL: Final = 0.75  # pixels of the frame per pixel of the picture
 _TILE: Final = 4096  # pixels each way that are drawn at once, at most
 _MOST_PIXELS: Final = 2**28  # of a frame: a gigabyte
+_MANY: Final = 24  # frames from which on it is worth while to find fewer triangles
+_LOOKS: Final = 9  # frames that are looked at for it
+_TINY: Final = 16.0  # square pixels, below which triangles cost more than what is in them
 _NO_ERROR: Final = "GL_NO_ERROR"
 _OUTSIDE: Final = 1.0  # pixels; less than this is seen by nobody
 
@@ -81,8 +87,14 @@ class Painter:
         self._poses = [poses[figure.id] for figure in figures]
         self._view = plan.view
         self._background = Backdrop(colour=_colour(plan))
-        self._meshes = [figure.domain.mesh for figure in figures]
-        self._reach = box_around(np.concatenate([mesh.vertices for mesh in self._meshes]))
+        meshes = [figure.domain.mesh for figure in figures]
+        self._thinnings = [
+            Thinning(figure.domain, plan.view.scale) if _pays(plan, mesh, context) else None
+            for figure, mesh in zip(figures, meshes, strict=True)
+        ]
+        looks = np.linspace(0, len(plan.times) - 1, _LOOKS).round().astype(int)
+        self._looks = tuple(plan.times[index] for index in looks)
+        self._reach = box_around(np.concatenate([mesh.vertices for mesh in meshes]))
         # The mesh has a margin around the drawing, which may lie off the canvas from the start.
         self._room = shown_box(plan.view).joined(self._reach)
         with ExitStack() as owned:
@@ -100,7 +112,7 @@ class Painter:
             while context.error != _NO_ERROR:
                 pass
             self._drawn = []
-            for figure, mesh in zip(figures, self._meshes, strict=True):
+            for figure, mesh in zip(figures, meshes, strict=True):
                 rest = mesh.vertices - figure.corner
                 texture = GpuPicture(context, pictures[figure.id])
                 owned.callback(texture.release)
@@ -118,21 +130,33 @@ class Painter:
         LissomError
             If the motion fails there.
         """
+        if self._looks:
+            self._prepare_thinnings()
         try:
-            vertices = tuple(
-                Placed(
-                    positions=poses.positions(frame),
-                    triangles=painted_triangles(mesh, clip, frame),
-                )
-                for poses, mesh, clip in zip(self._poses, self._meshes, self._clips, strict=True)
-            )
+            positions = [poses.positions(frame) for poses in self._poses]
         except EXPECTED_ERRORS as error:
             raise LissomError(f"frame {frame:g} cannot be drawn: {error}") from error
-        box = box_around(np.concatenate([placed.positions for placed in vertices]))
+        box = box_around(np.concatenate(positions))
         if not np.isfinite(box).all():
             raise LissomError(f"frame {frame:g} cannot be drawn: its points are not all finite")
         self._reach = self._reach.joined(box)
-        return PosedFrame(frame, vertices)
+        vertices = []
+        figures = zip(positions, self._clips, self._thinnings, strict=True)
+        for places, clip, thinning in figures:
+            triangles = painted_triangles(clip.figure.domain.mesh, clip, frame)
+            if thinning is not None:
+                triangles = thinning.triangles(places, triangles)
+            vertices.append(Placed(positions=places, triangles=triangles))
+        return PosedFrame(frame, tuple(vertices))
+
+    def _prepare_thinnings(self) -> None:
+        """Look ahead at the motion, for triangles that will do in all of its frames."""
+        looks, self._looks = self._looks, ()
+        for poses, thinning in zip(self._poses, self._thinnings, strict=True):
+            # A frame that fails says so when its turn comes.
+            with suppress(*EXPECTED_ERRORS):
+                if thinning is not None:
+                    thinning.prepare([poses.positions(frame) for frame in looks])
 
     def draw(self, posed: PosedFrame) -> Bytes:
         """Return the picture of a posed frame, uint8 (h, w, 4) with straight alpha.
@@ -189,6 +213,12 @@ class Painter:
     def release(self) -> None:
         """Let everything go."""
         self._owned.close()
+
+
+def _pays(plan: ExportPlan, mesh: Mesh, context: Context) -> bool:
+    """Tell whether fewer triangles of a mesh would save more time than it takes to find them."""
+    area = mesh.areas().mean() * plan.view.scale**2
+    return len(plan.times) >= _MANY and bool(area < _TINY) and is_software(context)
 
 
 def _filled(size: tuple[int, int], colour: Colour) -> Bytes:

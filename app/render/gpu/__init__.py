@@ -17,7 +17,7 @@ from app.render.gpu.context import (
     probe,
     window_context,
 )
-from app.render.gpu.mesh import GpuMesh, PosedMesh, PositionBuffer, singles
+from app.render.gpu.mesh import GpuMesh, PosedMesh, PositionBuffer, border_edges, singles
 from app.render.gpu.picture import GpuPicture
 from app.render.gpu.programs import Programs, ShaderFiles, set_uniforms
 from app.render.gpu.series_buffer import SeriesBuffer
@@ -36,6 +36,7 @@ __all__ = [
     "RenderTarget",
     "SeriesBuffer",
     "ShaderFiles",
+    "border_edges",
     "create_context",
     "finish_drawing",
     "is_software",

@@ -174,13 +174,18 @@ class PosedMesh:
         self._heat.write(np.ascontiguousarray(values, dtype=np.float32).data)
 
     def paint_in_order(self, triangles: Integers) -> None:
-        """Paint the mesh's triangles (m, 3) in this order: where they overlap, the last is seen."""
+        """Paint these triangles in this order: where they overlap, the last is seen.
+
+        Parameters
+        ----------
+        triangles : int32, shape (k, 3)
+            Of the mesh's vertices, and no more than the mesh has.
+        """
         if triangles is self._triangles:
             return
-        if triangles.shape != self._triangles.shape:
-            raise LissomError(
-                f"the mesh has {len(self._triangles)} triangles to be painted, not {len(triangles)}"
-            )
+        most = len(self._mesh.triangles)
+        if len(triangles) > most:
+            raise LissomError(f"the mesh has {most} triangles to be painted, not {len(triangles)}")
         self._order.write(_indices(triangles))
         self._triangles = triangles
 
@@ -192,7 +197,7 @@ class PosedMesh:
         """Draw the triangles with a mesh program: its files, and the source's shader."""
         binding = self._bound(files, self._order)
         set_uniforms(binding.program, {**uniforms, **self._own_uniforms()})
-        binding.render(moderngl.TRIANGLES)
+        binding.render(moderngl.TRIANGLES, vertices=self._triangles.size)
 
     def draw_border(self, files: ShaderFiles, uniforms: Mapping[str, object]) -> None:
         """Draw the edges of the border with a program of their own."""

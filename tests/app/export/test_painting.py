@@ -16,7 +16,7 @@ from app.errors import LissomError
 from app.export.painting import Painter
 from app.export.plan import ExportPlan, ExportRequest, plan_export
 from app.export.poses import KeptPoses, Poses
-from engine.arrays import Bytes
+from engine.arrays import Bytes, Complexes
 
 SEEN = BLOB[..., 3] >= 8
 
@@ -129,6 +129,37 @@ def test_a_larger_canvas_centres_the_picture(gl, document):
     frame = still(gl, document, size=(140, 90))
     assert_array_equal(frame[:, 10:130][SEEN], BLOB[SEEN])
     assert not frame[:, :10].any()
+
+
+class Folding:
+    """The left side of a drawing bends, the more in later frames, until it lies over the right."""
+
+    def __init__(self, document: Document) -> None:
+        self._rest = document.figures[0].domain.mesh.vertices
+
+    def positions(self, frame: float) -> Complexes:
+        left = np.minimum(self._rest.real - 60, 0)
+        return self._rest + frame / 48 * left**2 / 60
+
+
+def test_fewer_triangles_draw_the_same(gl, monkeypatch):
+    """Where one part lies over another, too."""
+    document = still_document(triangles=8_000)
+    poses = Folding(document)
+    painters = []
+    for many in (24, 1_000_000):
+        monkeypatch.setattr("app.export.painting._MANY", many)
+        painters.append(Painter(gl, document, {0: BLOB}, {0: poses}, plan_of(document, poses)))
+    for frame in (0.0, 13.0, 48.0):
+        posed = [painter.pose(frame) for painter in painters]
+        fewer, whole = (len(each.vertices[0].triangles) for each in posed)
+        assert fewer < 0.7 * whole
+        pixels = [p.draw(each) for p, each in zip(painters, posed, strict=True)]
+        colours, others = (each[..., :3] * (each[..., 3:] / 255) for each in pixels)
+        assert np.abs(colours - others).max() <= 5
+        assert np.abs(pixels[0][..., 3].astype(int) - pixels[1][..., 3]).max() <= 5
+    for painter in painters:
+        painter.release()
 
 
 def test_a_frame_that_fails_is_an_error_that_names_it(gl, document):
