@@ -99,7 +99,7 @@ def separate(
     tolerance : float
         Of the last terms of the series.
     left_out : float
-        Of the forms.
+        The most that the forms which are left out add to the functions.
     shortest : float
         Piece of time that is not halved any more.
     breaks : sequence of float
@@ -135,10 +135,14 @@ def separate(
         else:
             middle = (start + end) / 2
             pending += [(middle, end), (start, middle)]
-    forms, sizes, functions = np.linalg.svd(np.hstack(pieces), full_matrices=False)
-    kept = max(1, int(np.count_nonzero(sizes > left_out)))
-    series = (sizes[:kept, None] * functions[:kept]).reshape(kept, len(pieces), DEGREE + 1)
-    times, coefficients = np.array(found), series.transpose(1, 2, 0)
+    columns = np.hstack(pieces)
+    # The singular vectors of the triangle are those of the columns, and it is far smaller.
+    *_, functions = np.linalg.svd(np.linalg.qr(columns, mode="r"), full_matrices=False)
+    forms = columns @ functions.T
+    series = functions.reshape(len(functions), len(pieces), DEGREE + 1)
+    sizes = np.abs(forms).max(axis=0) * np.abs(series).sum(axis=2).max(axis=1)
+    kept = max(1, int(np.count_nonzero(sizes[::-1].cumsum() > left_out)))
+    times, coefficients = np.array(found), series[:kept].transpose(1, 2, 0)
     if vanishing:
         coefficients = _vanishing_at_ends(times, coefficients)
     return forms[:, :kept], PiecewiseSeries(

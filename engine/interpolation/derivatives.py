@@ -10,7 +10,7 @@ from engine.arrays import Complexes, Floats, Indices, Integers
 from engine.errors import EngineError
 from engine.interpolation.keyframe_samples import KeyframeSamples
 from engine.interpolation.passing import Course
-from engine.interpolation.periods import Residual
+from engine.interpolation.periods import Residual, combined
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -79,7 +79,13 @@ class Passage:
 
     def anchor_position(self, time: float) -> complex:
         """Return the blended position of the anchor."""
-        return complex(self.course(time) @ [key.anchor_position for key in self.keyframes])
+        return complex(self.anchor_positions(np.array(time)))
+
+    def anchor_positions(self, times: Floats) -> Complexes:
+        """Return the same at times (t,)."""
+        known = np.array([key.anchor_position for key in self.keyframes])
+        positions: Complexes = self.course.at(times).T @ known
+        return positions
 
     @property
     def nbytes(self) -> int:
@@ -110,7 +116,7 @@ class Passage:
     def log_fz_at(self, times: Floats) -> Complexes:
         """Return the former at times (t,), (t, s)."""
         weights = self.course.at(times).T
-        logarithms: Complexes = weights @ np.array([key.log_fz for key in self.keyframes])
+        logarithms = combined(weights, np.array([key.log_fz for key in self.keyframes]))
         logarithms.imag += 2 * np.pi * (weights @ self.sheets)[:, None]
         for residual in self.residuals:
             logarithms += residual.at_times(times)

@@ -9,7 +9,7 @@ import numpy as np
 from engine.arrays import Complexes, Floats, Indices, freeze
 from engine.interpolation.blends import MetricResidual
 from engine.interpolation.derivatives import Derivatives, Passage, weighted
-from engine.interpolation.periods import Closing, Residual
+from engine.interpolation.periods import Closing, Residual, combined
 from engine.interpolation.scaling import Scaling
 from engine.interpolation.sites import Sites
 
@@ -103,7 +103,7 @@ class IntegratedInbetweens:
         return 1.0 if self.scale is None else self.scale(time)
 
     def derivatives_at(self, which: Indices) -> "PointDerivatives":
-        """Return f_z and f_z̄ of some of the points as functions of time."""
+        """Return f_z and f_z̄ of some of the points as functions of times."""
         nodes = self.sites.paths.places[which]
         return PointDerivatives(
             blend=self.blend.at(nodes),
@@ -164,11 +164,16 @@ class PointDerivatives:
     scale: Scaling | None
     opening: Residual | None
 
-    def __call__(self, time: float) -> tuple[Complexes, Complexes]:
-        """Return both, each (p,), at a time in [0, 1]."""
-        rho = 1.0 if self.scale is None else self.scale(time)
-        blended = _blended(self.blend, self.opening, time, rho)
-        return blended.fz, rho * blended.g.conj()
+    def __call__(self, times: Floats) -> tuple[Complexes, Complexes]:
+        """Return both, each (t, p), at times (t,) in [0, 1]."""
+        fz, g = self.blend.values(times)
+        fzbar = np.conj(g, out=g)
+        if self.scale is not None:
+            rho = self.scale.at(times)[:, None]
+            fzbar *= rho
+            if self.opening is not None:
+                fz *= rho + (1.0 - rho) * np.exp(self.opening.at_times(times))
+        return fz, fzbar
 
 
 def _blended(blend: Blend, opening: Residual | None, time: float, rho: float) -> Derivatives:
@@ -240,13 +245,13 @@ class LinearInbetweens:
             rho=None,
         )
 
-    def derivatives_at(self, which: Indices) -> Callable[[float], tuple[Complexes, Complexes]]:
-        """Return f_z and f_z̄ of some of the points as functions of time."""
-        fz, fzbar = ([each[which] for each in known] for known in (self.fz, self.fzbar))
+    def derivatives_at(self, which: Indices) -> Callable[[Floats], tuple[Complexes, Complexes]]:
+        """Return f_z and f_z̄ of some of the points as functions of times (t,), (t, p) each."""
+        fz, fzbar = (np.array([each[which] for each in known]) for known in (self.fz, self.fzbar))
 
-        def blended(time: float) -> tuple[Complexes, Complexes]:
-            weights = self.passage.course(time)
-            return weighted(fz, weights), weighted(fzbar, weights)
+        def blended(times: Floats) -> tuple[Complexes, Complexes]:
+            weights = self.passage.course.at(times).T
+            return combined(weights, fz), combined(weights, fzbar)
 
         return blended
 

@@ -99,15 +99,13 @@ class Residual:
     def add_to(self, logarithm: Complexes, logarithm_z: Complexes, time: float) -> None:
         """Add it to log f_z and its derivative, each (s,), in place."""
         coefficients = self.series(time)
-        # As reals: a complex product with real coefficients would do half its work on zeros.
-        logarithm.view(np.float64)[:] += coefficients @ self.modes.view(np.float64)
+        logarithm += combined(coefficients, self.modes)
         single = coefficients.astype(np.float32)
         logarithm_z.view(np.float64)[:] += single @ self.modes_z.view(np.float32)
 
     def at_times(self, times: Floats) -> Complexes:
         """Return what is added to log f_z at times (t,), (t, s)."""
-        values: Complexes = self.series.at(times).T @ self.modes
-        return values
+        return combined(self.series.at(times).T, self.modes)
 
 
 class Open(NamedTuple):
@@ -418,6 +416,13 @@ def _applied(matrices: Numbers, vectors: Floats) -> Numbers:
     """Return the product of each matrix (t, r, n) with its vector (t, n), (t, r)."""
     product: Numbers = (matrices @ vectors[:, :, None])[:, :, 0]
     return product
+
+
+def combined(weights: Floats, values: Complexes) -> Complexes:
+    """Return the products of real weights (..., q) with arrays (q, s), (..., s)."""
+    # As reals: a complex product with real weights would do half its work on zeros.
+    sums: Complexes = (weights @ values.view(np.float64)).view(np.complex128)
+    return sums
 
 
 def as_complex(parts: Floats) -> Complexes:

@@ -24,8 +24,8 @@ class Channels(Protocol):
     def sample(self, time: float) -> Floats:
         """Work the numbers out on the direct path."""
 
-    def probe(self, time: float) -> Floats:
-        """Return some numbers (p,) that depend on time as all of them do, and cost far less.
+    def probe(self, times: Floats) -> Floats:
+        """Return at times (t,) some numbers (t, p) that depend on time as all do, and cost less.
 
         Functions of time in which these are written to the tolerance do for all numbers.
         """
@@ -41,7 +41,7 @@ class Positions:
 
     inbetweens: Inbetweens
     tolerance: float
-    derivatives: Callable[[float], tuple[Complexes, Complexes]]
+    derivatives: Callable[[Floats], tuple[Complexes, Complexes]]
     length: float
 
     @classmethod
@@ -62,11 +62,11 @@ class Positions:
             return _reals(passage.ends[int(time)].positions)
         return _reals(passage.anchor_position(time) + self.inbetweens.offsets(time))
 
-    def probe(self, time: float) -> Floats:
+    def probe(self, times: Floats) -> Floats:
         """Return f_z and f_z̄ of some points, in units of length, and the anchor."""
-        fz, fzbar = self.derivatives(time)
-        anchor = self.inbetweens.passage.anchor_position(time)
-        return _reals(np.concatenate([self.length * fz, self.length * fzbar, [anchor]]))
+        fz, fzbar = self.derivatives(times)
+        anchor = self.inbetweens.passage.anchor_positions(times)[:, None]
+        return _reals(np.hstack([self.length * fz, self.length * fzbar, anchor]))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -74,27 +74,27 @@ class Distortions:
     """f_z of each point in turn and then f_z̄, c = 4m; real before imaginary part."""
 
     tolerance: float
-    all_points: Callable[[float], tuple[Complexes, Complexes]]
-    some_points: Callable[[float], tuple[Complexes, Complexes]]
+    all_points: Callable[[Floats], tuple[Complexes, Complexes]]
+    some_points: Callable[[Floats], tuple[Complexes, Complexes]]
 
     @classmethod
     def of(cls, inbetweens: Inbetweens, sites: Sites, *, relative: float = 1e-5) -> Self:
         """Allow an error of a part of the largest stretch of the two keyframes."""
         everywhere = inbetweens.derivatives_at(np.arange(len(sites.points)))
-        stretches = [distortion.sigma_a(*everywhere(time)).max() for time in (0.0, 1.0)]
+        stretches = distortion.sigma_a(*everywhere(np.array([0.0, 1.0])))
         return cls(
-            tolerance=relative * float(max(stretches)),
+            tolerance=relative * float(stretches.max()),
             all_points=everywhere,
             some_points=inbetweens.derivatives_at(_some(len(sites.points))),
         )
 
     def sample(self, time: float) -> Floats:
         """Blend the derivatives."""
-        return _reals(np.concatenate(self.all_points(time)))
+        return _reals(np.hstack(self.all_points(np.array([time])))[0])
 
-    def probe(self, time: float) -> Floats:
+    def probe(self, times: Floats) -> Floats:
         """Blend those of some points."""
-        return _reals(np.concatenate(self.some_points(time)))
+        return _reals(np.hstack(self.some_points(times)))
 
 
 def _some(count: int) -> Indices:

@@ -42,8 +42,8 @@ class TimeFunctions:
     times: Floats
 
     @classmethod
-    def of(cls, probe: Callable[[float], Floats], tolerance: float) -> Generator[None, None, Self]:
-        """Find the functions in which a probe's numbers (p,) are written to a tolerance.
+    def of(cls, probe: Callable[[Floats], Floats], tolerance: float) -> Generator[None, None, Self]:
+        """Find the functions in which a probe's numbers (t, p) are written to a tolerance.
 
         Notes
         -----
@@ -51,7 +51,7 @@ class TimeFunctions:
         nodes converges geometrically. Pieces of time are halved where its last coefficients do not
         come down. The leading singular vectors of the values at all nodes are the functions.
         """
-        ends = probe(0.0), probe(1.0)
+        ends = probe(np.array([0.0, 1.0]))
         # The longest first: easy stretches are covered before the hard ones take all attempts.
         pending: deque[Gap] = deque([(0.0, 1.0)])
         found: list[tuple[Gap, Floats | None]] = []
@@ -85,7 +85,7 @@ class TimeFunctions:
 
 
 def _resolve(
-    probe: Callable[[float], Floats], ends: tuple[Floats, Floats], piece: Gap, tolerance: float
+    probe: Callable[[Floats], Floats], ends: Floats, piece: Gap, tolerance: float
 ) -> Generator[None, None, Floats | None]:
     """Return what a probe adds to the blend of its ends at nodes that resolve it, (n, p)."""
     known: Floats | None = None
@@ -96,7 +96,8 @@ def _resolve(
         new = slice(None) if known is None else slice(1, None, 2)
         if known is not None:
             values[::2] = known
-        values[new] = [probe(t) - ((1.0 - t) * ends[0] + t * ends[1]) for t in times[new].tolist()]
+        blends = np.column_stack([1.0 - times[new], times[new]])
+        values[new] = probe(times[new]) - blends @ ends
         yield
         last = chebyshev.to_coefficients(degree)[-LAST_TERMS:] @ values
         rest = float(np.abs(last).max(initial=0.0))

@@ -7,6 +7,7 @@ import numpy as np
 
 from engine.arrays import Complexes, Floats, Indices, freeze
 from engine.interpolation.derivatives import Derivatives, Passage, weighted
+from engine.interpolation.periods import combined
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -46,8 +47,9 @@ class EtaBlend:
         """Return f_z and conj(f_z̄) at times (t,), each (t, s)."""
         course = self.passage.eta_course or self.passage.course
         fz = np.exp(self.passage.log_fz_at(times))
-        weights = course.at(times).T.astype(np.complex128)
-        return fz, weights @ np.array(self.conj_eta) / fz
+        g = combined(course.at(times).T, np.array(self.conj_eta))
+        g /= fz
+        return fz, g
 
     def derivatives(self, time: float) -> Derivatives:
         """Blend f_z logarithmically and η linearly.

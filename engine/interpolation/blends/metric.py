@@ -22,8 +22,9 @@ from engine.maps import Bounds, derivatives_of
 from engine.paths import IntegrationPaths
 
 TOLERANCE = 1e-9  # of the series' last terms, in ln |f_z|
-# Of the modes, in ln |f_z| and over all nodes: of places it is felt in the ninth digit.
-LEFT_OUT = 3e-7
+# Of the modes, at most, in ln |f_z|: of places it is felt in the eighth digit. Where keyframes are
+# passed it is felt in the velocity, which must be the same on both sides.
+LEFT_OUT, LEFT_OUT_PASSING = 2e-6, 1e-7
 # Last Legendre coefficients of the residual on a panel, in ln |f_z|, up to which it may stay; the
 # times at which they are looked at; and how often a panel may be halved.
 RESOLVED, LOOKED_AT, MOST_HALVINGS = 5e-4, (0.03, 0.25, 0.5, 0.75, 0.97), 8
@@ -74,7 +75,7 @@ class MetricResidual(NamedTuple):
         real_parts, series = separate(
             metric.residuals,
             tolerance=TOLERANCE,
-            left_out=LEFT_OUT,
+            left_out=LEFT_OUT if passage.course.is_straight else LEFT_OUT_PASSING,
         )
         modes, modes_z, lacking = panels.extend(real_parts)
         modes.imag -= modes[0].imag

@@ -7,6 +7,7 @@ import numpy as np
 
 from engine.arrays import Complexes, Floats, Indices
 from engine.interpolation.derivatives import Derivatives, Passage, weighted
+from engine.interpolation.periods import combined
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -31,7 +32,9 @@ class NuBlend:
         """Return f_z and conj(f_z̄) at times (t,), each (t, s)."""
         nu = np.array([key.nu for key in self.passage.keyframes])
         fz = np.exp(self.passage.log_fz_at(times))
-        return fz, self.passage.course.at(times).T @ nu * fz
+        g = combined(self.passage.course.at(times).T, nu)
+        g *= fz
+        return fz, g
 
     def derivatives(self, time: float) -> Derivatives:
         """Blend f_z logarithmically and ν linearly.

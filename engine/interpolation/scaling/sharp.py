@@ -35,12 +35,14 @@ FAINT = 1e-8  # modes of h and d below this are left out
 GAIN = 1e-7  # by which a stretch must promise to lower ρ to be looked at
 MANY = 4096  # stretches that are refined at a time
 RUN = 16  # times at whose ends all samples are looked at
+BESIDE = 2  # samples on either side of a low one
 MARGIN = 0.05  # by which a sample may be lower in between than both ends of a run tell
 # Part of the interval beside each key in which the bounds tighten, from the worst of the outline to
 # each point's own.
 BESIDE_KEY = 0.24
 
 type_ = TypeVar("type_", Floats, Complexes)
+Rows = TypeVar("Rows", Floats, Booleans)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -318,8 +320,8 @@ class SharpScaling:
         at_ends = samples.ratios(self._weights(times[np.append(starts, len(times) - 1)]))
         lowest = np.full(len(times), CEILING)
         found = []
-        for run, start in enumerate(starts):
-            chosen = _low_samples(at_ends[run : run + 2])
+        for start, low in zip(starts, _low_samples(at_ends), strict=True):
+            chosen = np.flatnonzero(low)
             if len(chosen):
                 block = slice(start, start + RUN)
                 weights = self._weights(times[block])
@@ -346,11 +348,11 @@ class SharpScaling:
 
     def _promising(self, chosen: Indices, ratios: Floats) -> Booleans:
         """Tell from which of some samples (c,) segments start that may hold a minimum, (s, c)."""
-        after = np.roll(ratios, -1, axis=1)
-        drop = np.abs(after - ratios)
-        drop = np.maximum(drop, np.maximum(np.roll(drop, 1, axis=1), np.roll(drop, -1, axis=1)))
+        around = _wrapped(ratios, 1, 2)
+        drops = np.abs(np.diff(around, axis=1))
+        drop = np.maximum(drops[:, 1:-1], np.maximum(drops[:, :-2], drops[:, 2:]))
         goal = np.minimum(ratios.min(axis=1), 1.0) - GAIN
-        low: Booleans = np.minimum(ratios, after) - drop < goal[:, None]
+        low: Booleans = np.minimum(ratios, around[:, 2:-1]) - drop < goal[:, None]
         low &= np.roll(chosen, -1) == self.curves.following[chosen]
         return low
 
@@ -366,6 +368,8 @@ class SharpScaling:
         weights, keys = self._weights(times), self.course.count
         summed = np.concatenate([weights[:keys], np.ones((len(self.closings), len(times), 1))])
         for _ in range(ROUNDS):
+            if not len(when):
+                break
             places = _around(place, width)
             samples = self.curves.at(segment, places, weights[keys:, when, 0])
             found = self._bounded(samples, is_own=is_own).ratios(summed[:, when])
@@ -472,19 +476,26 @@ def looseness(times: Floats) -> Floats:
     return np.where(beside >= 1.0, 0.0, steps)
 
 
-def _low_samples(at_ends: Floats) -> Indices:
-    """Return the samples that may be lowest at some time of a run, with their neighbours.
+def _low_samples(at_ends: Floats) -> Booleans:
+    """Tell which samples may be lowest at some time of a run, or are beside one, (runs, p).
 
     Parameters
     ----------
-    at_ends : float64, shape (2, p)
-        The ratios at its first and its last time.
+    at_ends : float64, shape (runs + 1, p)
+        The ratios at the times between runs, and at the first and the last one.
     """
-    change = np.abs(at_ends[1] - at_ends[0])
-    goal = min(1.0, float(at_ends.min(axis=1).max()))
-    low = (1.0 - MARGIN) * at_ends.min(axis=0) - change <= goal
-    low |= np.roll(low, 1) | np.roll(low, -1)
-    return np.flatnonzero(low | np.roll(low, 1) | np.roll(low, -1))
+    change = np.abs(np.diff(at_ends, axis=0))
+    lowest = at_ends.min(axis=1)
+    goal = np.minimum(1.0, np.maximum(lowest[:-1], lowest[1:]))
+    low = (1.0 - MARGIN) * np.minimum(at_ends[:-1], at_ends[1:]) - change <= goal[:, None]
+    around = _wrapped(low, BESIDE, BESIDE)
+    places = range(2 * BESIDE + 1)
+    return np.logical_or.reduce([around[:, i : i + low.shape[1]] for i in places])
+
+
+def _wrapped(rows: Rows, before: int, after: int) -> Rows:
+    """Return rows (n, p) of loops with some of their last and first entries on either side."""
+    return np.hstack([rows[:, rows.shape[1] - before :], rows, rows[:, :after]])
 
 
 def _worst(curves: OutlineCurves, samples: PointSamples) -> Worst:

@@ -4,7 +4,6 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache
-from operator import mul
 from typing import Self
 
 import numpy as np
@@ -81,21 +80,23 @@ class Scaling:
 
     def __call__(self, time: float) -> float:
         """Return ρ in (0, 1] at a time in [0, 1]."""
-        if not 0.0 < time < 1.0:
-            return 1.0
-        u = STRETCH * math.asinh(math.log(time / (1.0 - time)) / STRETCH)
-        place = min(max((u + FARTHEST) / SPACING, -1.0), round(2 * FARTHEST / SPACING) + 1.0)
-        nearest = round(place)
+        return float(self.at(np.array([time]))[0])
+
+    def at(self, times: Floats) -> Floats:
+        """Return ρ at times (t,)."""
+        place = _places(times)
+        nearest = np.rint(place)
         fit, mean = _weights(place - nearest)
-        window = slice(nearest + 1, nearest + 1 + 2 * HALF_WINDOW + 1)
-        logarithm = _dot(fit, self.logarithms[window].tolist())
-        logarithm -= _dot(mean, self.excess[window].tolist())
-        return math.exp(min(logarithm, 0.0))
+        window = nearest.astype(np.intp)[:, None] + np.arange(1, 2 * HALF_WINDOW + 2)
+        logarithms = (fit * self.logarithms[window]).sum(axis=1)
+        logarithms -= (mean * self.excess[window]).sum(axis=1)
+        rho: Floats = np.exp(np.minimum(logarithms, 0.0))
+        rho[(times <= 0.0) | (times >= 1.0)] = 1.0
+        return rho
 
     def enclosures(self) -> "ScalingEnclosures":
         """Return what is proven of ρ on pieces of time."""
-        offsets = (np.arange(STRIPS) + 0.5) / STRIPS - 0.5
-        fits, means = (np.array(each) for each in zip(*map(_weights, offsets), strict=True))
+        fits, means = _weights((np.arange(STRIPS) + 0.5) / STRIPS - 0.5)
         width = 2 * HALF_WINDOW + 1
         windows = sliding_window_view(self.logarithms, width)
         excess = sliding_window_view(self.excess, width)
@@ -138,16 +139,21 @@ class ScalingEnclosures:
         return least[which], most[which]
 
     def _strip(self, times: Floats) -> Indices:
-        with np.errstate(divide="ignore"):
-            u = STRETCH * np.arcsinh((np.log(times) - np.log1p(-times)) / STRETCH)
-        place = np.clip((u + FARTHEST) / SPACING, -1.0, round(2 * FARTHEST / SPACING) + 1.0)
-        return np.asarray((place + 1.5) * STRIPS, dtype=np.intp)
+        return np.asarray((_places(times) + 1.5) * STRIPS, dtype=np.intp)
 
 
 def time_of(u: Floats) -> Floats:
     """Return the times in (0, 1) of stretched ones."""
     times: Floats = 1.0 / (1.0 + np.exp(-STRETCH * np.sinh(u / STRETCH)))
     return times
+
+
+def _places(times: Floats) -> Floats:
+    """Return where times in [0, 1] are among the samples, at most one beyond the ends."""
+    with np.errstate(divide="ignore"):
+        u = STRETCH * np.arcsinh((np.log(times) - np.log1p(-times)) / STRETCH)
+    places: Floats = np.clip((u + FARTHEST) / SPACING, -1.0, round(2 * FARTHEST / SPACING) + 1.0)
+    return places
 
 
 def _sampled(function: Callable[[Floats], Floats], u: Floats) -> Floats:
@@ -174,33 +180,32 @@ def _sampled(function: Callable[[Floats], Floats], u: Floats) -> Floats:
     return values
 
 
-def _weights(offset: float) -> tuple[list[float], list[float]]:
-    """Return by how much each sample of a window counts at an offset from its middle.
+def _weights(offsets: Floats) -> tuple[Floats, Floats]:
+    """Return by how much each sample of a window counts at offsets (t,) from its middle.
 
     Returns
     -------
-    fit, mean : list of float, length 2 HALF_WINDOW + 1
+    fit, mean : float64, shape (t, 2 HALF_WINDOW + 1)
         Of the value of the fitted parabola, and of the mean; both sum to 1.
     """
-    # In a frame that is played, this is most of the cost; so short arrays are slower than lists.
-    place = [(i - offset) / (HALF_WINDOW + 0.5) for i in range(-HALF_WINDOW, HALF_WINDOW + 1)]
-    bump = [math.exp(-1.0 / max(1.0 - x * x, 1e-3)) for x in place]
+    samples = np.arange(-HALF_WINDOW, HALF_WINDOW + 1)
+    place = (samples - offsets[:, None]) / (HALF_WINDOW + 0.5)
+    squared = place * place
+    bump = np.exp(-1.0 / np.maximum(1.0 - squared, 1e-3))
     # The first row of the inverse of the parabola's normal equations, by its cofactors.
-    first = list(map(mul, bump, place))
-    second = list(map(mul, first, place))
-    m0, m1, m2 = sum(bump), sum(first), sum(second)
-    m3, m4 = _dot(second, place), _dot(second, list(map(mul, place, place)))
-    c0, c1, c2 = m2 * m4 - m3 * m3, m2 * m3 - m1 * m4, m1 * m3 - m2 * m2
-    whole = m0 * c0 + m1 * c1 + m2 * c2
-    fit = [(c0 * b + c1 * x + c2 * y) / whole for b, x, y in zip(bump, first, second, strict=True)]
-    return fit, [b / m0 for b in bump]
+    powers = bump * np.array([np.ones_like(place), place, squared])
+    m0, m1, m2 = powers.sum(axis=2)
+    m3, m4 = (squared * powers[1:]).sum(axis=2)
+    cofactors = np.array([m2 * m4 - m3 * m3, m2 * m3 - m1 * m4, m1 * m3 - m2 * m2])
+    fit = (cofactors[..., None] * powers).sum(axis=0)
+    fit /= fit.sum(axis=1, keepdims=True)
+    return fit, bump / m0[:, None]
 
 
 @cache
 def _steepness() -> tuple[float, float]:
     """Return how fast a fit and a mean may change with the offset, over the range of the values."""
-    offsets = np.linspace(-0.5, 0.5, 1025)
-    fits, means = (np.array(each) for each in zip(*map(_weights, offsets), strict=True))
+    fits, means = _weights(np.linspace(-0.5, 0.5, 1025))
     # The weights are smooth; the margin covers what their steepest place is off the samples.
     return tuple(
         1.05 * float(np.abs(np.diff(each, axis=0)).sum(axis=1).max()) * 1024 / 2
@@ -208,13 +213,8 @@ def _steepness() -> tuple[float, float]:
     )  # type: ignore[return-value]
 
 
-def _dot(one: list[float], two: list[float]) -> float:
-    total: float = sum(map(mul, one, two))
-    return total
-
-
 def _fits(values: Floats, offset: float) -> Floats:
     """Return the fit at an offset from each sample, like `values`; they are 0 beyond the ends."""
     windows = sliding_window_view(np.pad(values, HALF_WINDOW), 2 * HALF_WINDOW + 1)
-    fits: Floats = windows @ np.array(_weights(offset)[0])
+    fits: Floats = windows @ _weights(np.array([offset]))[0][0]
     return fits

@@ -64,10 +64,11 @@ def test_intervals_are_prepared_one_at_a_time_and_keyframes_shared(variant):
 def test_derivatives_at_some_points_are_those_of_the_frame(variant):
     piece = between(variant=variant).intervals[0]
     which = np.array([7, 3, 0])
-    fz, fzbar = piece.derivatives_at(which)(0.75)
-    frame = piece.frame(0.75)
-    assert_allclose(fz, frame.fz[which], rtol=1e-12, atol=0)
-    assert_allclose(fzbar, frame.fzbar[which], rtol=1e-12, atol=1e-15)
+    times = np.array([0.0, 0.3, 0.75, 1.0])
+    for time, fz, fzbar in zip(times, *piece.derivatives_at(which)(times), strict=True):
+        frame = piece.frame(time)
+        assert_allclose(fz, frame.fz[which], rtol=1e-12, atol=0)
+        assert_allclose(fzbar, frame.fzbar[which], rtol=1e-12, atol=1e-15)
 
 
 @pytest.mark.parametrize("variant", ["nu", "scaled-eta", "metric"])
