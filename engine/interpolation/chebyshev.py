@@ -137,11 +137,11 @@ def separate(
             pending += [(middle, end), (start, middle)]
     columns = np.hstack(pieces)
     # The singular vectors of the triangle are those of the columns, and it is far smaller.
-    *_, functions = np.linalg.svd(np.linalg.qr(columns, mode="r"), full_matrices=False)
-    forms = columns @ functions.T
-    series = functions.reshape(len(functions), len(pieces), DEGREE + 1)
-    sizes = np.abs(forms).max(axis=0) * np.abs(series).sum(axis=2).max(axis=1)
-    kept = max(1, int(np.count_nonzero(sizes[::-1].cumsum() > left_out)))
+    _, sizes, functions = np.linalg.svd(np.linalg.qr(columns, mode="r"), full_matrices=False)
+    series = (sizes[:, None] * functions).reshape(len(sizes), len(pieces), DEGREE + 1)
+    forms = columns @ functions.T / np.maximum(sizes, np.finfo(np.float64).tiny)
+    most = np.abs(forms).max(axis=0) * np.abs(series).sum(axis=2).max(axis=1)
+    kept = max(1, int(np.count_nonzero(most[::-1].cumsum() > left_out)))
     times, coefficients = np.array(found), series[:kept].transpose(1, 2, 0)
     if vanishing:
         coefficients = _vanishing_at_ends(times, coefficients)

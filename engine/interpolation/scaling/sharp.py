@@ -487,10 +487,11 @@ def _low_samples(at_ends: Floats) -> Booleans:
     change = np.abs(np.diff(at_ends, axis=0))
     lowest = at_ends.min(axis=1)
     goal = np.minimum(1.0, np.maximum(lowest[:-1], lowest[1:]))
-    low = (1.0 - MARGIN) * np.minimum(at_ends[:-1], at_ends[1:]) - change <= goal[:, None]
+    low: Booleans = (1.0 - MARGIN) * np.minimum(at_ends[:-1], at_ends[1:]) - change <= goal[:, None]
     around = _wrapped(low, BESIDE, BESIDE)
-    places = range(2 * BESIDE + 1)
-    return np.logical_or.reduce([around[:, i : i + low.shape[1]] for i in places])
+    for place in range(2 * BESIDE + 1):
+        low |= around[:, place : place + low.shape[1]]
+    return low
 
 
 def _wrapped(rows: Rows, before: int, after: int) -> Rows:
