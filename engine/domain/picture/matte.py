@@ -43,10 +43,11 @@ PLAIN = 0.12  # standard deviation of α up to which that is believed
 CLEAREST_THIN, THIN_SHARE = 30.0, 0.2
 # Brightness, blueness, redness of red, green, blue.
 TONES = ((0.299, 0.587, 0.114), (-0.169, -0.331, 0.5), (0.5, -0.419, -0.081))
+HUES = (1, 2)  # which of them are the last two
 ROUNDING = 0.5  # levels of noise that every picture has
-# JPEG stores the last two tones at half the resolution: how much they are blurred is measured where
-# α is about one half, if brightness tells it well enough.
-MIDDLE, SHARPEST = 0.25, 4.0
+# JPEG stores the last two tones at half the resolution: how much they are blurred, if clearly, is
+# measured where α is about one half, if brightness tells it well enough.
+MIDDLE, BLURRED, SHARPEST = 0.25, 1.05, 4.0
 
 
 class _Edge(NamedTuple):
@@ -286,7 +287,7 @@ def _fading(tile: _Tile) -> Indices:
 def _sharpening(way: Floats, off: Floats, noise: Floats) -> tuple[float, float]:
     """Return how much steeper α is in brightness than in hue, and how far they differ then."""
     bright, _ = _along(way[:, :1], off[:, :1], noise[:, :1])
-    hue, _ = _along(way[:, 1:], off[:, 1:], noise[:, 1:])
+    hue, _ = _along(way[:, HUES], off[:, HUES], noise[:, HUES])
     trust = way[:, 0] ** 2 / noise[:, 0]
     middle = np.abs(hue - 0.5) < MIDDLE
     weight = np.where(middle, trust, 0.0)
@@ -294,7 +295,7 @@ def _sharpening(way: Floats, off: Floats, noise: Floats) -> tuple[float, float]:
     if spread < 1.0:  # brightness tells less than one value of α
         return 1.0, 0.0
     slope = (weight * (hue - 0.5) * (bright - 0.5)).sum() / spread
-    gain = float(np.clip(slope, 1.0, SHARPEST))
+    gain = float(min(slope, SHARPEST)) if slope > BLURRED else 1.0
     sharp = np.clip(0.5 + gain * (hue - 0.5), 0, 1)
     weight = np.where((sharp > 0) & (sharp < 1), trust, 0.0)
     total = weight.sum()
@@ -352,8 +353,12 @@ def _mix(result: Bytes, rgba: Bytes, subject: Booleans, inner: _Part, edge: _Edg
     pixels = rgba.reshape(-1, 4)[mixture.band].astype(np.float64)
     front = tile.rgb.reshape(-1, 3)[mixture.core]
     behind = _colours(tile.background.reshape(-1, 3)[mixture.band])
+    off = mixture.off
+    if edge.gain > 1:
+        # Blurred hues are mixed by an α of their own: by that, no background is left in them.
+        off = _with_hue_mixed(mixture.way, off, mixture.noise, alpha)
     share = np.maximum(alpha, FAINTEST)[:, None]
-    unmixed = np.clip(behind + (pixels[:, :3] - behind) / share, 0, 255)
+    unmixed = np.clip(behind + _colours(off) / share, 0, 255)
     # The fainter the subject, the less does its own pixel tell of it.
     colour = alpha[:, None] * unmixed + (1 - alpha[:, None]) * front
     whole = rgba.copy()
@@ -366,14 +371,21 @@ def _mix(result: Bytes, rgba: Bytes, subject: Booleans, inner: _Part, edge: _Edg
 
 def _weighed(way: Floats, off: Floats, noise: Floats, edge: _Edge) -> tuple[Floats, Floats, Floats]:
     """Return the parts of a mixture with its hues made as sharp as brightness, and less trusted."""
-    hue = slice(1, 3)
-    off, noise = off.copy(), noise.copy()
     if edge.gain > 1:
         # Around the middle of the way, and no farther than its ends.
-        own, _ = _along(way[:, hue], off[:, hue], noise[:, hue])
-        off[:, hue] += (np.clip(0.5 + edge.gain * (own - 0.5), 0, 1) - own)[:, None] * way[:, hue]
-    noise[:, hue] += edge.disparity**2 * way[:, hue] ** 2
+        own, _ = _along(way[:, HUES], off[:, HUES], noise[:, HUES])
+        off = _with_hue_mixed(way, off, noise, np.clip(0.5 + edge.gain * (own - 0.5), 0, 1))
+    noise = noise.copy()
+    noise[:, HUES] += edge.disparity**2 * way[:, HUES] ** 2
     return way, off, noise
+
+
+def _with_hue_mixed(way: Floats, off: Floats, noise: Floats, alpha: Floats) -> Floats:
+    """Return where pixels are off the background if their hues were mixed by α (n,)."""
+    own, _ = _along(way[:, HUES], off[:, HUES], noise[:, HUES])
+    moved = off.copy()
+    moved[:, HUES] += (alpha - own)[:, None] * way[:, HUES]
+    return moved
 
 
 def _alpha(tile: _Tile, mixture: _Mixture, edge: _Edge) -> Floats:

@@ -85,6 +85,15 @@ def test_the_colour_of_the_background_is_taken_out_of_the_edge() -> None:
     assert np.abs(result[beside][:, :3].astype(int) - INK).max() <= 5
 
 
+@pytest.mark.parametrize(("colour", "background"), [(INK, (60, 200, 80)), *COLOURS[2:]])
+def test_hues_that_a_jpeg_blurs_leave_no_rim(colour, background) -> None:
+    truth = star(2.0)
+    result = texture(painted(truth, colour, background, jpeg=True))
+    weight = result[..., 3] * ((truth > 0) & (truth < 1))
+    error = np.abs(result[..., :3].astype(int) - colour).max(axis=2)
+    assert (weight * error).sum() / weight.sum() < 12
+
+
 def test_a_dark_line_around_the_drawing_keeps_its_colour() -> None:
     white, black = (255, 255, 255), (0, 0, 0)
     x, y = pictures.plane(200, 200)
