@@ -12,6 +12,9 @@ from engine.domain.picture.grid import block_factor, reduce_blocks, repeat_block
 WORKING_SIDE = 1400  # pixels: larger pictures are flooded in blocks
 COLOUR_BIN = 16  # levels: how finely colours are told apart when the border votes
 CHANNEL_WIDTH = 0.006  # of the diagonal: the flood passes no channel that is narrower
+# What a lossy encoder leaves around edges: islands of fewer pixels, no farther from the
+# background's colour. JPEG at quality 50 to 95 left 5,404 of them around ten drawings, one larger.
+SMALLEST_ISLAND, NOISE_LEVELS = 25, 54
 VIVID = 48  # levels between a colour's channels: white, grey and black have fewer
 
 
@@ -60,6 +63,7 @@ def flood_background(
     thin gap between two legs is background. So the flood runs through wide places only (a
     morphological opening); then the thin remains that touch it are added, without what lies
     behind them. Pictures above 1,400 pixels are flooded in blocks and refined to pixels after.
+    Islands of a few pixels that hardly differ from the background are an encoder's noise.
     """
     wanted = _border_colour(rgb) if colour is None else np.array(colour, dtype=np.uint8)
     alike = _alike(rgb, wanted, tolerance)
@@ -69,6 +73,10 @@ def flood_background(
     if factor > 1:
         flooded = _refined(flooded, factor, alike)
         enclosed = _refined(enclosed, factor, alike) & ~flooded
+    noise = _noise(flooded | enclosed, rgb, wanted)
+    if noise.any() and enclosed.any():
+        enclosed = _touching(noise | enclosed, enclosed)
+    flooded |= noise & ~enclosed
     return Background(mask=flooded, enclosed=enclosed, colour=wanted, agreement=agreement)
 
 
@@ -100,6 +108,22 @@ def _alike(rgb: Bytes, colour: Bytes, tolerance: int) -> Booleans:
         alike &= values >= max(level - tolerance, 0)
         alike &= values <= min(level + tolerance, 255)
     return alike
+
+
+def _noise(background: Booleans, rgb: Bytes, colour: Bytes) -> Booleans:
+    """Return the islands in a background that are an encoder's noise."""
+    labels, count = ndimage.label(~background, np.ones((3, 3)))
+    is_noise = np.bincount(labels.ravel(), minlength=count + 1) < SMALLEST_ISLAND
+    is_noise[0] = False
+    noise = is_noise[labels]
+    if not is_noise.any():
+        return noise
+    rows, columns = np.nonzero(noise)
+    islands = labels[rows, columns]
+    faint = _alike(rgb[rows, columns][None], colour, NOISE_LEVELS)[0]
+    is_noise[islands[~faint]] = False
+    noise[rows, columns] = is_noise[islands]
+    return noise
 
 
 def _flood(alike: Booleans) -> tuple[Booleans, Booleans]:

@@ -11,7 +11,7 @@ from scipy.sparse.csgraph import minimum_spanning_tree
 from engine.arrays import Booleans, Complexes, Floats, Indices, Integers
 from engine.errors import EngineError
 
-SPECK = 2e-4  # of the subject's area: smaller parts are dropped
+SPECK = 2e-4  # of the subject's area: smaller parts are dropped, smaller holes are none
 MOST_PARTS = 150
 MOST_DROPPED = 0.05  # of the subject's area
 CLOUD = 6  # parts from which on gaps are closed as well as bridged
@@ -101,10 +101,8 @@ def join_parts(mask: Booleans, diagonal: float) -> WholePiece:
     if count > 1:
         mask = _bridged(mask, labels.astype(np.int32), areas, diagonal)
         notices.append(f"{count} parts joined by invisible bridges")
-    holes, hole_areas = _holes(mask)
-    return WholePiece(
-        mask=mask | (holes > 0), holes=holes, hole_areas=hole_areas, notices=tuple(notices)
-    )
+    filled, holes, hole_areas = _filled(mask)
+    return WholePiece(mask=filled, holes=holes, hole_areas=hole_areas, notices=tuple(notices))
 
 
 def without_specks(mask: Booleans) -> Booleans:
@@ -223,16 +221,20 @@ def _closed(mask: Booleans, radius: float) -> Booleans:
     return mask | kept[inner, inner]
 
 
-def _holes(mask: Booleans) -> tuple[Integers, Floats]:
-    """Number everything that the outside, found at pixel (0, 0), does not reach, the largest first.
+def _filled(mask: Booleans) -> tuple[Booleans, Integers, Floats]:
+    """Fill everything that the outside, found at pixel (0, 0), does not reach.
 
-    Return the number (h, w) of each pixel's hole, 0 elsewhere, and the area of each hole.
+    Return the filled mask, the number (h, w) of each pixel's hole, the largest first and 0 where
+    there is none or one that is smaller than a speck, and the area of each hole.
     """
     labels, count = ndimage.label(~mask)
+    outside = labels[0, 0]
     areas = np.bincount(labels.ravel(), minlength=count + 1).astype(np.float64)
-    areas[[0, labels[0, 0]]] = 0
+    filled = areas.sum() - areas[outside]
+    areas[[0, outside]] = 0
+    areas[areas < SPECK * filled] = 0
     by_size = np.argsort(-areas, kind="stable")
     numbers = np.zeros(count + 1, dtype=np.int32)
     holes = int(np.count_nonzero(areas))
     numbers[by_size[:holes]] = np.arange(1, holes + 1)
-    return numbers[labels], areas[by_size[:holes]]
+    return labels != outside, numbers[labels], areas[by_size[:holes]]

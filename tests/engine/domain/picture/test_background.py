@@ -1,7 +1,11 @@
+import io
+
 import numpy as np
 import pictures
 import pytest
 from numpy.testing import assert_array_equal
+from PIL import Image
+from scipy import ndimage
 
 from engine.arrays import Booleans, Bytes
 from engine.domain.picture.background import flood_background
@@ -65,6 +69,33 @@ def test_large_pictures_are_flooded_in_blocks_and_refined_to_pixels() -> None:
     rows, columns = np.mgrid[:700, :1501]
     disc = np.hypot(rows - 350, columns - 751) < 250.3  # an odd side, in blocks of two
     assert_array_equal(flood_background(on_paper(disc), 18).mask, ~disc)
+
+
+def jpeg(rgb: Bytes, quality: int) -> Bytes:
+    file = io.BytesIO()
+    Image.fromarray(rgb).save(file, "JPEG", quality=quality)
+    return np.asarray(Image.open(file).convert("RGB"))
+
+
+@pytest.mark.parametrize("quality", [50, 60, 75, 85, 95])
+@pytest.mark.parametrize("paper", [(255, 255, 255), (60, 200, 80)])
+def test_what_an_encoder_leaves_around_a_drawing_is_background(paper, quality: int) -> None:
+    for drawing, parts in ((pictures.star(7, 300), 1), (pictures.stick_figure(300, 4), 1)):
+        rgb = pictures.on_plain(drawing, paper)[..., :3].copy()
+        rgb[20:25, 20:25] = (200, 160, 20)  # an earring
+        rgb[270:273, 20:23] = 0  # a dot
+        subject = ~flood_background(jpeg(rgb, quality), 18).mask
+        assert ndimage.label(subject, np.ones((3, 3)))[1] == parts + 2
+
+
+def test_small_parts_stay_that_differ_clearly_and_pale_ones_that_are_not_so_small() -> None:
+    rgb = np.full((100, 100, 3), 255, dtype=np.uint8)
+    rgb[40:60, 40:60] = 0
+    places = {"clear": ((10, 10), 1, 200), "pale": ((10, 50), 5, 230), "noise": ((10, 80), 4, 220)}
+    for (row, column), size, level in places.values():
+        rgb[row : row + size, column : column + size] = level
+    subject = ~flood_background(rgb, 18).mask
+    assert [name for name, (place, _, _) in places.items() if subject[place]] == ["clear", "pale"]
 
 
 def test_a_picture_of_one_colour_is_all_background() -> None:

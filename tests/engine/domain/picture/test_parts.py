@@ -81,7 +81,7 @@ def test_specks_are_dropped_and_told() -> None:
     assert piece.notices == ("3 specks dropped (0.01% of the subject)",)
 
 
-@pytest.mark.parametrize(("size", "told"), [(60, "12.7%"), (2, "under 0.1%")])
+@pytest.mark.parametrize(("size", "told"), [(60, "12.7%"), (4, "under 0.1%")])
 def test_a_hole_is_filled_and_told_with_its_size(size: int, told: str) -> None:
     mask = canvas()
     mask[50:220, 50:217] = True
@@ -92,6 +92,16 @@ def test_a_hole_is_filled_and_told_with_its_size(size: int, told: str) -> None:
     assert piece.told_filled([1]) == (f"1 hole filled, {told} of the subject",)
     assert piece.told_filled([1], "for a reason")[0].endswith("of the subject, for a reason")
     assert piece.told_filled([]) == ()
+
+
+def test_pits_as_small_as_specks_are_filled_and_not_told() -> None:
+    mask = canvas()
+    mask[50:220, 50:217] = True
+    mask[100:102, 100:102] = mask[150, 150] = False
+    piece = join_parts(mask, diagonal(mask))
+    assert piece.mask[50:220, 50:217].all()
+    assert len(piece.hole_areas) == 0
+    assert not piece.holes.any()
 
 
 def test_holes_are_numbered_by_their_size() -> None:
