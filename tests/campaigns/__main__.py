@@ -1,6 +1,7 @@
 """Long campaigns against everything that may go wrong; each prints what it tried and measured.
 
-`python -m tests.campaigns --seed 1` runs all of them, `--only kills` one. The tests run short ones.
+`python -m tests.campaigns --seed 1` runs all of them, `--only kills faults` some. The tests run
+short ones.
 """
 
 import argparse
@@ -16,6 +17,7 @@ from app.cli.process import use_one_thread
 # Of each campaign, what its amount counts, and how much of it is asked for.
 CAMPAIGNS = {
     "kills": ("processes killed", 1200),
+    "faults": ("full disks and ended windows", 200),
     "shapes": ("shapes", 500),
     "soak": ("minutes in the window", 30),
     "readers": ("files tampered with", 11_000),
@@ -27,11 +29,11 @@ def run() -> None:
     use_one_thread()
     parser = argparse.ArgumentParser(prog="python -m tests.campaigns", description=__doc__)
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--only", choices=list(CAMPAIGNS), help="one campaign")
+    parser.add_argument("--only", choices=list(CAMPAIGNS), nargs="+", help="some campaigns")
     parser.add_argument("--amount", type=int, help="other than usual; see the table in this file")
     arguments = parser.parse_args()
     for name, (what, usual) in CAMPAIGNS.items():
-        if arguments.only not in (None, name):
+        if name not in (arguments.only or CAMPAIGNS):
             continue
         amount = arguments.amount or usual
         print(f"{name}: {amount} {what}, seed {arguments.seed}", flush=True)

@@ -1,8 +1,9 @@
-"""Processes that are killed at random moments while they save, keep unsaved work, or export.
+"""Processes that are ended at random moments while they save, keep unsaved work, or export.
 
 After each kill a person comes back, and finds what was promised: the project file is whole, and the
 last one that was told to be saved or a later one; of unsaved work no more than a minute is lost;
-every exported file is whole; and what was left half written goes away at the next start.
+every exported file is whole; and what was left half written goes away at the next start, where an
+export was not only asked to end: then it leaves nothing itself.
 """
 
 import os
@@ -11,7 +12,7 @@ import struct
 import tempfile
 import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -33,6 +34,8 @@ from app.storage.files.atomic import PART, atomic_file, clear_abandoned
 from app.storage.project_file import load_project, save_project
 
 LAYERED = "friend.lissom"
+# What ends an export: a kill as often as all others together.
+SIGNALS = (*(3 * [signal.SIGKILL]), signal.SIGTERM, signal.SIGHUP, signal.SIGINT)
 MOST_LOST = 60.0  # seconds of edits
 # Seconds that pass for the editor in one of ours: writing seems to take as many times longer.
 LAPSE = 40.0
@@ -62,21 +65,21 @@ class Victim:
     Parameters
     ----------
     work : callable
-        Takes what tells a number and a time; runs in the other process.
+        Takes what tells a number and a time; runs in the other process, and returns its status.
     """
 
-    def __init__(self, work: Callable[[Callable[[int, float], None]], None]) -> None:
+    def __init__(self, work: Callable[[Callable[[int, float], None]], int | None]) -> None:
         ours, theirs = os.pipe()
         self._process = os.fork()
         if self._process == 0:
+            status = 3
             try:
                 os.close(ours)
                 for stream in (1, 2):
                     os.dup2(os.open(os.devnull, os.O_WRONLY), stream)
-                work(lambda number, at: os.write(theirs, TOLD.pack(number, at)) and None)
-                os._exit(0)
+                status = work(lambda number, at: os.write(theirs, TOLD.pack(number, at)) and None)
             finally:
-                os._exit(3)
+                os._exit(status or 0)
         os.close(theirs)
         self._told = ours
 
@@ -84,11 +87,12 @@ class Victim:
         """Wait until it has told something."""
         return TOLD.unpack(os.read(self._told, TOLD.size))
 
-    def kill(self) -> tuple[bool, list[tuple[int, float]]]:
-        """Kill it; return whether that ended it, and all else that it told."""
-        os.kill(self._process, signal.SIGKILL)
+    def kill(self, number: int = signal.SIGKILL) -> tuple[bool, list[tuple[int, float]]]:
+        """Kill it, or ask it to end; return whether that ended it, and all else that it told."""
+        os.kill(self._process, number)
         status = os.waitstatus_to_exitcode(os.waitpid(self._process, 0)[1])
-        expect(status in (0, -signal.SIGKILL), f"it ended by itself, with {status}")
+        killed = -number if number == signal.SIGKILL else 128 + number
+        expect(status in (0, killed), f"it ended by itself, with {status}")
         with os.fdopen(self._told, "rb") as told:
             words = told.read()
         return status != 0, list(TOLD.iter_unpack(words))
@@ -221,9 +225,9 @@ def _kill_exports_of(rng: np.random.Generator, kills: int, name: str) -> tuple[i
         old, new, place = (Path(root) / part for part in ("old", "new", "place"))
         for folder in (old, new, place):
             folder.mkdir()
-        _run(partial(_export, old, name, OLD))
+        _run(partial(export_friend, old, name, OLD))
         begun = time.perf_counter()
-        _run(partial(_export, new, name, NEW))
+        _run(partial(export_friend, new, name, NEW))
         seconds = time.perf_counter() - begun
         whole = {
             path.name: {path.read_bytes(), (new / path.name).read_bytes()} for path in old.iterdir()
@@ -233,13 +237,16 @@ def _kill_exports_of(rng: np.random.Generator, kills: int, name: str) -> tuple[i
             with spared(place) as mark:
                 for file in old.iterdir():
                     (place / file.name).write_bytes(file.read_bytes())
-                victim = Victim(lambda _: _export(place, name, NEW))
+                victim = Victim(lambda _: export_friend(place, name, NEW))
                 time.sleep(rng.uniform(0.2, 1.0) * seconds)
-                was_killed, _ = victim.kill()
+                number = int(rng.choice(SIGNALS))
+                was_killed, _ = victim.kill(number)
                 _check_export(place, new, whole, mark, name)
                 survived += was_killed
                 finished += not was_killed
-                swept += check_nothing_left(place, {*whole, mark})
+                left = check_nothing_left(place, {*whole, mark})
+                expect(number == signal.SIGKILL or not left, "what ended in order left something")
+                swept += left
     return survived, finished, swept
 
 
@@ -256,18 +263,17 @@ def _check_export(
         expect(fits[0] == fits[1], "the data are of another sprite sheet")
 
 
-def _export(folder: Path, name: str, background: str) -> None:
+def export_friend(folder: Path, name: str, background: str) -> int:
+    """Export the sample with layers as the command line does; return its exit status."""
     ending = {"spritesheet": "png"}.get(name, name)
     out = folder if name == "png" else folder / f"a.{ending}"
     frames = OTHER_SCOPE if name == "spritesheet" and background == OLD else SCOPE
     scope = MODEL_SCOPE if name in {"glb", "html"} else (*frames, "--background", background)
-    # What is told on the way is another thing.
     project = str(sample_images() / LAYERED)
-    with suppress(SystemExit):
-        main(["export", project, "--out", str(out), "--format", name, *scope])
+    return main(["export", project, "--out", str(out), "--format", name, *scope])
 
 
-def _run(work: Callable[[], None]) -> None:
+def _run(work: Callable[[], object]) -> None:
     """Do something in another process, since OpenGL and forks do not go together."""
     process = os.fork()
     if process == 0:

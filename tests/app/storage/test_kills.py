@@ -1,4 +1,4 @@
-"""Some of the kills of `python -m tests.campaigns --only kills`, as that command does them."""
+"""Some of what `python -m tests.campaigns --only kills faults` does, as that command does it."""
 
 import os
 import re
@@ -10,12 +10,15 @@ import pytest
 
 
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="needs processes that can be forked")
-def test_what_is_killed_while_it_saves_or_exports_loses_nothing():
-    command = [sys.executable, "-m", "tests.campaigns", "--only", "kills", "--amount", "4"]
+def test_what_is_killed_or_refused_while_it_saves_or_exports_loses_nothing():
+    command = [sys.executable, "-m", "tests.campaigns", "--only", "kills", "faults"]
     done = subprocess.run(
-        command, capture_output=True, text=True, check=False, cwd=Path(__file__).parents[3]
+        [*command, "--amount", "3"],
+        capture_output=True,
+        text=True,
+        check=False,
+        cwd=Path(__file__).parents[3],
     )
     assert done.returncode == 0, done.stderr
-    kills = [int(count) for count in re.findall(r"kills (\d+)", done.stdout)]
-    assert len(kills) == 3
-    assert sum(kills) == 4
+    assert [int(count) for count in re.findall(r"kills (\d+)", done.stdout)] == [1, 1, 1]
+    assert [int(count) for count in re.findall(r"refused (\d+)", done.stdout)] == [2, 9]
