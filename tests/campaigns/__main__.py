@@ -6,6 +6,7 @@ short ones.
 
 import argparse
 import importlib
+import signal
 import sys
 import time
 from pathlib import Path
@@ -27,6 +28,8 @@ CAMPAIGNS = {
 def run() -> None:
     """Run the campaigns that are asked for."""
     use_one_thread()
+    # Shells let what they start in the background ignore it, and what that starts as well.
+    signal.signal(signal.SIGINT, signal.default_int_handler)
     parser = argparse.ArgumentParser(prog="python -m tests.campaigns", description=__doc__)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--only", choices=list(CAMPAIGNS), nargs="+", help="some campaigns")

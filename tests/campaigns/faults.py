@@ -303,13 +303,16 @@ def _end_window(
         stderr=subprocess.PIPE,
         text=True,
     ) as process:
-        expect(bool(select.select([process.stdout], [], [], PATIENCE)[0]), "no window")
-        first = process.stdout.readline()
-        time.sleep(rng.uniform(0, 2))
-        begun = time.monotonic()
-        process.send_signal(number)
-        told, said = process.communicate(timeout=PATIENCE)
-        seconds = time.monotonic() - begun
+        try:
+            expect(bool(select.select([process.stdout], [], [], PATIENCE)[0]), "no window")
+            first = process.stdout.readline()
+            time.sleep(rng.uniform(0, 2))
+            begun = time.monotonic()
+            process.send_signal(number)
+            told, said = process.communicate(timeout=PATIENCE)
+            seconds = time.monotonic() - begun
+        finally:
+            process.kill()
     last = int((first + told).split()[-1])
     expect(process.returncode == 128 + number, f"it ends with {process.returncode}: {said}")
     expect("your unsaved work was kept" in said, said)

@@ -22,8 +22,9 @@ pytestmark = pytest.mark.skipif(os.name == "nt", reason="Windows has no such sig
 
 # What a command does, as text, between the signals that it hears.
 LISTEN = """
-import sys, threading, time
+import signal, sys, threading, time
 from app.cli import process
+signal.signal(signal.SIGINT, signal.default_int_handler)  # ignored where a shell is not looked at
 def say(*words):
     print(*words, flush=True)
 wake = None
@@ -83,7 +84,7 @@ def test_what_waits_is_woken_and_more_signals_change_nothing():
 
 
 def test_a_signal_that_is_to_be_ignored_is_ignored():
-    before = "import signal; signal.signal(signal.SIGHUP, signal.SIG_IGN)"
+    before = "signal.signal(signal.SIGHUP, signal.SIG_IGN)"
     with listening(before=before, work="time.sleep(60)") as process:
         process.send_signal(signal.SIGHUP)
         process.send_signal(signal.SIGTERM)
