@@ -140,12 +140,12 @@ def rigidly_aligned(handles: Handles, wish: Wish, at_rest: HarmonicMap) -> Harmo
     )
 
 
-def are_correlated(handles: Handles, targets: Complexes) -> bool:
-    """Tell whether a rotation of the handles as a whole leads most of the way to their targets."""
+def correlation(handles: Handles, targets: Complexes) -> float:
+    """Return how much of the way to their targets a rotation of all handles leads, 0 to 1."""
     if len(targets) < 2:
-        return True
-    _, _, _, correlation = _common_motion(handles, handles.points, targets)
-    return correlation > CORRELATED
+        return 1.0
+    _, _, _, common = _common_motion(handles, handles.points, targets)
+    return common
 
 
 def _turned(handles: Handles, positions: Complexes, targets: Complexes, most: float) -> Complexes:

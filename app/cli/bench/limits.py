@@ -1,4 +1,4 @@
-"""The deformer at its limits: hard requests, and how they come to rest; it takes many minutes."""
+"""The deformer at its limits: hard requests, and how they come to rest; it takes some minutes."""
 
 import json
 import time
@@ -34,8 +34,11 @@ ROW_OF_BOUNDS = (
     Bounds(k=0.95, sigma_a=20.0, sigma_b=0.05),
 )
 DRAWINGS = ("bar", "s", "character", "giraffe")
-# Those that are followed through all of them, and those under which a drag is let go.
-ROWS_OF_REQUESTS = (0, 12, 24, 27, 36, 48, 60)
+# One request in so many, of all kinds, is also followed along a path, and let go of after a drag.
+COMPARED = 5
+# Those that are followed through all bounds: swapped, collapsed, pulled far. Bounds under which a
+# drag is let go.
+ROWS_OF_REQUESTS = (0, 9, 12, 27, 33, 39, 44)
 RELEASED_BOUNDS = (ROW_OF_BOUNDS[1], ROW_OF_BOUNDS[2], Bounds())
 PATH_ROWS = 20
 # What is left of a motion that can be seen, of the diagonal.
@@ -71,7 +74,7 @@ def _hard_requests() -> Table:
     steps, totals, seconds, resumed, paths, rest = [], [], [], [], [], []
     optimal = certified = 0
     requests = list(_requests())
-    for request in requests:
+    for number, request in enumerate(requests):
         deformer = request.deformer()
         wish = deformer.handles.wish(request.targets)
         begun = time.process_time()
@@ -86,8 +89,9 @@ def _hard_requests() -> Table:
         certified += certify(state.map, request.boundary, request.bounds).certified
         again, _ = deformer.settle(deformer.start(state.map), wish)
         resumed.append(1.0 - _energy(again) / last.objective)
-        paths.append(last.objective / _energy(_along_path(request)))
-        rest.append(_rest_after_release(request))
+        if number % COMPARED == 0:
+            paths.append(last.objective / _energy(_along_path(request)))
+            rest.append(_rest_after_release(request))
     resumed_most, path_ratio = max(resumed), np.quantile(paths, 0.95)
     return Table(
         title=f"{len(requests)} hard requests, from the shape at rest",
@@ -98,8 +102,11 @@ def _hard_requests() -> Table:
             _fact("Newton steps of all ways", _median_and_most(totals)),
             _fact("seconds for all ways", _median_and_most(seconds)),
             _fact("gain by resuming, of the energy", f"at most {resumed_most:.1e}"),
-            _fact("energy over that of a path in 20 rows", f"95 % at most {path_ratio:.4f}"),
-            _fact("processor's seconds to rest after release", _median_and_most(rest)),
+            _fact(
+                f"energy over that of a path in {PATH_ROWS} rows, {len(paths)} requests",
+                f"95 % at most {path_ratio:.4f}",
+            ),
+            _fact("processor's seconds to rest after their release", _median_and_most(rest)),
         ),
     )
 

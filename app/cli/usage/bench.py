@@ -3,7 +3,7 @@
 import argparse
 
 PARTS = ("domain", "deform", "interpolate", "streaming", "methods", "export", "ui", "scenes")
-# Only when they are asked for: they take many minutes.
+# Only when they are asked for: they take some minutes.
 LONG_PARTS = ("limits",)
 
 EPILOG = """\
@@ -26,5 +26,5 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         nargs="*",
         choices=[*PARTS, *LONG_PARTS, []],
         help=f"what to measure: {', '.join(PARTS)} (default: all of these), or "
-        f"{', '.join(LONG_PARTS)}, which takes many minutes",
+        f"{', '.join(LONG_PARTS)}, which takes about five minutes",
     )

@@ -28,8 +28,9 @@ from engine.maps import Certificate, HarmonicMap, Limits, certify_segments
 # Weight of the barrier at the start: over the energy where that is large, and at least.
 FIRST_PER_ENERGY = 0.1
 FIRST_LEAST = 10.0
-# The same from the present map, which stays in its valley.
+# The same from the present map, which stays in its valley, and at least where walls have opened.
 HERE_PER_ENERGY = 1e-2
+OPENED_PER_ENERGY = 0.03
 # The weight falls by this factor when the model expects less than a part of it as a gain: a small
 # part while the weight is above this part of the energy. There the valley is chosen; later, and
 # from the present map, the way is a matter of digits.
@@ -205,7 +206,7 @@ def lowered(search: Search) -> Search:
 
 def opened(search: Search, jet: Jet) -> Search:
     """Return the search with its walls on the next rung."""
-    weight = max(LOWER * search.weight, FIRST_PER_ENERGY * search.energy)
+    weight = max(LOWER * search.weight, OPENED_PER_ENERGY * search.energy)
     wider = replace(search, reach=next_reach(search.inside, search.reach), weight=weight)
     walls = walls_around(wider.room, wider.limits, np.abs(jet.f), np.abs(jet.g))
     return replace(wider, walls=walls)

@@ -11,7 +11,7 @@ from engine.maps import Limits
 
 # The first rung; each next one is this many times as wide.
 FIRST_REACH = 0.35
-WIDER = 2.0
+WIDER = 1.4
 
 
 def opens(limits: Limits) -> bool:
