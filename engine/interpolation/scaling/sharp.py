@@ -25,6 +25,9 @@ from engine.maps import Bounds, HarmonicMap
 SEGMENT_PER_DISTANCE = 0.2
 SEGMENT_PER_SIZE = 1 / 400
 NEGLIGIBLE = 1e-9  # f_z̄ / f_z below which no scaling is needed, whatever the bounds
+EXACT = (
+    NEGLIGIBLE / 10
+)  # to which the worst bounds are known, or a scaling by them could have no room
 CEILING = 2.0  # ratios are cut off there: only those below 1 matter
 PARTS = (
     8  # into which a stretch around a minimum is cut; each round makes it PARTS / 2 times shorter
@@ -286,7 +289,7 @@ class SharpScaling:
             counts=(len(maps), modes[0].shape[1] if modes else 0),
         )
         samples = curves.samples_of(curves.coefficients[0])
-        worst = _worst(curves, samples)
+        worst = _worst(curves)
         if not course.is_straight:
             worst = worst.widened(bounds)
         return cls(
@@ -499,22 +502,32 @@ def _wrapped(rows: Rows, before: int, after: int) -> Rows:
     return np.hstack([rows[:, rows.shape[1] - before :], rows, rows[:, :after]])
 
 
-def _worst(curves: OutlineCurves, samples: PointSamples) -> Worst:
+def _worst(curves: OutlineCurves) -> Worst:
     """Return the extremes of the keyframes along the outline, between the samples too."""
-    count = len(samples.k)
-    segment, place, width = np.arange(count), np.full(count, 0.5), 0.5
+    segments = np.arange(len(curves.following))
+    grid = _around(np.full(len(segments), 0.5), 0.5)
+    found = curves.at(segments, grid)
+    k, sigma_a = (-_least(curves, grid, -getattr(found, of), of, -1) for of in ("k", "sigma_a"))
+    return Worst(k=k, sigma_a=sigma_a, sigma_b=_least(curves, grid, found.sigma_b, "sigma_b", 1))
+
+
+def _least(curves: OutlineCurves, places: Floats, values: Floats, of: str, sign: int) -> float:
+    """Return the least value of a distortion, times a sign, that has these at places (c, s).
+
+    All stretches that may hold it are cut finer: next to a sample there is one on either side.
+    """
+    segments, width, least = np.arange(len(values)), 0.5, float(values.min())
     for _ in range(ROUNDS):
-        places = _around(place, width)
-        found = curves.at(segment, places)
-        worst = [value.argmax() for value in (found.k, found.sigma_a, -found.sigma_b)]
-        rows, columns = np.unravel_index(worst, places.shape)
-        segment, place = segment[rows], places[rows, columns]
+        variation = np.abs(np.diff(values, axis=1)).max(axis=1)
+        kept = np.flatnonzero(values.min(axis=1) - variation < least - EXACT)
+        if not len(kept):
+            break
         width *= 2.0 / PARTS
-    return Worst(
-        k=max(float(found.k.max()), float(samples.k.max())),
-        sigma_a=max(float(found.sigma_a.max()), float(samples.sigma_a.max())),
-        sigma_b=min(float(found.sigma_b.min()), float(samples.sigma_b.min())),
-    )
+        middle = places[kept, values[kept].argmin(axis=1)]
+        segments, places = segments[kept], _around(middle, width)
+        values = sign * getattr(curves.at(segments, places), of)
+        least = min(least, float(values.min()))
+    return least
 
 
 def _around(place: Floats, width: float) -> Floats:

@@ -233,6 +233,18 @@ def test_beside_a_key_the_bounds_are_the_worst_of_the_keyframes(seed):
         assert distortion.sigma_b(frame.fz, frame.fzbar).min() >= sigma_b.min() * (1 - 1e-6)
 
 
+@pytest.mark.parametrize("seed", [4, 42])
+def test_the_worst_bounds_may_lie_on_either_side_of_a_sample(seed):
+    # Looked for on one side alone they were too tight, and ρ below 0 where f_z̄ is small.
+    maps = pair(seed)
+    worst = SharpScaling.of(maps, SHAPE[0], STRAIGHT, Bounds()).worst
+    points = dense_samples(SHAPE, 300)
+    a, b = np.abs(np.array([f.derivatives(points) for f in maps]).swapaxes(0, 1))
+    assert worst.k >= (b / a).max() - 1e-9
+    assert worst.sigma_a >= (a + b).max() - 1e-9
+    assert worst.sigma_b <= (a - b).min() + 1e-9
+
+
 def test_maps_of_very_different_size_keep_their_bounds_beside_the_keys():
     _, cage = SHAPE
     maps = [
