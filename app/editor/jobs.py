@@ -211,6 +211,8 @@ class Jobs:
                     self._finished.append((job.kind, hand_over))
                 lane.running = None
                 self._condition.notify_all()
+            # While the thread waits they would keep alive what they hold, such as a whole drawing.
+            del job, hand_over
 
     def _next(self, lane: LaneName) -> Job | None:
         return next((job for job in self._waiting if job.lane == lane), None)

@@ -43,9 +43,13 @@ def run() -> None:
         begun = time.perf_counter()
         module = importlib.import_module(f"tests.campaigns.{name}")
         for title, figures in module.campaign(arguments.seed, amount):
-            told = ", ".join(f"{label} {value:.4g}" for label, value in figures.items())
+            told = ", ".join(f"{label} {_rounded(value)}" for label, value in figures.items())
             print(f"  {title}: {told}", flush=True)
         print(f"  {(time.perf_counter() - begun) / 60:.1f} minutes", flush=True)
+
+
+def _rounded(value: float) -> str:
+    return f"{value:,.0f}" if abs(value) >= 1000 else f"{value:.4g}"
 
 
 if __name__ == "__main__":

@@ -51,9 +51,9 @@ class Harness:
         self.folder = Path(tempfile.mkdtemp(prefix="lissom-test-"))
         self.session = Session(clock=self.clock, jobs=Jobs(), folder=self.folder)
         self._tests = 0
-        gl = create_context()
-        self._window = Window(self.session, lambda: Renderer(gl))
-        self._screen = Offscreen(self._window, gl, with_test_engine=True)
+        self.gl = create_context()
+        self._window = Window(self.session, lambda: Renderer(self.gl))
+        self._screen = Offscreen(self._window, self.gl, with_test_engine=True)
         self._engine = hello_imgui.get_imgui_test_engine()
         settings = imgui.test_engine.get_io(self._engine)
         settings.config_run_speed = imgui.test_engine.TestRunSpeed.fast

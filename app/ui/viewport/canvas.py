@@ -65,6 +65,13 @@ class Canvas:
         """Where the pictures are."""
         return tuple(self._targets)
 
+    def keep_only(self, project: Project | None) -> bool:
+        """Let go of any other project than this; return whether there was one."""
+        if self._drawing is None or self._drawing.project is project:
+            return False
+        self._forget_drawing()
+        return True
+
     def draw(self, session: Session) -> None:
         """Draw the project of a session as it is shown now."""
         project = session.project
@@ -75,8 +82,7 @@ class Canvas:
         is_split = all(twin is not None and twin.shown is not None for twin in twins)
         is_split &= session.cutting is None
         self._fit_targets(session.screen, 1 + is_split)
-        if self._drawing is None or self._drawing.project is not project:
-            self._forget_drawing()
+        if self._drawing is None:
             self._drawing = _Drawing(self._renderer, project)
         posable = partial(self._drawing.drawn_mesh, project.active, number=SMALL_PICTURE)
         self.pose_pictures.draw(session, project, posable)
@@ -112,6 +118,7 @@ class Canvas:
         if self._drawing is not None:
             self._drawing.release()
             self._drawing = None
+            self._drawn = ()
 
 
 class _Drawing:

@@ -27,6 +27,7 @@ from app.ui.panels import cut_out, deform, distortion, domain, export, handle, l
 from app.ui.timeline import timeline
 from app.ui.viewport import Canvas, SplitTextures, viewport
 from app.ui.window.exporter import Exporter
+from app.ui.window.memory import give_back
 from app.ui.window.modifiers import release_stuck_modifiers
 from app.ui.window.shell import Shell
 from app.ui.window.title import NAME, window_title
@@ -176,6 +177,8 @@ class Window:
         if self._canvas is None or self._renderer is None:
             return
         try:
+            if self._canvas.keep_only(self.session.project):
+                give_back()
             self._canvas.draw(self.session)
         except Exception as error:  # noqa: BLE001 - part of the frame guard
             self._tell_of_drawing(error)

@@ -1,0 +1,58 @@
+"""Minutes of `python -m tests.campaigns --only soak`, by the window's clock: all is given back."""
+
+import weakref
+
+import harness
+import numpy as np
+import pytest
+from held import held
+
+from app.editor.actions import keys, saving
+from app.storage.assets import sample_images
+from tests.campaigns import soak
+
+RATE = 3  # frames a second by the window's clock, so that minutes cost little
+USUAL = (1280, 800)
+
+
+@pytest.fixture
+def slow_window(window, monkeypatch):
+    monkeypatch.setattr(harness, "FRAME", 1 / RATE)
+    monkeypatch.setattr(soak, "RATE", RATE)
+    window.resize(soak.SIZE)
+    yield window
+    window.resize(USUAL)
+
+
+def test_what_is_used_for_minutes_on_end_is_given_back(slow_window, bar, tmp_path):
+    keys.set_variant(slow_window.session, "nu")
+    slow_window.settle()
+
+    def use_in_every_way():
+        # At the same frames each time, around which there are as many ghosts.
+        rng = np.random.default_rng(0)
+        for way in range(soak.WAYS):
+            soak.use(slow_window, rng, tmp_path, way, drags=1)
+        return held(slow_window.gl)
+
+    first, begun, document = use_in_every_way(), slow_window.clock.now, bar.document
+    last = use_in_every_way()
+    assert slow_window.clock.now - begun > 60
+    assert bar.document is document
+    # A texture may wait for the next frame, and a cache may be full a little later.
+    assert last.files <= first.files
+    assert last.threads <= first.threads
+    assert last.opengl <= first.opengl + 2
+    assert last.cached <= first.cached + 2
+
+
+def test_a_project_that_was_closed_is_let_go(slow_window, tmp_path):
+    project = slow_window.open(sample_images() / "bar.png")
+    soak.export(slow_window, tmp_path, "png")
+    history = weakref.ref(project.history)
+    del project
+    opengl = held(slow_window.gl).opengl
+    saving.put_project(slow_window.session, None)
+    slow_window.frames(2)
+    assert history() is None
+    assert held(slow_window.gl).opengl < opengl
