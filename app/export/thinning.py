@@ -19,7 +19,7 @@ _SPACING: Final = 10.0  # pixels between vertices where nothing bends
 _WORTH: Final = 0.5  # of the vertices, above which it is easier to draw all triangles
 # Of the spacing. Points of a lattice lie on common circles, which takes Qhull long to sort out.
 _SHAKE: Final = 1e-5
-_FLAT: Final = 1e-3  # of the spacing's square: triangles between points of one straight edge
+_FLAT: Final = 1e-8  # of the spacing's square: triangles between points of one straight edge
 
 
 class _Sheet(NamedTuple):
@@ -71,6 +71,8 @@ class Thinning:
         self._domain = domain
         self._tolerance = TOLERANCE / scale
         self._spacing = _SPACING / scale
+        # Of an equilateral triangle of the mean size.
+        self._edge = float(np.sqrt(4 / np.sqrt(3) * domain.mesh.areas().mean()))
         self._border = border_edges(domain.mesh.triangles)
         self._kept: Booleans = np.zeros(len(domain.mesh.vertices), dtype=np.bool_)
         self._sheet: _Sheet | None = None
@@ -125,18 +127,22 @@ class Thinning:
     def _keep_more(self, sheet: _Sheet, excess: Singles, *, is_graded: bool) -> None:
         """Keep dropped vertices, by how many times farther off (d,) than is aimed at they are.
 
-        Graded, only one in each smaller square is where that will do: the error of linear
+        Graded, it is one in each square that is as small as it must be: the error of linear
         interpolation falls with the square of the spacing. Else all in the triangles that fail.
         """
         fails = ~(excess <= 1)
         if not is_graded:
             self._kept[sheet.dropped[np.isin(sheet.homes, sheet.homes[fails])]] = True
             return
-        by_half = fails & (excess <= 4)
-        self._kept[sheet.dropped[fails & ~by_half]] = True
-        others = sheet.dropped[by_half]
-        places = self._domain.mesh.vertices[others]
-        self._kept[others[_one_in_each_square(places, self._spacing / 2)]] = True
+        side = self._spacing / 2
+        while side >= 1.5 * self._edge:
+            is_enough = fails & (excess <= (self._spacing / side) ** 2)
+            found = sheet.dropped[is_enough]
+            places = self._domain.mesh.vertices[found]
+            self._kept[found[_one_in_each_square(places, side)]] = True
+            fails &= ~is_enough
+            side /= 2
+        self._kept[sheet.dropped[fails]] = True
 
     def _triangulate(self) -> None:
         """Triangulate the vertices that are kept, unless there are too many."""

@@ -56,11 +56,12 @@ HOLE = Hole(
 )
 
 
+@pytest.mark.parametrize("scale", [0.2, 1.0])
 @pytest.mark.parametrize("holes", [(), (HOLE,)])
-def test_what_does_not_bend_takes_few_triangles_that_cover_the_same(holes):
+def test_what_does_not_bend_takes_few_triangles_that_cover_the_same(holes, scale):
     domain = domain_of(BRACKET, holes=holes)
     mesh = domain.mesh
-    thinning = Thinning(domain, scale=1.0)
+    thinning = Thinning(domain, scale)
     affine = (1.2 - 0.3j) * mesh.vertices + 0.2 * mesh.vertices.conj() + 7
     thinning.prepare([mesh.vertices, affine])
     fewer = thinning.triangles(affine, mesh.triangles)
