@@ -50,6 +50,8 @@ class Handles:
         Length that turns a rotation into a distance: an angle δ costs 2 λ (arm · δ)².
     coordinates, derivatives : complex128, shape (h, n)
         Of the functions of the span, C_j and C_j', at the points.
+    basis_coordinates, basis_derivatives : complex128, shape (h, n)
+        The same of the functions of the boundary's basis.
     hessian : float64, shape (u, u)
         Of the energy of the positions, in the order of `Objective`.
     coincident : tuple of (int, int)
@@ -61,6 +63,8 @@ class Handles:
     arm: float
     coordinates: Complexes
     derivatives: Complexes
+    basis_coordinates: Complexes
+    basis_derivatives: Complexes
     hessian: Floats
     coincident: tuple[tuple[int, int], ...]
 
@@ -93,6 +97,8 @@ class Handles:
         )
         stiffness = _weights(weights, len(points)) * STIFFNESS / boundary.size**2
         coordinates = boundary.span.coordinates(points)
+        derivatives = boundary.span.derivatives(points)
+        of_basis = coordinates @ boundary.basis
         distances = np.abs(points[:, None] - points)
         first, second = np.nonzero(np.triu(distances <= COINCIDENT * boundary.size, 1))
         return cls(
@@ -100,8 +106,10 @@ class Handles:
             stiffness=readonly(stiffness),
             arm=ARM * boundary.size,
             coordinates=readonly(coordinates),
-            derivatives=readonly(boundary.span.derivatives(points)),
-            hessian=readonly(_hessian(boundary, coordinates, stiffness)),
+            derivatives=readonly(derivatives),
+            basis_coordinates=readonly(of_basis),
+            basis_derivatives=readonly(derivatives @ boundary.basis),
+            hessian=readonly(_hessian(boundary, of_basis, stiffness)),
             coincident=tuple(zip(first.tolist(), second.tolist(), strict=True)),
         )
 
@@ -166,9 +174,6 @@ def _hessian(boundary: Boundary, coordinates: Complexes, stiffness: Floats) -> F
     hessian: Floats = rows.T @ rows
     for part in boundary.span.slices[1:]:
         # A constant on the cage of a hole is nothing, and would be free.
-        idle = STIFFNESS / boundary.size**2 / (part.stop - part.start)
         for first in (2 * part.start, 2 * (part.start + len(boundary.span) - 1)):
-            for column in (first, first + 1):
-                own = slice(column, column + 2 * (part.stop - part.start), 2)
-                hessian[own, own] += idle
+            hessian[[first, first + 1], [first, first + 1]] += STIFFNESS
     return hessian

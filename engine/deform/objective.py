@@ -1,23 +1,26 @@
 """What a step of a drag minimises: energy, barrier and handles, with gradient and Hessian.
 
-The unknowns are φ and ψ without ψ_0 (the gauge: (φ + c, ψ − conj(c)) is the same map). As a real
-vector they are the real and imaginary parts, alternating, of the conjugates of φ and ψ_1, ψ_2, …;
-with that order Re Σ P_j φ_j is the plain product with the parts of a complex row P, and matrices
-need no rearrangement.
+The unknowns are φ and ψ in the boundary's basis, whose derivatives are orthonormal: the Hessian is
+then well conditioned but for handles and walls, and half the digits do for its sketches. Without
+ψ_0, a constant (the gauge: (φ + c, ψ − conj(c)) is the same map). As a real vector they are the
+real and imaginary parts, alternating, of the conjugates of φ and ψ_1, ψ_2, …; with that order
+Re Σ P_j φ_j is the plain product with the parts of a complex row P, and matrices need no
+rearrangement.
 
-Around q holes the last q entries of φ are the logarithms' a_j, and those of ψ their conjugates: ψ's
-are no unknowns, and what they contribute is folded onto φ's. Constants on the cage of a hole, which
-change no map, have a stiffness of their own (`Handles`), and steps never change them. In all there
-are u = 4 n − 2 − 2 q real unknowns for the n functions of the span.
+Around q holes the last q entries of φ are the logarithms' a_j, scaled, and those of ψ their
+conjugates: ψ's are no unknowns, and what they contribute is folded onto φ's. Constants on the cage
+of a hole, which change no map, have a stiffness of their own (`Handles`), and steps never change
+them. In all there are u = 4 n − 2 − 2 q real unknowns for the n functions of the span.
 """
 
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
+import numpy.typing as npt
 
 from engine.arrays import Booleans, Complexes, Floats, Indices
 from engine.deform.barrier import Barrier
@@ -25,13 +28,18 @@ from engine.deform.energy import Radial, symmetric_dirichlet, symmetric_dirichle
 from engine.deform.handles import Handles, Wish
 from engine.maps import Boundary
 
+# In single or double precision.
+Reals = npt.NDArray[np.float32] | npt.NDArray[np.float64]
+
 # A sketched Hessian takes one sample in so many, with the coefficients of its neighbours summed, as
 # long as that leaves this many for each cage vertex. Samples with coefficients this far above the
 # median (near a bound) enter one by one; of many the stiffest, this part of the number of the calm.
 SAMPLES_PER_VERTEX = 2
 STIFF = 3.0
 STIFF_PER_CALM = 0.75
-# Stiffness of a step against turning the whole shape by an angle; handles have some 1e3.
+# Samples this far above the median keep all their digits in a sketch, too.
+HARD = 1e3
+# Stiffness of a step against turning the whole shape by an angle, over that against stretching it.
 DAMPING = 1e-4
 
 
@@ -60,11 +68,21 @@ class _Quadrature(NamedTuple):
     """Samples (s,), and what they contribute to the Hessian (6, s).
 
     The entries are, in the frames of f and g, radial and tangential of f, the same of g, between
-    both radials, and what the projection removes from the tangential of f.
+    both radials, and what the projection removes from the tangential of f. The last `hard` samples
+    are so stiff that single precision would lose the others beside them.
     """
 
     samples: Indices
     entries: Floats
+    hard: int = 0
+
+    def split(self) -> tuple["_Quadrature", "_Quadrature"]:
+        """Return those that are not hard, and those that are."""
+        calm = len(self.samples) - self.hard
+        return (
+            _Quadrature(self.samples[:calm], self.entries[:, :calm]),
+            _Quadrature(self.samples[calm:], self.entries[:, calm:]),
+        )
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -93,14 +111,21 @@ class Objective:
     def _turning(self) -> Booleans:
         return np.isfinite(self.wish.rotations)
 
+    def coefficients(self, unknowns: Floats) -> tuple[Complexes, Complexes]:
+        """Return the columns (n,) of coefficients of φ and ψ that unknowns (u,) stand for."""
+        n, count = len(self.boundary.span), len(self.boundary.holes)
+        conjugates = np.ascontiguousarray(unknowns).view(np.complex128).conj()
+        of_phi = conjugates[:n]
+        of_psi = np.concatenate([[0.0], conjugates[n:], of_phi[n - count :].conj()])
+        return self.boundary.basis @ of_phi, self.boundary.basis @ of_psi
+
     def jet(self, phi: Complexes, psi: Complexes) -> Jet:
         """Measure a map, or a change of a map, by the columns (n,) of its coefficients."""
         span, coordinates = self.boundary.span, self.handles.coordinates
-        phi_alone, psi_alone = span.without_constant(phi), span.without_constant(psi)
-        values = self.boundary.derivatives @ np.column_stack([phi_alone, psi_alone])
+        rows, phi_alone = self.boundary.derivatives, span.without_constant(phi)
         return Jet(
-            f=np.ascontiguousarray(values[:, 0]),
-            g=np.ascontiguousarray(values[:, 1]),
+            f=rows @ phi_alone,
+            g=rows @ span.without_constant(psi),
             positions=coordinates @ phi + (coordinates @ psi).conj(),
             fz=self.handles.derivatives @ phi_alone,
         )
@@ -142,8 +167,8 @@ class Objective:
     def gradient(self, jet: Jet, radial: Radial) -> Floats:
         """Return the gradient (u,)."""
         pull = 2.0 * self.handles.stiffness * (jet.positions - self.wish.positions)
-        by_phi = pull.conj() @ self.handles.coordinates
-        by_psi = pull @ self.handles.coordinates
+        by_phi = pull.conj() @ self.handles.basis_coordinates
+        by_psi = pull @ self.handles.basis_coordinates
         if self._turning.any():
             # d arg F = Im(dF / F) = Re(−i dF / F).
             angle = 2.0 * self._turning_stiffness * self._turning_angles(jet)
@@ -165,7 +190,7 @@ class Objective:
         samples : Indices or slice
             Which samples contribute, by default all.
         """
-        rows, f, g = self.boundary.derivatives[samples], jet.f[samples], jet.g[samples]
+        rows, f, g = self.boundary.basis_derivatives[samples], jet.f[samples], jet.g[samples]
         by_phi = (by_a[samples] * f.conj() / np.abs(f)) @ rows
         by_psi = (b_per_b[samples] * g.conj()) @ rows
         return self._by_unknowns(by_phi, by_psi)
@@ -185,11 +210,15 @@ class Objective:
         In the frames F / |F|, G / |G| of each sample the exact Hessian has the radial block
         [[h_aa, h_ab], [h_ab, h_bb]] and the tangential entries h_a / a, h_b / b, of which only
         h_a / a can be negative: max(h_a / a, 0) is the exact projection. The sum over the samples
-        is a quadrature, coarser than that of energy and gradient. Cost: 24 s n² for s samples.
+        is a quadrature, coarser than that of energy and gradient. Cost: 24 s n² for s samples; in
+        a sketch in single precision but for the hard ones.
         """
         hessian = self.handles.hessian.copy()
-        rows = [*self._turning_roots(jet), self._damping_root(jet)]
-        self._add(hessian, jet, self._quadrature(radial), rows)
+        calm, hard = self._quadrature(radial).split()
+        rows = [*self._turning_roots(jet), self._damping_root(jet, calm)]
+        self._add(hessian, jet, calm, rows, single=self.stride > 1)
+        if len(hard.samples):
+            self._add(hessian, jet, hard)
         return hessian
 
     def stiffening(self, jet: Jet, radial: Radial, samples: Indices) -> Floats:
@@ -200,29 +229,37 @@ class Objective:
         return hessian
 
     def _add(
-        self, hessian: Floats, jet: Jet, quadrature: "_Quadrature", more: Sequence[Complexes] = ()
+        self,
+        hessian: Floats,
+        jet: Jet,
+        quadrature: "_Quadrature",
+        more: Sequence[Complexes] = (),
+        *,
+        single: bool = False,
     ) -> None:
-        """Add samples, and further rows of φ, to a Hessian."""
+        """Add samples, and further rows of φ, to a Hessian; on request in single precision."""
         n, u = len(self.boundary.span), len(hessian)
-        by_phi, by_psi, cross = self._roots(jet, quadrature, more)
-        of_psi: Floats = by_psi.T @ by_psi
-        mixed: Floats = by_phi[: len(cross)].T @ (cross[:, None] * by_psi[: len(cross)])
-        hessian[: 2 * n, : 2 * n] += by_phi.T @ by_phi
+        by_phi, by_psi, cross = self._roots(jet, quadrature, more, single=single)
+        of_phi, of_psi = by_phi.T @ by_phi, by_psi.T @ by_psi
+        across = by_psi[: len(cross)]
+        across *= cross[:, None]
+        mixed = by_phi[: len(cross)].T @ across
+        hessian[: 2 * n, : 2 * n] += of_phi
         hessian[2 * n :, 2 * n :] += of_psi[: u - 2 * n, : u - 2 * n]
         hessian[: 2 * n, 2 * n :] += mixed[:, : u - 2 * n]
         if self.boundary.holes:
             self._fold_logarithms(hessian, mixed, of_psi)
 
-    def _fold_logarithms(self, hessian: Floats, mixed: Floats, of_psi: Floats) -> None:
+    def _fold_logarithms(self, hessian: Floats, mixed: Reals, of_psi: Reals) -> None:
         """Add what ψ's logarithms, the conjugates of φ's, contribute to a Hessian (u, u).
 
         Parameters
         ----------
         hessian : float64, shape (u, u)
             Its upper triangle is changed.
-        mixed : float64, shape (2n, 2n − 2)
+        mixed : float32 or float64, shape (2n, 2n − 2)
             Between the parts of φ and those of ψ_1, ψ_2, …
-        of_psi : float64, shape (2n − 2, 2n − 2)
+        of_psi : float32 or float64, shape (2n − 2, 2n − 2)
         """
         count = 2 * len(self.boundary.holes)
         sign = np.tile([1.0, -1.0], count // 2)  # a conjugate has the other imaginary part
@@ -237,40 +274,47 @@ class Objective:
 
         `hessian` minus this is the exact Hessian; it need not be positive.
         """
-        samples, entries = self._quadrature(radial)
+        samples, entries, _ = self._quadrature(radial)
         bent = entries[-1] > 0
         f = jet.f[samples[bent]]
         roots = -1j * np.sqrt(entries[-1][bent]) * f.conj() / np.abs(f)
-        rows = self.boundary.derivatives[samples[bent]] * roots[:, None]
+        rows = self.boundary.basis_derivatives[samples[bent]] * roots[:, None]
         turning = self._turning_roots(jet, removed=True)
         by_phi = np.concatenate([rows, *turning]).view(np.float64)
         removed: Floats = by_phi.T @ by_phi
         return removed
 
     def _roots(
-        self, jet: Jet, quadrature: "_Quadrature", more: Sequence[Complexes]
-    ) -> tuple[Floats, Floats, Floats]:
+        self, jet: Jet, quadrature: "_Quadrature", more: Sequence[Complexes], *, single: bool
+    ) -> tuple[Reals, Reals, Reals]:
         """Return rows of φ and of ψ whose Gram matrices are their blocks of the Hessian.
 
         Further rows of φ come last. The first s rows of each are the radial ones, of the s samples:
         the third array (s,) weighs their products between φ and ψ.
         """
-        samples, entries = quadrature
-        rows = self.boundary.derivatives[samples]
+        samples, entries, _ = quadrature
+        kind = np.complex64 if single else np.complex128
+        rows = self.boundary.basis_derivatives[samples].astype(kind, copy=False)
         f, g = jet.f[samples], jet.g[samples]
         b = np.abs(g)
         frame_f = f.conj() / np.abs(f)
         frame_g = np.where(b > 0, g.conj(), 1.0) / np.where(b > 0, b, 1.0)
         root_f, around_f, root_g, around_g = np.sqrt(entries[:4])
-        by_phi = [root_f * frame_f, -1j * around_f * frame_f]
-        by_psi = [root_g * frame_g, -1j * around_g * frame_g]
+        count, n = rows.shape
+        by_phi = np.empty((2 * count + sum(map(len, more)), n), kind)
+        by_psi = np.empty((2 * count, n - 1), kind)
+        for place, part in enumerate((root_f * frame_f, -1j * around_f * frame_f)):
+            own = by_phi[place * count : (place + 1) * count]
+            np.multiply(rows, part.astype(kind)[:, None], out=own)
+        for place, part in enumerate((root_g * frame_g, -1j * around_g * frame_g)):
+            own = by_psi[place * count : (place + 1) * count]
+            np.multiply(rows[:, 1:], part.astype(kind)[:, None], out=own)
+        if more:
+            np.concatenate(more, out=by_phi[2 * count :], casting="same_kind")
         both = root_f * root_g
         cross = entries[4] / np.where(both > 0, both, 1.0)
-        return (
-            np.concatenate([*(rows * part[:, None] for part in by_phi), *more]).view(np.float64),
-            np.concatenate([rows[:, 1:] * part[:, None] for part in by_psi]).view(np.float64),
-            cross,
-        )
+        real: np.dtype[Any] = np.dtype(np.float32 if single else np.float64)
+        return by_phi.view(real), by_psi.view(real), cross.astype(real, copy=False)
 
     def _quadrature(self, radial: Radial) -> "_Quadrature":
         """Return the samples that enter the Hessian.
@@ -279,45 +323,42 @@ class Objective:
         """
         entries = _entries(radial)
         m, n = len(self.boundary.points), len(self.boundary.span)
-        own = np.flatnonzero(self.boundary.weights)
-        loops = list(pairwise(np.searchsorted(own, [*self.boundary.starts, m])))
-        # A small hole may have no more samples than its cage needs.
-        strides = [
-            max(min(self.stride, (end - start) // (SAMPLES_PER_VERTEX * len(cage))), 1)
-            for (start, end), cage in zip(loops, self.boundary.span.cages, strict=True)
-        ]
-        first = [
-            np.arange(start, end, stride)
-            for (start, end), stride in zip(loops, strides, strict=True)
-        ]
-        middles = own[
-            np.concatenate(
-                [
-                    np.minimum(places + stride // 2, end - 1)
-                    for places, stride, (_, end) in zip(first, strides, loops, strict=True)
-                ]
-            )
-        ]
+        own, loops = self.boundary.own_samples
+        first, middles, sketched = [], [], False
+        for (start, end), cage in zip(pairwise(loops), self.boundary.span.cages, strict=True):
+            # A small hole may have no more samples than its cage needs.
+            enough = (end - start) // (SAMPLES_PER_VERTEX * len(cage))
+            stride = max(min(self.stride, enough), 1)
+            places = np.arange(start, end, stride)
+            first.append(places)
+            middles.append(np.minimum(places + stride // 2, end - 1))
+            sketched |= stride > 1
         density = (radial.aa + radial.bb) / self.boundary.shares
-        least = STIFF * float(np.median(density))
-        if max(strides) > 1:
-            most = max(n, int(STIFF_PER_CALM * m / self.stride))
-            least = max(least, float(np.partition(density, -most)[-most]))
-        stiff = density > least
-        summed = np.add.reduceat(np.where(stiff, 0.0, entries), own[np.concatenate(first)], axis=1)
+        stiffest = max(n, int(STIFF_PER_CALM * m / self.stride)) if sketched else 1
+        ordered = np.partition(density, sorted({m // 2, m - stiffest}))
+        median = float(ordered[m // 2])
+        least = max(STIFF * median, float(ordered[m - stiffest])) if sketched else STIFF * median
+        stiff = np.flatnonzero(density > least)
+        hard = density[stiff] > HARD * median
+        stiff = np.concatenate([stiff[~hard], stiff[hard]])
+        alone = entries[:, stiff]
+        entries[:, stiff] = 0.0
+        summed = np.add.reduceat(entries, own[np.concatenate(first)], axis=1)
         some = summed[0] > 0
         return _Quadrature(
-            np.concatenate([middles[some], np.flatnonzero(stiff)]),
-            np.hstack([summed[:, some], entries[:, stiff]]),
+            np.concatenate([own[np.concatenate(middles)[some]], stiff]),
+            np.hstack([summed[:, some], alone]),
+            int(np.count_nonzero(hard)),
         )
 
-    def _damping_root(self, jet: Jet) -> Complexes:
+    def _damping_root(self, jet: Jet, calm: "_Quadrature") -> Complexes:
         """Return the row of a tiny stiffness against turning as a whole.
 
         One handle leaves the rotation of the shape free; rounding alone would then turn it.
         """
-        per_sample = -1j * np.sqrt(DAMPING) * self.boundary.weights / jet.f
-        row: Complexes = per_sample[None, :] @ self.boundary.derivatives
+        stiffness = DAMPING * calm.entries[0].sum()
+        per_sample = -1j * np.sqrt(stiffness) * self.boundary.weights / jet.f
+        row: Complexes = per_sample[None, :] @ self.boundary.basis_derivatives
         return row
 
     @cached_property
@@ -326,7 +367,7 @@ class Objective:
 
     @cached_property
     def _turning_rows(self) -> Complexes:
-        return self.handles.derivatives[self._turning]
+        return self.handles.basis_derivatives[self._turning]
 
     def _turning_angles(self, jet: Jet) -> Floats:
         wished = np.exp(-1j * self.wish.rotations[self._turning])

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Self
 
 import numpy as np
@@ -25,7 +26,7 @@ SEGMENT_PER_DISTANCE = 0.5
 SEGMENT_PER_SIZE = 1 / 200
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+@dataclass(frozen=True, kw_only=True, eq=False)
 class Boundary:
     """The boundary of a domain, sampled as densely as the derivatives of maps ask for.
 
@@ -58,6 +59,10 @@ class Boundary:
         segment.
     vertex_coordinates : complex128, shape (p, n)
         The functions themselves at the vertices of all loops.
+    basis : complex128, shape (n, n)
+        The coefficients, one function a column, of `Span.orthonormal_basis` on the own samples.
+    basis_derivatives : complex128, shape (m, n)
+        Of the functions of the basis.
     """
 
     outline: Complexes
@@ -71,6 +76,8 @@ class Boundary:
     derivatives: Complexes
     bending_kernel: Floats
     vertex_coordinates: Complexes
+    basis: Complexes
+    basis_derivatives: Complexes
 
     @classmethod
     def sample(cls, outline: Complexes, cage: Complexes, holes: Sequence[Hole] = ()) -> Self:
@@ -111,6 +118,8 @@ class Boundary:
         ends = points[next_on_loop(starts, len(points))]
         half = np.abs(ends - points) / 2
         lengths = readonly(_arc_lengths(half, starts))
+        derivatives = readonly(span.derivatives(points))
+        basis = readonly(span.orthonormal_basis(derivatives, lengths, size))
         return cls(
             outline=outline,
             span=span,
@@ -120,9 +129,11 @@ class Boundary:
             weights=lengths,
             shares=lengths,
             half_lengths=readonly(half),
-            derivatives=readonly(span.derivatives(points)),
+            derivatives=derivatives,
             bending_kernel=readonly(span.bending_kernel(points, ends)),
             vertex_coordinates=readonly(span.coordinates(np.concatenate(loops))),
+            basis=basis,
+            basis_derivatives=readonly(derivatives @ basis),
         )
 
     @property
@@ -140,15 +151,24 @@ class Boundary:
         """The polygons of the boundary: the outline, then those of the holes."""
         return (self.outline, *(hole.outline for hole in self.holes))
 
-    @property
+    @cached_property
     def following(self) -> Indices:
         """The sample at which each segment ends, intp (m,)."""
-        return next_on_loop(self.starts, len(self.points))
+        return readonly(next_on_loop(self.starts, len(self.points)))
+
+    @cached_property
+    def own_samples(self) -> tuple[Indices, list[int]]:
+        """The samples that were not added, and where those of each loop begin and end in them."""
+        own = np.flatnonzero(self.weights)
+        return own, np.searchsorted(own, [*self.starts, len(self.points)]).tolist()
 
     @property
     def nbytes(self) -> int:
         """Memory that the arrays take, in bytes."""
-        arrays = (self.points, self.derivatives, self.bending_kernel, self.vertex_coordinates)
+        arrays = (
+            *(self.points, self.derivatives, self.bending_kernel, self.vertex_coordinates),
+            *(self.basis, self.basis_derivatives),
+        )
         return sum(array.nbytes for array in arrays)
 
     def refined(self, segments: Indices) -> Self:
@@ -182,6 +202,9 @@ class Boundary:
             half_lengths=readonly(half),
             derivatives=readonly(np.insert(self.derivatives, segments + 1, rows, axis=0)),
             bending_kernel=readonly(kernel),
+            basis_derivatives=readonly(
+                np.insert(self.basis_derivatives, segments + 1, rows @ self.basis, axis=0)
+            ),
         )
 
 

@@ -14,6 +14,7 @@ ln|z − c_j| for values, and 1 / (z − c_j) for derivatives, have a_j and conj
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.linalg import solve_triangular
 
 from engine.arrays import Complexes, Floats
 from engine.geometry import Hole, distance_to_segments
@@ -23,6 +24,9 @@ from engine.maps.cauchy import (
     difference_jumps,
     evaluate,
 )
+
+# What is this small, of the mean square of the derivatives, cannot be told from nothing.
+DEGENERATE = 1e-10
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -128,6 +132,43 @@ class Span:
             sum((parts[place] for parts in by_cage), start=of_logs[order] @ logs)
             for place, order in enumerate(orders)
         ]
+
+    def orthonormal_basis(self, derivatives: Complexes, weights: Floats, size: float) -> Complexes:
+        """Return combinations of the functions whose derivatives are orthonormal at samples.
+
+        Around holes only nearly so: logarithms are scaled, each by itself, and other cages' columns
+        stay what they are there, free of constants. The first column of each cage is a constant.
+
+        Parameters
+        ----------
+        derivatives : complex128, shape (m, n)
+            Of the functions, at the samples.
+        weights : float64, shape (m,)
+        size : float
+            The constants.
+
+        Returns
+        -------
+        complex128, shape (n, n)
+            One combination a column. Functions that are one and the same at the samples become
+            small ones.
+        """
+        basis = np.zeros((len(self), len(self)), dtype=np.complex128)
+        constants = [part.start for part in self.slices]
+        others = np.setdiff1d(np.arange(len(self) - len(self.holes)), constants)
+        rows = np.sqrt(weights)[:, None] * derivatives
+        gram = rows[:, others].conj().T @ rows[:, others]
+        gram += DEGENERATE * gram.diagonal().real.mean() * np.eye(len(others))
+        basis[np.ix_(others, others)] = (
+            solve_triangular(np.linalg.cholesky(gram), np.eye(len(others)), lower=True).conj().T
+        )
+        for part in self.slices[1:]:
+            basis[part] -= basis[part].mean(axis=0)
+        for part in self.slices:
+            basis[part, part.start] = size
+        logs = np.arange(len(self) - len(self.holes), len(self))
+        basis[logs, logs] = 1.0 / np.linalg.norm(rows[:, logs], axis=0)
+        return basis
 
     def bending(self, coefficients: Complexes) -> Floats:
         """Return by how much each singularity bends combinations (n, q) of the functions, (n, q).

@@ -288,3 +288,31 @@ def test_bad_holes_are_refused(change, message):
     hole = replace(round_hole(0, 0.5, 36), **change)
     with pytest.raises(EngineError, match=message):
         Boundary.sample(ring().outline, ring().cage, [hole])
+
+
+@pytest.mark.parametrize("shape", SHAPES, ids=NAMES)
+def test_the_basis_spans_all_and_is_orthonormal_but_for_holes(shape):
+    boundary = Boundary.sample(shape.outline, shape.cage, shape.holes)
+    basis, outer = boundary.basis, len(shape.cage)
+    # Logarithms are scaled, and mixed with nothing: ψ's are the conjugates of φ's.
+    count = len(shape.holes)
+    logs = basis[-count:]
+    assert_array_equal(logs[:, :-count], 0)
+    assert_array_equal(logs[:, -count:], np.diag(logs[:, -count:].diagonal().real))
+    # Constants are columns of their own, and no other one has any in a hole.
+    for part in boundary.span.slices:
+        constant = np.zeros(len(basis))
+        constant[part] = boundary.size
+        assert_array_equal(basis[:, part.start], constant)
+    for part in boundary.span.slices[1:]:
+        sums = np.delete(basis[part], part.start, axis=1).sum(axis=0)
+        assert_allclose(sums, 0, atol=1e-9 * boundary.size)
+    rows = np.sqrt(boundary.weights)[:, None] * boundary.basis_derivatives
+    assert_allclose(boundary.basis_derivatives, boundary.derivatives @ basis, atol=1e-9)
+    gram = np.delete(rows.conj().T @ rows, [part.start for part in boundary.span.slices], 0)
+    gram = np.delete(gram, [part.start for part in boundary.span.slices], 1)
+    assert_allclose(gram[: outer - 1, : outer - 1], np.eye(outer - 1), atol=1e-3)
+    assert_allclose(gram.diagonal()[-count:], 1, rtol=1e-12)
+    # A refined boundary keeps it.
+    finer = boundary.refined(np.array([3, 17]))
+    assert_allclose(finer.basis_derivatives, finer.derivatives @ basis, atol=1e-9)
