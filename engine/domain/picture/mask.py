@@ -205,7 +205,14 @@ def _without_colour(
 
 
 def _without_transparency(present: Booleans, visible: Booleans) -> tuple[Booleans, tuple[str, ...]]:
-    """Return all that is not fully transparent; a wide and nearly invisible haze is left out."""
+    """Return all that is not fully transparent; a wide and nearly invisible haze is left out.
+
+    So are nearly invisible islands: what scaling by a sharp filter leaves around edges.
+    """
+    labels, count = ndimage.label(present, np.ones((3, 3)))
+    seen = np.zeros(count + 1, dtype=np.bool_)
+    seen[labels[visible]] = True
+    present = seen[labels]
     faint = int(np.count_nonzero(present) - np.count_nonzero(visible))
     if np.count_nonzero(present) <= FAINT_GROWTH * np.count_nonzero(visible):
         return present, ()

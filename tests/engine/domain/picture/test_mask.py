@@ -28,6 +28,19 @@ def test_the_subject_is_what_is_not_transparent() -> None:
     assert not subject.mask.flags.writeable
 
 
+def test_nearly_invisible_islands_are_left_out_and_edges_are_not() -> None:
+    rgba = pictures.star(5)
+    rgba[..., 3][:2, :2] = 3  # an island
+    rows, columns = np.nonzero(rgba[..., 3] == 255)
+    at = columns[0]
+    rgba[: rows[0], at, 3] = 0
+    rgba[rows[0] - 1, at, 3] = 5  # beside the star
+    subject = subject_mask(rgba)
+    assert subject.notices == ()
+    assert not subject.mask[:2, :2].any()
+    assert subject.mask[rows[0] - 1, at]
+
+
 def test_a_wide_nearly_invisible_haze_is_left_out() -> None:
     rgba = pictures.blob(100)
     rgba[10:90, 10:90, 3] = np.maximum(rgba[10:90, 10:90, 3], 3)
