@@ -37,6 +37,14 @@ EXTENTS = 32  # of the motion, which are remembered for undo and redo
 FIT_MARGIN = 0.08  # of the viewport, left free around what is fitted into it
 
 
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Trial:
+    """A pose that was let go, and the motion with its in-betweens as far as they are prepared."""
+
+    pose: Pose
+    motion: Motion
+
+
 @dataclass(slots=True, kw_only=True, eq=False)
 class PoseInProgress:
     """A pose that the solver is on its way to.
@@ -60,6 +68,15 @@ class PoseInProgress:
     found : Pose, optional
         Where the solver is with a pose that the playhead has left: the document has it as soon as
         its in-betweens are ready, so that what is shown stays exact.
+    trial : Trial, optional
+        What the worker is at, once the pose was let go.
+    is_left : bool
+        Whether the playhead has left it, and the document was seen to.
+    taken : Pose, optional
+        What the document has of it since.
+    prepared : Pose, optional
+        The newest one whose in-betweens are all there, while the pose that was let go is shown: the
+        playhead that leaves it finds them.
     """
 
     frame: int
@@ -70,6 +87,10 @@ class PoseInProgress:
     is_held: bool = True
     steps: int = 0
     found: Pose | None = None
+    trial: Trial | None = None
+    is_left: bool = False
+    taken: Pose | None = None
+    prepared: Pose | None = None
 
     @property
     def is_at_rest(self) -> bool:

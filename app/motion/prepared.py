@@ -129,6 +129,7 @@ def prepare_motion(
     sibling: PoseSampler | None = None,
     *,
     at_most: int | None = None,
+    frame: float = 0,
 ) -> Motion:
     """Return the motion of a clip with its in-betweens; on the worker thread.
 
@@ -141,15 +142,17 @@ def prepare_motion(
         What it knows of the same outline and cage is used again.
     at_most : int, optional
         How many intervals to prepare; the others stay as they are. By default all.
+    frame : float
+        Those nearest to it are prepared first.
     """
     sampler, known = earlier.sampler, earlier.ready
     if clip.figure.anchor != earlier.clip.figure.anchor:
         sampler, sibling, known = None, earlier.sampler or sibling, {}
     ready: dict[Pair, PreparedInterval] = {}
     made = 0
-    figure = clip.figure
-    for interval, transit in enumerate(transits(clip)):
-        pair = pair_of(clip, interval)
+    figure, every = clip.figure, transits(clip)
+    for interval in by_nearness(clip, frame):
+        transit, pair = every[interval], pair_of(clip, interval)
         if pair in ready:
             # The same poses again: copied keys, or a loop that goes to and fro.
             continue
@@ -172,6 +175,12 @@ def prepare_motion(
     if sampler is not None:
         sampler.keep_only([pose for prepared in ready.values() for pose in prepared.poses])
     return Motion(mesh=earlier.mesh, clip=clip, sampler=sampler, ready=MappingProxyType(ready))
+
+
+def by_nearness(clip: Clip, frame: float) -> list[int]:
+    """Return the numbers of a clip's intervals, that at the frame first."""
+    current = time_of(clip, frame).interval
+    return sorted(range(len(intervals(clip))), key=lambda i: (abs(i - current), i < current))
 
 
 def pair_of(clip: Clip, interval: int) -> Pair:

@@ -5,10 +5,10 @@ from dataclasses import replace
 from functools import partial
 from types import MappingProxyType
 
-from app.document import Clip, intervals, time_of
+from app.document import Clip
 from app.motion.compared import RememberedFrames
 from app.motion.posable_mesh import PosableMesh
-from app.motion.prepared import Motion, Pair, PreparedInterval, pair_of
+from app.motion.prepared import Motion, Pair, PreparedInterval, by_nearness, pair_of
 from engine.streaming import Channels, Distortions, Positions, Series, build_series
 
 BUDGET = 2**30  # bytes of the series of one figure
@@ -141,9 +141,7 @@ def _expected(motion: Motion, *, distortions: bool) -> int:
 
 def _by_nearness(clip: Clip, frame: int) -> list[Pair]:
     """Return the clip's intervals, the one at the frame first; each once."""
-    current = time_of(clip, frame).interval
-    order = sorted(range(len(intervals(clip))), key=lambda i: (abs(i - current), i < current))
-    return list(dict.fromkeys(pair_of(clip, interval) for interval in order))
+    return list(dict.fromkeys(pair_of(clip, interval) for interval in by_nearness(clip, frame)))
 
 
 def _steps(channels: Callable[[], Channels]) -> Generator[None, None, Series]:

@@ -32,7 +32,7 @@ class Shown:
     placement : Placement
         Where the figure is in the scene; all else is where it is by itself.
     is_current : bool
-        Whether it shows what it should, and not an earlier or a rough one while that is being
+        Whether it shows what it should, and not an earlier one or a key while that is being
         prepared.
     """
 
@@ -88,6 +88,9 @@ def show(
 ) -> Shown:
     """Return what to draw; the earlier one itself if nothing changed.
 
+    Until an in-between is prepared, the nearer one of its two keys stands in: exact, and never the
+    pose of another key.
+
     Parameters
     ----------
     clip : Clip
@@ -97,8 +100,7 @@ def show(
     motions : tuple of Motion
         Where to look for it, the preferred one first; at least one.
     earlier : Shown, optional
-        What was drawn before. Where nothing is prepared yet, the two keys are blended roughly, so
-        that what is shown is never the pose of another key.
+        What was drawn before.
     """
     if pose is None:
         pose = resting_pose(clip, time_of(clip, frame))
@@ -126,11 +128,11 @@ def show(
                 handles=handles,
                 is_current=True,
             )
-    return _show_roughly(clip, frame, motions[-1].mesh, earlier)
+    return _stand_in(clip, frame, motions[-1].mesh, earlier)
 
 
-def _show_roughly(clip: Clip, frame: int, mesh: PosableMesh, earlier: Shown | None) -> Shown:
-    """Return what to draw where nothing is prepared: the two keys, blended roughly.
+def _stand_in(clip: Clip, frame: int, mesh: PosableMesh, earlier: Shown | None) -> Shown:
+    """Return what to draw until the in-between is prepared: the nearer one of its two keys.
 
     What was drawn of another domain stays meanwhile.
     """
@@ -143,36 +145,20 @@ def _show_roughly(clip: Clip, frame: int, mesh: PosableMesh, earlier: Shown | No
         mesh = mesh if mesh.source is domain else earlier.mesh
     if mesh.source is not domain:
         raise ValueError("none of the motions is of the figure's domain")
+    moment = time_of(clip, frame)
+    near = clip.keys[intervals(clip)[moment.interval][moment.weight > 0.5]].pose
     return Shown(
         clip=clip,
         frame=frame,
         pose=None,
         mesh=mesh,
         vertices=Placed(
-            positions=_between_keys(clip, frame, mesh),
+            positions=mesh.posed(near),
             triangles=painted_triangles(mesh.domain.mesh, clip, frame),
         ),
         handles=_locate(clip, mesh, earlier),
         is_current=False,
     )
-
-
-def _between_keys(clip: Clip, frame: int, mesh: PosableMesh) -> Complexes:
-    """Return roughly where the vertices are between two keys, at once: (v,).
-
-    The similarity that is nearest to the way from key to key is run through evenly, and what it
-    leaves is blended.
-    """
-    moment = time_of(clip, frame)
-    first, last = intervals(clip)[moment.interval]
-    start, end = (mesh.posed(clip.keys[index].pose) for index in (first, last))
-    middle, goal = start.mean(), end.mean()
-    spokes, turned = start - middle, end - goal
-    factor = complex(np.vdot(spokes, turned) / np.vdot(spokes, spokes)) or 1.0
-    rest = turned / factor - spokes
-    blended = factor**moment.weight * (spokes + moment.weight * rest)
-    places: Complexes = middle + moment.weight * (goal - middle) + blended
-    return places
 
 
 def hang_shown(

@@ -31,6 +31,8 @@ SAMPLE, PICTURE = "giraffe.lissom", "dragon.png"
 TABS = ("Handle", "Deform", "Distortion", "Mesh", "Export")
 REFRESH = 1 / 60  # seconds from frame to frame of a screen
 REACH = 40.0  # pixels around a handle in which it is dragged, unless told
+HARD = 6.0  # how much farther a hard pull goes
+LATER = 20  # pictures that are shown while a hand goes from a handle to the timeline
 PATIENCE = 120.0  # seconds that anything may take
 
 
@@ -416,37 +418,43 @@ def _release(stage: Driver, extent: Extent) -> Table:
 
 
 def _playhead(stage: Driver, extent: Extent) -> Table:
-    """Measure from moving the playhead, as soon as a handle is let go, to the exact in-between."""
-    project = stage.project
-    times, rough = [], []
-    for number in range(extent.repeats):
-        drag = _Drag(stage, extent.reach)
-        for move in range(10):
-            drag.move(20 * number + move)
-            stage.refresh()
-        drag.let_go()
-        stage.refresh()
-        first, second, *_ = project.figure.keys
-        between = (first.frame + second.frame) // 2 + number
-        moved = time.perf_counter()
-        stage.ask(playback.scrub, between)
-        rough.append(0)
-        while not _shows(project, between, exactly=True):
-            stage.refresh()
-            rough[-1] += _shows(project, between)
-        times.append(time.perf_counter() - moved)
-        stage.settle()
+    """Measure from moving the playhead, once a handle is let go, to the exact in-between."""
+    rows = []
+    for pulled, reach in (("", extent.reach), (", a hard pull", HARD * extent.reach)):
+        for later, wait in (("at once", 1), (f"{LATER} pictures later", LATER)):
+            runs = [_leave(stage, reach, number, wait) for number in range(extent.repeats)]
+            times, keys = zip(*runs, strict=True)
+            row = row_of(f"the playhead is moved {later}{pulled}", times)
+            note = f"pictures of a key before it: median {statistics.median(keys):.0f}, most "
+            rows.append(replace(row, note=f"{note}{max(keys)}"))
     return Table(
-        title="From moving the playhead between keys, as a handle is let go",
-        rows=(
-            row_of("until the exact in-between is drawn", times),
-            Row(
-                name="pictures before it, rough ones between the right keys",
-                seconds=None,
-                note=f"median {statistics.median(rough):.0f}, most {max(rough)}",
-            ),
-        ),
+        title="From moving the playhead between keys, once a handle is let go, to the in-between",
+        rows=tuple(rows),
     )
+
+
+def _leave(stage: Driver, reach: float, number: int, wait: int) -> tuple[float, int]:
+    """Pull, let go, and leave the pose: the seconds to the in-between, the pictures before it."""
+    project = stage.project
+    drag = _Drag(stage, reach)
+    for move in range(10):
+        drag.move(20 * number + move)
+        stage.refresh()
+    drag.let_go()
+    for _ in range(wait):
+        stage.refresh()
+    first, second, *_ = project.figure.keys
+    between = (first.frame + second.frame) // 2 + number
+    moved = time.perf_counter()
+    stage.ask(playback.scrub, between)
+    stage.refresh()
+    keys = 0
+    while not _shows(project, between, exactly=True):
+        keys += _shows(project, between)
+        stage.refresh()
+    seconds = time.perf_counter() - moved
+    stage.settle()
+    return seconds, keys
 
 
 def _shows(project: Project, frame: int, *, exactly: bool = False) -> bool:

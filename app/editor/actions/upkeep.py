@@ -10,7 +10,7 @@ from app.editor.actions import playback, posing, rebuilding, viewing
 from app.editor.derived import Derivation
 from app.editor.failures import report
 from app.editor.jobs import Job
-from app.editor.project import Project, Puppet
+from app.editor.project import Project, Puppet, Trial
 from app.editor.session import Session
 from app.editor.timeline_view import measure_shortfalls
 from app.motion import (
@@ -105,9 +105,9 @@ def missing(session: Session, project: Project) -> Iterator[Derivation[Any, Any]
             # Where nobody sees them before the hand rests, they are not worked out for each move.
             is_seen = session.overlays.onion or project.posing is None
             if is_seen or posing.POSING not in session.jobs.kinds:
-                among = len(project.document.figures)
-                yield _sketch(clip, puppet, whole=project.posing is not None, among=among)
-            return
+                yield _sketch(session, project, clip, puppet)
+                return
+            break
     yield from _settle(session, project)
     if project.is_posing:
         # What follows takes longer than the hand stays where it is.
@@ -160,33 +160,42 @@ def _shrink(project: Project) -> Iterator[Derivation[Cut, Bytes | None]]:
             )
 
 
-def _sketch(clip: Clip, puppet: Puppet, *, whole: bool, among: int) -> Derivation[Clip, Motion]:
-    earlier = puppet.coarse.value
+def _sketch(
+    session: Session, project: Project, clip: Clip, puppet: Puppet
+) -> Derivation[Clip, Motion]:
+    earlier, among = puppet.coarse.value, len(project.document.figures)
+    frame = playback.current_frame(session, project)
+    # An interval at a time, so that what is wanted next need not wait long; all at once where the
+    # hand has changed those around one key, and the ghosts are to stay together.
+    at_most = None if session.overlays.onion and project.posing is not None else 1
     return Derivation(
         kind=SKETCHING,
         into=puppet.coarse,
         source=clip,
-        work=lambda: _coarse_motion(clip, earlier, whole=whole, among=among),
+        work=lambda: _coarse_motion(clip, earlier, frame, at_most=at_most, among=among),
         complaint="The in-betweens of these keys cannot be made",
     )
 
 
 def _settle(session: Session, project: Project) -> Iterator[Derivation[Clip, Motion]]:
-    """Yield the in-betweens of the pose that the playhead has left, with which it is taken."""
-    clip, puppet, settling = posing.settled_clip(session, project), project.puppet, project.settling
-    if clip is None or settling is None or SKETCHING in session.jobs.kinds:
+    """Yield in-betweens of the pose that was let go, which moves with them once it was left."""
+    puppet, trial = project.puppet, posing.next_trial(session, project)
+    clip = posing.trial_clip(session, project, trial.pose) if trial else None
+    if trial is None or clip is None or SKETCHING in session.jobs.kinds:
         return
-    pose = clip.figure.key(settling.frame).pose
-    if puppet.coarse.failure is not None:
-        posing.take_settled(session, project, settling, pose)
+    if trial.motion.knows(clip) or puppet.coarse.failure is not None:
+        posing.take_trial(session, project, trial)
         return
+    pose, earlier = trial.pose, trial.motion
+    frame, among = playback.current_frame(session, project), len(project.document.figures)
+
+    def work() -> Motion:
+        return _coarse_motion(clip, earlier, frame, at_most=1, among=among)
 
     def done(motion: Motion) -> None:
-        posing.take_settled(session, project, settling, pose)
-        puppet.coarse.take(clip, motion)
+        posing.take_trial(session, project, Trial(pose=pose, motion=motion))
 
-    among = len(project.document.figures)
-    yield replace(_sketch(clip, puppet, whole=True, among=among), done=done)
+    yield replace(_sketch(session, project, clip, puppet), work=work, done=done)
 
 
 def _trace(session: Session, project: Project) -> Iterator[Derivation[Any, Any]]:
@@ -387,13 +396,13 @@ def _has_fine(clip: Clip, puppet: Puppet) -> bool:
     return is_own or (fine is not None and fine.knows(clip))
 
 
-def _coarse_motion(clip: Clip, earlier: Motion, *, whole: bool, among: int) -> Motion:
+def _coarse_motion(
+    clip: Clip, earlier: Motion, frame: int, *, at_most: int | None, among: int
+) -> Motion:
     domain = clip.figure.domain
     if earlier.mesh.source is not domain:
         earlier = Motion.at_rest(clip, PosableMesh.coarse(domain, among=among))
-    # An interval at a time, so that what is wanted next need not wait long; all at once where the
-    # hand has changed those around one key, and the ghosts are to stay together.
-    return prepare_motion(clip, earlier, at_most=None if whole else 1)
+    return prepare_motion(clip, earlier, at_most=at_most, frame=frame)
 
 
 def _fine_motion(clip: Clip, earlier: Motion | None, sibling: PoseSampler | None) -> Motion:

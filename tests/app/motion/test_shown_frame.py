@@ -11,20 +11,20 @@ from engine.domain import Domain
 from engine.domain.meshing import triangulate
 
 
-def test_what_was_never_shown_is_shown_roughly_between_two_keys():
-    """As a layer is that is duplicated there, before its in-betweens are prepared."""
+def test_the_nearer_key_stands_in_until_the_in_between_is_prepared():
+    """As for a layer that is duplicated there, which was never shown before."""
     document = disc_document()
     figure = document.figures[0]
     first = figure.keys[0].pose
     turned = replace(first, phi=CENTRE + (first.phi - CENTRE) * np.exp(0.8j))
     clip = clip_of(key_commands.insert_key(figure.id, 24, turned)(document), figure.id)
     motion = Motion.at_rest(clip, PosableMesh.coarse(figure.domain))
-    shown = show(clip, 12, None, (motion,), None)
-    assert not shown.is_current
-    rest = figure.domain.mesh.vertices
-    halfway = CENTRE + (rest - CENTRE) * np.exp(0.4j)
-    np.testing.assert_allclose(shown.positions, halfway, rtol=0, atol=1e-3)
-    assert show(clip, 12, None, (motion,), shown) is shown
+    for frame, pose in ((6, first), (18, turned)):
+        shown = show(clip, frame, None, (motion,), None)
+        assert not shown.is_current
+        assert shown.pose is None
+        np.testing.assert_array_equal(shown.positions, motion.mesh.posed(pose))
+        assert show(clip, frame, None, (motion,), shown) is shown
 
 
 def test_figures_that_are_drawn_together_share_the_coarse_triangles():

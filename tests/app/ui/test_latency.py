@@ -3,9 +3,12 @@
 from itertools import count
 
 import numpy as np
+import pytest
 
+from app.document.commands import key_commands
 from app.document.keyframe import Target
 from app.editor.actions import editing, playback, posing
+from app.motion import Animation, PoseSampler
 
 
 def pull(window, bar, by):
@@ -79,7 +82,7 @@ def test_in_betweens_are_exact_while_the_pose_that_was_left_comes_to_rest(window
         assert (shown.frame, shown.clip) == (12, bent.clip)
         exact.append(shown.is_current)
         assert len(exact) < 200
-    # Rough ones before the first exact one, and none after it.
+    # A key stands in before the first exact one, and never after it.
     assert exact.index(True) <= 2
     assert all(exact[exact.index(True) :])
     assert len(exact) > 4
@@ -89,3 +92,80 @@ def test_in_betweens_are_exact_while_the_pose_that_was_left_comes_to_rest(window
     assert abs(place - wish.position) < 2
     window.act(editing.undo)
     assert bent.figure.key(24).pose.targets[1] != wish
+
+
+@pytest.fixture
+def check(bent):
+    """What fails unless the newest keys are shown, or exactly an in-between of theirs."""
+    sampler = PoseSampler(bent.puppet.coarse.value.mesh.domain, anchor=None)
+
+    def look():
+        shown, clip = bent.puppet.shown, bent.clip
+        assert shown.clip == clip
+        poses = [key.pose for key in clip.keys]
+        if shown.is_current and shown.pose is None:
+            prepared = Animation(clip, sampler=sampler).positions(shown.frame)
+            expected = [prepared]
+        else:
+            expected = [shown.mesh.posed(pose) for pose in poses]
+            assert shown.pose is None or shown.pose in poses
+        off = min(np.abs(shown.positions - each).max() for each in expected)
+        assert off < 0.02, (shown.frame, shown.is_current)
+
+    return look
+
+
+def test_in_betweens_are_there_when_the_playhead_leaves_a_pose_on_its_way(window, bent, check):
+    window.session.clock = count().__next__  # the solver takes one step at a time
+    pull(window, bent, 80j)
+    window.act(posing.let_go)
+    while bent.posing.prepared is None:
+        assert window.session.jobs.settle()
+        window.frames()
+    newest, prepared = bent.puppet.shown.pose, bent.posing.prepared
+    assert not bent.posing.is_at_rest
+    assert newest is not prepared
+    window.act(playback.scrub, 12)
+    assert bent.puppet.shown.is_current
+    assert bent.figure.key(24).pose is prepared
+    check()
+    # Back at the key nothing is lost of what the solver found.
+    window.act(playback.scrub, 24)
+    assert bent.settling is None
+    assert bent.puppet.shown.pose is not prepared
+    check()
+    # Nor where something else begins.
+    seen = bent.puppet.shown.pose
+    window.act(playback.scrub, 12)
+    found = bent.settling.found
+    posing.drop(window.session)
+    assert bent.figure.key(24).pose in [seen, found]
+
+
+def test_what_is_shown_after_a_drag_is_never_wrong(window, bent, check):
+    window.session.clock = count(step=1 / 60).__next__
+
+    def on(*verb):
+        window.act(*verb)
+        check()
+        for _ in range(2):
+            assert window.session.jobs.settle()
+            window.frames()
+            check()
+
+    window.act(editing.edit, key_commands.copy_keys(bent.active, {0}, 48))
+    window.settle()
+    for end in (posing.let_go, None):
+        playback.scrub(window.session, 24)
+        window.settle()
+        pull(window, bent, 70j)
+        if end is not None:
+            window.act(end)
+        for frame in (23, 40, 2):
+            on(playback.scrub, frame)
+        on(playback.toggle_play)
+        on(playback.halt)
+        on(editing.undo)
+        on(editing.redo)
+    on(editing.edit, key_commands.delete_keys(bent.active, {48}))
+    on(playback.scrub, 12)

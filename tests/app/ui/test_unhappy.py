@@ -540,33 +540,30 @@ WAITING = {
 }
 
 
-def test_what_is_shown_after_an_edit_lies_between_the_new_keys(window, bent, monkeypatch):
+def test_a_new_key_stands_in_for_in_betweens_that_are_not_prepared(window, bent, monkeypatch):
     """Never the pose of the key that was changed, however long in-betweens take."""
     with held_up(monkeypatch, "app.editor.actions.upkeep.prepare_motion"):
         width, height = bent.document.canvas
         posing.wish(window.session, {1: Target(position=complex(0.85 * width, 0.1 * height))})
         while "Posing" in window.session.jobs.kinds:
             window.frames(1)
-        mesh, keys = bent.puppet.shown.mesh, bent.figure.keys
-        first, last = (mesh.posed(key.pose) for key in keys)
-        playback.seek(window.session, 12)
-        window.frames(1)
-        shown = bent.puppet.shown
-        assert not shown.is_current
-        places = shown.positions if shown.mesh is mesh else None
-        assert places is not None
-        tip = int(np.argmax(np.abs(last - first)))
-        assert abs(places[tip] - first[tip]) < 0.7 * abs(last[tip] - first[tip])
-        assert abs(places[tip] - last[tip]) < 0.7 * abs(last[tip] - first[tip])
-        earlier = shown
-        window.frames(2)
-        assert bent.puppet.shown is earlier, "nothing is worked out again while it waits"
-        sketch = places.copy()
+        mesh, (first, last) = bent.puppet.shown.mesh, bent.figure.keys
+        for frame, key in ((18, last), (6, first)):
+            playback.seek(window.session, frame)
+            window.frames(1)
+            shown = bent.puppet.shown
+            assert not shown.is_current
+            assert shown.mesh is mesh
+            np.testing.assert_array_equal(shown.positions, mesh.posed(key.pose))
+            window.frames(2)
+            assert bent.puppet.shown is shown, "nothing is worked out again while it waits"
+        # Where the handles will be is not known: there is nothing to pull yet.
+        before = bent.document
+        posing.wish(window.session, {1: Target(position=0j)})
+        assert bent.posing is None
     window.settle()
     assert bent.puppet.shown.is_current
-    exact = bent.puppet.shown.positions
-    if bent.puppet.shown.mesh is mesh:
-        assert np.abs(exact - sketch).max() < 0.2 * np.abs(last - first).max()
+    assert bent.document is before
 
 
 @pytest.mark.parametrize("kind", WAITING)

@@ -22,12 +22,10 @@ from app.editor.actions.posing.pulling import (
     pin_here,
     pull,
     pull_again,
-    settle,
-    settled_clip,
-    take_settled,
     wish,
     wishes_of,
 )
+from app.editor.actions.posing.settling import next_trial, settle, take_trial, trial_clip
 from app.editor.actions.posing.steps import POSING, STEPS, accept, hold, retargeted
 
 __all__ = [
@@ -44,6 +42,7 @@ __all__ = [
     "insert_key",
     "let_go",
     "mirror_handles",
+    "next_trial",
     "nudge",
     "pin_here",
     "pull",
@@ -52,9 +51,9 @@ __all__ = [
     "remove_handles",
     "retargeted",
     "settle",
-    "settled_clip",
     "suggest_handles",
-    "take_settled",
+    "take_trial",
+    "trial_clip",
     "wish",
     "wishes_of",
 ]

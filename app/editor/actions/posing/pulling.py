@@ -5,9 +5,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from app.document import Clip, Pose, Target, clip_of
+from app.document import Target
 from app.editor.actions import playback
-from app.editor.actions.posing.steps import POSING, end, follow, hold, holding, retargeted
+from app.editor.actions.posing.steps import POSING, end, follow, hold, retargeted
 from app.editor.project import PoseInProgress, Project
 from app.editor.session import Session
 
@@ -15,12 +15,16 @@ from app.editor.session import Session
 def pull(session: Session, wishes: Mapping[int, Target], *, gesture: object | None = None) -> None:
     """Wish handles elsewhere in the pose that is shown; the others keep their wishes.
 
-    Pulls of one gesture are one step of undo; without one, each is a step until it is let go.
+    Pulls of one gesture are one step of undo; without one, each is a step until it is let go. What
+    is not prepared yet cannot be pulled: where its handles are is not known.
     """
     project = session.project
     if project is None or project.puppet.shown is None:
         return
     if project.posing is None or not project.posing.is_held:
+        if not _is_there(project):
+            return
+        _keep_found(session, project)
         project.posing, project.settling = _begin(session, project, gesture or object()), None
     posing = project.posing
     targets = posing.targets
@@ -38,40 +42,24 @@ def let_go(session: Session) -> None:
             end(session.project, posing)
 
 
-def settle(session: Session) -> None:
-    """End a pose that the playhead has left, and that the solver does not go on with."""
-    project = session.project
-    settling = project.settling if project else None
-    if project and settling and settling.found is None and POSING not in session.jobs.kinds:
-        end(project, settling)
-
-
-def settled_clip(session: Session, project: Project) -> Clip | None:
-    """Return the clip with the pose that the playhead has left, where the solver has come with it.
-
-    None where the document has that pose already.
-    """
-    settling = project.settling
-    if settling is None or settling.found is None:
-        return None
-    command = holding(session, project, settling.frame, settling.found)
-    return clip_of(command(project.document), project.active)
-
-
-def take_settled(session: Session, project: Project, settling: PoseInProgress, pose: Pose) -> None:
-    """Let the document have what the solver found of a pose, if that is still wanted."""
-    if project is not session.project or settling is not project.settling:
-        return
-    hold(session, project, settling.frame, pose, gesture=settling.gesture)
-    if settling.found is pose:
-        settling.found = None
-
-
 def drop(session: Session) -> None:
     """End the pull where the solver is."""
     if session.project and session.project.is_posing:
+        _keep_found(session, session.project)
         session.jobs.drop(POSING)
         session.project.posing = session.project.settling = None
+
+
+def _keep_found(session: Session, project: Project) -> None:
+    """Let the document have how far a pose has come that the playhead left, unless it is another's.
+
+    It has been seen so, before the playhead left it.
+    """
+    left = project.settling
+    if left is None or left.found is None or left.taken is None:
+        return
+    if any(key.frame == left.frame and key.pose is left.taken for key in project.figure.keys):
+        hold(session, project, left.frame, left.found, gesture=left.gesture)
 
 
 def pin_here(session: Session) -> None:
@@ -131,6 +119,14 @@ def free_turn(session: Session, identity: int) -> None:
     targets = project.posing.targets if project.posing else wishes_of(project)
     pull(session, {identity: replace(targets[identity], rotation=None)})
     let_go(session)
+
+
+def _is_there(project: Project) -> bool:
+    """Tell whether what should be shown is, or never will be."""
+    shown, coarse = project.puppet.shown, project.puppet.coarse
+    return project.unkeyed is not None or (
+        shown is not None and (shown.is_current or coarse.has_failed(project.clip))
+    )
 
 
 def _begin(session: Session, project: Project, gesture: object) -> PoseInProgress:
