@@ -21,6 +21,6 @@ def pytest_addoption(parser: pytest.Parser) -> None:
         "--steps",
         metavar="N",
         type=int,
-        default=250,
+        default=160,
         help="of each random walk through the window; many walk farther, and take longer",
     )
