@@ -420,13 +420,16 @@ def _release(stage: Driver, extent: Extent) -> Table:
 def _playhead(stage: Driver, extent: Extent) -> Table:
     """Measure from moving the playhead, once a handle is let go, to the exact in-between."""
     rows = []
-    for pulled, reach in (("", extent.reach), (", a hard pull", HARD * extent.reach)):
-        for later, wait in (("at once", 1), (f"{LATER} pictures later", LATER)):
-            runs = [_leave(stage, reach, number, wait) for number in range(extent.repeats)]
-            times, keys = zip(*runs, strict=True)
-            row = row_of(f"the playhead is moved {later}{pulled}", times)
-            note = f"pictures of a key before it: median {statistics.median(keys):.0f}, most "
-            rows.append(replace(row, note=f"{note}{max(keys)}"))
+    for name, reach, wait in (
+        ("the playhead is moved at once", extent.reach, 1),
+        (f"{LATER} pictures later, after a hard pull", HARD * extent.reach, LATER),
+    ):
+        runs = [_leave(stage, reach, number, wait) for number in range(extent.repeats)]
+        times, keys = zip(*runs, strict=True)
+        note = (
+            f"pictures of a key before it: median {statistics.median(keys):.0f}, most {max(keys)}"
+        )
+        rows.append(replace(row_of(name, times), note=note))
     return Table(
         title="From moving the playhead between keys, once a handle is let go, to the in-between",
         rows=tuple(rows),
