@@ -27,7 +27,8 @@ class Background:
     mask : bool, shape (h, w)
         True on the background.
     enclosed : bool, shape (h, w)
-        True on what has the same colour, inside of something else, and is no channel.
+        True on what has the same colour inside of something else: wide places, and where the
+        colour is vivid whatever has it.
     colour : uint8, shape (3,)
     agreement : float
         Share of the border's pixels that have the background's colour.
@@ -41,7 +42,7 @@ class Background:
     @property
     def is_vivid(self) -> bool:
         """Whether the colour is far from white, grey and black."""
-        return int(np.ptp(self.colour.astype(int))) >= VIVID
+        return _is_vivid(self.colour)
 
 
 def flood_background(
@@ -77,7 +78,13 @@ def flood_background(
     if noise.any() and enclosed.any():
         enclosed = _touching(noise | enclosed, enclosed)
     flooded |= noise & ~enclosed
+    if _is_vivid(wanted):
+        enclosed |= alike & ~flooded
     return Background(mask=flooded, enclosed=enclosed, colour=wanted, agreement=agreement)
+
+
+def _is_vivid(colour: Bytes) -> bool:
+    return int(np.ptp(colour.astype(int))) >= VIVID
 
 
 def _refined(blocks: Booleans, factor: int, alike: Booleans) -> Booleans:

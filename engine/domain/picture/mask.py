@@ -20,7 +20,7 @@ SMALLEST_SIDE = 8  # pixels
 LEAST_AGREEMENT = 0.80  # of the border with the background's colour
 SUBJECT_SHARES = (0.01, 0.97)  # of the picture, between which a removed background is believed
 MOST_ENCLOSED = 0.8  # of the subject: lines on coloured paper enclose more of it
-TOLD_ENCLOSED = 0.012  # radius of a disc, of the picture's diagonal: what is kept of more is told
+TOLD_ENCLOSED = 0.012  # radius of a disc, of the picture's diagonal: what is larger is told
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -150,7 +150,7 @@ def _enclosed(subject: Booleans, background: Background, cut_out: CutOut) -> _Wi
             others.append(point)
     opened[0] = False
     told = sizes >= pi * (TOLD_ENCLOSED * np.hypot(*area.shape)) ** 2
-    removed, kept = int(opened[1:].sum()), int((told & ~opened[1:]).sum())
+    removed, kept = int((told & opened[1:]).sum()), int((told & ~opened[1:]).sum())
     notices = []
     if removed:
         parts = "1 enclosed part" if removed == 1 else f"{removed} enclosed parts"

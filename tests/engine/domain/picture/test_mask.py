@@ -255,8 +255,10 @@ def test_eyes_on_green_and_gaps_between_hairs() -> None:
     """Thin gaps are no holes of their own, but show nothing of a vivid background."""
     rgba = pictures.painted(np.pad(np.ones((200, 200), dtype=np.bool_), 50))
     rgba[100:140, 100:108, 3] = 0
+    rgba[100:140, 120:122, 3] = 0
     opaque = pictures.on_plain(rgba, GREEN)
     opaque[100:140, 150:190, :3] = WHITE
     subject = subject_mask(opaque)
     assert not subject.mask[100:140, 100:108].any()
+    assert not subject.mask[100:140, 120:122].any()
     assert subject.mask[100:140, 150:190].all()
