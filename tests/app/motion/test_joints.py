@@ -182,7 +182,7 @@ def test_a_joint_must_be_on_both_figures():
 
 
 def test_joints_stay_closed_in_documents_that_were_changed_undone_and_saved(tmp_path):
-    document, frames = chain(), np.random.default_rng(6).uniform(0, 48, 4)
+    document, frames = chain(), np.random.default_rng(6).uniform(0, 48, 2)
     history = History(document, saved=True)
     changes = (
         layers.duplicate_figure(1),

@@ -5,7 +5,7 @@ import sys
 
 SCRIPT = """
 from app.cli.bench.ui import Extent, tables
-for table in tables(Extent(triangles=2_000, repeats=1, frames=4, moves=3, reach=8, idle=0.1)):
+for table in tables(Extent(triangles=1_000, repeats=1, frames=2, moves=2, reach=4, idle=0.1)):
     assert all(row.seconds is None or row.seconds > 0 for row in table.rows), table
     print(len(table.rows))
 """

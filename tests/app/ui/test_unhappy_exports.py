@@ -244,8 +244,8 @@ def test_disk_that_gets_full_midway_ends_the_export(window, project, tmp_path, m
         finish(window)
     (text,) = (text for text in texts(window) if "export" in text)
     assert "No space left" in text
-    assert len(written) < FRAMES
     left = list(out.iterdir())
+    assert len(left) <= 3
     assert all(path.suffix == ".png" for path in left)
     assert all(map(is_whole, left))
     assert window.session.project is project

@@ -189,7 +189,7 @@ def test_coarse_meshes_are_still_good(name: str) -> None:
     assert triangulate(SHAPES[name], 1_000).smallest_angles().mean() > 53
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=15, deadline=None)
 @given(outline=star_polygons(largest=60), count=st.sampled_from([1_000, 3_000, 10_000]))
 def test_star_shaped_polygons(outline: Complexes, count: int) -> None:
     mesh = triangulate(outline, count)
@@ -198,7 +198,7 @@ def test_star_shaped_polygons(outline: Complexes, count: int) -> None:
     assert abs(len(mesh.triangles) - count) <= 0.05 * count
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=15, deadline=None)
 @given(outline=limbs(), count=st.sampled_from([1_000, 3_000, 10_000]))
 def test_trees_of_limbs(outline: Complexes, count: int) -> None:
     mesh = triangulate(outline, count)
@@ -206,7 +206,7 @@ def test_trees_of_limbs(outline: Complexes, count: int) -> None:
     assert_well_shaped(outline, mesh)
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=15, deadline=None)
 @given(outline=uneven_polygons(), count=st.sampled_from([1_000, 10_000]))
 def test_edges_of_very_mixed_lengths(outline: Complexes, count: int) -> None:
     mesh = triangulate(outline, count)

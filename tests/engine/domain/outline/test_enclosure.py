@@ -70,7 +70,7 @@ strokes = st.tuples(
 )
 
 
-@settings(max_examples=40)
+@settings(max_examples=25)
 @given(
     ends=st.lists(strokes, min_size=1, max_size=7),
     size=st.sampled_from([64, 200, 400]),
