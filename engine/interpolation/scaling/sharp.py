@@ -25,9 +25,8 @@ from engine.maps import Bounds, HarmonicMap
 SEGMENT_PER_DISTANCE = 0.2
 SEGMENT_PER_SIZE = 1 / 400
 NEGLIGIBLE = 1e-9  # f_z̄ / f_z below which no scaling is needed, whatever the bounds
-EXACT = (
-    NEGLIGIBLE / 10
-)  # to which the worst bounds are known, or a scaling by them could have no room
+# To which the worst bounds are known, or a scaling by them could have no room.
+EXACT = NEGLIGIBLE / 10
 CEILING = 2.0  # ratios are cut off there: only those below 1 matter
 PARTS = (
     8  # into which a stretch around a minimum is cut; each round makes it PARTS / 2 times shorter
