@@ -150,15 +150,15 @@ def _enclosed(subject: Booleans, background: Background, cut_out: CutOut) -> _Wi
             others.append(point)
     opened[0] = False
     told = sizes >= pi * (TOLD_ENCLOSED * np.hypot(*area.shape)) ** 2
-    removed, kept = int((told & opened[1:]).sum()), int((told & ~opened[1:]).sum())
-    notices = []
-    if removed:
-        parts = "1 enclosed part" if removed == 1 else f"{removed} enclosed parts"
-        notices.append(f"{parts} of the background's colour removed too")
-    if kept:
-        parts = "1 enclosed part" if kept == 1 else f"{kept} enclosed parts"
-        notices.append(f"{parts} of the background's colour kept")
-    return _Within(subject & ~opened[labels], area, opens, tuple(others), tuple(notices))
+    notices = tuple(
+        f"{count} enclosed {'part' if count == 1 else 'parts'} of the background's colour {what}"
+        for count, what in (
+            (int((told & opened[1:]).sum()), "removed too"),
+            (int((told & ~opened[1:]).sum()), "kept"),
+        )
+        if count
+    )
+    return _Within(subject & ~opened[labels], area, opens, tuple(others), notices)
 
 
 def _masked(visible: Booleans, mask: Mask) -> Booleans:
