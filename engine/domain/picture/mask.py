@@ -96,20 +96,17 @@ def subject_mask(rgba: Bytes, cut_out: CutOut | None = None) -> Subject:
     else:
         subject, notices, background = _without_background(rgba[..., :3], cut_out.tolerance)
         subject &= visible
-    within = None if background is None else _enclosed(subject, background, cut_out)
-    if within is not None:
-        subject, notices = within.subject, notices + within.notices
+    within = _enclosed(subject, background, cut_out)
+    subject, notices = within.subject, notices + within.notices
     if cut_out.strokes:
         subject, notices = _brushed(subject, cut_out.strokes) & present, ()
     _require_size(subject)
-    cut = bool((visible & ~subject).any())
-    if within is None:
-        return Subject(mask=readonly(subject), cut=cut, notices=notices, swapped=cut_out.swapped)
+    area = within.area
     return Subject(
         mask=readonly(subject),
-        cut=cut,
+        cut=bool((visible & ~subject).any()),
         notices=notices,
-        enclosed=readonly(within.area & (subject == within.subject)),
+        enclosed=None if area is None else readonly(area & (subject == within.subject)),
         opens=within.opens,
         swapped=within.swapped,
     )
@@ -119,17 +116,16 @@ class _Within(NamedTuple):
     """What is left of a subject without the enclosed parts that are removed, and the rest of it."""
 
     subject: Booleans
-    area: Booleans
+    area: Booleans | None
     opens: bool
     swapped: tuple[complex, ...]
     notices: tuple[str, ...]
 
 
-def _enclosed(subject: Booleans, background: Background, cut_out: CutOut) -> _Within | None:
+def _enclosed(subject: Booleans, background: Background | None, cut_out: CutOut) -> _Within:
     """Decide which parts inside a subject go with the background that they have the colour of."""
-    area = background.enclosed & subject
-    if not area.any():
-        return None
+    if background is None or not (area := background.enclosed & subject).any():
+        return _Within(subject, None, opens=False, swapped=cut_out.swapped, notices=())
     labels, count = ndimage.label(area)
     sizes = np.bincount(labels.ravel(), minlength=count + 1)[1:]
     opens = cut_out.enclosed == "remove" or (

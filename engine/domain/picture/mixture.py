@@ -1,0 +1,162 @@
+"""The edge of a subject in a part of its picture: what its pixels are mixed of.
+
+Pixels are looked at in their tones, brightness, blueness and redness: JPEG blurs the last two.
+"""
+
+from dataclasses import dataclass
+from typing import NamedTuple, Self
+
+import numpy as np
+from scipy import ndimage
+
+from engine.arrays import Booleans, Bytes, Floats, Indices
+
+NEARBY = 8  # pixels within which the background's colour is taken
+SURE = 2.0  # pixels off the mask from which on a pixel is background alone
+NOISE_REACH = 2  # pixels: what is varied within is noise
+# Brightness, blueness, redness of red, green, blue.
+TONES = ((0.299, 0.587, 0.114), (-0.169, -0.331, 0.5), (0.5, -0.419, -0.081))
+HUES = (1, 2)  # which of them are the last two
+ROUNDING = 0.5  # levels of noise that every picture has
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Tile:
+    """A part of a picture with some room around it.
+
+    Parameters
+    ----------
+    rgb, tones : float64, shape (h, w, 3)
+        Colours, and their brightness, blueness and redness.
+    subject : bool, shape (h, w)
+    depth : float64, shape (h, w)
+        Distance of each pixel of the subject from the background, and of each of the background
+        from the subject as a negative number, in pixels; ±1 next to the border between them.
+    background, noise : float64, shape (h, w, 3)
+        Mean and variance of its tones nearby.
+    """
+
+    rgb: Floats
+    tones: Floats
+    subject: Booleans
+    depth: Floats
+    background: Floats
+    noise: Floats
+
+    @classmethod
+    def of(cls, rgb: Bytes, subject: Booleans, paper: Floats) -> Self:
+        """Look at a part of a picture; its background is `paper` (3,) where none is nearby."""
+        colours = rgb.astype(np.float64)
+        tones = tones_of(colours)
+        inside = ndimage.distance_transform_edt(subject)
+        depth = inside - ndimage.distance_transform_edt(~subject)
+        sure = depth < -SURE
+        if not sure.any():
+            sure = depth < 0
+        background, noise = _local(tones, sure, NEARBY, tones_of(paper))
+        return cls(
+            rgb=colours,
+            tones=tones,
+            subject=subject,
+            depth=depth,
+            background=background,
+            noise=noise,
+        )
+
+
+class Mixture(NamedTuple):
+    """The pixels (n,) at the edge, as flat indices of a tile, and what they are mixed of.
+
+    Parameters
+    ----------
+    band, core : int64
+        The pixels, and those nearest to them where the subject is pure.
+    way, off : float64, shape (n, 3)
+        From the tones of the background to those of the subject, and to those of the pixel.
+    noise : float64, shape (n, 3)
+        Variance of these tones.
+    """
+
+    band: Indices
+    core: Indices
+    way: Floats
+    off: Floats
+    noise: Floats
+
+    @classmethod
+    def of(cls, tile: Tile, width: int) -> Self:
+        """Return what the edge in a tile, `width` pixels wide, is mixed of."""
+        band = np.flatnonzero(np.abs(tile.depth.ravel()) <= width + 1)
+        nearest = _nearest_core(tile, width)
+        front = tile.tones.reshape(-1, 3)[nearest]
+        # Across the edge the nearest one stays the same: it varies along the edge alone.
+        near = np.abs(tile.depth) <= width + 1
+        _, varied = _local(front, near, NOISE_REACH, tones_of(np.full(3, 128.0)))
+        behind = tile.background.reshape(-1, 3)[band]
+        noise = (varied + tile.noise).reshape(-1, 3)[band] / 2 + ROUNDING**2
+        core = nearest.ravel()[band]
+        return cls(
+            band=band,
+            core=core,
+            way=front.reshape(-1, 3)[band] - behind,
+            off=tile.tones.reshape(-1, 3)[band] - behind,
+            noise=noise,
+        )
+
+
+def tones_of(colours: Floats) -> Floats:
+    """Return the brightness, blueness and redness of colours (…, 3)."""
+    tones: Floats = colours @ np.array(TONES).T
+    return tones
+
+
+def colours_of(tones: Floats) -> Floats:
+    """Return red, green and blue of tones (…, 3)."""
+    colours: Floats = tones @ np.linalg.inv(np.array(TONES)).T
+    return colours
+
+
+def along(way: Floats, off: Floats, noise: Floats) -> tuple[Floats, Floats]:
+    """Return α (n,), how far pixels are along the way, by least squares, and its variance.
+
+    Parameters
+    ----------
+    way, off, noise : float64, shape (n, c)
+        As in `Mixture`, or some of their channels.
+    """
+    precision = (way**2 / noise).sum(axis=1)
+    alpha = (way * off / noise).sum(axis=1) / np.maximum(precision, 1e-12)
+    return alpha, 1 / np.maximum(precision, 1e-12)
+
+
+def _local(values: Floats, where: Booleans, reach: int, otherwise: Floats) -> tuple[Floats, Floats]:
+    """Return the means and variances (h, w, c), within `reach`, of the values `where` they count.
+
+    Where none is within reach, the mean is `otherwise` (c,) and the variance 0.
+    """
+    weight = ndimage.uniform_filter(where.astype(np.float32), 2 * reach + 1, mode="constant")
+    known = weight > 0.5 / (2 * reach + 1) ** 2
+    mean, variance = np.empty_like(values), np.zeros_like(values)
+    for channel in range(values.shape[2]):
+        # Around a value in the middle, so that squares keep their digits.
+        shifted = np.where(where, values[..., channel] - otherwise[channel], 0.0)
+        shifted = shifted.astype(np.float32)
+        sums = [
+            ndimage.uniform_filter(power, 2 * reach + 1, mode="constant")
+            / np.where(known, weight, 1.0)
+            for power in (shifted, shifted**2)
+        ]
+        first, second = (np.where(known, moment, 0.0) for moment in sums)
+        mean[..., channel] = otherwise[channel] + first
+        variance[..., channel] = np.maximum(second - first**2, 0.0)
+    return mean, variance
+
+
+def _nearest_core(tile: Tile, width: int) -> Indices:
+    """Return the pixel (h, w), as a flat index, nearest to each where the subject is pure."""
+    # Where the subject is thinner than two edges, its middle has to do.
+    reach = ndimage.maximum_filter(tile.depth, 2 * width + 1)
+    core = tile.subject & (tile.depth >= np.minimum(width, reach))
+    nearest = ndimage.distance_transform_edt(~core, return_distances=False, return_indices=True)
+    rows, columns = np.asarray(nearest).reshape(2, *core.shape)
+    return np.asarray(rows * core.shape[1] + columns, dtype=np.intp)

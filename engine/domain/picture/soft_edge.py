@@ -1,0 +1,152 @@
+"""How a subject fades into the background of its picture, measured along its edge."""
+
+from typing import NamedTuple
+
+import numpy as np
+from scipy import ndimage
+
+from engine.arrays import Booleans, Bytes, Floats, Indices
+from engine.domain.picture.mixture import HUES, SURE, Mixture, Tile, along
+
+Part = tuple[slice, slice]  # of a picture: rows and columns
+
+NARROWEST_EDGE, WIDEST_EDGE = 2, 6  # pixels over which the subject fades into the background
+PLATEAU = 0.08  # where the next pixel inwards differs by a smaller share, the edge ends
+MOST_PLACES = 0.8  # of the rim: where the edge is at most as wide as is measured
+MOST_MEASURED = 8  # tiles on which the edge is measured
+MOST_SAMPLED = 4000  # pixels of the rim likewise
+# Beside the edge, α is noise: standard deviations of it that are taken away at least, the share of
+# pixels that lies within what is taken away, and a margin.
+LEAST_NOISE, MOST_BESIDE, MARGIN = 2.5, 0.99, 1.0
+# JPEG stores the last two tones at half the resolution: how much they are blurred, if clearly, is
+# measured where α is about one half, if brightness tells it well enough.
+MIDDLE, BLURRED, SHARPEST = 0.25, 1.05, 4.0
+
+
+class SoftEdge(NamedTuple):
+    """What is measured of the edge of a whole subject.
+
+    Parameters
+    ----------
+    width : int
+        Pixels over which it fades, inwards from the border of the mask.
+    gain : float
+        How many times steeper α is in brightness than in blueness and redness.
+    disparity : float
+        Standard deviation of α by blueness and redness from α by brightness, beyond their noise.
+    noise : float
+        Standard deviations of α beyond which it is none.
+    contrast : float
+        Levels between subject and background that are usual.
+    paper : float64, shape (3,)
+        The background's colour where none is nearby.
+    """
+
+    width: int
+    gain: float
+    disparity: float
+    noise: float
+    contrast: float
+    paper: Floats
+
+
+def measured_edge(rgba: Bytes, subject: Booleans, windows: list[tuple[Part, Part]]) -> SoftEdge:
+    """Measure the edge of a subject on some of the parts through which it runs.
+
+    Parameters
+    ----------
+    rgba : uint8, shape (h, w, 4)
+    subject : bool, shape (h, w)
+        False on the background.
+    windows : list of (Part, Part)
+        The parts without and with room around them.
+    """
+    step = max(1, len(rgba) * rgba.shape[1] // (MOST_SAMPLED * 25))
+    paper = np.median(rgba[..., :3][~subject][::step], axis=0).astype(np.float64)
+    chosen = windows[:: -(-len(windows) // MOST_MEASURED)]
+    tiles = [Tile.of(rgba[outer][..., :3], subject[outer], paper) for _, outer in chosen]
+    steps = np.concatenate([_fading(tile) for tile in tiles])
+    width = max(NARROWEST_EDGE, int(np.quantile(steps, MOST_PLACES)) + 1) if len(steps) else 2
+    mixtures = [Mixture.of(tile, width) for tile in tiles]
+    way, off, noise = (
+        np.concatenate([getattr(mixture, part) for mixture in mixtures])
+        for part in ("way", "off", "noise")
+    )
+    contrast = np.sqrt((way**2).sum(axis=1))
+    gain, error = _sharpening(way, off, noise)
+    depth = np.concatenate([t.depth.ravel()[m.band] for t, m in zip(tiles, mixtures, strict=True)])
+    edge = SoftEdge(
+        width=width,
+        gain=gain,
+        disparity=error,
+        noise=LEAST_NOISE,
+        contrast=float(np.median(contrast)) if len(contrast) else 0.0,
+        paper=paper,
+    )
+    beside = depth < -SURE
+    if not beside.any():
+        return edge
+    alpha, variance = along(*weighed(way[beside], off[beside], noise[beside], edge))
+    largest = float(np.quantile(np.abs(alpha) / np.sqrt(variance), MOST_BESIDE))
+    return edge._replace(noise=max(LEAST_NOISE, MARGIN * largest))
+
+
+def weighed(
+    way: Floats, off: Floats, noise: Floats, edge: SoftEdge
+) -> tuple[Floats, Floats, Floats]:
+    """Return the parts of a mixture with its hues made as sharp as brightness, and less trusted."""
+    if edge.gain > 1:
+        # Around the middle of the way, and no farther than its ends.
+        own, _ = along(way[:, HUES], off[:, HUES], noise[:, HUES])
+        off = with_hue_mixed(way, off, noise, np.clip(0.5 + edge.gain * (own - 0.5), 0, 1))
+    noise = noise.copy()
+    noise[:, HUES] += edge.disparity**2 * way[:, HUES] ** 2
+    return way, off, noise
+
+
+def with_hue_mixed(way: Floats, off: Floats, noise: Floats, alpha: Floats) -> Floats:
+    """Return where pixels are off the background if their hues were mixed by α (n,)."""
+    own, _ = along(way[:, HUES], off[:, HUES], noise[:, HUES])
+    moved = off.copy()
+    moved[:, HUES] += (alpha - own)[:, None] * way[:, HUES]
+    return moved
+
+
+def _fading(tile: Tile) -> Indices:
+    """Return over how many pixels the subject fades, inwards from each pixel of its rim.
+
+    That is where the colour ceases to move away from the background's.
+    """
+    rim = np.argwhere((tile.depth > 0) & (tile.depth < 1.5))
+    rim = rim[:: max(1, len(rim) * MOST_MEASURED // MOST_SAMPLED)]
+    inwards = np.asarray(np.gradient(tile.depth))[:, rim[:, 0], rim[:, 1]].T
+    inwards /= np.maximum(np.linalg.norm(inwards, axis=1), 1e-9)[:, None]
+    places = rim[:, None] + np.arange(WIDEST_EDGE + 1)[:, None] * inwards[:, None]
+    away = np.sqrt(((tile.tones - tile.background) ** 2).sum(axis=2))
+    profile = ndimage.map_coordinates(away, np.moveaxis(places, 2, 0), order=1, mode="nearest")
+    rises = np.diff(profile, axis=1) > PLATEAU * profile[:, 1:]
+    rises = np.concatenate([rises, np.zeros((len(rises), 1), dtype=np.bool_)], axis=1)
+    return np.asarray(np.argmin(rises, axis=1), dtype=np.intp)
+
+
+def _sharpening(way: Floats, off: Floats, noise: Floats) -> tuple[float, float]:
+    """Return how much steeper α is in brightness than in hue, and how far they differ then."""
+    bright, _ = along(way[:, :1], off[:, :1], noise[:, :1])
+    hue, _ = along(way[:, HUES], off[:, HUES], noise[:, HUES])
+    trust = way[:, 0] ** 2 / noise[:, 0]
+    middle = np.abs(hue - 0.5) < MIDDLE
+    weight = np.where(middle, trust, 0.0)
+    spread = (weight * (hue - 0.5) ** 2).sum()
+    if spread < 1.0:  # brightness tells less than one value of α
+        return 1.0, 0.0
+    slope = (weight * (hue - 0.5) * (bright - 0.5)).sum() / spread
+    gain = float(min(slope, SHARPEST)) if slope > BLURRED else 1.0
+    sharp = np.clip(0.5 + gain * (hue - 0.5), 0, 1)
+    weight = np.where((sharp > 0) & (sharp < 1), trust, 0.0)
+    total = weight.sum()
+    if total < 1.0:
+        return gain, 0.0
+    # What is left beyond brightness's own noise, whose variance is 1 / trust.
+    error = (weight * (np.clip(bright, 0, 1) - sharp) ** 2).sum() / total
+    own = np.count_nonzero(weight) / total
+    return gain, float(np.sqrt(max(error - own, 0.0)))
