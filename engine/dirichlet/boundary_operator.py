@@ -93,12 +93,17 @@ class BoundaryOperator:
 
     def entries(self, rows: Indices, columns: Indices) -> Floats:
         """Return a part of the matrix (r, c)."""
-        # The plain kernel, Im dζ / (ζ − z), without complex division.
-        offset = self.nodes[columns] - self.nodes[rows, None]
-        x, y = offset.real, offset.imag
+        # The plain kernel, Im dζ / (ζ − z), without complex numbers.
+        to, of = self.nodes[rows, None], self.nodes[columns]
+        x, y = of.real - to.real, of.imag - to.imag
         weights = self.differentials[columns] / (2 * np.pi)
+        found: Floats = weights.imag * x
+        spare = weights.real * y
+        found -= spare
+        x *= x
+        x += np.multiply(y, y, out=spare)
         with np.errstate(divide="ignore", invalid="ignore"):
-            found: Floats = (weights.imag * x - weights.real * y) / (x * x + y * y)
+            found /= x
         place = np.full(len(self.nodes), -1)
         place[columns] = np.arange(len(columns))
         row, entry, column = _chosen(self.near, rows)

@@ -1,29 +1,26 @@
 """Cauchy integrals of densities on panels, evaluated at many points up to the outline itself.
 
-What panels far from a point contribute comes through expansions: moments of the densities about
-the centres of clusters, Taylor polynomials about those of squares. Panels near a point are
-integrated exactly. Which is which, and the weights of the latter, depend on the panels and the
-points alone and are worked out once; time and memory grow with the sum of points and nodes, not
-with their product.
+What panels far from a point contribute comes through expansions (`engine.dirichlet.expansions`).
+Panels near a point are integrated exactly. Which is which, and the weights of both, depend on the
+panels and the points alone and are worked out once; time and memory grow with the sum of points and
+nodes, not with their product.
 """
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from functools import cache
 from itertools import pairwise
 from typing import Self
 
 import numpy as np
 from scipy.sparse import bsr_array
-from scipy.special import comb
 
 from engine.arrays import Complexes, Floats, Indices, freeze, ragged
-from engine.dirichlet.interactions import Interactions, interactions
+from engine.dirichlet.expansions import TERMS, AnyComplexes, Expansions, powers
+from engine.dirichlet.interactions import interactions
 from engine.dirichlet.near_field import near_matrix
-from engine.dirichlet.panels import NODES, Panels
+from engine.dirichlet.panels import Panels
 
-TERMS = 18  # of expansions: they err by FAR^-TERMS = 7e-8 of the largest density at most
-BLOCK = 256  # pairs whose expansions are translated at a time, so that they stay in cache
+BLOCK = 2048  # points whose results are put together at a time, so that they stay in cache
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -34,31 +31,43 @@ class CauchyIntegral:
 
     Parameters
     ----------
-    panels : Panels
-    acting : Interactions
+    expansions : Expansions
     near : bsr_array, float64, shape (4 t, N)
         From densities to what near panels add to Re g, Im g, Re g' and Im g' at the points in the
-        order of the squares.
-    offsets : complex128, shape (t,)
+        order of the leaves.
+    leaves, counts : intp, shape (l,)
+        Squares that are not cut and the number of points in each, in ascending order.
+    offsets : complex, shape (t,)
         Of the points in that order from the centres of their leaves, over the radius.
+    places : intp, shape (t,)
+        Where in that order each point is.
     """
 
-    panels: Panels
-    acting: Interactions
+    expansions: Expansions
     near: bsr_array
-    offsets: Complexes
+    leaves: Indices
+    counts: Indices
+    offsets: AnyComplexes
+    places: Indices
 
     @classmethod
-    def of(cls, panels: Panels, points: Complexes) -> Self:
+    def of(cls, panels: Panels, points: Complexes, *, single: bool = False) -> Self:
         """Prepare the integrals at points (t,).
 
-        They lie strictly inside the outline, by some 1e-14 of its size at least.
+        They lie strictly inside the outline, by some 1e-14 of its size at least. In single
+        precision expansions err by 2e-7 of the largest density, and take half the memory.
         """
         acting = interactions(panels, points)
         squares, near = acting.squares, acting.near
-        leaf, _ = ragged(squares.ends[squares.leaves] - squares.starts[squares.leaves])
-        leaf = squares.leaves[leaf]
-        z = points[squares.order]
+        counts = squares.ends[squares.leaves] - squares.starts[squares.leaves]
+        ascending = np.argsort(counts, kind="stable")
+        leaves, counts = squares.leaves[ascending], counts[ascending]
+        number, place = ragged(counts)
+        leaf = leaves[number]
+        order = squares.order[squares.starts[leaf] + place]
+        z = points[order]
+        places = np.empty_like(order)
+        places[order] = np.arange(len(order))
         count = len(panels)
         keys = near.squares * count + near.clusters
         alone = np.array(
@@ -71,19 +80,22 @@ class CauchyIntegral:
         first = np.searchsorted(near.squares, leaf)
         rows, place = ragged(np.searchsorted(near.squares, leaf, side="right") - first)
         own = first[rows] + place
+        offsets = (z - squares.centre[leaf]) / squares.radius[leaf]
         return cls(
-            panels=panels,
-            acting=acting,
+            expansions=Expansions.of(panels, acting, single=single),
             near=near_matrix(panels, z, rows, near.clusters[own], alone[:, own]),
-            offsets=freeze((z - squares.centre[leaf]) / squares.radius[leaf]),
+            leaves=freeze(leaves),
+            counts=freeze(counts),
+            offsets=freeze(offsets.astype(np.complex64 if single else np.complex128)),
+            places=freeze(places),
         )
 
     @property
     def nbytes(self) -> int:
         """Memory that the arrays take, in bytes."""
-        near = self.near
-        own = near.data.nbytes + near.indices.nbytes + near.indptr.nbytes + self.offsets.nbytes
-        return int(own) + self.acting.nbytes
+        near, own = self.near, (self.leaves, self.counts, self.offsets, self.places)
+        arrays = (near.data, near.indices, near.indptr, *own)
+        return self.expansions.nbytes + sum(array.nbytes for array in arrays)
 
     def __call__(self, densities: Floats) -> tuple[Complexes, Complexes]:
         """Return g and g' of some densities.
@@ -97,110 +109,39 @@ class CauchyIntegral:
         -------
         values, derivatives : complex128, shape (t, j)
         """
-        squares, columns = self.acting.squares, densities.shape[1]
-        near = (self.near @ densities).reshape(len(self.offsets), 2, 2, columns)
-        results = np.empty((2, columns, len(self.offsets)), dtype=np.complex128)
-        polynomials = self._taylor(densities)
-        ranks = np.arange(1.0, TERMS)[:, None]
-        slopes = np.zeros_like(polynomials)
-        slopes[:, :-1] = polynomials[:, 1:] * ranks / squares.radius[squares.leaves, None, None]
-        both = np.concatenate([polynomials, slopes], axis=2)
-        starts, ends = squares.starts[squares.leaves], squares.ends[squares.leaves]
-        for first in range(0, len(starts), BLOCK):
-            last = min(first + BLOCK, len(starts)) - 1
-            block = slice(starts[first], ends[last])
-            powers = _powers(self.offsets[block])
-            found = near[block, :, 0] + 1j * near[block, :, 1]
-            flat = found.reshape(-1, 2 * columns)
-            for leaf in range(first, last + 1):
-                own = slice(starts[leaf] - block.start, ends[leaf] - block.start)
-                flat[own] += powers[:, own].T @ both[leaf]
-            results[:, :, squares.order[block]] = found.transpose(1, 2, 0)
+        columns, count = densities.shape[1], len(self.offsets)
+        near = (self.near @ densities).reshape(count, 2, 2, columns)
+        far = self._far(densities)
+        results = np.empty((2, columns, count), dtype=np.complex128)
+        for start in range(0, count, BLOCK):
+            rows = self.places[start : start + BLOCK]
+            block = results[:, :, start : start + BLOCK]
+            block[:] = far[rows].transpose(1, 2, 0)
+            exact = near[rows]
+            block.real += exact[:, :, 0].transpose(1, 2, 0)
+            block.imag += exact[:, :, 1].transpose(1, 2, 0)
         return results[0].T, results[1].T
 
-    def _taylor(self, densities: Floats) -> Complexes:
-        """Return the polynomials (l, TERMS, j) of the leaves."""
-        squares, clusters, far, direct, _ = self.acting
-        columns = densities.shape[1]
-        by_panel = densities.reshape(len(self.panels), NODES, columns)
-        differentials = self.panels.differentials() / (2j * np.pi)
-        masses = by_panel * differentials[:, :, None]
-        moments = self._moments(by_panel, differentials)
-        taylor = np.zeros((TERMS, len(squares.centre), columns), dtype=np.complex128)
-        for block, targets, starts in _blocks(far.squares):
-            # 1 / (ζ − z) = Σ binom(i + k, k) (z − c_T)^i (c_S − ζ)^k / (c_S − c_T)^(i + k + 1).
-            source, target = far.clusters[block], far.squares[block]
-            inverse = 1.0 / (clusters.centre[source] - squares.centre[target])
-            scaled = moments[:, source] * _powers(clusters.radius[source] * inverse)[:, :, None]
-            into = scaled.reshape(TERMS, -1).view(np.float64)
-            parts = (_translation() @ into).view(np.complex128).reshape(scaled.shape)
-            parts *= (_powers(squares.radius[target] * inverse) * inverse)[:, :, None]
-            taylor[:, targets] += np.add.reduceat(parts, starts, axis=1)
-        nodes = self.panels.nodes
-        for block, targets, starts in _blocks(direct.squares):
-            panel, target = direct.clusters[block], direct.squares[block]
-            inverse = 1.0 / (nodes[panel] - squares.centre[target, None])
-            powers = _powers(squares.radius[target, None] * inverse) * inverse
-            parts = np.matmul(powers.transpose(1, 0, 2), masses[panel])
-            taylor[:, targets] += np.add.reduceat(parts, starts).transpose(1, 0, 2)
-        for level in squares.levels[1:]:
-            for quadrant, matrix in enumerate(_to_quarters()):
-                own = level.start + np.flatnonzero(squares.quadrant[level] == quadrant)
-                given = taylor[:, squares.parent[own]]
-                taylor[:, own] += (matrix @ given.reshape(TERMS, -1)).reshape(given.shape)
-        return np.ascontiguousarray(taylor[:, squares.leaves].transpose(1, 0, 2))
+    def _far(self, densities: Floats) -> AnyComplexes:
+        """Return what far panels add to g and g' in the order of the leaves, (t, 2, j)."""
+        squares, columns = self.expansions.squares, densities.shape[1]
+        polynomials = self.expansions(densities)[self.leaves]
+        slopes = np.zeros_like(polynomials)
+        slopes[:, :-1] = polynomials[:, 1:]
+        slopes *= np.arange(1.0, TERMS + 1)[:, None] / squares.radius[self.leaves, None, None]
+        both = np.concatenate([polynomials, slopes], axis=2)
+        found = np.empty((len(self.offsets), 2 * columns), dtype=both.dtype)
+        for leaves, points, count in self._runs():
+            raised = powers(self.offsets[points]).T.reshape(-1, count, TERMS)
+            np.matmul(raised, both[leaves], out=found[points].reshape(-1, count, 2 * columns))
+        return found.reshape(-1, 2, columns)
 
-    def _moments(self, densities: Floats, differentials: Complexes) -> Complexes:
-        """Return Σ m ((c − ζ) / r)^k of the clusters, (TERMS, c, j)."""
-        clusters, nodes = self.acting.clusters, self.panels.nodes
-        count, _, columns = densities.shape
-        moments = np.empty((TERMS, len(clusters.centre), columns), dtype=np.complex128)
-        for level, (first, end) in enumerate(pairwise(clusters.firsts)):
-            of_panel = first + (np.arange(count) >> level)
-            away = clusters.centre[of_panel, None] - nodes
-            weights = _powers(away / clusters.radius[of_panel, None]) * differentials
-            # The panels of a cluster side by side; the last one may have fewer.
-            lacking = ((end - first) << level) - count
-            padded = np.pad(densities, ((0, lacking), (0, 0), (0, 0)))
-            given = padded.reshape(end - first, -1, columns)
-            own = moments[:, first:end].transpose(1, 0, 2)
-            for part, into in ((weights.real, own.real), (weights.imag, own.imag)):
-                by_panel = np.pad(part, ((0, 0), (0, lacking), (0, 0)))
-                into[:] = by_panel.reshape(TERMS, end - first, -1).transpose(1, 0, 2) @ given
-        return moments
-
-
-def _powers(base: Complexes) -> Complexes:
-    """Return base^k for k < TERMS, (TERMS, ...)."""
-    powers = np.empty((TERMS, *base.shape), dtype=np.complex128)
-    powers[0] = 1.0
-    for k in range(1, TERMS):
-        np.multiply(powers[k - 1], base, out=powers[k])
-    return powers
-
-
-def _blocks(targets: Indices) -> Iterator[tuple[slice, Indices, Indices]]:
-    """Yield blocks of sorted pairs, their targets once each, and where the pairs of each start."""
-    for first in range(0, len(targets), BLOCK):
-        own = targets[first : first + BLOCK]
-        starts = np.flatnonzero(np.diff(own, prepend=-1))
-        yield slice(first, first + BLOCK), own[starts], starts
-
-
-@cache
-def _translation() -> Floats:
-    """Return binom(i + k, k), what the moment k adds to the power i."""
-    ranks = np.arange(TERMS)
-    return freeze(comb(ranks[:, None] + ranks, ranks).astype(np.float64))
-
-
-@cache
-def _to_quarters() -> Complexes:
-    """Return the matrices (4, TERMS, TERMS) from the polynomial of a square to its quarters'."""
-    ranks = np.arange(TERMS)
-    raised = np.maximum(ranks - ranks[:, None], 0)
-    # Of Σ c_k ((z − c) / r)^k, with half the radius about a centre that is off by half a side.
-    shifts = np.array([-1 - 1j, 1 - 1j, -1 + 1j, 1 + 1j]) / np.sqrt(8)
-    binomials = comb(ranks, ranks[:, None])
-    matrices = binomials * shifts[:, None, None] ** raised * 0.5 ** ranks[:, None]
-    return freeze(np.asarray(matrices, dtype=np.complex128))
+    def _runs(self) -> Iterator[tuple[slice, slice, int]]:
+        """Yield runs of leaves with as many points each: leaves, all of their points, how many."""
+        changes = np.flatnonzero(np.diff(self.counts)) + 1
+        first = 0
+        for start, end in pairwise([0, *changes, len(self.counts)]):
+            count = int(self.counts[start])
+            last = first + count * (end - start)
+            yield slice(start, end), slice(first, last), count
+            first = last

@@ -100,18 +100,6 @@ class Interactions(NamedTuple):
     direct: Pairs
     near: Pairs
 
-    @property
-    def nbytes(self) -> int:
-        """Memory that the arrays take, in bytes."""
-        squares, clusters = self.squares, self.clusters
-        arrays = (
-            *(squares.order, squares.starts, squares.ends, squares.centre, squares.radius),
-            *(squares.parent, squares.quadrant, squares.leaves),
-            *(clusters.centre, clusters.radius, clusters.reach, clusters.level),
-            *(*self.far, *self.direct, *self.near),
-        )
-        return sum(array.nbytes for array in arrays)
-
 
 def interactions(panels: Panels, points: Complexes) -> Interactions:
     """Sort points (t,), at least one, into squares, and find what acts on each."""

@@ -9,6 +9,7 @@ the box. Time and memory grow with the number of nodes.
 """
 
 from dataclasses import dataclass
+from functools import cache
 from itertools import pairwise
 from typing import Self
 
@@ -157,13 +158,13 @@ class _Active:
             triangle[:rank, :rank], triangle[:rank, rank:], check_finite=False
         ).astype(np.float64, copy=False)
         kept, others = order[:rank], order[rank:]
-        block = self.block
-        inner, to_kept = block[np.ix_(kept, kept)], block[np.ix_(kept, others)]
-        from_kept = block[np.ix_(others, kept)]
+        block = self.block[order[:, None], order]
+        inner, to_kept = block[:rank, :rank], block[:rank, rank:]
+        from_kept = block[rank:, :rank]
         # With x_kept = y_kept − weights y_others, and the same combinations of equations, nothing
         # outside acts on the others, nor they on it.
         to_kept = to_kept - inner @ weights
-        rest = block[np.ix_(others, others)] - from_kept @ weights - weights.T @ to_kept
+        rest = block[rank:, rank:] - from_kept @ weights - weights.T @ to_kept
         from_kept = from_kept - weights.T @ inner
         inverse = np.linalg.inv(rest)
         size = len(block)
@@ -191,12 +192,19 @@ def _sketched(rows: Floats) -> Floats:
     sums = columns + SPARE
     if count <= sums:
         return rows
-    rng = np.random.default_rng(0)
-    into = rng.integers(sums, size=count * SUMMED)
-    signs = rng.choice([-1.0, 1.0], size=count * SUMMED)
-    sketch = csc_array((signs, into, np.arange(0, count * SUMMED + 1, SUMMED)), (sums, count))
-    sketched: Floats = sketch @ rows
+    entries = count * SUMMED
+    numbers, signs = _random(entries.bit_length())
+    into, signs = numbers[:entries] % sums, signs[:entries]
+    sketch = csc_array((signs, into, np.arange(0, entries + 1, SUMMED)), (sums, count))
+    sketched: Floats = np.asarray(sketch @ rows)
     return sketched
+
+
+@cache
+def _random(bits: int) -> tuple[Indices, Floats]:
+    """Return 2^bits large random numbers and as many signs."""
+    numbers = np.random.default_rng(0).integers(2**62, size=2**bits)
+    return freeze(numbers >> 1), freeze(1.0 - 2.0 * (numbers & 1))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

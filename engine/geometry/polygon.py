@@ -87,10 +87,11 @@ def require_holes(holes: Sequence[Complexes], outline: Complexes) -> None:
 
 def lies_within(inner: Complexes, polygon: Complexes, holes: Sequence[Complexes] = ()) -> bool:
     """Tell whether the inside of one polygon lies in that of another, clear of its boundary."""
-    return bool(shapely.contains_properly(_area(polygon, holes), _area(inner)))
+    return bool(shapely.contains_properly(region(polygon, holes), region(inner)))
 
 
-def _area(polygon: Complexes, holes: Sequence[Complexes] = ()) -> shapely.Polygon:
+def region(polygon: Complexes, holes: Sequence[Complexes] = ()) -> shapely.Polygon:
+    """Return the inside of a polygon, without that of its holes, as Shapely has it."""
     return shapely.Polygon(as_xy(polygon), [as_xy(hole) for hole in holes])
 
 
@@ -107,7 +108,7 @@ def distance_to_boundary(
 def deepest_point(polygon: Complexes, holes: Sequence[Complexes] = ()) -> complex:
     """Return the point inside that is farthest from the boundary, to 1e-4 of the box diagonal."""
     radius = shapely.maximum_inscribed_circle(
-        _area(polygon, holes), tolerance=1e-4 * box_diagonal(polygon)
+        region(polygon, holes), tolerance=1e-4 * box_diagonal(polygon)
     )
     x, y = shapely.get_coordinates(radius)[0]
     return complex(x, y)
@@ -135,7 +136,7 @@ def contains(
     -------
     bool, shape (p,)
     """
-    area = _area(polygon, holes)
+    area = region(polygon, holes)
     shapely.prepare(area)
     inside = np.asarray(shapely.intersects_xy(area, points.real, points.imag), dtype=np.bool_)
     if tolerance > 0 and not inside.all():
@@ -214,7 +215,7 @@ def constrained_delaunay(polygon: Complexes, holes: Sequence[Complexes] = ()) ->
         The vertices of each triangle, counter-clockwise, those of the holes numbered after the
         polygon's: the constrained Delaunay triangulation.
     """
-    parts = shapely.get_parts(shapely.constrained_delaunay_triangles(_area(polygon, holes)))
+    parts = shapely.get_parts(shapely.constrained_delaunay_triangles(region(polygon, holes)))
     corners = shapely.get_coordinates(parts).reshape(-1, 4, 2)[:, :3] @ [1, 1j]
     vertices = np.concatenate([polygon, *holes])
     by_place = np.argsort(vertices)

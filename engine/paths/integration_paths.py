@@ -11,9 +11,10 @@ from engine.paths.path_network import Network
 from engine.paths.spanning_tree import SpanningTree, depth_first_numbering
 
 STEP_PER_SIZE = 1 / 125  # longest step, over the box diagonal of the outline
-# Longest step over its distance to the nearest singularity of the integrand. The error of a step of
-# length h at the distance d from a logarithmic singularity of strength c is c h (h/d)^4 / 120.
-STEP_PER_DISTANCE = 0.3
+# The longest step over its distance to the nearest singularity of the integrand. The error of a
+# step of length h at the distance d from a logarithmic singularity of strength c is
+# c h (h/d)^4 / 120; nearer to the singularity steps are so much shorter that each errs as much.
+STEP_PER_DISTANCE = 0.25
 SHORTEST_PER_SIZE = 2e-5  # steps are not cut below this, over the box diagonal
 
 
@@ -110,10 +111,15 @@ def lay_paths(network: Network, outline: Complexes, cage: Complexes) -> Integrat
     legs = Pieces.whole(network.nodes[network.parents[children]], network.nodes[children])
 
     def is_fine(steps: Pieces) -> Booleans:
-        distance, _ = singular.query(as_xy((steps.starts + steps.ends) / 2))
-        near = STEP_PER_DISTANCE * (distance - steps.lengths / 2)
-        longest = np.clip(near, SHORTEST_PER_SIZE * scale, STEP_PER_SIZE * scale)
-        fine: Booleans = steps.lengths <= longest
+        lengths = steps.lengths
+        # Farther away singularities do not matter, and are not looked for.
+        farthest = lengths.max(initial=0.0) / 2 + scale * STEP_PER_SIZE / STEP_PER_DISTANCE
+        middles = as_xy((steps.starts + steps.ends) / 2)
+        distance, _ = singular.query(middles, distance_upper_bound=farthest)
+        room = np.maximum(distance - lengths / 2, 0.0) / scale
+        near = (STEP_PER_SIZE * (STEP_PER_DISTANCE * room) ** 4) ** 0.2
+        longest = scale * np.clip(near, SHORTEST_PER_SIZE, STEP_PER_SIZE)
+        fine: Booleans = lengths <= longest
         return fine
 
     nodes, parents = _chain(network, children, bisect(legs, is_fine))
@@ -121,8 +127,9 @@ def lay_paths(network: Network, outline: Complexes, cage: Complexes) -> Integrat
     new = np.empty(len(nodes), dtype=np.intp)
     new[numbering] = np.arange(len(numbering))
     nodes, parents = nodes[numbering], new[parents[numbering]]
-    to_corner, _ = cKDTree(as_xy(outline)).query(as_xy(nodes))
-    cornered = np.asarray(to_corner < SHORTEST_PER_SIZE / 4 * scale)
+    beside = SHORTEST_PER_SIZE / 4 * scale
+    to_corner, _ = cKDTree(as_xy(outline)).query(as_xy(nodes), distance_upper_bound=beside)
+    cornered = np.asarray(to_corner < beside)
     return IntegrationPaths(
         nodes=freeze(nodes),
         steps=freeze(nodes - nodes[parents]),

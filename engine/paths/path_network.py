@@ -11,13 +11,14 @@ from dataclasses import dataclass, field
 import numpy as np
 import shapely
 from scipy import ndimage
+from scipy.sparse import csr_array
 
 from engine.arrays import Booleans, Complexes, Indices, Integers, ragged
 from engine.domain.meshing import Mesh
 from engine.errors import EngineError
-from engine.geometry import as_xy, box_diagonal, constrained_delaunay, loop_ends
+from engine.geometry import as_xy, box_diagonal, constrained_delaunay, loop_ends, region
 from engine.paths.loops import Loops
-from engine.paths.spanning_tree import breadth_first_parents
+from engine.paths.spanning_tree import breadth_first_parents, shortest_parents
 
 CELL = 1 / 50  # longest edge of the triangles between scattered points, over the box diagonal
 MOST_CELLS = 2000  # over the box diagonal, by which segments near the boundary are looked for
@@ -87,8 +88,14 @@ def mesh_network(
             f"The triangles name points from {triangles.min()} to {triangles.max()}, but there are "
             f"only points 0 to {len(vertices) - 1}."
         )
-    ends = Mesh(vertices=vertices, triangles=triangles).edges().astype(np.intp)
     loops = (outline, *holes)
+    along, against = _directed(triangles, len(vertices))
+    # Where all triangles are counter-clockwise, what they cover is bounded by the edges that no
+    # two of them pass in opposite directions: with these inside an outline, all of them are.
+    areas = Mesh(vertices=vertices, triangles=triangles).areas()
+    is_simple = not holes and areas.min(initial=1.0) > 0
+    first, second = (along - against if is_simple else along + against).nonzero()
+    ends = np.column_stack([first, second])[first < second]
     crossing = _crosses(loops, vertices[ends[:, 0]], vertices[ends[:, 1]])
     if crossing.any():
         first, second = ends[np.flatnonzero(crossing)[0]]
@@ -103,14 +110,14 @@ def mesh_network(
             f"No point of the mesh near the anchor {anchor[0]:.6g} can be reached straight; choose "
             "an anchor inside the triangles."
         )
-    nodes = np.concatenate([anchor, vertices])
-    legs = np.concatenate([[[0, seen[0] + 1]], ends + 1])
-    parents = breadth_first_parents(len(nodes), legs, 0)
-    if np.any(parents < 0):
+    reached = shortest_parents(along + against, int(seen[0]))
+    if np.any(reached < 0):
         raise EngineError(
-            f"Point {np.flatnonzero(parents < 0)[0] - 1} is not joined to the anchor by triangles; "
+            f"Point {np.flatnonzero(reached < 0)[0]} is not joined to the anchor by triangles; "
             "leave the triangles out and the engine finds its own paths."
         )
+    nodes, parents = np.concatenate([anchor, vertices]), np.concatenate([[0], reached + 1])
+    parents[seen[0] + 1] = 0
     return Network(nodes=nodes, parents=parents, places=np.arange(1, len(nodes)))
 
 
@@ -181,6 +188,17 @@ def with_loops(
     )
 
 
+def _directed(triangles: Integers, count: int) -> tuple[csr_array, csr_array]:
+    """Return how often triangles pass from each of `count` points to each other, and the reverse.
+
+    int32, (count, count) both.
+    """
+    starts, ends = triangles.ravel(), triangles[:, [1, 2, 0]].ravel()
+    ones = np.ones(len(starts), dtype=np.int32)
+    along = csr_array((ones, (starts, ends)), shape=(count, count))
+    return along, along.T.tocsr()
+
+
 def _crosses(loops: Sequence[Complexes], starts: Complexes, ends: Complexes) -> Booleans:
     """Tell for each segment whether it leaves the region by more than rounding."""
     tolerance = 2 * ON_OUTLINE * box_diagonal(loops[0])
@@ -191,7 +209,7 @@ def _crosses(loops: Sequence[Complexes], starts: Complexes, ends: Complexes) -> 
     sides = shapely.linestrings(np.stack([as_xy(corners), as_xy(loop_ends(loops))], axis=1))
     touching, _ = shapely.STRtree(sides).query(segments, predicate="dwithin", distance=tolerance)
     touching = np.unique(touching)
-    area = shapely.Polygon(as_xy(loops[0]), [as_xy(hole) for hole in loops[1:]])
+    area = region(loops[0], loops[1:])
     room = area.buffer(tolerance, join_style="mitre")
     shapely.prepare(room)
     crosses = np.zeros(len(starts), dtype=np.bool_)

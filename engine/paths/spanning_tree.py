@@ -68,8 +68,13 @@ def breadth_first_parents(count: int, edges: Indices, root: int) -> Indices:
     """
     ones = np.ones(len(edges), dtype=np.int8)
     graph = csr_array((ones, (edges[:, 0], edges[:, 1])), shape=(count, count))
-    order, predecessors = breadth_first_order(graph, root, directed=False)
-    parents = np.full(count, -1, dtype=np.intp)
+    return shortest_parents(graph + graph.T, root)
+
+
+def shortest_parents(graph: csr_array, root: int) -> Indices:
+    """Return the same in a graph that is given as a symmetric matrix (n, n)."""
+    order, predecessors = breadth_first_order(graph, root)
+    parents = np.full(graph.shape[0], -1, dtype=np.intp)
     parents[order] = predecessors[order]
     parents[root] = root
     return parents

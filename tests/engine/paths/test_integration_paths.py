@@ -158,6 +158,22 @@ def test_triangles_across_the_outside_are_refused():
         mesh_network(outline, vertices, np.array([[0, 2, 1]], np.int32), vertices[2:])
 
 
+def test_triangles_across_the_outside_are_refused_whichever_way_they_run():
+    outline, _ = narrow_u()
+    # The same triangle twice, one of them reversed: no edge is at the border of anything.
+    vertices = np.array([-0.5 + 1.5j, 0.5 + 1.5j, 0.3j])
+    both = np.array([[0, 2, 1], [0, 1, 2]], np.int32)
+    with pytest.raises(EngineError, match="from point 0 to point 1 leaves the outline"):
+        mesh_network(outline, vertices, both, vertices[2:])
+    mesh = triangulate(outline, 300)
+    anchor = mesh.vertices[mesh.triangles[0, :1]]
+    networks = [
+        mesh_network(outline, mesh.vertices, triangles, anchor)
+        for triangles in (mesh.triangles, mesh.triangles[:, ::-1])
+    ]
+    assert_array_equal(networks[0].parents, networks[1].parents)
+
+
 def test_an_anchor_far_from_a_partial_mesh_is_refused():
     outline, _ = narrow_u()
     vertices = np.array([-0.8 + 1.5j, -0.5 + 1.5j, -0.5 + 1.8j])
