@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from engine.arrays import Floats
+from engine.arrays import Floats, Indices, freeze
 from engine.deform.energy import Radial
 from engine.maps import Limits
 
@@ -132,3 +132,16 @@ class Barrier:
         slopes[0] = self.walls.k
         slopes[2] = -1.0
         return slopes
+
+
+def with_samples_between(duals: Floats, segments: Indices, ends: Indices) -> Floats:
+    """Return dual variables (3, m) with those of a sample more in each of some segments.
+
+    Parameters
+    ----------
+    duals : float64, shape (3, m)
+    segments, ends : intp, shape (s,)
+        The samples at which these segments start, ascending, and end.
+    """
+    between = np.maximum(duals[:, segments], duals[:, ends])
+    return freeze(np.insert(duals, segments + 1, between, axis=1))

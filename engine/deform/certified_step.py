@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from engine.arrays import Floats, Indices, readonly
+from engine.deform.barrier import with_samples_between
 from engine.deform.newton import Direction, line_search, newton_direction
 from engine.deform.objective import Jet, Objective
 from engine.maps import Boundary, Certificate, HarmonicMap, Limits, certify_segments
@@ -96,9 +97,8 @@ def add_samples(
         return boundary, readonly(duals)
     if len(boundary.points) + len(segments) > (1 + MOST_ADDED) * len(base.points):
         return base, None
-    ends = boundary.following[segments]
-    between = np.maximum(duals[:, segments], duals[:, ends])
-    return boundary.refined(segments), readonly(np.insert(duals, segments + 1, between, axis=1))
+    between = with_samples_between(duals, segments, boundary.following[segments])
+    return boundary.refined(segments), between
 
 
 def _moderate(direction: Direction, boundary: Boundary) -> Direction:

@@ -57,10 +57,8 @@ from engine.maps import Boundary, Bounds, Certificate, HarmonicMap, Limits, cert
 # much softer.
 LEAST_TIGHTENING = 0.1
 SOFTNESS = 0.003
-# One sample in so many enters the Hessian while the hand moves.
+# One sample in so many enters the sketch of the Hessian.
 STRIDE = 6
-# Expected gain relative to the energy near rest, where a sketched Hessian would go in circles.
-NEAR_REST = 1e-4
 # One row of a recorded path: so many steps, or until the expected gain is below this.
 PATH_STEPS = 10
 PATH_REST = 1e-3
@@ -211,8 +209,6 @@ class Deformer:
             length=taken.length,
             shortfall=_excess(taken.certificate, self.bounds) if step.tightening else error,
             moving=step.leashed or step.tightening,
-            # A sketch may overshoot between its samples in the open: nothing to do with the walls.
-            overshot=step.objective.stride > 1 and not step.leashed,
         )
         boundary, duals = add_samples(
             self.boundary, state.boundary, step.next_duals(taken), taken.broken
@@ -252,7 +248,7 @@ class Deformer:
         """Choose what the next step minimises, and what it must keep."""
         free = Objective(boundary=state.boundary, handles=self.handles, wish=wish)
         jet = free.jet(*state.map.columns)
-        a, b = np.abs(jet.f), np.abs(jet.g)
+        a, b = jet.a, jet.b
         limits = closing_limits(self.bounds, state.limits, a, b)
         limits_of_walls, required = place_walls(limits, a, b, state.certificate)
         schedule = state.schedule if _same(wish, state.wish) else state.schedule.for_new_wish()
@@ -278,7 +274,7 @@ class Deformer:
                 handles=handles,
                 wish=wish,
                 barrier=barrier,
-                stride=STRIDE if leashed or not _near_rest(state.statistics) else 1,
+                stride=STRIDE,
             ),
             limits=limits,
             required=required,
@@ -425,7 +421,7 @@ class Deformer:
         self, free: Objective, jet: Jet, search: Search, outcome: Search
     ) -> Statistics:
         """Return what a step of a search did, and what is known of the outcome."""
-        density = symmetric_dirichlet(np.abs(jet.f), np.abs(jet.g))
+        density = symmetric_dirichlet(jet.a, jet.b)
         return Statistics(
             energy=float(self.boundary.weights @ density),
             objective=free.energy(jet),
@@ -478,14 +474,14 @@ class _Step(NamedTuple):
 
     @property
     def energy(self) -> float:
-        density = symmetric_dirichlet(np.abs(self.jet.f), np.abs(self.jet.g))
+        density = symmetric_dirichlet(self.jet.a, self.jet.b)
         return float(self.objective.boundary.weights @ density)
 
     def next_duals(self, taken: CertifiedStep) -> Floats:
         """Return the dual variables after the whole step, be it taken or not."""
         ahead = self.jet.advanced(1.0, taken.direction.jet)
-        here, there = (np.abs(self.jet.f), np.abs(self.jet.g)), (np.abs(ahead.f), np.abs(ahead.g))
-        return self.barrier.next_duals(*here, *there)
+        a, b = self.jet.a, self.jet.b
+        return self.barrier.next_duals(a, b, ahead.a - a, ahead.b - b)
 
 
 def _is_proven(outcome: Search, shown: float) -> bool:
@@ -509,11 +505,6 @@ def _excess(certificate: Certificate, bounds: Bounds) -> float:
         (certificate.sigma_a - bounds.sigma_a) / bounds.sigma_a,
         (bounds.sigma_b - certificate.sigma_b) / bounds.sigma_b,
     )
-
-
-def _near_rest(last: Statistics | None) -> bool:
-    """Tell whether the next step needs the whole Hessian."""
-    return last is not None and (last.length < FULL or last.decrement < NEAR_REST * last.energy)
 
 
 def _same(wish: Wish, other: Wish | None) -> bool:

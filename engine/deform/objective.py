@@ -1,11 +1,11 @@
 """What a step of a drag minimises: energy, barrier and handles, with gradient and Hessian.
 
-The unknowns are φ and ψ in the boundary's basis, whose derivatives are orthonormal: the Hessian is
-then well conditioned but for handles and walls, and half the digits do for its sketches. Without
-ψ_0, a constant (the gauge: (φ + c, ψ − conj(c)) is the same map). As a real vector they are the
-real and imaginary parts, alternating, of the conjugates of φ and ψ_1, ψ_2, …; with that order
-Re Σ P_j φ_j is the plain product with the parts of a complex row P, and matrices need no
-rearrangement.
+The unknowns are φ and ψ in the boundary's basis, whose derivatives are orthonormal and whose means
+are 0: the Hessian is then well conditioned but for walls, and half the digits do for all samples
+but those next to walls. Without ψ_0, a constant (the gauge: (φ + c, ψ − conj(c)) is the same map).
+As a real vector they are the real and imaginary parts, alternating, of the conjugates of φ and ψ_1,
+ψ_2, …; with that order Re Σ P_j φ_j is the plain product with the parts of a complex row P, and
+matrices need no rearrangement.
 
 Around q holes the last q entries of φ are the logarithms' a_j, scaled, and those of ψ their
 conjugates: ψ's are no unknowns, and what they contribute is folded onto φ's. Constants on the cage
@@ -22,7 +22,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from engine.arrays import Booleans, Complexes, Floats, Indices
+from engine.arrays import Booleans, Complexes, Floats, Indices, Singles
 from engine.deform.barrier import Barrier
 from engine.deform.energy import Radial, symmetric_dirichlet, symmetric_dirichlet_derivatives
 from engine.deform.handles import Handles, Wish
@@ -37,13 +37,14 @@ Reals = npt.NDArray[np.float32] | npt.NDArray[np.float64]
 SAMPLES_PER_VERTEX = 2
 STIFF = 3.0
 STIFF_PER_CALM = 0.75
-# Samples this far above the median keep all their digits in a sketch, too.
-HARD = 1e3
+# Samples this far above the median keep all their digits.
+HARD = 1e5
 # Stiffness of a step against turning the whole shape by an angle, over that against stretching it.
 DAMPING = 1e-4
 
 
-class Jet(NamedTuple):
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Jet:
     """Everything the objective knows of a map; real-linear in its coefficients.
 
     Parameters
@@ -59,9 +60,35 @@ class Jet(NamedTuple):
     positions: Complexes
     fz: Complexes
 
+    @cached_property
+    def a(self) -> Floats:
+        """|f_z| at the samples, float64 (m,)."""
+        moduli: Floats = np.abs(self.f)
+        return moduli
+
+    @cached_property
+    def b(self) -> Floats:
+        """|f_z̄| at the samples, float64 (m,)."""
+        moduli: Floats = np.abs(self.g)
+        return moduli
+
+    def scaled(self, factor: float) -> "Jet":
+        """Return the jet of a change that is so many times as large."""
+        return Jet(
+            f=factor * self.f,
+            g=factor * self.g,
+            positions=factor * self.positions,
+            fz=factor * self.fz,
+        )
+
     def advanced(self, length: float, direction: "Jet") -> "Jet":
         """Return the jet of the map that lies `length` steps along a direction."""
-        return Jet(*(here + length * there for here, there in zip(self, direction, strict=True)))
+        return Jet(
+            f=self.f + length * direction.f,
+            g=self.g + length * direction.g,
+            positions=self.positions + length * direction.positions,
+            fz=self.fz + length * direction.fz,
+        )
 
 
 class _Quadrature(NamedTuple):
@@ -96,9 +123,9 @@ class Objective:
     wish : Wish
     barrier : Barrier or None
     stride : int
-        One sample in so many enters the Hessian; more than one make a sketch of it. Good enough,
-        and two to three times faster, on the way; near a minimum its steps overshoot in directions
-        that show between the samples only, and the shape would never come to rest.
+        One sample in so many enters the Hessian; more than one make a sketch of it, two to three
+        times faster. Its steps overshoot in directions that show between the samples only, unless
+        products with the Hessian over all samples mend them.
     """
 
     boundary: Boundary
@@ -113,11 +140,27 @@ class Objective:
 
     def coefficients(self, unknowns: Floats) -> tuple[Complexes, Complexes]:
         """Return the columns (n,) of coefficients of φ and ψ that unknowns (u,) stand for."""
+        of_phi, of_psi = self._in_basis(unknowns)
+        return self.boundary.basis @ of_phi, self.boundary.basis @ of_psi
+
+    def change(self, unknowns: Floats) -> Jet:
+        """Measure a change of a map by its unknowns (u,)."""
+        of_phi, of_psi = self._in_basis(unknowns)
+        rows, coordinates = self.boundary.basis_derivatives, self.handles.basis_coordinates
+        return Jet(
+            f=rows @ of_phi,
+            g=rows @ of_psi,
+            positions=coordinates @ of_phi + (coordinates @ of_psi).conj(),
+            fz=self.handles.basis_derivatives @ of_phi,
+        )
+
+    def _in_basis(self, unknowns: Floats) -> tuple[Complexes, Complexes]:
+        """Return φ and ψ (n,) in the basis."""
         n, count = len(self.boundary.span), len(self.boundary.holes)
         conjugates = np.ascontiguousarray(unknowns).view(np.complex128).conj()
         of_phi = conjugates[:n]
         of_psi = np.concatenate([[0.0], conjugates[n:], of_phi[n - count :].conj()])
-        return self.boundary.basis @ of_phi, self.boundary.basis @ of_psi
+        return of_phi, of_psi
 
     def jet(self, phi: Complexes, psi: Complexes) -> Jet:
         """Measure a map, or a change of a map, by the columns (n,) of its coefficients."""
@@ -134,7 +177,7 @@ class Objective:
         """Return the objective, ∞ where the map folds or leaves the walls."""
         value = self.energy(jet)
         if self.barrier is not None and np.isfinite(value):
-            density = self.barrier.value(np.abs(jet.f), np.abs(jet.g))
+            density = self.barrier.value(jet.a, jet.b)
             value += float(self.boundary.shares @ density)
         return value
 
@@ -142,7 +185,7 @@ class Objective:
         """Return the objective without its barrier."""
         # A trial step may lead farther than numbers reach; there the energy is ∞.
         with np.errstate(over="ignore", invalid="ignore"):
-            density = symmetric_dirichlet(np.abs(jet.f), np.abs(jet.g))
+            density = symmetric_dirichlet(jet.a, jet.b)
             pull = np.abs(jet.positions - self.wish.positions) ** 2
             value = self.boundary.weights @ density + self.handles.stiffness @ pull
             if self._turning.any():
@@ -151,14 +194,13 @@ class Objective:
 
     def within(self, jet: Jet) -> bool:
         """Tell whether the samples are strictly within the walls."""
-        a, b = np.abs(jet.f), np.abs(jet.g)
         if self.barrier is None:
-            return bool(np.all(a > b))
-        return bool(np.all(self.barrier.slacks(a, b) > 0))
+            return bool(np.all(jet.a > jet.b))
+        return bool(np.all(self.barrier.slacks(jet.a, jet.b) > 0))
 
     def radial(self, jet: Jet) -> Radial:
         """Return what each sample contributes to the derivatives of energy and barrier."""
-        a, b = np.abs(jet.f), np.abs(jet.g)
+        a, b = jet.a, jet.b
         energy = symmetric_dirichlet_derivatives(a, b).weighted(self.boundary.weights)
         if self.barrier is None:
             return energy
@@ -191,7 +233,7 @@ class Objective:
             Which samples contribute, by default all.
         """
         rows, f, g = self.boundary.basis_derivatives[samples], jet.f[samples], jet.g[samples]
-        by_phi = (by_a[samples] * f.conj() / np.abs(f)) @ rows
+        by_phi = (by_a[samples] / jet.a[samples] * f.conj()) @ rows
         by_psi = (b_per_b[samples] * g.conj()) @ rows
         return self._by_unknowns(by_phi, by_psi)
 
@@ -210,16 +252,49 @@ class Objective:
         In the frames F / |F|, G / |G| of each sample the exact Hessian has the radial block
         [[h_aa, h_ab], [h_ab, h_bb]] and the tangential entries h_a / a, h_b / b, of which only
         h_a / a can be negative: max(h_a / a, 0) is the exact projection. The sum over the samples
-        is a quadrature, coarser than that of energy and gradient. Cost: 24 s n² for s samples; in
-        a sketch in single precision but for the hard ones.
+        is a quadrature, coarser than that of energy and gradient, and in single precision but for
+        the hard ones. Cost: 24 s n² for s samples.
         """
-        hessian = self.handles.hessian.copy()
         calm, hard = self._quadrature(radial).split()
-        rows = [*self._turning_roots(jet), self._damping_root(jet, calm)]
-        self._add(hessian, jet, calm, rows, single=self.stride > 1)
+        hessian = self.handles.hessian.copy()
+        self._add(hessian, jet, calm, self._further_rows(jet, calm), single=True)
         if len(hard.samples):
             self._add(hessian, jet, hard)
         return hessian
+
+    def single_hessian(self, jet: Jet, radial: Radial) -> Singles | None:
+        """Return the same in single precision throughout, or None where that will not do.
+
+        That is where samples are hard, around holes, where functions may nearly be the same, and
+        where fewer than two handles leave the shape free to turn or to go anywhere.
+        """
+        quadrature = self._quadrature(radial)
+        if quadrature.hard or self.boundary.holes or len(self.wish.positions) < 2:
+            return None
+        hessian = self.handles.hessian.astype(np.float32)
+        further = self._further_rows(jet, quadrature)
+        self._add(hessian, jet, quadrature, further, single=True)
+        return hessian
+
+    def product(self, jet: Jet, radial: Radial, change: Jet) -> Floats:
+        """Return the product (u,) of the Hessian over all samples with a change.
+
+        In double precision, and without the tiny stiffness against turning as a whole; the matrix
+        is not formed. Cost: 16 m n for m samples.
+        """
+        frame_f, frame_g = _frames(jet.f, jet.g)
+        f, g = frame_f * change.f, frame_g * change.g
+        around_a = np.maximum(radial.around_a, 0.0)
+        by_f = radial.aa * f.real + radial.ab * g.real - 1j * around_a * f.imag
+        by_g = radial.ab * f.real + radial.bb * g.real - 1j * radial.around_b * g.imag
+        pull = 2.0 * self.handles.stiffness * change.positions
+        rows, coordinates = self.boundary.basis_derivatives, self.handles.basis_coordinates
+        by_phi = (by_f * frame_f) @ rows + pull.conj() @ coordinates
+        by_psi = (by_g * frame_g) @ rows + pull @ coordinates
+        for frame in self._turning_frames(jet):
+            along = (frame * change.fz[self._turning]).real
+            by_phi += (along * frame) @ self._turning_rows
+        return self._by_unknowns(by_phi, by_psi)
 
     def stiffening(self, jet: Jet, radial: Radial, samples: Indices) -> Floats:
         """Return the positive part of the Hessian (u, u) of a few samples, upper triangle."""
@@ -230,7 +305,7 @@ class Objective:
 
     def _add(
         self,
-        hessian: Floats,
+        hessian: Reals,
         jet: Jet,
         quadrature: "_Quadrature",
         more: Sequence[Complexes] = (),
@@ -250,7 +325,7 @@ class Objective:
         if self.boundary.holes:
             self._fold_logarithms(hessian, mixed, of_psi)
 
-    def _fold_logarithms(self, hessian: Floats, mixed: Reals, of_psi: Reals) -> None:
+    def _fold_logarithms(self, hessian: Reals, mixed: Reals, of_psi: Reals) -> None:
         """Add what ψ's logarithms, the conjugates of φ's, contribute to a Hessian (u, u).
 
         Parameters
@@ -295,22 +370,23 @@ class Objective:
         samples, entries, _ = quadrature
         kind = np.complex64 if single else np.complex128
         rows = self.boundary.basis_derivatives[samples].astype(kind, copy=False)
-        f, g = jet.f[samples], jet.g[samples]
-        b = np.abs(g)
-        frame_f = f.conj() / np.abs(f)
-        frame_g = np.where(b > 0, g.conj(), 1.0) / np.where(b > 0, b, 1.0)
+        frame_f, frame_g = _frames(jet.f[samples], jet.g[samples])
         root_f, around_f, root_g, around_g = np.sqrt(entries[:4])
         count, n = rows.shape
-        by_phi = np.empty((2 * count + sum(map(len, more)), n), kind)
+        # Where the projection removed the tangential one there is none.
+        held = np.flatnonzero(around_f)
+        last = count + len(held)
+        by_phi = np.empty((last + sum(map(len, more)), n), kind)
         by_psi = np.empty((2 * count, n - 1), kind)
-        for place, part in enumerate((root_f * frame_f, -1j * around_f * frame_f)):
-            own = by_phi[place * count : (place + 1) * count]
-            np.multiply(rows, part.astype(kind)[:, None], out=own)
-        for place, part in enumerate((root_g * frame_g, -1j * around_g * frame_g)):
-            own = by_psi[place * count : (place + 1) * count]
-            np.multiply(rows[:, 1:], part.astype(kind)[:, None], out=own)
+        along_f, along_g = (root_f * frame_f).astype(kind), (root_g * frame_g).astype(kind)
+        across_f = (-1j * (around_f * frame_f)[held]).astype(kind)
+        across_g = (-1j * around_g * frame_g).astype(kind)
+        np.multiply(rows, along_f[:, None], out=by_phi[:count])
+        np.multiply(rows[held], across_f[:, None], out=by_phi[count:last])
+        np.multiply(rows[:, 1:], along_g[:, None], out=by_psi[:count])
+        np.multiply(rows[:, 1:], across_g[:, None], out=by_psi[count:])
         if more:
-            np.concatenate(more, out=by_phi[2 * count :], casting="same_kind")
+            np.concatenate(more, out=by_phi[last:], casting="same_kind")
         both = root_f * root_g
         cross = entries[4] / np.where(both > 0, both, 1.0)
         real: np.dtype[Any] = np.dtype(np.float32 if single else np.float64)
@@ -351,6 +427,10 @@ class Objective:
             int(np.count_nonzero(hard)),
         )
 
+    def _further_rows(self, jet: Jet, calm: "_Quadrature") -> list[Complexes]:
+        """Return rows of φ that are no samples', and enter the Hessian with the calm ones."""
+        return [*self._turning_roots(jet), self._damping_root(jet, calm)]
+
     def _damping_root(self, jet: Jet, calm: "_Quadrature") -> Complexes:
         """Return the row of a tiny stiffness against turning as a whole.
 
@@ -375,7 +455,12 @@ class Objective:
         return angles
 
     def _turning_roots(self, jet: Jet, *, removed: bool = False) -> list[Complexes]:
-        """Return the rows whose Gram matrix is the projected Hessian of the rotation terms.
+        """Return the rows of φ of `_turning_frames`."""
+        frames = self._turning_frames(jet, removed=removed)
+        return [frame[:, None] * self._turning_rows for frame in frames]
+
+    def _turning_frames(self, jet: Jet, *, removed: bool = False) -> list[Complexes]:
+        """Return what multiplies dF of handles in rows: the projected Hessian of their rotations.
 
         With dF / F = x + iy the term c δ² has the Hessian 2c [[0, −δ], [−δ, 1]]; its eigenvalues
         are c (1 ± root) with root² = 1 + 4 δ², for the vectors (−2δ, 1 ± root). The negative one is
@@ -389,8 +474,15 @@ class Objective:
         # x vx + y vy = Re((vx − i vy) dF / F).
         length = np.maximum(np.hypot(2.0 * delta, eigenvalue), np.finfo(np.float64).tiny)
         scale = np.sqrt(self._turning_stiffness * np.abs(eigenvalue)) / length
-        frame = scale * (-2.0 * delta - 1j * eigenvalue) / jet.fz[self._turning]
-        return [frame[:, None] * self._turning_rows]
+        return [scale * (-2.0 * delta - 1j * eigenvalue) / jet.fz[self._turning]]
+
+
+def _frames(f: Complexes, g: Complexes) -> tuple[Complexes, Complexes]:
+    """Return conj(F) / |F| and conj(G) / |G| (s,), 1 where G is 0."""
+    b = np.abs(g)
+    frame_g = np.ones_like(g)
+    np.divide(g.conj(), b, out=frame_g, where=b > 0)
+    return f.conj() / np.abs(f), frame_g
 
 
 def _entries(radial: Radial) -> Floats:

@@ -76,7 +76,7 @@ class Schedule:
         """Return the schedule with nothing reached yet."""
         return replace(self, best=inf, idle=0)
 
-    def after(self, *, length: float, shortfall: float, moving: bool, overshot: bool) -> Self:
+    def after(self, *, length: float, shortfall: float, moving: bool) -> Self:
         """Return the schedule of the next step.
 
         Parameters
@@ -87,12 +87,10 @@ class Schedule:
             How far the drag is from its wish.
         moving : bool
             Whether the handles are still far from their targets.
-        overshot : bool
-            Whether the length says nothing of the walls.
         """
         progress = shortfall < self.best - PROGRESS
         weight, leash = self.weight, self.leash
-        if length < SHORT and not overshot:
+        if length < SHORT:
             weight = min(RAISE * weight, MOST_WEIGHT)
             leash = max(leash / 2, SHORTEST_LEASH)
         elif length > FULL:

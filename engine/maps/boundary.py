@@ -7,7 +7,7 @@ from typing import Self
 
 import numpy as np
 
-from engine.arrays import Complexes, Floats, Indices, as_points, readonly
+from engine.arrays import Complexes, Floats, Indices, as_points, freeze, readonly
 from engine.geometry import (
     Hole,
     box_diagonal,
@@ -60,7 +60,8 @@ class Boundary:
     vertex_coordinates : complex128, shape (p, n)
         The functions themselves at the vertices of all loops.
     basis : complex128, shape (n, n)
-        The coefficients, one function a column, of `Span.orthonormal_basis` on the own samples.
+        The coefficients, one function a column, of `Span.orthonormal_basis` on the own samples; all
+        but the constants with the mean 0 at the vertices.
     basis_derivatives : complex128, shape (m, n)
         Of the functions of the basis.
     """
@@ -119,7 +120,12 @@ class Boundary:
         half = np.abs(ends - points) / 2
         lengths = readonly(_arc_lengths(half, starts))
         derivatives = readonly(span.derivatives(points))
-        basis = readonly(span.orthonormal_basis(derivatives, lengths, size))
+        vertex_coordinates = readonly(span.coordinates(np.concatenate(loops)))
+        basis = span.orthonormal_basis(derivatives, lengths, size)
+        # With the mean 0 a handle is about as stiff against one function as against another.
+        others = np.setdiff1d(np.arange(len(span)), [part.start for part in span.slices])
+        means = vertex_coordinates.mean(axis=0) @ basis[:, others]
+        basis[: len(cage), others] -= means
         return cls(
             outline=outline,
             span=span,
@@ -131,8 +137,8 @@ class Boundary:
             half_lengths=readonly(half),
             derivatives=derivatives,
             bending_kernel=readonly(span.bending_kernel(points, ends)),
-            vertex_coordinates=readonly(span.coordinates(np.concatenate(loops))),
-            basis=basis,
+            vertex_coordinates=vertex_coordinates,
+            basis=readonly(basis),
             basis_derivatives=readonly(derivatives @ basis),
         )
 
@@ -195,14 +201,14 @@ class Boundary:
         share = 1.0 / np.count_nonzero(self.weights)
         return replace(
             self,
-            points=readonly(points),
-            starts=readonly(loops),
-            weights=readonly(np.insert(self.weights, segments + 1, 0.0)),
-            shares=readonly(np.insert(self.shares, segments + 1, share)),
-            half_lengths=readonly(half),
-            derivatives=readonly(np.insert(self.derivatives, segments + 1, rows, axis=0)),
-            bending_kernel=readonly(kernel),
-            basis_derivatives=readonly(
+            points=freeze(points),
+            starts=freeze(loops),
+            weights=freeze(np.insert(self.weights, segments + 1, 0.0)),
+            shares=freeze(np.insert(self.shares, segments + 1, share)),
+            half_lengths=freeze(half),
+            derivatives=freeze(np.insert(self.derivatives, segments + 1, rows, axis=0)),
+            bending_kernel=freeze(kernel),
+            basis_derivatives=freeze(
                 np.insert(self.basis_derivatives, segments + 1, rows @ self.basis, axis=0)
             ),
         )

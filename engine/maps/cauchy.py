@@ -119,13 +119,15 @@ def evaluate(
     at distances from the cage that are not small against its edges.
     """
     differences = divided_differences(cage, coefficients)
-    jumps = difference_jumps(cage, coefficients)
     # z is measured from the middle of the cage: far from the origin Σ ℓ_j (φ_j − s_j z_j) and
     # z Σ ℓ_j s_j would both be large, and their sum would lose digits.
     middle = cage.mean()
-    offsets = coefficients - differences * (cage - middle)[:, None]
+    if 0 in orders:
+        offsets = coefficients - differences * (cage - middle)[:, None]
+        both = np.hstack([differences, offsets])
+    if 2 in orders:
+        jumps = difference_jumps(cage, coefficients)
     results = [np.empty((len(points), coefficients.shape[1]), np.complex128) for _ in orders]
-    both = np.hstack([differences, offsets])
     for block in _blocks(len(points), len(cage)):
         z = points[block]
         x, y, squared = _offsets(cage, z)

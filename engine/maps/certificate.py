@@ -37,9 +37,12 @@ from engine.maps.span import Span
 TIGHTNESS = 0.002
 # A segment that is not settled when it is this many times shorter never will be: its map folds, or
 # touches a bound to the last digit.
-DEEPEST = 14
-# A map that needs more than this is far from any certificate.
-MOST_BISECTIONS = 20_000
+FINEST = 1 << 14
+# A map for which more are bisected than this is far from any certificate.
+MOST_BISECTED = 20_000
+# Fewer, counted with the functions of the span, are cut into four at once: their number costs less
+# than another round.
+FEW = 4096
 # Relative error of F and G themselves, from rounding; generous.
 ROUNDING = 1e-11
 
@@ -126,148 +129,127 @@ def segment_enclosures(harmonic_map: HarmonicMap, boundary: Boundary) -> Enclosu
         If the map is over another cage.
     """
     _, segments = _measure(harmonic_map, boundary)
-    return _enclose(segments)[0]
+    (k, sigma_a, negative_sigma_b), _, _ = _enclose(segments)
+    return Enclosures(k, sigma_a, -negative_sigma_b)
 
 
 def _measure(harmonic_map: HarmonicMap, boundary: Boundary) -> tuple[Complexes, "_Segments"]:
     """Return φ and ψ (n, 2), and what is known of the map at the samples and between them."""
-    span, following = boundary.span, boundary.following
+    span = boundary.span
     if not harmonic_map.span.equals(span):
         raise EngineError("The map is over another cage than the outline's samples.")
     coefficients = harmonic_map.coefficients
-    values = boundary.derivatives @ span.without_constant(coefficients)
+    starts = np.empty((3, len(boundary.points)), np.complex128)
+    starts[0] = boundary.points
+    starts[1:] = (boundary.derivatives @ span.without_constant(coefficients)).T
     bending = boundary.bending_kernel @ span.bending(coefficients)
-    errors = bending * (boundary.half_lengths**2 / 2)[:, None]
     segments = _Segments(
-        starts=boundary.points,
-        ends=boundary.points[following],
-        first=values,
-        last=values[following],
-        errors=errors,
-        origins=np.arange(len(values)),
+        ends=np.stack([starts, starts[:, boundary.following]], axis=1),
+        errors=bending.T * (boundary.half_lengths**2 / 2),
+        origins=np.arange(len(boundary.points)),
     )
     return coefficients, segments
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class _Segments:
-    """Pieces (s,) of the sampled segments `origins`, F and G at their ends (s, 2), ε (s, 2)."""
+    """Pieces (s,) of the sampled segments `origins`.
 
-    starts: Complexes
+    `ends` are z, F and G at both ends, complex128 (3, 2, s); `errors` ε_f and ε_g, float64 (2, s).
+    """
+
     ends: Complexes
-    first: Complexes
-    last: Complexes
     errors: Floats
     origins: Indices
 
-    def halves(self, which: Booleans, span: Span, coefficients: Complexes) -> "_Segments":
-        """Return both halves of the chosen segments; the bound on |Φ'''| holds on in each."""
-        starts, ends = self.starts[which], self.ends[which]
-        first, last = self.first[which], self.last[which]
-        middles = (starts + ends) / 2
-        (values,) = span.evaluate(coefficients, middles, orders=(1,))
-        quarter = self.errors[which] / 4
+    def divided(
+        self, which: Booleans, parts: int, span: Span, coefficients: Complexes
+    ) -> "_Segments":
+        """Return the parts of the chosen segments; the bound on |Φ'''| holds on in each."""
+        ends, origins = self.ends[:, :, which], self.origins[which]
+        share = (np.arange(1, parts) / parts)[:, None]
+        nodes = np.empty((3, parts + 1, len(origins)), np.complex128)
+        nodes[:, 0], nodes[:, parts] = ends[:, 0], ends[:, 1]
+        nodes[0, 1:parts] = ends[0, 0] + share * (ends[0, 1] - ends[0, 0])
+        (values,) = span.evaluate(coefficients, nodes[0, 1:parts].ravel(), orders=(1,))
+        nodes[1:, 1:parts] = values.T.reshape(2, parts - 1, -1)
         return _Segments(
-            starts=np.concatenate([starts, middles]),
-            ends=np.concatenate([middles, ends]),
-            first=np.concatenate([first, values]),
-            last=np.concatenate([values, last]),
-            errors=np.concatenate([quarter, quarter]),
-            origins=np.tile(self.origins[which], 2),
+            ends=np.stack([nodes[:, :-1], nodes[:, 1:]], axis=1).reshape(3, 2, -1),
+            errors=np.tile(self.errors[:, which] / parts**2, parts),
+            origins=np.tile(origins, parts),
         )
-
-
-@dataclass(slots=True)
-class _Extremes:
-    """The largest k and σ_a and the smallest σ_b met so far."""
-
-    k: float = 0.0
-    sigma_a: float = 0.0
-    sigma_b: float = inf
-
-    def include(self, k: Floats, sigma_a: Floats, sigma_b: Floats) -> None:
-        self.k = max(self.k, _or_worst(k.max(initial=0.0), inf))
-        self.sigma_a = max(self.sigma_a, _or_worst(sigma_a.max(initial=0.0), inf))
-        self.sigma_b = min(self.sigma_b, _or_worst(sigma_b.min(initial=inf), -inf))
-
-
-def _or_worst(value: float, worst: float) -> float:
-    """Return the value, or the worst one in place of NaN, which compares with nothing."""
-    return worst if np.isnan(value) else float(value)
 
 
 def _bisect(
     boundary: Boundary, coefficients: Complexes, segments: _Segments, limits: Limits
 ) -> tuple[Certificate, Indices]:
-    attained, proven = _Extremes(), _Extremes()
-    turns, bisections = np.zeros(len(boundary.starts)), 0
+    limit = np.array([limits.k, limits.sigma_a, -limits.sigma_b])
+    attained, proven = np.full((2, 3), -inf)
+    turned, bisected, shorter = np.zeros(len(boundary.points)), 0, 1
     broken: list[Indices] = []
-    for depth in range(DEEPEST + 1):
-        a, b = np.abs(segments.first[:, 0]), np.abs(segments.first[:, 1])
-        attained.include(ratio(b, a), a + b, a - b)
-        (k, sigma_a, sigma_b), clear, delta = _enclose(segments)
+    while True:
+        worst, clear, delta = _enclose(segments)
+        attained = _largest(attained, _distortions(*np.abs(segments.ends[1:, 0])))
         # All said positively: what is not a number is neither tight nor within.
-        tight = clear & _are_tight(attained, limits, k, sigma_a, sigma_b)
-        within = clear & (k <= limits.k) & (sigma_a <= limits.sigma_a) & (sigma_b >= limits.sigma_b)
-        count = int(np.count_nonzero(~tight))
-        bisections += count
-        if count == 0 or depth == DEEPEST or bisections > MOST_BISECTIONS:
-            proven.include(k, sigma_a, sigma_b)
-            turns += _by_loop(segments, delta, boundary) if clear.all() else inf
+        tight = clear & (worst <= _goal(attained, limit)[:, None]).all(axis=0)
+        within = clear & (worst <= limit[:, None]).all(axis=0)
+        loose = ~tight
+        count = int(np.count_nonzero(loose))
+        bisected += count
+        if count == 0 or shorter >= FINEST or bisected > MOST_BISECTED:
+            np.add.at(turned, segments.origins, np.where(clear, delta, inf))
             broken.append(segments.origins[~within])
+            proven = _largest(proven, worst)
             break
+        np.add.at(turned, segments.origins[tight], delta[tight])
         broken.append(segments.origins[tight & ~within])
-        proven.include(k[tight], sigma_a[tight], sigma_b[tight])
-        turns += _by_loop(segments, np.where(tight, delta, 0.0), boundary)
-        segments = segments.halves(~tight, boundary.span, coefficients)
+        proven = _largest(proven, worst[:, tight])
+        parts = 4 if count * len(boundary.span) < FEW else 2
+        segments = segments.divided(loose, parts, boundary.span, coefficients)
+        shorter *= parts
+    turns = np.add.reduceat(turned, boundary.starts)
     return _conclude(proven, turns, limits), np.unique(np.concatenate(broken))
 
 
-def _by_loop(segments: _Segments, values: Floats, boundary: Boundary) -> Floats:
-    """Return the sums over each loop, (1 + holes,)."""
-    loop = np.searchsorted(boundary.starts, segments.origins, side="right") - 1
-    sums: Floats = np.bincount(loop, values, minlength=len(boundary.starts)).astype(np.float64)
-    return sums
+def _largest(before: Floats, distortions: Floats) -> Floats:
+    """Return the largest (3,) of those met before and of further ones (3, s); of NaN, infinity."""
+    largest: Floats = np.maximum(before, distortions.max(axis=1, initial=-inf))
+    largest[np.isnan(largest)] = inf
+    return largest
 
 
-def _enclose(segments: _Segments) -> tuple[Enclosures, Booleans, Floats]:
-    """Return the enclosures, where F is proven not to vanish, and its angles of turn Δ."""
-    a, b = np.abs(segments.first[:, 0]), np.abs(segments.first[:, 1])
-    a_last, b_last = np.abs(segments.last[:, 0]), np.abs(segments.last[:, 1])
-    delta = np.angle(segments.last[:, 0] * segments.first[:, 0].conj())
-    cosine = np.cos(delta / 2)
-    r, r_last = a * cosine, a_last * cosine
-    error_f = segments.errors[:, 0] + ROUNDING * (a + a_last)
-    error_g = segments.errors[:, 1] + ROUNDING * (a + a_last)
-    both = error_f + error_g
-    enclosures = Enclosures(
-        k=np.maximum(ratio(b + error_g, r - error_f), ratio(b_last + error_g, r_last - error_f)),
-        sigma_a=np.maximum(a + b, a_last + b_last) + both,
-        sigma_b=np.minimum(r - b, r_last - b_last) - both,
-    )
-    return enclosures, np.minimum(r, r_last) > error_f, delta
+def _distortions(a: Floats, b: Floats) -> Floats:
+    """Return k, σ_a and −σ_b (3, m) of |f_z| and |f_z̄| (m,), where bounds say: no larger."""
+    worst = np.empty((3, len(a)))
+    worst[0] = ratio(b, a)
+    np.add(a, b, out=worst[1])
+    np.subtract(b, a, out=worst[2])
+    return worst
 
 
-def _are_tight(
-    attained: _Extremes, limits: Limits, k: Floats, sigma_a: Floats, sigma_b: Floats
-) -> Booleans:
-    """Tell which enclosures are no worse than the attained extremes or the limits excuse."""
-    slack = TIGHTNESS * attained.sigma_a
-    k_goal = attained.k + TIGHTNESS
-    sigma_a_goal = attained.sigma_a + slack
-    sigma_b_goal = attained.sigma_b - slack
+def _enclose(segments: _Segments) -> tuple[Floats, Booleans, Floats]:
+    """Return the enclosures (3, s), where F is proven not to vanish, and its angles of turn Δ."""
+    (start, end), _ = segments.ends[1:]
+    a, b = np.abs(segments.ends[1:])
+    delta = np.angle(end * start.conj())
+    r = a * np.cos(delta / 2)
+    error_f, error_g = segments.errors + ROUNDING * (a[0] + a[1])
+    least, both = r - error_f, error_f + error_g
+    of_ends = np.empty((3, *a.shape))
+    of_ends[0] = ratio(b + error_g, least)
+    np.add(a + b, both, out=of_ends[1])
+    np.add(b - r, both, out=of_ends[2])
+    return of_ends.max(axis=1), least.min(axis=0) > 0, delta
+
+
+def _goal(attained: Floats, limit: Floats) -> Floats:
+    """Return how good enclosures must be, (3,), for the extremes that are attained or a limit."""
+    goal = attained + TIGHTNESS * np.array([1.0, attained[1], attained[1]])
     # As long as a limit is kept at all points seen, the enclosure must try to keep it too.
-    if attained.k <= limits.k:
-        k_goal = min(k_goal, limits.k)
-    if attained.sigma_a <= limits.sigma_a:
-        sigma_a_goal = min(sigma_a_goal, limits.sigma_a)
-    if attained.sigma_b >= limits.sigma_b:
-        sigma_b_goal = max(sigma_b_goal, limits.sigma_b)
-    tight: Booleans = (k <= k_goal) & (sigma_a <= sigma_a_goal) & (sigma_b >= sigma_b_goal)
-    return tight
+    return np.where(attained <= limit, np.minimum(goal, limit), goal)
 
 
-def _conclude(proven: _Extremes, turns: Floats, limits: Limits) -> Certificate:
+def _conclude(proven: Floats, turns: Floats, limits: Limits) -> Certificate:
     winding = None
     if np.isfinite(turns).all():
         windings = np.round(turns / (2 * pi)).astype(int)
@@ -277,14 +259,15 @@ def _conclude(proven: _Extremes, turns: Floats, limits: Limits) -> Certificate:
             winding = None
     # Zeros of F inside make k infinite there; without k < 1 on the outline σ_b obeys no minimum
     # principle, and only |f_z| − |f_z̄| ≥ −|f_z̄| remains.
-    k = proven.k if winding == 0 else inf
-    sigma_b = proven.sigma_b if k < 1 else -proven.sigma_a
+    largest_k, sigma_a, negative_sigma_b = proven.tolist()
+    k = largest_k if winding == 0 else inf
+    sigma_b = -negative_sigma_b if k < 1 else -sigma_a
     injective = k < 1 and sigma_b > 0
     return Certificate(
         k=k,
-        sigma_a=proven.sigma_a,
+        sigma_a=sigma_a,
         sigma_b=sigma_b,
         winding=winding,
-        certified=injective and limits.allow(k=k, sigma_a=proven.sigma_a, sigma_b=sigma_b),
+        certified=injective and limits.allow(k=k, sigma_a=sigma_a, sigma_b=sigma_b),
         limits=limits,
     )

@@ -94,7 +94,7 @@ def begin_search(
         limits=limits,
         inside=inside,
         reach=reach,
-        walls=walls_around(room(inside, reach), limits, np.abs(jet.f), np.abs(jet.g)),
+        walls=walls_around(room(inside, reach), limits, jet.a, jet.b),
         weight=HERE_PER_ENERGY * energy if way is Way.HERE else _first_weight(energy),
         energy=energy,
     )
@@ -117,7 +117,7 @@ def advance(search: Search) -> Search:
         walls=barrier.walls,
         map=taken[0],
         certificate=taken[1],
-        duals=readonly(step.barrier.next_duals(np.abs(jet.f), np.abs(jet.g), *changes)),
+        duals=readonly(step.barrier.next_duals(jet.a, jet.b, *changes)),
         energy=objective.energy(reached),
         steps=search.steps + 1,
         length=step.length,
@@ -141,7 +141,7 @@ def _objective(search: Search) -> tuple[Objective, Barrier, Jet]:
     )
     jet = objective.jet(*search.map.columns)
     barrier = Barrier(walls=search.walls, weight=search.weight, duals=search.duals)
-    a, b = np.abs(jet.f), np.abs(jet.g)
+    a, b = jet.a, jet.b
     too_near = barrier.slacks(a, b) < ROUNDING_SLACK
     if too_near.any():
         # What the last step left of it is less than the rounding of this measurement.
@@ -177,8 +177,8 @@ def _optimality(search: Search, jet: Jet, barrier: Barrier) -> Optimality:
     if search.length == 0:
         return Optimality()
     return Optimality.of(
-        np.abs(jet.f),
-        np.abs(jet.g),
+        jet.a,
+        jet.b,
         gain=search.gain,
         energy=search.energy,
         boundary=search.boundary,
@@ -208,7 +208,7 @@ def opened(search: Search, jet: Jet) -> Search:
     """Return the search with its walls on the next rung."""
     weight = max(LOWER * search.weight, OPENED_PER_ENERGY * search.energy)
     wider = replace(search, reach=next_reach(search.inside, search.reach), weight=weight)
-    walls = walls_around(wider.room, wider.limits, np.abs(jet.f), np.abs(jet.g))
+    walls = walls_around(wider.room, wider.limits, jet.a, jet.b)
     return replace(wider, walls=walls)
 
 

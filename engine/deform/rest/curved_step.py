@@ -98,9 +98,8 @@ def curved_step(objective: Objective, barrier: Barrier, jet: Jet) -> CurvedStep:
     """
     models = newton_models(objective, jet)
     best = _freed(_Start.of(next(models), barrier, jet))
-    for model in models:
-        if best.length > CAUGHT:
-            break
+    # Another model costs a factorisation, and is not asked for before it is needed.
+    while best.length <= CAUGHT and (model := next(models, None)) is not None:
         tried = _freed(_Start.of(model, barrier, jet))
         if tried.value < best.value:
             best = tried
@@ -121,7 +120,7 @@ class _Start:
 
     @classmethod
     def of(cls, model: Model, barrier: Barrier, jet: Jet) -> Self:
-        a, b = np.abs(jet.f), np.abs(jet.g)
+        a, b = jet.a, jet.b
         return cls(
             model=model,
             barrier=barrier,
@@ -134,7 +133,7 @@ class _Start:
 
     def aware_of(self, walls: Booleans, gain: float) -> "_Start":
         """Return the same with the dual variables of some walls (3, m) raised."""
-        a, b = np.abs(self.jet.f), np.abs(self.jet.g)
+        a, b = self.jet.a, self.jet.b
         shares = self.model.objective.boundary.shares
         enough = np.maximum(RAISED_FACTOR * self.duals, 2 * RAISED * gain / (shares * self.margins))
         barrier = replace(self.barrier, duals=np.where(walls, enough, self.duals))
@@ -202,7 +201,7 @@ def _doubled(step: CurvedStep) -> CurvedStep:
 
 def _brought_back(start: _Start, change: Direction) -> tuple[Direction | None, Booleans]:
     """Return a change that was brought back within the walls, or those (3, m) it stays beyond."""
-    a, b = np.abs(start.jet.f), np.abs(start.jet.g)
+    a, b = start.jet.a, start.jet.b
     objective, barrier = start.model.objective, start.barrier
     # What the change leaves of the margins to first order, and at least.
     da, db = radial_changes(start.jet, change)
@@ -233,14 +232,14 @@ def _slacks_at(start: _Start, jet: Jet) -> tuple[Floats, Floats]:
 
     Their product is c; the second is kept positive beyond the walls, where c must be negative.
     """
-    b = np.abs(jet.g)
-    u = start.barrier.distances(np.abs(jet.f))
+    b = jet.b
+    u = start.barrier.distances(jet.a)
     return u - b, np.maximum(u + b, 0.1 * start.margins / start.slacks)
 
 
 def radial_changes(jet: Jet, change: Direction) -> tuple[Floats, Floats]:
     """Return how a change changes a and b, to first order."""
-    a, b = np.abs(jet.f), np.abs(jet.g)
+    a, b = jet.a, jet.b
     da = (jet.f.conj() * change.jet.f).real / a
     db = (jet.g.conj() * change.jet.g).real / np.maximum(b, np.finfo(np.float64).tiny)
     return da, db

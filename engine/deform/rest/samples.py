@@ -10,8 +10,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from engine.arrays import Floats, Indices, readonly
-from engine.deform.barrier import Walls
+from engine.arrays import Floats, Indices
+from engine.deform.barrier import Walls, with_samples_between
 from engine.deform.objective import Jet
 from engine.deform.rest.search import Search
 from engine.deform.steering import MARGIN
@@ -40,29 +40,16 @@ def walls_around(inside: Limits, limits: Limits, a: Floats, b: Floats) -> Walls:
 def resolved(search: Search, jet: Jet, broken: Indices) -> Search:
     """Return the search with samples added where segments could bulge, or did."""
     boundary, limits = search.boundary, search.limits
-    a, b, following = np.abs(jet.f), np.abs(jet.g), boundary.following
-    proven = segment_enclosures(search.map, boundary)
-    worse = (
-        (proven.k, np.maximum(b / a, (b / a)[following]), limits.k, limits.k),
-        (
-            proven.sigma_a,
-            np.maximum(a + b, (a + b)[following]),
-            limits.sigma_a,
-            limits.sigma_a - 1.0,
-        ),
-        (
-            -proven.sigma_b,
-            -np.minimum(a - b, (a - b)[following]),
-            -limits.sigma_b,
-            1 - limits.sigma_b,
-        ),
-    )
+    a, b = jet.a, jet.b
+    at_samples = np.array([b / a, a + b, b - a])
+    ends = np.maximum(at_samples, at_samples[:, boundary.following])
+    enclosures = segment_enclosures(search.map, boundary)
+    proven = np.array([enclosures.k, enclosures.sigma_a, -enclosures.sigma_b])
+    limit = np.array([[limits.k], [limits.sigma_a], [-limits.sigma_b]])
+    way = np.array([[limits.k], [limits.sigma_a - 1.0], [1.0 - limits.sigma_b]])
+    allowed = np.maximum(BULGE_PER_SLACK * (limit - ends), BULGE_PER_MARGIN * MARGIN * np.abs(way))
     # By how much each segment bulges more than it may.
-    excess = np.zeros(len(a))
-    for enclosure, ends, limit, way in worse:
-        least = BULGE_PER_MARGIN * MARGIN * abs(way)
-        allowed = np.maximum(BULGE_PER_SLACK * (limit - ends), least)
-        excess = np.maximum(excess, (enclosure - ends) / allowed)
+    excess = ((proven - ends) / allowed).max(axis=0)
     excess[broken] = np.inf
     most = int(MOST_SAMPLES * np.count_nonzero(boundary.weights))
     room = max(most - len(a), len(broken))
@@ -77,9 +64,7 @@ def resolved(search: Search, jet: Jet, broken: Indices) -> Search:
     walls = walls_around(search.room, limits, np.abs(f), np.abs(g))
     duals = search.duals
     if duals is not None:
-        ends = following[segments]
-        between = np.maximum(duals[:, segments], duals[:, ends])
-        duals = readonly(np.insert(duals, segments + 1, between, axis=1))
+        duals = with_samples_between(duals, segments, boundary.following[segments])
     return replace(
         search,
         boundary=finer,

@@ -190,6 +190,18 @@ def test_a_sketched_hessian_follows_the_hand_like_the_whole_one(monkeypatch):
     assert means[0] < 1.05 * means[1]
 
 
+def test_dual_variables_follow_the_steps_of_a_drag():
+    deformer = star()
+    wish = deformer.handles.wish(1.5 * STAR_POINTS)
+    state = deformer.start()
+    for _ in range(6):
+        state = deformer.step(state, wish)
+    # Nothing is in the way: dual · c = weight of the barrier is all but reached.
+    step = deformer._prepare(state, wish)
+    products = step.barrier.duals * step.barrier.margins(step.jet.a, step.jet.b)
+    assert_allclose(products, step.barrier.weight, rtol=0.05)
+
+
 def test_sixty_random_jerks():
     deformer = star()
     rng = np.random.default_rng(11)
@@ -493,7 +505,7 @@ def test_samples_are_added_where_a_bound_was_broken():
 def test_a_wild_drag_adds_samples():
     deformer = star(Bounds(k=0.3, sigma_a=2.0, sigma_b=0.5))
     state = deformer.start()
-    wish = deformer.handles.wish(STAR_POINTS[[3, 5, 1, 0, 2, 4]])
+    wish = deformer.handles.wish(STAR_POINTS[::-1])
     most = 0
     for _ in range(40):
         state = deformer.step(state, wish)

@@ -27,7 +27,7 @@ def certificate(k=0.26, sigma_a=1.51, sigma_b=0.89):
 
 
 def after(schedule, length, shortfall=0.5):
-    return schedule.after(length=length, shortfall=shortfall, moving=True, overshot=False)
+    return schedule.after(length=length, shortfall=shortfall, moving=True)
 
 
 def test_short_steps_raise_the_barrier_and_draw_in_the_leash():
@@ -37,8 +37,6 @@ def test_short_steps_raise_the_barrier_and_draw_in_the_leash():
     assert short.leash < start.leash
     assert after(short, 1.0).leash > short.leash
     assert after(start, 0.5).weight == start.weight
-    overshot = start.after(length=0.1, shortfall=0.5, moving=True, overshot=True)
-    assert overshot.weight == start.weight
 
 
 def test_a_drag_without_progress_is_at_rest():

@@ -157,11 +157,14 @@ def test_what_overflows_is_not_certified(phi, psi):
 def test_one_sample_that_is_not_a_number_is_enough_to_refuse():
     # Only G has it there: all that compares with it is false.
     segments = certificate_module._Segments(
-        starts=BOUNDARY.points[:3],
-        ends=np.roll(BOUNDARY.points[:3], -1),
-        first=np.array([[1, 0], [1, np.nan], [1, 0]], dtype=complex),
-        last=np.array([[1, np.nan], [1, 0], [1, 0]], dtype=complex),
-        errors=np.zeros((3, 2)),
+        ends=np.array(
+            [
+                [BOUNDARY.points[:3], np.roll(BOUNDARY.points[:3], -1)],
+                [[1, 1, 1], [1, 1, 1]],
+                [[0, np.nan, 0], [np.nan, 0, 0]],
+            ]
+        ),
+        errors=np.zeros((2, 3)),
         origins=np.arange(3),
     )
     coefficients = np.column_stack([CAGE, 0 * CAGE])
@@ -259,14 +262,11 @@ def test_a_start_map_must_be_certified():
 
 def test_a_chord_that_passes_near_zero_bounds_the_segment(monkeypatch):
     # Without bisection: f_z = t + 0.1 i for t from −1 to 1, exactly linear.
-    monkeypatch.setattr(certificate_module, "DEEPEST", 0)
-    ends = np.array([[-1 + 0.1j, 0], [1 + 0.1j, 0]])
+    monkeypatch.setattr(certificate_module, "FINEST", 1)
+    ends = np.array([[0, 1], [-1 + 0.1j, 1 + 0.1j], [0, 0]])
     segment = certificate_module._Segments(
-        starts=np.array([0j]),
-        ends=np.array([1 + 0j]),
-        first=ends[:1],
-        last=ends[1:],
-        errors=np.zeros((1, 2)),
+        ends=ends[:, :, None],
+        errors=np.zeros((2, 1)),
         origins=np.array([0]),
     )
     found, _ = certificate_module._bisect(BOUNDARY, np.zeros((len(CAGE), 2)), segment, LOOSE)

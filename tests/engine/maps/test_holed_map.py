@@ -307,6 +307,10 @@ def test_the_basis_spans_all_and_is_orthonormal_but_for_holes(shape):
     for part in boundary.span.slices[1:]:
         sums = np.delete(basis[part], part.start, axis=1).sum(axis=0)
         assert_allclose(sums, 0, atol=1e-9 * boundary.size)
+    # All other functions have the mean 0, so that no handle is far from one.
+    others = np.delete(basis, [part.start for part in boundary.span.slices], axis=1)
+    means = (boundary.vertex_coordinates @ others).mean(axis=0)
+    assert_allclose(means, 0, atol=1e-9 * boundary.size)
     rows = np.sqrt(boundary.weights)[:, None] * boundary.basis_derivatives
     assert_allclose(boundary.basis_derivatives, boundary.derivatives @ basis, atol=1e-9)
     gram = np.delete(rows.conj().T @ rows, [part.start for part in boundary.span.slices], 0)
