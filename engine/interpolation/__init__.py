@@ -10,7 +10,7 @@ from engine.interpolation import chebyshev
 from engine.interpolation.inbetweens import Frame, Inbetweens, IntegratedInbetweens
 from engine.interpolation.keyframe_samples import KeyframeSamples, sample_keyframes
 from engine.interpolation.passing import Course, End, Joint, Tangent, shortened
-from engine.interpolation.preparation import Prepared, prepare, prepare_inbetweens
+from engine.interpolation.preparation import Prepared, frame_at, prepare, prepare_inbetweens
 from engine.interpolation.proof import Proof, prove
 from engine.interpolation.scaling import PointSamples, Scaling, Worst, looseness
 from engine.interpolation.sites import Sites, prepare_sites
@@ -33,6 +33,7 @@ __all__ = [
     "Variant",
     "Worst",
     "chebyshev",
+    "frame_at",
     "looseness",
     "prepare",
     "prepare_inbetweens",

@@ -13,6 +13,7 @@ from engine.arrays import Floats, freeze
 
 DEGREE = 24  # of the series of a piece of time
 LAST_TERMS = 3
+SURELY = 0.1  # of what may be left out
 SHORTEST = 2.0**-30  # pieces of time are not halved below this
 
 
@@ -81,6 +82,13 @@ class PiecewiseSeries:
         return values
 
 
+def one() -> PiecewiseSeries:
+    """Return one function, which is 1 at all times."""
+    return PiecewiseSeries(
+        breaks=freeze(np.array([0.0, 1.0])), coefficients=freeze(np.ones((1, 1, 1)))
+    )
+
+
 def separate(
     values: Callable[[Floats], Floats],
     *,
@@ -136,11 +144,21 @@ def separate(
             middle = (start + end) / 2
             pending += [(middle, end), (start, middle)]
     columns = np.hstack(pieces)
+    # Where half the degree did, the other columns are 0.
+    used = np.asarray(columns.any(axis=0))
+    used[0] = True
+    columns = columns[:, used]
     # The singular vectors of the triangle are those of the columns, and it is far smaller.
     _, sizes, functions = np.linalg.svd(np.linalg.qr(columns, mode="r"), full_matrices=False)
-    series = (sizes[:, None] * functions).reshape(len(sizes), len(pieces), DEGREE + 1)
-    forms = columns @ functions.T / np.maximum(sizes, np.finfo(np.float64).tiny)
-    most = np.abs(forms).max(axis=0) * np.abs(series).sum(axis=2).max(axis=1)
+    rows = np.zeros((len(sizes), len(used)))
+    rows[:, used] = sizes[:, None] * functions
+    series = rows.reshape(len(sizes), len(pieces), DEGREE + 1)
+    # Forms have the length 1, and no entry above: those that are surely left out are not formed.
+    most = np.abs(series).sum(axis=2).max(axis=1)
+    formed = max(1, int(np.count_nonzero(most[::-1].cumsum() > SURELY * left_out)))
+    forms = columns @ functions[:formed].T
+    forms /= np.maximum(sizes[:formed], np.finfo(np.float64).tiny)
+    most[:formed] *= np.abs(forms).max(axis=0)
     kept = max(1, int(np.count_nonzero(most[::-1].cumsum() > left_out)))
     times, coefficients = np.array(found), series[:kept].transpose(1, 2, 0)
     if vanishing:

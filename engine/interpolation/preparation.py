@@ -221,13 +221,7 @@ def prepare_inbetweens(
     metric: MetricResidual | None = None
     if variant is Variant.METRIC:
         metric = MetricResidual.of(passage, bounds, sites.paths, _matching(transform, sites))
-        # All but η keeps its velocities at keyframes.
-        passage = replace(
-            passage,
-            course=passage.course.full,
-            eta_course=passage.course,
-            residuals=(metric.residual,),
-        )
+        passage = _with_residual(passage, metric)
     opened = passage
     closings = _closings(variant, sites, opened, metric)
     if closings:
@@ -248,6 +242,62 @@ def prepare_inbetweens(
         scale=scale,
         metric=metric,
         closings=closings,
+    )
+
+
+def frame_at(
+    time: float,
+    variant: Variant,
+    sites: Sites,
+    keyframes: Sequence[KeyframeSamples],
+    sheets: Integers,
+    *,
+    transform: Extension | None = None,
+    course: Course | None = None,
+    bounds: Bounds = Bounds(),
+) -> Frame:
+    """Return one in-between of two neighbouring keyframes, where no other is wanted yet.
+
+    It is what `prepare_inbetweens` gives at that time. Of the metric variant it costs less, since
+    one Dirichlet problem is solved and not one for each of the forms that the residual takes in the
+    whole interval; around holes, and of other variants, as much.
+
+    Parameters
+    ----------
+    time : float
+        In [0, 1].
+    variant, sites, keyframes, sheets, transform, course, bounds
+        As in `prepare_inbetweens`.
+
+    Raises
+    ------
+    EngineError
+        As `prepare_inbetweens`, and if the time is out of range.
+    """
+    if not 0.0 <= time <= 1.0:
+        raise EngineError(f"An interval runs from time 0 to 1; {time:g} is outside.")
+    if variant is Variant.METRIC and sites.closing is None:
+        passage = Passage.of(keyframes, sheets, course)
+        extension = _matching(transform, sites)
+        metric = MetricResidual.at(time, passage, bounds, sites.paths, extension)
+        passage = _with_residual(passage, metric)
+        moment = IntegratedInbetweens(
+            sites=sites, passage=passage, blend=_blend(variant, passage), scale=None, metric=metric
+        )
+        return moment.frame(time)
+    inbetweens = prepare_inbetweens(
+        variant, sites, keyframes, sheets, transform=transform, course=course, bounds=bounds
+    )
+    return inbetweens.frame(time)
+
+
+def _with_residual(passage: Passage, metric: MetricResidual) -> Passage:
+    """Return the metric variant's passage: all but η keeps its velocities at keyframes."""
+    return replace(
+        passage,
+        course=passage.course.full,
+        eta_course=passage.course,
+        residuals=(metric.residual,),
     )
 
 

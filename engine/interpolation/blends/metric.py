@@ -14,7 +14,7 @@ import numpy as np
 
 from engine.arrays import Complexes, Floats
 from engine.dirichlet import Extension, Refinement
-from engine.interpolation.chebyshev import separate
+from engine.interpolation.chebyshev import PiecewiseSeries, one, separate
 from engine.interpolation.derivatives import Passage
 from engine.interpolation.passing import Course, Tangent, bernstein, curbed
 from engine.interpolation.periods import Residual
@@ -71,12 +71,35 @@ class MetricResidual(NamedTuple):
         transform: Extension,
     ) -> "MetricResidual":
         """Solve the Dirichlet problems of the residual between two keyframes."""
-        metric, panels = _resolved(passage, bounds, transform)
+        metric, panels = _resolved(passage, bounds, transform, np.array(LOOKED_AT))
         real_parts, series = separate(
             metric.residuals,
             tolerance=TOLERANCE,
             left_out=LEFT_OUT if passage.course.is_straight else LEFT_OUT_PASSING,
         )
+        return cls._extended(real_parts, series, panels, paths)
+
+    @classmethod
+    def at(
+        cls,
+        time: float,
+        passage: Passage,
+        bounds: Bounds,
+        paths: IntegrationPaths,
+        transform: Extension,
+    ) -> "MetricResidual":
+        """Solve the one Dirichlet problem of a time in [0, 1]; at others it is not the residual."""
+        metric, panels = _resolved(passage, bounds, transform, np.array([time]))
+        return cls._extended(metric.residuals(np.array([time])), one(), panels, paths)
+
+    @classmethod
+    def _extended(
+        cls,
+        real_parts: Floats,
+        series: PiecewiseSeries,
+        panels: Refinement,
+        paths: IntegrationPaths,
+    ) -> "MetricResidual":
         modes, modes_z, lacking = panels.extend(real_parts)
         modes.imag -= modes[0].imag
         # Unbounded there; the steps beside these nodes are so short that it is not missed.
@@ -85,15 +108,15 @@ class MetricResidual(NamedTuple):
 
 
 def _resolved(
-    passage: Passage, bounds: Bounds, transform: Extension
+    passage: Passage, bounds: Bounds, transform: Extension, times: Floats
 ) -> tuple["OutlineMetric", Refinement]:
-    """Return the metrics at nodes that resolve the residual, and the panels of these nodes.
+    """Return the metrics at nodes that resolve the residual at some times, and the nodes' panels.
 
     The nodes follow the shape. Keyframes at extreme bounds vary faster still beside a vertex of the
     cage, and for them panels are halved there.
     """
     maps = [key.map for key in passage.keyframes]
-    course, times = passage.course, np.array(LOOKED_AT)
+    course = passage.course
     panels = Refinement.of(transform)
     metric = OutlineMetric.of(*derivatives_of(maps, panels.nodes), course, bounds)
     for _ in range(MOST_HALVINGS):

@@ -70,3 +70,13 @@ def test_the_residual_is_written_in_few_products_and_vanishes_at_the_keyframes()
     assert_allclose(found, metric.residuals(times), rtol=0, atol=1e-8)
     for time in (0.0, 1.0):
         assert_allclose(series(time), 0, rtol=0, atol=1e-15)
+
+
+def test_between_equal_keyframes_there_is_no_residual():
+    fz, fzbar = random_derivatives(3, k=0.7)
+    same = np.stack([fz[0], fz[0]]), np.stack([fzbar[0], fzbar[0]])
+    metric = OutlineMetric.of(*same, Course.straight(), Bounds())
+    for values in (metric.residuals, lambda times: np.zeros((5, len(times)))):
+        modes, series = separate(values, tolerance=1e-10, left_out=1e-8)
+        assert modes.shape[1] == 1
+        assert_allclose(modes @ series(0.3), 0, rtol=0, atol=1e-14)

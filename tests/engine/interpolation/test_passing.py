@@ -21,6 +21,7 @@ from engine.interpolation import (
     Joint,
     Tangent,
     Variant,
+    frame_at,
     prepare,
     prepare_inbetweens,
     prepare_sites,
@@ -275,6 +276,34 @@ def test_a_tangent_is_the_same_in_any_unit_of_time_and_shrinks_with_the_bounds()
     lengths = [length(Joint(3.0, 5.0), b) for b in (WIDE, tight, tighter)]
     assert lengths == sorted(lengths, reverse=True)
     assert_allclose(length(Joint(0.3, 0.5), tight), lengths[1], rtol=1e-8)
+
+
+@pytest.mark.parametrize("variant", [Variant.METRIC, Variant.SCALED_ETA])
+@pytest.mark.parametrize("through", [False, True])
+def test_a_frame_alone_is_the_same_as_among_the_others(variant, through):
+    prepared = between(MAPS[:3], variant=variant, through=through)
+    interval, sites = prepared.intervals[0], prepared.sites
+    passage = interval.passage
+    extension = transform().at(sites.paths.nodes)
+    for time in (0.0, 0.37, 1.0):
+        frame = frame_at(
+            time,
+            variant,
+            sites,
+            passage.keyframes,
+            passage.sheets,
+            transform=extension,
+            course=passage.eta_course or passage.course,
+        )
+        expected = interval.frame(time)
+        assert_allclose(frame.positions, expected.positions, rtol=0, atol=2e-7 * sites.diameter)
+        assert_allclose(frame.fz, expected.fz, rtol=0, atol=1e-5)
+        assert_allclose(frame.fzbar, expected.fzbar, rtol=0, atol=1e-5)
+        if time in (0.0, 1.0):
+            positions = passage.ends[int(time)].positions
+            assert_allclose(frame.positions, positions, rtol=0, atol=1e-12)
+    with pytest.raises(EngineError, match="from time 0 to 1"):
+        frame_at(1.5, variant, sites, passage.keyframes, passage.sheets)
 
 
 def test_a_course_asks_for_its_keyframes():
