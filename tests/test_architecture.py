@@ -3,6 +3,7 @@
 import ast
 import re
 import tomllib
+from functools import cache
 from itertools import chain
 from pathlib import Path
 
@@ -44,6 +45,11 @@ FILES = module_files()
 PACKAGES = sorted(name for name, path in FILES.items() if path.name == "__init__.py")
 
 
+@cache
+def parsed(name: str) -> ast.Module:
+    return ast.parse(FILES[name].read_text(encoding="utf-8"))
+
+
 def test_the_layers_keep_their_direction():
     assert lint_imports(config_filename="pyproject.toml", is_debug_mode=False) == 0
 
@@ -78,14 +84,14 @@ def test_a_room_can_be_seen_at_a_glance(package):
 
 @pytest.mark.parametrize("package", PACKAGES)
 def test_a_room_says_what_goes_in_what_comes_out_and_what_it_imports(package):
-    text = ast.get_docstring(ast.parse(FILES[package].read_text(encoding="utf-8"))) or ""
+    text = ast.get_docstring(parsed(package)) or ""
     for what in ("In: ", "Out: ", "Imports: "):
         assert f"\n{what}" in text, f"{package} does not say {what!r}"
 
 
 @pytest.mark.parametrize("package", PACKAGES)
 def test_a_face_has_nothing_but_public_names(package):
-    docstring, *statements = ast.parse(FILES[package].read_text(encoding="utf-8")).body
+    docstring, *statements = parsed(package).body
     assert isinstance(docstring, ast.Expr)
     for statement in statements:
         assert isinstance(statement, (ast.ImportFrom, ast.Assign))
@@ -93,7 +99,7 @@ def test_a_face_has_nothing_but_public_names(package):
 
 @pytest.mark.parametrize("name", sorted(FILES))
 def test_a_room_is_entered_by_its_face(name):
-    for node in ast.walk(ast.parse(FILES[name].read_text(encoding="utf-8"))):
+    for node in ast.walk(parsed(name)):
         if not isinstance(node, ast.ImportFrom) or (node.module or "").split(".")[0] not in ROOTS:
             continue
         module = node.module or ""
@@ -111,7 +117,7 @@ def test_a_room_is_entered_by_its_face(name):
 
 @pytest.mark.parametrize("name", sorted(name for name in FILES if name.startswith("engine")))
 def test_the_engine_computes_nothing_when_it_is_loaded(name):
-    for statement in ast.parse(FILES[name].read_text(encoding="utf-8")).body:
+    for statement in parsed(name).body:
         if isinstance(statement, ast.FunctionDef):
             continue
         inside = statement.body if isinstance(statement, ast.ClassDef) else [statement]
@@ -125,8 +131,9 @@ def test_the_engine_computes_nothing_when_it_is_loaded(name):
         assert set(calls) <= DECLARATIONS
 
 
+@cache
 def public_names(package: str) -> set[str]:
-    for node in ast.parse(FILES[package].read_text(encoding="utf-8")).body:
+    for node in parsed(package).body:
         if isinstance(node, ast.Assign) and ast.unparse(node.targets[0]) == "__all__":
             return set(ast.literal_eval(node.value))
     return set()
@@ -135,7 +142,7 @@ def public_names(package: str) -> set[str]:
 def defined_names(name: str) -> tuple[set[str], set[str]]:
     """Return the public classes and type aliases of a module, and its public functions."""
     types, functions = set(), set()
-    for node in ast.parse(FILES[name].read_text(encoding="utf-8")).body:
+    for node in parsed(name).body:
         if isinstance(node, ast.ClassDef):
             types.add(node.name)
         elif isinstance(node, ast.FunctionDef):

@@ -76,6 +76,12 @@ class History:
         return self._steps[self._now + 1].label if self._now + 1 < len(self._steps) else None
 
     @property
+    def nearby(self) -> tuple[Document, ...]:
+        """The document as it is now, between those that undo and redo lead to, if there are any."""
+        steps = self._steps[max(self._now - 1, 0) : self._now + 2]
+        return tuple(step.document for step in steps)
+
+    @property
     def is_saved(self) -> bool:
         """Whether the document is the one that was saved last."""
         return self.document is self._saved

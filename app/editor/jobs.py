@@ -69,6 +69,8 @@ class Jobs:
     """
 
     def __init__(self, clock: Callable[[], float] = time.perf_counter) -> None:
+        # Called on the worker's thread whenever something is there to deliver.
+        self.wake: Callable[[], None] = lambda: None
         self._clock = clock
         self._condition = threading.Condition()
         self._waiting: list[Job] = []
@@ -211,6 +213,7 @@ class Jobs:
                     self._finished.append((job.kind, hand_over))
                 lane.running = None
                 self._condition.notify_all()
+            self.wake()
             # While the thread waits they would keep alive what they hold, such as a whole drawing.
             del job, hand_over
 

@@ -1,6 +1,6 @@
 """The project that is open: its document, what the window has of it, and what is under way."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from math import inf
 from pathlib import Path
@@ -24,7 +24,7 @@ from app.document import (
 from app.editor.action import Action
 from app.editor.derived import Derived
 from app.editor.timeline_view import Timing
-from app.motion import Box, Build, Joints, Motion, MotionPaths, PosableMesh, Shown
+from app.motion import Box, Build, Glimpse, Joints, Motion, MotionPaths, PosableMesh, Shown
 from app.render import View, fit_view
 from app.reports import Curves
 from app.solving import Drag, Renewal, Rig
@@ -74,6 +74,8 @@ class PoseInProgress:
         Whether the playhead has left it, and the document was seen to.
     taken : Pose, optional
         What the document has of it since.
+    is_paused : bool
+        Whether the solver leaves the processor to the in-between that the playhead awaits.
     prepared : Pose, optional
         The newest one whose in-betweens are all there, while the pose that was let go is shown: the
         playhead that leaves it finds them.
@@ -90,12 +92,31 @@ class PoseInProgress:
     trial: Trial | None = None
     is_left: bool = False
     taken: Pose | None = None
+    is_paused: bool = False
     prepared: Pose | None = None
 
     @property
     def is_at_rest(self) -> bool:
         """Whether the solver has found the pose, and moves nothing any more."""
         return self.drag is not None and self.drag.is_over
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Awaiting:
+    """What was asked of a pose that is not shown yet.
+
+    Parameters
+    ----------
+    figure : int
+        The id of its figure.
+    frame : int
+    verbs : tuple of tuple
+        What is to be done, in this order; each with the gesture that it is of, or None.
+    """
+
+    figure: int
+    frame: int
+    verbs: tuple[tuple[object | None, Callable[..., None]], ...]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -178,6 +199,8 @@ class Puppet:
         Whether it has no transparency, so that its background was found by its colour.
     coarse, fine : Derived
         Its motion on a coarse mesh and on its own, which may not be there yet.
+    seen : Derived
+        The in-between at the playhead alone, where the motion lacks it.
     shown : Shown, optional
         None before the first frame of the window.
     rig : Rig, optional
@@ -197,6 +220,7 @@ class Puppet:
     coarse: Derived[Clip, Motion]
     cut: Derived[CutOut, Cut]
     fine: Derived[Clip, Motion | None] = field(default_factory=lambda: Derived(None))
+    seen: Derived[tuple[Clip, int], Glimpse | None] = field(default_factory=lambda: Derived(None))
     shown: Shown | None = None
     rig: Rig | None = None
     build: Derived[Clip, Build | None] = field(default_factory=lambda: Derived(None))
@@ -241,6 +265,8 @@ class Project:
         Of the pose that is shown.
     settling : PoseInProgress, optional
         Let go at a frame that the playhead has left since; the solver brings that pose to rest.
+    awaiting : Awaiting, optional
+        What was asked of the pose that is to be shown, as long as that is being prepared.
     camera : View, optional
         None fits the picture into the viewport.
     curves, twin_curves : Derived
@@ -300,6 +326,7 @@ class Project:
     is_recovered: bool = False
     posing: PoseInProgress | None = None
     settling: PoseInProgress | None = None
+    awaiting: Awaiting | None = None
     curves: Derived[Clip, Curves | None] = field(default_factory=lambda: Derived(None))
     twin_curves: Derived[Clip, Curves | None] = field(default_factory=lambda: Derived(None))
     paths: Derived[Clip, MotionPaths | None] = field(default_factory=lambda: Derived(None))

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from itertools import count
 from pathlib import Path
 from typing import Literal, Protocol
 
@@ -64,6 +65,8 @@ class Toast:
     tone : str
     born : float
         The clock's seconds.
+    place : int
+        The first that no other message has: ImGui keeps a window for each for ever.
     topic : str
         What it is about: a later message about the same takes its place.
     details : str
@@ -75,6 +78,7 @@ class Toast:
     text: str
     tone: Tone
     born: float
+    place: int
     topic: str = ""
     details: str = ""
     label: str = ""
@@ -250,10 +254,12 @@ class Session:
             for toast in self.toasts
             if toast.text != text and not (topic == toast.topic != "")
         ]
+        taken = {toast.place for toast in self.toasts}
         toast = Toast(
             text=text,
             tone=tone,
             born=self.clock(),
+            place=next(place for place in count() if place not in taken),
             topic=topic,
             details=details,
             label=label,

@@ -6,6 +6,7 @@ Imports: `app.document`.
 """
 
 from app.motion.extent import Box, box_around, extent_source, measure_extent, motion_box
+from app.motion.glimpse import Glimpse, can_glimpse, glimpse_at
 from app.motion.inbetweens import Animation, PoseSampler
 from app.motion.joints import HERE, Joints, Placement, hung_animations, joints_source
 from app.motion.motion_paths import MotionPaths, trace_paths
@@ -22,6 +23,7 @@ __all__ = [
     "AttachedPoints",
     "Box",
     "Build",
+    "Glimpse",
     "Joints",
     "Motion",
     "MotionPaths",
@@ -33,7 +35,9 @@ __all__ = [
     "Streamed",
     "Vertices",
     "box_around",
+    "can_glimpse",
     "extent_source",
+    "glimpse_at",
     "hang_shown",
     "hung_animations",
     "joints_source",

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from app.document import Clip, Pose, Transit, Variant, resting_pose, time_of, transits
-from engine.arrays import Complexes
+from engine.arrays import Complexes, Integers
 from engine.dirichlet import Extension, HilbertTransform
 from engine.domain import Domain
 from engine.interpolation import (
@@ -18,6 +18,7 @@ from engine.interpolation import (
     KeyframeSamples,
     Sites,
     Tangent,
+    frame_at,
     prepare_inbetweens,
     prepare_sites,
     sample_keyframes,
@@ -67,6 +68,8 @@ class PoseSampler:
             triangles=mesh.triangles if points is None else None,
             anchor=anchor,
         )
+        # Of its own, so that what asks for a sample or a frame need not wait for a whole interval.
+        self._interval_lock = threading.RLock()
         self._lock = threading.RLock()
         # Of its own, so that a sibling waits for the transform alone.
         self._transform_lock = threading.RLock()
@@ -95,13 +98,13 @@ class PoseSampler:
         """The transform at the nodes of the paths, prepared when it is asked for first."""
         with self._transform_lock:
             if self._extension is None:
-                self._extension = self.transform.at(self.sites.paths.nodes)
+                self._extension = self.transform.at(self.sites.paths.nodes, single=True)
             return self._extension
 
     def keep_only(self, poses: Sequence[Pose]) -> None:
         """Forget what was kept for other poses."""
         wanted = set(poses)
-        with self._lock:
+        with self._interval_lock, self._lock:
             self._samples = {p: s for p, s in self._samples.items() if p in wanted}
             self._inbetweens = {
                 key: kept for key, kept in self._inbetweens.items() if wanted.issuperset(kept[0])
@@ -109,6 +112,10 @@ class PoseSampler:
             self._tangents = {
                 key: kept for key, kept in self._tangents.items() if wanted.issuperset(kept[0])
             }
+
+    def has_sampled(self, pose: Pose) -> bool:
+        """Tell whether the samples of a pose are kept."""
+        return pose in self._samples
 
     def samples(self, pose: Pose) -> KeyframeSamples:
         """Return the samples of a pose's map."""
@@ -141,11 +148,38 @@ class PoseSampler:
         variant : Variant
         """
         poses = tuple(key.pose for key in transit.keys)
+        course = self._course(transit, bounds, variant)
+        obeyed = bounds if transit.is_joined else None
+        return self._prepared(poses, transit.turns, course, variant, bounds=obeyed)
+
+    def frame_of(self, transit: Transit, bounds: Bounds, variant: Variant, weight: float) -> Frame:
+        """Return one of these in-betweens; alone, where that takes less time than all of them.
+
+        Parameters
+        ----------
+        transit, bounds, variant
+            As in `inbetweens_of`.
+        weight : float
+            Its time from one key to the other, in [0, 1].
+        """
+        if not variant.needs_transform or self.sites.closing is not None:
+            return self.inbetweens_of(transit, bounds, variant).frame(weight)
+        samples = [self.samples(key.pose) for key in transit.keys]
+        return frame_at(
+            weight,
+            variant,
+            self.sites,
+            samples,
+            _sheets(samples, transit.turns),
+            transform=self.extension,
+            course=self._course(transit, bounds, variant),
+            bounds=bounds if transit.is_joined else Bounds(),
+        )
+
+    def _course(self, transit: Transit, bounds: Bounds, variant: Variant) -> Course:
         if not transit.is_joined:
-            return self._prepared(poses, transit.turns, Course.straight(), variant)
-        ends = self._ends(transit, bounds, variant)
-        course = Course.between(*ends)
-        return self._prepared(poses, transit.turns, course, variant, bounds=bounds)
+            return Course.straight()
+        return Course.between(*self._ends(transit, bounds, variant))
 
     def kept(self, transit: Transit, bounds: Bounds, variant: Variant) -> tuple[float, float]:
         """Return how much of its velocity the bounds leave to the motion at both keys.
@@ -188,20 +222,24 @@ class PoseSampler:
     ) -> Inbetweens:
         controls = None if course.controls is None else course.controls.tobytes()
         key = (poses, turns, controls, bounds, variant)
-        with self._lock:
+        with self._interval_lock:
             if key not in self._inbetweens:
                 samples = [self.samples(pose) for pose in poses]
                 inbetweens = prepare_inbetweens(
                     variant,
                     self.sites,
                     samples,
-                    root_sheets(np.array([sample.anchor_fz for sample in samples]), turns),
+                    _sheets(samples, turns),
                     transform=self.extension if variant.needs_transform else None,
                     course=course,
                     bounds=bounds or Bounds(),
                 )
                 self._inbetweens[key] = poses, inbetweens
             return self._inbetweens[key][1]
+
+
+def _sheets(samples: Sequence[KeyframeSamples], turns: Sequence[int]) -> Integers:
+    return root_sheets(np.array([sample.anchor_fz for sample in samples]), turns)
 
 
 class Animation:

@@ -5,7 +5,7 @@ A `Motion` is frozen: it knows the in-betweens of the poses that it was prepared
 where it is asked about others.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from types import MappingProxyType
 from typing import NamedTuple
@@ -93,6 +93,12 @@ class Motion:
         every = range(len(intervals(clip)))
         return all(self._prepared(clip, interval) is not None for interval in every)
 
+    def lacks(self, clip: Clip, frame: float) -> bool:
+        """Tell whether a frame is an in-between that is not prepared."""
+        moment = time_of(clip, frame)
+        is_between = resting_pose(clip, moment) is None
+        return is_between and self._prepared(clip, moment.interval) is None
+
     def inbetweens(self, clip: Clip, interval: int) -> Inbetweens | RememberedFrames:
         """Return the in-betweens of one of a clip's intervals, which must be prepared."""
         prepared = self._prepared(clip, interval)
@@ -130,6 +136,7 @@ def prepare_motion(
     *,
     at_most: int | None = None,
     frame: float = 0,
+    recalled: Sequence[Clip] = (),
 ) -> Motion:
     """Return the motion of a clip with its in-betweens; on the worker thread.
 
@@ -144,6 +151,8 @@ def prepare_motion(
         How many intervals to prepare; the others stay as they are. By default all.
     frame : float
         Those nearest to it are prepared first.
+    recalled : sequence of Clip
+        The figure at other times of its history. What is known of them stays so.
     """
     sampler, known = earlier.sampler, earlier.ready
     if clip.figure.anchor != earlier.clip.figure.anchor:
@@ -172,6 +181,9 @@ def prepare_motion(
         inbetweens = sampler.inbetweens_of(transit, figure.bounds, figure.variant)
         kept = sampler.kept(transit, figure.bounds, figure.variant)
         ready[pair] = PreparedInterval(poses, inbetweens, kept)
+    for other in recalled:
+        pairs = {pair_of(other, interval) for interval in range(len(intervals(other)))}
+        ready |= {pair: known[pair] for pair in pairs & known.keys() - ready.keys()}
     if sampler is not None:
         sampler.keep_only([pose for prepared in ready.values() for pose in prepared.poses])
     return Motion(mesh=earlier.mesh, clip=clip, sampler=sampler, ready=MappingProxyType(ready))

@@ -5,13 +5,15 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from app.document import Clip, Document, Pose, intervals, resting_pose, time_of
+from app.document import Clip, Document, Moment, Pose, intervals, resting_pose, time_of
+from app.motion.glimpse import Glimpse
 from app.motion.joints import HERE, Hinge, Joints, Placement, along
 from app.motion.paint_order import painted_triangles
 from app.motion.posable_mesh import AttachedPoints, PosableMesh
 from app.motion.prepared import Motion
 from app.motion.vertices import Placed, Streamed, Vertices
 from engine.arrays import Complexes
+from engine.domain import Domain
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -31,9 +33,9 @@ class Shown:
         Of the figure's handles in the mesh.
     placement : Placement
         Where the figure is in the scene; all else is where it is by itself.
-    is_current : bool
-        Whether it shows what it should, and not an earlier one or a key while that is being
-        prepared.
+    stand_in : Pose, Glimpse or Domain, optional
+        What is shown instead until the in-between is prepared: one of its two keys, or another
+        in-between of theirs; or what was drawn of another domain.
     """
 
     clip: Clip
@@ -42,8 +44,13 @@ class Shown:
     mesh: PosableMesh
     vertices: Vertices
     handles: AttachedPoints
-    is_current: bool
+    stand_in: Pose | Glimpse | Domain | None = None
     placement: Placement = HERE
+
+    @property
+    def is_current(self) -> bool:
+        """Whether it shows what it should, and nothing that stands in for it."""
+        return self.stand_in is None
 
     @property
     def positions(self) -> Complexes:
@@ -85,11 +92,13 @@ def show(
     pose: Pose | None,
     motions: tuple[Motion, ...],
     earlier: Shown | None,
+    *,
+    seen: Glimpse | None = None,
 ) -> Shown:
     """Return what to draw; the earlier one itself if nothing changed.
 
-    Until an in-between is prepared, the nearer one of its two keys stands in: exact, and never the
-    pose of another key.
+    Until an in-between is prepared, the nearest in time of its two keys and of what is seen of
+    their in-betweens stands in: exact, and never the pose of another key.
 
     Parameters
     ----------
@@ -101,6 +110,8 @@ def show(
         Where to look for it, the preferred one first; at least one.
     earlier : Shown, optional
         What was drawn before.
+    seen : Glimpse, optional
+        The last one.
     """
     if pose is None:
         pose = resting_pose(clip, time_of(clip, frame))
@@ -126,39 +137,61 @@ def show(
                 mesh=mesh,
                 vertices=vertices,
                 handles=handles,
-                is_current=True,
             )
-    return _stand_in(clip, frame, motions[-1].mesh, earlier)
+    return _stand_in(clip, frame, motions[-1].mesh, earlier, seen)
 
 
-def _stand_in(clip: Clip, frame: int, mesh: PosableMesh, earlier: Shown | None) -> Shown:
-    """Return what to draw until the in-between is prepared: the nearer one of its two keys.
+def _stand_in(
+    clip: Clip, frame: int, mesh: PosableMesh, earlier: Shown | None, seen: Glimpse | None
+) -> Shown:
+    """Return what to draw until the in-between is prepared; it, if that is what is seen.
 
     What was drawn of another domain stays meanwhile.
     """
     domain = clip.figure.domain
     if earlier is not None:
         if earlier.mesh.source is not domain:
-            return replace(earlier, is_current=False)
-        if earlier.clip == clip and earlier.frame == frame and not earlier.is_current:
-            return earlier
+            old = earlier.mesh.source
+            return earlier if earlier.stand_in is old else replace(earlier, stand_in=old)
         mesh = mesh if mesh.source is domain else earlier.mesh
     if mesh.source is not domain:
         raise ValueError("none of the motions is of the figure's domain")
     moment = time_of(clip, frame)
-    near = clip.keys[intervals(clip)[moment.interval][moment.weight > 0.5]].pose
+    near = _nearest(clip, moment, seen)
+    is_exact = isinstance(near, Glimpse) and near.weight == moment.weight
+    stand_in = None if is_exact else near
+    if (
+        earlier is not None
+        and earlier.clip == clip
+        and earlier.frame == frame
+        and earlier.pose is None
+        and earlier.stand_in is stand_in
+    ):
+        return earlier
+    if isinstance(near, Glimpse):
+        mesh, positions = near.mesh, near.positions
+    else:
+        positions = mesh.posed(near)
+    triangles = painted_triangles(mesh.domain.mesh, clip, frame)
     return Shown(
         clip=clip,
         frame=frame,
         pose=None,
         mesh=mesh,
-        vertices=Placed(
-            positions=mesh.posed(near),
-            triangles=painted_triangles(mesh.domain.mesh, clip, frame),
-        ),
+        vertices=Placed(positions=positions, triangles=triangles),
         handles=_locate(clip, mesh, earlier),
-        is_current=False,
+        stand_in=stand_in,
     )
+
+
+def _nearest(clip: Clip, moment: Moment, seen: Glimpse | None) -> Pose | Glimpse:
+    """Return which known pose between two keys, theirs included, is nearest to a moment."""
+    after = moment.weight > 0.5
+    distance = 1.0 - moment.weight if after else moment.weight
+    is_of = seen is not None and seen.is_of(clip, moment.interval)
+    if seen is not None and is_of and abs(seen.weight - moment.weight) <= distance:
+        return seen
+    return clip.keys[intervals(clip)[moment.interval][after]].pose
 
 
 def hang_shown(

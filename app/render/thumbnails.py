@@ -48,11 +48,15 @@ class Thumbnails:
         """Return all that are ready."""
         return [texture for texture in self._textures.values() if texture is not None]
 
-    def release(self) -> None:
-        """Let the textures go; files that are asked for again are read again."""
-        for texture in self.textures():
-            texture.release()
-        self._textures.clear()
+    def release(self, but: Path | None = None) -> None:
+        """Let the textures go, but those of files in one folder, if it is named.
+
+        Files that are asked for again are read again.
+        """
+        for path in [path for path in self._textures if path.parent != but]:
+            texture = self._textures.pop(path)
+            if texture is not None:
+                texture.release()
 
     def _read(self, path: Path) -> moderngl.Texture | None:
         small = read_thumbnail(path)

@@ -36,7 +36,7 @@ def draw(session: Session, look: Look) -> list[Action]:
         imgui.push_style_var(imgui.StyleVar_.window_border_size, 1.0)
         imgui.push_style_var(imgui.StyleVar_.window_rounding, 0.5 * look.em)
         imgui.push_style_color(imgui.Col_.window_bg, look.palette.raised)
-        imgui.begin(f"{TOAST}{toast.born}{toast.text}", flags=_FLAGS)
+        imgui.begin(f"{TOAST}{toast.place}", flags=_FLAGS)
         imgui.internal.bring_window_to_display_front(imgui.internal.get_current_window())
         actions += _contents(toast, look)
         hovered = imgui.is_window_hovered(imgui.HoveredFlags_.root_and_child_windows)
@@ -68,7 +68,8 @@ def _contents(toast: Toast, look: Look) -> list[Action]:
     imgui.push_text_wrap_pos(imgui.get_window_width() - 2.6 * look.em)
     imgui.text_unformatted(toast.text)
     imgui.pop_text_wrap_pos()
-    if toast.details and imgui.tree_node_ex("Details", imgui.TreeNodeFlags_.no_tree_push_on_open):
+    details = f"Details##{toast.born}"  # those of others may be open
+    if toast.details and imgui.tree_node_ex(details, imgui.TreeNodeFlags_.no_tree_push_on_open):
         small(look, toast.details.strip()[-1500:])
     if toast.details and imgui.small_button("Copy"):
         imgui.set_clipboard_text(f"{toast.text}\n\n{toast.details}")

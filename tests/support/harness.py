@@ -2,13 +2,16 @@
 
 import tempfile
 from collections.abc import Callable
-from dataclasses import fields
+from copy import copy
+from dataclasses import fields, is_dataclass
 from pathlib import Path
+from typing import TypeVar
 
 from imgui_bundle import ImVec2, hello_imgui, imgui
 from invariants import check_invariants
 from PIL import Image
 
+from app.document import History
 from app.document.settings import Meshing
 from app.editor.action import do
 from app.editor.actions import files, saving
@@ -24,6 +27,7 @@ from app.ui.viewport.viewport import GRIP
 from app.ui.window.offscreen import Offscreen
 from app.ui.window.window import Window
 
+Value = TypeVar("Value")
 Robot = imgui.test_engine.TestContext
 FRAME = 1 / 60
 MOST_FRAMES = 5000
@@ -51,6 +55,7 @@ class Harness:
         self.folder = Path(tempfile.mkdtemp(prefix="lissom-test-"))
         self.session = Session(clock=self.clock, jobs=Jobs(), folder=self.folder)
         self._tests = 0
+        self._made: dict[tuple[object, ...], tuple[float, Project, Preferences]] = {}
         self.gl = create_context()
         self._window = Window(self.session, lambda: Renderer(self.gl))
         self._screen = Offscreen(self._window, self.gl, with_test_engine=True)
@@ -93,6 +98,26 @@ class Harness:
         assert self.session.project is not None, [toast.text for toast in self.session.toasts]
         return self.session.project
 
+    def again(self, make: Callable[..., object], *arguments: object) -> Project:
+        """Show the project that a function makes in this window, which is made only once.
+
+        Whoever asks for it has what may change in it for themselves.
+        """
+        known = (make, *arguments)
+        if known not in self._made:
+            make(self, *arguments)
+            assert not self.session.jobs.kinds
+            assert self.session.project is not None
+            self._made[known] = (self.clock.now, self.session.project, self.session.preferences)
+        made_at, made, self.session.preferences = self._made[known]
+        project = own(made)
+        project.moved_at += self.clock.now - made_at
+        # What was kept of it went away with the test for which it was made.
+        project.autosaved, project.autosaved_at, project.changed_at = None, self.clock.now, None
+        saving.put_project(self.session, project)
+        self.frames(2)
+        return project
+
     def point(self, place: complex) -> ImVec2:
         """Return where a place of the drawing's plane is on the screen."""
         return self._screen.point(place)
@@ -108,6 +133,11 @@ class Harness:
     @property
     def _em(self) -> float:
         return FONT_SIZE * self.session.preferences.scale
+
+    @property
+    def awaits_worker(self) -> bool:
+        """Whether the window sleeps until the worker, or the person, does something."""
+        return self._window.awaits_worker
 
     def show_tab(self, title: str) -> None:
         """Bring a panel to the front."""
@@ -176,3 +206,21 @@ class Harness:
     def _frame(self, *, painted: bool = False) -> None:
         self.clock.now += FRAME
         self._screen.frame(painted=painted)
+
+
+def own(value: Value) -> Value:
+    """Return a value with all that may change in it copied, and what is frozen shared."""
+    if isinstance(value, list):
+        return [own(each) for each in value]
+    if isinstance(value, dict):
+        return {key: own(each) for key, each in value.items()}
+    if isinstance(value, History):
+        copied = copy(value)
+        vars(copied).update({name: own(each) for name, each in vars(value).items()})
+        return copied
+    if is_dataclass(value) and not value.__dataclass_params__.frozen:
+        copied = copy(value)
+        for field in fields(value):
+            setattr(copied, field.name, own(getattr(value, field.name)))
+        return copied
+    return value

@@ -1,6 +1,7 @@
 """The deformer: one certified step, its parts, and Newton's method from the identity."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple
 
 import numpy as np
 
@@ -18,6 +19,7 @@ from engine.deform import (
 from engine.maps import Boundary, Bounds, certify
 
 CAGE_VERTICES = (25, 50, 53, 100, 200)
+MOVING_STEPS = 40
 DRAG_STEPS = 20
 MOST_STEPS = 100
 
@@ -45,20 +47,27 @@ def _drag(boundary: Boundary) -> Table:
     points = np.append(tips, 0.0)
     handles = Handles.place(boundary, points)
     deformer = Deformer(boundary=boundary, handles=handles, bounds=Bounds())
-    targets = points + 0.4 * np.exp(2j * np.arange(6))
-    wish = handles.wish(targets)
-    states = [deformer.start()]
-    for _ in range(DRAG_STEPS):
-        states.append(deformer.step(states[-1], wish))
-    state = states[DRAG_STEPS // 2]
+    wish = handles.wish(points + 0.4 * np.exp(2j * np.arange(6)))
+    # The same distance, while the hand draws an arc.
+    share = np.arange(1, MOVING_STEPS + 1)[:, None] / MOVING_STEPS
+    arc = points + 0.4 * share * np.exp(2j * np.arange(6) + 1j * share)
+    moving = _steps(deformer, [handles.wish(targets) for targets in arc])
+    resting = _steps(deformer, [wish] * DRAG_STEPS)
+    state = resting[DRAG_STEPS // 2].start
     objective = Objective(boundary=boundary, handles=handles, wish=wish, stride=4)
     jet = objective.jet(*state.map.columns)
     radial = objective.radial(jet)
     rows = (
         Row(
-            name="certified step of a drag",
-            seconds=_mean_step(deformer, states, wish),
-            note=f"{len(boundary.points)} samples",
+            name="certified step, the hand moves",
+            seconds=_mean_step(deformer, moving),
+            note=f"mean of {MOVING_STEPS} wishes; {len(boundary.points)} samples",
+        ),
+        Row(
+            name="certified step, the hand rests",
+            seconds=_mean_step(deformer, resting),
+            note=f"mean of the first {DRAG_STEPS} towards one wish, "
+            f"{sum(step.end.search is not None for step in resting)} in search of rest",
         ),
         Row(name="Hessian", seconds=measure(lambda: objective.hessian(jet, radial))),
         Row(
@@ -78,12 +87,29 @@ def _drag(boundary: Boundary) -> Table:
     return Table(title=f"Deformer, {len(boundary.cage)} cage vertices, 6 handles", rows=rows)
 
 
-def _mean_step(deformer: Deformer, states: list[State], wish: Wish) -> float:
-    def all_steps() -> None:
-        for state in states[:-1]:
-            deformer.step(state, wish)
+class _Step(NamedTuple):
+    """A step of a drag, towards a wish."""
 
-    return measure(all_steps) / (len(states) - 1)
+    start: State
+    wish: Wish
+    end: State
+
+
+def _steps(deformer: Deformer, wishes: Sequence[Wish]) -> list[_Step]:
+    """Follow wishes with a step each."""
+    steps, state = [], deformer.start()
+    for wish in wishes:
+        steps.append(_Step(state, wish, deformer.step(state, wish)))
+        state = steps[-1].end
+    return steps
+
+
+def _mean_step(deformer: Deformer, steps: list[_Step]) -> float:
+    def all_steps() -> None:
+        for step in steps:
+            deformer.step(step.start, step.wish)
+
+    return measure(all_steps) / len(steps)
 
 
 def _newton_steps(boundary: Boundary, handles: Handles, wish: Wish) -> int:

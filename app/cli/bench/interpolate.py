@@ -59,7 +59,7 @@ class KeyframePair:
             keyframes=keyframes,
             sheets=sheets,
             transform=transform,
-            extension=transform.at(sites.paths.nodes),
+            extension=transform.at(sites.paths.nodes, single=True),
         )
 
     def first_keyframe(self) -> tuple[KeyframeSamples, ...]:
@@ -135,7 +135,7 @@ def _preparation(domain: Domain, pair: KeyframePair) -> Table:
         ),
         Row(
             name="Cauchy integrals, once for each mesh",
-            seconds=measure(partial(transform.at, sites.paths.nodes), repeats=3),
+            seconds=measure(partial(transform.at, sites.paths.nodes, single=True), repeats=3),
             note=f"{_megabytes(pair.extension.nbytes)}, {len(sites.paths.nodes):,} points",
         ),
         Row(
@@ -234,7 +234,7 @@ class _HoledPair:
             logs=np.zeros(len(domain.holes), dtype=np.complex128),
         )
         maps = (HarmonicMap.identity(domain.cage, domain.holes), second)
-        return cls(maps=maps, sites=sites, extension=transform.at(sites.paths.nodes))
+        return cls(maps=maps, sites=sites, extension=transform.at(sites.paths.nodes, single=True))
 
     def cost(self, variant: Variant) -> _Cost:
         """Measure."""

@@ -15,7 +15,7 @@ import numpy as np
 from PIL import Image, ImageDraw
 
 from app.cli.bench.table import Row, Table
-from app.cli.bench.ui import Driver, dragging, playing, row_of
+from app.cli.bench.ui import REACH, Driver, dragging, playing, row_of
 from app.document import Document, Figure, Meshing, PictureFile, Pose, Variant, clip_of
 from app.editor import Puppet
 from app.editor.actions import files
@@ -31,13 +31,17 @@ GRAIN = 6  # levels: flat colours would be read too fast
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SceneExtent:
-    """How much is measured: layers and their sides, figures, triangles of each, and frames."""
+    """How much is measured: layers and their sides, figures, triangles of each, and frames.
+
+    And in how many pixels around it a handle is dragged.
+    """
 
     layers: int = 20
     side: int = 2_000
     figures: int = 10
     triangles: int = 20_000
     frames: int = 40
+    reach: float = REACH
 
 
 def tables(extent: SceneExtent | None = None) -> Iterator[Table]:
@@ -115,9 +119,12 @@ def _beside_one(folder: Path, extent: SceneExtent) -> Table:
         files.show(stage.session, folder / SAMPLE, files.Opened(document, puppets, ()))
         stage.settle()
         what = f"{count} of {triangles:,} triangles"
+        runs = {
+            "playing": playing(stage, extent.frames),
+            "dragging": dragging(stage, extent.frames, extent.reach),
+        }
         rows += [
-            (f"{way}, {what}", [frame.whole for frame in run(stage, extent.frames)])
-            for way, run in (("playing", playing), ("dragging", dragging))
+            (f"{way}, {what}", [frame.whole for frame in frames]) for way, frames in runs.items()
         ]
     return Table(
         title=f"A frame by the clock until all of it is drawn, {stage.device}",

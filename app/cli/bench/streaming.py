@@ -1,6 +1,7 @@
 """In-betweens as series in time: a frame against a linear blend, and what a series costs."""
 
-from collections.abc import Callable, Iterator
+import statistics
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 
@@ -31,6 +32,7 @@ SIZES = (10_000, 100_000, 1_000_000)
 VARIANTS = (Variant.LINEAR, Variant.NU, Variant.ETA, Variant.SCALED_ETA, Variant.METRIC)
 # A second of playing: what a frame costs on the way, through all the pieces of a series.
 TIMES = tuple((i + 0.5) / 24 for i in range(24))
+REPEATS = 9
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -89,33 +91,29 @@ def posed_giraffe() -> Document:
 
 def _frames(interval: Interval, series: dict[Variant, Series]) -> Table:
     count = len(interval.mesh.vertices)
-    linear, ends = _linear_blend(series[Variant.LINEAR])
-    rows = [
-        Row(name="linear blend, float32", seconds=linear, note="both keyframes in one product"),
-        Row(
-            name="linear blend, float32, as a·(1 − t) + b·t",
-            seconds=seconds_played(lambda t: np.float32(1 - t) * ends[0] + np.float32(t) * ends[1]),
-        ),
-    ]
-    out = np.empty(2 * count, dtype=np.float32)
-    for variant in VARIANTS[1:]:
-        played = seconds_played(partial(_write, series[variant], out))
-        direct = measure(partial(interval.inbetweens(variant).offsets, 0.6))
-        note = f"the direct path takes {direct / played:.0f} times as long"
-        rows.append(Row(name=f"series, {variant}", seconds=played, note=note))
-    triangles = len(interval.mesh.triangles)
-    return Table(title=f"A frame of {triangles:,} triangles ({count:,} vertices)", rows=tuple(rows))
-
-
-def _linear_blend(series: Series) -> tuple[float, Singles]:
-    """Return the seconds of a frame, and the keyframes (2, c)."""
-    ends = series.pieces[0].rows
-    out = np.empty(series.size, dtype=np.float32)
+    ends, out = series[Variant.LINEAR].pieces[0].rows, np.empty(2 * count, dtype=np.float32)
 
     def blend(time: float) -> None:
         np.dot(np.array([1.0 - time, time], dtype=np.float32), ends, out=out)
 
-    return seconds_played(blend), ends
+    variants = VARIANTS[1:]
+    linear, by_terms, *played = seconds_side_by_side(
+        [
+            blend,
+            lambda t: np.float32(1 - t) * ends[0] + np.float32(t) * ends[1],
+            *(partial(_write, series[variant], out) for variant in variants),
+        ]
+    )
+    rows = [
+        Row(name="linear blend, float32", seconds=linear, note="both keyframes in one product"),
+        Row(name="linear blend, float32, as a·(1 − t) + b·t", seconds=by_terms),
+    ]
+    for variant, seconds in zip(variants, played, strict=True):
+        direct = measure(partial(interval.inbetweens(variant).offsets, 0.6))
+        note = f"the direct path takes {direct / seconds:.0f} times as long"
+        rows.append(Row(name=f"series, {variant}", seconds=seconds, note=note))
+    triangles = len(interval.mesh.triangles)
+    return Table(title=f"A frame of {triangles:,} triangles ({count:,} vertices)", rows=tuple(rows))
 
 
 def _write(series: Series, out: Singles, time: float) -> None:
@@ -240,4 +238,10 @@ def seconds_played(frame: Callable[[float], object]) -> float:
         for time in TIMES:
             frame(time)
 
-    return measure(play, repeats=9) / len(TIMES)
+    return measure(play, repeats=REPEATS) / len(TIMES)
+
+
+def seconds_side_by_side(frames: Sequence[Callable[[float], object]]) -> list[float]:
+    """Return the same of several, by turns: what slows a machine for a while slows them all."""
+    rounds = [[seconds_played(frame) for frame in frames] for _ in range(REPEATS)]
+    return [statistics.median(each) for each in zip(*rounds, strict=True)]

@@ -4,6 +4,7 @@ import statistics
 import subprocess
 import sys
 import tempfile
+import threading
 import time
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
@@ -17,14 +18,15 @@ import app
 from app.cli.bench import idle
 from app.cli.bench.start import MARKS
 from app.cli.bench.table import Row, Table
-from app.document import Meshing, Target, clip_of
+from app.cli.process import share_interpreter
+from app.document import Meshing, Target, Variant, clip_of
 from app.editor import Jobs, Project, Puppet, Session, do
 from app.editor.actions import files, playback
 from app.errors import LissomError
 from app.render import Renderer
 from app.render.gpu import create_context
 from app.storage import decode_picture, load_project, sample_images
-from app.ui.window import SIZE, Offscreen, Window, has_display
+from app.ui.window import PAUSE, SIZE, Offscreen, Window, has_display
 from engine.domain import mesh_inside
 
 SAMPLE, PICTURE = "giraffe.lissom", "dragon.png"
@@ -40,8 +42,8 @@ PATIENCE = 120.0  # seconds that anything may take
 class Extent:
     """How much is measured: repeats of the start and of opening, frames, moves of the pointer.
 
-    And in how many pixels around it a handle is dragged, and for how many seconds the window is
-    left alone.
+    And in how many pixels around it a handle is dragged, for how many seconds the window is left
+    alone, how large it is, and by which variant the in-betweens are.
     """
 
     triangles: int = 100_000
@@ -50,17 +52,20 @@ class Extent:
     moves: int = 100
     reach: float = REACH
     idle: float = 10.0
+    size: tuple[int, int] = SIZE
+    variant: Variant = Variant.METRIC
 
 
 def tables(extent: Extent | None = None) -> Iterator[Table]:
     """Measure the window without a display, on whatever draws here; its start also on one."""
     extent = extent or Extent()
+    share_interpreter()
     yield _start(extent)
     with tempfile.TemporaryDirectory() as folder:
-        stage = Driver(Path(folder))
+        stage = Driver(Path(folder), extent.size)
         yield _opening(stage, extent)
         stage.settle()
-        files.show(stage.session, Path(folder) / SAMPLE, _giraffe(extent.triangles))
+        files.show(stage.session, Path(folder) / SAMPLE, _giraffe(extent))
         stage.settle()
         yield from _frames(stage, extent)
         yield _latency(stage, extent)
@@ -102,14 +107,16 @@ class _Screen(Offscreen):
 class Driver:
     """The window that is measured, with a clock that can be put forward."""
 
-    def __init__(self, folder: Path) -> None:
+    def __init__(self, folder: Path, size: tuple[int, int] = SIZE) -> None:
         self._ahead = 0.0
+        self._woken = threading.Event()
         self.session = Session(
             clock=lambda: time.perf_counter() + self._ahead, jobs=Jobs(), folder=folder
         )
+        self.session.jobs.wake = self._woken.set
         self._gl = create_context()
         self._window = _Watched(self.session, lambda: Renderer(self._gl))
-        self._screen = _Screen(self._window, self._gl)
+        self._screen = _Screen(self._window, self._gl, size=size)
         self.frame()
 
     @property
@@ -143,16 +150,23 @@ class Driver:
             self.refresh()
 
     def refresh(self) -> _Frame:
-        """Draw a frame, and wait until a screen would show the next one."""
+        """Draw a frame, and wait until a screen would show the next one, as the window does."""
         due = time.perf_counter() + REFRESH
+        self._woken.clear()
         frame = self.frame()
-        time.sleep(max(0.0, due - time.perf_counter()))
+        if self._window.awaits_worker:
+            self._woken.wait(PAUSE)
+        else:
+            time.sleep(max(0.0, due - time.perf_counter()))
         return frame
 
     def settle(self) -> None:
-        """Wait for the worker to finish everything."""
+        """Wait for the workers to finish everything; frames are drawn only where one is due."""
         self.refresh()
-        self.until(lambda: not self.session.jobs.kinds)
+        while self.session.jobs.kinds:
+            if not self.session.jobs.settle(PATIENCE):
+                raise TimeoutError(f"the window did not get on: {self.session.jobs.kinds}")
+            self.refresh()
 
     def show_tab(self, title: str) -> None:
         """Bring a panel to the front."""
@@ -204,7 +218,8 @@ def _open_window() -> list[float]:
 def _opening(stage: Driver, extent: Extent) -> Table:
     """Measure from a dropped picture to a drag."""
     stage.session.meshing = Meshing(triangles=extent.triangles)
-    times = [_open_and_drag(stage, sample_images() / PICTURE) for _ in range(extent.repeats)]
+    path = sample_images() / PICTURE
+    times = [_open_and_drag(stage, path, extent.reach) for _ in range(extent.repeats)]
     shown, followed = (
         Row(name=name, seconds=statistics.median(column), note=f"at most {_ms(max(column))}")
         for name, column in zip(
@@ -220,7 +235,7 @@ def _opening(stage: Driver, extent: Extent) -> Table:
     )
 
 
-def _open_and_drag(stage: Driver, path: Path) -> tuple[float, float]:
+def _open_and_drag(stage: Driver, path: Path, reach: float) -> tuple[float, float]:
     session = stage.session
     stage.mouse(0j)
     session.project = None
@@ -239,10 +254,10 @@ def _open_and_drag(stage: Driver, path: Path) -> tuple[float, float]:
     stage.refresh()
     stage.mouse(point, down=True)
     stage.until(lambda: bool(project.figure.handles))
-    stage.mouse(point + REACH)
+    stage.mouse(point + reach)
     stage.until(lambda: abs(_handle_place(project) - inside) > 1.0)
     followed = time.perf_counter() - begun
-    stage.mouse(point + REACH, down=False)
+    stage.mouse(point + reach, down=False)
     stage.settle()
     return shown, followed
 
@@ -252,12 +267,13 @@ def _handle_place(project: Project) -> complex:
     return complex(project.puppet.shown.handle_places[0]) if project.puppet.shown else 0j
 
 
-def _giraffe(triangles: int) -> files.Opened:
+def _giraffe(extent: Extent) -> files.Opened:
     """Return the animated sample on a finer mesh."""
     document = load_project(sample_images() / SAMPLE)
     figure = document.figures[0]
-    mesh = mesh_inside(*figure.domain.loops, triangles=triangles)
-    figure = replace(figure, domain=replace(figure.domain, mesh=mesh))
+    mesh = mesh_inside(*figure.domain.loops, triangles=extent.triangles)
+    domain = replace(figure.domain, mesh=mesh)
+    figure = replace(figure, domain=domain, variant=extent.variant)
     document = document.with_figure(figure)
     picture = decode_picture(figure.picture.data, SAMPLE)
     puppet = Puppet.of(clip_of(document, figure.id), picture)
@@ -269,12 +285,12 @@ def _frames(stage: Driver, extent: Extent) -> Iterator[Table]:
     count = extent.frames
     runs = {
         "nothing moves": _still(stage, count),
-        "playing, metric": playing(stage, count),
+        f"playing, {extent.variant}": playing(stage, count),
         "scrubbing": _scrubbing(stage, count),
-        "dragging a handle": dragging(stage, count),
+        "dragging a handle": dragging(stage, count, extent.reach),
     }
     triangles = len(stage.project.figure.domain.mesh.triangles)
-    what = f"{triangles:,} triangles, {SIZE[0]} × {SIZE[1]} pixels"
+    what = "{:,} triangles, {} × {} pixels".format(triangles, *extent.size)
     yield Table(
         title=f"A frame by the clock until all of it is drawn: {what}, {stage.device}",
         rows=tuple(row_of(name, [frame.whole for frame in run]) for name, run in runs.items()),
@@ -327,9 +343,9 @@ def _scrubbing(stage: Driver, count: int) -> list[_Frame]:
     return frames
 
 
-def dragging(stage: Driver, count: int) -> list[_Frame]:
+def dragging(stage: Driver, count: int, reach: float) -> list[_Frame]:
     """Drag, with the solver at work beside."""
-    drag = _Drag(stage, REACH)
+    drag = _Drag(stage, reach)
     frames = []
     for number in range(count):
         drag.move(number)

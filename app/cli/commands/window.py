@@ -9,7 +9,7 @@ from contextlib import suppress
 from pathlib import Path
 
 from app.cli.console import fail, notice
-from app.cli.process import PATIENCE, Endings, end_within
+from app.cli.process import PATIENCE, Endings, end_within, share_interpreter
 from app.editor import Jobs, Session
 from app.editor.actions import files, saving
 from app.errors import EXPECTED_ERRORS
@@ -19,9 +19,6 @@ from app.storage import load_preferences, make_settings_folder, save_preferences
 from app.ui.dialogs import find_system_dialogs
 from app.ui.window import Window, has_display
 
-# Seconds after which a worker hands Python's lock over. A frame takes it some twenty times; with
-# the usual 5 ms a job that seldom lets go would leave two frames a second.
-SWITCH = 0.0005
 EXIT_FAILED = 1
 # Seconds that workers have to end: when the person has closed the window, when something else has.
 LEISURE, HURRY = 6.0, 2.0
@@ -34,7 +31,7 @@ def run(arguments: argparse.Namespace) -> int:
             "there is no display for the window; the command line works without one, for example "
             "'lissom export PROJECT --out DIR'"
         )
-    sys.setswitchinterval(SWITCH)
+    share_interpreter()
     folder = settings_folder()
     session = Session(
         clock=time.perf_counter,

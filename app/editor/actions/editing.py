@@ -69,8 +69,15 @@ def undo(session: Session) -> None:
     project = session.project
     if project is None:
         return
-    pose = project.posing or project.settling
+    pose, awaiting = project.posing or project.settling, project.awaiting
+    project.awaiting = None
     posing.drop(session)
+    if awaiting is not None:
+        # Nothing of it was done yet but what its gesture did first.
+        for gesture, _ in awaiting.verbs:
+            project.history.take_back(gesture)
+        _forget_what_is_gone(project)
+        return
     before, unkeyed, label = project.document, project.history.unkeyed, project.history.undo_label
     if pose is not None and pose.drag is None:
         # Nothing is to be seen of it yet but what its gesture did first.
@@ -89,6 +96,7 @@ def take_back(session: Session, gesture: object) -> None:
         return
     if any(pose and pose.gesture is gesture for pose in (project.posing, project.settling)):
         posing.drop(session)
+    posing.forget(project, gesture)
     project.history.take_back(gesture)
     _forget_what_is_gone(project)
 

@@ -1,11 +1,11 @@
 """What follows the document by itself: in-betweens, what is measured of them, what is drawn."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from functools import partial
 from typing import Any
 
-from app.document import Clip, clip_of, intervals
+from app.document import Clip, clip_of, intervals, time_of
 from app.editor.actions import playback, posing, rebuilding, viewing
 from app.editor.derived import Derivation
 from app.editor.failures import report
@@ -15,11 +15,14 @@ from app.editor.session import Session
 from app.editor.timeline_view import measure_shortfalls
 from app.motion import (
     Build,
+    Glimpse,
     Joints,
     Motion,
     PosableMesh,
     PoseSampler,
+    can_glimpse,
     extent_source,
+    glimpse_at,
     hang_shown,
     joints_source,
     measure_extent,
@@ -35,7 +38,9 @@ from engine.arrays import Bytes
 from engine.domain import CutOut
 
 STILL = 0.15  # seconds after which the playhead is taken to stay where it is
+GLIMPSING = "In-between"
 SKETCHING, REFINING, STREAMING = "In-betweens", "Finer in-betweens", "Smooth playback"
+UNMADE = "The in-betweens of these keys cannot be made"
 MOST_UNASKED = 1000  # frames whose extent is measured before anybody asks
 CUTTING = "Cutting out"
 MEASURING, SPANNING = "Measuring", "Measuring the motion"
@@ -51,6 +56,7 @@ def maintain(session: Session) -> None:
     if project is None:
         return
     posing.settle(session)
+    posing.catch_up(session, project)
     project.extent.recall(extent_source(project.document))
     rebuilding.keep_up(session)
     project.pair_up(session.split.method if session.split else None)
@@ -100,6 +106,10 @@ def missing(session: Session, project: Project) -> Iterator[Derivation[Any, Any]
     movable = [(clip, puppet) for clip, puppet in clips if not puppet.coarse.has_failed(clip)]
     # First of all: they are watched while the hand moves, and are of few points only.
     yield from _trace(session, project)
+    yield from _glimpse(session, project)
+    if _awaits_glimpse(session, project):
+        # On few cores it would come much later beside them.
+        return
     for clip, puppet in movable:
         if not puppet.coarse.value.knows(clip):
             # Where nobody sees them before the hand rests, they are not worked out for each move.
@@ -160,11 +170,46 @@ def _shrink(project: Project) -> Iterator[Derivation[Cut, Bytes | None]]:
             )
 
 
+def _glimpse(
+    session: Session, project: Project
+) -> Iterator[Derivation[tuple[Clip, int], Glimpse | None]]:
+    """Yield the in-between that is awaited, before and beside all others of its interval."""
+    frame = playback.current_frame(session, project)
+    for figure, puppet in project.puppets.items():
+        clip, motion, seen = clip_of(project.document, figure), puppet.coarse.value, puppet.seen
+        is_posed = figure == project.active and project.unkeyed is not None
+        # What fails at one frame would at others, and is told of once.
+        has_failed = seen.failure is not None and seen.failure[0] == clip
+        if is_posed or has_failed or seen.follows((clip, frame)):
+            continue
+        if can_glimpse(clip, motion, frame):
+            yield Derivation(
+                kind=GLIMPSING,
+                into=seen,
+                source=(clip, frame),
+                work=partial(glimpse_at, clip, motion, frame),
+                complaint=UNMADE,
+                lane="hand",
+            )
+
+
+def _awaits_glimpse(session: Session, project: Project) -> bool:
+    """Tell whether a glimpse is on its way, the first one of the interval at the playhead."""
+    if GLIMPSING not in session.jobs.kinds:
+        return False
+    frame = playback.current_frame(session, project)
+    for figure, puppet in project.puppets.items():
+        clip, seen = clip_of(project.document, figure), puppet.seen.value
+        is_first = seen is None or not seen.is_of(clip, time_of(clip, frame).interval)
+        if is_first and puppet.coarse.value.lacks(clip, frame):
+            return True
+    return False
+
+
 def _sketch(
     session: Session, project: Project, clip: Clip, puppet: Puppet
 ) -> Derivation[Clip, Motion]:
-    earlier, among = puppet.coarse.value, len(project.document.figures)
-    frame = playback.current_frame(session, project)
+    earlier, frame = puppet.coarse.value, playback.current_frame(session, project)
     # An interval at a time, so that what is wanted next need not wait long; all at once where the
     # hand has changed those around one key, and the ghosts are to stay together.
     at_most = None if session.overlays.onion and project.posing is not None else 1
@@ -172,8 +217,8 @@ def _sketch(
         kind=SKETCHING,
         into=puppet.coarse,
         source=clip,
-        work=lambda: _coarse_motion(clip, earlier, frame, at_most=at_most, among=among),
-        complaint="The in-betweens of these keys cannot be made",
+        work=_coarse_motion(project, clip, earlier, frame, at_most=at_most),
+        complaint=UNMADE,
     )
 
 
@@ -187,10 +232,17 @@ def _settle(session: Session, project: Project) -> Iterator[Derivation[Clip, Mot
         posing.take_trial(session, project, trial)
         return
     pose, earlier = trial.pose, trial.motion
-    frame, among = playback.current_frame(session, project), len(project.document.figures)
+    prepare = _coarse_motion(
+        project, clip, earlier, playback.current_frame(session, project), at_most=1
+    )
 
     def work() -> Motion:
-        return _coarse_motion(clip, earlier, frame, at_most=1, among=among)
+        sampler = earlier.sampler
+        if sampler is not None and not sampler.has_sampled(pose):
+            # A playhead that leaves the pose at once need not wait for a whole interval then.
+            sampler.samples(pose)
+            return earlier
+        return prepare()
 
     def done(motion: Motion) -> None:
         posing.take_trial(session, project, Trial(pose=pose, motion=motion))
@@ -354,7 +406,8 @@ def _show(session: Session, project: Project) -> None:
             project.moved_at = session.clock()
         pose = project.unkeyed if figure == project.active else None
         motions = _motions(session, project, puppet)
-        shown[figure] = show(clip_of(project.document, figure), frame, pose, motions, puppet.shown)
+        clip, seen = clip_of(project.document, figure), puppet.seen.value
+        shown[figure] = show(clip, frame, pose, motions, puppet.shown, seen=seen)
         if pose is not None:
             poses[figure] = pose
     joints = project.joints.value if project.joints.follows(source) else None
@@ -397,12 +450,23 @@ def _has_fine(clip: Clip, puppet: Puppet) -> bool:
 
 
 def _coarse_motion(
-    clip: Clip, earlier: Motion, frame: int, *, at_most: int | None, among: int
-) -> Motion:
-    domain = clip.figure.domain
-    if earlier.mesh.source is not domain:
-        earlier = Motion.at_rest(clip, PosableMesh.coarse(domain, among=among))
-    return prepare_motion(clip, earlier, at_most=at_most, frame=frame)
+    project: Project, clip: Clip, earlier: Motion, frame: int, *, at_most: int | None
+) -> Callable[[], Motion]:
+    """Return what prepares the motion on few triangles, and keeps what undo and redo lead to."""
+    figure, among = clip.figure, len(project.document.figures)
+    recalled = [
+        clip_of(document, figure.id)
+        for document in project.history.nearby
+        if figure.id in [other.id for other in document.figures]
+    ]
+
+    def prepare() -> Motion:
+        known = earlier
+        if known.mesh.source is not figure.domain:
+            known = Motion.at_rest(clip, PosableMesh.coarse(figure.domain, among=among))
+        return prepare_motion(clip, known, at_most=at_most, frame=frame, recalled=recalled)
+
+    return prepare
 
 
 def _fine_motion(clip: Clip, earlier: Motion | None, sibling: PoseSampler | None) -> Motion:

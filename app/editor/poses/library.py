@@ -72,6 +72,8 @@ def blend(session: Session, name: str, share: float) -> None:
     project = session.project
     if project is None or project.puppet.shown is None:
         return
+    if posing.waits(session, partial(blend, name=name, share=share), gesture=blend):
+        return
     pose = project.figure.kept_pose(name).pose
     if project.blend is None or project.blend.name != name:
         playback.halt(session)
@@ -88,7 +90,7 @@ def blend(session: Session, name: str, share: float) -> None:
 
 def end_blend(session: Session) -> None:
     """Let the pose be as it is mixed now."""
-    if session.project:
+    if session.project and not (session.project.awaiting and posing.waits(session, end_blend)):
         session.project.blend = None
         posing.let_go(session)
 

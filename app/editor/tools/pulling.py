@@ -21,8 +21,8 @@ class Pulling:
     start : complex
         Where it was pressed.
     before : Selection
-    places : mapping of int to complex
-        Those of the handles at the start, by id.
+    places : mapping of int to complex, optional
+        Those of the handles at the start, by id; None until the pose is shown that they are in.
     entry : TypedWay
         What is typed meanwhile.
     place : complex, optional
@@ -33,7 +33,7 @@ class Pulling:
 
     start: complex
     before: Selection
-    places: Mapping[int, complex]
+    places: Mapping[int, complex] | None
     entry: TypedWay = field(default_factory=TypedWay)
     place: complex | None = None
     moved: bool = False
@@ -61,12 +61,16 @@ class Pulling:
                 return None
             if spot.handle not in project.selected:
                 editing.select(session, project.figure.together_with(spot.handle))
-            return cls(start=spot.place, before=before, places=_selected_places(project))
+            is_there = posing.is_there(session, project)
+            places = _selected_places(project) if is_there else None
+            return cls(start=spot.place, before=before, places=places)
         if not spot.on_shape or not session.overlays.handles:
             return None
-        pulling = cls(start=spot.place, before=before, places={})
+        is_there = posing.is_there(session, project)
+        pulling = cls(start=spot.place, before=before, places=None)
         posing.add_handle(session, spot.place, gesture=pulling)
-        pulling.places = dict.fromkeys(project.selected, spot.place)
+        if is_there:
+            pulling.places = dict.fromkeys(project.selected, spot.place)
         return pulling
 
     def move(self, session: Session, place: complex) -> None:
@@ -83,8 +87,11 @@ class Pulling:
 
     def _pull(self, session: Session) -> None:
         project = session.project
-        if project is None or not self.moved:
+        if project is None or not self.moved or posing.waits(session, self._pull, gesture=self):
             return
+        if self.places is None:
+            # They move as far as the pointer has gone meanwhile.
+            self.places = _selected_places(project)
         way = self.entry.way((self.start if self.place is None else self.place) - self.start)
         known = {handle.id for handle in project.figure.handles}
         turns = _wished_turns(project)

@@ -30,6 +30,9 @@ class Turning:
     before : Selection
     turn : float
         By how much the shape was turned there at the start, in radians.
+    is_found : bool
+        Whether `centre` and `turn` are those of the pose that belongs to the frame, and not of one
+        that stands in for it.
     deletes : bool
         Whether a click, which turns nothing, deletes the handle.
     swept : float
@@ -44,6 +47,7 @@ class Turning:
     start: complex
     before: Selection
     turn: float
+    is_found: bool
     deletes: bool
     swept: float = 0.0
     entry: TypedWay = field(default_factory=TypedWay)
@@ -83,6 +87,7 @@ class Turning:
             start=spot.place,
             before=before,
             turn=shown.handle_turns[index],
+            is_found=posing.is_there(session, project),
             deletes=is_by_key,
         )
 
@@ -100,7 +105,8 @@ class Turning:
         swept = (place - self.centre) / (self.start - self.centre or 1)
         if swept and self.entry.value is None:
             angle = cmath.phase(swept)
-            self._turn(session, project, STEP * round(angle / STEP) if session.snaps else angle)
+            self.swept = STEP * round(angle / STEP) if session.snaps else angle
+            self._turn(session)
 
     def type(self, session: Session, characters: str) -> None:
         """Turn the shape by as many degrees as are typed."""
@@ -108,13 +114,29 @@ class Turning:
         self.entry.axis = ""
         if session.project is not None and self.entry.value is not None:
             self.moved = True
-            self._turn(session, session.project, math.radians(self.entry.value))
+            self.swept = math.radians(self.entry.value)
+            self._turn(session)
 
-    def _turn(self, session: Session, project: Project, swept: float) -> None:
+    def _turn(self, session: Session) -> None:
+        project = session.project
+        if project is None or posing.waits(session, self._turn, gesture=self):
+            return
+        if not self.is_found:
+            self._find(project)
         if self.handle in {handle.id for handle in project.figure.handles}:
-            self.swept = swept
             target = Target(position=self.centre, rotation=self.turn + self.swept)
             posing.pull(session, {self.handle: target}, gesture=self)
+
+    def _find(self, project: Project) -> None:
+        """Turn about where the handle is now, by as much as the pointer went around it so far."""
+        shown = project.puppet.shown
+        identities = [handle.id for handle in shown.clip.figure.handles] if shown else []
+        if shown is not None and self.handle in identities:
+            index = identities.index(self.handle)
+            centre = complex(shown.handle_places[index])
+            self.start += centre - self.centre
+            self.centre, self.turn = centre, shown.handle_turns[index]
+            self.is_found = True
 
     def end(self, session: Session, place: complex) -> None:  # noqa: ARG002 - as a tool's
         """Let the shape go; delete the handle that was only clicked."""

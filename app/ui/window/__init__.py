@@ -6,6 +6,6 @@ Imports: every other room of `app.ui`.
 """
 
 from app.ui.window.offscreen import Offscreen
-from app.ui.window.window import SIZE, Window, has_display
+from app.ui.window.window import PAUSE, SIZE, Window, has_display
 
-__all__ = ["SIZE", "Offscreen", "Window", "has_display"]
+__all__ = ["PAUSE", "SIZE", "Offscreen", "Window", "has_display"]

@@ -24,6 +24,7 @@ LAYOUT = 1
 # Input wakes the window at once, and so does all that goes on by itself.
 IDLE_FPS = 0.2
 AWAKE = 0.5  # seconds for which it goes on after that, for what it leads to
+SETTLED = 2  # frames in which panels have shown what they are to show
 LEFT = imgui.MouseButton_.left
 
 
@@ -54,6 +55,7 @@ class Shell:
         self._actions: list[Action] = []
         self._asked: list[Action] = []
         self._awake_until = 0.0
+        self._idle_frames = 0
 
     def runner_params(self) -> hello_imgui.RunnerParams:
         """Return what Hello ImGui needs to know; platform and renderer are left to the caller."""
@@ -88,6 +90,11 @@ class Shell:
     def ask(self, action: Action) -> None:
         """Do something at the end of the next frame."""
         self._asked.append(action)
+
+    @property
+    def awaits_worker(self) -> bool:
+        """Whether frames would only repeat what is shown, and take time from the worker."""
+        return self._idle_frames >= SETTLED
 
     def release(self) -> None:
         """Close what is open beside the window."""
@@ -205,6 +212,7 @@ class Shell:
         self.attempt(self.session.jobs.deliver)
         self.attempt(partial(upkeep.maintain, self.session))
         self.attempt(partial(saving.maintain, self.session))
+        self._idle_frames = self._idle_frames + 1 if _awaits_in_between(self.session) else 0
         if self.session.quitting:
             hello_imgui.get_runner_params().app_shall_exit = True
 
@@ -223,3 +231,15 @@ def _is_busy(session: Session) -> bool:
     is_working = bool(session.jobs.kinds) or session.export is not None
     is_working |= project is not None and project.stale is not None
     return is_moving or is_working or asks_system or bool(session.toasts)
+
+
+def _awaits_in_between(session: Session) -> bool:
+    """Tell whether something stands in for an in-between, and nothing else goes on."""
+    project = session.project
+    if project is None or project.playhead.since is not None or session.pointer is not None:
+        return False
+    if session.export is not None or session.toasts or session.dialog is not None:
+        return False
+    shows = [puppet.shown for puppet in project.puppets.values()]
+    awaited = {upkeep.GLIMPSING, upkeep.SKETCHING}.intersection(session.jobs.kinds)
+    return bool(awaited) and any(shown is not None and not shown.is_current for shown in shows)

@@ -21,7 +21,7 @@ from app.editor.actions import saving
 from app.errors import EXPECTED_ERRORS, LissomError
 from app.render import LayerPictures, Renderer, Textures, Thumbnail, Thumbnails
 from app.render.gpu import is_software
-from app.storage import app_icon
+from app.storage import app_icon, sample_images
 from app.ui.panel import Panel
 from app.ui.panels import cut_out, deform, distortion, domain, export, handle, layers, poses
 from app.ui.timeline import timeline
@@ -35,6 +35,7 @@ from engine.arrays import Bytes
 
 SIZE = (1280, 800)
 APPLICATION = "lissom"  # the name of its desktop entry
+PAUSE = 0.1  # seconds between frames that only tell how long something takes
 ICON_SIDES = (16, 32, 64)  # pixels
 # Where the display of X11 or Wayland is named.
 DISPLAYS = ("DISPLAY", "WAYLAND_DISPLAY")
@@ -144,8 +145,11 @@ class Window:
                 "graphics card, and the command line needs no display"
             ) from error
         self._is_open = True
+        self.session.jobs.wake = self.wake
         try:
             while not (params.app_shall_exit or is_over()):
+                if self.awaits_worker:
+                    glfw.wait_events_timeout(PAUSE)
                 hello_imgui.manual_render.render()
         finally:
             self._is_open = False
@@ -157,6 +161,11 @@ class Window:
         """Let a window that waits for events go through a frame; any thread may ask for it."""
         if self._is_open:
             glfw.post_empty_event()
+
+    @property
+    def awaits_worker(self) -> bool:
+        """Whether the next frame can wait, up to `PAUSE`, for the worker or for some input."""
+        return self._shell.awaits_worker
 
     def ask(self, action: Action) -> None:
         """Do something in the next frame, as if a panel had asked for it."""
@@ -193,15 +202,17 @@ class Window:
         """Tell that OpenGL fails, as when its driver was reset, and keep the work at once."""
         session = self.session
         project = session.project
-        kept = "Unsaved work was kept"
-        if project is not None and project.autosaved is not project.document:
+        kept = ""
+        if project is not None and not project.history.is_saved:
+            kept = " Unsaved work was kept."
             try:
-                saving.keep_now(session)
+                if project.autosaved is not project.document:
+                    saving.keep_now(session)
             except EXPECTED_ERRORS as reason:
-                kept = f"Unsaved work could not be kept ({reason})"
+                kept = f" Unsaved work could not be kept ({reason})."
         session.tell(
-            f"The picture cannot be drawn: {error}. {kept}. If the picture does not come back, "
-            "save and start Lissom again.",
+            f"The picture cannot be drawn: {error}.{kept} If the picture does not come back, save "
+            "and start Lissom again.",
             tone="error",
             topic="drawing",
             details="".join(traceback.format_exception(error)),
@@ -293,8 +304,8 @@ class Window:
         self._thumbnails.begin_frame()
         if self.session.project is not None and not isinstance(self.session.dialog, FileDialog):
             # Only the welcome view and the file browser show them, and until the next time files
-            # may have been saved anew.
-            self._thumbnails.release()
+            # may have been saved anew; samples are not.
+            self._thumbnails.release(but=sample_images())
 
     def _thumbnail(self, path: Path) -> Thumbnail | None:
         return self._thumbnails.get(path) if self._thumbnails else None

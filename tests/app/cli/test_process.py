@@ -14,6 +14,7 @@ from app.cli.commands import window
 from app.cli.main import main
 from app.document import History
 from app.document.commands import scene_commands
+from app.editor.actions import saving
 from app.editor.project import Project
 from app.errors import LissomError
 from app.storage.autosave import load_leftover
@@ -118,6 +119,15 @@ class EndedWindow:
             assert is_over()
         finally:
             farewell()
+
+
+def test_what_could_not_be_kept_is_not_said_to_be(monkeypatch, capfd):
+    def refuse(_):
+        raise LissomError("the disk is full")
+
+    monkeypatch.setattr(saving, "keep_now", refuse)
+    window._keep(None)
+    assert capfd.readouterr().err.endswith("unsaved work could not be kept: the disk is full\n")
 
 
 @pytest.mark.parametrize(

@@ -43,6 +43,19 @@ def test_undo_and_redo_give_back_the_very_same_documents(seeds, is_full):
     assert history.redo_label is None
 
 
+def test_the_documents_that_undo_and_redo_lead_to():
+    first = disc_document()
+    history = History(first, saved=True)
+    assert history.nearby == (first,)
+    history.do(set_fps(30))
+    second = history.document
+    assert history.nearby == (first, second)
+    history.do(set_fps(40))
+    third = history.document
+    history.undo()
+    assert history.nearby == (first, second, third)
+
+
 @settings(max_examples=40)
 @given(seeds)
 def test_commands_leave_the_document_before_them_as_it_was(seeds):

@@ -64,14 +64,14 @@ def chain(variant="nu", count=3):
 
 
 @cache
-def alone(document, figure, place):
+def alone(clip, place):
     """A point of a figure by itself."""
-    return Animation(clip_of(document, figure), points=np.array([place]))
+    return Animation(clip, points=np.array([place]))
 
 
 def exactly(document, figure, place, frame):
     """Where a point of a figure is by itself, and its f_z."""
-    moved = alone(document, figure, place).frame(frame)
+    moved = alone(clip_of(document, figure), place).frame(frame)
     return moved.positions[0], moved.fz[0]
 
 

@@ -6,7 +6,7 @@ from shapes import regular_polygon
 
 from app.document import clip_of
 from app.document.commands import key_commands
-from app.motion import Motion, PosableMesh, show
+from app.motion import Motion, PosableMesh, can_glimpse, glimpse_at, prepare_motion, show
 from engine.domain import Domain
 from engine.domain.meshing import triangulate
 
@@ -21,10 +21,39 @@ def test_the_nearer_key_stands_in_until_the_in_between_is_prepared():
     motion = Motion.at_rest(clip, PosableMesh.coarse(figure.domain))
     for frame, pose in ((6, first), (18, turned)):
         shown = show(clip, frame, None, (motion,), None)
+        assert shown.stand_in is pose
         assert not shown.is_current
         assert shown.pose is None
         np.testing.assert_array_equal(shown.positions, motion.mesh.posed(pose))
         assert show(clip, frame, None, (motion,), shown) is shown
+
+
+def test_one_exact_in_between_stands_in_for_others_nearby():
+    document = disc_document()
+    figure = document.figures[0]
+    first = figure.keys[0].pose
+    pair = clip_of(key_commands.insert_key(figure.id, 24, first)(document), figure.id)
+    motion = prepare_motion(pair, Motion.at_rest(pair, PosableMesh.coarse(figure.domain)))
+    bent = replace(first, phi=CENTRE + (first.phi - CENTRE) * np.exp(0.8j))
+    clip = clip_of(key_commands.insert_key(figure.id, 24, bent)(document), figure.id)
+    assert not can_glimpse(pair, motion, 12)
+    assert can_glimpse(clip, motion, 12)
+    assert not can_glimpse(clip, motion, 24)
+    seen = glimpse_at(clip, motion, 12)
+    exact = prepare_motion(clip, motion)
+    for frame, stand_in in ((12, None), (13, seen), (8, seen), (4, first), (22, bent)):
+        shown = show(clip, frame, None, (motion,), None, seen=seen)
+        assert shown.stand_in is stand_in
+        if shown.is_current:
+            expected = exact.positions(clip, frame)
+            np.testing.assert_allclose(shown.positions, expected, atol=1e-5)
+    # Of other keys it shows nothing.
+    other = clip_of(key_commands.insert_key(figure.id, 24, turned_back(bent))(document), figure.id)
+    assert show(other, 12, None, (motion,), None, seen=seen).stand_in is first
+
+
+def turned_back(pose):
+    return replace(pose, phi=CENTRE + (pose.phi - CENTRE) * np.exp(-0.4j))
 
 
 def test_figures_that_are_drawn_together_share_the_coarse_triangles():

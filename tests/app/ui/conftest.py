@@ -3,12 +3,10 @@
 from collections.abc import Iterator
 
 import pytest
+from bars import bend_bar, open_bar
 from harness import Harness
 
-from app.document.keyframe import Target
-from app.editor.actions import playback, posing
 from app.editor.project import Project
-from app.storage.assets import sample_images
 
 
 @pytest.fixture(scope="session")
@@ -27,23 +25,13 @@ def window(_only_window: Harness) -> Iterator[Harness]:
 @pytest.fixture
 def bar(window: Harness) -> Project:
     """The sample of a bar, with a handle near each end, the second one selected."""
-    project = window.open(sample_images() / "bar.png")
-    width, height = project.document.canvas
-    for share in (0.1, 0.9):
-        posing.add_handle(window.session, complex(share * width, height / 2))
-        window.frames(2)
-    return project
+    return window.again(open_bar)
 
 
 @pytest.fixture
-def bent(window: Harness, bar: Project) -> Project:
+def bent(window: Harness) -> Project:
     """The bar, bent at its right end: keys at frames 0 and 24, the second one is shown."""
-    playback.seek(window.session, 24)
-    window.settle()
-    width, height = bar.puppet.picture.size
-    posing.wish(window.session, {1: Target(position=complex(0.85 * width, 0.9 * height))})
-    window.settle()
-    return bar
+    return window.again(bend_bar)
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:

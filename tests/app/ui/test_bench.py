@@ -5,7 +5,8 @@ import sys
 
 SCRIPT = """
 from app.cli.bench.ui import Extent, tables
-for table in tables(Extent(triangles=1_000, repeats=1, frames=2, moves=2, reach=4, idle=0.1)):
+small = {"triangles": 1_000, "reach": 4, "size": (640, 440), "variant": "nu"}
+for table in tables(Extent(repeats=1, frames=2, moves=2, idle=0.1, **small)):
     assert all(row.seconds is None or row.seconds > 0 for row in table.rows), table
     print(len(table.rows))
 """
@@ -21,7 +22,7 @@ def test_everything_is_measured():
 
 SCENES = """
 from app.cli.bench.scenes import SceneExtent, tables
-extent = SceneExtent(layers=2, side=160, figures=1, triangles=1_000, frames=2)
+extent = SceneExtent(layers=2, side=160, figures=1, triangles=1_000, frames=2, reach=4)
 for table in tables(extent):
     assert all(row.seconds is None or row.seconds > 0 for row in table.rows), table
     print(len(table.rows))

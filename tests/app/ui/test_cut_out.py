@@ -65,7 +65,7 @@ def test_where_nothing_is_cut_out_of_a_photo_the_brush_is_offered(window, tmp_pa
     assert "whole picture is the drawing" in offer.text
 
     def accept(robot):
-        robot.item_click(f"//{TOAST}{offer.born}{offer.text}/{offer.label}")
+        robot.item_click(f"//{TOAST}{offer.place}/{offer.label}")
 
     window.run(accept)
     assert window.session.cutting == "remove"
@@ -290,9 +290,7 @@ def test_a_click_opens_what_the_background_shows_through(window, tmp_path, colou
     assert len(offers) == 1 - first
     for offer in offers:
         window.run(
-            lambda robot, offer=offer: robot.item_click(
-                f"//{TOAST}{offer.born}{offer.text}/{offer.label}"
-            )
+            lambda robot, offer=offer: robot.item_click(f"//{TOAST}{offer.place}/{offer.label}")
         )
     if first:
         window.act(cutting.take_up, "holes")

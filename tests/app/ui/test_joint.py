@@ -39,10 +39,13 @@ def drawing(tmp_path_factory):
 
 @pytest.fixture
 def scene(window, drawing):
+    return window.again(open_with_arm, drawing)
+
+
+def open_with_arm(window, drawing):
     project = window.open(drawing)
     window.act(layering.choose, identity(project, "arm"))
     window.settle()
-    return project
 
 
 def identity(project, name):

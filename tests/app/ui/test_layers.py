@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from harness import Harness
 from imgui_bundle import ImVec2
 from layered import blob, openraster
 from PIL import Image, ImageDraw
@@ -49,7 +50,7 @@ def drawing(tmp_path_factory):
 
 @pytest.fixture
 def scene(window, drawing):
-    project = window.open(drawing)
+    project = window.again(Harness.open, drawing)
     window.show_tab("Layers")
     return project
 

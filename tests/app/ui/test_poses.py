@@ -24,6 +24,10 @@ LEFT, RIGHT, HIP, HEAD = range(4)
 
 @pytest.fixture
 def project(window):
+    return window.again(show_somebody)
+
+
+def show_somebody(window):
     """Somebody with two arms; at frame 12 the left one is up."""
     picture = Image.new("RGBA", (160, 120))
     pen = ImageDraw.Draw(picture)
@@ -35,7 +39,6 @@ def project(window):
     window.session.project = project_of(document, np.array(picture), "somebody")
     window.settle()
     pose(window, 12, 8 + 25j)
-    return window.session.project
 
 
 def pose(window, frame, way):

@@ -5,7 +5,7 @@ import weakref
 import harness
 import numpy as np
 import pytest
-from held import held
+from held import held, in_use
 
 from app.editor.actions import keys, saving
 from app.storage.assets import sample_images
@@ -56,3 +56,17 @@ def test_a_project_that_was_closed_is_let_go(slow_window, tmp_path):
     slow_window.frames(2)
     assert history() is None
     assert held(slow_window.gl).opengl < opengl
+
+
+def test_messages_that_are_gone_leave_nothing(window):
+    def tell_some():
+        for number in range(20):
+            window.session.tell(f"message {number}")
+            window.frames(2)
+            window.session.toasts = []
+            window.frames(1)
+        return in_use()
+
+    first = tell_some()
+    # A window of ImGui's takes 7 KB.
+    assert tell_some() - first < 0.05

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from bars import bend_bar
 from imgui_bundle import ImVec2
 
 from app.document import Baseline, Target, Variant
@@ -9,8 +10,13 @@ from app.editor.actions import playback, posing, viewing
 
 
 @pytest.fixture
-def between(window, bent):
+def between(window):
     """The bar, bent far, half way to its second key."""
+    return window.again(stop_half_way)
+
+
+def stop_half_way(window):
+    bent = bend_bar(window)
     width, _ = bent.document.canvas
     wishes = dict(bent.puppet.shown.pose.targets)
     last = max(wishes)
@@ -19,7 +25,6 @@ def between(window, bent):
     window.settle()
     playback.seek(window.session, 12)
     window.settle()
-    return bent
 
 
 def divider(window):

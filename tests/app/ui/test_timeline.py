@@ -45,11 +45,14 @@ def waving_document():
 
 @pytest.fixture
 def project(window):
+    return window.again(show_disc)
+
+
+def show_disc(window):
     document = waving_document()
     pixels = np.full((200, 200, 4), 160, np.uint8)
     window.session.project = project_of(document, pixels, "disc")
     window.settle()
-    return window.session.project
 
 
 class Hand:

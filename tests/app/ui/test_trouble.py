@@ -7,11 +7,12 @@ from contextlib import suppress
 from dataclasses import replace
 
 import pytest
-from harness import MOST_FRAMES
+from harness import MOST_FRAMES, Harness
 
 from app.document.keyframe import Target
 from app.editor.actions import exporting, files, posing, saving, upkeep
 from app.editor.dialogs import FileDialog, Question, Recovery
+from app.editor.jobs import Job
 from app.storage.assets import sample_images
 from app.storage.autosave import (
     SECONDS,
@@ -31,7 +32,7 @@ from app.ui.window.title import window_title
 
 @pytest.fixture
 def project(window):
-    return window.open(sample_images() / "bar.png")
+    return window.again(Harness.open, sample_images() / "bar.png")
 
 
 def texts(window):
@@ -344,11 +345,34 @@ def test_unsaved_work_that_could_not_be_kept_is_kept_as_soon_as_there_is_room(
         project.autosaved = None
         window.clock.now += SECONDS
         window.settle()
-    assert any("Unsaved work cannot be kept" in text for text in texts(window))
+        assert any("Unsaved work cannot be kept" in text for text in texts(window))
+        window.session.toasts = []
+        window.clock.now += SECONDS
+        window.settle()
+        assert texts(window) == []  # it was told
     assert list(window.folder.glob("unsaved-*.lissom")) == []
     window.clock.now += SECONDS
     window.settle()
     assert len(list(window.folder.glob("unsaved-*.lissom"))) == 1
+
+
+def test_older_work_that_waits_to_be_kept_does_not_replace_what_was_kept_at_once(window, project):
+    end, middle = threading.Event(), complex(*project.document.canvas) / 2
+    window.act(posing.add_handle, middle)
+    window.settle()
+    window.session.autosave.forget()
+    project.autosaved = None
+    busy = Job(kind="Busy", work=end.wait, done=lambda _: None, failed=print, lane="keep")
+    window.session.jobs.put(busy)
+    window.clock.now += SECONDS
+    window.frames(2)
+    assert saving.AUTOSAVING in window.session.jobs.kinds
+    window.act(posing.add_handle, middle + 50)
+    saving.keep_now(window.session)
+    end.set()
+    window.settle()
+    (kept,) = window.folder.glob("unsaved-*.lissom")
+    assert len(load_leftover(kept)[0].figures[0].handles) == 2
 
 
 def test_every_unsaved_work_is_offered_whenever_it_was_kept(window, project):
@@ -392,8 +416,9 @@ def test_a_worker_that_never_ends_can_be_cancelled_and_nothing_waits_for_it(
     saving.write(window.session, tmp_path / "a.lissom", None)
     for _ in range(MOST_FRAMES):
         window.frames()
-        if (tmp_path / "a.lissom").exists():
+        if project.path is not None:
             break
+    assert (tmp_path / "a.lissom").exists()
     window.clock.now += ENDLESS
     window.frames(3)
     assert window.session.jobs.running_for(ENDLESS) == ("Opening bar.png",)
@@ -427,7 +452,10 @@ def test_a_save_does_not_wait_for_ever_for_a_pose_that_never_settles(
     assert any("cancelled" in text for text in texts(window))
 
 
-def test_a_graphics_driver_that_fails_is_told_and_the_work_is_kept(window, project, monkeypatch):
+@pytest.mark.parametrize("has_room", [True, False])
+def test_a_graphics_driver_that_fails_is_told_and_the_work_is_kept(
+    window, project, monkeypatch, has_room
+):
     window.act(posing.add_handle, complex(*project.document.canvas) / 2)
     window.settle()
     window.session.autosave.forget()
@@ -436,12 +464,20 @@ def test_a_graphics_driver_that_fails_is_told_and_the_work_is_kept(window, proje
     def lost(*_):
         raise RuntimeError("the context was lost")
 
+    def full(*_):
+        raise OSError(errno.ENOSPC, "No space left on device")
+
     with monkeypatch.context() as patch:
         patch.setattr(Canvas, "draw", lost)
+        if not has_room:
+            patch.setattr("app.storage.files.atomic.os.fsync", full)
         window.frames(3)
-    assert any("the context was lost" in text for text in texts(window))
-    (kept,) = window.folder.glob("unsaved-*.lissom")
-    assert len(load_leftover(kept)[0].figures[0].handles) == 1
+    (told,) = (text for text in texts(window) if "the context was lost" in text)
+    assert ("work was kept" in told) is has_room
+    assert ("work could not be kept" in told) is not has_room
     window.session.toasts = []
+    kept = list(window.folder.glob("unsaved-*.lissom"))
+    assert len(kept) == has_room
+    assert all(len(load_leftover(each)[0].figures[0].handles) == 1 for each in kept)
     window.frames(3)
     assert texts(window) == []

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from harness import MOST_FRAMES
+from harness import MOST_FRAMES, Harness
 from imgui_bundle import hello_imgui
 from PIL import Image
 
@@ -26,7 +26,7 @@ FRAMES = 9
 @pytest.fixture
 def project(window):
     """A bar with a handle and nine frames; each takes more than half of an export's share."""
-    project = window.open(BAR)
+    project = window.again(Harness.open, BAR)
     posing.add_handle(window.session, complex(*project.document.canvas) / 2)
     keys.set_last_frame(window.session, FRAMES - 1)
     exporting.set_export(window.session, ExportSettings(size=SIZE))
@@ -84,7 +84,7 @@ def test_window_gives_an_export_a_share_of_each_frame_and_never_idles_meanwhile(
         if session.export is None:
             break
         if steps:
-            assert session.jobs.kinds == ()
+            assert set(session.jobs.kinds) <= {"Saving preferences"}
             assert awake
         steps.append(session.export.done)
     assert steps[-1] == FRAMES

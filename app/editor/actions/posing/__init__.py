@@ -27,6 +27,7 @@ from app.editor.actions.posing.pulling import (
 )
 from app.editor.actions.posing.settling import next_trial, settle, take_trial, trial_clip
 from app.editor.actions.posing.steps import POSING, STEPS, accept, hold, retargeted
+from app.editor.actions.posing.waiting import catch_up, forget, is_there, waits
 
 __all__ = [
     "INSERTING",
@@ -35,11 +36,14 @@ __all__ = [
     "accept",
     "add_handle",
     "anchor_at",
+    "catch_up",
     "drop",
     "fit_pose",
+    "forget",
     "free_turn",
     "hold",
     "insert_key",
+    "is_there",
     "let_go",
     "mirror_handles",
     "next_trial",
@@ -54,6 +58,7 @@ __all__ = [
     "suggest_handles",
     "take_trial",
     "trial_clip",
+    "waits",
     "wish",
     "wishes_of",
 ]

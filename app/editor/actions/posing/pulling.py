@@ -2,12 +2,14 @@
 
 from collections.abc import Mapping
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
 from app.document import Target
 from app.editor.actions import playback
 from app.editor.actions.posing.steps import POSING, end, follow, hold, retargeted
+from app.editor.actions.posing.waiting import give_up, waits
 from app.editor.project import PoseInProgress, Project
 from app.editor.session import Session
 
@@ -16,14 +18,14 @@ def pull(session: Session, wishes: Mapping[int, Target], *, gesture: object | No
     """Wish handles elsewhere in the pose that is shown; the others keep their wishes.
 
     Pulls of one gesture are one step of undo; without one, each is a step until it is let go. What
-    is not prepared yet cannot be pulled: where its handles are is not known.
+    is not prepared yet is pulled as soon as it is.
     """
     project = session.project
     if project is None or project.puppet.shown is None:
         return
+    if waits(session, partial(pull, wishes=wishes, gesture=gesture), gesture=gesture):
+        return
     if project.posing is None or not project.posing.is_held:
-        if not _is_there(project):
-            return
         _keep_found(session, project)
         project.posing, project.settling = _begin(session, project, gesture or object()), None
     posing = project.posing
@@ -35,7 +37,9 @@ def pull(session: Session, wishes: Mapping[int, Target], *, gesture: object | No
 
 def let_go(session: Session) -> None:
     """End the pull; the solver goes on until it rests."""
-    if session.project and session.project.posing:
+    if session.project and session.project.awaiting:
+        waits(session, let_go)
+    elif session.project and session.project.posing:
         posing = session.project.posing
         posing.is_held = False
         if POSING not in session.jobs.kinds:
@@ -43,7 +47,9 @@ def let_go(session: Session) -> None:
 
 
 def drop(session: Session) -> None:
-    """End the pull where the solver is."""
+    """End the pull where the solver is, or before it began."""
+    if session.project:
+        give_up(session, session.project)
     if session.project and session.project.is_posing:
         _keep_found(session, session.project)
         session.jobs.drop(POSING)
@@ -66,7 +72,7 @@ def pin_here(session: Session) -> None:
     """Let the selected handles be wanted where they are, wherever they were wanted before."""
     project = session.project
     shown = project.puppet.shown if project else None
-    if project is None or shown is None or not project.selected:
+    if project is None or shown is None or not project.selected or waits(session, pin_here):
         return
     wishes = wishes_of(project)
     places = zip(shown.clip.figure.handles, shown.handle_places, strict=True)
@@ -85,6 +91,8 @@ def nudge(session: Session, step: complex) -> None:
     """Move the selected handles by a few pixels of the picture."""
     project = session.project
     if project is None or project.puppet.shown is None or not project.selected:
+        return
+    if waits(session, partial(nudge, step=step)):
         return
     targets = project.posing.targets if project.posing else wishes_of(project)
     moved = {
@@ -106,6 +114,8 @@ def wish(session: Session, wishes: Mapping[int, Target]) -> None:
 def pull_again(session: Session, *, gesture: object) -> None:
     """Let the pose that is shown follow its own wishes once more, as under other limits."""
     project = session.project
+    if waits(session, partial(pull_again, gesture=gesture)):
+        return
     if project and project.puppet.shown and project.puppet.shown.pose:
         pull(session, project.puppet.shown.pose.targets, gesture=gesture)
         let_go(session)
@@ -116,17 +126,11 @@ def free_turn(session: Session, identity: int) -> None:
     project = session.project
     if project is None or project.puppet.shown is None:
         return
+    if waits(session, partial(free_turn, identity=identity)):
+        return
     targets = project.posing.targets if project.posing else wishes_of(project)
     pull(session, {identity: replace(targets[identity], rotation=None)})
     let_go(session)
-
-
-def _is_there(project: Project) -> bool:
-    """Tell whether what should be shown is, or never will be."""
-    shown, coarse = project.puppet.shown, project.puppet.coarse
-    return project.unkeyed is not None or (
-        shown is not None and (shown.is_current or coarse.has_failed(project.clip))
-    )
 
 
 def _begin(session: Session, project: Project, gesture: object) -> PoseInProgress:

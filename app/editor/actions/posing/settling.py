@@ -2,7 +2,7 @@
 
 from app.document import Clip, Pose, clip_of
 from app.editor.actions import playback
-from app.editor.actions.posing.steps import POSING, end, hold, holding
+from app.editor.actions.posing.steps import POSING, end, follow, hold, holding
 from app.editor.project import PoseInProgress, Project, Trial
 from app.editor.session import Session
 
@@ -22,7 +22,9 @@ def settle(session: Session) -> None:
             hold(session, project, settling.frame, settling.found, gesture=settling.gesture)
         settling.found, settling.is_left = None, False
         project.posing, project.settling = settling, None
-    if settling.found is None and POSING not in session.jobs.kinds:
+    if settling.is_paused:
+        follow(session, project, settling)
+    elif settling.found is None and POSING not in session.jobs.kinds:
         end(project, settling)
 
 

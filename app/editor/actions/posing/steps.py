@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from app.document import Clip, Command, Figure, Pose, Target, UnkeyedPose, key_commands
+from app.editor.actions.posing.waiting import is_there
 from app.editor.failures import report
 from app.editor.jobs import Job
 from app.editor.project import PoseInProgress, Project
@@ -26,8 +27,14 @@ MOST_STEPS = 600
 
 
 def follow(session: Session, project: Project, posing: PoseInProgress) -> None:
-    """Let the worker go on, unless it is at it: then it goes on when that is delivered."""
+    """Let the worker go on, unless it is at it: then it goes on when that is delivered.
+
+    A pose that the playhead has left goes on once what is shown is there.
+    """
     if POSING in session.jobs.kinds:
+        return
+    posing.is_paused = posing is project.settling and not is_there(session, project)
+    if posing.is_paused:
         return
     puppet, targets = project.puppet, posing.targets
     begin = partial(

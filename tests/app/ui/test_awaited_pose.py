@@ -1,0 +1,164 @@
+"""What the hand does while another pose stands in for the in-between at the playhead."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from app.document.commands import key_commands
+from app.editor.actions import editing, playback, posing
+
+FRAME, TURN = 12, np.exp(0.5j)
+WAY = 30 - 20j  # pixels of the picture
+
+
+@pytest.fixture
+def come(monkeypatch, window, bent):
+    """What lets the workers' results come; until then a key stands in at the playhead."""
+    deliver = window.session.jobs.deliver
+    monkeypatch.setattr(window.session.jobs, "deliver", lambda: None)
+    pose = bent.figure.key(24).pose
+    turned = replace(pose, phi=TURN * pose.phi, psi=pose.psi / TURN)
+    editing.edit(window.session, key_commands.pose_key(bent.active, 24, turned))
+    playback.scrub(window.session, FRAME)
+    window.frames(2)
+    assert bent.puppet.shown.stand_in in [key.pose for key in bent.figure.keys]
+
+    def let_come(*, settles=True):
+        monkeypatch.setattr(window.session.jobs, "deliver", deliver)
+        if settles:
+            window.settle()
+
+    return let_come
+
+
+def in_between(project):
+    """Return where the handles are in the in-between that is awaited."""
+    clip, motion, mesh = project.clip, project.puppet.coarse.value, project.puppet.coarse.value.mesh
+    positions = motion.positions(clip, FRAME)
+    rest = np.array([handle.position for handle in project.figure.handles])
+    return mesh.locate(rest, mesh.domain.mesh.vertices).on(positions)
+
+
+def drag(robot, window, project):
+    place = complex(project.puppet.shown.handle_places[1])
+    robot.mouse_move_to_pos(window.point(place))
+    robot.mouse_down(0)
+    robot.mouse_move_to_pos(window.point(place + WAY / 2))
+    robot.mouse_move_to_pos(window.point(place + WAY))
+
+
+def test_a_handle_moves_as_far_as_the_pointer_did_meanwhile(window, bent, come):
+    before = bent.document
+    window.frames(2)
+    assert window.awaits_worker
+
+    def play(robot):
+        drag(robot, window, bent)
+        # Nothing is pulled out of a pose that is not the one of this frame.
+        assert bent.document is before
+        assert bent.posing is None
+        # The hand is to be followed.
+        assert not window.awaits_worker
+        come(settles=False)
+        while bent.posing is None:
+            robot.yield_(1)
+        assert bent.posing.is_held
+        robot.mouse_up(0)
+
+    window.run(play)
+    come()
+    targets = bent.figure.key(FRAME).pose.targets
+    editing.undo(window.session)
+    assert bent.document is before
+    window.settle()
+    wanted = in_between(bent) + np.array([0, WAY])
+    np.testing.assert_allclose([targets[i].position for i in (0, 1)], wanted, atol=1.0)
+
+
+def test_neither_a_drag_that_is_over_nor_steps_are_lost(window, bent, come):
+    def play(robot):
+        drag(robot, window, bent)
+        robot.mouse_up(0)
+
+    window.run(play)
+    bent.selected = frozenset({1})
+    for _ in range(3):
+        window.act(posing.nudge, 5j)
+    assert FRAME not in bent.figure.key_frames
+    come()
+    target = bent.figure.key(FRAME).pose.targets[1]
+    while FRAME in bent.figure.key_frames:
+        editing.undo(window.session)
+    window.settle()
+    assert abs(target.position - in_between(bent)[1] - WAY - 15j) < 1.0
+
+
+def test_a_turn_goes_on_from_the_in_between(window, bent, come):
+    bent.selected = frozenset({1})
+    window.frames(2)
+
+    def turn(robot):
+        centre = complex(bent.puppet.shown.handle_places[1])
+        arm = window.ring(bent)
+        robot.mouse_move_to_pos(window.point(centre + arm))
+        robot.mouse_down(0)
+        robot.mouse_move_to_pos(window.point(centre + arm * np.exp(0.2j)))
+        robot.mouse_move_to_pos(window.point(centre + arm * np.exp(0.4j)))
+        robot.mouse_up(0)
+
+    window.run(turn)
+    come()
+    target = bent.figure.key(FRAME).pose.targets[1]
+    editing.undo(window.session)
+    window.settle()
+    turned = bent.puppet.shown.handle_turns[1]
+    assert abs(target.position - in_between(bent)[1]) < 1.0
+    assert abs(target.rotation - turned) == pytest.approx(0.4, abs=0.05)
+
+
+def test_it_is_taken_back_before_it_began_and_left_with_a_word(window, bent, come):
+    before = bent.document
+
+    def play(robot, *, escapes=False):
+        drag(robot, window, bent)
+        assert bent.awaiting is not None
+        if escapes:
+            robot.key_press(int(window.Key.escape))
+        robot.mouse_up(0)
+
+    window.run(lambda robot: play(robot, escapes=True))
+    assert bent.awaiting is None
+    window.run(play)
+    window.act(editing.undo)
+    assert bent.awaiting is None
+    window.run(play)
+    window.act(playback.scrub, 6)
+    assert "the handles were not pulled" in window.session.toasts[-1].text
+    playback.scrub(window.session, FRAME)
+    window.frames(2)
+    window.run(play)
+    window.session.toasts = []
+    window.act(posing.drop)
+    assert "the handles were not pulled" in window.session.toasts[-1].text
+    come()
+    assert bent.document is before
+
+
+def test_undo_and_redo_need_not_wait(window, bent):
+    playback.scrub(window.session, FRAME)
+    for turn in (TURN, TURN**2):
+        pose = bent.figure.key(24).pose
+        turned = replace(pose, phi=turn * pose.phi, psi=pose.psi / turn)
+        editing.edit(window.session, key_commands.pose_key(bent.active, 24, turned))
+        window.settle()
+    documents = bent.history.nearby
+    for step in (editing.undo, editing.redo, editing.undo):
+        step(window.session)
+        assert bent.document in documents
+        assert bent.puppet.coarse.value.knows(bent.clip)
+    # What leads on from here is worked out, and then nothing of the way back is lost.
+    editing.undo(window.session)
+    window.settle()
+    editing.redo(window.session)
+    assert bent.puppet.coarse.value.knows(bent.clip)
