@@ -1,6 +1,7 @@
 """The whole window without a display, with ImGui's test engine in it."""
 
 import tempfile
+import time
 from collections.abc import Callable
 from copy import copy
 from dataclasses import fields, is_dataclass
@@ -31,6 +32,7 @@ Value = TypeVar("Value")
 Robot = imgui.test_engine.TestContext
 FRAME = 1 / 60
 MOST_FRAMES = 5000
+PATIENCE = 120.0  # seconds that a slow machine has for what takes another a moment
 
 
 class Clock:
@@ -73,9 +75,12 @@ class Harness:
 
     def reset(self) -> None:
         """Go back to the welcome view of a person who opens Lissom for the first time."""
-        fresh = Session(clock=self.clock, jobs=self.session.jobs, folder=self.folder)
-        self.session.jobs.settle()
-        self.session.jobs.deliver()
+        jobs = self.session.jobs
+        if not jobs.settle(PATIENCE):
+            # A test that failed has left a worker behind: the next ones are not to wait for it.
+            jobs = Jobs()
+        jobs.deliver()
+        fresh = Session(clock=self.clock, jobs=jobs, folder=self.folder)
         saving.put_project(self.session, None)
         for field in fields(Session):
             if field.name not in {"screen", "full_detail"}:
@@ -169,8 +174,18 @@ class Harness:
             self.frames()
             if not self.session.jobs.kinds:
                 break
-            assert self.session.jobs.settle(), self.session.jobs.kinds
+            assert self.session.jobs.settle(PATIENCE), self.session.jobs.kinds
         self.frames(2)
+
+    def until(self, is_so: Callable[[], bool]) -> None:
+        """Draw frames until something is so, however long the workers take to it."""
+        end = time.monotonic() + PATIENCE
+        while not is_so():
+            told = [toast.text for toast in self.session.toasts]
+            assert time.monotonic() < end, (self.session.jobs.kinds, told)
+            self.frames()
+            # Meanwhile the workers have the interpreter for themselves.
+            self.session.jobs.settle(FRAME)
 
     def run(self, play: Callable[[Robot], None]) -> None:
         """Let the test engine's robot do something with the window, as a person would."""

@@ -1,12 +1,10 @@
 """Files that are dropped, work that is kept by itself, and preferences that outlive a crash."""
 
-import importlib
-import threading
-from contextlib import contextmanager
 from dataclasses import replace
 from types import MappingProxyType
 
 import pytest
+from gates import held_up
 from harness import Harness
 
 from app.document.commands import handle_commands
@@ -131,27 +129,8 @@ def test_changes_are_asked_about_before_a_dropped_file_opens(window, project, dr
     assert window.session.project.name == "ring"
 
 
-@contextmanager
-def waiting(monkeypatch, where):
-    """Let a function wait on the worker until the block is over."""
-    may_go_on = threading.Event()
-    module, _, name = where.rpartition(".")
-    function = getattr(importlib.import_module(module), name)
-
-    def late(*arguments, **named):
-        may_go_on.wait(60)
-        return function(*arguments, **named)
-
-    with monkeypatch.context() as patch:
-        patch.setattr(where, late)
-        try:
-            yield
-        finally:
-            may_go_on.set()
-
-
 def test_changes_made_while_a_file_is_read_are_asked_about(window, project, monkeypatch):
-    with waiting(monkeypatch, "app.editor.actions.files.open_picture"):
+    with held_up(monkeypatch, "app.editor.actions.files.open_picture"):
         window.act(files.open_file, RING)
         assert window.session.dialog is None
         window.act(posing.add_handle, complex(*project.document.canvas) / 2)
@@ -168,7 +147,7 @@ def test_changes_made_while_unsaved_work_is_read_are_asked_about(
 ):
     path = tmp_path / "unsaved.lissom"
     save_project(path, project.document)
-    with waiting(monkeypatch, "app.editor.actions.files.load_leftover"):
+    with held_up(monkeypatch, "app.editor.actions.files.load_leftover"):
         window.act(files.recover, path)
         window.act(posing.add_handle, complex(*project.document.canvas) / 2)
     window.settle()
@@ -186,7 +165,7 @@ def test_changes_made_while_the_project_is_saved_are_asked_about(
     window.settle()
     change(window, project)
     window.act(verb)
-    with waiting(monkeypatch, "app.editor.actions.saving.save_project"):
+    with held_up(monkeypatch, "app.editor.actions.saving.save_project"):
         window.run(lambda robot: robot.item_click("//###dialog/Save"))
         window.act(posing.add_handle, complex(*project.document.canvas) / 3)
     window.settle()
@@ -308,19 +287,12 @@ def test_the_autosave_goes_with_work_that_is_given_up(window, project, kept, ver
 
 @pytest.mark.parametrize("verb", [saving.give_up, editing.undo])
 def test_nothing_stays_of_work_that_is_given_up_meanwhile(window, project, monkeypatch, verb):
-    may_write = threading.Event()
-
-    def save_late(path, document):
-        may_write.wait(60)
-        save_project(path, document)
-
-    monkeypatch.setattr("app.storage.autosave.save_project", save_late)
-    project.autosaved_at = window.clock.now
-    change(window, project)
-    pass_time(window, SECONDS)
-    assert saving.AUTOSAVING in window.session.jobs.kinds
-    window.act(verb)
-    may_write.set()
+    with held_up(monkeypatch, "app.storage.autosave.save_project"):
+        project.autosaved_at = window.clock.now
+        change(window, project)
+        pass_time(window, SECONDS)
+        assert saving.AUTOSAVING in window.session.jobs.kinds
+        window.act(verb)
     window.settle()
     assert list(window.folder.glob("unsaved-*")) == []
 

@@ -1,14 +1,13 @@
 """Whoever quits while something goes on is asked, and nothing is lost by the answer."""
 
-import threading
-
 import pytest
+from gates import held_up
 from imgui_bundle import hello_imgui
 
 from app.document.keyframe import Target
 from app.editor.actions import posing, saving
 from app.editor.dialogs import Question
-from app.storage.project_file import load_project, save_project
+from app.storage.project_file import load_project
 
 
 @pytest.fixture
@@ -25,16 +24,9 @@ def saved(window, bar, tmp_path):
 
 @pytest.fixture
 def gate(monkeypatch):
-    """Saves wait until it is opened."""
-    gate = threading.Event()
-
-    def waits(*arguments, **options):
-        assert gate.wait(30)
-        return save_project(*arguments, **options)
-
-    monkeypatch.setattr(saving, "save_project", waits)
-    yield gate
-    gate.set()
+    """Saves wait until it is set."""
+    with held_up(monkeypatch, "app.editor.actions.saving.save_project") as gate:
+        yield gate
 
 
 def quit_lissom(window):

@@ -7,7 +7,7 @@ from contextlib import suppress
 from dataclasses import replace
 
 import pytest
-from harness import MOST_FRAMES, Harness
+from harness import Harness
 
 from app.document.keyframe import Target
 from app.editor.actions import exporting, files, posing, saving, upkeep
@@ -33,6 +33,14 @@ from app.ui.window.title import window_title
 @pytest.fixture
 def project(window):
     return window.again(Harness.open, sample_images() / "bar.png")
+
+
+@pytest.fixture
+def end():
+    """What a worker waits for that never ends before the test does."""
+    event = threading.Event()
+    yield event
+    event.set()
 
 
 def texts(window):
@@ -356,8 +364,10 @@ def test_unsaved_work_that_could_not_be_kept_is_kept_as_soon_as_there_is_room(
     assert len(list(window.folder.glob("unsaved-*.lissom"))) == 1
 
 
-def test_older_work_that_waits_to_be_kept_does_not_replace_what_was_kept_at_once(window, project):
-    end, middle = threading.Event(), complex(*project.document.canvas) / 2
+def test_older_work_that_waits_to_be_kept_does_not_replace_what_was_kept_at_once(
+    window, project, end
+):
+    middle = complex(*project.document.canvas) / 2
     window.act(posing.add_handle, middle)
     window.settle()
     window.session.autosave.forget()
@@ -405,20 +415,17 @@ def test_every_unsaved_work_is_offered_whenever_it_was_kept(window, project):
 
 
 def test_a_worker_that_never_ends_can_be_cancelled_and_nothing_waits_for_it(
-    window, project, tmp_path, monkeypatch
+    window, project, tmp_path, monkeypatch, end
 ):
-    end = threading.Event()
     monkeypatch.setattr(window.session.jobs, "_clock", window.clock)
     monkeypatch.setattr("app.editor.actions.files.open_picture", lambda *_: end.wait())
     files.open_file(window.session, sample_images() / "bar.png")
     window.frames(3)
     # What is kept does not wait for it.
     saving.write(window.session, tmp_path / "a.lissom", None)
-    for _ in range(MOST_FRAMES):
-        window.frames()
-        if project.path is not None:
-            break
+    window.until(lambda: project.path is not None)
     assert (tmp_path / "a.lissom").exists()
+    window.until(lambda: saving.WRITING not in window.session.jobs.kinds)
     window.clock.now += ENDLESS
     window.frames(3)
     assert window.session.jobs.running_for(ENDLESS) == ("Opening bar.png",)
@@ -430,9 +437,8 @@ def test_a_worker_that_never_ends_can_be_cancelled_and_nothing_waits_for_it(
 
 
 def test_a_save_does_not_wait_for_ever_for_a_pose_that_never_settles(
-    window, project, tmp_path, monkeypatch
+    window, project, tmp_path, monkeypatch, end
 ):
-    end = threading.Event()
     window.act(posing.add_handle, complex(*project.document.canvas) / 2)
     window.settle()
     monkeypatch.setattr("app.editor.actions.posing.steps._take_steps", lambda *_: end.wait())
@@ -441,10 +447,7 @@ def test_a_save_does_not_wait_for_ever_for_a_pose_that_never_settles(
     window.frames(3)
     assert not (tmp_path / "a.lissom").exists()
     window.clock.now += saving.SETTLING
-    for _ in range(MOST_FRAMES):
-        window.frames()
-        if project.path is not None:
-            break
+    window.until(lambda: project.path is not None)
     assert (tmp_path / "a.lissom").exists()
     window.act(upkeep.give_up, "Posing")
     end.set()

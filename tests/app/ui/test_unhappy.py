@@ -1,11 +1,10 @@
 """Hands that do two things at once, work that fails, and windows that are too small."""
 
-import threading
-from contextlib import contextmanager
 from dataclasses import replace
 
 import numpy as np
 import pytest
+from gates import held_up
 from imgui_bundle import ImVec2, imgui
 
 from app.document.commands import handle_commands, key_commands
@@ -35,28 +34,6 @@ from engine.maps.bounds import Bounds
 
 BAR = sample_images() / "bar.png"
 TABS = ("Handle", "Deform", "Distortion", "Mesh", "Export")
-
-
-@contextmanager
-def held_up(monkeypatch, *places):
-    """Let the worker wait where it calls some functions, until the block ends."""
-    gate = threading.Event()
-
-    def waiting(real):
-        def waits(*arguments, **options):
-            gate.wait(10)
-            return real(*arguments, **options)
-
-        return waits
-
-    with monkeypatch.context() as patch:
-        for where in places:
-            module, name = where.rsplit(".", 1)
-            patch.setattr(where, waiting(getattr(__import__(module, fromlist=[name]), name)))
-        try:
-            yield
-        finally:
-            gate.set()
 
 
 def place_of(project, identity):
@@ -553,8 +530,7 @@ def test_a_new_key_stands_in_for_in_betweens_that_are_not_prepared(window, bent,
     with held_up(monkeypatch, *INBETWEENS):
         width, height = bent.document.canvas
         posing.wish(window.session, {1: Target(position=complex(0.85 * width, 0.1 * height))})
-        while "Posing" in window.session.jobs.kinds:
-            window.frames(1)
+        window.until(lambda: "Posing" not in window.session.jobs.kinds)
         mesh, (first, last) = bent.puppet.shown.mesh, bent.figure.keys
         for frame, key in ((18, last), (6, first)):
             playback.seek(window.session, frame)

@@ -40,19 +40,11 @@ def begin(window, out, count=3):
     """Start an export, and wait until some of its frames are drawn."""
     session = window.session
     window.act(exporting.start, out)
-    for _ in range(MOST_FRAMES):
-        if session.export is not None and session.export.done >= count:
-            return
-        session.jobs.settle()
-        window.frames()
-    pytest.fail(f"no export: {texts(window)}")
+    window.until(lambda: session.export is not None and session.export.done >= count)
 
 
 def finish(window):
-    for _ in range(MOST_FRAMES):
-        if window.session.export is None:
-            break
-        window.frames()
+    window.until(lambda: window.session.export is None)
     window.settle()
 
 
