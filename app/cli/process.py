@@ -83,7 +83,8 @@ class Endings:
             number = getattr(signal, name, signal.SIGINT)  # Windows has no SIGHUP
             if signal.getsignal(number) is not signal.SIG_IGN:
                 self._before[number] = signal.signal(number, self._note)
-        threading.Thread(target=self._listen, args=self._pipe[:1], daemon=True).start()
+        arguments = self._pipe[0], threading.get_ident()
+        threading.Thread(target=self._listen, args=arguments, daemon=True).start()
         return self
 
     def __exit__(
@@ -106,14 +107,20 @@ class Endings:
         if is_first and self._wake is None:
             raise KeyboardInterrupt
 
-    def _listen(self, pipe: int) -> None:
+    def _listen(self, pipe: int, main_thread: int) -> None:
         while (told := os.read(pipe, 1)) and told[0] not in self._before:
             pass
-        os.close(pipe)
         if told:
             if self._wake is not None:
                 self._wake()
             end_within(PATIENCE, _INTERRUPTED + told[0])
+            # A signal that comes just before the main thread begins to wait does not end that wait.
+            while not self.has_come and os.name != "nt":
+                signal.pthread_kill(main_thread, told[0])
+                time.sleep(SWITCH)
+        while os.read(pipe, 1):  # where Python tells of more signals, which change nothing
+            pass
+        os.close(pipe)
 
 
 def end_within(seconds: float, status: int) -> None:

@@ -97,21 +97,25 @@ class Jobs:
     def leave(self, kind: str) -> None:
         """Give up a job of this kind that may never end; what waits behind it goes on elsewhere.
 
-        Its result is thrown away, and it has failed as far as anybody is told.
+        Its result is thrown away, and it has failed as far as anybody is told. Where a newer one of
+        its kind waits for it to end, nobody is told anything: that one begins.
         """
         with self._condition:
-            for each in [each for each in self._waiting if each.kind == kind]:
-                self._waiting.remove(each)
-                self._finished.append((kind, partial(each.failed, LissomError(CANCELLED))))
-            for name, lane in self._lanes.items():
-                job = lane.running
-                if job is not None and job.kind == kind and not lane.is_stale:
-                    lane.is_stale = True
-                    self._left.append(lane)
-                    self._lanes[name] = _Lane()
-                    self._finished.append((kind, partial(job.failed, LissomError(CANCELLED))))
-                    if any(waiting.lane == name for waiting in self._waiting):
-                        self._staff(name)
+            left = {
+                name: lane
+                for name, lane in self._lanes.items()
+                if lane.running is not None and lane.running.kind == kind
+            }
+            if not any(lane.is_stale for lane in left.values()):
+                self._fail([job for job in self._waiting if job.kind == kind])
+                self._waiting = [job for job in self._waiting if job.kind != kind]
+                self._fail([lane.running for lane in left.values() if lane.running is not None])
+            for name, lane in left.items():
+                lane.is_stale = True
+                self._left.append(lane)
+                self._lanes[name] = _Lane()
+                if self._is_waiting(name):
+                    self._staff(name)
 
     @property
     def kinds(self) -> tuple[str, ...]:
@@ -126,13 +130,18 @@ class Jobs:
             return (*finished, *running, *(job.kind for job in self._waiting))
 
     def running_for(self, seconds: float) -> tuple[str, ...]:
-        """Return the kinds of jobs that run since so many seconds or more."""
+        """Return the kinds of jobs that run since so many seconds or more.
+
+        Stale ones are among them where others wait for them to end.
+        """
         start = self._clock() - seconds
         with self._condition:
             return tuple(
                 lane.running.kind
-                for lane in self._lanes.values()
-                if lane.running is not None and not lane.is_stale and lane.since <= start
+                for name, lane in self._lanes.items()
+                if lane.running is not None
+                and lane.since <= start
+                and (not lane.is_stale or self._is_waiting(name))
             )
 
     def deliver(self) -> None:
@@ -190,6 +199,15 @@ class Jobs:
             thread.start()
             # Only now: where the system has refused it, the next job asks for it again.
             lane.thread = thread
+
+    def _fail(self, jobs: list[Job]) -> None:
+        """Tell those who asked for some jobs that nothing comes of them."""
+        failed = [(job.kind, partial(job.failed, LissomError(CANCELLED))) for job in jobs]
+        self._finished.extend(failed)
+
+    def _is_waiting(self, name: LaneName) -> bool:
+        """Tell whether a job waits for a lane."""
+        return any(job.lane == name for job in self._waiting)
 
     def _forget(self, kind: str) -> None:
         self._waiting = [job for job in self._waiting if job.kind != kind]

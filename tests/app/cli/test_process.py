@@ -48,6 +48,7 @@ def listening(*, work, before="", after="say(heard.name)"):
         [sys.executable, "-c", LISTEN.format(before=before, work=work, after=after)],
         stdin=subprocess.PIPE,
         stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
         cwd=Path(__file__).parents[3],
         text=True,
     ) as process:
@@ -62,6 +63,17 @@ def test_a_signal_ends_a_command_with_the_status_that_shells_know(name):
         process.send_signal(number)
         assert process.communicate()[0] == f"{name}\n"
     assert process.returncode == 128 + number
+
+
+def test_a_signal_that_does_not_interrupt_the_main_thread_ends_its_wait():
+    before = """
+def meet():
+    sys.stdin.readline()
+    signal.pthread_kill(threading.get_ident(), signal.SIGTERM)
+threading.Thread(target=meet, daemon=True).start()"""
+    with listening(before=before, work="time.sleep(60)") as process:
+        assert process.communicate("now\n")[0] == "SIGTERM\n"
+    assert process.returncode == 143
 
 
 def test_what_hangs_after_a_signal_does_not_keep_the_process():
@@ -81,6 +93,7 @@ def test_what_waits_is_woken_and_more_signals_change_nothing():
         assert process.stdout.readline() == "True\n"
         process.send_signal(signal.SIGTERM)
         process.send_signal(signal.SIGINT)
+        assert process.communicate()[1] == ""
     assert process.returncode == 129
 
 

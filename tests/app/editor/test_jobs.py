@@ -182,6 +182,8 @@ def test_jobs_tell_how_long_they_run():
     now[0] = 10.4
     assert jobs.running_for(0.3) == ("factors",)
     jobs.drop("factors")
+    assert jobs.running_for(0.3) == ("factors",), "in-betweens wait for it"
+    jobs.drop("in-betweens")
     assert jobs.running_for(0.3) == ()
     gate.set()
     assert jobs.settle()
@@ -219,6 +221,23 @@ def test_a_job_that_never_ends_can_be_left_and_the_others_go_on(stuck):
     assert jobs.settle()
     jobs.deliver()
     assert results == [("next", 2), ("later", 3)]
+
+
+def test_what_is_stale_and_never_ends_can_be_left_by_what_waits_for_it(stuck):
+    work, has_begun = stuck
+    now = [10.0]
+    jobs, results, failures = Jobs(lambda: now[0]), [], []
+    jobs.put(Job(kind="pose", work=work, done=results.append, failed=failures.append, lane="hand"))
+    has_begun()
+    now[0] = 20.0
+    jobs.put(job("pose", lambda: 2, results, lane="hand"))
+    assert jobs.running_for(5.0) == ("pose",)
+    jobs.leave("pose")
+    assert jobs.settle()
+    jobs.deliver()
+    assert results == [("pose", 2)]
+    assert failures == []
+    assert jobs.running_for(0.0) == ()
 
 
 def test_what_was_left_delivers_nothing_when_it_ends_after_all():
