@@ -20,7 +20,7 @@ from engine.baselines.triangulated_domain import TriangulatedDomain
 from engine.deform import Deformer, Handles
 from engine.errors import EngineError
 from engine.geometry import diameter, require_inside
-from engine.interpolation import Variant, prepare
+from engine.interpolation import Variant, interval_at, prepare, require_keyframes
 from engine.maps import Boundary, Bounds, HarmonicMap
 from engine.paths import ON_OUTLINE
 from engine.variant import Baseline
@@ -57,13 +57,8 @@ class PreparedBaseline:
         EngineError
             If the time is out of range.
         """
-        last = len(self.intervals)
-        if not 0.0 <= time <= last:
-            raise EngineError(
-                f"Time {time:g} is out of range: the keyframes span the times from 0 to {last}."
-            )
-        interval = min(int(time), last - 1)
-        return self.intervals[interval].frame(float(time) - interval)
+        interval, moment = interval_at(time, len(self.intervals))
+        return self.intervals[interval].frame(moment)
 
 
 def prepare_baseline(
@@ -209,13 +204,7 @@ def _maps_over_one_cage(
             f"The method {baseline} is for keyframes that are harmonic maps; positions of a mesh "
             "do not do. Choose another method."
         )
-    if len(maps) < 2:
-        raise EngineError(f"In-betweens need at least two keyframes, not {len(maps)}.")
-    for number, f in enumerate(maps):
-        if not f.span.equals(maps[0].span):
-            raise EngineError(
-                f"Keyframe {number} has another cage than keyframe 0; they must share it."
-            )
+    require_keyframes(maps)
     return maps
 
 

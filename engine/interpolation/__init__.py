@@ -10,7 +10,14 @@ from engine.interpolation import chebyshev
 from engine.interpolation.inbetweens import Frame, Inbetweens, IntegratedInbetweens
 from engine.interpolation.keyframe_samples import KeyframeSamples, sample_keyframes
 from engine.interpolation.passing import Course, End, Joint, Tangent, shortened
-from engine.interpolation.preparation import Prepared, frame_at, prepare, prepare_inbetweens
+from engine.interpolation.preparation import (
+    Prepared,
+    frame_at,
+    interval_at,
+    prepare,
+    prepare_inbetweens,
+    require_keyframes,
+)
 from engine.interpolation.proof import Proof, prove
 from engine.interpolation.scaling import PointSamples, Scaling, Worst, looseness
 from engine.interpolation.sites import Sites, prepare_sites
@@ -34,11 +41,13 @@ __all__ = [
     "Worst",
     "chebyshev",
     "frame_at",
+    "interval_at",
     "looseness",
     "prepare",
     "prepare_inbetweens",
     "prepare_sites",
     "prove",
+    "require_keyframes",
     "sample_keyframes",
     "shortened",
 ]

@@ -70,14 +70,24 @@ class Prepared:
         EngineError
             If the time is out of range.
         """
-        last = len(self.intervals)
-        if not 0.0 <= time <= last:
-            raise EngineError(
-                f"Time {time:g} is out of range: {len(self.keyframes)} keyframes span the times "
-                f"from 0 to {last}."
-            )
-        interval = min(int(time), last - 1)
-        return self.intervals[interval].frame(float(time) - interval)
+        interval, moment = interval_at(time, len(self.intervals))
+        return self.intervals[interval].frame(moment)
+
+
+def interval_at(time: float, count: int) -> tuple[int, float]:
+    """Return in which of `count` intervals a time is, and when in it, from 0 to 1.
+
+    Raises
+    ------
+    EngineError
+        If the time is not from 0 to `count`.
+    """
+    if not 0.0 <= time <= count:
+        raise EngineError(
+            f"Time {time:g} is out of range: the keyframes span the times from 0 to {count}."
+        )
+    interval = min(int(time), count - 1)
+    return interval, float(time) - interval
 
 
 def prepare(
@@ -127,7 +137,7 @@ def prepare(
     """
     maps = tuple(keyframes)
     variant = _known(variant)
-    _require_keyframes(maps)
+    require_keyframes(maps)
     sites = prepare_sites(
         outline,
         maps[0].cage,
@@ -369,7 +379,14 @@ def _known(variant: Variant | str) -> Variant:
         raise EngineError(f"There is no variant {variant!r}; there are {names}.") from None
 
 
-def _require_keyframes(maps: Sequence[HarmonicMap]) -> None:
+def require_keyframes(maps: Sequence[HarmonicMap]) -> None:
+    """Refuse less than two keyframes, and such as have not one cage.
+
+    Raises
+    ------
+    EngineError
+        If they do not do.
+    """
     if len(maps) < 2:
         raise EngineError(f"In-betweens need at least two keyframes, not {len(maps)}.")
     for i, f in enumerate(maps):
