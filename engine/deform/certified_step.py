@@ -6,7 +6,7 @@ import numpy as np
 
 from engine.arrays import Floats, Indices, readonly
 from engine.deform.barrier import with_samples_between
-from engine.deform.newton import Direction, line_search, newton_direction
+from engine.deform.newton import Direction, Sketch, line_search, sketched_direction
 from engine.deform.objective import Jet, Objective
 from engine.maps import Boundary, Certificate, HarmonicMap, Limits, certify_segments
 
@@ -14,6 +14,8 @@ from engine.maps import Boundary, Certificate, HarmonicMap, Limits, certify_segm
 FARTHEST = 0.05
 # A step whose map is not certified is halved this many times.
 HALVINGS = 5
+# After a step of which less was taken, walls are near, and the Hessian changes much.
+FAR_FROM_WALLS = 0.7
 # Added samples are dropped when they outnumber this part of those of the shape itself.
 MOST_ADDED = 0.1
 
@@ -33,6 +35,8 @@ class CertifiedStep:
         Maps that were tried and not certified.
     broken : Indices
         The segments where the first of them broke a bound.
+    sketch : Sketch or None
+        For the next step.
     """
 
     map: HarmonicMap
@@ -41,6 +45,7 @@ class CertifiedStep:
     length: float
     refusals: int
     broken: Indices
+    sketch: Sketch | None
 
 
 def take_certified_step(
@@ -48,7 +53,9 @@ def take_certified_step(
     jet: Jet,
     harmonic_map: HarmonicMap,
     certificate: Certificate,
+    *,
     required: Limits,
+    sketch: Sketch | None,
 ) -> CertifiedStep:
     """Step as far along Newton's direction as the map stays certified within `required`.
 
@@ -58,8 +65,11 @@ def take_certified_step(
     jet, harmonic_map, certificate
         Of the map at the start.
     required : Limits
+    sketch : Sketch or None
+        Of the step before.
     """
-    direction = _moderate(newton_direction(objective, jet), objective.boundary)
+    direction, sketch = sketched_direction(objective, jet, sketch)
+    direction = _moderate(direction, objective.boundary)
     value = objective.value(jet)
     length, refusals, broken = 1.0, 0, np.empty(0, np.intp)
     while refusals < HALVINGS:
@@ -82,6 +92,7 @@ def take_certified_step(
         length=length if refusals < HALVINGS else 0.0,
         refusals=refusals,
         broken=broken,
+        sketch=sketch if refusals == 0 and length > FAR_FROM_WALLS else None,
     )
 
 

@@ -166,7 +166,8 @@ class Deformer:
         Notes
         -----
         The same states and wishes give the same maps, bit for bit on one machine. Cost: 24 s n² for
-        s samples in the Hessian, n the number of cage vertices; then 22 n³ for its factors.
+        s samples in the Hessian, n the number of cage vertices; then 22 n³ for its factors. Far
+        from walls both serve some steps, and each of those costs 32 m n for m samples a round.
         """
         if len(wish.positions) == 0 and self._is_within(state.certificate):
             return replace(state, limits=self.bounds, status=Status.CONVERGED, wish=wish)
@@ -201,7 +202,12 @@ class Deformer:
         """Take one step of a drag."""
         step = self._prepare(state, wish)
         taken = take_certified_step(
-            step.objective, step.jet, state.map, state.certificate, step.required
+            step.objective,
+            step.jet,
+            state.map,
+            state.certificate,
+            required=step.required,
+            sketch=state.sketch,
         )
         decrement = -taken.direction.derivative / 2
         error = _handle_error(step.jet, wish, self.boundary.size)
@@ -242,6 +248,7 @@ class Deformer:
             duals=duals,
             wish=wish,
             handles=self.handles,
+            sketch=taken.sketch,
         )
 
     def _prepare(self, state: State, wish: Wish) -> "_Step":
@@ -331,6 +338,7 @@ class Deformer:
             boundary=self.boundary,
             schedule=Schedule(weight=LEAST_RESTING),
             duals=None,
+            sketch=None,
             ways=ways,
             outcome=None,
         )

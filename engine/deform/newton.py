@@ -5,10 +5,11 @@ from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
-from scipy.linalg import blas, lapack
 
-from engine.arrays import Complexes, Floats, Singles
+from engine.arrays import Booleans, Complexes, Floats
 from engine.deform.energy import Radial
+from engine.deform.factors import SHIFT, factor_of, factor_shifted, factor_single, solved
+from engine.deform.handles import Handles
 from engine.deform.objective import Jet, Objective, Reals
 
 # A step is accepted when it gains at least this part of what the gradient promises (Armijo).
@@ -16,21 +17,17 @@ SUFFICIENT = 1e-4
 # A step stops where this part of the way to the nearest wall is used up.
 TO_THE_WALL = 0.9
 SHORTEST = 1e-6
-# The diagonal is made larger by this part of itself and of a floor, and by more until the
-# factorisation succeeds. Next to a wall the largest entries are 1e12 times the least, and no step
-# may feel a part of their mean; the floor holds what moves nothing: without handles the whole, and
-# around a tiny hole functions of the span that are one and the same. Entries of the energy are
-# about 8.
-SHIFT, SHIFT_GROWTH = 1e-13, 1e2
-FLOOR = 1e5
-# In single precision each pivot keeps at least this part of its diagonal, else too few digits of it
-# are left. With handles it is some thousandths; with one alone, which leaves a rotation, 1e-7.
-LEAST_PIVOT = 1e-4
 # Conjugate gradients stop when this part of the step is missing, or after so many: one for a star
 # in the open, two to four for drawings and at walls. Measured: with less missing drags get no
 # nearer to their wishes.
 REFINED = 0.3
 REFINEMENTS = 4
+# A sketch serves so many steps, as long as it takes at most so many rounds and misses no more than
+# this: of the Hessian of another map it measures less well what is missing. Measured: drags then
+# get as near to their wishes as with a sketch of their own for each step.
+SERVES_STEPS = 4
+SERVES_ROUNDS = 2
+REFINED_LATER = 0.1
 # Parts of what the projection removes from the Hessian that are tried to be left in it.
 KEPT_NEGATIVE = (1.0, 0.5, 0.25, 0.1)
 
@@ -98,16 +95,55 @@ class Model:
     def stiffened(self, added: Floats) -> "Model":
         """Return the model with a positive semidefinite matrix added to its Hessian."""
         hessian = self.hessian + added
-        return replace(self, hessian=hessian, factor=_factor_shifted(hessian))
+        return replace(self, hessian=hessian, factor=factor_shifted(hessian))
 
     def direction(self, gradient: Floats | None = None) -> Direction:
         """Return the step to the minimum, or to that of another `gradient` (u,)."""
-        solution = _solution(self.factor, self.gradient if gradient is None else gradient)
+        solution = solved(self.factor, self.gradient if gradient is None else gradient)
         return _direction(self.objective, self.gradient, solution, self.objective.change(solution))
 
 
+class Sketch(NamedTuple):
+    """A sketch of the Hessian, factored: the preconditioner of some steps in a row.
+
+    In a step a map changes little where walls are far, and its Hessian with it.
+
+    Parameters
+    ----------
+    handles : Handles
+    turning : bool, shape (h,)
+        Which of them had to turn.
+    factor : float32 or float64, shape (u, u)
+    served : int
+        Steps that it has been used for.
+    """
+
+    handles: Handles
+    turning: Booleans
+    factor: Reals
+    served: int = 0
+
+    def serves(self, objective: Objective) -> bool:
+        """Tell whether it is of the same handles."""
+        return self.handles is objective.handles and np.array_equal(self.turning, objective.turning)
+
+    def after(self, rounds: int) -> "Sketch | None":
+        """Return the sketch for the next step, if it pays, after one of so many rounds."""
+        served = self.served + 1
+        pays = rounds <= SERVES_ROUNDS and served < SERVES_STEPS
+        return self._replace(served=served) if pays else None
+
+
 def newton_direction(objective: Objective, jet: Jet) -> Direction:
-    """Solve for the step that minimises the projected quadratic model of the objective.
+    """Solve for the step that minimises the projected quadratic model of the objective."""
+    direction, _ = sketched_direction(objective, jet, None)
+    return direction
+
+
+def sketched_direction(
+    objective: Objective, jet: Jet, sketch: Sketch | None
+) -> tuple[Direction, Sketch | None]:
+    """Solve for Newton's step with the sketch of a step before; return that of the next one too.
 
     By the method of conjugate gradients over all samples, with a sketch as preconditioner (Nocedal
     and Wright, algorithm 5.3). A sketch misses what shows between its samples only: by itself it
@@ -115,14 +151,38 @@ def newton_direction(objective: Objective, jet: Jet) -> Direction:
     """
     radial = objective.radial(jet)
     gradient = objective.gradient(jet, radial)
-    sketch = objective.single_hessian(jet, radial)
-    factor: Reals | None = None if sketch is None else _factor_single(sketch)
+    if sketch is not None and sketch.serves(objective):
+        direction, rounds = _refined(
+            objective, jet, radial, gradient, sketch.factor, missing=REFINED_LATER
+        )
+        if rounds <= REFINEMENTS:
+            return direction, sketch.after(rounds)
+    single = objective.single_hessian(jet, radial)
+    factor: Reals | None = None if single is None else factor_single(single)
     if factor is None:
-        factor = _factor_shifted(objective.hessian(jet, radial))
-    left, ahead = gradient, _solution(factor, gradient)
+        factor = factor_shifted(objective.hessian(jet, radial))
+    direction, rounds = _refined(objective, jet, radial, gradient, factor, missing=REFINED)
+    return direction, Sketch(objective.handles, objective.turning, factor).after(rounds)
+
+
+def _refined(
+    objective: Objective,
+    jet: Jet,
+    radial: Radial,
+    gradient: Floats,
+    factor: Reals,
+    *,
+    missing: float,
+) -> tuple[Direction, int]:
+    """Return the step of conjugate gradients, and the rounds until no more than a part is missing.
+
+    Where that takes too many, one more than there were.
+    """
+    left, ahead = gradient, solved(factor, gradient)
     solution, measured = np.zeros_like(gradient), None
     first = before = float(left @ ahead)
-    for _ in range(REFINEMENTS):
+    rounds = REFINEMENTS + 1
+    for done in range(1, REFINEMENTS + 1):
         change = objective.change(ahead)
         curved = objective.product(jet, radial, change)
         curvature = float(ahead @ curved)
@@ -131,12 +191,14 @@ def newton_direction(objective: Objective, jet: Jet) -> Direction:
         length = before / curvature
         solution, left = solution + length * ahead, left - length * curved
         measured = measured.advanced(length, change) if measured else change.scaled(length)
-        following = _solution(factor, left)
+        following = solved(factor, left)
         now = float(left @ following)
-        if now < REFINED**2 * first:
+        if now < missing**2 * first:
+            rounds = done
             break
         ahead, before = following + now / before * ahead, now
-    return _direction(objective, gradient, solution, measured or objective.change(solution))
+    measured = measured or objective.change(solution)
+    return _direction(objective, gradient, solution, measured), rounds
 
 
 def newton_models(objective: Objective, jet: Jet) -> Iterator[Model]:
@@ -152,7 +214,7 @@ def newton_models(objective: Objective, jet: Jet) -> Iterator[Model]:
     for part in KEPT_NEGATIVE:
         bent = hessian.copy()
         bent[: len(removed), : len(removed)] -= part * removed
-        factor = _factor(bent, SHIFT)
+        factor = factor_of(bent, SHIFT)
         if factor is not None:
             gradient = objective.gradient(jet, radial)
             yield Model(
@@ -170,7 +232,7 @@ def _model(objective: Objective, jet: Jet, radial: Radial, hessian: Floats) -> M
         objective=objective,
         gradient=objective.gradient(jet, radial),
         hessian=hessian,
-        factor=_factor_shifted(hessian),
+        factor=factor_shifted(hessian),
         exact=False,
     )
 
@@ -201,50 +263,6 @@ def line_search(
             return length
         length *= 0.5 if np.isfinite(reached) else 0.7
     return 0.0
-
-
-def _factor_shifted(hessian: Floats) -> Floats:
-    """Factor a positive semidefinite matrix, given by its upper triangle, with a shift it needs."""
-    shift = SHIFT
-    # Twelve tries reach far beyond any diagonal: then the numbers themselves are at their end.
-    for _ in range(12):
-        factor = _factor(hessian, shift)
-        if factor is not None:
-            return factor
-        shift *= SHIFT_GROWTH
-    # Nothing helps: an infinite Hessian, whose steps are 0.
-    return np.diag(np.full(len(hessian), np.inf))
-
-
-def _factor(hessian: Floats, shift: float) -> Floats | None:
-    """Factor a matrix given by its upper triangle, with a part of its diagonal and a floor added.
-
-    None if it is not positive.
-    """
-    shifted = hessian.copy()
-    np.fill_diagonal(shifted, (1.0 + shift) * hessian.diagonal() + shift * FLOOR)
-    # Seen as Fortran order the upper triangle is the lower one.
-    factor, failed = lapack.dpotrf(shifted.T, lower=1, clean=0, overwrite_a=1)
-    return None if failed else factor
-
-
-def _factor_single(hessian: Singles) -> Singles | None:
-    """Factor in place a matrix given by its upper triangle, or None if too many digits are lost."""
-    diagonal = hessian.diagonal().copy()
-    factor: Singles
-    factor, failed = lapack.spotrf(hessian.T, lower=1, clean=0, overwrite_a=1)
-    if failed or np.any(factor.diagonal() ** 2 < LEAST_PIVOT * diagonal):
-        return None
-    return factor
-
-
-def _solution(factor: Reals, wanted: Floats) -> Floats:
-    """Return the solution (u,) for what is wanted (u,), of a factored matrix."""
-    trsv = blas.strsv if factor.dtype == np.float32 else blas.dtrsv
-    # Two solves with vectors: `dpotrs` takes three times as long for one.
-    half = trsv(factor, wanted, lower=1)
-    solution: Floats = trsv(factor, half, lower=1, trans=1, overwrite_x=1).astype(np.float64)
-    return solution
 
 
 def _direction(objective: Objective, gradient: Floats, solution: Floats, change: Jet) -> Direction:

@@ -135,7 +135,8 @@ class Objective:
     stride: int = 1
 
     @cached_property
-    def _turning(self) -> Booleans:
+    def turning(self) -> Booleans:
+        """Which handles have a prescribed rotation, bool (h,)."""
         return np.isfinite(self.wish.rotations)
 
     def coefficients(self, unknowns: Floats) -> tuple[Complexes, Complexes]:
@@ -188,7 +189,7 @@ class Objective:
             density = symmetric_dirichlet(jet.a, jet.b)
             pull = np.abs(jet.positions - self.wish.positions) ** 2
             value = self.boundary.weights @ density + self.handles.stiffness @ pull
-            if self._turning.any():
+            if self.turning.any():
                 value += self._turning_stiffness @ self._turning_angles(jet) ** 2
         return np.inf if np.isnan(value) else float(value)
 
@@ -211,10 +212,10 @@ class Objective:
         pull = 2.0 * self.handles.stiffness * (jet.positions - self.wish.positions)
         by_phi = pull.conj() @ self.handles.basis_coordinates
         by_psi = pull @ self.handles.basis_coordinates
-        if self._turning.any():
+        if self.turning.any():
             # d arg F = Im(dF / F) = Re(−i dF / F).
             angle = 2.0 * self._turning_stiffness * self._turning_angles(jet)
-            by_phi += (-1j * angle / jet.fz[self._turning]) @ self._turning_rows
+            by_phi += (-1j * angle / jet.fz[self.turning]) @ self._turning_rows
         by_handles = self._by_unknowns(by_phi, by_psi)
         gradient: Floats = by_handles + self.sampled_gradient(jet, radial.a, radial.b_per_b)
         return gradient
@@ -292,7 +293,7 @@ class Objective:
         by_phi = (by_f * frame_f) @ rows + pull.conj() @ coordinates
         by_psi = (by_g * frame_g) @ rows + pull @ coordinates
         for frame in self._turning_frames(jet):
-            along = (frame * change.fz[self._turning]).real
+            along = (frame * change.fz[self.turning]).real
             by_phi += (along * frame) @ self._turning_rows
         return self._by_unknowns(by_phi, by_psi)
 
@@ -443,15 +444,15 @@ class Objective:
 
     @cached_property
     def _turning_stiffness(self) -> Floats:
-        return 2.0 * self.handles.arm**2 * self.handles.stiffness[self._turning]
+        return 2.0 * self.handles.arm**2 * self.handles.stiffness[self.turning]
 
     @cached_property
     def _turning_rows(self) -> Complexes:
-        return self.handles.basis_derivatives[self._turning]
+        return self.handles.basis_derivatives[self.turning]
 
     def _turning_angles(self, jet: Jet) -> Floats:
-        wished = np.exp(-1j * self.wish.rotations[self._turning])
-        angles: Floats = np.angle(jet.fz[self._turning] * wished)
+        wished = np.exp(-1j * self.wish.rotations[self.turning])
+        angles: Floats = np.angle(jet.fz[self.turning] * wished)
         return angles
 
     def _turning_roots(self, jet: Jet, *, removed: bool = False) -> list[Complexes]:
@@ -466,7 +467,7 @@ class Objective:
         are c (1 ± root) with root² = 1 + 4 δ², for the vectors (−2δ, 1 ± root). The negative one is
         what the projection removed.
         """
-        if not self._turning.any():
+        if not self.turning.any():
             return []
         delta = self._turning_angles(jet)
         root = np.sqrt(1.0 + 4.0 * delta**2)
@@ -474,7 +475,7 @@ class Objective:
         # x vx + y vy = Re((vx − i vy) dF / F).
         length = np.maximum(np.hypot(2.0 * delta, eigenvalue), np.finfo(np.float64).tiny)
         scale = np.sqrt(self._turning_stiffness * np.abs(eigenvalue)) / length
-        return [scale * (-2.0 * delta - 1j * eigenvalue) / jet.fz[self._turning]]
+        return [scale * (-2.0 * delta - 1j * eigenvalue) / jet.fz[self.turning]]
 
 
 def _frames(f: Complexes, g: Complexes) -> tuple[Complexes, Complexes]:

@@ -1,0 +1,77 @@
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from deform_shapes import STAR_POINTS, star_boundary
+from numpy.testing import assert_allclose, assert_array_equal
+
+from engine.deform import Handles, Objective, newton_direction
+from engine.deform.barrier import Barrier, Walls
+from engine.deform.newton import newton_models, sketched_direction
+from engine.maps import Bounds
+
+
+@pytest.fixture(scope="module")
+def maps():
+    """Two maps near each other, as an objective with a barrier sees them, and a sketch of one."""
+    boundary = star_boundary()
+    handles = Handles.place(boundary, STAR_POINTS)
+    walls = Walls.around(Bounds(), len(boundary.points))
+    objective = Objective(
+        boundary=boundary,
+        handles=handles,
+        wish=handles.wish(1.02 * STAR_POINTS + 0.01j),
+        barrier=Barrier(walls=walls, weight=0.2),
+        stride=4,
+    )
+    noise = np.random.default_rng(3).normal(size=(4, len(boundary.cage)))
+    phi, psi = boundary.cage + 0.002 * noise[0], 0.1 * boundary.cage + 0.002j * noise[1]
+    first = objective.jet(phi, psi)
+    second = objective.jet(1.05 * phi + 0.002 * noise[2], psi + 0.002 * noise[3])
+    _, sketch = sketched_direction(objective, first, None)
+    return objective, second, sketch
+
+
+def missed(maps, direction):
+    """Return what is missing of the step of the whole Hessian, in its norm."""
+    objective, jet, _ = maps
+    exact = list(newton_models(replace(objective, stride=1), jet))[-1].direction()
+    return np.sqrt(1.0 - direction.derivative / exact.derivative)
+
+
+def test_a_step_by_the_sketch_of_another_map_tends_to_the_same(maps, monkeypatch):
+    objective, jet, sketch = maps
+    later, kept = sketched_direction(objective, jet, sketch)
+    assert kept.factor is sketch.factor
+    assert missed(maps, later) < 0.1
+    monkeypatch.setattr("engine.deform.newton.REFINED_LATER", 1e-5)
+    monkeypatch.setattr("engine.deform.newton.REFINEMENTS", 30)
+    refined, _ = sketched_direction(objective, jet, sketch)
+    assert missed(maps, refined) < 1e-3
+
+
+def test_a_sketch_that_takes_too_many_rounds_is_made_anew(maps, monkeypatch):
+    objective, jet, sketch = maps
+    monkeypatch.setattr("engine.deform.newton.REFINED_LATER", 1e-12)
+    direction, kept = sketched_direction(objective, jet, sketch)
+    assert_array_equal(direction.phi, newton_direction(objective, jet).phi)
+    assert kept.factor is not sketch.factor
+
+
+def test_a_sketch_serves_its_own_handles_only(maps):
+    objective, jet, sketch = maps
+    turned = objective.handles.wish(objective.wish.positions, np.zeros(len(STAR_POINTS)))
+    softened = objective.handles.softened(0.5)
+    for other in (replace(objective, handles=softened), replace(objective, wish=turned)):
+        assert not sketch.serves(other)
+        direction, _ = sketched_direction(other, jet, sketch)
+        assert_array_equal(direction.phi, newton_direction(other, jet).phi)
+
+
+def test_a_sketch_serves_a_few_steps(maps, monkeypatch):
+    objective, jet, sketch = maps
+    monkeypatch.setattr("engine.deform.newton.SERVES_STEPS", 3)
+    _, second = sketched_direction(objective, jet, sketch)
+    direction, third = sketched_direction(objective, jet, second)
+    assert third is None
+    assert_allclose(direction.derivative, newton_direction(objective, jet).derivative, rtol=0.05)
