@@ -25,7 +25,10 @@ NEGLIGIBLE = 1e-9  # coefficients of weights, which float32 does not feel
 BLOCK = 2**14  # columns of which rows are worked out at a time
 # Two functions do what a cubic does: the error falls with the fourth power of the length.
 ORDER = 4
-SAFETY, LEAST, MOST = 0.9, 0.2, 2.5  # of the length that is tried next
+SAFETY, LEAST, MOST = 0.95, 0.2, 2.5  # of the length that is tried next
+# Where functions bend suddenly the error follows no power of the length. A longer piece is looked
+# for until one has this much of the error that is allowed, or of the length of one that fails.
+ENOUGH, CLOSE = 0.5, 0.87
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -79,6 +82,18 @@ class _Cut(NamedTuple):
     forms: Floats  # (k, 2 + r)
 
 
+class _Known(NamedTuple):
+    """What is known of the longest piece from a place on.
+
+    The longest that is accurate, its length and what to try after it; and the shortest that fails.
+    """
+
+    best: _Cut | None = None
+    longest: float = 0.0
+    following: float = 0.0
+    failed: float = np.inf
+
+
 def cut(motion: SampledMotion, tolerance: float) -> Generator[None, None, tuple[SeriesPiece, ...]]:
     """Cut a motion into pieces of at most `MOST_ROWS` rows, each as long as a tolerance allows.
 
@@ -94,6 +109,7 @@ def cut(motion: SampledMotion, tolerance: float) -> Generator[None, None, tuple[
     attempts = 0
     for start, end in _stretches(motion, columns, tolerance):
         place, length = start, end - start
+        known = _Known()
         while place < end and attempts < MOST_ATTEMPTS:
             attempts += 1
             room = end - place
@@ -103,13 +119,23 @@ def cut(motion: SampledMotion, tolerance: float) -> Generator[None, None, tuple[
             goal = end if length == room else place + length
             found, error = _attempt(motion, (place, goal), forms, lower)
             yield
-            accurate = error <= allowed
-            if accurate:
-                cuts.append(found)
-            if accurate or length <= SHORTEST:
-                place = goal
             growth = SAFETY * (allowed / error) ** (1 / ORDER) if error > 0 else MOST
-            length *= min(max(growth, LEAST), MOST if accurate else SAFETY)
+            following = length * min(max(growth, LEAST), MOST)
+            if error <= allowed:
+                known = known._replace(best=found, longest=length, following=following)
+                is_over = error >= ENOUGH * allowed or length >= room / 2
+            else:
+                known = known._replace(failed=length)
+                is_over = length <= SHORTEST
+            if is_over or known.longest > CLOSE * known.failed:
+                if known.best is not None:
+                    cuts.append(known.best)
+                    goal, following = known.best.piece[1], known.following
+                place, length, known = goal, following, _Known()
+            elif known.best is not None and known.failed < np.inf:
+                length = (known.longest * known.failed) ** 0.5
+            else:
+                length = following
     return (yield from _pieces(motion, cuts))
 
 

@@ -17,7 +17,7 @@ from engine.errors import EngineError
 from engine.interpolation import Variant, chebyshev, prepare
 from engine.maps import HarmonicMap, distortion
 from engine.streaming import Distortions, Positions, build_series, finish
-from engine.streaming.cutting import MOST_ROWS
+from engine.streaming.cutting import MOST_ROWS, OF_PIECES
 from engine.streaming.functions import DEGREES, MOST_ATTEMPTS
 
 SHAPES = {"bar": bar(), "letter L": letter_l(), "narrow U": narrow_u(0.1)}
@@ -191,6 +191,33 @@ def test_pieces_are_short_where_the_motion_is_hard():
     for piece in series.pieces[1:]:
         left, right = (series.values(piece.start + side) for side in (-1e-9, 1e-9))
         assert_allclose(left, right, rtol=0, atol=1e-6)
+
+
+def test_hardly_more_pieces_are_cut_than_two_functions_need():
+    # Smooth motions that a sudden bend in time is a factor of: lengths change from piece to piece.
+    places = np.linspace(0, 1, 40)
+
+    def function(t):
+        bends = sum(np.hypot(t - bend, 0.01) for bend in (0.2, 0.8))
+        return np.cos(3 * places * t) + bends * np.exp(places * t)
+
+    def error(start, end):
+        blend = np.linspace(0, 1, 40)[:, None]
+        values = np.array([function(start + (end - start) * x) for x in blend[:, 0]])
+        added = values - (1 - blend) * values[0] - blend * values[-1]
+        left, sizes, right = np.linalg.svd(added, full_matrices=False)
+        return np.abs((left[:, 2:] * sizes[2:]) @ right[2:]).max()
+
+    pieces = finish(build_series(Curves(function))).pieces
+    place, fewest = 0.0, 0
+    while place < 1.0:
+        low, high = 0.0, 1.0 - place
+        while error(place, place + high) > OF_PIECES * 1e-6 and high - low > 0.01 * high:
+            middle = (low + high) / 2
+            accurate = error(place, place + middle) <= OF_PIECES * 1e-6
+            low, high = (middle, high) if accurate else (low, middle)
+        place, fewest = place + high, fewest + 1
+    assert len(pieces) <= 1.15 * fewest + 1, (len(pieces), fewest)
 
 
 def test_what_float32_cannot_hold_is_left_to_the_direct_path():
