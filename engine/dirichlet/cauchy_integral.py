@@ -17,7 +17,7 @@ from scipy.sparse import bsr_array
 from engine.arrays import Complexes, Floats, Indices, freeze, ragged
 from engine.dirichlet.expansions import TERMS, AnyComplexes, Expansions, powers
 from engine.dirichlet.interactions import interactions
-from engine.dirichlet.near_field import near_matrix
+from engine.dirichlet.near_field import near_matrices, near_matrix
 from engine.dirichlet.panels import Panels
 
 BLOCK = 2048  # points whose results are put together at a time, so that they stay in cache
@@ -32,9 +32,9 @@ class CauchyIntegral:
     Parameters
     ----------
     expansions : Expansions
-    near : bsr_array, float64, shape (4 t, N)
+    near : tuple of bsr_array, shape (4 t, N)
         From densities to what near panels add to Re g, Im g, Re g' and Im g' at the points in the
-        order of the leaves.
+        order of the leaves: the sum of what they say.
     leaves, counts : intp, shape (l,)
         Squares that are not cut and the number of points in each, in ascending order.
     offsets : complex, shape (t,)
@@ -44,7 +44,7 @@ class CauchyIntegral:
     """
 
     expansions: Expansions
-    near: bsr_array
+    near: tuple[bsr_array, ...]
     leaves: Indices
     counts: Indices
     offsets: AnyComplexes
@@ -55,7 +55,8 @@ class CauchyIntegral:
         """Prepare the integrals at points (t,).
 
         They lie strictly inside the outline, by some 1e-14 of its size at least. In single
-        precision expansions err by 2e-7 of the largest density, and take half the memory.
+        precision what is not close to a point errs by 2e-7 of the largest density, and takes half
+        the memory.
         """
         acting = interactions(panels, points)
         squares, near = acting.squares, acting.near
@@ -80,10 +81,11 @@ class CauchyIntegral:
         first = np.searchsorted(near.squares, leaf)
         rows, place = ragged(np.searchsorted(near.squares, leaf, side="right") - first)
         own = first[rows] + place
+        pairs = panels, z, rows, near.clusters[own], alone[:, own]
         offsets = (z - squares.centre[leaf]) / squares.radius[leaf]
         return cls(
             expansions=Expansions.of(panels, acting, single=single),
-            near=near_matrix(panels, z, rows, near.clusters[own], alone[:, own]),
+            near=near_matrices(*pairs) if single else (near_matrix(*pairs),),
             leaves=freeze(leaves),
             counts=freeze(counts),
             offsets=freeze(offsets.astype(np.complex64 if single else np.complex128)),
@@ -93,9 +95,10 @@ class CauchyIntegral:
     @property
     def nbytes(self) -> int:
         """Memory that the arrays take, in bytes."""
-        near, own = self.near, (self.leaves, self.counts, self.offsets, self.places)
-        arrays = (near.data, near.indices, near.indptr, *own)
-        return self.expansions.nbytes + sum(array.nbytes for array in arrays)
+        own = [self.leaves, self.counts, self.offsets, self.places]
+        for near in self.near:
+            own += [near.data, near.indices, near.indptr]
+        return self.expansions.nbytes + sum(array.nbytes for array in own)
 
     def __call__(self, densities: Floats) -> tuple[Complexes, Complexes]:
         """Return g and g' of some densities.
@@ -110,14 +113,18 @@ class CauchyIntegral:
         values, derivatives : complex128, shape (t, j)
         """
         columns, count = densities.shape[1], len(self.offsets)
-        near = (self.near @ densities).reshape(count, 2, 2, columns)
+        first, *others = self.near
+        near = first @ densities
+        for other in others:
+            near += other @ densities.astype(other.dtype)
+        parts = near.reshape(count, 2, 2, columns)
         far = self._far(densities)
         results = np.empty((2, columns, count), dtype=np.complex128)
         for start in range(0, count, BLOCK):
             rows = self.places[start : start + BLOCK]
             block = results[:, :, start : start + BLOCK]
             block[:] = far[rows].transpose(1, 2, 0)
-            exact = near[rows]
+            exact = parts[rows]
             block.real += exact[:, :, 0].transpose(1, 2, 0)
             block.imag += exact[:, :, 1].transpose(1, 2, 0)
         return results[0].T, results[1].T

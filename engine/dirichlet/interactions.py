@@ -31,7 +31,7 @@ class Pairs(NamedTuple):
     squares: Indices
     clusters: Indices
 
-    def of(self, which: Booleans | Indices) -> "Pairs":
+    def of(self, which: Booleans | Indices | slice) -> "Pairs":
         """Return some of them."""
         return Pairs(self.squares[which], self.clusters[which])
 

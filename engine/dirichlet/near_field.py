@@ -1,4 +1,4 @@
-"""Exact integrals over the panels near some points, as one sparse matrix."""
+"""Exact integrals over the panels near some points, as sparse matrices."""
 
 import numpy as np
 from scipy.sparse import bsr_array
@@ -9,9 +9,19 @@ from engine.dirichlet.product_integration import panel_weights
 
 BLOCK = 2048  # pairs that are integrated at a time, so that they stay in cache
 
+# Distance from a panel, over its length, from which on single precision loses no more than the
+# expansions of far panels do. Closer to it large weights of neighbours cancel.
+AWAY = 0.2
+
 
 def near_matrix(
-    panels: Panels, points: Complexes, rows: Indices, columns: Indices, alone: Booleans
+    panels: Panels,
+    points: Complexes,
+    rows: Indices,
+    columns: Indices,
+    alone: Booleans,
+    *,
+    single: bool = False,
 ) -> bsr_array:
     """Return what near panels add to Re g, Im g, Re g' and Im g' at points, (4 t, N).
 
@@ -32,7 +42,7 @@ def near_matrix(
     is differentiated under the integral, which differs by μ / (ζ − z) at its ends; where a near
     panel meets it, the near one has that term as well, and only the jump is left, which is far.
     """
-    data = np.empty((len(rows), 4, NODES))
+    data = np.empty((len(rows), 4, NODES), dtype=np.float32 if single else np.float64)
     for power in np.unique(panels.power):
         own = np.flatnonzero(panels.power[columns] == power)
         for start in range(0, len(own), BLOCK):
@@ -45,6 +55,22 @@ def near_matrix(
             data[block, 2], data[block, 3] = slopes.real, slopes.imag
     starts = np.searchsorted(rows, np.arange(len(points) + 1))
     return bsr_array((data, columns, starts), shape=(4 * len(points), NODES * len(panels)))
+
+
+def near_matrices(
+    panels: Panels, points: Complexes, rows: Indices, columns: Indices, alone: Booleans
+) -> tuple[bsr_array, bsr_array]:
+    """Return two matrices with the sum of `near_matrix`: of what is close, and float32 of the rest.
+
+    The parameters are the same.
+    """
+    place = (points[rows] - panels.origin[columns]) / panels.span[columns]
+    away = np.abs(place - np.clip(place.real, 0.0, 1.0)) >= AWAY
+    close, rest = (
+        near_matrix(panels, points, rows[own], columns[own], alone[:, own], single=single)
+        for own, single in ((~away, False), (away, True))
+    )
+    return close, rest
 
 
 def _weights(

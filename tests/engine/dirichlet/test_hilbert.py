@@ -10,6 +10,7 @@ from shapes import star_polygons
 
 from engine.dirichlet.boundary_operator import BoundaryOperator
 from engine.dirichlet.cauchy_integral import CauchyIntegral
+from engine.dirichlet.expansions import TERMS
 from engine.dirichlet.hilbert import HilbertTransform
 from engine.dirichlet.panels import NODES, Panels
 from engine.dirichlet.product_integration import is_near, panel_weights
@@ -298,10 +299,32 @@ def test_fast_evaluation_agrees_with_the_sum_over_all_panels():
         direct_slopes += sign / panels.span[panel] * (slope_weights @ own)
     assert_allclose(values, direct, rtol=0, atol=1e-9)
     assert_allclose(slopes, direct_slopes, rtol=0, atol=1e-6)
-    # In single precision only what is far is less accurate.
+    # In single precision only what is not close is less accurate.
     values, slopes = CauchyIntegral.of(panels, points, single=True)(densities)
     assert_allclose(values, direct, rtol=0, atol=1e-6)
     assert_allclose(slopes, direct_slopes, rtol=0, atol=1e-5)
+
+
+def test_single_precision_keeps_close_weights_and_takes_half_the_memory():
+    outline, cage = narrow_u()
+    panels = Panels.on(outline, cage)
+    # Towards where two panels meet on an edge: the large weights of both cancel.
+    straight = panels.power == 1
+    ends, along = (panels.origin + panels.span)[straight], panels.span[straight]
+    depths = 10.0 ** np.arange(-8.0, -2.0)[:, None]
+    points = (ends + 1j * depths * along / np.abs(along)).ravel()
+    densities = np.exp(panels.nodes.reshape(-1, 1).real)
+    single, double = (CauchyIntegral.of(panels, points, single=each) for each in (True, False))
+    (values, slopes), (exact, exact_slopes) = single(densities), double(densities)
+    assert_allclose(values, exact, rtol=0, atol=1e-6)
+    assert_allclose(slopes, exact_slopes, rtol=0, atol=3e-5)
+    many = inner_points(outline, 4000, 3)
+    single, double = (CauchyIntegral.of(panels, many, single=each) for each in (True, False))
+    assert single.nbytes < 0.65 * double.nbytes
+    # A far pair takes two rows of powers and not the matrix that they stand for.
+    pairs = sum(len(each.sources) for each in double.expansions.far)
+    held = sum(each.nbytes for each in double.expansions.far)
+    assert held < 0.15 * pairs * 16 * TERMS**2
 
 
 def around_holes(shape):
