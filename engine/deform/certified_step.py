@@ -6,7 +6,7 @@ import numpy as np
 
 from engine.arrays import Floats, Indices, readonly
 from engine.deform.barrier import with_samples_between
-from engine.deform.newton import Direction, Sketch, line_search, sketched_direction
+from engine.deform.newton import Direction, Sketch, search_line, sketched_direction
 from engine.deform.objective import Jet, Objective
 from engine.maps import Boundary, Certificate, HarmonicMap, Limits, certify_segments
 
@@ -28,6 +28,8 @@ class CertifiedStep:
     ----------
     map : HarmonicMap
     certificate : Certificate
+    jet : Jet
+        Of the map.
     direction : Direction
     length : float
         Part of the direction that was taken; 0 where no map along it could be certified.
@@ -41,6 +43,7 @@ class CertifiedStep:
 
     map: HarmonicMap
     certificate: Certificate
+    jet: Jet
     direction: Direction
     length: float
     refusals: int
@@ -71,15 +74,15 @@ def take_certified_step(
     direction, sketch = sketched_direction(objective, jet, sketch)
     direction = _moderate(direction, objective.boundary)
     value = objective.value(jet)
-    length, refusals, broken = 1.0, 0, np.empty(0, np.intp)
+    start, length, refusals, broken = jet, 1.0, 0, np.empty(0, np.intp)
     while refusals < HALVINGS:
-        length = line_search(objective, jet, direction, value, length)
+        length, reached = search_line(objective, start, direction, value, length)
         if length == 0:
             break
         tried = harmonic_map.changed(length * direction.phi, length * direction.psi)
-        proof, segments = certify_segments(tried, objective.boundary, required)
+        proof, segments, _ = certify_segments(tried, objective.boundary, required)
         if proof.certified:
-            harmonic_map, certificate = tried, proof
+            harmonic_map, certificate, jet = tried, proof, reached
             break
         if refusals == 0:
             broken = segments
@@ -88,6 +91,7 @@ def take_certified_step(
     return CertifiedStep(
         map=harmonic_map,
         certificate=certificate,
+        jet=jet,
         direction=direction,
         length=length if refusals < HALVINGS else 0.0,
         refusals=refusals,

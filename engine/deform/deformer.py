@@ -23,7 +23,6 @@ import numpy as np
 from engine.arrays import Complexes, Floats
 from engine.deform.barrier import Barrier, Walls
 from engine.deform.certified_step import CertifiedStep, add_samples, take_certified_step
-from engine.deform.energy import symmetric_dirichlet
 from engine.deform.handles import Handles, Wish
 from engine.deform.objective import Jet, Objective
 from engine.deform.rest import (
@@ -222,7 +221,6 @@ class Deformer:
         status = Status.MOVING
         if step.tightening:
             status = Status.OUTSIDE if schedule.at_rest else Status.TIGHTENING
-        reached = step.jet.advanced(taken.length, taken.direction.jet)
         free = replace(step.objective, handles=self.handles, wish=wish, barrier=None)
         return State(
             map=taken.map,
@@ -231,8 +229,8 @@ class Deformer:
             status=status,
             statistics=Statistics(
                 energy=step.energy,
-                objective=free.energy(reached),
-                handle_error=_handle_error(reached, wish, self.boundary.size),
+                objective=free.energy(taken.jet),
+                handle_error=_handle_error(taken.jet, wish, self.boundary.size),
                 decrement=decrement,
                 length=taken.length,
                 barrier_weight=step.schedule.weight,
@@ -429,9 +427,8 @@ class Deformer:
         self, free: Objective, jet: Jet, search: Search, outcome: Search
     ) -> Statistics:
         """Return what a step of a search did, and what is known of the outcome."""
-        density = symmetric_dirichlet(jet.a, jet.b)
         return Statistics(
-            energy=float(self.boundary.weights @ density),
+            energy=float(self.boundary.weights @ jet.density),
             objective=free.energy(jet),
             handle_error=_handle_error(jet, search.wish, self.boundary.size),
             decrement=search.gain,
@@ -482,12 +479,12 @@ class _Step(NamedTuple):
 
     @property
     def energy(self) -> float:
-        density = symmetric_dirichlet(self.jet.a, self.jet.b)
-        return float(self.objective.boundary.weights @ density)
+        return float(self.objective.boundary.weights @ self.jet.density)
 
     def next_duals(self, taken: CertifiedStep) -> Floats:
         """Return the dual variables after the whole step, be it taken or not."""
-        ahead = self.jet.advanced(1.0, taken.direction.jet)
+        whole = taken.length == 1.0
+        ahead = taken.jet if whole else self.jet.advanced(1.0, taken.direction.jet)
         a, b = self.jet.a, self.jet.b
         return self.barrier.next_duals(a, b, ahead.a - a, ahead.b - b)
 

@@ -240,7 +240,15 @@ def _model(objective: Objective, jet: Jet, radial: Radial, hessian: Floats) -> M
 def line_search(
     objective: Objective, jet: Jet, direction: Direction, value: float, longest: float = 1.0
 ) -> float:
-    """Return the largest tried length, at most `longest`, that gains enough; 0 if none does.
+    """Return the largest tried length, at most `longest`, that gains enough; 0 if none does."""
+    length, _ = search_line(objective, jet, direction, value, longest)
+    return length
+
+
+def search_line(
+    objective: Objective, jet: Jet, direction: Direction, value: float, longest: float
+) -> tuple[float, Jet]:
+    """Return the largest tried length that gains enough, 0 if none does, and where it leads.
 
     Parameters
     ----------
@@ -250,6 +258,7 @@ def line_search(
     direction : Direction
     value : float
         Of the objective at the start.
+    longest : float
     """
     length = longest
     rounding = 1e-13 * abs(value)
@@ -258,11 +267,12 @@ def line_search(
         if length < 1.0 and not objective.within(jet.advanced(length / TO_THE_WALL, direction.jet)):
             length *= 0.7
             continue
-        reached = objective.value(jet.advanced(length, direction.jet))
-        if reached <= value + SUFFICIENT * length * direction.derivative + rounding:
-            return length
-        length *= 0.5 if np.isfinite(reached) else 0.7
-    return 0.0
+        reached = jet.advanced(length, direction.jet)
+        there = objective.value(reached)
+        if there <= value + SUFFICIENT * length * direction.derivative + rounding:
+            return length, reached
+        length *= 0.5 if np.isfinite(there) else 0.7
+    return 0.0, jet
 
 
 def _direction(objective: Objective, gradient: Floats, solution: Floats, change: Jet) -> Direction:

@@ -72,6 +72,13 @@ class Jet:
         moduli: Floats = np.abs(self.g)
         return moduli
 
+    @cached_property
+    def density(self) -> Floats:
+        """The symmetric Dirichlet density at the samples, float64 (m,)."""
+        # A trial step may lead farther than numbers reach; there the energy is ∞.
+        with np.errstate(over="ignore", invalid="ignore"):
+            return symmetric_dirichlet(self.a, self.b)
+
     def scaled(self, factor: float) -> "Jet":
         """Return the jet of a change that is so many times as large."""
         return Jet(
@@ -184,11 +191,9 @@ class Objective:
 
     def energy(self, jet: Jet) -> float:
         """Return the objective without its barrier."""
-        # A trial step may lead farther than numbers reach; there the energy is ∞.
         with np.errstate(over="ignore", invalid="ignore"):
-            density = symmetric_dirichlet(jet.a, jet.b)
             pull = np.abs(jet.positions - self.wish.positions) ** 2
-            value = self.boundary.weights @ density + self.handles.stiffness @ pull
+            value = self.boundary.weights @ jet.density + self.handles.stiffness @ pull
             if self.turning.any():
                 value += self._turning_stiffness @ self._turning_angles(jet) ** 2
         return np.inf if np.isnan(value) else float(value)

@@ -56,15 +56,14 @@ def edge_logarithms(cage: Complexes, points: Complexes) -> Complexes:
 
 def divided_differences(cage: Complexes, coefficients: Complexes) -> Complexes:
     """Return s_j = (φ_{j+1} − φ_j) / (z_{j+1} − z_j), shaped like `coefficients` (n, ...)."""
-    lengths = np.roll(cage, -1) - cage
-    rise = np.roll(coefficients, -1, axis=0) - coefficients
-    return rise / lengths.reshape(-1, *[1] * (coefficients.ndim - 1))
+    lengths = _rises(cage)
+    return _rises(coefficients) / lengths.reshape(-1, *[1] * (coefficients.ndim - 1))
 
 
 def difference_jumps(cage: Complexes, coefficients: Complexes) -> Complexes:
     """Return s_j − s_{j−1} at the vertices, shaped like `coefficients`."""
     differences = divided_differences(cage, coefficients)
-    return differences - np.roll(differences, 1, axis=0)
+    return np.concatenate([differences[:1] - differences[-1:], np.diff(differences, axis=0)])
 
 
 def cauchy_coordinates(cage: Complexes, points: Complexes) -> Complexes:
@@ -174,6 +173,14 @@ def _following(values: Floats) -> Floats:
     following = np.empty_like(values)
     following[:, :-1], following[:, -1] = values[:, 1:], values[:, 0]
     return following
+
+
+def _rises(values: Complexes) -> Complexes:
+    """Return by how much values at the vertices (n, ...) rise to the next one."""
+    rises = np.empty_like(values)
+    np.subtract(values[1:], values[:-1], out=rises[:-1])
+    np.subtract(values[:1], values[-1:], out=rises[-1:])
+    return rises
 
 
 def _product(real: Floats, imaginary: Floats, coefficients: Complexes) -> Complexes:

@@ -87,20 +87,22 @@ def certify(harmonic_map: HarmonicMap, boundary: Boundary, limits: Limits) -> Ce
     by less than the rounding is not certified, nor one whose derivatives overflow; nothing else
     that holds is refused unless a limit is touched within 2⁻¹⁴ of a segment.
     """
-    certificate, _ = certify_segments(harmonic_map, boundary, limits)
+    certificate, _, _ = certify_segments(harmonic_map, boundary, limits)
     return certificate
 
 
 def certify_segments(
     harmonic_map: HarmonicMap, boundary: Boundary, limits: Limits
-) -> tuple[Certificate, Indices]:
-    """Certify a map like `certify`, and tell where it is not within the limits.
+) -> tuple[Certificate, Indices, "Enclosures"]:
+    """Certify a map like `certify`, and tell what is so of its segments.
 
     Returns
     -------
     Certificate
     Indices
         The segments on which a limit is broken or could not be proven.
+    Enclosures
+        Of the segments as they are, as `segment_enclosures` has them.
 
     Raises
     ------
@@ -129,7 +131,12 @@ def segment_enclosures(harmonic_map: HarmonicMap, boundary: Boundary) -> Enclosu
         If the map is over another cage.
     """
     _, segments = _measure(harmonic_map, boundary)
-    (k, sigma_a, negative_sigma_b), _, _ = _enclose(segments)
+    worst, _, _ = _enclose(segments)
+    return _enclosures(worst)
+
+
+def _enclosures(worst: Floats) -> Enclosures:
+    k, sigma_a, negative_sigma_b = worst
     return Enclosures(k, sigma_a, -negative_sigma_b)
 
 
@@ -182,13 +189,14 @@ class _Segments:
 
 def _bisect(
     boundary: Boundary, coefficients: Complexes, segments: _Segments, limits: Limits
-) -> tuple[Certificate, Indices]:
+) -> tuple[Certificate, Indices, Enclosures]:
     limit = np.array([limits.k, limits.sigma_a, -limits.sigma_b])
     attained, proven = np.full((2, 3), -inf)
     turned, bisected, shorter = np.zeros(len(boundary.points)), 0, 1
     broken: list[Indices] = []
+    worst, clear, delta = _enclose(segments)
+    enclosures = _enclosures(worst)
     while True:
-        worst, clear, delta = _enclose(segments)
         attained = _largest(attained, _distortions(*np.abs(segments.ends[1:, 0])))
         # All said positively: what is not a number is neither tight nor within.
         tight = clear & (worst <= _goal(attained, limit)[:, None]).all(axis=0)
@@ -207,8 +215,9 @@ def _bisect(
         parts = 4 if count * len(boundary.span) < FEW else 2
         segments = segments.divided(loose, parts, boundary.span, coefficients)
         shorter *= parts
+        worst, clear, delta = _enclose(segments)
     turns = np.add.reduceat(turned, boundary.starts)
-    return _conclude(proven, turns, limits), np.unique(np.concatenate(broken))
+    return _conclude(proven, turns, limits), np.unique(np.concatenate(broken)), enclosures
 
 
 def _largest(before: Floats, distortions: Floats) -> Floats:

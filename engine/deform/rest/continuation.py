@@ -11,6 +11,7 @@ Weber 2015) of 810 samples and 50 cage vertices takes it 3.8 s, the whole way he
 
 from dataclasses import replace
 from math import inf
+from typing import NamedTuple
 
 import numpy as np
 
@@ -23,7 +24,14 @@ from engine.deform.rest.opening import FIRST_REACH, next_reach, room
 from engine.deform.rest.optimality import Optimality
 from engine.deform.rest.samples import resolved, walls_around
 from engine.deform.rest.search import Search, Way
-from engine.maps import Certificate, HarmonicMap, Limits, certify_segments
+from engine.maps import (
+    Certificate,
+    Enclosures,
+    HarmonicMap,
+    Limits,
+    certify_segments,
+    segment_enclosures,
+)
 
 # Weight of the barrier at the start: over the energy where that is large, and at least.
 FIRST_PER_ENERGY = 0.1
@@ -115,8 +123,8 @@ def advance(search: Search) -> Search:
     search = replace(
         search,
         walls=barrier.walls,
-        map=taken[0],
-        certificate=taken[1],
+        map=taken.map,
+        certificate=taken.certificate,
         duals=readonly(step.barrier.next_duals(jet.a, jet.b, *changes)),
         energy=objective.energy(reached),
         steps=search.steps + 1,
@@ -128,7 +136,7 @@ def advance(search: Search) -> Search:
     search = replace(search, optimality=_optimality(search, reached, step.barrier))
     if is_centred(search, convex=step.convex):
         search = lowered(search) if search.is_open else opened(search, reached)
-    return resolved(search, reached, broken)
+    return resolved(search, reached, taken.enclosures, broken)
 
 
 def _objective(search: Search) -> tuple[Objective, Barrier, Jet]:
@@ -155,21 +163,28 @@ def _objective(search: Search) -> tuple[Objective, Barrier, Jet]:
     return replace(objective, barrier=barrier), barrier, jet
 
 
-def _certified(
-    search: Search, step: CurvedStep
-) -> tuple[CurvedStep, tuple[HarmonicMap, Certificate], int, Indices]:
+class _Proven(NamedTuple):
+    """A certified map, and what is proven of its segments."""
+
+    map: HarmonicMap
+    certificate: Certificate
+    enclosures: Enclosures
+
+
+def _certified(search: Search, step: CurvedStep) -> tuple[CurvedStep, _Proven, int, Indices]:
     """Shorten a step until its map is certified; return refusals and broken segments, too."""
     broken = np.empty(0, np.intp)
     refusals = 0
     while step.length > SHORTEST and refusals <= HALVINGS:
         tried = search.map.changed(step.change.phi, step.change.psi)
-        proof, segments = certify_segments(tried, search.boundary, search.limits)
+        proof, segments, enclosures = certify_segments(tried, search.boundary, search.limits)
         if proof.certified:
-            return step, (tried, proof), refusals, broken
+            return step, _Proven(tried, proof, enclosures), refusals, broken
         broken = np.union1d(broken, segments)
         refusals += 1
         step = step.shorter()
-    return step.given_up(), (search.map, search.certificate), refusals, broken
+    enclosures = segment_enclosures(search.map, search.boundary)
+    return step.given_up(), _Proven(search.map, search.certificate, enclosures), refusals, broken
 
 
 def _optimality(search: Search, jet: Jet, barrier: Barrier) -> Optimality:

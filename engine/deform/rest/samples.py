@@ -15,7 +15,7 @@ from engine.deform.barrier import Walls, with_samples_between
 from engine.deform.objective import Jet
 from engine.deform.rest.search import Search
 from engine.deform.steering import MARGIN
-from engine.maps import Limits, segment_enclosures
+from engine.maps import Enclosures, Limits
 
 # The wall of a sample that is beyond them stands this part of its way to the bound farther out.
 OUTWARDS = 0.1
@@ -37,13 +37,23 @@ def walls_around(inside: Limits, limits: Limits, a: Floats, b: Floats) -> Walls:
     )
 
 
-def resolved(search: Search, jet: Jet, broken: Indices) -> Search:
-    """Return the search with samples added where segments could bulge, or did."""
+def resolved(search: Search, jet: Jet, enclosures: Enclosures, broken: Indices) -> Search:
+    """Return the search with samples added where segments could bulge, or did.
+
+    Parameters
+    ----------
+    search : Search
+    jet : Jet
+        Of its map.
+    enclosures : Enclosures
+        Of the segments of its boundary, for its map.
+    broken : Indices
+        The segments where bounds were broken.
+    """
     boundary, limits = search.boundary, search.limits
     a, b = jet.a, jet.b
     at_samples = np.array([b / a, a + b, b - a])
     ends = np.maximum(at_samples, at_samples[:, boundary.following])
-    enclosures = segment_enclosures(search.map, boundary)
     proven = np.array([enclosures.k, enclosures.sigma_a, -enclosures.sigma_b])
     limit = np.array([[limits.k], [limits.sigma_a], [-limits.sigma_b]])
     way = np.array([[limits.k], [limits.sigma_a - 1.0], [1.0 - limits.sigma_b]])

@@ -7,7 +7,14 @@ from numpy.testing import assert_allclose, assert_array_equal
 from scipy.linalg import eigh
 
 from engine.errors import EngineError
-from engine.maps import Boundary, Bounds, Limits, certify
+from engine.maps import (
+    Boundary,
+    Bounds,
+    Limits,
+    certify,
+    certify_segments,
+    segment_enclosures,
+)
 from engine.maps import certificate as certificate_module
 from engine.maps.cauchy import cauchy_derivatives
 from engine.maps.harmonic_map import HarmonicMap
@@ -42,6 +49,17 @@ def test_the_reported_bounds_enclose_the_true_ones(seed, size):
         assert certificate.k <= k + 0.004
         assert certificate.sigma_a <= 1.004 * sigma_a
         assert certificate.sigma_b >= sigma_b - 0.004 * sigma_a
+
+
+def test_segments_as_they_are_enclose_what_bisection_narrows(monkeypatch):
+    monkeypatch.setattr(certificate_module, "TIGHTNESS", 1e-7)
+    f = noisy(2, 0.015)
+    certificate, _, enclosures = certify_segments(f, BOUNDARY, LOOSE)
+    for found, alone in zip(enclosures, segment_enclosures(f, BOUNDARY), strict=True):
+        assert_array_equal(found, alone)
+    assert certificate.k < enclosures.k.max()
+    assert certificate.sigma_a < enclosures.sigma_a.max()
+    assert certificate.sigma_b > enclosures.sigma_b.min()
 
 
 def test_affine_maps_have_exact_certificates():
@@ -168,7 +186,7 @@ def test_one_sample_that_is_not_a_number_is_enough_to_refuse():
         origins=np.arange(3),
     )
     coefficients = np.column_stack([CAGE, 0 * CAGE])
-    proof, broken = certificate_module._bisect(BOUNDARY, coefficients, segments, LOOSE)
+    proof, broken, _ = certificate_module._bisect(BOUNDARY, coefficients, segments, LOOSE)
     assert not proof.certified
     assert proof.k == np.inf
     assert {0, 1} <= set(broken.tolist())
@@ -269,5 +287,5 @@ def test_a_chord_that_passes_near_zero_bounds_the_segment(monkeypatch):
         errors=np.zeros((2, 1)),
         origins=np.array([0]),
     )
-    found, _ = certificate_module._bisect(BOUNDARY, np.zeros((len(CAGE), 2)), segment, LOOSE)
+    found, _, _ = certificate_module._bisect(BOUNDARY, np.zeros((len(CAGE), 2)), segment, LOOSE)
     assert_allclose(found.sigma_b, 0.1, rtol=1e-6)

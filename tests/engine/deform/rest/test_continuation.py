@@ -12,7 +12,7 @@ from engine.deform.rest import Way, advance, opens
 from engine.deform.rest.continuation import AT_A_SADDLE, CENTRED, LOWER, is_centred, lowered
 from engine.deform.rest.opening import FIRST_REACH
 from engine.deform.rest.samples import resolved
-from engine.maps import Bounds
+from engine.maps import Bounds, segment_enclosures
 
 
 def measured(search):
@@ -20,12 +20,17 @@ def measured(search):
     return objective.jet(*search.map.columns)
 
 
+def with_samples(search, broken):
+    enclosures = segment_enclosures(search.map, search.boundary)
+    return resolved(search, measured(search), enclosures, broken)
+
+
 def test_a_segment_that_broke_a_bound_gets_a_sample_though_there_are_too_many(monkeypatch):
     # Without it no later step is certified: a search once ended there.
     monkeypatch.setattr("engine.deform.rest.samples.MOST_SAMPLES", 0)
     search = search_from_rest(8)
     broken = np.array([3, 40])
-    finer = resolved(search, measured(search), broken)
+    finer = with_samples(search, broken)
     assert len(finer.boundary.points) == len(search.boundary.points) + 2
     ends = search.boundary.following[broken]
     middles = (search.boundary.points[broken] + search.boundary.points[ends]) / 2
@@ -39,7 +44,7 @@ def test_samples_are_added_where_segments_bulge_most_first(monkeypatch):
     base = replace(search, boundary=search.boundary)
     none = np.empty(0, np.intp)
     for _ in range(20):
-        finer = resolved(base, measured(base), none)
+        finer = with_samples(base, none)
         if len(finer.boundary.points) > len(base.boundary.points):
             break
         base = search_from_rest(base.steps + 2)
@@ -49,7 +54,7 @@ def test_samples_are_added_where_segments_bulge_most_first(monkeypatch):
     monkeypatch.setattr(
         "engine.deform.rest.samples.MOST_SAMPLES", (len(base.boundary.points) + 1.5) / own
     )
-    fewer = resolved(base, measured(base), none)
+    fewer = with_samples(base, none)
     assert len(fewer.boundary.points) == len(base.boundary.points) + 1
 
 
