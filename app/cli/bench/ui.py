@@ -26,7 +26,7 @@ from app.errors import LissomError
 from app.render import Renderer
 from app.render.gpu import create_context
 from app.storage import decode_picture, load_project, sample_images
-from app.ui.window import PAUSE, SIZE, Offscreen, Window, has_display
+from app.ui.window import PAUSE, SIZE, Offscreen, Window, has_display, share_heap
 from engine.domain import mesh_inside
 
 SAMPLE, PICTURE = "giraffe.lissom", "dragon.png"
@@ -60,6 +60,7 @@ def tables(extent: Extent | None = None) -> Iterator[Table]:
     """Measure the window without a display, on whatever draws here; its start also on one."""
     extent = extent or Extent()
     share_interpreter()
+    share_heap()
     yield _start(extent)
     with tempfile.TemporaryDirectory() as folder:
         stage = Driver(Path(folder), extent.size)

@@ -17,7 +17,7 @@ from app.render import Renderer
 from app.render.gpu import window_context
 from app.storage import load_preferences, make_settings_folder, save_preferences, settings_folder
 from app.ui.dialogs import find_system_dialogs
-from app.ui.window import Window, has_display
+from app.ui.window import Window, has_display, share_heap
 
 EXIT_FAILED = 1
 # Seconds that workers have to end: when the person has closed the window, when something else has.
@@ -32,6 +32,7 @@ def run(arguments: argparse.Namespace) -> int:
             "'lissom export PROJECT --out DIR'"
         )
     share_interpreter()
+    share_heap()
     folder = settings_folder()
     session = Session(
         clock=time.perf_counter,

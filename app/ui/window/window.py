@@ -27,7 +27,7 @@ from app.ui.panels import cut_out, deform, distortion, domain, export, handle, l
 from app.ui.timeline import timeline
 from app.ui.viewport import Canvas, SplitTextures, viewport
 from app.ui.window.exporter import Exporter
-from app.ui.window.memory import give_back
+from app.ui.window.memory import FreeMemory
 from app.ui.window.modifiers import release_stuck_modifiers
 from app.ui.window.shell import Shell
 from app.ui.window.title import NAME, window_title
@@ -85,6 +85,7 @@ class Window:
         self._exporter: Exporter | None = None
         self._renderer: Renderer | None = None
         self._shell = Shell(session, self._panels(), self._thumbnail)
+        self._memory = FreeMemory(session)
         self._title = NAME
         self._is_open = False
 
@@ -186,8 +187,7 @@ class Window:
         if self._canvas is None or self._renderer is None:
             return
         try:
-            if self._canvas.keep_only(self.session.project):
-                give_back()
+            self._memory.maintain(has_closed=self._canvas.keep_only(self.session.project))
             self._canvas.draw(self.session)
         except Exception as error:  # noqa: BLE001 - part of the frame guard
             self._tell_of_drawing(error)

@@ -7,8 +7,9 @@ import numpy as np
 import pytest
 from held import held, in_use
 
-from app.editor.actions import keys, saving
+from app.editor.actions import keys, playback, posing, saving
 from app.storage.assets import sample_images
+from app.ui.window import memory
 from tests.campaigns import soak
 
 RATE = 3  # frames a second by the window's clock, so that minutes cost little
@@ -70,3 +71,28 @@ def test_messages_that_are_gone_leave_nothing(window):
     first = tell_some()
     # A window of ImGui's takes 7 KB.
     assert tell_some() - first < 0.05
+
+
+def test_what_is_free_is_given_back_once_after_work_has_come_to_rest(window, bar, monkeypatch):
+    given = []
+    monkeypatch.setattr(memory, "give_back", lambda: given.append(window.clock.now))
+    second = round(1 / harness.FRAME)
+
+    def rest():
+        del given[:]
+        window.frames(2 * second)
+        return len(given)
+
+    window.act(posing.add_handle, np.mean([handle.position for handle in bar.figure.handles]))
+    window.settle()
+    ended = window.clock.now
+    assert rest() == 1
+    assert given[0] - ended <= memory.REST
+    assert rest() == 0
+    playback.toggle_play(window.session)
+    assert rest() == 0
+    playback.halt(window.session)
+    assert rest() == 1
+    saving.put_project(window.session, None)
+    window.frames()
+    assert given
