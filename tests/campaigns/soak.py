@@ -23,7 +23,9 @@ from app.document.settings import ExportSettings, FrameRange, Meshing, ShapeDeta
 from app.editor.actions import editing, exporting, playback, posing, saving, viewing
 from app.editor.layering import choose, hang
 from app.export_formats import EXPORT_FORMATS
+from app.render.gpu import finish_drawing
 from app.storage.assets import sample_images
+from app.ui.window.memory import REST, share_heap
 
 RATE = 10  # frames a second by the window's clock
 DRAG, PLAY = 2.0, 12.0  # seconds by it
@@ -38,10 +40,24 @@ WAYS = 4  # of looking at it
 TABS = ("Handle", "Layers", "Poses", "Deform", "Distortion", "Mesh", "Export")
 
 
+class _OnScreen(Harness):
+    """A window whose frames wait until they are drawn, as they do where a screen shows them.
+
+    Without it software OpenGL falls behind on a busy machine, and keeps hundreds of MB of pictures
+    that it has yet to draw.
+    """
+
+    def _frame(self, *, painted: bool = False) -> None:
+        super()._frame(painted=painted)
+        with self.gl:
+            finish_drawing(self.gl)
+
+
 def campaign(seed: int, amount: int) -> Iterator[tuple[str, dict[str, float]]]:
     """Use a window for so many minutes by its clock, and yield what was measured on the way."""
+    share_heap()
     harness.FRAME = 1 / RATE
-    window, rng = Harness(), np.random.default_rng(seed)
+    window, rng = _OnScreen(), np.random.default_rng(seed)
     window.reset()
     window.resize(SIZE)
     minutes, memory, used, frames = [], [], [], []
@@ -58,6 +74,7 @@ def campaign(seed: int, amount: int) -> Iterator[tuple[str, dict[str, float]]]:
                 use(window, rng, folder, len(minutes), drags=1)
                 window.open(small)
             seconds = use(window, rng, folder, len(minutes))
+            window.frames(round(REST * RATE) + 1)  # after which the window gives back what is free
             now = (window.clock.now - begun) / 60
             minutes.append(now)
             used.append(in_use())
@@ -83,7 +100,9 @@ def campaign(seed: int, amount: int) -> Iterator[tuple[str, dict[str, float]]]:
         assert slope - error < MOST_SLOPE
     tenths = [float(np.median(part)) for part in np.array_split(frames, 10) if len(part)]
     yield "ms a frame that plays, by tenths", {f"{k}.": ms for k, ms in enumerate(tenths, 1)}
-    assert all(last <= first + 2 for first, last in zip(counts[warm], counts[-1], strict=True))
+    # A round holds more than another, by what it shows.
+    earlier, later = (np.max(half, axis=0) for half in np.array_split(counts[warm:], 2))
+    assert (later <= earlier + 2).all(), (earlier, later)
 
 
 def make_scene(window: Harness, folder: Path) -> Path:
