@@ -28,9 +28,7 @@ AnyComplexes = npt.NDArray[np.complexfloating[Any, Any]]
 # Of expansions: they err by FAR^-TERMS = 7e-8 of the largest density at most.
 TERMS = 18
 NEGLIGIBLE = 1e-20  # of an entry: products of smaller ones would be slow
-BLOCK = (
-    512  # pairs of sources and targets that are worked out at a time, so that they stay in cache
-)
+BLOCK = 512  # pairs of sources and targets that are worked out at a time
 
 
 class Translation(NamedTuple):
