@@ -14,8 +14,8 @@ from pathlib import Path
 import numpy as np
 from PIL import Image, ImageDraw
 
-from app.cli.bench.table import Row, Table
-from app.cli.bench.ui import REACH, Driver, dragging, playing, row_of
+from app.cli.bench.table import Row, Table, row_of
+from app.cli.bench.ui import REACH, Driver, dragging, playing
 from app.document import Document, Figure, Meshing, PictureFile, Pose, Variant, clip_of
 from app.editor import Puppet
 from app.editor.actions import files

@@ -2,8 +2,10 @@
 
 import statistics
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+
+import numpy as np
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -34,6 +36,18 @@ class Table:
                 figures = f"{1e3 * row.seconds:10.3f} ms {row.seconds / times[0]:7.2f}x"
             lines.append(f"  {row.name:<{width}} {figures}  {row.note}".rstrip())
         return "\n".join(lines)
+
+
+def row_of(name: str, times: Sequence[float]) -> Row:
+    """Return the median of some times, and what most of them keep."""
+    most = float(np.quantile(times, 0.95))
+    return Row(name=name, seconds=statistics.median(times), note=f"95 % within {1e3 * most:.1f} ms")
+
+
+def row_at_most(name: str, times: Sequence[float]) -> Row:
+    """Return the median of some times, and the longest."""
+    most = max(times)
+    return Row(name=name, seconds=statistics.median(times), note=f"at most {1e3 * most:.1f} ms")
 
 
 def measure(
