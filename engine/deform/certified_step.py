@@ -6,7 +6,7 @@ import numpy as np
 
 from engine.arrays import Floats, Indices, readonly
 from engine.deform.barrier import with_samples_between
-from engine.deform.newton import Direction, Sketch, search_line, sketched_direction
+from engine.deform.newton import Direction, Sketch, line_search, sketched_direction
 from engine.deform.objective import Jet, Objective
 from engine.maps import Boundary, Certificate, HarmonicMap, Limits, certify_segments
 
@@ -76,7 +76,7 @@ def take_certified_step(
     value = objective.value(jet)
     start, length, refusals, broken = jet, 1.0, 0, np.empty(0, np.intp)
     while refusals < HALVINGS:
-        length, reached = search_line(objective, start, direction, value, length)
+        length, reached = line_search(objective, start, direction, value, length)
         if length == 0:
             break
         tried = harmonic_map.changed(length * direction.phi, length * direction.psi)

@@ -239,16 +239,10 @@ def _model(objective: Objective, jet: Jet, radial: Radial, hessian: Floats) -> M
 
 def line_search(
     objective: Objective, jet: Jet, direction: Direction, value: float, longest: float = 1.0
-) -> float:
-    """Return the largest tried length, at most `longest`, that gains enough; 0 if none does."""
-    length, _ = search_line(objective, jet, direction, value, longest)
-    return length
-
-
-def search_line(
-    objective: Objective, jet: Jet, direction: Direction, value: float, longest: float
 ) -> tuple[float, Jet]:
-    """Return the largest tried length that gains enough, 0 if none does, and where it leads.
+    """Return the largest tried length, at most `longest`, that gains enough, and where it leads.
+
+    The length is 0 if none does.
 
     Parameters
     ----------
@@ -258,7 +252,6 @@ def search_line(
     direction : Direction
     value : float
         Of the objective at the start.
-    longest : float
     """
     length = longest
     rounding = 1e-13 * abs(value)

@@ -121,6 +121,6 @@ def _newton_steps(boundary: Boundary, handles: Handles, wish: Wish) -> int:
         direction = newton_direction(objective, jet)
         if -direction.derivative < 1e-8 * value:
             return steps
-        length = line_search(objective, jet, direction, value)
+        length, _ = line_search(objective, jet, direction, value)
         phi, psi = phi + length * direction.phi, psi + length * direction.psi
     return MOST_STEPS

@@ -362,7 +362,7 @@ def test_a_map_that_finds_no_way_into_its_bounds_says_so(monkeypatch):
     wish = deformer.handles.wish(ARCHED)
     state, _ = deformer.settle(deformer.start(), wish)
     # Steps that go nowhere.
-    monkeypatch.setattr("engine.deform.certified_step.search_line", lambda _, jet, *__: (0.0, jet))
+    monkeypatch.setattr("engine.deform.certified_step.line_search", lambda _, jet, *__: (0.0, jet))
     stuck, steps = bar(Bounds(k=0.05)).settle(state, wish)
     assert stuck.status is Status.OUTSIDE
     assert steps < 80

@@ -301,7 +301,7 @@ def test_newton_finds_the_free_minimum_in_30_steps():
         direction = newton_direction(objective, jet)
         if -direction.derivative < 1e-8 * objective.value(jet):
             break
-        length = line_search(objective, jet, direction, objective.value(jet))
+        length, _ = line_search(objective, jet, direction, objective.value(jet))
         assert length > 0
         phi, psi = phi + length * direction.phi, psi + length * direction.psi
     assert steps <= 30
