@@ -2,9 +2,10 @@
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from functools import wraps
 from itertools import count
 from pathlib import Path
-from typing import Literal, Protocol
+from typing import Concatenate, Literal, ParamSpec, Protocol
 
 from app.document import Baseline, Document, Figure, Keyframe, Meshing, Variant
 from app.editor.action import Action
@@ -20,6 +21,7 @@ HeatMap = Literal["none", "k", "sigma_a", "sigma_b"]
 CurveKind = Literal["relative", "absolute"]
 CutTool = Literal["keep", "remove", "pick", "holes"]
 Tone = Literal["info", "good", "error"]
+P = ParamSpec("P")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -266,3 +268,16 @@ class Session:
             action=action,
         )
         self.toasts.append(toast)
+
+
+def with_project(
+    verb: Callable[Concatenate[Session, Project, P], None],
+) -> Callable[Concatenate[Session, P], None]:
+    """Hand a verb the project that is open; without one it does nothing."""
+
+    @wraps(verb)
+    def given(session: Session, /, *args: P.args, **kwargs: P.kwargs) -> None:
+        if session.project is not None:
+            verb(session, session.project, *args, **kwargs)
+
+    return given

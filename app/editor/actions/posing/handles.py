@@ -16,7 +16,7 @@ from app.editor.action import do
 from app.editor.actions.posing.pulling import drop
 from app.editor.actions.posing.steps import retargeted
 from app.editor.project import Project
-from app.editor.session import Session
+from app.editor.session import Session, with_project
 from app.motion import Shown
 from engine import domain as domains
 from engine.domain import Domain
@@ -137,11 +137,11 @@ def _change_handles(project: Project, command: Command, gesture: object) -> None
         project.history.pose(replace(unkeyed, pose=pose), gesture=gesture)
 
 
-def anchor_at(session: Session, identity: int, *, gesture: object | None = None) -> None:
+@with_project
+def anchor_at(
+    _: Session, project: Project, identity: int, *, gesture: object | None = None
+) -> None:
     """Make a handle's point the anchor, or let the engine choose again if it is already."""
-    project = session.project
-    if project is None:
-        return
     place = project.figure.handle(identity).position
     project.history.do(
         figure_commands.set_anchor(
