@@ -8,6 +8,8 @@ Imports: `engine`, `app.errors`, `app.export_formats`; no pictures, graphics, wi
 from app.document.checks import Unknown
 from app.document.commands import (
     Command,
+    Settled,
+    exchanged,
     figure_commands,
     handle_commands,
     key_commands,
@@ -112,6 +114,7 @@ __all__ = [
     "PictureFile",
     "Playhead",
     "Pose",
+    "Settled",
     "ShapeDetail",
     "SheetLayout",
     "Shortfall",
@@ -124,6 +127,7 @@ __all__ = [
     "changed_stretches",
     "clip_of",
     "closes",
+    "exchanged",
     "exported_frames",
     "falls_short",
     "figure_commands",

@@ -1,9 +1,9 @@
 """Undo and redo of everything, as frozen snapshots that share what they have in common."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
-from app.document.commands import Command
-from app.document.figure import Figure
+from app.document.commands import Command, Settled, exchanged
+from app.document.figure import Figure, PictureFile
 from app.document.keyframe import Pose
 from app.document.model import Document
 
@@ -29,6 +29,7 @@ class Step:
     document: Document
     unkeyed: UnkeyedPose | None
     label: str
+    gesture: object = None
 
 
 class History:
@@ -82,6 +83,12 @@ class History:
         return tuple(step.document for step in steps)
 
     @property
+    def picture_files(self) -> frozenset[PictureFile]:
+        """Those of all figures that are there now, or that undo and redo lead to."""
+        figures = (figure for step in self._steps for figure in step.document.figures)
+        return frozenset(figure.picture for figure in figures)
+
+    @property
     def is_saved(self) -> bool:
         """Whether the document is the one that was saved last."""
         return self.document is self._saved
@@ -105,11 +112,11 @@ class History:
         LissomError
             If the command is not possible; then nothing has changed.
         """
-        self._go_on(Step(command(self.document), self.unkeyed, command.label), gesture)
+        self._go_on(Step(command(self.document), self.unkeyed, command.label, gesture))
 
     def pose(self, unkeyed: UnkeyedPose | None, *, gesture: object = None) -> None:
         """Hold a pose outside of all keys in place of the one that is held so, or none any more."""
-        self._go_on(Step(self.document, unkeyed, "Pose"), gesture)
+        self._go_on(Step(self.document, unkeyed, "Pose", gesture))
 
     def complete(self, command: Command) -> None:
         """Run a command that belongs to the last step; what can be done again stays so.
@@ -118,11 +125,41 @@ class History:
         """
         step = self._steps[self._now]
         document = command(step.document)
-        if document is step.document:
-            return
-        self._steps[self._now] = Step(document, None, step.label)
-        for index in range(max(self._now - 1, 0), min(self._now + 1, len(self._steps) - 1)):
-            self._held[index] = _held_only_by(self._steps[index], self._steps[index + 1])
+        if document is not step.document:
+            self._put(self._now, replace(step, document=document, unkeyed=None))
+
+    def amend(self, gesture: object, old: Pose, new: Settled) -> bool:
+        """Let what a gesture has led to go on to another pose, as if it had led there at once.
+
+        In its step and in all that came after it, those that can be done again among them, the
+        poses of the same map are exchanged: of keys, of copies of them, of the library, and that
+        which no key holds.
+
+        Parameters
+        ----------
+        gesture : object
+        old : Pose
+        new : callable
+            Returns the pose of a figure that takes the place of one with the map of `old`.
+
+        Returns
+        -------
+        bool
+            Whether the step of that gesture is there, and not forgotten or overwritten.
+        """
+        indices = range(len(self._steps))
+        begun = next((i for i in indices if self._steps[i].gesture is gesture), None)
+        if begun is None:
+            return False
+        for index in indices[begun:]:
+            step = self._steps[index]
+            document, unkeyed = exchanged(step.document, old, new), step.unkeyed
+            if unkeyed is not None and unkeyed.pose.phi is old.phi:
+                figure = document.figure(unkeyed.figure)
+                unkeyed = replace(unkeyed, pose=new(figure, unkeyed.pose))
+            if document is not step.document or unkeyed is not step.unkeyed:
+                self._put(index, replace(step, document=document, unkeyed=unkeyed))
+        return True
 
     def take_back(self, gesture: object) -> None:
         """Undo what a gesture did last, as if it had never begun; if it did nothing, stay."""
@@ -146,7 +183,13 @@ class History:
         if self._now + 1 < len(self._steps):
             self._now += 1
 
-    def _go_on(self, step: Step, gesture: object) -> None:
+    def _put(self, index: int, step: Step) -> None:
+        self._steps[index] = step
+        for around in range(max(index - 1, 0), min(index + 1, len(self._steps) - 1)):
+            self._held[around] = _held_only_by(self._steps[around], self._steps[around + 1])
+
+    def _go_on(self, step: Step) -> None:
+        gesture = step.gesture
         if _is_same(step, self._steps[self._now]):
             return
         if gesture is not None and gesture is self._gesture:

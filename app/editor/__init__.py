@@ -5,12 +5,13 @@ Out: a `Session`: the document, what is shown of it, and what is under way.
 Imports: every room below but the command line and the panels.
 """
 
-from app.editor import layering
+from app.editor import layering, promises
 from app.editor.action import Action, do
 from app.editor.dialogs import Dialog, FileDialog, Leftover, Question, Recovery, ShortcutSheet
 from app.editor.failures import sentence
 from app.editor.jobs import Jobs
-from app.editor.project import Flip, PoseBlend, PoseInProgress, Project, Puppet, Twin
+from app.editor.project import Flip, PoseBlend, Project, Puppet, Twin
+from app.editor.pull import Pull
 from app.editor.session import (
     BoxMark,
     CurveKind,
@@ -62,8 +63,8 @@ __all__ = [
     "MarkerDrag",
     "Overlays",
     "PoseBlend",
-    "PoseInProgress",
     "Project",
+    "Pull",
     "Puppet",
     "Question",
     "Recovery",
@@ -81,5 +82,6 @@ __all__ = [
     "Twin",
     "do",
     "layering",
+    "promises",
     "sentence",
 ]

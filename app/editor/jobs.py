@@ -1,4 +1,4 @@
-"""Worker threads for long computations; of each kind only the newest job counts.
+"""Worker threads for long computations.
 
 There are four: one for what the person waits for, such as the pose under the hand, one for
 exports, one for what is shown and may take a second, such as in-betweens, and one for what is to be
@@ -27,7 +27,7 @@ class Job:
     Parameters
     ----------
     kind : str
-        What it is for, in words that the status bar can show. One job of a kind waits at a time.
+        What it is for, in words that the status bar can show.
     work : callable
         Runs on a worker thread; touches nothing mutable and no GL.
     done : callable
@@ -60,7 +60,8 @@ class Jobs:
     """The queue and its worker threads.
 
     A job is unfinished until its result is delivered. One whose kind was put in again or dropped
-    before that is stale: if it waits it never starts, and its result is thrown away.
+    before that is stale: if it waits it never starts, and its result is thrown away. Those that
+    were added are all done.
 
     Parameters
     ----------
@@ -83,8 +84,12 @@ class Jobs:
 
     def put(self, job: Job) -> None:
         """Queue a job in place of an unfinished one of its kind."""
+        self.drop(job.kind)
+        self.add(job)
+
+    def add(self, job: Job) -> None:
+        """Queue a job, be there others of its kind or not."""
         with self._condition:
-            self._forget(job.kind)
             self._staff(job.lane)
             self._waiting.append(job)
             self._condition.notify_all()

@@ -1,6 +1,6 @@
 """The project that is open: its document, what the window has of it, and what is under way."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from math import inf
 from pathlib import Path
@@ -17,17 +17,18 @@ from app.document import (
     PictureFile,
     Playhead,
     Pose,
-    Target,
+    UnkeyedPose,
     Variant,
     clip_of,
 )
-from app.editor.action import Action
 from app.editor.derived import Derived
+from app.editor.promise import Afterwards, Promise
+from app.editor.pull import Pull
 from app.editor.timeline_view import Timing
 from app.motion import Box, Build, Glimpse, Joints, Motion, MotionPaths, PosableMesh, Shown
 from app.render import View, fit_view
 from app.reports import Curves
-from app.solving import Drag, Renewal, Rig
+from app.solving import Renewal, Rig
 from app.storage import Cut, Hold, Origin, Picture, cut_picture
 from engine.arrays import Bytes
 from engine.domain import CutOut
@@ -43,80 +44,6 @@ class Trial:
 
     pose: Pose
     motion: Motion
-
-
-@dataclass(slots=True, kw_only=True, eq=False)
-class PoseInProgress:
-    """A pose that the solver is on its way to.
-
-    Parameters
-    ----------
-    frame : int
-        Where the pose belongs.
-    targets : mapping
-        What is wished now, for every handle.
-    start : Pose, optional
-        Where it began; None where that is an in-between, which the worker has to find a map for.
-    gesture : object
-        What is one step of undo together.
-    drag : Drag, optional
-        How far the solver has followed; None until its first steps are done.
-    is_held : bool
-        Whether the person still pulls.
-    steps : int
-        Newton steps towards the present wish.
-    found : Pose, optional
-        Where the solver is with a pose that the playhead has left: the document has it as soon as
-        its in-betweens are ready, so that what is shown stays exact.
-    trial : Trial, optional
-        What the worker is at, once the pose was let go.
-    is_left : bool
-        Whether the playhead has left it, and the document was seen to.
-    taken : Pose, optional
-        What the document has of it since.
-    is_paused : bool
-        Whether the solver leaves the processor to the in-between that the playhead awaits.
-    prepared : Pose, optional
-        The newest one whose in-betweens are all there, while the pose that was let go is shown: the
-        playhead that leaves it finds them.
-    """
-
-    frame: int
-    targets: Mapping[int, Target]
-    start: Pose | None
-    gesture: object
-    drag: Drag | None = None
-    is_held: bool = True
-    steps: int = 0
-    found: Pose | None = None
-    trial: Trial | None = None
-    is_left: bool = False
-    taken: Pose | None = None
-    is_paused: bool = False
-    prepared: Pose | None = None
-
-    @property
-    def is_at_rest(self) -> bool:
-        """Whether the solver has found the pose, and moves nothing any more."""
-        return self.drag is not None and self.drag.is_over
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Awaiting:
-    """What was asked of a pose that is not shown yet.
-
-    Parameters
-    ----------
-    figure : int
-        The id of its figure.
-    frame : int
-    verbs : tuple of tuple
-        What is to be done, in this order; each with the gesture that it is of, or None.
-    """
-
-    figure: int
-    frame: int
-    verbs: tuple[tuple[object | None, Callable[..., None]], ...]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -146,17 +73,12 @@ class PoseBlend:
     Parameters
     ----------
     name : str
-    frame : int
-    wishes : mapping of int to Target
-        Those of the pose at the frame, before it began.
     gesture : object
     share : float
         Of the pose in the library.
     """
 
     name: str
-    frame: int
-    wishes: Mapping[int, Target]
     gesture: object
     share: float = 0.0
 
@@ -261,12 +183,10 @@ class Project:
         Those that are decoded, of layers that come back by undo among them.
     active : int
         The id of the figure whose handles and keys are shown and changed.
-    posing : PoseInProgress, optional
-        Of the pose that is shown.
-    settling : PoseInProgress, optional
-        Let go at a frame that the playhead has left since; the solver brings that pose to rest.
-    awaiting : Awaiting, optional
-        What was asked of the pose that is to be shown, as long as that is being prepared.
+    pending : list of Promise
+        All that is on its way to the document.
+    afterwards : list of Afterwards
+        What is done once it is there, in this order.
     camera : View, optional
         None fits the picture into the viewport.
     curves, twin_curves : Derived
@@ -277,8 +197,6 @@ class Project:
         What the domain will be rebuilt with; None as long as that is what it has.
     drafted_bounds : Bounds, optional
         What the person drags them to.
-    renewal : Renewal, optional
-        Keys that are being solved again.
     stale : tuple, optional
         The figure whose domain is older than its cut-out, and the clock's seconds when it was first
         seen.
@@ -298,15 +216,11 @@ class Project:
         By which other windows see that its file is open here.
     read_as : str, optional
         What the file held when it was opened or saved here last; None for a new one.
-    to_save : tuple, optional
-        Where to save it, what to do then, and the clock's seconds when that was asked for: it is
-        done as soon as its pose has settled and no save is under way.
-    after_saving : Action, optional
-        What gives the project up, and waits for a save that is under way.
     moved_at : float
         The clock's seconds when the playhead was last seen to move.
-    autosaved : Document, optional
-        The one that the autosave holds, from the time `autosaved_at` on.
+    autosaved : tuple, optional
+        The document and the pose that no key holds, as the autosave has them, from the time
+        `autosaved_at` on.
     changed_at : float, optional
         The clock's seconds when it was first seen to differ from that.
     chosen_of : mapping of int to frozenset of int
@@ -324,15 +238,13 @@ class Project:
     active: int
     pictures: dict[PictureFile, Picture] = field(default_factory=dict)
     is_recovered: bool = False
-    posing: PoseInProgress | None = None
-    settling: PoseInProgress | None = None
-    awaiting: Awaiting | None = None
+    pending: list[Promise] = field(default_factory=list)
+    afterwards: list[Afterwards] = field(default_factory=list)
     curves: Derived[Clip, Curves | None] = field(default_factory=lambda: Derived(None))
     twin_curves: Derived[Clip, Curves | None] = field(default_factory=lambda: Derived(None))
     paths: Derived[Clip, MotionPaths | None] = field(default_factory=lambda: Derived(None))
     meshing: Meshing | None = None
     drafted_bounds: Bounds | None = None
-    renewal: Renewal | None = None
     stale: tuple[Figure, float] | None = None
     unbuildable: Figure | None = None
     brush: float | None = None
@@ -346,10 +258,8 @@ class Project:
     )
     hold: Hold | None = None
     read_as: str | None = None
-    to_save: tuple[Path, Action | None, float] | None = None
-    after_saving: Action | None = None
     moved_at: float = -inf
-    autosaved: Document | None = None
+    autosaved: tuple[Document, UnkeyedPose | None] | None = None
     autosaved_at: float = 0.0
     changed_at: float | None = None
     playhead: Playhead = field(default_factory=Playhead)
@@ -419,9 +329,30 @@ class Project:
         return unkeyed.pose if unkeyed.frame == self.playhead.frame else None
 
     @property
-    def is_posing(self) -> bool:
-        """Whether a pose is on its way, be it the one that is shown or not."""
-        return self.posing is not None or self.settling is not None
+    def pulls(self) -> list[Pull]:
+        """The poses that are on their way, in the order in which they were begun."""
+        return [promise for promise in self.pending if isinstance(promise, Pull)]
+
+    @property
+    def pull(self) -> Pull | None:
+        """The one on its way that is shown of the figure that is posed."""
+        if self.playhead.since is not None:
+            return None
+        here = (self.active, self.playhead.frame)
+        mine = [pull for pull in self.pulls if (pull.figure, pull.frame) == here]
+        return mine[-1] if mine else None
+
+    @property
+    def renewal(self) -> Renewal | None:
+        """Keys that are being solved again, as far as that is."""
+        return next((promise.renewal for promise in self.pending if promise.renewal), None)
+
+    @property
+    def stale_figure(self) -> Figure | None:
+        """One whose domain is older than its cut-out, and will be built anew."""
+        figures = self.document.figures
+        stale = next((each for each in figures if each.is_stale and not each.still), None)
+        return None if stale is self.unbuildable else stale
 
     def pair_up(self, method: Variant | Baseline | None) -> None:
         """Let each figure have a twin by a method, or none."""

@@ -14,9 +14,12 @@ from app.document.commands import (
     scene_commands,
 )
 from app.document.commands.command import Command
+from app.document.commands.pose_commands import Settled, exchanged
 
 __all__ = [
     "Command",
+    "Settled",
+    "exchanged",
     "figure_commands",
     "handle_commands",
     "key_commands",

@@ -1,10 +1,17 @@
 """Commands on a figure's library of poses, and on the axis at which poses are flipped."""
 
+from collections.abc import Callable
 from dataclasses import replace
+from typing import TypeVar
 
 from app.document.commands.command import figure_command
 from app.document.figure import Figure
-from app.document.keyframe import KeptPose, Pose
+from app.document.keyframe import KeptPose, Keyframe, Pose
+from app.document.model import Document
+
+# Of a figure and a pose of it: the pose to which that one has gone on.
+Settled = Callable[[Figure, Pose], Pose]
+Posed = TypeVar("Posed", Keyframe, KeptPose)
 
 
 @figure_command("Keep pose")
@@ -35,6 +42,27 @@ def delete_pose(figure: Figure, name: str) -> Figure:
 def set_mirror(figure: Figure, mirror: float | None) -> Figure:
     """Set where the axis crosses the picture at which poses are flipped; None finds its middle."""
     return figure if mirror == figure.mirror else replace(figure, mirror=mirror)
+
+
+def exchanged(document: Document, old: Pose, new: Settled) -> Document:
+    """Return a document in which another pose stands wherever one with the map of `old` does."""
+    for figure in document.figures:
+        keys = _exchanged(figure, figure.keys, old, new)
+        library = _exchanged(figure, figure.library, old, new)
+        if keys is not figure.keys or library is not figure.library:
+            document = document.with_figure(replace(figure, keys=keys, library=library))
+    return document
+
+
+def _exchanged(
+    figure: Figure, posed: tuple[Posed, ...], old: Pose, new: Settled
+) -> tuple[Posed, ...]:
+    if all(each.pose.phi is not old.phi for each in posed):
+        return posed
+    return tuple(
+        replace(each, pose=new(figure, each.pose)) if each.pose.phi is old.phi else each
+        for each in posed
+    )
 
 
 def _free_name(figure: Figure) -> str:

@@ -18,38 +18,34 @@ from app.document import (
 )
 from app.editor.actions import playback, posing
 from app.editor.project import Project, Puppet
-from app.editor.session import Session
+from app.editor.session import Session, with_project
 from app.storage import decode_picture
 
 Arguments = ParamSpec("Arguments")
 
 
-def edit(session: Session, command: Command) -> None:
+@with_project
+def edit(_: Session, project: Project, command: Command) -> None:
     """Run a command; those given while the pointer holds on make one step of undo together."""
-    project = session.project
-    if project is None:
-        return
-    before = _posed(project)
     project.history.do(command, gesture=project.gesture)
-    follow_figures(project)
-    if _posed(project) != before:
-        # The solver would put back what the command took away.
-        posing.drop(session)
     _forget_what_is_gone(project)
 
 
+@with_project
 def edit_figure(
     session: Session,
+    project: Project,
+    /,
     command: Callable[Concatenate[int, Arguments], Command],
     *args: Arguments.args,
     **kwargs: Arguments.kwargs,
 ) -> None:
     """Run a command on the figure that is posed."""
-    if session.project:
-        edit(session, command(session.project.active, *args, **kwargs))
+    edit(session, command(project.active, *args, **kwargs))
 
 
-def hold(session: Session, held: int) -> None:
+@with_project
+def hold(_: Session, project: Project, held: int) -> None:
     """Note what the pointer or the keyboard holds on to; called once a frame.
 
     Parameters
@@ -58,30 +54,23 @@ def hold(session: Session, held: int) -> None:
     held : int
         A number of the widget, 0 for nothing; another one begins another step of undo.
     """
-    project = session.project
-    if project and held != project.held:
+    if held != project.held:
         project.held = held
         project.gesture = object() if held else None
 
 
-def undo(session: Session) -> None:
-    """Take the last step back."""
-    project = session.project
-    if project is None:
-        return
-    pose, awaiting = project.posing or project.settling, project.awaiting
-    project.awaiting = None
-    posing.drop(session)
-    if awaiting is not None:
-        # Nothing of it was done yet but what its gesture did first.
-        for gesture, _ in awaiting.verbs:
-            project.history.take_back(gesture)
-        _forget_what_is_gone(project)
-        return
+@with_project
+def undo(session: Session, project: Project) -> None:
+    """Take the last step back; a pull that is under way goes on in it, should it be done again."""
     before, unkeyed, label = project.document, project.history.unkeyed, project.history.undo_label
-    if pose is not None and pose.drag is None:
-        # Nothing is to be seen of it yet but what its gesture did first.
-        project.history.take_back(pose.gesture)
+    unseen = [pull for pull in project.pulls if pull.kept is None]
+    for pull in unseen or [pull for pull in project.pulls if pull.is_held]:
+        posing.give_up(session, project, pull)
+    if unseen:
+        # Nothing is to be seen of them yet but what their gestures did first.
+        for pull in unseen:
+            for gesture in (*pull.wishes, pull.gesture):
+                project.history.take_back(gesture)
     else:
         project.history.undo()
         _tell_step(session, "Undone", label)
@@ -89,28 +78,22 @@ def undo(session: Session) -> None:
     _go_to_change(session, project, before, unkeyed)
 
 
-def take_back(session: Session, gesture: object) -> None:
+@with_project
+def take_back(session: Session, project: Project, gesture: object) -> None:
     """Undo what a gesture has done, as if it had never begun."""
-    project = session.project
-    if project is None:
-        return
-    if any(pose and pose.gesture is gesture for pose in (project.posing, project.settling)):
-        posing.drop(session)
-    posing.forget(project, gesture)
+    posing.take_back(session, gesture)
     project.history.take_back(gesture)
     _forget_what_is_gone(project)
 
 
-def redo(session: Session) -> None:
+@with_project
+def redo(session: Session, project: Project) -> None:
     """Do the step that was taken back again."""
-    project = session.project
-    if project:
-        posing.drop(session)
-        before, unkeyed = project.document, project.history.unkeyed
-        _tell_step(session, "Done again", project.history.redo_label)
-        project.history.redo()
-        _forget_what_is_gone(project)
-        _go_to_change(session, project, before, unkeyed)
+    before, unkeyed = project.document, project.history.unkeyed
+    _tell_step(session, "Done again", project.history.redo_label)
+    project.history.redo()
+    _forget_what_is_gone(project)
+    _go_to_change(session, project, before, unkeyed)
 
 
 def _tell_step(session: Session, what: str, label: str | None) -> None:
@@ -134,73 +117,69 @@ def _go_to_change(
         playback.seek(session, min(frames, key=lambda frame: abs(frame - here)))
 
 
-def select(session: Session, handles: frozenset[int]) -> None:
+@with_project
+def select(_: Session, project: Project, handles: frozenset[int]) -> None:
     """Select these handles, as far as they are there, and no keys."""
-    project = session.project
-    if project:
-        project.selected, project.chosen = handles, frozenset()
-        _forget_what_is_gone(project)
+    project.selected, project.chosen = handles, frozenset()
+    _forget_what_is_gone(project)
 
 
-def select_all(session: Session) -> None:
+@with_project
+def select_all(session: Session, project: Project) -> None:
     """Select every handle."""
-    if session.project:
-        select(session, frozenset(handle.id for handle in session.project.figure.handles))
+    select(session, frozenset(handle.id for handle in project.figure.handles))
 
 
-def select_mirrored(session: Session) -> None:
+@with_project
+def select_mirrored(session: Session, project: Project) -> None:
     """Select the partners of the selected handles on the other side, as their names tell."""
-    project = session.project
-    if project:
-        pairs = pairs_by_name(project.figure.handles)
-        partners = frozenset(pairs[handle] for handle in project.selected if handle in pairs)
-        if partners:
-            select(session, partners)
-        else:
-            session.tell(
-                "No partner was found by name. Names tell the side as in “hand.L” and “hand.R”, "
-                "“foot_l” and “foot_r”, or “left ear” and “right ear”."
-            )
+    pairs = pairs_by_name(project.figure.handles)
+    partners = frozenset(pairs[handle] for handle in project.selected if handle in pairs)
+    if partners:
+        select(session, partners)
+    else:
+        session.tell(
+            "No partner was found by name. Names tell the side as in “hand.L” and “hand.R”, "
+            "“foot_l” and “foot_r”, or “left ear” and “right ear”."
+        )
 
 
-def lock(session: Session) -> None:
+@with_project
+def lock(session: Session, project: Project) -> None:
     """Lock the selected handles, or unlock them if all are locked."""
-    project = session.project
-    if project and project.selected:
+    if project.selected:
         chosen = [handle for handle in project.figure.handles if handle.id in project.selected]
         locked = not all(handle.locked for handle in chosen)
         edit_figure(session, handle_commands.lock_handles, project.selected, locked=locked)
 
 
-def group(session: Session) -> None:
+@with_project
+def group(session: Session, project: Project) -> None:
     """Let the selected handles be taken together."""
-    project = session.project
-    if project and len(project.selected) > 1:
+    if len(project.selected) > 1:
         taken = {handle.group for handle in project.figure.handles}
         name = next(f"group {n}" for n in count(1) if f"group {n}" not in taken)
         edit_figure(session, handle_commands.group_handles, project.selected, name)
 
 
-def ungroup(session: Session) -> None:
+@with_project
+def ungroup(session: Session, project: Project) -> None:
     """Part the groups that the selected handles belong to."""
-    project = session.project
-    if project:
-        fellows = frozenset[int]().union(*map(project.figure.together_with, project.selected))
-        edit_figure(session, handle_commands.group_handles, fellows, "")
+    fellows = frozenset[int]().union(*map(project.figure.together_with, project.selected))
+    edit_figure(session, handle_commands.group_handles, fellows, "")
 
 
-def choose_keys(session: Session, frames: frozenset[int]) -> None:
+@with_project
+def choose_keys(session: Session, project: Project, frames: frozenset[int]) -> None:
     """Select the keys at these frames, as far as they are there, and no handles."""
-    if session.project:
-        choose_keys_of(session, {session.project.active: frames})
+    choose_keys_of(session, {project.active: frames})
 
 
-def choose_keys_of(session: Session, chosen_of: Mapping[int, frozenset[int]]) -> None:
+@with_project
+def choose_keys_of(_: Session, project: Project, chosen_of: Mapping[int, frozenset[int]]) -> None:
     """Select keys of several figures, as far as they are there, and no handles."""
-    project = session.project
-    if project:
-        project.selected, project.chosen_of = frozenset(), chosen_of
-        _forget_what_is_gone(project)
+    project.selected, project.chosen_of = frozenset(), chosen_of
+    _forget_what_is_gone(project)
 
 
 def change_keys(
@@ -217,20 +196,13 @@ def change_keys(
     return Command(commands[0].label, all_of_them)
 
 
-def delete(session: Session) -> None:
+@with_project
+def delete(session: Session, project: Project) -> None:
     """Delete the selected keys, or the selected handles."""
-    project = session.project
-    if project and project.chosen_of:
+    if project.chosen_of:
         edit(session, change_keys(key_commands.delete_keys, project.chosen_of))
-    elif project and project.selected:
+    elif project.selected:
         posing.remove_handles(session, project.selected)
-
-
-def _posed(project: Project) -> tuple[object, ...]:
-    """Return the pose that handles are being pulled in, and what it is solved from."""
-    figure, pose = project.figure, project.posing or project.settling
-    poses = [key.pose for key in figure.keys if pose is not None and key.frame == pose.frame]
-    return (poses, figure.handles, figure.bounds, figure.domain)
 
 
 def follow_figures(project: Project) -> None:
@@ -239,6 +211,10 @@ def follow_figures(project: Project) -> None:
     gone = project.puppets.keys() - {figure.id for figure in document.figures}
     for identity in gone:
         del project.puppets[identity]
+    # Those of layers that undo and redo may bring back are kept as well.
+    reachable = project.history.picture_files
+    for file in project.pictures.keys() - reachable:
+        del project.pictures[file]
     for figure in document.figures:
         puppet = project.puppets.get(figure.id)
         if puppet is not None and puppet.coarse.value.clip.figure.picture is figure.picture:

@@ -9,21 +9,19 @@ from pathlib import Path
 
 from app.document import (
     Clip,
-    Document,
     ExportSettings,
     FrameRange,
-    Pose,
     clip_of,
-    key_commands,
     scene_commands,
 )
+from app.editor import promises
 from app.editor.action import Action, do
 from app.editor.actions import editing, posing
 from app.editor.dialogs import FileDialog, Question
 from app.editor.failures import report, sentence
 from app.editor.jobs import Job
 from app.editor.project import Project
-from app.editor.session import ExportRun, Session
+from app.editor.session import ExportRun, Session, with_project
 from app.errors import LissomError
 from app.export import (
     ExportRequest,
@@ -62,15 +60,14 @@ def choose(session: Session) -> None:
     _ask(session, lambda path: do(export_to, path))
 
 
-def export_to(session: Session, out: Path) -> None:
+@with_project
+def export_to(_: Session, project: Project, out: Path) -> None:
     """Note where the next export goes, as the person chose it."""
-    project = session.project
-    if project is not None:
-        project.export_to = out
-        format_ = EXPORT_FORMATS[project.document.export.format]
-        if format_.suffixes and not (format_.data_suffix and data_file(out).exists()):
-            # The dialog has asked already whether it is to be replaced.
-            project.replaceable = out
+    project.export_to = out
+    format_ = EXPORT_FORMATS[project.document.export.format]
+    if format_.suffixes and not (format_.data_suffix and data_file(out).exists()):
+        # The dialog has asked already whether it is to be replaced.
+        project.replaceable = out
 
 
 def start_at(session: Session, out: Path) -> None:
@@ -79,16 +76,17 @@ def start_at(session: Session, out: Path) -> None:
     start(session, out)
 
 
-def replace_files(session: Session, out: Path) -> None:
+@with_project
+def replace_files(session: Session, project: Project, out: Path) -> None:
     """Export, and replace what is there."""
-    if session.project is not None:
-        session.project.replaceable = out
-        start(session, out)
+    project.replaceable = out
+    start(session, out)
 
 
-def repeat(session: Session) -> None:
+@with_project
+def repeat(session: Session, project: Project) -> None:
     """Export where it was told to go, or where the last one went; ask if there is neither."""
-    out = destination(session.project) if session.project else None
+    out = destination(project)
     if out is not None:
         start(session, out)
     else:
@@ -103,12 +101,11 @@ def destination(project: Project) -> Path | None:
     return suited(out, project.document.export.format)
 
 
-def start(session: Session, out: Path) -> None:
+@with_project
+def start(session: Session, project: Project, out: Path) -> None:
     """Export into a folder or a file; ask first if that takes the place of other files."""
-    project = session.project
-    if project is None or session.export is not None:
+    if not _is_free(session):
         return
-    posing.drop(session)
     settings = project.document.export
     request = _request(session, project, out, settings)
     check_request(project.document, request)
@@ -122,6 +119,13 @@ def start(session: Session, out: Path) -> None:
             answers=(("Replace", do(replace_files, out)),),
         )
         return
+    promises.once_settled(session, do(_begin, request), "Export")
+
+
+@with_project
+def _begin(session: Session, project: Project, request: ExportRequest) -> None:
+    """Export as was asked for, now that nothing is on its way to the document."""
+    out, settings = request.out, request.settings
 
     def begun(run: ExportRun) -> None:
         session.export = run
@@ -134,23 +138,34 @@ def start(session: Session, out: Path) -> None:
     _prepare(session, project, request, begun)
 
 
-def copy_picture(session: Session) -> None:
+@with_project
+def copy_picture(session: Session, project: Project) -> None:
     """Put the picture of what is shown on the system's clipboard, as an export would draw it."""
-    project = session.project
-    if project is None or session.export is not None:
+    if not _is_free(session):
         return
     clipboard_program()  # tells what to install where there is none
-    posing.drop(session)
     make_settings_folder(session.folder)
     out = passing_picture(session.folder)
     settings = replace(project.document.export, format="picture")
     request = _request(session, project, out, settings)
     check_request(project.document, request)
+    promises.once_settled(session, do(_begin_copy, request), "Copy the picture")
 
+
+@with_project
+def _begin_copy(session: Session, project: Project, request: ExportRequest) -> None:
     def begun(run: ExportRun) -> None:
         session.export = replace(run, for_clipboard=True)
 
     _prepare(session, project, request, begun)
+
+
+def _is_free(session: Session) -> bool:
+    """Tell whether no export is under way; if there is one, say so."""
+    if session.export is None and PREPARING not in session.jobs.kinds:
+        return True
+    session.tell("An export is under way. The next one can begin when it is done.", topic="export")
+    return False
 
 
 def _request(
@@ -169,9 +184,14 @@ def _prepare(
     begun: Callable[[ExportRun], None],
 ) -> None:
     """Let a worker prepare an export that was checked, and then begin."""
+    if not _is_free(session):
+        return
     document, format_ = project.document, EXPORT_FORMATS[request.settings.format]
-    if format_.is_still and project.unkeyed is not None:
-        document = _with_pose(project, project.unkeyed)
+    unkeyed = project.history.unkeyed
+    if format_.is_still and unkeyed is not None and unkeyed.figure == project.active:
+        frames = request.settings.frames
+        if frames is not None and unkeyed.frame in frames:
+            document = posing.holding(session, project, unkeyed)(document)
     pictures = {figure: puppet.cut.value.texture for figure, puppet in project.puppets.items()}
     motions = {
         figure: puppet.fine.value or puppet.coarse.value
@@ -201,13 +221,6 @@ def _prepare(
             failed=lambda error: report(session, "The export could not begin", error),
         )
     )
-
-
-def _with_pose(project: Project, pose: Pose) -> Document:
-    """Return the document with a pose that no key holds in a key, for one picture."""
-    frame, figure = project.playhead.frame, project.figure
-    place = key_commands.pose_key if frame in figure.key_frames else key_commands.insert_key
-    return place(figure.id, frame, pose)(project.document)
 
 
 def _animation(clip: Clip, motion: Motion) -> Animation:
@@ -330,9 +343,9 @@ def open_folder(session: Session, folder: Path) -> None:
     session.hint = str(folder)
 
 
-def _ask(session: Session, chosen: Callable[[Path], Action]) -> None:
-    project = session.project
-    if project is None or session.export is not None:
+@with_project
+def _ask(session: Session, project: Project, chosen: Callable[[Path], Action]) -> None:
+    if session.export is not None:
         return
     settings = project.document.export
     suffixes = EXPORT_FORMATS[settings.format].suffixes

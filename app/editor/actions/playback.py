@@ -12,8 +12,6 @@ def seek(session: Session, frame: int) -> None:
         project = session.project
         frame = project.document.frames.clamp(frame)
         project.playhead = project.playhead.seek(frame, session.clock())
-        if project.posing is not None and project.posing.frame != frame:
-            _leave_pose(session, project)
 
 
 def scrub(session: Session, frame: int) -> None:
@@ -29,7 +27,6 @@ def toggle_play(session: Session) -> None:
         now = session.clock()
         turn = project.playhead.play if project.playhead.since is None else project.playhead.pause
         project.playhead = turn(project.document, now)
-        _leave_pose(session, project)
 
 
 def tap_space(session: Session) -> None:
@@ -106,15 +103,6 @@ def set_speed(session: Session, speed: float) -> None:
     if session.project:
         project = session.project
         project.playhead = project.playhead.at_speed(speed, project.document, session.clock())
-
-
-def _leave_pose(session: Session, project: Project) -> None:
-    """End a pull because the playhead leaves it; where it makes a key, it goes on to rest."""
-    posing = project.posing
-    if posing is not None and session.preferences.auto_key:
-        posing.is_held = False
-        project.settling = posing
-    project.posing = None
 
 
 def current_frame(session: Session, project: Project) -> int:

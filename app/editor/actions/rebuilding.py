@@ -1,13 +1,16 @@
 """Other bounds and another domain: the worker solves the keys again, one job for each."""
 
 from dataclasses import replace
+from functools import partial
 
 from app.document import figure_commands, loosened
+from app.editor import promises
+from app.editor.action import do
 from app.editor.actions import editing, posing
 from app.editor.failures import report, sentence
-from app.editor.jobs import Job
 from app.editor.project import Project
-from app.editor.session import Session
+from app.editor.promise import Promise
+from app.editor.session import Session, with_project
 from app.solving import Renewal, go_on
 from engine.maps import Bounds
 
@@ -21,15 +24,19 @@ def draft_bounds(session: Session, bounds: Bounds) -> None:
         session.project.drafted_bounds = bounds
 
 
-def choose_bounds(session: Session, bounds: Bounds) -> None:
+@with_project
+def choose_bounds(session: Session, project: Project, bounds: Bounds) -> None:
     """Set the bounds; keys that are outside of them are solved again."""
-    project = session.project
-    if project is None:
-        return
+    project.drafted_bounds = bounds
+    cancel(session)
+    promises.once_settled(session, do(_set_bounds, bounds), "Limits")
+
+
+@with_project
+def _set_bounds(session: Session, project: Project, bounds: Bounds) -> None:
     project.drafted_bounds = None
     certificates = [pose.certificate for pose in project.figure.poses]
     if all(bounds.allow(k=c.k, sigma_a=c.sigma_a, sigma_b=c.sigma_b) for c in certificates):
-        cancel(session)
         editing.edit_figure(session, figure_commands.set_bounds, bounds)
     elif bounds != project.figure.bounds:
         begin(session, Renewal(before=project.figure, bounds=bounds, pulls=False))
@@ -42,7 +49,6 @@ def loosen(session: Session) -> None:
     if project is None or bounds is None:
         return
     cancel(session)
-    posing.drop(session)
     gesture = object()
     # What was allowed still is, so that no key has to be solved again.
     project.history.do(figure_commands.set_bounds(project.active, bounds), gesture=gesture)
@@ -71,32 +77,36 @@ def enter_bound(session: Session, bounds: Bounds, name: str, value: float) -> No
 
 def solve_again(session: Session) -> None:
     """Pull every key's handles to their places again, within the bounds of now."""
-    if session.project:
-        figure = session.project.figure
-        begin(session, Renewal(before=figure, bounds=figure.bounds))
+    promises.once_settled(session, do(_solve_again), "Solve again")
+
+
+@with_project
+def _solve_again(session: Session, project: Project) -> None:
+    begin(session, Renewal(before=project.figure, bounds=project.figure.bounds))
 
 
 def rebuild(session: Session) -> None:
     """Find the outline and build the mesh again; handles stay, keys are solved again."""
-    project = session.project
-    if project:
-        figure = project.figure
-        meshing = project.meshing or figure.meshing
-        begin(session, Renewal(before=figure, bounds=figure.bounds, meshing=meshing))
+    promises.once_settled(session, do(_rebuild), "Rebuild")
 
 
-def keep_up(session: Session) -> None:
+@with_project
+def _rebuild(session: Session, project: Project) -> None:
+    figure = project.figure
+    meshing = project.meshing or figure.meshing
+    begin(session, Renewal(before=figure, bounds=figure.bounds, meshing=meshing))
+
+
+@with_project
+def keep_up(session: Session, project: Project) -> None:
     """Rebuild a domain whose cut-out has changed as soon as the brush rests; once a frame."""
-    project = session.project
-    if project is None:
-        return
-    stale = next((f for f in project.document.figures if f.is_stale and not f.still), None)
-    if stale is None or stale is project.unbuildable:
+    stale = project.stale_figure
+    if stale is None:
         project.stale = None
         return
     if project.stale is None or project.stale[0] is not stale:
         project.stale = stale, session.clock()
-    is_busy = session.pointer is not None or project.is_posing or project.renewal is not None
+    is_busy = session.pointer is not None or project.pending
     if not is_busy and session.clock() - project.stale[1] >= REST:
         renewal = Renewal(before=stale, bounds=stale.bounds, meshing=stale.meshing)
         _go_on(session, project, renewal)
@@ -111,24 +121,21 @@ def cancel(session: Session) -> None:
     """Give up what is being solved or rebuilt."""
     session.jobs.drop(RENEWING)
     project = session.project
-    if project:
-        if project.renewal is not None and _catches_up(project.renewal):
+    if project and project.renewal is not None:
+        if _catches_up(project.renewal):
             project.unbuildable = project.renewal.before
-        project.renewal = None
+        project.pending = [promise for promise in project.pending if not promise.renewal]
 
 
-def begin(session: Session, renewal: Renewal) -> None:
+@with_project
+def begin(session: Session, project: Project, renewal: Renewal) -> None:
     """Begin what replaces a figure's poses, in place of what is under way."""
-    posing.drop(session)
-    if session.project:
-        _go_on(session, session.project, renewal)
+    cancel(session)
+    _go_on(session, project, renewal)
 
 
 def _go_on(session: Session, project: Project, renewal: Renewal) -> None:
-    if session.project is not project:
-        return
     if renewal.before not in project.document.figures:
-        project.renewal = None
         if _catches_up(renewal):
             return  # and begins anew
         session.tell("The keys were not posed again: the project changed meanwhile. Start again.")
@@ -136,11 +143,9 @@ def _go_on(session: Session, project: Project, renewal: Renewal) -> None:
     if renewal.is_over:
         _accept(session, project, renewal)
         return
-    project.renewal = renewal
     picture = project.puppets[renewal.before.id].picture.rgba
 
     def failed(error: Exception) -> None:
-        project.renewal = None
         if renewal.replaces:
             report(session, "The picture was not replaced", error)
             return
@@ -149,18 +154,18 @@ def _go_on(session: Session, project: Project, renewal: Renewal) -> None:
             project.unbuildable = renewal.before
         report(session, f"The {'mesh was' if builds else 'limits were'} not changed", error)
 
-    session.jobs.put(
-        Job(
-            kind=RENEWING,
-            work=lambda: go_on(renewal, picture),
-            done=lambda further: _go_on(session, project, further),
-            failed=failed,
-        )
+    promises.begin(
+        session,
+        project,
+        RENEWING,
+        lambda: go_on(renewal, picture),
+        partial(_go_on, session, project),
+        failed,
+        promise=Promise(label=RENEWING, renewal=renewal),
     )
 
 
 def _accept(session: Session, project: Project, renewal: Renewal) -> None:
-    project.renewal = None
     if _catches_up(renewal):
         project.history.complete(renewal.command)
     else:

@@ -2,13 +2,16 @@
 
 from pathlib import Path
 
+from app.document import Document
+from app.editor import promises
 from app.editor.action import Action, do
 from app.editor.actions import exporting, posing
 from app.editor.dialogs import FileDialog, Question
 from app.editor.failures import mended, report, report_once
 from app.editor.jobs import Job
 from app.editor.project import Project
-from app.editor.session import Session
+from app.editor.promise import Promise
+from app.editor.session import Session, with_project
 from app.reports import draw_curves, write_curves
 from app.storage import (
     SECONDS,
@@ -24,7 +27,6 @@ from app.storage import (
 )
 
 PROJECT = ".lissom"
-SETTLING = 5.0  # seconds that a project waits for its pose before it is saved as it is
 SAVING, AUTOSAVING, WRITING = "Saving", "Autosaving", "Saving preferences"
 CLEARING = "Clearing up"
 NOT_KEPT = "Unsaved work cannot be kept"
@@ -41,11 +43,9 @@ def save_as(session: Session) -> None:
     _ask_where(session, None)
 
 
-def save_then(session: Session, then: Action | None) -> None:
+@with_project
+def save_then(session: Session, project: Project, then: Action | None) -> None:
     """Save the project, and do something that gives it up once that has worked."""
-    project = session.project
-    if project is None:
-        return
     if project.path is None or project.is_recovered:
         _ask_where(session, then)
     else:
@@ -53,28 +53,24 @@ def save_then(session: Session, then: Action | None) -> None:
 
 
 def write(session: Session, path: Path, then: Action | None) -> None:
-    """Save the project in a file, as soon as its pose has settled."""
-    project = session.project
-    if project is None:
-        return
-    is_settling = project.is_posing and not (project.posing and project.posing.is_held)
-    # To settle afterwards would be a change again, which nobody made; and to save twice at a time
-    # would take the first for another program's.
-    if is_settling or SAVING in session.jobs.kinds:
-        earlier = project.to_save[1] if project.to_save is not None else None
-        project.to_save = (path, then or earlier, session.clock())
-        return
-    _write_now(session, project, path, then)
+    """Save the project in a file, as soon as nothing is on its way to it.
+
+    What came afterwards would be a change again, which nobody made; and to save twice at a time
+    would take the first for another program's.
+    """
+    promises.once_settled(session, do(write_now, path, then), "Save", after_saves=True)
 
 
-def replace_changed(session: Session, path: Path, then: Action | None) -> None:
+@with_project
+def replace_changed(session: Session, project: Project, path: Path, then: Action | None) -> None:
     """Save the project in a file, whatever somebody else has saved there since."""
-    if session.project is not None:
-        session.project.read_as = None
-        write(session, path, then)
+    project.read_as = None
+    write(session, path, then)
 
 
-def _write_now(session: Session, project: Project, path: Path, then: Action | None) -> None:
+@with_project
+def write_now(session: Session, project: Project, path: Path, then: Action | None) -> None:
+    """Save the project in a file as it is."""
     document, known = project.document, project.read_as if path == project.path else None
     textures = {figure: puppet.cut.value.texture for figure, puppet in project.puppets.items()}
 
@@ -85,6 +81,7 @@ def _write_now(session: Session, project: Project, path: Path, then: Action | No
         return save_project(path, document, thumbnail=draw_thumbnail(picture))
 
     def done(digest: str) -> None:
+        project.pending.remove(saving)
         project.history.mark_saved(document)
         project.name, project.path, project.is_recovered = path.stem, path, False
         project.read_as = digest
@@ -96,6 +93,7 @@ def _write_now(session: Session, project: Project, path: Path, then: Action | No
             unless_unsaved(session, then)
 
     def failed(error: Exception) -> None:
+        project.pending.remove(saving)
         if not isinstance(error, _ChangedError):
             report(session, "The project was not saved", error)
         elif session.project is project:
@@ -109,7 +107,9 @@ def _write_now(session: Session, project: Project, path: Path, then: Action | No
                 ),
             )
 
-    session.jobs.put(Job(kind=SAVING, work=work, done=done, failed=failed, lane="keep"))
+    saving = Promise(label=SAVING, changes=False)
+    project.pending.append(saving)
+    session.jobs.add(Job(kind=SAVING, work=work, done=done, failed=failed, lane="keep"))
 
 
 class _ChangedError(Exception):
@@ -171,9 +171,10 @@ def ask_curves_png(session: Session) -> None:
     _ask_curves(session, ".png")
 
 
-def save_curves(session: Session, path: Path) -> None:
+@with_project
+def save_curves(session: Session, project: Project, path: Path) -> None:
     """Save the curves as a picture, or as numbers if the name does not end in .png."""
-    curves = session.project.curves.value if session.project else None
+    curves = project.curves.value
     if curves is None:
         return
     if path.suffix.lower() == ".png":
@@ -184,10 +185,8 @@ def save_curves(session: Session, path: Path) -> None:
     session.tell(f"Saved {path.name}.", tone="good")
 
 
-def _ask_curves(session: Session, suffix: str) -> None:
-    project = session.project
-    if project is None:
-        return
+@with_project
+def _ask_curves(session: Session, project: Project, suffix: str) -> None:
     session.dialog = FileDialog(
         title="Save the curves",
         folder=session.usual_folder,
@@ -201,28 +200,50 @@ def _ask_curves(session: Session, suffix: str) -> None:
 def unless_unsaved(session: Session, then: Action) -> None:
     """Do something that gives up the project, but ask first if it has changes.
 
-    What is being saved is waited for, unless the person insists.
+    What is on its way to it, or is being saved, is waited for, unless the person insists.
     """
     project = session.project
     if project is None:
         then.apply(session)
         return
-    if SAVING in session.jobs.kinds and project.after_saving is None:
-        project.after_saving = then
-        session.tell("The project is being saved, which comes first.")
+    asking = do(ask_unsaved, then)
+    if asking in [waiting.then for waiting in project.afterwards]:
+        project.afterwards = [other for other in project.afterwards if other.then != asking]
+        ask_unsaved(session, then)
         return
-    project.after_saving = None
-    # A pose that the solver still looks for is not in the document yet.
-    is_changing = posing.POSING in session.jobs.kinds or project.settling is not None
-    if project.history.is_saved and not is_changing:
+    if not promises.is_settled(project, after_saves=True):
+        session.tell(f"{promises.coming(project)} comes first.", topic="settling")
+    promises.once_settled(session, asking, "Close", after_saves=True)
+
+
+@with_project
+def ask_unsaved(session: Session, project: Project, then: Action) -> None:
+    """Do something that gives up the project, but ask first if it has changes now."""
+    unkeyed = project.history.unkeyed
+    is_settled = promises.is_settled(project, after_saves=True)
+    if is_settled and not has_unsaved(project):
         then.apply(session)
         return
     name = project.path.name if project.path else "This project"
+    text = f"{name} has changes that are not saved."
+    save = do(save_then, then)
+    if not is_settled:
+        text += f" {promises.coming(project)} is not finished."
+    if unkeyed is not None:
+        text += f" The pose at frame {unkeyed.frame} is in no key: saving makes one of it."
+        save = do(key_and_save, then)
     session.dialog = Question(
-        title="Unsaved changes",
-        text=f"{name} has changes that are not saved.",
-        answers=(("Save", do(save_then, then)), ("Don't save", then)),
+        title="Unsaved changes", text=text, answers=(("Save", save), ("Don't save", then))
     )
+
+
+@with_project
+def key_and_save(session: Session, project: Project, then: Action) -> None:
+    """Hold the pose that no key holds in a key, and save the project."""
+    unkeyed = project.history.unkeyed
+    if unkeyed is not None:
+        posing.insert_key_at(session, unkeyed.figure, unkeyed.frame)
+    save_then(session, then)
 
 
 def close(session: Session) -> None:
@@ -251,24 +272,10 @@ def leave(session: Session) -> None:
 
 
 def maintain(session: Session) -> None:
-    """Write what is due: a project that has settled, unsaved work, preferences; once a frame."""
-    project = session.project
-    if project is not None and SAVING not in session.jobs.kinds:
-        _go_on(session, project)
+    """Do what has waited for the document, and write what is due; once a frame."""
+    promises.go_on(session)
     autosave(session)
     write_preferences(session)
-
-
-def _go_on(session: Session, project: Project) -> None:
-    """Do what has waited for a save to end, or for a pose to settle."""
-    if project.to_save is not None:
-        path, then, since = project.to_save
-        if not project.is_posing or session.clock() - since >= SETTLING:
-            project.to_save = None
-            _write_now(session, project, path, then)
-    elif project.after_saving is not None:
-        then, project.after_saving = project.after_saving, None
-        unless_unsaved(session, then)
 
 
 def clear_up(session: Session) -> None:
@@ -308,18 +315,16 @@ def write_preferences(session: Session) -> None:
     )
 
 
-def autosave(session: Session) -> None:
+@with_project
+def autosave(session: Session, project: Project) -> None:
     """Keep changes that are not saved, every now and then."""
-    project = session.project
-    if project is None:
-        return
-    if project.history.is_saved:
+    if not has_unsaved(project):
         if project.autosaved is not None:
             project.autosaved = None
             session.autosave.forget()
         project.changed_at = None
         return
-    if project.autosaved is project.document:
+    if project.autosaved == (project.document, project.history.unkeyed):
         project.changed_at = None
         return
     now = session.clock()
@@ -327,13 +332,14 @@ def autosave(session: Session) -> None:
         project.changed_at = now
     # Not while the hand moves, which it would disturb; but a hand that moves on and on is no
     # reason to lose what was done before.
-    may_write = not project.is_posing or now - project.changed_at >= SECONDS
+    may_write = promises.is_settled(project) or now - project.changed_at >= SECONDS
     is_due = now - project.autosaved_at >= SECONDS
     if is_due and may_write and AUTOSAVING not in session.jobs.kinds:
         _autosave_now(session, project, now)
 
 
-def keep_now(session: Session) -> None:
+@with_project
+def keep_now(session: Session, project: Project) -> None:
     """Keep changes that are not saved at once, on this thread: it may be the last thing done.
 
     Raises
@@ -341,28 +347,44 @@ def keep_now(session: Session) -> None:
     LissomError
         If they cannot be kept.
     """
-    project = session.project
-    if project is None or project.history.is_saved:
+    posing.bring_all(session, project)
+    kept = project.document, project.history.unkeyed
+    is_kept = project.autosaved == kept and AUTOSAVING not in session.jobs.kinds
+    if is_kept or not has_unsaved(project):
         return
     # One that waits is older, and must not take its place.
     session.jobs.drop(AUTOSAVING)
-    session.autosave.write(project.document, project.origin)
-    project.autosaved, project.autosaved_at = project.document, session.clock()
+    session.autosave.write(_all_keyed(session, project), project.origin)
+    project.autosaved, project.autosaved_at = kept, session.clock()
+
+
+def has_unsaved(project: Project) -> bool:
+    """Tell whether there is anything that no file has, a pose that no key holds among it."""
+    return not project.history.is_saved or project.history.unkeyed is not None
+
+
+def _all_keyed(session: Session, project: Project) -> Document:
+    """Return the document with a pose that no key holds in a key: files have keys only."""
+    unkeyed = project.history.unkeyed
+    if unkeyed is None:
+        return project.document
+    return posing.holding(session, project, unkeyed)(project.document)
 
 
 def _autosave_now(session: Session, project: Project, now: float) -> None:
-    document, origin, earlier = project.document, project.origin, project.autosaved
-    project.autosaved, project.autosaved_at = document, now
+    document, origin, earlier = _all_keyed(session, project), project.origin, project.autosaved
+    kept = project.document, project.history.unkeyed
+    project.autosaved, project.autosaved_at = kept, now
 
     def done(_: None) -> None:
         mended(session, NOT_KEPT)
         # In the meantime it may have been saved, or closed.
-        if session.project is not project or project.autosaved is not document:
+        if session.project is not project or project.autosaved != kept:
             session.autosave.forget()
 
     def failed(error: Exception) -> None:
         # There may be room again next time.
-        if project.autosaved is document:
+        if project.autosaved == kept:
             project.autosaved = earlier
         report_once(session, NOT_KEPT, error)
 
@@ -377,10 +399,8 @@ def _autosave_now(session: Session, project: Project, now: float) -> None:
     )
 
 
-def _ask_where(session: Session, then: Action | None) -> None:
-    project = session.project
-    if project is None:
-        return
+@with_project
+def _ask_where(session: Session, project: Project, then: Action | None) -> None:
     session.dialog = FileDialog(
         title="Save the project",
         folder=project.path.parent if project.path else session.usual_folder,

@@ -1,7 +1,6 @@
 """What follows the document by itself: in-betweens, what is measured of them, what is drawn."""
 
 from collections.abc import Callable, Iterator
-from dataclasses import replace
 from functools import partial
 from typing import Any
 
@@ -10,7 +9,7 @@ from app.editor.actions import playback, posing, rebuilding, viewing
 from app.editor.derived import Derivation
 from app.editor.failures import report
 from app.editor.jobs import Job
-from app.editor.project import Project, Puppet, Trial
+from app.editor.project import Project, Puppet
 from app.editor.session import Session
 from app.editor.timeline_view import measure_shortfalls
 from app.motion import (
@@ -55,8 +54,7 @@ def maintain(session: Session) -> None:
     project = session.project
     if project is None:
         return
-    posing.settle(session)
-    posing.catch_up(session, project)
+    posing.keep_up(session, project)
     project.extent.recall(extent_source(project.document))
     rebuilding.keep_up(session)
     project.pair_up(session.split.method if session.split else None)
@@ -113,13 +111,12 @@ def missing(session: Session, project: Project) -> Iterator[Derivation[Any, Any]
     for clip, puppet in movable:
         if not puppet.coarse.value.knows(clip):
             # Where nobody sees them before the hand rests, they are not worked out for each move.
-            is_seen = session.overlays.onion or project.posing is None
+            is_seen = session.overlays.onion or not project.pulls
             if is_seen or posing.POSING not in session.jobs.kinds:
                 yield _sketch(session, project, clip, puppet)
                 return
             break
-    yield from _settle(session, project)
-    if project.is_posing:
+    if project.pulls:
         # What follows takes longer than the hand stays where it is.
         return
     is_awaited = session.export_frame is not None or project.awaits_extent
@@ -212,7 +209,7 @@ def _sketch(
     earlier, frame = puppet.coarse.value, playback.current_frame(session, project)
     # An interval at a time, so that what is wanted next need not wait long; all at once where the
     # hand has changed those around one key, and the ghosts are to stay together.
-    at_most = None if session.overlays.onion and project.posing is not None else 1
+    at_most = None if session.overlays.onion and bool(project.pulls) else 1
     return Derivation(
         kind=SKETCHING,
         into=puppet.coarse,
@@ -220,34 +217,6 @@ def _sketch(
         work=_coarse_motion(project, clip, earlier, frame, at_most=at_most),
         complaint=UNMADE,
     )
-
-
-def _settle(session: Session, project: Project) -> Iterator[Derivation[Clip, Motion]]:
-    """Yield in-betweens of the pose that was let go, which moves with them once it was left."""
-    puppet, trial = project.puppet, posing.next_trial(session, project)
-    clip = posing.trial_clip(session, project, trial.pose) if trial else None
-    if trial is None or clip is None or SKETCHING in session.jobs.kinds:
-        return
-    if trial.motion.knows(clip) or puppet.coarse.failure is not None:
-        posing.take_trial(session, project, trial)
-        return
-    pose, earlier = trial.pose, trial.motion
-    prepare = _coarse_motion(
-        project, clip, earlier, playback.current_frame(session, project), at_most=1
-    )
-
-    def work() -> Motion:
-        sampler = earlier.sampler
-        if sampler is not None and not sampler.has_sampled(pose):
-            # A playhead that leaves the pose at once need not wait for a whole interval then.
-            sampler.samples(pose)
-            return earlier
-        return prepare()
-
-    def done(motion: Motion) -> None:
-        posing.take_trial(session, project, Trial(pose=pose, motion=motion))
-
-    yield replace(_sketch(session, project, clip, puppet), work=work, done=done)
 
 
 def _trace(session: Session, project: Project) -> Iterator[Derivation[Any, Any]]:
@@ -436,7 +405,7 @@ def _show_twins(project: Project, frame: int) -> None:
 
 def _motions(session: Session, project: Project, puppet: Puppet) -> tuple[Motion, ...]:
     is_scrubbed = session.clock() - project.moved_at < STILL
-    is_moving = project.posing is not None or project.playhead.since is not None or is_scrubbed
+    is_moving = bool(project.pulls) or project.playhead.since is not None or is_scrubbed
     coarse, fine = puppet.coarse.value, puppet.fine.value
     if fine is None or (is_moving and not session.full_detail):
         return (coarse,)

@@ -5,16 +5,16 @@ import numpy as np
 from app.document import is_visible, layer_commands
 from app.editor.actions import editing, playback, posing
 from app.editor.project import Project
-from app.editor.session import Session
+from app.editor.session import Session, with_project
 from engine.geometry import contains
 
 
-def choose(session: Session, identity: int) -> None:
+@with_project
+def choose(session: Session, project: Project, identity: int) -> None:
     """Let a figure be the one whose handles and keys are shown and changed."""
-    project = session.project
-    if project is None or identity == project.active:
+    if identity == project.active:
         return
-    posing.drop(session)
+    posing.let_go(session)
     project.active = identity
     project.selected = project.chosen = frozenset()
     project.meshing = project.drafted_bounds = None

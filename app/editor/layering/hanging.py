@@ -1,10 +1,13 @@
 """Hanging one layer on another, and letting it go."""
 
+from collections.abc import Callable
+
 from app.document import Attachment, layer_commands
-from app.editor.actions import editing, playback, posing
-from app.editor.layering.working import put
+from app.editor import promises
+from app.editor.action import do
+from app.editor.actions import editing, playback
 from app.editor.project import Project
-from app.editor.session import Session
+from app.editor.session import Session, with_project
 from app.motion import Joints
 
 HANGING = "Hanging a layer"
@@ -15,8 +18,10 @@ def hangs_on(project: Project, identity: int, carrier: int) -> bool:
     return any(each.id == carrier for each in project.document.carriers(identity))
 
 
+@with_project
 def hang(
     session: Session,
+    project: Project,
     child: int,
     parent: int,
     turns: bool = True,  # noqa: FBT001, FBT002 - of an action
@@ -34,9 +39,6 @@ def hang(
     place : complex, optional
         Of the joint, in the scene; by default the anchor's, or the middle of where they overlap.
     """
-    project = session.project
-    if project is None:
-        return
     if hangs_on(project, parent, child):
         names = [project.document.figure(identity).name for identity in (parent, child)]
         session.tell(
@@ -46,19 +48,41 @@ def hang(
             topic="joint",
         )
         return
-    posing.drop(session)
-    document, frame = project.document, playback.current_frame(session, project)
+    frame = playback.current_frame(session, project)
+
+    def find(joints: Joints) -> tuple[complex, Attachment]:
+        return joints.hang(child, parent, frame, place=place, turns=turns)
+
+    joining = do(_join, child, parent, find)
+    promises.once_settled(session, joining, "Hang the layer")
+
+
+@with_project
+def _join(
+    session: Session,
+    project: Project,
+    child: int,
+    parent: int,
+    find: Callable[[Joints], tuple[complex, Attachment]],
+) -> None:
+    """Hang a layer on another one by the joint that is found."""
+    document = project.document
+    if not {child, parent} <= project.puppets.keys():
+        return
     samplers = {figure: puppet.coarse.value.sampler for figure, puppet in project.puppets.items()}
     siblings = {figure: sampler for figure, sampler in samplers.items() if sampler is not None}
 
     def done(joint: tuple[complex, Attachment]) -> None:
-        if session.project is project and project.document is document:
+        if project.document is document:
             editing.edit(session, layer_commands.attach(child, *joint))
+        else:
+            session.tell("The layer was not hung: the project changed meanwhile. Try again.")
 
-    put(
+    promises.begin(
         session,
+        project,
         HANGING,
-        lambda: Joints(document, siblings).hang(child, parent, frame, place=place, turns=turns),
+        lambda: find(Joints(document, siblings)),
         done,
         "The layers cannot be joined",
     )

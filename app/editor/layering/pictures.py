@@ -6,14 +6,14 @@ from pathlib import Path
 from typing import NamedTuple
 
 from app.document import Figure, Meshing, clip_of, layer_commands
+from app.editor import promises
 from app.editor.action import Action, do
 from app.editor.actions import editing, files, rebuilding
 from app.editor.dialogs import FileDialog, Question
 from app.editor.failures import sentence
 from app.editor.layering.arranging import choose
-from app.editor.layering.working import put
-from app.editor.project import Puppet
-from app.editor.session import Session
+from app.editor.project import Project, Puppet
+from app.editor.session import Session, with_project
 from app.errors import LissomError
 from app.solving import Renewal, begin_replacing
 from app.storage import (
@@ -73,12 +73,11 @@ def stand_up(session: Session, identity: int) -> None:
         )
 
     def done(made: Figure) -> None:
-        if session.project is project:
-            command = layer_commands.replace_figure(identity, made)
-            editing.edit(session, replace(command, label="Let be posed"))
-            choose(session, identity)
+        command = layer_commands.replace_figure(identity, made)
+        editing.edit(session, replace(command, label="Let be posed"))
+        choose(session, identity)
 
-    put(session, RISING, work, done, f"{figure.name} cannot be posed")
+    promises.begin(session, project, RISING, work, done, f"{figure.name} cannot be posed")
 
 
 def _shape(layer: Layer, identity: int, meshing: Meshing) -> _Made:
@@ -93,8 +92,12 @@ def _shape(layer: Layer, identity: int, meshing: Meshing) -> _Made:
 
 def replace_picture(session: Session, identity: int, path: Path) -> None:
     """Let a layer have another picture; its handles, keys and joints stay."""
-    project = session.project
-    if project is None:
+    promises.once_settled(session, do(_replace_picture, identity, path), "Replace the picture")
+
+
+@with_project
+def _replace_picture(session: Session, project: Project, identity: int, path: Path) -> None:
+    if identity not in project.puppets:
         return
     before, canvas = project.document.figure(identity), project.document.canvas
 
@@ -110,8 +113,6 @@ def replace_picture(session: Session, identity: int, path: Path) -> None:
 
     def done(begun: tuple[Renewal, _Made]) -> None:
         renewal, made = begun
-        if session.project is not project:
-            return
         project.pictures[made.figure.picture] = made.picture
         rebuilding.begin(session, renewal)
         if renewal.before in project.document.figures:
@@ -119,7 +120,9 @@ def replace_picture(session: Session, identity: int, path: Path) -> None:
             for notice in made.notices:
                 session.tell(sentence(notice))
 
-    put(session, REPLACING, work, done, f"The picture of {before.name} was not replaced")
+    promises.begin(
+        session, project, REPLACING, work, done, f"The picture of {before.name} was not replaced"
+    )
 
 
 def add(session: Session, paths: Sequence[Path]) -> None:
@@ -152,8 +155,6 @@ def add(session: Session, paths: Sequence[Path]) -> None:
         return made, told
 
     def done(read: tuple[list[_Made], list[str]]) -> None:
-        if session.project is not project:
-            return
         made, told = read
         gesture = object()
         for figure, picture, _, puppet in made:
@@ -168,7 +169,7 @@ def add(session: Session, paths: Sequence[Path]) -> None:
         for notice in (*told, *(notice for each in made for notice in each.notices)):
             session.tell(sentence(notice))
 
-    put(session, ADDING, work, done, "The layer cannot be added")
+    promises.begin(session, project, ADDING, work, done, "The layer cannot be added")
 
 
 def _drawing(path: Path) -> LayeredPicture:

@@ -4,18 +4,19 @@ from collections.abc import Mapping
 from functools import partial
 
 from app.document import Figure, Keyframe, Target
+from app.editor import promises
+from app.editor.action import do
 from app.editor.actions import posing
 from app.editor.poses import putting
-from app.editor.session import CopiedKeys, Session
+from app.editor.project import Project
+from app.editor.session import CopiedKeys, Session, with_project
 
 COPYING = "Copying a pose"
 
 
-def copy(session: Session) -> None:
-    """Copy the chosen keys, or else the pose that is shown."""
-    project = session.project
-    if project is None or project.puppet.shown is None:
-        return
+@with_project
+def copy(session: Session, project: Project) -> None:
+    """Copy the chosen keys, or else the pose that is shown; one on its way comes to rest first."""
     keys = putting.shown_keys(project)
     if len(project.chosen_of) > 1 or (project.chosen_of and not project.chosen):
         figures = [(project.document.figure(i), at) for i, at in project.chosen_of.items()]
@@ -75,12 +76,18 @@ def can_paste_on_selected(session: Session) -> bool:
     )
 
 
-def paste(session: Session) -> None:
+@with_project
+def paste(session: Session, project: Project) -> None:
     """Let a key at the present frame hold what was copied; of several keys, the first one."""
-    project, copied = session.project, copied_for(session)
-    if project is None or not copied:
-        return
     frame = putting.stand_at_frame(session, project)
+    promises.once_settled(session, do(_paste, frame), "Paste")
+
+
+@with_project
+def _paste(session: Session, project: Project, frame: int) -> None:
+    copied = copied_for(session)
+    if not copied:
+        return
     keys = {
         figure: putting.fitted(project, figure, each.keys, each.figure.bounds)
         for figure, each in copied.items()
@@ -95,10 +102,9 @@ def paste_on_selected(session: Session) -> None:
         pull_selected(session, copied.keys[0].pose.targets)
 
 
-def pull_selected(session: Session, targets: Mapping[int, Target]) -> None:
+@with_project
+def pull_selected(session: Session, project: Project, targets: Mapping[int, Target]) -> None:
     """Wish the selected handles, as far as they are known, where a pose has them."""
-    if session.project is None:
-        return
-    wishes = {i: targets[i] for i in session.project.selected if i in targets}
+    wishes = {i: targets[i] for i in project.selected if i in targets}
     if wishes:
         posing.wish(session, wishes)

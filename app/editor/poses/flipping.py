@@ -4,23 +4,29 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from app.document import Figure, Keyframe, Pose, pairs_by_name, pose_commands
+from app.editor import promises
+from app.editor.action import do
 from app.editor.actions import playback
-from app.editor.failures import report
-from app.editor.jobs import Job
 from app.editor.poses import copying, putting
 from app.editor.project import Flip, Project
-from app.editor.session import Session
+from app.editor.session import Session, with_project
 from app.solving import Rig, flip_poses, flipped_targets
 
 FLIPPING = "Flipping"
 
 
-def paste(session: Session) -> None:
+@with_project
+def paste(session: Session, project: Project) -> None:
     """Let keys hold what was copied, mirrored at the figure's axis."""
-    project, copied = session.project, copying.copied_here(session)
-    if project is None or copied is None:
-        return
     frame = putting.stand_at_frame(session, project)
+    promises.once_settled(session, do(_paste, frame), "Paste flipped")
+
+
+@with_project
+def _paste(session: Session, project: Project, frame: int) -> None:
+    copied = copying.copied_here(session)
+    if copied is None:
+        return
     keys = putting.fitted(project, project.active, copied.keys, copied.figure.bounds)
     _flip(session, project, frame, keys, gesture=object())
 
@@ -91,7 +97,8 @@ def _flip(
 
     def done(poses: list[Pose]) -> None:
         now = project.figure
-        if session.project is not project or now.id != figure.id:
+        if now.id != figure.id:
+            session.tell("The pose was not flipped: another layer was chosen. Paste again.")
             return
         if now.domain is not figure.domain or now.handles != figure.handles:
             session.tell("The pose was not flipped: the shape or its handles changed. Paste again.")
@@ -105,12 +112,12 @@ def _flip(
         if playback.current_frame(session, project) != frame:
             playback.seek(session, frame)
 
-    session.jobs.put(
-        Job(
-            kind=FLIPPING,
-            work=lambda: flip_poses(rig, [key.pose for key in keys], axis),
-            done=done,
-            failed=lambda error: report(session, "The pose could not be flipped", error),
-            lane="hand",
-        )
+    promises.begin(
+        session,
+        project,
+        FLIPPING,
+        lambda: flip_poses(rig, [key.pose for key in keys], axis),
+        done,
+        "The pose could not be flipped",
+        lane="hand",
     )

@@ -4,20 +4,19 @@ from collections.abc import Mapping
 from dataclasses import replace
 from functools import partial
 
-from app.document import Figure, Keyframe, Pose, Target, pose_commands
+from app.document import Figure, Keyframe, Target, pose_commands
 from app.editor.actions import editing, playback, posing
 from app.editor.poses import putting
 from app.editor.project import PoseBlend, Project
-from app.editor.session import Session
+from app.editor.pull import Start
+from app.editor.session import Session, with_project
 
 KEEPING = "Keeping a pose"
 
 
-def keep(session: Session) -> None:
+@with_project
+def keep(session: Session, project: Project) -> None:
     """Put the pose of the chosen key into the library, or else the one that is shown."""
-    project = session.project
-    if project is None or project.puppet.shown is None:
-        return
     keys = putting.shown_keys(project)
     if keys:
         _keep(session, project, project.figure, keys)
@@ -28,24 +27,24 @@ def keep(session: Session) -> None:
 
 
 def _keep(session: Session, project: Project, figure: Figure, keys: tuple[Keyframe, ...]) -> None:
-    if session.project is not project or figure.domain is not project.figure.domain:
+    if figure.domain is not project.figure.domain:
+        session.tell("The pose was not kept: the shape changed meanwhile.")
         return
     for key in putting.fitted(project, project.active, keys, figure.bounds):
         editing.edit(session, pose_commands.keep_pose(project.active, key.pose))
     project.kept = project.figure.library[-1].name
 
 
-def apply(session: Session, name: str) -> None:
+@with_project
+def apply(session: Session, project: Project, name: str) -> None:
     """Let a key at the present frame hold a pose of the library."""
-    project = session.project
-    if project is not None:
-        _put(session, project, name, putting.stand_at_frame(session, project))
+    _put(session, project, name, putting.stand_at_frame(session, project))
 
 
-def apply_at(session: Session, name: str, frame: int) -> None:
+@with_project
+def apply_at(session: Session, project: Project, name: str, frame: int) -> None:
     """Let a key at a frame hold a pose of the library, and go there."""
-    project = session.project
-    if project is not None and frame >= 0:
+    if frame >= 0:
         putting.stand_at_frame(session, project)
         _put(session, project, name, frame)
         playback.seek(session, frame)
@@ -58,7 +57,8 @@ def _put(session: Session, project: Project, name: str, frame: int) -> None:
     putting.put(session, project, frame, keys, label="Use pose")
 
 
-def blend(session: Session, name: str, share: float) -> None:
+@with_project
+def blend(session: Session, project: Project, name: str, share: float) -> None:
     """Mix a pose of the library into the one that is shown, as it was when this began.
 
     Parameters
@@ -69,38 +69,30 @@ def blend(session: Session, name: str, share: float) -> None:
         Of the pose in the library: 0 changes nothing, 1 is that pose itself. Between them the
         handles are on the way, and the shape follows within its limits.
     """
-    project = session.project
-    if project is None or project.puppet.shown is None:
-        return
-    if posing.waits(session, partial(blend, name=name, share=share), gesture=blend):
-        return
     pose = project.figure.kept_pose(name).pose
     if project.blend is None or project.blend.name != name:
-        playback.halt(session)
-        frame = playback.current_frame(session, project)
-        wishes = posing.wishes_of(project)
-        project.blend = PoseBlend(name=name, frame=frame, wishes=wishes, gesture=object())
-    begun = project.blend = replace(project.blend, share=share)
-    if share >= 1.0:
-        posing.drop(session)
-        posing.accept(session, project, begun.frame, pose, gesture=begun.gesture)
-    else:
-        posing.pull(session, _mixed(begun.wishes, pose, share), gesture=begun.gesture)
+        project.blend = PoseBlend(name=name, gesture=object())
+    project.blend = replace(project.blend, share=share)
+
+    def mix(start: Start, _: Mapping[int, Target]) -> Mapping[int, Target]:
+        return {
+            identity: _between(start.targets[identity], target, share)
+            for identity, target in pose.targets.items()
+            if identity in start.targets
+        }
+
+    posing.pull(session, mix, gesture=project.blend.gesture)
 
 
-def end_blend(session: Session) -> None:
-    """Let the pose be as it is mixed now."""
-    if session.project and not (session.project.awaiting and posing.waits(session, end_blend)):
-        session.project.blend = None
-        posing.let_go(session)
-
-
-def _mixed(wishes: Mapping[int, Target], pose: Pose, share: float) -> Mapping[int, Target]:
-    return {
-        identity: _between(wishes[identity], target, share)
-        for identity, target in pose.targets.items()
-        if identity in wishes
-    }
+@with_project
+def end_blend(session: Session, project: Project) -> None:
+    """Let the pose be as it is mixed now; wholly mixed in, it is that of the library itself."""
+    blend, project.blend = project.blend, None
+    posing.let_go(session)
+    if blend is not None and blend.share >= 1.0:
+        for pull in [pull for pull in project.pulls if blend.gesture in pull.wishes]:
+            pose = project.document.figure(pull.figure).kept_pose(blend.name).pose
+            posing.end_at(session, project, pull, pose)
 
 
 def _between(one: Target, other: Target, share: float) -> Target:
@@ -112,11 +104,11 @@ def _between(one: Target, other: Target, share: float) -> Target:
     return Target(position=position, rotation=rotation)
 
 
-def rename(session: Session, name: str, to: str) -> None:
+@with_project
+def rename(session: Session, project: Project, name: str, to: str) -> None:
     """Give a pose of the library another name."""
-    if session.project:
-        editing.edit_figure(session, pose_commands.rename_pose, name, to)
-        session.project.kept = to
+    editing.edit_figure(session, pose_commands.rename_pose, name, to)
+    project.kept = to
 
 
 def delete(session: Session, name: str) -> None:

@@ -2,9 +2,8 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
-from functools import partial
 
-from app.document import Clip, Figure, Keyframe, Pose, key_commands
+from app.document import Figure, Keyframe, Pose, key_commands
 from app.editor.actions import playback, posing
 from app.editor.project import Project
 from app.editor.session import Session
@@ -60,8 +59,7 @@ def put(
 
 
 def stand_at_frame(session: Session, project: Project) -> int:
-    """End what moves, and return the present frame."""
-    posing.drop(session)
+    """Halt, and return the present frame."""
     playback.halt(session)
     return playback.current_frame(session, project)
 
@@ -118,11 +116,12 @@ def shown_keys(project: Project) -> tuple[Keyframe, ...]:
 
 def find_pose(session: Session, project: Project, kind: str, complaint: str, take: Take) -> None:
     """Let the worker find the pose that is nearest to the in-between that is shown."""
-    posing.fit_pose(session, project, kind, complaint, partial(_take_fitted, take))
+    clip, frame = project.clip, playback.current_frame(session, project)
 
+    def fitted(pose: Pose) -> None:
+        take(clip.figure, (_as_key(pose),))
 
-def _take_fitted(take: Take, clip: Clip, _: int, pose: Pose) -> None:
-    take(clip.figure, (_as_key(pose),))
+    posing.fit_pose(session, project, clip, frame, fitted, kind=kind, complaint=complaint)
 
 
 def _as_key(pose: Pose) -> Keyframe:

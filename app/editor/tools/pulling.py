@@ -1,12 +1,13 @@
 """Posing by hand: handles are added where the shape is pressed, and pulled."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Self
 
 from app.document import Target
 from app.editor.actions import editing, posing
 from app.editor.project import Project
+from app.editor.pull import Start
 from app.editor.session import EntryMark, Hint, Mark, Session
 from app.editor.tools.entry import TypedWay
 from app.editor.tools.tool import Selection, Spot, is_away, take_back
@@ -21,8 +22,8 @@ class Pulling:
     start : complex
         Where it was pressed.
     before : Selection
-    places : mapping of int to complex, optional
-        Those of the handles at the start, by id; None until the pose is shown that they are in.
+    handles : frozenset of int
+        Those that are pulled, by id.
     entry : TypedWay
         What is typed meanwhile.
     place : complex, optional
@@ -33,7 +34,7 @@ class Pulling:
 
     start: complex
     before: Selection
-    places: Mapping[int, complex] | None
+    handles: frozenset[int]
     entry: TypedWay = field(default_factory=TypedWay)
     place: complex | None = None
     moved: bool = False
@@ -61,16 +62,12 @@ class Pulling:
                 return None
             if spot.handle not in project.selected:
                 editing.select(session, project.figure.together_with(spot.handle))
-            is_there = posing.is_there(session, project)
-            places = _selected_places(project) if is_there else None
-            return cls(start=spot.place, before=before, places=places)
+            return cls(start=spot.place, before=before, handles=_movable(project))
         if not spot.on_shape or not session.overlays.handles:
             return None
-        is_there = posing.is_there(session, project)
-        pulling = cls(start=spot.place, before=before, places=None)
+        pulling = cls(start=spot.place, before=before, handles=frozenset())
         posing.add_handle(session, spot.place, gesture=pulling)
-        if is_there:
-            pulling.places = dict.fromkeys(project.selected, spot.place)
+        pulling.handles = project.selected
         return pulling
 
     def move(self, session: Session, place: complex) -> None:
@@ -87,21 +84,17 @@ class Pulling:
 
     def _pull(self, session: Session) -> None:
         project = session.project
-        if project is None or not self.moved or posing.waits(session, self._pull, gesture=self):
+        known = {handle.id for handle in project.figure.handles} if project else set()
+        pulled = self.handles & known
+        if not (self.moved and pulled):
             return
-        if self.places is None:
-            # They move as far as the pointer has gone meanwhile.
-            self.places = _selected_places(project)
         way = self.entry.way((self.start if self.place is None else self.place) - self.start)
-        known = {handle.id for handle in project.figure.handles}
-        turns = _wished_turns(project)
-        wishes = {
-            identity: Target(position=start + way, rotation=turns.get(identity))
-            for identity, start in self.places.items()
-            if identity in known
-        }
-        if wishes:
-            posing.pull(session, wishes, gesture=self)
+
+        def as_far(start: Start, targets: Mapping[int, Target]) -> Mapping[int, Target]:
+            known = pulled & targets.keys()
+            return {i: replace(targets[i], position=start.places[i] + way) for i in known}
+
+        posing.pull(session, as_far, gesture=self)
 
     def end(self, session: Session, place: complex) -> None:  # noqa: ARG002 - as a tool's
         """Let the handles go."""
@@ -126,23 +119,7 @@ class Pulling:
         return (Hint("type", "a number of pixels"), Hint("X or Y", "to keep to an axis"))
 
 
-def _selected_places(project: Project) -> dict[int, complex]:
-    shown = project.puppet.shown
-    if shown is None:
-        return {}
-    return {
-        handle.id: complex(place)
-        for handle, place in zip(shown.clip.figure.handles, shown.handle_places, strict=True)
-        if handle.id in project.selected and not handle.locked
-    }
-
-
-def _wished_turns(project: Project) -> dict[int, float | None]:
-    shown = project.puppet.shown
-    if project.posing is not None:
-        targets = project.posing.targets
-    elif shown is not None and shown.pose is not None:
-        targets = shown.pose.targets
-    else:
-        return {}
-    return {identity: target.rotation for identity, target in targets.items()}
+def _movable(project: Project) -> frozenset[int]:
+    """Return the selected handles but those that are locked."""
+    handles = project.figure.handles
+    return frozenset(h.id for h in handles if h.id in project.selected and not h.locked)

@@ -2,12 +2,13 @@
 
 import cmath
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Self
 
 from app.document import Target
 from app.editor.actions import editing, posing
-from app.editor.project import Project
+from app.editor.pull import Start
 from app.editor.session import EntryMark, Hint, Mark, Session, SweepMark
 from app.editor.tools.entry import TypedWay
 from app.editor.tools.tool import Selection, Spot, is_away, take_back
@@ -30,9 +31,6 @@ class Turning:
     before : Selection
     turn : float
         By how much the shape was turned there at the start, in radians.
-    is_found : bool
-        Whether `centre` and `turn` are those of the pose that belongs to the frame, and not of one
-        that stands in for it.
     deletes : bool
         Whether a click, which turns nothing, deletes the handle.
     swept : float
@@ -47,7 +45,6 @@ class Turning:
     start: complex
     before: Selection
     turn: float
-    is_found: bool
     deletes: bool
     swept: float = 0.0
     entry: TypedWay = field(default_factory=TypedWay)
@@ -87,7 +84,6 @@ class Turning:
             start=spot.place,
             before=before,
             turn=shown.handle_turns[index],
-            is_found=posing.is_there(session, project),
             deletes=is_by_key,
         )
 
@@ -118,25 +114,17 @@ class Turning:
             self._turn(session)
 
     def _turn(self, session: Session) -> None:
-        project = session.project
-        if project is None or posing.waits(session, self._turn, gesture=self):
+        project, handle, swept = session.project, self.handle, self.swept
+        if project is None or handle not in {each.id for each in project.figure.handles}:
             return
-        if not self.is_found:
-            self._find(project)
-        if self.handle in {handle.id for handle in project.figure.handles}:
-            target = Target(position=self.centre, rotation=self.turn + self.swept)
-            posing.pull(session, {self.handle: target}, gesture=self)
 
-    def _find(self, project: Project) -> None:
-        """Turn about where the handle is now, by as much as the pointer went around it so far."""
-        shown = project.puppet.shown
-        identities = [handle.id for handle in shown.clip.figure.handles] if shown else []
-        if shown is not None and self.handle in identities:
-            index = identities.index(self.handle)
-            centre = complex(shown.handle_places[index])
-            self.start += centre - self.centre
-            self.centre, self.turn = centre, shown.handle_turns[index]
-            self.is_found = True
+        def turned(start: Start, targets: Mapping[int, Target]) -> Mapping[int, Target]:
+            if handle not in targets:
+                return {}
+            place, turn = start.places[handle], start.turns[handle] + swept
+            return {handle: Target(position=place, rotation=turn)}
+
+        posing.pull(session, turned, gesture=self)
 
     def end(self, session: Session, place: complex) -> None:  # noqa: ARG002 - as a tool's
         """Let the shape go; delete the handle that was only clicked."""

@@ -6,7 +6,7 @@ from typing import NamedTuple
 from imgui_bundle import ImColor, imgui, imspinner
 
 from app.document import Extremes, find_shortfall, loosened
-from app.editor import Action, Project, Session, do
+from app.editor import Action, Project, Session, do, promises
 from app.editor.actions import rebuilding, upkeep
 from app.ui.style import Look, shortened, tip
 
@@ -59,9 +59,10 @@ def draw_status(session: Session, look: Look) -> list[Action]:
         imgui.same_line(0, gap)
     hint = session.hint if held_back or slowed else session.hint or "Ready"
     room = end - imgui.get_cursor_pos_x() - gap
-    if slow:
+    waiting = promises.waits_for(session.project) if session.project else ""
+    if slow or waiting:
         _spinner(look)
-        imgui.text_unformatted(f"{slow[0]}…")
+        imgui.text_unformatted(f"{waiting or slow[0]}…")
         actions += _cancel(session, look)
     elif room > LEAST_ROOM * look.em:
         imgui.text_disabled(shortened(hint, room))
@@ -93,7 +94,7 @@ def hold_back(session: Session) -> str:
 def slow_down(session: Session) -> str:
     """Return at which keys the limits slow the motion down that should pass through; else ""."""
     project = session.project
-    if project is None or project.is_posing or project.playhead.since is not None:
+    if project is None or project.pulls or project.playhead.since is not None:
         return ""
     kept = project.puppet.coarse.value.kept(project.clip) or {}
     slowed = sorted(frame for frame, share in kept.items() if share < SLOWED)

@@ -172,7 +172,7 @@ def _colour(look: Look, limit: Limit, used: float, bound: float) -> imgui.ImVec4
 def _solver(session: Session, look: Look, project: Project) -> None:
     palette, shown = look.palette, project.puppet.shown
     pose = None if shown is None else shown.pose
-    if project.posing is not None and not project.posing.is_at_rest:
+    if project.pull is not None and not project.pull.is_at_rest:
         _status(look, icons.ICON_FA_ARROWS_SPIN, palette.accent, "Following the handles")
         small(look, f"{1000 * session.solver_seconds:.0f} ms for the last steps")
         return

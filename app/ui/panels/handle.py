@@ -214,7 +214,7 @@ def _wish(look: Look, project: Project, handle: Handle) -> list[Action]:
     shortfall = _shortfall(project)
     lag = shortfall.lags.get(handle.id)
     if lag is not None:
-        is_coming = project.posing is not None and not project.posing.is_at_rest
+        is_coming = project.pull is not None and not project.pull.is_at_rest
         why = "on its way" if is_coming else shortfall.reason
         imgui.push_text_wrap_pos(0.0)
         imgui.text_colored(look.palette.warning, f"{lag:.0f} px short of its target, {why}")

@@ -224,7 +224,7 @@ def _inputs(session: Session, project: Project) -> tuple[object, ...]:
         if session.overlays.onion
         else project.puppet.coarse.value.sampler,
         project.paths.value if session.overlays.paths else None,
-        project.posing.targets if project.posing else None,
+        project.pull.targets if project.pull else None,
         project.active,
         project.selected,
         project.view(session.screen),

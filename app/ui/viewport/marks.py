@@ -59,7 +59,7 @@ def mark_all(
     if not session.overlays.handles or project.playhead.since is not None:
         return tuple(lines), dots
     style = HandleStyle()
-    wishes = project.posing.targets if project.posing else None
+    wishes = project.pull.targets if project.pull else None
     if wishes is None and shown.pose is not None:
         wishes = shown.pose.targets
     marks = []

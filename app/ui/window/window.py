@@ -203,11 +203,10 @@ class Window:
         session = self.session
         project = session.project
         kept = ""
-        if project is not None and not project.history.is_saved:
+        if project is not None and saving.has_unsaved(project):
             kept = " Unsaved work was kept."
             try:
-                if project.autosaved is not project.document:
-                    saving.keep_now(session)
+                saving.keep_now(session)
             except EXPECTED_ERRORS as reason:
                 kept = f" Unsaved work could not be kept ({reason})."
         session.tell(

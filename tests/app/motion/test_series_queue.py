@@ -174,7 +174,7 @@ def test_a_session_streams_what_it_plays_and_stops_while_a_hand_pulls(document, 
         clip, Motion.at_rest(clip, project.puppet.coarse.value.mesh)
     )
     project.history = History(document, saved=True)
-    project.posing = PoseInProgress(frame=13, targets={}, start=None, gesture=object())
+    project.pull = PoseInProgress(frame=13, targets={}, start=None, gesture=object())
     assert not list(missing(session, project))
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from app.document.commands import key_commands
-from app.editor.actions import editing, playback, posing
+from app.editor.actions import editing, exporting, playback, posing
 
 FRAME, TURN = 12, np.exp(0.5j)
 WAY = 30 - 20j  # pixels of the picture
@@ -57,13 +57,13 @@ def test_a_handle_moves_as_far_as_the_pointer_did_meanwhile(window, bent, come):
         drag(robot, window, bent)
         # Nothing is pulled out of a pose that is not the one of this frame.
         assert bent.document is before
-        assert bent.posing is None
+        assert bent.pull.drag is None
         # The hand is to be followed.
         assert not window.awaits_worker
         come(settles=False)
-        while bent.posing is None:
+        while bent.pull.drag is None:
             robot.yield_(1)
-        assert bent.posing.is_held
+        assert bent.pull.is_held
         robot.mouse_up(0)
 
     window.run(play)
@@ -117,32 +117,49 @@ def test_a_turn_goes_on_from_the_in_between(window, bent, come):
     assert abs(target.rotation - turned) == pytest.approx(0.4, abs=0.05)
 
 
-def test_it_is_taken_back_before_it_began_and_left_with_a_word(window, bent, come):
+def test_it_is_taken_back_before_it_began(window, bent, come):
     before = bent.document
 
     def play(robot, *, escapes=False):
         drag(robot, window, bent)
-        assert bent.awaiting is not None
+        assert bent.pull is not None
         if escapes:
             robot.key_press(int(window.Key.escape))
         robot.mouse_up(0)
 
     window.run(lambda robot: play(robot, escapes=True))
-    assert bent.awaiting is None
+    assert bent.pulls == []
     window.run(play)
     window.act(editing.undo)
-    assert bent.awaiting is None
-    window.run(play)
-    window.act(playback.scrub, 6)
-    assert "the handles were not pulled" in window.session.toasts[-1].text
-    playback.scrub(window.session, FRAME)
-    window.frames(2)
-    window.run(play)
-    window.session.toasts = []
-    window.act(posing.drop)
-    assert "the handles were not pulled" in window.session.toasts[-1].text
+    assert bent.pulls == []
     come()
     assert bent.document is before
+
+
+@pytest.mark.parametrize(
+    "leave",
+    [
+        lambda session: playback.scrub(session, 6),
+        playback.toggle_play,
+        exporting.ask,
+        posing.insert_key,
+    ],
+)
+def test_it_is_not_lost_where_something_else_follows(window, bent, come, leave):
+    before = bent.document
+    window.run(lambda robot: (drag(robot, window, bent), robot.mouse_up(0)))
+    window.act(leave)
+    window.session.dialog = None
+    come()
+    window.until(lambda: not bent.pulls)
+    playback.halt(window.session)
+    target = bent.figure.key(FRAME).pose.targets[1]
+    assert bent.figure.lags(bent.figure.key(FRAME).pose)[1] < 1.0
+    while bent.document is not before:
+        editing.undo(window.session)
+    playback.scrub(window.session, FRAME)
+    window.settle()
+    assert abs(target.position - in_between(bent)[1] - WAY) < 1.0
 
 
 def test_undo_and_redo_need_not_wait(window, bent):

@@ -119,7 +119,7 @@ def test_dragging_follows_and_is_one_step(window, bar, monkeypatch):
     before = bar.document
     window.run(lambda robot: drag(robot, window, start, start + 150j, steps=12))
     window.settle()
-    assert bar.posing is None
+    assert bar.pull is None
     lag = bar.document.figures[0].lags(bar.document.figures[0].keys[0].pose)[1]
     assert lag < 0.05 * abs(150j)
     # It is looked at before the steps and after.
@@ -135,10 +135,10 @@ def test_a_pose_that_the_playhead_leaves_comes_to_rest(window, bar, leave):
     posing.pull(session, {1: Target(position=wanted)})
     posing.let_go(session)
     leave(session)
-    assert bar.posing is None
-    assert bar.is_posing
+    assert bar.pull is None
+    assert bar.pulls
     window.settle()
-    assert not bar.is_posing
+    assert not bar.pulls
     (key,) = bar.document.figures[0].keys
     assert key.frame == 0
     assert bar.document.figures[0].lags(key.pose)[1] < 5
@@ -150,10 +150,10 @@ def test_a_pose_that_rests_in_the_hand_ends_where_the_playhead_leaves_it(window,
     posing.pull(session, {1: Target(position=handle_places(bar)[1] + 150j)})
     window.settle()
     posed = bar.document
-    assert bar.posing.is_held
+    assert bar.pull.is_held
     playback.seek(session, 24)
     window.settle()
-    assert not bar.is_posing
+    assert not bar.pulls
     assert bar.document is posed
 
 
@@ -200,10 +200,10 @@ def test_a_shape_that_is_held_back_is_left_alone_when_the_hand_lets_go(window, b
     posing.pull(session, {1: Target(position=handle_places(bar)[1] + 9000)})
     window.settle()
     held = bar.puppet.shown.positions
-    assert bar.posing.drag.state.status is Status.AT_LIMITS
+    assert bar.pull.drag.state.status is Status.AT_LIMITS
     posing.let_go(session)
     window.settle()
-    assert bar.posing is None
+    assert bar.pull is None
     np.testing.assert_array_equal(bar.puppet.shown.positions, held)
 
 
@@ -227,7 +227,7 @@ def test_inbetweens_follow_a_drag_before_the_hand_lets_go(window, bar):
         while session.jobs.kinds:
             robot.yield_()
         halfway.update(
-            grab=bar.posing,
+            grab=bar.pull,
             known=bar.puppet.coarse.value.knows(bar.clip),
             positions=bar.puppet.coarse.value.positions(bar.clip, 12),
         )

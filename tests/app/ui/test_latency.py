@@ -31,42 +31,42 @@ def test_the_picture_follows_a_pull_in_the_next_frame(window, bar):
 def test_a_slow_solver_shows_every_step(window, bar):
     window.session.clock = count().__next__  # each look at the clock takes a second
     pull(window, bar, 40j)
-    assert bar.posing.steps == 1
+    assert bar.pull.steps == 1
     # Nor does the picture wait while the hand rests.
     for steps in (2, 3):
         assert window.session.jobs.settle()
         window.frames()
-        assert bar.posing.steps == steps
+        assert bar.pull.steps == steps
 
 
 def test_a_hand_that_moves_sees_every_step(window, bar):
     for step in range(1, 6):
         pull(window, bar, 40j * step)
-        assert 1 <= bar.posing.steps <= posing.STEPS
+        assert 1 <= bar.pull.steps <= posing.STEPS
 
 
 def test_a_hand_that_rests_gets_as_many_steps_as_fit_before_the_next_picture(window, bar):
+    window.session.clock = lambda: 0.0  # all of them fit
     pull(window, bar, 60j)
-    assert not bar.posing.drag.is_over
-    # The clock stands still while the worker computes: all of them fit.
+    assert not bar.pull.drag.is_over
     assert window.session.jobs.settle()
     window.frames()
-    assert bar.posing.drag.is_over
-    assert bar.posing.steps > posing.STEPS
+    assert bar.pull.drag.is_over
+    assert bar.pull.steps > posing.STEPS
 
 
 def test_nothing_moves_once_the_pose_rests(window, bar):
     pull(window, bar, 60j)
-    assert not bar.posing.is_at_rest
+    assert not bar.pull.is_at_rest
     window.settle()
-    assert bar.posing.is_at_rest
+    assert bar.pull.is_at_rest
     rested, shown = bar.document, bar.puppet.shown.positions
     window.frames(20)
     assert posing.POSING not in window.session.jobs.kinds
     window.act(posing.let_go)
     window.settle()
     window.frames(20)
-    assert bar.posing is None
+    assert bar.pull is None
     assert bar.document is rested
     np.testing.assert_array_equal(bar.puppet.shown.positions, shown)
 
@@ -76,7 +76,7 @@ def test_in_betweens_are_exact_while_the_pose_that_was_left_comes_to_rest(window
     wish = pull(window, bent, 80j)
     window.act(playback.scrub, 12)
     exact = []
-    while bent.settling is not None:
+    while bent.pulls:
         assert window.session.jobs.settle()
         window.frames()
         shown = bent.puppet.shown
@@ -129,11 +129,11 @@ def test_in_betweens_are_there_when_the_playhead_leaves_a_pose_on_its_way(window
     window.session.clock = count().__next__  # the solver takes one step at a time
     pull(window, bent, 80j)
     window.act(posing.let_go)
-    while bent.posing.prepared is None:
+    while bent.pull.ready is None:
         assert window.session.jobs.settle()
         window.frames()
-    newest, prepared = bent.puppet.shown.pose, bent.posing.prepared
-    assert not bent.posing.is_at_rest
+    newest, prepared = bent.puppet.shown.pose, bent.pull.ready
+    assert not bent.pull.is_at_rest
     assert newest is not prepared
     window.act(playback.scrub, 12)
     assert bent.puppet.shown.is_current
@@ -141,15 +141,13 @@ def test_in_betweens_are_there_when_the_playhead_leaves_a_pose_on_its_way(window
     check()
     # Back at the key nothing is lost of what the solver found.
     window.act(playback.scrub, 24)
-    assert bent.settling is None
     assert bent.puppet.shown.pose is not prepared
     check()
-    # Nor where something else begins.
-    seen = bent.puppet.shown.pose
+    # Nor where the program may end at any moment.
     window.act(playback.scrub, 12)
-    found = bent.settling.found
-    posing.drop(window.session)
-    assert bent.figure.key(24).pose in [seen, found]
+    (moving,) = bent.pulls
+    posing.bring_all(window.session, bent)
+    assert bent.figure.key(24).pose is moving.newest
 
 
 def test_what_is_shown_after_a_drag_is_never_wrong(window, bent, check):

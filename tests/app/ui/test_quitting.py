@@ -53,7 +53,7 @@ def test_a_pose_that_the_solver_still_looks_for_is_not_lost(window, bar, saved):
     assert bar.history.is_saved  # nothing of it has come yet
     saving.quit_lissom(window.session)
     assert not window.session.quitting
-    assert question(window) == "Unsaved changes"
+    window.until(lambda: question(window) == "Unsaved changes")
     answer(window, "Save")
     window.settle()
     assert window.session.quitting

@@ -716,7 +716,7 @@ def test_random_walk_ends_where_it_began(small_window, workers, tmp_path, seed, 
             last = "\n".join(walk.told)
             raise AssertionError(f"seed {seed}, step {number}: {error}\nafter\n{last}") from error
     walk.release()
-    walk.act(posing.drop)
+    walk.act(posing.let_go)
     # What is still on its way, such as a rebuilt domain, would come where undo leads back to.
     workers.allow(math.inf)
     window.settle()

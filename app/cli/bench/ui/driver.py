@@ -199,13 +199,13 @@ class HandleDrag:
     @property
     def wish(self) -> Target | None:
         """Where the handle is wanted now."""
-        posing = self._project.posing
+        posing = self._project.pull
         return None if posing is None else posing.targets[self.handle]
 
     @property
     def _is_followed(self) -> bool:
         """Whether the solver is on its way."""
-        return self._project.posing is not None and self._project.posing.drag is not None
+        return self._project.pull is not None and self._project.pull.drag is not None
 
     @property
     def followed(self) -> Target | None:

@@ -270,7 +270,7 @@ def _shows(project: Project, frame: int, *, exactly: bool = False) -> bool:
 
 
 def _rests(project: Project) -> bool:
-    return not project.is_posing
+    return not project.pulls
 
 
 def _is_exact(project: Project) -> bool:

@@ -13,40 +13,40 @@ from app.editor.actions.posing.handles import (
     remove_handles,
     suggest_handles,
 )
-from app.editor.actions.posing.inserting import INSERTING, fit_pose, insert_key
+from app.editor.actions.posing.inserting import INSERTING, fit_pose, insert_key, insert_key_at
+from app.editor.actions.posing.keeping import holding, retargeted, show_pose
 from app.editor.actions.posing.pulling import (
-    drop,
+    end_at,
     free_turn,
+    give_up,
     let_go,
     nudge,
     pin_here,
     pull,
     pull_again,
+    take_back,
     wish,
-    wishes_of,
 )
-from app.editor.actions.posing.settling import next_trial, settle, take_trial, trial_clip
-from app.editor.actions.posing.steps import POSING, STEPS, accept, hold, retargeted
-from app.editor.actions.posing.waiting import catch_up, forget, is_there, waits
+from app.editor.actions.posing.settling import bring_all, keep_up, tried_clips
+from app.editor.actions.posing.solving import POSING, STEPS
 
 __all__ = [
     "INSERTING",
     "POSING",
     "STEPS",
-    "accept",
     "add_handle",
     "anchor_at",
-    "catch_up",
-    "drop",
+    "bring_all",
+    "end_at",
     "fit_pose",
-    "forget",
     "free_turn",
-    "hold",
+    "give_up",
+    "holding",
     "insert_key",
-    "is_there",
+    "insert_key_at",
+    "keep_up",
     "let_go",
     "mirror_handles",
-    "next_trial",
     "nudge",
     "pin_here",
     "pull",
@@ -54,11 +54,9 @@ __all__ = [
     "put_anchor",
     "remove_handles",
     "retargeted",
-    "settle",
+    "show_pose",
     "suggest_handles",
-    "take_trial",
-    "trial_clip",
-    "waits",
+    "take_back",
+    "tried_clips",
     "wish",
-    "wishes_of",
 ]

@@ -13,8 +13,8 @@ from app.document import (
     pairs_by_name,
 )
 from app.editor.action import do
-from app.editor.actions.posing.pulling import drop
-from app.editor.actions.posing.steps import retargeted
+from app.editor.actions.posing.keeping import retargeted
+from app.editor.actions.posing.pulling import let_go
 from app.editor.project import Project
 from app.editor.session import Session, with_project
 from app.motion import Shown
@@ -25,36 +25,37 @@ from engine.geometry import box_diagonal, contains
 NEAR = 0.05  # of the diagonal: so near to a handle there is no other one suggested
 
 
-def add_handle(session: Session, place: complex, *, gesture: object | None = None) -> None:
+@with_project
+def add_handle(
+    _: Session, project: Project, place: complex, *, gesture: object | None = None
+) -> None:
     """Add a handle where the shape is at a place of the screen's plane; nothing moves."""
-    project = session.project
-    if project is None or project.puppet.shown is None:
+    if project.puppet.shown is None:
         return
-    drop(session)
     rest = _at_rest(project.puppet.shown, place)
     identity = project.figure.next_handle
     _change_handles(project, handle_commands.add_handle(project.active, rest), gesture or object())
     project.selected, project.chosen = frozenset({identity}), frozenset()
 
 
+@with_project
 def remove_handles(
-    session: Session, identities: frozenset[int], *, gesture: object | None = None
+    session: Session,
+    project: Project,
+    identities: frozenset[int],
+    *,
+    gesture: object | None = None,
 ) -> None:
-    """Delete handles; every pose stays as it is."""
-    project = session.project
-    if project is None:
-        return
-    drop(session)
+    """Delete handles; every pose stays as it is, or comes to rest as it was pulled."""
+    let_go(session)
     command = handle_commands.remove_handles(project.active, identities)
     _change_handles(project, command, gesture or object())
     project.selected -= identities
 
 
-def suggest_handles(session: Session) -> None:
+@with_project
+def suggest_handles(session: Session, project: Project) -> None:
     """Put handles at the tips of limbs and in the middle of the body, but where there are some."""
-    project = session.project
-    if project is None:
-        return
     figure = project.figure
     places = domains.suggest_handles(figure.domain.loops)
     near = NEAR * box_diagonal(figure.domain.outline)
@@ -63,7 +64,6 @@ def suggest_handles(session: Session) -> None:
     if not free:
         session.tell("There are handles already where Lissom would put them.")
         return
-    drop(session)
     handles = [
         Handle(id=0, name=handle_commands.free_name(figure, number), position=complex(place))
         for number, place in enumerate(free)
@@ -86,7 +86,6 @@ def _take_suggestions_back(
     """Remove the handles that were suggested; what was done since stays."""
     if session.project is not project:
         return
-    drop(session)
     project.history.take_back(gesture)
     remaining = added & {handle.id for handle in project.figure.handles}
     if remaining:
@@ -94,11 +93,9 @@ def _take_suggestions_back(
     project.selected -= added
 
 
-def mirror_handles(session: Session) -> None:
+@with_project
+def mirror_handles(session: Session, project: Project) -> None:
     """Give each selected handle a partner on the other side of the mirror axis, named so."""
-    project = session.project
-    if project is None:
-        return
     figure, pairs = project.figure, pairs_by_name(project.figure.handles)
     alone = [handle for handle in figure.handles if handle.id in project.selected - pairs.keys()]
     gesture, outside = object(), 0
@@ -115,7 +112,6 @@ def mirror_handles(session: Session) -> None:
             project.history.do(command, gesture=gesture)
         partners.append(replace(handle, name=mirrored_name(name) or name, position=place))
     if partners:
-        drop(session)
         _change_handles(project, handle_commands.add_handles(project.active, partners), gesture)
     if outside:
         session.tell("The other side of the mirror axis is beside the drawing there.")
@@ -151,10 +147,12 @@ def anchor_at(
     )
 
 
-def put_anchor(session: Session, place: complex, *, gesture: object | None = None) -> None:
+@with_project
+def put_anchor(
+    _: Session, project: Project, place: complex, *, gesture: object | None = None
+) -> None:
     """Make the shape's point at a place of the screen's plane the anchor."""
-    project = session.project
-    if project and project.puppet.shown:
+    if project.puppet.shown:
         rest = _at_rest(project.puppet.shown, place)
         project.history.do(figure_commands.set_anchor(project.active, rest), gesture=gesture)
 

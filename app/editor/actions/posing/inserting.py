@@ -1,34 +1,47 @@
-"""Keys of what the present frame shows."""
+"""Keys of what a frame shows."""
 
 from collections.abc import Callable
 from functools import partial
 
-from app.document import Clip, Pose
+from app.document import Clip, Pose, clip_of
+from app.editor import promises
+from app.editor.action import do
 from app.editor.actions import playback
-from app.editor.actions.posing.pulling import drop
-from app.editor.actions.posing.steps import hold, inserting
-from app.editor.failures import report
-from app.editor.jobs import Job
+from app.editor.actions.posing.keeping import holding, inserting
 from app.editor.project import Project
-from app.editor.session import Session
+from app.editor.session import Session, with_project
 from app.solving import Rig, pose_at
 
 INSERTING = "Inserting a key"
 
 
-def insert_key(session: Session) -> None:
+@with_project
+def insert_key(session: Session, project: Project) -> None:
     """Hold the pose that is shown in a key at the present frame."""
-    project = session.project
-    if project is None:
-        return
-    drop(session)
-    frame = playback.current_frame(session, project)
     playback.halt(session)
-    if project.unkeyed is not None:
-        hold(session, project, frame, project.unkeyed, gesture=object())
-    elif frame not in project.figure.key_frames:
+    frame = playback.current_frame(session, project)
+    if any((pull.figure, pull.frame) == (project.active, frame) for pull in project.pulls):
+        # What is on its way there may be a key itself.
+        promises.once_settled(session, do(insert_key_at, project.active, frame), "The key")
+    else:
+        insert_key_at(session, project.active, frame)
+
+
+@with_project
+def insert_key_at(session: Session, project: Project, figure: int, frame: int) -> None:
+    """Hold the pose that a figure has at a frame in a key there."""
+    if figure not in project.puppets:
+        return
+    unkeyed = project.history.unkeyed
+    if unkeyed is not None and (unkeyed.figure, unkeyed.frame) == (figure, frame):
+        gesture = object()
+        project.history.do(holding(session, project, unkeyed), gesture=gesture)
+        project.history.pose(None, gesture=gesture)
+    elif frame not in project.document.figure(figure).key_frames:
         complaint = "The key could not be inserted"
-        fit_pose(session, project, INSERTING, complaint, partial(_insert, session, project))
+        clip = clip_of(project.document, figure)
+        take = partial(_insert, session, project, clip, frame)
+        fit_pose(session, project, clip, frame, take, kind=INSERTING, complaint=complaint)
     else:
         session.tell(f"Frame {frame} has a key already. Drag a handle to change it.")
 
@@ -36,25 +49,29 @@ def insert_key(session: Session) -> None:
 def fit_pose(
     session: Session,
     project: Project,
+    clip: Clip,
+    frame: int,
+    take: Callable[[Pose], None],
+    *,
     kind: str,
     complaint: str,
-    take: Callable[[Clip, int, Pose], None],
 ) -> None:
-    """Let the worker find the pose that is nearest to what the present frame shows."""
-    clip, frame = project.clip, playback.current_frame(session, project)
-    rig, sibling = Rig.of(clip.figure, project.puppet.rig), project.puppet.coarse.value.sampler
-    session.jobs.put(
-        Job(
-            kind=kind,
-            work=lambda: pose_at(rig, clip, frame, sibling),
-            done=lambda pose: take(clip, frame, pose),
-            failed=lambda error: report(session, complaint, error),
-            lane="hand",
-        )
-    )
+    """Let the worker find the pose that is nearest to what a clip shows at a frame."""
+    puppet = project.puppets[clip.figure.id]
+    rig, sibling = Rig.of(clip.figure, puppet.rig), puppet.coarse.value.sampler
+
+    def work() -> Pose:
+        return pose_at(rig, clip, frame, sibling)
+
+    promises.begin(session, project, kind, work, take, complaint, lane="hand")
 
 
 def _insert(session: Session, project: Project, clip: Clip, frame: int, pose: Pose) -> None:
-    if project is session.project and project.clip == clip:
-        project.history.do(inserting(session, project, frame, pose))
-        project.chosen = frozenset({frame})
+    figure = clip.figure.id
+    if figure in project.puppets and clip_of(project.document, figure) == clip:
+        project.history.do(inserting(session, figure, frame, pose))
+        if project.active == figure:
+            project.chosen = frozenset({frame})
+    else:
+        # Other keys came or went meanwhile: the figure is shown otherwise there now.
+        insert_key_at(session, figure, frame)

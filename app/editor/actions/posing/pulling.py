@@ -4,162 +4,174 @@ from collections.abc import Mapping
 from dataclasses import replace
 from functools import partial
 
-import numpy as np
-
-from app.document import Target
+from app.document import Pose, Target, resting_pose, time_of
 from app.editor.actions import playback
-from app.editor.actions.posing.steps import POSING, end, follow, hold, retargeted
-from app.editor.actions.posing.waiting import give_up, waits
-from app.editor.project import PoseInProgress, Project
-from app.editor.session import Session
+from app.editor.actions.posing.keeping import keep
+from app.editor.actions.posing.solving import POSING, go_on
+from app.editor.project import Project
+from app.editor.pull import Pull, Start, Wish
+from app.editor.session import Session, with_project
 
 
-def pull(session: Session, wishes: Mapping[int, Target], *, gesture: object | None = None) -> None:
-    """Wish handles elsewhere in the pose that is shown; the others keep their wishes.
+@with_project
+def pull(
+    session: Session,
+    project: Project,
+    wish: Wish | Mapping[int, Target],
+    *,
+    gesture: object | None = None,
+) -> None:
+    """Wish handles elsewhere in the pose of the present frame; the others keep their wishes.
 
-    Pulls of one gesture are one step of undo; without one, each is a step until it is let go. What
-    is not prepared yet is pulled as soon as it is.
+    Pulls of one gesture are one step of undo, in which the later wish takes the place of the
+    earlier; without one, each is a step until it is let go. An in-between that is not there yet is
+    worked out first; what is wished of it meanwhile is not lost.
     """
-    project = session.project
-    if project is None or project.puppet.shown is None:
+    if project.puppet.shown is None:
         return
-    if waits(session, partial(pull, wishes=wishes, gesture=gesture), gesture=gesture):
-        return
-    if project.posing is None or not project.posing.is_held:
-        _keep_found(session, project)
-        project.posing, project.settling = _begin(session, project, gesture or object()), None
-    posing = project.posing
-    targets = posing.targets
-    posing.targets = {**targets, **{i: _instead_of(targets.get(i), wishes[i]) for i in wishes}}
-    posing.steps = 0
-    follow(session, project, posing)
+    held = next((pull for pull in project.pulls if pull.is_held), None)
+    held = held or _begin(session, project, gesture or object())
+    wanted = wish if callable(wish) else partial(_wherever, wish)
+    held.wish(gesture or object(), wanted)
+    go_on(session, project)
 
 
-def let_go(session: Session) -> None:
-    """End the pull; the solver goes on until it rests."""
-    if session.project and session.project.awaiting:
-        waits(session, let_go)
-    elif session.project and session.project.posing:
-        posing = session.project.posing
-        posing.is_held = False
-        if POSING not in session.jobs.kinds:
-            end(session.project, posing)
-
-
-def drop(session: Session) -> None:
-    """End the pull where the solver is, or before it began."""
-    if session.project:
-        give_up(session, session.project)
-    if session.project and session.project.is_posing:
-        _keep_found(session, session.project)
-        session.jobs.drop(POSING)
-        session.project.posing = session.project.settling = None
-
-
-def _keep_found(session: Session, project: Project) -> None:
-    """Let the document have how far a pose has come that the playhead left, unless it is another's.
-
-    It has been seen so, before the playhead left it.
-    """
-    left = project.settling
-    if left is None or left.found is None or left.taken is None:
-        return
-    if any(key.frame == left.frame and key.pose is left.taken for key in project.figure.keys):
-        hold(session, project, left.frame, left.found, gesture=left.gesture)
-
-
-def pin_here(session: Session) -> None:
-    """Let the selected handles be wanted where they are, wherever they were wanted before."""
-    project = session.project
-    shown = project.puppet.shown if project else None
-    if project is None or shown is None or not project.selected or waits(session, pin_here):
-        return
-    wishes = wishes_of(project)
-    places = zip(shown.clip.figure.handles, shown.handle_places, strict=True)
-    pull(
-        session,
-        {
-            handle.id: replace(wishes[handle.id], position=complex(place))
-            for handle, place in places
-            if handle.id in project.selected
-        },
-    )
-    let_go(session)
-
-
-def nudge(session: Session, step: complex) -> None:
-    """Move the selected handles by a few pixels of the picture."""
-    project = session.project
-    if project is None or project.puppet.shown is None or not project.selected:
-        return
-    if waits(session, partial(nudge, step=step)):
-        return
-    targets = project.posing.targets if project.posing else wishes_of(project)
-    moved = {
-        handle.id: replace(targets[handle.id], position=targets[handle.id].position + step)
-        for handle in project.figure.handles
-        if handle.id in project.selected and not handle.locked
-    }
-    if moved:
-        pull(session, moved)
-        let_go(session)
+@with_project
+def let_go(session: Session, project: Project) -> None:  # noqa: ARG001 - of an action
+    """End the pull; the solver goes on until the pose rests."""
+    for pull in project.pulls:
+        pull.is_held = False
 
 
 def wish(session: Session, wishes: Mapping[int, Target]) -> None:
     """Wish handles elsewhere, as a field of the panel says."""
-    pull(session, wishes)
-    let_go(session)
+    _once(session, wishes)
 
 
-def pull_again(session: Session, *, gesture: object) -> None:
-    """Let the pose that is shown follow its own wishes once more, as under other limits."""
-    project = session.project
-    if waits(session, partial(pull_again, gesture=gesture)):
-        return
-    if project and project.puppet.shown and project.puppet.shown.pose:
-        pull(session, project.puppet.shown.pose.targets, gesture=gesture)
-        let_go(session)
+@with_project
+def pin_here(session: Session, project: Project) -> None:
+    """Let the selected handles be wanted where they are, wherever they were wanted before."""
+    selected = project.selected
+
+    def here(start: Start, targets: Mapping[int, Target]) -> Mapping[int, Target]:
+        known = selected & targets.keys()
+        return {i: replace(targets[i], position=start.places[i]) for i in known}
+
+    if selected:
+        _once(session, here)
+
+
+@with_project
+def nudge(session: Session, project: Project, step: complex) -> None:
+    """Move the selected handles by a few pixels of the picture."""
+    handles = project.figure.handles
+    moved = {h.id for h in handles if h.id in project.selected and not h.locked}
+
+    def away(_: Start, targets: Mapping[int, Target]) -> Mapping[int, Target]:
+        known = moved & targets.keys()
+        return {i: replace(targets[i], position=targets[i].position + step) for i in known}
+
+    if moved:
+        _once(session, away)
 
 
 def free_turn(session: Session, identity: int) -> None:
-    """Let the shape turn freely at a handle in the pose that is shown."""
-    project = session.project
-    if project is None or project.puppet.shown is None:
-        return
-    if waits(session, partial(free_turn, identity=identity)):
-        return
-    targets = project.posing.targets if project.posing else wishes_of(project)
-    pull(session, {identity: replace(targets[identity], rotation=None)})
+    """Let the solver choose how the shape turns at a handle."""
+    _once(session, lambda _, targets: {identity: replace(targets[identity], rotation=None)})
+
+
+@with_project
+def pull_again(session: Session, project: Project, *, gesture: object) -> None:
+    """Let the pose that is shown follow its own wishes once more, as under other limits."""
+    if _pose_here(session, project) is not None:
+        pull(session, {}, gesture=gesture)
+        let_go(session)
+
+
+@with_project
+def take_back(session: Session, project: Project, gesture: object) -> None:
+    """Take back what a gesture has wished; a pull of nothing else goes with all that it led to."""
+    for pull in project.pulls:
+        if gesture in pull.wishes:
+            pull.forget(gesture)
+            pull.is_held = False
+            if not pull.wishes:
+                give_up(session, project, pull)
+                project.history.take_back(pull.gesture)
+
+
+def give_up(session: Session, project: Project, pull: Pull) -> None:
+    """Let a pull be where it is, or before it began."""
+    project.pending.remove(pull)
+    # What comes of it is not taken.
+    session.jobs.drop(POSING)
+    go_on(session, project)
+
+
+def end_at(session: Session, project: Project, pull: Pull, pose: Pose) -> None:
+    """Let the document have a pose in place of what a pull comes to."""
+    give_up(session, project, pull)
+    keep(session, project, pull, pose)
+
+
+def _wherever(
+    wishes: Mapping[int, Target], _: Start, targets: Mapping[int, Target]
+) -> Mapping[int, Target]:
+    """Return wishes that do not depend on where a pull begins."""
+    return {i: wish for i, wish in wishes.items() if i in targets}
+
+
+def _once(session: Session, wish: Wish | Mapping[int, Target]) -> None:
+    pull(session, wish)
     let_go(session)
 
 
-def _begin(session: Session, project: Project, gesture: object) -> PoseInProgress:
+def _begin(session: Session, project: Project, gesture: object) -> Pull:
+    """Begin a pull of the pose at the present frame."""
     playback.halt(session)
-    session.jobs.drop(POSING)
     frame = playback.current_frame(session, project)
-    pose = project.unkeyed or (project.puppet.shown.pose if project.puppet.shown else None)
-    return PoseInProgress(frame=frame, targets=wishes_of(project), start=pose, gesture=gesture)
+    here = (project.active, frame)
+    pulls = [pull for pull in project.pulls if (pull.figure, pull.frame) == here]
+    earlier = pulls[-1] if pulls else None
+    start = _start(session, project, earlier)
+    if earlier is not None and earlier.kept is None:
+        # Nothing of it is to be seen yet: what is wished now comes with it.
+        session.jobs.drop(POSING)
+        earlier.clip, earlier.start, earlier.is_held = project.clip, start, True
+        return earlier
+    before = _pose_here(session, project)
+    begun = Pull(clip=project.clip, frame=frame, gesture=gesture, start=start, before=before)
+    project.pending.append(begun)
+    return begun
 
 
-def wishes_of(project: Project) -> Mapping[int, Target]:
-    """Return what is wished of each handle of the figure in the pose that is shown.
+def _start(session: Session, project: Project, earlier: Pull | None) -> Start | None:
+    """Return what a pull begins with, as far as that is there.
 
-    What is shown may be a frame behind the document, and not know its newest handles.
+    An earlier pull of the same pose, which is not at rest yet, says what was wished last.
     """
-    shown, figure = project.puppet.shown, project.figure
-    pose = project.unkeyed or (shown.pose if shown else None)
+    pose, shown, figure = _pose_here(session, project), project.puppet.shown, project.figure
     if pose is not None:
-        return retargeted(figure, pose).targets
-    if shown is None:
-        return {}
-    rest = np.array([handle.position for handle in figure.handles], dtype=np.complex128)
-    places = shown.mesh.locate(rest, shown.mesh.domain.mesh.vertices).on(shown.positions)
-    return {
-        handle.id: Target(position=complex(place))
-        for handle, place in zip(figure.handles, places, strict=True)
-    }
+        if earlier is not None and earlier.kept is not None and earlier.targets is not None:
+            is_its_own = earlier.kept.phi is pose.phi
+            targets = earlier.targets if is_its_own else pose.targets
+            pose = replace(pose, targets=targets)
+        return Start.of(figure, pose)
+    frame = playback.current_frame(session, project)
+    if shown is None or not shown.is_current or shown.frame != frame or shown.clip != project.clip:
+        return None
+    identities = [handle.id for handle in figure.handles]
+    places = shown.handle_places.tolist()
+    return Start.at(
+        dict(zip(identities, places, strict=True)),
+        dict(zip(identities, shown.handle_turns, strict=True)),
+        {},
+    )
 
 
-def _instead_of(target: Target | None, wish: Target) -> Target:
-    """Return a wish with what a later version wrote about the target that it replaces."""
-    return wish if target is None else replace(wish, unknown=target.unknown)
+def _pose_here(session: Session, project: Project) -> Pose | None:
+    """Return the pose that the figure rests in at the present frame; None for an in-between."""
+    if project.unkeyed is not None:
+        return project.unkeyed
+    clip = project.clip
+    return resting_pose(clip, time_of(clip, playback.current_frame(session, project)))

@@ -1,103 +1,90 @@
-"""A pose that was let go, on its way to rest: the in-betweens of it as it is, and who has them."""
+"""Pulls that nobody sees: the document has them when their in-betweens are there."""
 
-from app.document import Clip, Pose, clip_of
-from app.editor.actions import playback
-from app.editor.actions.posing.steps import POSING, end, follow, hold, holding
-from app.editor.project import PoseInProgress, Project, Trial
+from collections.abc import Sequence
+
+from app.document import Clip, clip_of, exchanged
+from app.editor.actions.posing.keeping import keep
+from app.editor.actions.posing.solving import go_on, is_here
+from app.editor.project import Project
+from app.editor.pull import Pull
 from app.editor.session import Session
 
-
-def settle(session: Session) -> None:
-    """Follow the playhead that leaves a pose on its way to rest, or comes back; once a frame."""
-    project = session.project
-    settling = project.settling if project else None
-    if project is None or settling is None:
-        return
-    if not settling.is_left:
-        settling.is_left = True
-        _step_back(session, project, settling)
-    is_here = playback.current_frame(session, project) == settling.frame
-    if is_here and project.playhead.since is None:
-        if settling.found is not None:
-            hold(session, project, settling.frame, settling.found, gesture=settling.gesture)
-        settling.found, settling.is_left = None, False
-        project.posing, project.settling = settling, None
-    if settling.is_paused:
-        follow(session, project, settling)
-    elif settling.found is None and POSING not in session.jobs.kinds:
-        end(project, settling)
+MOST_UNSEEN = 8  # pulls that go on for the case that they are done again
 
 
-def _step_back(session: Session, project: Project, settling: PoseInProgress) -> None:
-    """Let the document have the newest pose with in-betweens, as long as the solver's has none."""
-    pose, trial = settling.prepared, settling.trial
-    settling.prepared = None
-    if pose is None and trial is not None:
-        pose, settling.trial = trial.pose, None
-        project.puppet.coarse.value = trial.motion
-    if pose is None or settling.frame not in project.figure.key_frames:
-        return
-    newest = project.figure.key(settling.frame).pose
-    if newest is not pose:
-        settling.found, settling.taken = settling.found or newest, pose
-        hold(session, project, settling.frame, pose, gesture=settling.gesture)
+def keep_up(session: Session, project: Project) -> None:
+    """Let the document have what pulls have come to; once a frame."""
+    for pull in project.pulls:
+        _follow_key(project, pull)
+        if pull.newest is not None:
+            _bring(session, project, pull, is_here=is_here(session, project, pull))
+        if pull.is_settled and not pull.is_held and pull in project.pending:
+            project.pending.remove(pull)
+    unseen = [pull for pull in project.pulls if not pull.is_in(project.history)]
+    for pull in unseen[:-MOST_UNSEEN]:
+        project.pending.remove(pull)
+    go_on(session, project)
 
 
-def next_trial(session: Session, project: Project) -> Trial | None:
-    """Return the pose that was let go, as it is now, with what there is of its in-betweens.
+def _bring(session: Session, project: Project, pull: Pull, *, is_here: bool) -> None:
+    """Let the document have the newest pose where it is seen, or one with in-betweens.
 
-    While some are missing it stays wanted, however far the solver goes on. None where all are
-    there, and where nothing was let go.
+    So what is shown elsewhere stays exact while the pose comes to rest.
     """
-    moving = _let_go(session, project)
-    if moving is None:
-        return None
-    if moving.trial is None:
-        pose = moving.found
-        if moving is project.posing and moving.frame in project.figure.key_frames:
-            pose = project.figure.key(moving.frame).pose
-        if pose is None or pose is moving.prepared:
-            return None
-        moving.trial = Trial(pose=pose, motion=project.puppet.coarse.value)
-    return moving.trial
-
-
-def trial_clip(session: Session, project: Project, pose: Pose) -> Clip | None:
-    """Return the clip with a pose that was let go; None where nothing was."""
-    moving = _let_go(session, project)
-    if moving is None:
-        return None
-    command = holding(session, project, moving.frame, pose)
-    return clip_of(command(project.document), project.active)
-
-
-def take_trial(session: Session, project: Project, trial: Trial) -> None:
-    """Take note of what was prepared; the document has the pose as soon as that is all of it."""
-    if project is not session.project:
+    newest = pull.newest
+    if newest is None:
         return
-    moving, clip = _let_go(session, project), trial_clip(session, project, trial.pose)
-    if moving is None or clip is None:
+    if is_here:
+        pull.is_left = False
+        keep(session, project, pull, newest)
+    elif not pull.is_left:
+        pull.is_left, pull.is_held = True, False
+        if pull.ready is not None:
+            keep(session, project, pull, pull.ready)
+    if pull.is_held:
+        pull.tried = None
         return
-    coarse = project.puppet.coarse
-    if moving is project.settling and trial.pose in [key.pose for key in project.figure.keys]:
-        coarse.take(project.clip, trial.motion)
-    elif moving.trial is not None and moving.trial.pose is trial.pose:
-        if not trial.motion.knows(clip) and coarse.failure is None:
-            moving.trial = trial
-            return
-        moving.trial = None
-        coarse.take(clip, trial.motion)
-        if moving is project.posing:
-            moving.prepared = trial.pose
-            return
-        hold(session, project, moving.frame, trial.pose, gesture=moving.gesture)
-        moving.taken = trial.pose
-        if moving.found is trial.pose:
-            moving.found = None
+    if pull.tried is None and newest not in (pull.ready, pull.kept if not is_here else None):
+        pull.tried = newest
+    clip = _tried_clip(project, pull)
+    if clip is not None and _has_inbetweens(project, clip):
+        pull.ready, pull.tried = pull.tried, None
+    if not is_here and pull.ready is not None:
+        keep(session, project, pull, pull.ready)
+    elif not is_here and pull.is_at_rest and project.afterwards:
+        keep(session, project, pull, newest)
 
 
-def _let_go(session: Session, project: Project) -> PoseInProgress | None:
-    """Return the pose that was let go, and is on its way to rest in a key."""
-    moving = project.settling or project.posing
-    is_loose = moving is not None and not moving.is_held and session.preferences.auto_key
-    return moving if is_loose else None
+def tried_clips(project: Project) -> Sequence[Clip]:
+    """Return the clips with a pose on its way whose in-betweens are to be prepared."""
+    return [clip for pull in project.pulls if (clip := _tried_clip(project, pull)) is not None]
+
+
+def bring_all(session: Session, project: Project) -> None:
+    """Let the document have the newest pose of each pull, as it may be the last thing done."""
+    for pull in project.pulls:
+        if pull.newest is not None:
+            keep(session, project, pull, pull.newest)
+
+
+def _tried_clip(project: Project, pull: Pull) -> Clip | None:
+    if pull.tried is None or pull.kept is None or pull.figure not in project.puppets:
+        return None
+    document = exchanged(project.document, pull.kept, pull.brought_to(pull.tried))
+    return clip_of(document, pull.figure)
+
+
+def _has_inbetweens(project: Project, clip: Clip) -> bool:
+    """Tell whether all in-betweens of a clip are there, or never will be."""
+    coarse = project.puppets[clip.figure.id].coarse
+    return coarse is not None
+
+
+def _follow_key(project: Project, pull: Pull) -> None:
+    """Let a pull be where its key is now."""
+    if pull.kept is None or pull.figure not in project.puppets:
+        return
+    keys = project.document.figure(pull.figure).keys
+    frames = [key.frame for key in keys if key.pose.phi is pull.kept.phi]
+    if frames and pull.frame not in frames:
+        pull.frame = frames[0]

@@ -49,7 +49,7 @@ def drag(session, spot, *places):
 
 def state(project):
     unkeyed = project.history.unkeyed
-    return project.document, unkeyed, project.selected, project.chosen, project.posing
+    return project.document, unkeyed, project.selected, project.chosen, project.pull
 
 
 AT_LEFT, AT_RIGHT = Spot(place=LEFT, handle=0), Spot(place=RIGHT, handle=1)

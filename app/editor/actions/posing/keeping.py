@@ -1,0 +1,114 @@
+"""Poses that the document has: in keys, or in none where the person wants no keys made."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from app.document import Command, Figure, Pose, Target, UnkeyedPose, key_commands
+from app.editor.project import Project
+from app.editor.pull import Pull
+from app.editor.session import Session
+
+
+def keep(session: Session, project: Project, pull: Pull, pose: Pose) -> None:
+    """Let the document have a pose of a pull in place of the one before; else the pull is over."""
+    if pose is pull.kept:
+        return
+    _follow_copies(session, pull, pose)
+    if pull.kept is None:
+        is_kept = _keep_first(session, project, pull, pose)
+    else:
+        is_kept = project.history.amend(pull.gesture, pull.kept, pull.brought_to(pose))
+    pull.kept = pose
+    if not is_kept and pull in project.pending:
+        project.pending.remove(pull)
+
+
+def _follow_copies(session: Session, pull: Pull, pose: Pose) -> None:
+    """Let what was copied of a pose on its way go on to another one, too."""
+    kept = pull.kept
+    if kept is None or all(k.pose.phi is not kept.phi for c in session.copied for k in c.keys):
+        return
+    bring = pull.brought_to(pose)
+    session.copied = tuple(
+        replace(
+            copied,
+            keys=tuple(
+                replace(key, pose=bring(copied.figure, key.pose))
+                if key.pose.phi is kept.phi
+                else key
+                for key in copied.keys
+            ),
+        )
+        for copied in session.copied
+    )
+
+
+def _keep_first(session: Session, project: Project, pull: Pull, pose: Pose) -> bool:
+    """Let the document have the first pose of a pull, as one more step; tell whether it can."""
+    if pull.figure not in project.puppets:
+        return False
+    figure = project.document.figure(pull.figure)
+    if figure.domain is not pull.clip.figure.domain:
+        return False
+    keys = {key.frame: key for key in figure.keys}
+    if pull.frame not in keys and pull.frame in pull.clip.figure.key_frames:
+        # The key was moved, or it is gone.
+        was = pull.clip.figure.key(pull.frame).pose
+        frames = {frame for frame, key in keys.items() if key.pose.phi is was.phi}
+        moved = frames - pull.clip.figure.key_frames
+        if not moved:
+            return False
+        pull.frame = min(moved)
+    pose = pull.brought_to(pose)(figure, retargeted(figure, pose))
+    show_pose(session, project, pull.figure, pull.frame, pose, gesture=pull.gesture)
+    return True
+
+
+def show_pose(
+    session: Session, project: Project, figure: int, frame: int, pose: Pose, *, gesture: object
+) -> None:
+    """Let a figure have a pose at a frame: in a key, or in none if the person wants none made."""
+    if session.preferences.auto_key:
+        hold(session, project, figure, frame, pose, gesture=gesture)
+    else:
+        unkeyed = UnkeyedPose(figure=figure, frame=frame, pose=pose)
+        project.history.pose(unkeyed, gesture=gesture)
+
+
+def hold(
+    session: Session, project: Project, figure: int, frame: int, pose: Pose, *, gesture: object
+) -> None:
+    """Let a key hold a pose; none is left there that no key holds."""
+    held = UnkeyedPose(figure=figure, frame=frame, pose=pose)
+    command = replace(holding(session, project, held), label="Pose")
+    project.history.do(command, gesture=gesture)
+    unkeyed = project.history.unkeyed
+    if unkeyed is not None and (unkeyed.figure, unkeyed.frame) == (figure, frame):
+        project.history.pose(None, gesture=gesture)
+
+
+def holding(session: Session, project: Project, unkeyed: UnkeyedPose) -> Command:
+    """Return the command that lets a key hold a pose that none holds."""
+    figure, frame, pose = unkeyed.figure, unkeyed.frame, unkeyed.pose
+    if frame in project.document.figure(figure).key_frames:
+        return key_commands.pose_key(figure, frame, pose)
+    return inserting(session, figure, frame, pose)
+
+
+def inserting(session: Session, figure: int, frame: int, pose: Pose) -> Command:
+    """Return the command that inserts a key as the person wants new ones."""
+    easing = session.preferences.easing
+    return key_commands.insert_key(figure, frame, pose, easing=easing)
+
+
+def retargeted(figure: Figure, pose: Pose) -> Pose:
+    """Return a pose with a target for each handle of a figure: its own, or where it is."""
+    places = figure.map_of(pose)(
+        np.array([handle.position for handle in figure.handles], dtype=np.complex128)
+    )
+    targets = {
+        handle.id: pose.targets.get(handle.id, Target(position=complex(place)))
+        for handle, place in zip(figure.handles, places, strict=True)
+    }
+    return replace(pose, targets=targets)

@@ -1,0 +1,161 @@
+"""The worker's way to a pose: a few Newton steps at a time, each taken into the document."""
+
+from collections.abc import Callable, Mapping, Sequence
+from functools import partial
+from typing import NamedTuple
+
+from app.document import Clip, Pose, Target, resting_pose, time_of
+from app.editor.actions import playback
+from app.editor.actions.posing.keeping import keep
+from app.editor.failures import report
+from app.editor.jobs import Job
+from app.editor.project import Project
+from app.editor.pull import MOST_STEPS, Pull, Start, Wish, targets_of
+from app.editor.session import Session
+from app.motion import PoseSampler
+from app.solving import Drag, Rig, pose_at
+
+POSING = "Posing"
+# While the hand moves: Newton steps of one job at most, and the seconds after which it begins no
+# other: what it has found by then is in the next picture.
+STEPS, HASTE = 2, 0.004
+# While the hand rests: the seconds of one job, as many as fit between two pictures.
+REST = 0.012
+
+
+def go_on(session: Session, project: Project) -> None:
+    """Let the worker go on with the pull that is wanted most, unless it is at one."""
+    if POSING in session.jobs.kinds:
+        return
+    moving = [pull for pull in project.pulls if not pull.is_at_rest]
+    if not moving:
+        return
+
+    def urgency(pull: Pull) -> tuple[bool, bool, bool]:
+        return pull.is_held, is_here(session, project, pull), pull.is_in(project.history)
+
+    pull = max(moving, key=urgency)
+    # One that the playhead has left goes on once what is shown is there.
+    if not (pull.is_held or is_here(session, project, pull) or is_there(session, project)):
+        return
+
+    def failed(error: Exception) -> None:
+        if pull in project.pending:
+            project.pending.remove(pull)
+            report(session, "This pose could not be found", error)
+
+    puppet = project.puppets.get(pull.figure)
+    begin = partial(
+        _begin,
+        pull.clip,
+        pull.frame,
+        pull.before,
+        None if puppet is None else puppet.rig,
+        None if puppet is None else puppet.coarse.value.sampler,
+    )
+    aim = pull.targets if pull.targets is not None else tuple(pull.wishes.values())
+    session.jobs.put(
+        Job(
+            kind=POSING,
+            work=partial(_take_steps, pull.drag, begin, aim, _pace(pull), session.clock),
+            done=partial(_take, session, project, pull),
+            failed=failed,
+            lane="hand",
+        )
+    )
+
+
+def is_here(session: Session, project: Project, pull: Pull) -> bool:
+    """Tell whether the playhead rests on a pull's frame, where each of its poses is shown."""
+    is_playing = project.playhead.since is not None
+    return not is_playing and playback.current_frame(session, project) == pull.frame
+
+
+def is_there(session: Session, project: Project) -> bool:
+    """Tell whether what should be shown is, or never will be."""
+    shown = project.puppet.shown
+    if project.unkeyed is not None or project.puppet.coarse.has_failed(project.clip):
+        return True
+    if shown is None or not shown.is_current:
+        return False
+    # While it plays, what is shown is always that of a moment ago.
+    is_playing = project.playhead.since is not None
+    return is_playing or shown.frame == playback.current_frame(session, project)
+
+
+class _Pace(NamedTuple):
+    """How many Newton steps the worker may take at once, and for how many seconds it begins one."""
+
+    most: int
+    seconds: float
+
+
+def _pace(pull: Pull) -> _Pace:
+    """Return the pace that shows every step while the hand moves, and hurries while it rests."""
+    return _Pace(STEPS, HASTE) if pull.steps == 0 else _Pace(MOST_STEPS, REST)
+
+
+class _Steps(NamedTuple):
+    """Where the worker has come with a drag, towards what, in how many Newton steps and seconds.
+
+    The start is what it began with, where it had to be worked out.
+    """
+
+    drag: Drag
+    targets: Mapping[int, Target]
+    taken: int
+    seconds: float
+    start: Start | None
+
+
+def _take_steps(
+    drag: Drag | None,
+    begin: Callable[[], tuple[Drag, Pose]],
+    aim: Mapping[int, Target] | Sequence[Wish],
+    pace: _Pace,
+    clock: Callable[[], float],
+) -> _Steps:
+    """Go on with a drag, or begin it; on the worker thread."""
+    begun, start = clock(), None
+    if drag is None:
+        drag, pose = begin()
+        start = Start.of(drag.rig.figure, pose)
+    if isinstance(aim, Mapping):
+        targets = aim
+    elif start is not None:
+        targets = targets_of(start, aim)
+    else:
+        raise ValueError("a drag that goes on has targets")
+    taken = 0
+    while taken == 0 or (taken < pace.most and not drag.is_over and clock() - begun < pace.seconds):
+        drag = drag.towards(targets, 1)
+        taken += 1
+    return _Steps(drag, targets, taken, clock() - begun, start)
+
+
+def _begin(
+    clip: Clip, frame: int, before: Pose | None, rig: Rig | None, sibling: PoseSampler | None
+) -> tuple[Drag, Pose]:
+    """Return the drag that begins with a pose, or with what is shown at a frame; and that pose."""
+    rig = Rig.of(clip.figure, rig)
+    pose = before or resting_pose(clip, time_of(clip, frame)) or pose_at(rig, clip, frame, sibling)
+    return Drag.begin(rig, pose), pose
+
+
+def _take(session: Session, project: Project, pull: Pull, steps: _Steps) -> None:
+    """Take note of where the worker has come, and let it go on if there is more to do."""
+    if session.project is not project or pull not in project.pending:
+        return
+    session.solver_seconds = steps.seconds
+    if pull.figure in project.puppets:
+        project.puppets[pull.figure].rig = steps.drag.rig
+    if pull.start is None:
+        pull.start = steps.start
+        pull.aim()
+    if pull.targets == steps.targets:
+        pull.steps += steps.taken
+    pull.drag, pull.solved = steps.drag, steps.targets
+    pull.newest = steps.drag.pose(steps.targets)
+    if pull.kept is None or is_here(session, project, pull):
+        keep(session, project, pull, pull.newest)
+    go_on(session, project)

@@ -1,0 +1,143 @@
+"""Promises: what is on its way to the document, and the one verb that waits for it.
+
+Whatever the worker is to bring into the document is promised here first, and stays promised until
+it is there, has failed or is given up. Saving, closing, exporting and all else that needs the
+document as the person sees it coming asks `once_settled`.
+"""
+
+from collections.abc import Callable
+from typing import TypeVar
+
+from app.editor.action import Action
+from app.editor.failures import report
+from app.editor.jobs import Job, LaneName
+from app.editor.project import Project
+from app.editor.promise import Afterwards, Promise
+from app.editor.pull import Pull
+from app.editor.session import Session, with_project
+
+Result = TypeVar("Result")
+
+
+def begin(
+    session: Session,
+    project: Project,
+    kind: str,
+    work: Callable[[], Result],
+    done: Callable[[Result], None],
+    failed: str | Callable[[Exception], None],
+    *,
+    lane: LaneName = "display",
+    promise: Promise | None = None,
+) -> Promise:
+    """Let the worker bring something into the document, which is promised until it is there.
+
+    Parameters
+    ----------
+    session : Session
+    project : Project
+    kind : str
+        Of the job, in words that the status bar can show.
+    work : callable
+        Runs on the worker's thread.
+    done : callable
+        Takes the result, unless it was given up or the project was closed.
+    failed : str or callable
+        What is said where that fails, or what takes the error.
+    lane : str
+        On which thread it runs.
+    promise : Promise, optional
+        By default a new one.
+    """
+    promised = promise or Promise(label=kind)
+    project.pending.append(promised)
+
+    def kept(result: Result) -> None:
+        if _keep(session, project, promised):
+            done(result)
+
+    def broken(error: Exception) -> None:
+        if not _keep(session, project, promised):
+            return
+        if isinstance(failed, str):
+            report(session, failed, error)
+        else:
+            failed(error)
+
+    session.jobs.add(Job(kind=kind, work=work, done=kept, failed=broken, lane=lane))
+    return promised
+
+
+def _keep(session: Session, project: Project, promise: Promise) -> bool:
+    """End a promise; tell whether anybody still waits for what it was about."""
+    if promise not in project.pending:
+        return False
+    project.pending.remove(promise)
+    return session.project is project
+
+
+def is_settled(project: Project, *, after_saves: bool = False) -> bool:
+    """Tell whether nothing is on its way to the document any more.
+
+    Parameters
+    ----------
+    project : Project
+    after_saves : bool
+        Whether a save counts that is under way.
+    """
+    if project.stale_figure is not None:
+        return False
+
+    def is_over(promise: Promise) -> bool:
+        if isinstance(promise, Pull):
+            # One that was taken back goes on only for the case that it is done again.
+            return promise.is_settled or not promise.is_in(project.history)
+        return not (promise.changes or after_saves)
+
+    return all(map(is_over, project.pending))
+
+
+@with_project
+def once_settled(
+    session: Session, project: Project, then: Action, what: str, *, after_saves: bool = False
+) -> None:
+    """Do something as soon as nothing is on its way to the document any more; at once if so.
+
+    Parameters
+    ----------
+    session : Session
+    project : Project
+    then : Action
+    what : str
+        The same in words, for the status bar.
+    after_saves : bool
+        Whether it also waits for a save that is under way.
+    """
+    project.afterwards.append(Afterwards(then=then, what=what, after_saves=after_saves))
+    go_on(session)
+
+
+@with_project
+def go_on(session: Session, project: Project) -> None:
+    """Do the next of what has waited for the document, if that has settled."""
+    while project.afterwards and session.project is project:
+        first = project.afterwards[0]
+        if not is_settled(project, after_saves=first.after_saves):
+            return
+        del project.afterwards[0]
+        first.then.apply(session)
+
+
+def waits_for(project: Project) -> str:
+    """Return in words what is done once the document has settled; empty where there is nothing."""
+    if not project.afterwards:
+        return ""
+    return f"{coming(project)}, then: {project.afterwards[0].what}"
+
+
+def coming(project: Project) -> str:
+    """Return in words what is on its way to the document or the disk."""
+    labels = [promise.label for promise in project.pending]
+    if project.stale_figure is not None:
+        labels.append("Cutting out")
+    return ", ".join(dict.fromkeys(labels))

@@ -1,0 +1,195 @@
+"""A pose that the hand has asked for, on its way to rest."""
+
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from app.document import Clip, Figure, History, Pose, Settled, Target
+from app.editor.promise import Promise
+from app.solving import Drag
+
+# Newton steps towards one wish; a drag comes to rest in far fewer.
+MOST_STEPS = 600
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Start:
+    """A pose as a pull begins with it, by the ids of the figure's handles.
+
+    Parameters
+    ----------
+    places : mapping of int to complex
+        Where the handles are.
+    turns : mapping of int to float
+        By how much the shape turns there, in radians.
+    targets : mapping of int to Target
+        Where they are wanted.
+    """
+
+    places: Mapping[int, complex]
+    turns: Mapping[int, float]
+    targets: Mapping[int, Target]
+
+    @classmethod
+    def of(cls, figure: Figure, pose: Pose) -> "Start":
+        """Return the start that a pose of a figure is."""
+        f, identities = figure.map_of(pose), [handle.id for handle in figure.handles]
+        at = np.array([handle.position for handle in figure.handles], dtype=np.complex128)
+        places = dict(zip(identities, f(at).tolist(), strict=True))
+        turns = dict(zip(identities, np.angle(f.derivatives(at)[0]).tolist(), strict=True))
+        return cls.at(places, turns, pose.targets)
+
+    @classmethod
+    def at(
+        cls,
+        places: Mapping[int, complex],
+        turns: Mapping[int, float],
+        targets: Mapping[int, Target],
+    ) -> "Start":
+        """Return the start with handles at some places, wanted there unless a target says else."""
+        wanted = {i: targets.get(i) or Target(position=places[i]) for i in places}
+        return cls(places=places, turns=turns, targets=wanted)
+
+
+# Returns where handles are wished, of a pull's start and of what was wished of it before.
+Wish = Callable[[Start, Mapping[int, Target]], Mapping[int, Target]]
+
+
+@dataclass(slots=True, kw_only=True, eq=False)
+class Pull(Promise):
+    """Handles of a figure at a frame, wished elsewhere, and how far the solver has followed.
+
+    It lives until the pose rests, wherever the playhead goes and whatever else is done meanwhile:
+    each pose that the solver finds takes the place of the one before, in the step of history that
+    is its own and in all later ones.
+
+    Parameters
+    ----------
+    clip : Clip
+        The figure as it was when it began, which the solver knows, in its scene's time.
+    frame : int
+        Where the pose belongs now: it moves with its key.
+    gesture : object
+        What is one step of undo together.
+    start : Start, optional
+        None as long as the in-between that it begins with is not worked out.
+    before : Pose, optional
+        The one that the key or the frame had; None for a new key.
+    wishes : dict of object to Wish
+        By the gestures that they are of, in order; each knows what was wished before it.
+    targets : mapping of int to Target, optional
+        What all of that comes to; None as long as there is no start.
+    is_held : bool
+        Whether the hand still pulls.
+    drag : Drag, optional
+        Where the solver is; None until its first steps are done.
+    solved : mapping of int to Target, optional
+        The targets that these steps were towards.
+    steps : int
+        Newton steps towards the present targets.
+    newest : Pose, optional
+        Where the solver is, as a pose.
+    kept : Pose, optional
+        What the document has of it; None as long as that is nothing.
+    tried : Pose, optional
+        The one whose in-betweens are being prepared, once the hand has let go.
+    ready : Pose, optional
+        The newest one whose in-betweens are there: the playhead that leaves it finds them.
+    is_left : bool
+        Whether the playhead is elsewhere.
+    """
+
+    label: str = "Posing"
+    clip: Clip
+    frame: int
+    gesture: object
+    start: Start | None
+    before: Pose | None
+    wishes: dict[object, Wish] = field(default_factory=dict)
+    targets: Mapping[int, Target] | None = None
+    is_held: bool = True
+    drag: Drag | None = None
+    solved: Mapping[int, Target] | None = None
+    steps: int = 0
+    newest: Pose | None = None
+    kept: Pose | None = None
+    tried: Pose | None = None
+    ready: Pose | None = None
+    is_left: bool = False
+
+    def wish(self, gesture: object, wish: Wish) -> None:
+        """Wish something else of a gesture, in place of what it wished before."""
+        self.wishes[gesture] = wish
+        self.aim()
+
+    def forget(self, gesture: object) -> None:
+        """Take back what a gesture wished."""
+        del self.wishes[gesture]
+        self.aim()
+
+    def aim(self) -> None:
+        """Work out the targets anew."""
+        self.steps = 0
+        if self.start is not None:
+            self.targets = targets_of(self.start, self.wishes.values())
+
+    @property
+    def figure(self) -> int:
+        """The id of its figure."""
+        return self.clip.figure.id
+
+    @property
+    def is_at_rest(self) -> bool:
+        """Whether the solver has found the pose, and moves nothing any more."""
+        is_over = self.drag is not None and self.drag.is_over
+        return self.steps >= MOST_STEPS or (is_over and self.solved == self.targets)
+
+    @property
+    def is_settled(self) -> bool:
+        """Whether the document has the pose at rest."""
+        return self.is_at_rest and self.kept is self.newest
+
+    def is_in(self, history: History) -> bool:
+        """Tell whether the document, as it is now, has a pose of it, or is to have the first."""
+        if self.kept is None:
+            return True
+        figures = history.document.figures
+        figure = next((figure for figure in figures if figure.id == self.figure), None)
+        if figure is None:
+            return False
+        poses = list(figure.poses)
+        if history.unkeyed is not None:
+            poses.append(history.unkeyed.pose)
+        return any(pose.phi is self.kept.phi for pose in poses)
+
+    def brought_to(self, pose: Pose) -> Settled:
+        """Return how a figure of any step of history has a pose of this pull."""
+        then = {handle.id: handle for handle in self.clip.figure.handles}
+
+        def of(figure: Figure, earlier: Pose) -> Pose:
+            if earlier.targets.keys() == then.keys() and all(
+                then[handle.id].position == handle.position for handle in figure.handles
+            ):
+                return pose
+            # Handles came, went or were put elsewhere since: of those nothing is wished yet.
+            places = Start.of(figure, replace(pose, targets=earlier.targets)).places
+            targets = {}
+            for handle in figure.handles:
+                known = then.get(handle.id)
+                is_same = known is not None and known.position == handle.position
+                here = replace(earlier.targets[handle.id], position=places[handle.id])
+                targets[handle.id] = pose.targets[handle.id] if is_same else here
+            return replace(pose, targets=targets)
+
+        return of
+
+
+def targets_of(start: Start, wishes: Iterable[Wish]) -> Mapping[int, Target]:
+    """Return what some wishes, one after the other, come to."""
+    targets = dict(start.targets)
+    for wish in wishes:
+        for identity, wished in wish(start, targets).items():
+            # What a later version wrote about a target stays.
+            targets[identity] = replace(wished, unknown=targets[identity].unknown)
+    return targets

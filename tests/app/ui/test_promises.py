@@ -1,0 +1,303 @@
+"""Whatever follows a drag at once, what comes is the pose in which its wish comes to rest."""
+
+import threading
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from gates import held_up
+from PIL import Image
+
+from app.document.commands import handle_commands, key_commands, scene_commands
+from app.document.keyframe import Target
+from app.editor import layering
+from app.editor.actions import editing, exporting, keys, playback, posing, rebuilding, saving
+from app.editor.dialogs import Question
+from app.editor.poses import copying, flipping, library
+from app.storage import load_project
+from engine.maps import Bounds
+
+WAY = 60 - 90j  # pixels of the picture
+
+
+def drag(window, project):
+    """Drag a handle at frame 24 by some steps, and let it go."""
+    playback.scrub(window.session, 24)
+    window.frames(2)
+    place, gesture = complex(project.puppet.shown.handle_places[1]), object()
+    for share in (0.25, 0.5, 0.75, 1.0):
+        wish = {1: Target(position=place + share * WAY)}
+        posing.pull(window.session, wish, gesture=gesture)
+        window.frames()
+    posing.let_go(window.session)
+
+
+def end_of(project, frame=24):
+    """Return where a key's pose has the point of the handle that was dragged."""
+    place = project.figure.handle(1).position
+    return complex(project.figure.map_of(project.figure.key(frame).pose)(np.array([place]))[0])
+
+
+def loosened(bounds):
+    return Bounds(k=bounds.k, sigma_a=bounds.sigma_a + 1, sigma_b=bounds.sigma_b)
+
+
+FOLLOWS = {
+    "nothing": lambda _: None,
+    "insert key": posing.insert_key,
+    "play": playback.toggle_play,
+    "scrub": lambda session: playback.scrub(session, 7),
+    "redo": editing.redo,
+    "undo and redo": lambda session: (editing.undo(session), editing.redo(session)),
+    "rename": lambda session: editing.edit_figure(session, handle_commands.rename_handle, 1, "a"),
+    "add a handle": lambda session: posing.add_handle(
+        session, session.project.document.canvas[0] / 2 + 100j
+    ),
+    "easing": lambda session: editing.edit(
+        session, key_commands.set_passing(0, {0}, session.project.figure.keys[0].passing)
+    ),
+    "variant": lambda session: keys.set_variant(session, "nu"),
+    "copy": copying.copy,
+    "keep the pose": library.keep,
+    "copy and paste flipped": lambda session: (
+        copying.copy(session),
+        playback.scrub(session, 40),
+        flipping.paste(session),
+    ),
+    "limits": lambda session: rebuilding.choose_bounds(
+        session, loosened(session.project.figure.bounds)
+    ),
+    "solve again": rebuilding.solve_again,
+    "another drag elsewhere": lambda session: (
+        playback.scrub(session, 0),
+        posing.wish(session, {0: Target(position=200 + 60j)}),
+    ),
+    "duplicate the layer": lambda session: layering.duplicate(session, 0),
+    "choose all keys": lambda session: editing.choose_keys(session, frozenset({0, 24})),
+}
+
+
+@pytest.mark.parametrize("name", FOLLOWS)
+def test_a_drag_comes_to_rest_whatever_follows(window, bent, name):
+    start = bent.document
+    drag(window, bent)
+    assert bent.pulls
+    assert not bent.pulls[-1].is_at_rest, "it takes several pictures"
+    FOLLOWS[name](window.session)
+    window.settle()
+    playback.halt(window.session)
+    window.settle()
+    assert not bent.pending
+    figure = bent.document.figure(0)
+    place = figure.handle(1).position
+    pose = figure.key(24).pose
+    end = complex(figure.map_of(pose)(np.array([place]))[0])
+    assert abs(end - pose.targets[1].position) < 3
+    layering.choose(window.session, 0)
+    while bent.document is not start:
+        assert bent.history.undo_label is not None
+        editing.undo(window.session)
+    assert not bent.pulls
+
+
+def test_moved_and_copied_keys_come_to_rest_too(window, bent):
+    drag(window, bent)
+    editing.edit(window.session, key_commands.copy_keys(0, {24}, 24))
+    editing.edit(window.session, key_commands.move_keys(0, {24}, 6))
+    window.settle()
+    poses = [bent.figure.key(frame).pose for frame in (30, 48)]
+    assert poses[0].phi is poses[1].phi
+    for frame in (30, 48):
+        assert abs(end_of(bent, frame) - poses[0].targets[1].position) < 3
+
+
+def test_a_handle_that_comes_or_goes_meanwhile_keeps_its_place(window, bent):
+    drag(window, bent)
+    wish = bent.pulls[-1].targets[1].position
+    posing.add_handle(window.session, complex(bent.puppet.shown.handle_places.mean()))
+    (added,) = bent.selected
+    posing.remove_handles(window.session, frozenset({0}))
+    window.settle()
+    figure, pose = bent.figure, bent.figure.key(24).pose
+    assert pose.targets.keys() == {1, added}
+    assert abs(end_of(bent) - wish) < 3
+    assert figure.lags(pose)[added] < 1e-6
+
+
+def test_layers_are_chosen_at_once_and_both_drags_come_to_rest(window, bent):
+    layering.duplicate(window.session, 0)
+    window.settle()
+    (other,) = bent.puppets.keys() - {0}
+    wishes = {}
+    for identity in (0, other):
+        layering.choose(window.session, identity)
+        drag(window, bent)
+        wishes[identity] = bent.pulls[-1].targets[1].position
+    assert bent.active == other
+    assert len(bent.pulls) == 2
+    window.settle()
+    for identity, wish in wishes.items():
+        figure = bent.document.figure(identity)
+        place = figure.map_of(figure.key(24).pose)(np.array([figure.handle(1).position]))[0]
+        assert abs(place - wish) < 3
+
+
+def test_a_picture_is_exported_as_it_comes_to_rest(window, bent, tmp_path):
+    drag(window, bent)
+    out = tmp_path / "last.png"
+    export = replace(bent.document.export, format="picture", framing="canvas")
+    editing.edit(window.session, scene_commands.set_export(export))
+    exporting.start(window.session, out)
+    assert window.session.export is None
+    window.until(lambda: out.exists() and window.session.export is None)
+    assert not bent.pulls
+    # Once more, of the pose at rest.
+    again = tmp_path / "again.png"
+    exporting.start(window.session, again)
+    window.until(lambda: again.exists() and window.session.export is None)
+    np.testing.assert_array_equal(np.asarray(Image.open(out)), np.asarray(Image.open(again)))
+
+
+def test_copying_the_picture_leaves_an_export_alone_that_is_prepared(
+    window, bent, tmp_path, monkeypatch
+):
+    monkeypatch.setattr("app.editor.actions.exporting.clipboard_program", lambda: ())
+    export = replace(bent.document.export, format="gif", framing="canvas")
+    editing.edit(window.session, scene_commands.set_export(export))
+    with held_up(monkeypatch, "app.editor.actions.exporting.plan_export"):
+        exporting.start(window.session, tmp_path / "a.gif")
+        window.frames()
+        exporting.copy_picture(window.session)
+        assert "An export is under way" in window.session.toasts[-1].text
+    window.until(lambda: (tmp_path / "a.gif").exists() and window.session.export is None)
+
+
+def question(window):
+    dialog = window.session.dialog
+    return dialog if isinstance(dialog, Question) else None
+
+
+def answer(window):
+    """Let the question be answered by its first answer."""
+    _, action = question(window).answers[0]
+    window.session.dialog = None
+    action.apply(window.session)
+
+
+ON_ITS_WAY = {
+    "a key": lambda window, _: (
+        playback.scrub(window.session, 7),
+        window.settle(),
+        posing.insert_key(window.session),
+    ),
+    "a layer": lambda window, folder: layering.add(window.session, [drawn(folder)]),
+    "a pose of the library": lambda window, _: (
+        playback.scrub(window.session, 7),
+        window.settle(),
+        library.keep(window.session),
+    ),
+    "solved keys": lambda window, _: rebuilding.solve_again(window.session),
+    "a pull of an in-between": lambda window, _: (
+        playback.scrub(window.session, 7),
+        window.settle(),
+        posing.wish(window.session, {1: Target(position=700 + 30j)}),
+    ),
+}
+
+
+def drawn(folder):
+    path = folder / "layer.png"
+    picture = np.zeros((80, 120, 4), np.uint8)
+    picture[10:70, 10:110] = 200, 60, 40, 255
+    Image.fromarray(picture).save(path)
+    return path
+
+
+@pytest.mark.parametrize("what", ON_ITS_WAY)
+def test_closing_asks_about_what_is_on_its_way(window, bent, tmp_path, what):
+    path = tmp_path / "a.lissom"
+    saving.write(window.session, path, None)
+    window.settle()
+    assert bent.history.is_saved
+    ON_ITS_WAY[what](window, tmp_path)
+    saving.close(window.session)
+    window.until(lambda: question(window) is not None or window.session.project is None)
+    assert window.session.project is bent, "it was closed without a question"
+    answer(window)
+    window.until(lambda: window.session.project is None)
+    saved = load_project(path)
+    assert len(saved.figures) == len(bent.document.figures)
+    assert [len(f.keys) for f in saved.figures] == [len(f.keys) for f in bent.document.figures]
+    assert len(saved.figures[0].library) == len(bent.document.figures[0].library)
+
+
+def test_whoever_insists_is_asked_at_once(window, bent, tmp_path, monkeypatch):
+    saving.write(window.session, tmp_path / "a.lissom", None)
+    window.settle()
+    playback.scrub(window.session, 7)
+    window.settle()
+    with held_up(monkeypatch, "app.editor.actions.posing.inserting.pose_at"):
+        posing.insert_key(window.session)
+        saving.close(window.session)
+        assert question(window) is None
+        saving.close(window.session)
+        assert "Inserting a key is not finished" in question(window).text
+    window.session.dialog = None
+    window.settle()
+    assert window.session.project is bent
+
+
+def test_a_pose_without_a_key_is_asked_about_and_kept(window, bent, tmp_path):
+    path = tmp_path / "a.lissom"
+    saving.write(window.session, path, None)
+    window.settle()
+    window.session.preferences = replace(window.session.preferences, auto_key=False)
+    playback.scrub(window.session, 7)
+    window.settle()
+    posing.wish(window.session, {1: Target(position=700 + 30j)})
+    window.settle()
+    assert bent.unkeyed is not None
+    # Also by the autosave.
+    window.clock.now += 60
+    window.settle()
+    (kept,) = window.folder.glob("unsaved-*.lissom")
+    assert load_project(kept).figures[0].key_frames == {0, 7, 24}
+    saving.close(window.session)
+    window.frames(2)
+    assert "The pose at frame 7 is in no key" in question(window).text
+    answer(window)
+    window.until(lambda: window.session.project is None)
+    assert load_project(path).figures[0].key_frames == {0, 7, 24}
+
+
+def test_two_keys_that_are_inserted_at_once_both_come(window, bent, monkeypatch):
+    playback.scrub(window.session, 7)
+    window.settle()
+    with held_up(monkeypatch, "app.editor.actions.posing.inserting.pose_at"):
+        for frame in (7, 14):
+            playback.scrub(window.session, frame)
+            posing.insert_key(window.session)
+    window.settle()
+    told = [toast.text for toast in window.session.toasts]
+    assert bent.figure.key_frames == {0, 7, 14, 24}, told
+
+
+def test_decoded_pictures_go_with_the_steps_that_have_them(window, bent, tmp_path):
+    for number in range(4):
+        path = drawn(tmp_path)
+        window.act(layering.add, [path.rename(tmp_path / f"{number}.png")])
+        window.settle()
+        window.act(editing.undo)
+        window.settle()
+    steps = {figure.picture for step in bent.history._steps for figure in step.document.figures}
+    assert bent.pictures.keys() <= steps
+
+
+def test_within_a_job_the_clock_goes_on(window):
+    """Else no test would see a pose that takes more than one picture."""
+    seen = []
+    thread = threading.Thread(target=lambda: seen.extend(window.clock() for _ in range(3)))
+    thread.start()
+    thread.join()
+    assert seen[0] < seen[1] < seen[2]
+    assert window.clock() == window.clock()
