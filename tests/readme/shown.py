@@ -1,0 +1,53 @@
+"""Which menus, tabs and tools a picture of the window shows."""
+
+import json
+from pathlib import Path
+
+from harness import Harness, Robot
+
+from app.editor import Jobs, Session
+from app.render import Renderer
+from app.render.gpu import create_context
+from app.ui.shortcuts import BINDINGS
+from app.ui.window import Window
+
+Shown = dict[str, list[str]]
+# How the test engine finds the item of a name.
+ITEMS = {"menus": "##MainMenuBar/##MenuBar/{}", "tabs": "**/###{}", "tools": "**/###{}"}
+
+
+def shown_now() -> Shown:
+    """Return what the window is made to show while a drawing is open, by the program's tables.
+
+    These are the titles of the menus and of the tabs at the side, and the tools of the icon bar.
+    Nothing is drawn for it.
+    """
+    session = Session(clock=lambda: 0.0, jobs=Jobs(), folder=Path())
+    params = Window(session, lambda: Renderer(create_context())).runner_params()
+    return {
+        "menus": list(dict.fromkeys(binding.menu for binding in BINDINGS.values())),
+        "tabs": [
+            panel.label.rpartition("###")[2]
+            for panel in params.docking_params.dockable_windows
+            if panel.dock_space_name == "side"
+        ],
+        "tools": [binding.label for binding in BINDINGS.values() if binding.in_bar],
+    }
+
+
+def shown_in(window: Harness) -> Shown:
+    """Return what is really found in a running window."""
+    found: Shown = {}
+
+    def look(robot: Robot) -> None:
+        for kind, names in shown_now().items():
+            found[kind] = [name for name in names if robot.item_exists(ITEMS[kind].format(name))]
+
+    window.run(look)
+    return found
+
+
+def write_list(picture: Path, shown: Shown) -> None:
+    """Write what a picture shows into the file beside it."""
+    text = json.dumps(shown, indent=2, ensure_ascii=False)
+    picture.with_suffix(".json").write_text(f"{text}\n", encoding="utf-8")

@@ -1,0 +1,129 @@
+"""The README's pictures of the window: sample projects, opened and used as a person would."""
+
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+from harness import Harness
+
+from app.document import Target
+from app.editor import layering
+from app.editor.actions import editing, playback, posing, viewing
+from app.editor.poses import library
+from app.editor.project import Project
+from app.storage import sample_images
+from app.storage.preferences import ThemeName
+from tests.readme.shown import shown_in, write_list
+
+AT_REST = 10  # frames until nothing moves or fades any more
+LOOK_UP = {"snout": 90 + 740j, "brow": 270 + 810j}  # where handles of the dragon's head are pulled
+
+
+def draw(names: Sequence[str], folder: Path) -> None:
+    """Take pictures of the window into a folder, and write beside each what it shows.
+
+    Parameters
+    ----------
+    names : sequence of str
+        Of `PICTURES`.
+    folder : Path
+    """
+    if not names:
+        return
+    window = Harness()
+    for name in names:
+        window.reset()
+        PICTURES[name](window)
+        window.settle()
+        window.frames(AT_REST)
+        told = [toast.text for toast in window.session.toasts]
+        if told:
+            raise RuntimeError(f"a message covers {name}: {told}")
+        path = folder / f"{name}.png"
+        window.picture().save(path, optimize=True)
+        write_list(path, shown_in(window))
+        print(path, flush=True)
+
+
+def _posing(window: Harness) -> None:
+    """A dragon that looks up, drawn by handles; where it was an in-between, there is a key now."""
+    project = _open(window, "dragon", frame=36)
+    wishes = {_handle(project, name): Target(position=at) for name, at in LOOK_UP.items()}
+    window.act(posing.wish, wishes)
+    window.settle()
+    window.act(editing.select, frozenset({_handle(project, "snout")}))
+    window.show_tab("Handle")
+
+
+def _onion_skin(window: Harness) -> None:
+    """The poses before and after, and those that are kept for later."""
+    project = _open(window, "dragon", frame=0, theme="light")
+    for frame, name in {0: "calm", 24: "tail up", 48: "tail back"}.items():
+        window.act(playback.seek, frame)
+        window.settle()
+        window.act(library.keep)
+        window.settle()
+        window.act(library.rename, project.figure.library[-1].name, name)
+    window.act(playback.seek, 37)
+    window.act(viewing.toggle, "onion")
+    window.show_tab("Poses")
+
+
+def _layers(window: Harness) -> None:
+    """A child of many layers waves: the arms hang on the body, and mouths are seen in turns."""
+    project = _open(window, "friend", frame=14)
+    arm = next(figure.id for figure in project.document.figures if figure.name == "left arm")
+    window.act(layering.choose, arm)
+    window.act(editing.select, frozenset({_handle(project, "hand")}))
+    window.show_tab("Layers")
+
+
+def _heat_map(window: Harness) -> None:
+    """How far a giraffe is squeezed where it bends to the ground."""
+    _open(window, "giraffe", frame=30)
+    window.act(viewing.fit_pose)
+    window.act(viewing.show_heat_map, "sigma_b")
+    window.show_tab("Distortion")
+
+
+def _export(window: Harness) -> None:
+    """What will be exported of an octopus."""
+    _open(window, "octopus", frame=28, theme="light")
+    window.act(viewing.toggle, "handles")
+    window.show_tab("Export")
+
+
+def _split_view(window: Harness) -> None:
+    """A giraffe by two methods, side by side."""
+    _open(window, "giraffe", frame=15)
+    window.act(viewing.toggle, "handles")
+    window.act(viewing.toggle_split)
+    viewing.lay_beside(window.session, beside=True)
+    window.settle()
+    window.act(viewing.fit_pose)
+    window.show_tab("Distortion")
+
+
+def _open(window: Harness, sample: str, *, frame: int, theme: ThemeName = "dark") -> Project:
+    """Open a sample project, which begins to play, and stop at a frame."""
+    project = window.again(Harness.open, sample_images() / f"{sample}.lissom")
+    if window.session.preferences.theme != theme:
+        window.act(viewing.toggle_theme)
+    window.act(playback.halt)
+    window.act(playback.seek, frame)
+    window.settle()
+    return project
+
+
+def _handle(project: Project, name: str) -> int:
+    """Return the handle of a name."""
+    return next(handle.id for handle in project.figure.handles if handle.name == name)
+
+
+PICTURES: dict[str, Callable[[Harness], None]] = {
+    "posing": _posing,
+    "layers": _layers,
+    "onion-skin": _onion_skin,
+    "heat-map": _heat_map,
+    "export": _export,
+    "split-view": _split_view,
+}
