@@ -15,7 +15,7 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption(
         "--regenerate",
         action="store_true",
-        help="write the golden images anew instead of comparing with them; look at them then",
+        help="write golden images and tables anew instead of comparing; look at them then",
     )
     parser.addoption(
         "--steps",

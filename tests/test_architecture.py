@@ -54,22 +54,25 @@ def test_the_layers_keep_their_direction():
     assert lint_imports(config_filename="pyproject.toml", is_debug_mode=False) == 0
 
 
-def test_the_readme_has_the_levels_of_the_contracts():
+def test_the_readmes_have_the_levels_of_the_contracts():
     settings = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
     layers = {
         tuple(contract["containers"]): contract["layers"]
         for contract in settings["tool"]["importlinter"]["contracts"]
         if contract["type"] == "layers"
     }
-    levels = [
-        [f"{root}.{name.strip()}" for name in re.split(r"[|:]", layer)]
-        for root in ("engine", "app")
-        for layer in reversed(layers[root,])
-    ]
-    readme = (ROOT / "README.md").read_text(encoding="utf-8")
-    rows = re.findall(r"^\| (\d+) \| ((?:`[\w.]+`(?:, )?)+) \|", readme, flags=re.MULTILINE)
-    assert [re.findall(r"`([\w.]+)`", rooms) for _, rooms in rows] == levels
-    assert [int(number) for number, _ in rows] == list(range(1, len(levels) + 1))
+    numbers: list[int] = []
+    for root in ("engine", "app"):
+        levels = [
+            [f"{root}.{name.strip()}" for name in re.split(r"[|:]", layer)]
+            for layer in reversed(layers[root,])
+        ]
+        readme = (ROOT / root / "README.md").read_text(encoding="utf-8")
+        rows = re.findall(r"^\| (\d+) \| ((?:`[\w.]+`(?:, )?)+) \|", readme, flags=re.MULTILINE)
+        assert [re.findall(r"`([\w.]+)`", rooms) for _, rooms in rows] == levels
+        numbers += [int(number) for number, _ in rows]
+    # The program's levels go on where the engine's end.
+    assert numbers == list(range(1, len(numbers) + 1))
 
 
 @pytest.mark.parametrize("package", PACKAGES)
