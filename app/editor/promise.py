@@ -1,6 +1,7 @@
 """What is on its way to the document, and what is to be done once it is there."""
 
 from dataclasses import dataclass
+from math import inf
 
 from app.editor.action import Action
 from app.solving import Renewal
@@ -36,8 +37,12 @@ class Afterwards:
         The same in words: "Save", "Close".
     after_saves : bool
         Whether it also waits for a save that is under way.
+    until : float
+        The clock's seconds when it is done whatever is still on its way: a worker that never ends
+        is to delay neither saving nor closing.
     """
 
     then: Action
     what: str
     after_saves: bool = False
+    until: float = inf

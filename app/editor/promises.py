@@ -6,6 +6,7 @@ document as the person sees it coming asks `once_settled`.
 """
 
 from collections.abc import Callable
+from math import inf
 from typing import TypeVar
 
 from app.editor.action import Action
@@ -99,7 +100,13 @@ def is_settled(project: Project, *, after_saves: bool = False) -> bool:
 
 @with_project
 def once_settled(
-    session: Session, project: Project, then: Action, what: str, *, after_saves: bool = False
+    session: Session,
+    project: Project,
+    then: Action,
+    what: str,
+    *,
+    after_saves: bool = False,
+    patience: float = inf,
 ) -> None:
     """Do something as soon as nothing is on its way to the document any more; at once if so.
 
@@ -112,8 +119,12 @@ def once_settled(
         The same in words, for the status bar.
     after_saves : bool
         Whether it also waits for a save that is under way.
+    patience : float
+        Seconds after which it is done whatever is still on its way.
     """
-    project.afterwards.append(Afterwards(then=then, what=what, after_saves=after_saves))
+    until = session.clock() + patience
+    waiting = Afterwards(then=then, what=what, after_saves=after_saves, until=until)
+    project.afterwards.append(waiting)
     go_on(session)
 
 
@@ -122,7 +133,8 @@ def go_on(session: Session, project: Project) -> None:
     """Do the next of what has waited for the document, if that has settled."""
     while project.afterwards and session.project is project:
         first = project.afterwards[0]
-        if not is_settled(project, after_saves=first.after_saves):
+        is_due = session.clock() >= first.until
+        if not (is_due or is_settled(project, after_saves=first.after_saves)):
             return
         del project.afterwards[0]
         first.then.apply(session)

@@ -27,6 +27,7 @@ from app.storage import (
 )
 
 PROJECT = ".lissom"
+PATIENCE = 10.0  # seconds that saving and closing wait for what is on its way
 SAVING, AUTOSAVING, WRITING = "Saving", "Autosaving", "Saving preferences"
 CLEARING = "Clearing up"
 NOT_KEPT = "Unsaved work cannot be kept"
@@ -58,7 +59,8 @@ def write(session: Session, path: Path, then: Action | None) -> None:
     What came afterwards would be a change again, which nobody made; and to save twice at a time
     would take the first for another program's.
     """
-    promises.once_settled(session, do(write_now, path, then), "Save", after_saves=True)
+    writing = do(write_now, path, then)
+    promises.once_settled(session, writing, "Save", after_saves=True, patience=PATIENCE)
 
 
 @with_project
@@ -213,7 +215,7 @@ def unless_unsaved(session: Session, then: Action) -> None:
         return
     if not promises.is_settled(project, after_saves=True):
         session.tell(f"{promises.coming(project)} comes first.", topic="settling")
-    promises.once_settled(session, asking, "Close", after_saves=True)
+    promises.once_settled(session, asking, "Close", after_saves=True, patience=PATIENCE)
 
 
 @with_project

@@ -441,12 +441,12 @@ def test_a_save_does_not_wait_for_ever_for_a_pose_that_never_settles(
 ):
     window.act(posing.add_handle, complex(*project.document.canvas) / 2)
     window.settle()
-    monkeypatch.setattr("app.editor.actions.posing.steps._take_steps", lambda *_: end.wait())
+    monkeypatch.setattr("app.editor.actions.posing.solving._take_steps", lambda *_: end.wait())
     posing.wish(window.session, {0: Target(position=complex(*project.document.canvas) / 3)})
     window.act(saving.write, tmp_path / "a.lissom", None)
     window.frames(3)
     assert not (tmp_path / "a.lissom").exists()
-    window.clock.now += saving.SETTLING
+    window.clock.now += saving.PATIENCE
     window.until(lambda: project.path is not None)
     assert (tmp_path / "a.lissom").exists()
     window.act(upkeep.give_up, "Posing")

@@ -200,7 +200,7 @@ class HandleDrag:
     def wish(self) -> Target | None:
         """Where the handle is wanted now."""
         posing = self._project.pull
-        return None if posing is None else posing.targets[self.handle]
+        return posing.targets[self.handle] if posing and posing.targets else None
 
     @property
     def _is_followed(self) -> bool:

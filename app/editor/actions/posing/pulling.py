@@ -29,8 +29,10 @@ def pull(
     """
     if project.puppet.shown is None:
         return
-    held = next((pull for pull in project.pulls if pull.is_held), None)
-    held = held or _begin(session, project, gesture or object())
+    held = project.pull
+    if held is None or not held.is_held:
+        let_go(session)
+        held = _begin(session, project, gesture or object())
     wanted = wish if callable(wish) else partial(_wherever, wish)
     held.wish(gesture or object(), wanted)
     go_on(session, project)
