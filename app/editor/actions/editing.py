@@ -212,8 +212,8 @@ def follow_figures(project: Project) -> None:
     for identity in gone:
         del project.puppets[identity]
     # Those of layers that undo and redo may bring back are kept as well.
-    reachable = project.history.picture_files
-    for file in project.pictures.keys() - reachable:
+    spare = project.pictures.keys() - {figure.picture for figure in document.figures}
+    for file in spare - project.history.picture_files if spare else ():
         del project.pictures[file]
     for figure in document.figures:
         puppet = project.puppets.get(figure.id)

@@ -208,14 +208,20 @@ def unless_unsaved(session: Session, then: Action) -> None:
     if project is None:
         then.apply(session)
         return
-    asking = do(ask_unsaved, then)
-    if asking in [waiting.then for waiting in project.afterwards]:
-        project.afterwards = [other for other in project.afterwards if other.then != asking]
+    asked = [each for each in project.afterwards if _asks_about(each.then, then)]
+    if asked:
+        project.afterwards = [each for each in project.afterwards if each not in asked]
         ask_unsaved(session, then)
         return
     if not promises.is_settled(project, after_saves=True):
         session.tell(f"{promises.coming(project)} comes first.", topic="settling")
+    asking = do(ask_unsaved, then)
     promises.once_settled(session, asking, "Close", after_saves=True, patience=PATIENCE)
+
+
+def _asks_about(waiting: Action, then: Action) -> bool:
+    """Tell whether an action asks before the same is done as now."""
+    return waiting.verb is ask_unsaved and waiting.arguments[0].verb is then.verb
 
 
 @with_project

@@ -1,11 +1,20 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from documents import CENTRE, differences, disc_document, full_document, random_command
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from app.document.commands import Command, figure_commands, handle_commands, scene_commands
-from app.document.history import History, UnkeyedPose
+from app.document.commands import (
+    Command,
+    figure_commands,
+    handle_commands,
+    key_commands,
+    pose_commands,
+    scene_commands,
+)
+from app.document.history import History, UnkeyedPose, _held_only_by
 from app.errors import LissomError
 
 seeds = st.lists(st.integers(0, 2**32 - 1), max_size=25)
@@ -307,3 +316,55 @@ def test_what_completes_a_step_is_undone_with_it():
     same = history.document
     history.complete(scene_commands.set_loop(loop=True))
     assert history.document is same
+
+
+def moved(pose, by):
+    """Return a pose that has gone on."""
+    return replace(pose, phi=pose.phi + by, psi=pose.psi.copy())
+
+
+def held(history):
+    """Return the bytes that history counts, anew."""
+    pairs = zip(history._steps, history._steps[1:], strict=False)
+    return [*(_held_only_by(old, new) for old, new in pairs), 0]
+
+
+def test_what_a_gesture_led_to_goes_on_in_its_step_and_in_all_later_ones():
+    first = full_document()
+    history, gesture = History(first, saved=True), object()
+    figure = first.figures[0]
+    frame = figure.keys[0].frame
+    pose = moved(figure.keys[0].pose, 1)
+    history.do(key_commands.pose_key(figure.id, frame, pose), gesture=gesture)
+    history.do(pose_commands.keep_pose(figure.id, pose, "copy"))
+    history.do(set_fps(31))
+    history.undo()
+    rest = moved(pose, 2)
+    assert history.amend(gesture, pose, lambda _, earlier: replace(rest, targets=earlier.targets))
+    for documents in range(3):
+        now = history.document.figures[0]
+        assert now.key(frame).pose.phi is rest.phi, documents
+        assert all(kept.pose.phi is rest.phi for kept in now.library if kept.name == "copy")
+        history.redo() if documents == 0 else history.undo()
+    history.redo()
+    assert history._held == held(history)
+    while history.undo_label is not None:
+        history.undo()
+    assert history.document is first, "nothing before it has changed"
+    # As soon as something else took the place of its step, it is over.
+    history.do(set_fps(17))
+    assert not history.amend(gesture, rest, lambda _, earlier: earlier)
+
+
+def test_an_unkeyed_pose_goes_on_too_and_other_poses_stay():
+    first = full_document()
+    history, gesture = History(first, saved=True), object()
+    figure = first.figures[0]
+    pose = moved(figure.keys[0].pose, 1)
+    history.pose(UnkeyedPose(figure=figure.id, frame=5, pose=pose), gesture=gesture)
+    rest = moved(pose, 2)
+    assert history.amend(gesture, pose, lambda *_: rest)
+    assert history.unkeyed.pose is rest
+    assert history.document is first
+    history.undo()
+    assert history.unkeyed is None
