@@ -24,7 +24,7 @@ from app.document import (
 from app.editor.action import Action
 from app.editor.derived import Derived
 from app.editor.timeline_view import Timing
-from app.motion import Box, Build, Glimpse, Joints, Motion, MotionPaths, PosableMesh, Shown
+from app.motion import Box, IntervalStore, Joints, MotionPaths, PosableMesh, Shown
 from app.render import View, fit_view
 from app.reports import Curves
 from app.solving import Drag, Renewal, Rig
@@ -35,14 +35,6 @@ from engine.maps import Bounds
 
 EXTENTS = 32  # of the motion, which are remembered for undo and redo
 FIT_MARGIN = 0.08  # of the viewport, left free around what is fitted into it
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Trial:
-    """A pose that was let go, and the motion with its in-betweens as far as they are prepared."""
-
-    pose: Pose
-    motion: Motion
 
 
 @dataclass(slots=True, kw_only=True, eq=False)
@@ -68,8 +60,8 @@ class PoseInProgress:
     found : Pose, optional
         Where the solver is with a pose that the playhead has left: the document has it as soon as
         its in-betweens are ready, so that what is shown stays exact.
-    trial : Trial, optional
-        What the worker is at, once the pose was let go.
+    trial : Pose, optional
+        The one whose in-betweens the worker prepares, once the pose was let go.
     is_left : bool
         Whether the playhead has left it, and the document was seen to.
     taken : Pose, optional
@@ -89,7 +81,7 @@ class PoseInProgress:
     is_held: bool = True
     steps: int = 0
     found: Pose | None = None
-    trial: Trial | None = None
+    trial: Pose | None = None
     is_left: bool = False
     taken: Pose | None = None
     is_paused: bool = False
@@ -170,15 +162,12 @@ class Twin:
     original, figure : Figure
         The figure as it is, and the same by the other variant, where the method is one.
     method : Variant or Baseline
-    motion : Derived
-        On the coarse mesh.
     shown : Shown, optional
     """
 
     original: Figure
     figure: Figure
     method: Variant | Baseline
-    motion: Derived[Clip, Motion]
     shown: Shown | None = None
 
     def clip(self, document: Document) -> Clip:
@@ -197,16 +186,14 @@ class Puppet:
         Decoded.
     is_opaque : bool
         Whether it has no transparency, so that its background was found by its colour.
-    coarse, fine : Derived
-        Its motion on a coarse mesh and on its own, which may not be there yet.
-    seen : Derived
-        The in-between at the playhead alone, where the motion lacks it.
+    file : PictureFile
+        That it was decoded from.
+    store, fine : IntervalStore
+        Its in-betweens on a coarse mesh, and on its own if that is another and is there.
     shown : Shown, optional
         None before the first frame of the window.
     rig : Rig, optional
         For the poses to come; None before the first of them.
-    build : Derived
-        The series that the worker makes when it has nothing else to do.
     cut : Derived
         What is left of the picture, as the newest cut-out has it.
     small : Derived
@@ -217,13 +204,12 @@ class Puppet:
 
     picture: Picture
     is_opaque: bool
-    coarse: Derived[Clip, Motion]
+    file: PictureFile
+    store: IntervalStore
     cut: Derived[CutOut, Cut]
-    fine: Derived[Clip, Motion | None] = field(default_factory=lambda: Derived(None))
-    seen: Derived[tuple[Clip, int], Glimpse | None] = field(default_factory=lambda: Derived(None))
+    fine: IntervalStore | None = None
     shown: Shown | None = None
     rig: Rig | None = None
-    build: Derived[Clip, Build | None] = field(default_factory=lambda: Derived(None))
     small: Derived[Cut, Bytes | None] = field(default_factory=lambda: Derived(None))
     twin: Twin | None = None
 
@@ -233,11 +219,11 @@ class Puppet:
 
         `among` tells how many figures there are.
         """
-        coarse = PosableMesh.coarse(clip.figure.domain, among=among)
         return cls(
             picture=picture,
             is_opaque=picture.is_opaque,
-            coarse=Derived(Motion.at_rest(clip, coarse)),
+            file=clip.figure.picture,
+            store=IntervalStore(mesh=PosableMesh.coarse(clip.figure.domain, among=among)),
             cut=Derived(cut_picture(picture, clip.figure.cut_out), clip.figure.cut_out),
         )
 
@@ -427,13 +413,10 @@ class Project:
         """Let each figure have a twin by a method, or none."""
         for figure in self.document.figures:
             puppet = self.puppets[figure.id]
-            twin, coarse = puppet.twin, puppet.coarse.value
             if method is None:
                 puppet.twin = None
                 continue
-            if twin is None or twin.motion.value.mesh is not coarse.mesh:
-                motion: Derived[Clip, Motion] = Derived(Motion.at_rest(coarse.clip, coarse.mesh))
-                twin = Twin(original=figure, figure=figure, method=figure.variant, motion=motion)
+            twin = puppet.twin or Twin(original=figure, figure=figure, method=figure.variant)
             if twin.original is not figure or twin.method is not method:
                 twin.original, twin.method = figure, method
                 twin.figure = (

@@ -42,7 +42,6 @@ from app.export_formats import EXPORT_FORMATS
 from app.motion import (
     Animation,
     Box,
-    Motion,
     PoseSampler,
     extent_source,
     hung_animations,
@@ -173,8 +172,8 @@ def _prepare(
     if format_.is_still and project.unkeyed is not None:
         document = _with_pose(project, project.unkeyed)
     pictures = {figure: puppet.cut.value.texture for figure, puppet in project.puppets.items()}
-    motions = {
-        figure: puppet.fine.value or puppet.coarse.value
+    samplers = {
+        figure: (puppet.fine or puppet.store).sampler or puppet.store.sampler
         for figure, puppet in project.puppets.items()
     }
     extent = project.extent
@@ -184,7 +183,7 @@ def _prepare(
         detail = request.settings.shapes.triangles
         exported = document if format_.is_drawn else with_light_meshes(document, detail)
         alone = [
-            _animation(clip_of(exported, figure.id), motions[figure.id])
+            _animation(clip_of(exported, figure.id), samplers[figure.id])
             for figure in exported.figures
         ]
         hung = hung_animations(alone, exported)
@@ -210,9 +209,9 @@ def _with_pose(project: Project, pose: Pose) -> Document:
     return place(figure.id, frame, pose)(project.document)
 
 
-def _animation(clip: Clip, motion: Motion) -> Animation:
+def _animation(clip: Clip, sibling: PoseSampler | None) -> Animation:
     """Return the motion for an export, which neither waits for the window's own nor disturbs it."""
-    figure, sibling = clip.figure, motion.sampler
+    figure = clip.figure
     is_sibling = sibling is not None and sibling.domain.cage is figure.domain.cage
     sampler = PoseSampler(
         figure.domain, anchor=figure.anchor, sibling=sibling if is_sibling else None

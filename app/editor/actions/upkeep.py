@@ -1,53 +1,55 @@
 """What follows the document by itself: in-betweens, what is measured of them, what is drawn."""
 
-from collections.abc import Callable, Iterator
-from dataclasses import replace
+from collections.abc import Callable, Iterator, Mapping
 from functools import partial
-from typing import Any
+from typing import Final, TypeVar
 
-from app.document import Clip, clip_of, intervals, time_of
+from app.document import Clip, clip_of, time_of
 from app.editor.actions import playback, posing, rebuilding, viewing
-from app.editor.derived import Derivation
+from app.editor.derived import Derived
 from app.editor.failures import report
-from app.editor.jobs import Job
-from app.editor.project import Project, Puppet, Trial
+from app.editor.jobs import Job, LaneName
+from app.editor.project import Project, Puppet
 from app.editor.session import Session
 from app.editor.timeline_view import measure_shortfalls
 from app.motion import (
-    Build,
-    Glimpse,
+    IntervalStore,
     Joints,
-    Motion,
+    Part,
     PosableMesh,
     PoseSampler,
-    can_glimpse,
     extent_source,
-    glimpse_at,
     hang_shown,
     joints_source,
     measure_extent,
-    next_build,
-    prepare_motion,
     show,
     trace_paths,
-    with_series,
 )
 from app.reports import measure_curves
-from app.storage import Cut, cut_picture, shrink
-from engine.arrays import Bytes
-from engine.domain import CutOut
+from app.storage import cut_picture, shrink
 
 STILL = 0.15  # seconds after which the playhead is taken to stay where it is
 GLIMPSING = "In-between"
 SKETCHING, REFINING, STREAMING = "In-betweens", "Finer in-betweens", "Smooth playback"
+COMPARING = "Other in-betweens"
 UNMADE = "The in-betweens of these keys cannot be made"
+# What of a clip's in-betweens the jobs make, and what is said where that cannot be.
+PARTS: Final[Mapping[str, tuple[Part, str]]] = {
+    GLIMPSING: ("frame", UNMADE),
+    SKETCHING: ("in-betweens", UNMADE),
+    COMPARING: ("in-betweens", "The in-betweens to compare with cannot be made"),
+    REFINING: ("fine", "The in-betweens cannot be made in full detail"),
+    STREAMING: ("series", "Playback cannot be made smooth"),
+}
 MOST_UNASKED = 1000  # frames whose extent is measured before anybody asks
 CUTTING = "Cutting out"
 MEASURING, SPANNING = "Measuring", "Measuring the motion"
 SHRINKING = "Small pictures"
 SMALL_SIDE = 96  # pixels of a picture in the list of layers
 HANGING, TRACING = "Joints", "Motion paths"
-COMPARING = "Other in-betweens"
+
+Source = TypeVar("Source")
+Value = TypeVar("Value")
 
 
 def maintain(session: Session) -> None:
@@ -60,8 +62,10 @@ def maintain(session: Session) -> None:
     project.extent.recall(extent_source(project.document))
     rebuilding.keep_up(session)
     project.pair_up(session.split.method if session.split else None)
-    for derivation in missing(session, project):
-        derive(session, derivation)
+    _pin(session, project)
+    for job in missing(session, project):
+        if job.kind not in session.jobs.kinds:
+            session.jobs.put(job)
     shortfalls, figure = project.timing.shortfalls, project.figure
     if not shortfalls.follows(figure):
         # Little work: of the poses that were not measured before, and there is one at a time.
@@ -76,316 +80,321 @@ def give_up(session: Session, kind: str) -> None:
     session.jobs.leave(kind)
 
 
-def derive(session: Session, derivation: Derivation[Any, Any]) -> None:
-    """Let the worker derive a value, unless it is at it."""
-    if derivation.kind in session.jobs.kinds:
-        return
-    into, source = derivation.into, derivation.source
-
-    def failed(error: Exception) -> None:
-        into.failure = source
-        report(session, derivation.complaint, error)
-
-    session.jobs.put(
-        Job(
-            kind=derivation.kind,
-            work=derivation.work,
-            done=derivation.done or partial(into.take, source),
-            failed=failed,
-            lane=derivation.lane,
-        )
-    )
-
-
-def missing(session: Session, project: Project) -> Iterator[Derivation[Any, Any]]:
-    """Yield what the worker is to derive next: what is missed most, of any figure."""
-    document = project.document
-    yield from _cut(project)
-    yield from _shrink(project)
-    clips = [(clip_of(document, figure), puppet) for figure, puppet in project.puppets.items()]
-    movable = [(clip, puppet) for clip, puppet in clips if not puppet.coarse.has_failed(clip)]
+def missing(session: Session, project: Project) -> Iterator[Job]:
+    """Yield what the worker is to do next: what is missed most, of any figure."""
+    yield from _cut(session, project)
     # First of all: they are watched while the hand moves, and are of few points only.
     yield from _trace(session, project)
-    yield from _glimpse(session, project)
-    if _awaits_glimpse(session, project):
-        # On few cores it would come much later beside them.
+    yield from _make_frames(session, project)
+    if _awaits_frame(session, project):
+        # On few cores it would come much later beside others.
         return
-    for clip, puppet in movable:
-        if not puppet.coarse.value.knows(clip):
-            # Where nobody sees them before the hand rests, they are not worked out for each move.
-            is_seen = session.overlays.onion or project.posing is None
-            if is_seen or posing.POSING not in session.jobs.kinds:
-                yield _sketch(session, project, clip, puppet)
-                return
-            break
-    yield from _settle(session, project)
+    urgent = next(_own_in_betweens(session, project), None)
+    if urgent is not None:
+        yield urgent
+        return
     if project.is_posing:
         # What follows takes longer than the hand stays where it is.
         return
-    is_awaited = session.export_frame is not None or project.awaits_extent
-    if is_awaited and len(movable) == len(clips):
-        yield from _span(project)
-    yield from _compare(session, project)
-    for clip, puppet in movable:
-        if not _has_fine(clip, puppet) and not puppet.fine.has_failed(clip):
-            yield _refine(clip, puppet)
-            return
-    yield from _hang(project)
-    for clip, puppet in movable:
-        yield from _stream(session, project, clip, puppet)
-    if len(movable) == len(clips):
-        yield from _measure(project)
-        shown = document.frames
-        if shown.last - shown.first < MOST_UNASKED:
-            yield from _span(project)
+    if session.export_frame is not None or project.awaits_extent:
+        yield from _span(session, project)
+    later = next(_other_in_betweens(session, project), None)
+    if later is not None:
+        yield later
+        return
+    yield from _hang(session, project)
+    yield from _stream(session, project)
+    yield from _measure(session, project)
+    shown = project.document.frames
+    if shown.last - shown.first < MOST_UNASKED:
+        yield from _span(session, project)
 
 
-def _cut(project: Project) -> Iterator[Derivation[CutOut, Cut]]:
-    """Yield what is to be cut out of pictures anew."""
+def _derive(
+    session: Session,
+    into: Derived[Source, Value],
+    source: Source,
+    work: Callable[[], Value],
+    *,
+    kind: str,
+    complaint: str,
+    lane: LaneName = "display",
+    done: Callable[[Value], None] | None = None,
+) -> Iterator[Job]:
+    """Yield the job that works out the value of a source, unless it is there or cannot be."""
+
+    def failed(error: Exception) -> None:
+        into.failure = source
+        report(session, complaint, error)
+
+    if not (into.follows(source) or into.has_failed(source)):
+        done = done or partial(into.take, source)
+        yield Job(kind=kind, work=work, done=done, failed=failed, lane=lane)
+
+
+def _cut(session: Session, project: Project) -> Iterator[Job]:
+    """Yield what is to be cut out of pictures anew, and the small ones of the list of layers."""
     for figure in project.document.figures:
-        cut = project.puppets[figure.id].cut
-        if not (cut.follows(figure.cut_out) or cut.has_failed(figure.cut_out)):
-            yield Derivation(
-                kind=CUTTING,
-                into=cut,
-                source=figure.cut_out,
-                work=partial(cut_picture, project.puppets[figure.id].picture, figure.cut_out),
-                complaint="The picture cannot be cut out so",
-            )
-
-
-def _shrink(project: Project) -> Iterator[Derivation[Cut, Bytes | None]]:
-    """Yield the small pictures that the list of layers shows."""
+        puppet = project.puppets[figure.id]
+        yield from _derive(
+            session,
+            puppet.cut,
+            figure.cut_out,
+            partial(cut_picture, puppet.picture, figure.cut_out),
+            kind=CUTTING,
+            complaint="The picture cannot be cut out so",
+        )
     for puppet in project.puppets.values():
-        cut, small = puppet.cut.value, puppet.small
-        if not (small.follows(cut) or small.has_failed(cut)):
-            yield Derivation(
-                kind=SHRINKING,
-                into=small,
-                source=cut,
-                work=partial(shrink, cut.texture, SMALL_SIDE),
-                complaint="The picture of a layer cannot be made small",
-                # It takes a few milliseconds, and is not to wait until all in-betweens are there.
-                lane="hand",
-            )
+        yield from _derive(
+            session,
+            puppet.small,
+            puppet.cut.value,
+            partial(shrink, puppet.cut.value.texture, SMALL_SIDE),
+            kind=SHRINKING,
+            complaint="The picture of a layer cannot be made small",
+            # It takes a few milliseconds, and is not to wait until all in-betweens are there.
+            lane="hand",
+        )
 
 
-def _glimpse(
-    session: Session, project: Project
-) -> Iterator[Derivation[tuple[Clip, int], Glimpse | None]]:
-    """Yield the in-between that is awaited, before and beside all others of its interval."""
+def _pin(session: Session, project: Project) -> None:
+    """Tell all stores which clips are present, and to which ones undo and redo lead."""
+    frame, tried = playback.current_frame(session, project), posing.tried_clips(session, project)
+    for figure, puppet in project.puppets.items():
+        own, twin = clip_of(project.document, figure), puppet.twin
+        present = [own, *(clip for clip in tried if clip.figure.id == figure)]
+        if twin is not None:
+            present.append(twin.clip(project.document))
+        nearby = [
+            clip_of(document, figure)
+            for document in project.history.nearby
+            if figure in [other.id for other in document.figures]
+        ]
+        puppet.store.pin(present, nearby, frame)
+        if puppet.fine is not None:
+            puppet.fine.pin([own], nearby, frame)
+
+
+def _job(
+    session: Session,
+    kind: str,
+    puppet: Puppet,
+    clip: Clip,
+    *,
+    work: Callable[[], Value],
+    done: Callable[[Value], None],
+) -> Job:
+    """Return a job for some in-betweens of a clip; where it fails, that is told and remembered."""
+    part, complaint = PARTS[kind]
+
+    def failed(error: Exception) -> None:
+        puppet.store.fail(part, clip)
+        report(session, complaint, error)
+
+    lane: LaneName = "hand" if kind == GLIMPSING else "display"
+    return Job(kind=kind, work=work, done=done, failed=failed, lane=lane)
+
+
+def _movable(project: Project) -> list[tuple[Clip, Puppet]]:
+    """Return the clips whose in-betweens are there or can be, with their figures."""
+    clips = [(clip_of(project.document, figure), each) for figure, each in project.puppets.items()]
+    return [(clip, puppet) for clip, puppet in clips if not puppet.store.has_failed(clip)]
+
+
+def _make_frames(session: Session, project: Project) -> Iterator[Job]:
+    """Yield the in-betweens at the playhead, before and beside all others of their intervals."""
     frame = playback.current_frame(session, project)
     for figure, puppet in project.puppets.items():
-        clip, motion, seen = clip_of(project.document, figure), puppet.coarse.value, puppet.seen
+        clip, store = clip_of(project.document, figure), puppet.store
         is_posed = figure == project.active and project.unkeyed is not None
         # What fails at one frame would at others, and is told of once.
-        has_failed = seen.failure is not None and seen.failure[0] == clip
-        if is_posed or has_failed or seen.follows((clip, frame)):
+        if is_posed or store.has_failed(clip, "frame"):
             continue
-        if can_glimpse(clip, motion, frame):
-            yield Derivation(
-                kind=GLIMPSING,
-                into=seen,
-                source=(clip, frame),
-                work=partial(glimpse_at, clip, motion, frame),
-                complaint=UNMADE,
-                lane="hand",
-            )
+        work = store.making_frame(clip, frame)
+        if work is not None:
+            yield _job(session, GLIMPSING, puppet, clip, work=work, done=store.take)
 
 
-def _awaits_glimpse(session: Session, project: Project) -> bool:
-    """Tell whether a glimpse is on its way, the first one of the interval at the playhead."""
-    if GLIMPSING not in session.jobs.kinds:
-        return False
+def _awaits_frame(session: Session, project: Project) -> bool:
+    """Tell whether the first frame of the interval at the playhead is on its way."""
     frame = playback.current_frame(session, project)
-    for figure, puppet in project.puppets.items():
-        clip, seen = clip_of(project.document, figure), puppet.seen.value
-        is_first = seen is None or not seen.is_of(clip, time_of(clip, frame).interval)
-        if is_first and puppet.coarse.value.lacks(clip, frame):
-            return True
-    return False
-
-
-def _sketch(
-    session: Session, project: Project, clip: Clip, puppet: Puppet
-) -> Derivation[Clip, Motion]:
-    earlier, frame = puppet.coarse.value, playback.current_frame(session, project)
-    # An interval at a time, so that what is wanted next need not wait long; all at once where the
-    # hand has changed those around one key, and the ghosts are to stay together.
-    at_most = None if session.overlays.onion and project.posing is not None else 1
-    return Derivation(
-        kind=SKETCHING,
-        into=puppet.coarse,
-        source=clip,
-        work=_coarse_motion(project, clip, earlier, frame, at_most=at_most),
-        complaint=UNMADE,
+    clips = [(clip_of(project.document, figure), each) for figure, each in project.puppets.items()]
+    return GLIMPSING in session.jobs.kinds and any(
+        not puppet.store.is_exact(clip, frame)
+        and puppet.store.interval(clip, time_of(clip, frame).interval) is None
+        for clip, puppet in clips
     )
 
 
-def _settle(session: Session, project: Project) -> Iterator[Derivation[Clip, Motion]]:
-    """Yield in-betweens of the pose that was let go, which moves with them once it was left."""
-    puppet, trial = project.puppet, posing.next_trial(session, project)
-    clip = posing.trial_clip(session, project, trial.pose) if trial else None
-    if trial is None or clip is None or SKETCHING in session.jobs.kinds:
+def _own_in_betweens(session: Session, project: Project) -> Iterator[Job]:
+    """Yield the document's in-betweens, those at the playhead first, and those of poses tried."""
+    frame = playback.current_frame(session, project)
+    # Where nobody sees them before the hand rests, they are not worked out for each move.
+    is_seen = session.overlays.onion or project.posing is None
+    if is_seen or posing.POSING not in session.jobs.kinds:
+        # All at once where the hand has changed those around one key, so that the ghosts stay
+        # together.
+        at_most = None if session.overlays.onion and project.posing is not None else 1
+        # Those that something stands in for come first.
+        for clip, puppet in sorted(
+            _movable(project), key=lambda each: each[1].store.is_exact(each[0], frame)
+        ):
+            yield from _prepare(session, project, SKETCHING, puppet, clip, at_most=at_most)
+    for clip in posing.tried_clips(session, project):
+        yield from _prepare(session, project, SKETCHING, project.puppets[clip.figure.id], clip)
+
+
+def _other_in_betweens(session: Session, project: Project) -> Iterator[Job]:
+    """Yield the in-betweens by the method that is compared, and those in full detail."""
+    for puppet in project.puppets.values():
+        clip = None if puppet.twin is None else puppet.twin.clip(project.document)
+        if clip is not None:
+            yield from _prepare(session, project, COMPARING, puppet, clip)
+    for clip, puppet in _movable(project):
+        if puppet.store.mesh.domain is not clip.figure.domain:
+            yield from _prepare(session, project, REFINING, puppet, clip)
+
+
+def _prepare(
+    session: Session,
+    project: Project,
+    kind: str,
+    puppet: Puppet,
+    clip: Clip,
+    *,
+    at_most: int | None = 1,
+) -> Iterator[Job]:
+    """Yield what prepares the nearest in-betweens that a store lacks, or its mesh."""
+    is_fine, frame = kind == REFINING, playback.current_frame(session, project)
+    store = puppet.fine if is_fine else puppet.store
+    if puppet.store.has_failed(clip, PARTS[kind][0]):
         return
-    if trial.motion.knows(clip) or puppet.coarse.failure is not None:
-        posing.take_trial(session, project, trial)
-        return
-    pose, earlier = trial.pose, trial.motion
-    prepare = _coarse_motion(
-        project, clip, earlier, playback.current_frame(session, project), at_most=1
-    )
-
-    def work() -> Motion:
-        sampler = earlier.sampler
-        if sampler is not None and not sampler.has_sampled(pose):
-            # A playhead that leaves the pose at once need not wait for a whole interval then.
-            sampler.samples(pose)
-            return earlier
-        return prepare()
-
-    def done(motion: Motion) -> None:
-        posing.take_trial(session, project, Trial(pose=pose, motion=motion))
-
-    yield replace(_sketch(session, project, clip, puppet), work=work, done=done)
+    if store is None or store.mesh.source is not clip.figure.domain:
+        yield _mesh(session, project, kind, puppet, clip)
+    elif (lacking := store.missing(clip, frame)[:at_most]) and (not is_fine or store.has_room()):
+        sibling = puppet.store.sampler if is_fine else None
+        work = store.preparing(clip, lacking, sibling)
+        yield _job(session, kind, puppet, clip, work=work, done=store.take)
 
 
-def _trace(session: Session, project: Project) -> Iterator[Derivation[Any, Any]]:
+def _mesh(session: Session, project: Project, kind: str, puppet: Puppet, clip: Clip) -> Job:
+    """Return what makes the mesh of a figure whose domain is another than before."""
+    domain, among = clip.figure.domain, len(project.document.figures)
+
+    def work() -> IntervalStore:
+        if kind == REFINING:
+            return IntervalStore(mesh=PosableMesh.fine(domain))
+        return IntervalStore(mesh=PosableMesh.coarse(domain, among=among))
+
+    def done(store: IntervalStore) -> None:
+        if kind == REFINING:
+            puppet.fine = store
+        else:
+            puppet.store = store
+
+    return _job(session, kind, puppet, clip, work=work, done=done)
+
+
+def _trace(session: Session, project: Project) -> Iterator[Job]:
     """Yield the paths of the active figure's handles, while some are shown."""
     clip, paths = project.clip, project.paths
-    if not (session.overlays.paths and project.selected):
-        return
-    if paths.follows(clip) or paths.has_failed(clip):
-        return
-    earlier, sibling = paths.value, project.puppet.coarse.value.sampler
-    yield Derivation(
-        kind=TRACING,
-        into=paths,
-        source=clip,
-        work=lambda: trace_paths(clip, earlier, sibling),
-        complaint="The paths of the handles cannot be traced",
-    )
-
-
-def _hang(project: Project) -> Iterator[Derivation[Any, Any]]:
-    """Yield the joints of what hangs."""
-    document, joints = project.document, project.joints
-    source, earlier = joints_source(document), joints.value
-    if not source or joints.follows(source) or joints.has_failed(source):
-        return
-    samplers = {figure: puppet.coarse.value.sampler for figure, puppet in project.puppets.items()}
-    siblings = {figure: sampler for figure, sampler in samplers.items() if sampler is not None}
-    yield Derivation(
-        kind=HANGING,
-        into=joints,
-        source=source,
-        work=lambda: Joints(document, siblings, earlier).prepare(),
-        complaint="The joints cannot be followed between the keys",
-    )
-
-
-def _compare(session: Session, project: Project) -> Iterator[Derivation[Clip, Motion]]:
-    """Yield the in-betweens by the method that the viewport shows beside the figures' own."""
-    if session.split is None:
-        return
-    for puppet in project.puppets.values():
-        if puppet.twin is None:
-            continue
-        clip, motion = puppet.twin.clip(project.document), puppet.twin.motion
-        sibling = puppet.coarse.value.sampler
-        if not motion.value.knows(clip) and not motion.has_failed(clip):
-            yield Derivation(
-                kind=COMPARING,
-                into=motion,
-                source=clip,
-                work=partial(prepare_motion, clip, motion.value, sibling, at_most=1),
-                complaint="The in-betweens to compare with cannot be made",
-            )
-            return
-
-
-def _refine(clip: Clip, puppet: Puppet) -> Derivation[Clip, Motion | None]:
-    earlier, sibling = puppet.fine.value, puppet.coarse.value.sampler
-    return Derivation(
-        kind=REFINING,
-        into=puppet.fine,
-        source=clip,
-        work=lambda: _fine_motion(clip, earlier, sibling),
-        complaint="The in-betweens cannot be made in full detail",
-    )
-
-
-def _stream(
-    session: Session, project: Project, clip: Clip, puppet: Puppet
-) -> Iterator[Derivation[Clip, Build | None]]:
-    """Yield some steps of a series that is in the making or that is wanted next."""
-    if STREAMING in session.jobs.kinds or puppet.build.has_failed(clip):
-        return
-    motions = [motion for motion in (puppet.coarse.value, puppet.fine.value) if motion is not None]
-    build = puppet.build.value
-    if build is None or not any(build.is_of(motion) for motion in motions):
-        frame = playback.current_frame(session, project)
-        heat = session.overlays.heat_map != "none"
-        builds = (next_build(motion, clip, frame, heat=heat) for motion in motions)
-        build = next(filter(None, builds), None)
-    # While the worker has it, it is nowhere else: should a step fail, none follows.
-    puppet.build.value = None
-    if build is not None:
-        yield Derivation(
-            kind=STREAMING,
-            into=puppet.build,
-            source=clip,
-            work=build.advance,
-            complaint="Playback cannot be made smooth",
-            done=partial(_take_series, session, project, clip, puppet),
+    if session.overlays.paths and project.selected:
+        yield from _derive(
+            session,
+            paths,
+            clip,
+            partial(trace_paths, clip, paths.value, project.puppet.store.sampler),
+            kind=TRACING,
+            complaint="The paths of the handles cannot be traced",
         )
 
 
-def _take_series(
-    session: Session, project: Project, clip: Clip, puppet: Puppet, build: Build | None
-) -> None:
-    if build is None or build.series is None:
-        puppet.build.take(clip, build)
+def _hang(session: Session, project: Project) -> Iterator[Job]:
+    """Yield some frames of the joints of what hangs."""
+    document, joints = project.document, project.joints
+    source = joints_source(document)
+    if not source or joints.follows(source) or HANGING in session.jobs.kinds:
         return
-    frame = playback.current_frame(session, project)
-    clip = clip_of(project.document, clip.figure.id)
-    puppet.coarse.value = with_series(puppet.coarse.value, build, clip, frame)
-    if puppet.fine.value is not None:
-        puppet.fine.value = with_series(puppet.fine.value, build, clip, frame)
+    begun_of, begun = joints.begun or (None, joints.value)
+    if begun is None or begun_of != source:
+        begun = Joints(document, siblings_of(project), begun)
+
+    def done(advanced: Joints | None) -> None:
+        if advanced is not None and advanced.is_whole:
+            joints.take(source, advanced)
+        else:
+            joints.begun = source, advanced
+
+    yield from _derive(
+        session,
+        joints,
+        source,
+        begun.advance,
+        kind=HANGING,
+        complaint="The joints cannot be followed between the keys",
+        done=done,
+    )
 
 
-def _measure(project: Project) -> Iterator[Derivation[Any, Any]]:
+def siblings_of(project: Project) -> dict[int, PoseSampler]:
+    """Return what is known of the figures' outlines, by their ids."""
+    samplers = {figure: puppet.store.sampler for figure, puppet in project.puppets.items()}
+    return {figure: sampler for figure, sampler in samplers.items() if sampler is not None}
+
+
+def _stream(session: Session, project: Project) -> Iterator[Job]:
+    """Yield some steps of a series that is in the making or that is wanted next."""
+    if STREAMING in session.jobs.kinds:
+        return
+    frame, heat = playback.current_frame(session, project), session.overlays.heat_map != "none"
+    for clip, puppet in _movable(project):
+        if puppet.store.has_failed(clip, "series"):
+            continue
+        for store in filter(None, (puppet.store, puppet.fine)):
+            build = store.next_build(clip, frame, heat=heat)
+            if build is not None:
+                done = store.take_build
+                yield _job(session, STREAMING, puppet, clip, work=build.advance, done=done)
+                return
+
+
+def _measure(session: Session, project: Project) -> Iterator[Job]:
     """Yield what is measured of the in-betweens."""
-    twin = project.puppet.twin
-    wanted = [(project.clip, project.puppet.coarse.value, project.curves)]
+    store, twin = project.puppet.store, project.puppet.twin
+    wanted = [(project.clip, project.curves)]
     if twin is not None:
-        wanted.append((twin.clip(project.document), twin.motion.value, project.twin_curves))
-    for clip, motion, curves in wanted:
-        is_known = curves.follows(clip) or curves.has_failed(clip) or not motion.knows(clip)
-        if intervals(clip) and not is_known:
-            yield Derivation(
+        wanted.append((twin.clip(project.document), project.twin_curves))
+    for clip, curves in wanted:
+        inbetweens = store.prepared(clip)
+        if inbetweens:
+            yield from _derive(
+                session,
+                curves,
+                clip,
+                partial(measure_curves, clip, inbetweens),
                 kind=MEASURING,
-                into=curves,
-                source=clip,
-                work=partial(measure_curves, clip, motion),
                 complaint="The distortion could not be measured",
             )
-            return
 
 
-def _span(project: Project) -> Iterator[Derivation[Any, Any]]:
+def _span(session: Session, project: Project) -> Iterator[Job]:
     """Yield the measurement of where the motion reaches."""
     document, extent = project.document, project.extent
-    source = extent_source(document)
-    motions = {figure: puppet.coarse.value for figure, puppet in project.puppets.items()}
-    if not (extent.follows(source) or extent.has_failed(source)):
-        yield Derivation(
-            kind=SPANNING,
-            into=extent,
-            source=source,
-            work=lambda: measure_extent(document, motions),
-            complaint="The extent of the motion could not be measured",
-        )
+    source, stores = extent_source(document), {}
+    if extent.follows(source):
+        return
+    for figure, puppet in project.puppets.items():
+        if not puppet.store.has(clip_of(document, figure)):
+            return
+        stores[figure] = puppet.store.snapshot()
+    yield from _derive(
+        session,
+        extent,
+        source,
+        partial(measure_extent, document, stores, project.joints.value),
+        kind=SPANNING,
+        complaint="The extent of the motion could not be measured",
+    )
 
 
 def _fit_motion(session: Session, project: Project) -> None:
@@ -405,9 +414,8 @@ def _show(session: Session, project: Project) -> None:
         if puppet.shown is not None and puppet.shown.frame != frame:
             project.moved_at = session.clock()
         pose = project.unkeyed if figure == project.active else None
-        motions = _motions(session, project, puppet)
-        clip, seen = clip_of(project.document, figure), puppet.seen.value
-        shown[figure] = show(clip, frame, pose, motions, puppet.shown, seen=seen)
+        clip, stores = clip_of(project.document, figure), _stores(session, project, puppet)
+        shown[figure] = show(clip, frame, pose, stores, puppet.shown)
         if pose is not None:
             poses[figure] = pose
     joints = project.joints.value if project.joints.follows(source) else None
@@ -425,53 +433,18 @@ def _show_twins(project: Project, frame: int) -> None:
             return
         pose = project.unkeyed if figure == project.active else None
         earlier = twin.shown or puppet.shown
-        shown[figure] = show(
-            twin.clip(project.document), frame, pose, (twin.motion.value,), earlier
-        )
+        clip = twin.clip(project.document)
+        shown[figure] = show(clip, frame, pose, [puppet.store], earlier)
     # By the meshes alone: the joints that are followed exactly are of the figures' own methods.
     for figure, hung in hang_shown(project.document, shown, None, {}).items():
         if (twin := project.puppets[figure].twin) is not None:
             twin.shown = hung
 
 
-def _motions(session: Session, project: Project, puppet: Puppet) -> tuple[Motion, ...]:
+def _stores(session: Session, project: Project, puppet: Puppet) -> list[IntervalStore]:
+    """Return where to look for what is drawn of a figure, the preferred mesh first."""
     is_scrubbed = session.clock() - project.moved_at < STILL
     is_moving = project.posing is not None or project.playhead.since is not None or is_scrubbed
-    coarse, fine = puppet.coarse.value, puppet.fine.value
-    if fine is None or (is_moving and not session.full_detail):
-        return (coarse,)
-    return (fine, coarse)
-
-
-def _has_fine(clip: Clip, puppet: Puppet) -> bool:
-    coarse, fine = puppet.coarse.value, puppet.fine.value
-    is_own = coarse.mesh.domain is clip.figure.domain
-    return is_own or (fine is not None and fine.knows(clip))
-
-
-def _coarse_motion(
-    project: Project, clip: Clip, earlier: Motion, frame: int, *, at_most: int | None
-) -> Callable[[], Motion]:
-    """Return what prepares the motion on few triangles, and keeps what undo and redo lead to."""
-    figure, among = clip.figure, len(project.document.figures)
-    recalled = [
-        clip_of(document, figure.id)
-        for document in project.history.nearby
-        if figure.id in [other.id for other in document.figures]
-    ]
-
-    def prepare() -> Motion:
-        known = earlier
-        if known.mesh.source is not figure.domain:
-            known = Motion.at_rest(clip, PosableMesh.coarse(figure.domain, among=among))
-        return prepare_motion(clip, known, at_most=at_most, frame=frame, recalled=recalled)
-
-    return prepare
-
-
-def _fine_motion(clip: Clip, earlier: Motion | None, sibling: PoseSampler | None) -> Motion:
-    domain = clip.figure.domain
-    if earlier is None or earlier.mesh.source is not domain:
-        earlier = Motion.at_rest(clip, PosableMesh.fine(domain))
-    is_sibling = sibling is not None and sibling.domain.cage is domain.cage
-    return prepare_motion(clip, earlier, sibling if is_sibling else None, at_most=1)
+    if puppet.fine is None or (is_moving and not session.full_detail):
+        return [puppet.store]
+    return [puppet.fine, puppet.store]

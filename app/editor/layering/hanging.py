@@ -1,7 +1,7 @@
 """Hanging one layer on another, and letting it go."""
 
 from app.document import Attachment, layer_commands
-from app.editor.actions import editing, playback, posing
+from app.editor.actions import editing, playback, posing, upkeep
 from app.editor.layering.working import put
 from app.editor.project import Project
 from app.editor.session import Session
@@ -48,8 +48,7 @@ def hang(
         return
     posing.drop(session)
     document, frame = project.document, playback.current_frame(session, project)
-    samplers = {figure: puppet.coarse.value.sampler for figure, puppet in project.puppets.items()}
-    siblings = {figure: sampler for figure, sampler in samplers.items() if sampler is not None}
+    siblings = upkeep.siblings_of(project)
 
     def done(joint: tuple[complex, Attachment]) -> None:
         if session.project is project and project.document is document:

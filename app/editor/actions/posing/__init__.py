@@ -25,7 +25,7 @@ from app.editor.actions.posing.pulling import (
     wish,
     wishes_of,
 )
-from app.editor.actions.posing.settling import next_trial, settle, take_trial, trial_clip
+from app.editor.actions.posing.settling import settle, tried_clips
 from app.editor.actions.posing.steps import POSING, STEPS, accept, hold, retargeted
 from app.editor.actions.posing.waiting import catch_up, forget, is_there, waits
 
@@ -46,7 +46,6 @@ __all__ = [
     "is_there",
     "let_go",
     "mirror_handles",
-    "next_trial",
     "nudge",
     "pin_here",
     "pull",
@@ -56,8 +55,7 @@ __all__ = [
     "retargeted",
     "settle",
     "suggest_handles",
-    "take_trial",
-    "trial_clip",
+    "tried_clips",
     "waits",
     "wish",
     "wishes_of",

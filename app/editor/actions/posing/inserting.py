@@ -42,7 +42,7 @@ def fit_pose(
 ) -> None:
     """Let the worker find the pose that is nearest to what the present frame shows."""
     clip, frame = project.clip, playback.current_frame(session, project)
-    rig, sibling = Rig.of(clip.figure, project.puppet.rig), project.puppet.coarse.value.sampler
+    rig, sibling = Rig.of(clip.figure, project.puppet.rig), project.puppet.store.sampler
     session.jobs.put(
         Job(
             kind=kind,

@@ -43,7 +43,7 @@ def follow(session: Session, project: Project, posing: PoseInProgress) -> None:
         posing.frame,
         project.clip,
         puppet.rig,
-        puppet.coarse.value.sampler,
+        puppet.store.sampler,
     )
 
     def failed(error: Exception) -> None:

@@ -15,7 +15,7 @@ from app.editor.session import Session
 def is_there(session: Session, project: Project) -> bool:
     """Tell whether what should be shown is, or never will be."""
     shown = project.puppet.shown
-    if project.unkeyed is not None or project.puppet.coarse.has_failed(project.clip):
+    if project.unkeyed is not None or project.puppet.store.has_failed(project.clip):
         return True
     if shown is None or not shown.is_current:
         return False
