@@ -101,8 +101,8 @@ def test_methods_for_comparison_play_beside_the_drawing_and_are_measured(window,
     assert np.isfinite(curves.k).all()
     assert between.document is document
     # All frames are there before anybody looks.
-    (interval,) = twin.motion.value.ready.values()
-    assert len(interval.inbetweens._frames) >= 23
+    (inbetweens,) = between.puppet.store.prepared(twin.clip(document))
+    assert len(inbetweens._frames) >= 23
 
 
 @pytest.mark.usefixtures("between")
