@@ -200,6 +200,7 @@ def _memory(extent: SceneExtent) -> Table:
             clip = clip_of(document, figure.id)
             puppet = Puppet.of(clip, picture)
             store = puppet.store
+            store.pin([clip], [], 0)
             store.take(store.preparing(clip, store.missing(clip, 0))())
             kept.append(store)
         used = tracemalloc.get_traced_memory()[0] / 2**20
