@@ -41,6 +41,10 @@ class Derived(Generic[Source, Value]):
         """Tell whether a source is known to give no value."""
         return self.failure is not None and self.failure == source
 
+    def fail(self, source: Source) -> None:
+        """Take note that there is no value of a source."""
+        self.failure = source
+
     def take(self, source: Source, value: Value) -> None:
         """Hold the value of a source."""
         if self.remembers and self.source is not None:

@@ -24,7 +24,7 @@ from app.document import (
 from app.editor.action import Action
 from app.editor.derived import Derived
 from app.editor.timeline_view import Timing
-from app.motion import Box, IntervalStore, Joints, MotionPaths, PosableMesh, Shown
+from app.motion import Box, IntervalStore, Joints, MotionPaths, PosableMesh, PoseSampler, Shown
 from app.render import View, fit_view
 from app.reports import Curves
 from app.solving import Drag, Renewal, Rig
@@ -395,6 +395,12 @@ class Project:
     def puppet(self) -> Puppet:
         """The figure that is posed, as the window has it."""
         return self.puppets[self.active]
+
+    @property
+    def samplers(self) -> dict[int, PoseSampler]:
+        """What is known of the figures' outlines, by their ids."""
+        samplers = {figure: puppet.store.sampler for figure, puppet in self.puppets.items()}
+        return {figure: sampler for figure, sampler in samplers.items() if sampler is not None}
 
     @property
     def unkeyed(self) -> Pose | None:

@@ -8,7 +8,7 @@ Imports: `app.document`.
 from app.motion.extent import Box, box_around, extent_source, measure_extent, motion_box
 from app.motion.inbetweens import Animation, PoseSampler
 from app.motion.interval_store import IntervalStore, Part
-from app.motion.intervals import Build, Found, Interval, OneFrame, Prepared
+from app.motion.intervals import Build, Found, KnownInterval, OneFrame, Prepared
 from app.motion.joints import HERE, Joints, Placement, hung_animations, joints_source
 from app.motion.motion_paths import MotionPaths, trace_paths
 from app.motion.paint_order import painted_depths, painted_triangles
@@ -23,9 +23,9 @@ __all__ = [
     "Box",
     "Build",
     "Found",
-    "Interval",
     "IntervalStore",
     "Joints",
+    "KnownInterval",
     "MotionPaths",
     "OneFrame",
     "Part",

@@ -1,6 +1,6 @@
 """All in-betweens of a figure on one mesh, by their content: what is there, and what is missing."""
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from copy import copy
 from dataclasses import dataclass, field
 from functools import partial
@@ -12,7 +12,7 @@ from app.motion.inbetweens import PoseSampler
 from app.motion.intervals import (
     Build,
     Found,
-    Interval,
+    KnownInterval,
     OneFrame,
     Pair,
     Prepared,
@@ -38,12 +38,12 @@ class IntervalStore:
 
     They are known by their content (`Pair`), so that undo, a copied key or another method that is
     tried again find what was made for them before. Of an interval there is nothing, one frame, all
-    of it prepared, or that as series. What workers need is handed to them frozen; what they find is
-    taken in whenever it comes, also where nothing asks for it any more.
+    of it prepared, or that as series. Workers are handed frozen input; what they find is taken in
+    whenever it comes, also where nothing asks for it any more.
 
-    What the clips that are present need stays, on the way to the budget's end without its series,
-    the farthest from the playhead first. All else makes room before, what was wanted least lately
-    first; that to which undo and redo lead, last.
+    All is kept within the budget: first what no clip needs makes room, the longest unwanted first;
+    then that to which undo and redo lead, then series, those farthest from the playhead first. What
+    is prepared of present clips stays.
 
     Parameters
     ----------
@@ -53,7 +53,7 @@ class IntervalStore:
     sampler : PoseSampler, optional
         Of the workers; None as long as nothing moves.
     whole : Clip, optional
-        The newest one of the document all of whose in-betweens were there.
+        The document's newest one all of whose in-betweens were there.
     build : Build, optional
         A series in the making, while no worker is at it.
     """
@@ -63,16 +63,16 @@ class IntervalStore:
     sampler: PoseSampler | None = None
     whole: Clip | None = None
     build: Build | None = None
-    _known: dict[Pair, Interval] = field(init=False, default_factory=dict)  # last wanted, last
-    _sizes: dict[Pair, int] = field(init=False, default_factory=dict)
+    # By when they were wanted, the latest last; beside them their bytes, and the largest so far.
+    _known: dict[Pair, KnownInterval] = field(init=False, default_factory=dict)
+    _sizes: dict[Pair, tuple[int, int, int]] = field(init=False, default_factory=dict)
+    _largest: list[int] = field(init=False, default_factory=lambda: [0, 0, 0])
     _present: dict[Clip, tuple[Pair, ...]] = field(init=False, default_factory=dict)
     _nearby: dict[Clip, tuple[Pair, ...]] = field(init=False, default_factory=dict)
-    _failures: frozenset[tuple[Part, tuple[Pair, ...]]] = field(init=False, default=frozenset())
+    _failures: set[tuple[Part, tuple[Pair, ...]]] = field(init=False, default_factory=set)
     _frame: float = field(init=False, default=0)
 
-    # What is there.
-
-    def interval(self, clip: Clip, number: int) -> Interval | None:
+    def interval(self, clip: Clip, number: int) -> KnownInterval | None:
         """Return what is known of one of a clip's intervals."""
         return self._known.get(pair_of(clip, number))
 
@@ -80,7 +80,7 @@ class IntervalStore:
         """Return the in-betweens of all of a clip's intervals; None where some are missing."""
         if clip.figure.domain is not self.mesh.source:
             return None
-        known = [self._known.get(pair) for pair in self._of(clip)]
+        known = [self._known.get(pair) for pair in self._pairs(clip)]
         every = [each.inbetweens for each in known if each is not None and each.inbetweens]
         return tuple(every) if len(every) == len(known) else None
 
@@ -88,42 +88,37 @@ class IntervalStore:
         """Tell whether all in-betweens of a clip are prepared."""
         return self.prepared(clip) is not None
 
-    def has_failed(self, clip: Clip, part: Part = "in-betweens") -> bool:
-        """Tell whether a part is known to be impossible for a clip."""
-        return (part, self._of(clip)) in self._failures
-
     def is_exact(self, clip: Clip, frame: float) -> bool:
         """Tell whether what belongs to a frame is there, and nothing has to stand in for it."""
-        if clip.figure.domain is not self.mesh.source:
-            return False
-        moment = time_of(clip, frame)
-        if resting_pose(clip, moment) is not None:
-            return True
-        known = self.interval(clip, moment.interval)
-        return known is not None and (
-            known.inbetweens is not None
-            or (known.series is not None and known.series.covers(moment.weight))
-            or (known.one is not None and known.one.weight == moment.weight)
-        )
+        return self._find(clip, time_of(clip, frame)) is not None
 
     def vertices(self, clip: Clip, frame: float) -> Vertices | None:
-        """Return where the vertices are at a frame; None where that `is_exact` says no."""
-        if not self.is_exact(clip, frame):
-            return None
+        """Return where the vertices are at a frame; None where it is not exactly there."""
         moment = time_of(clip, frame)
-        resting = resting_pose(clip, moment)
         triangles = painted_triangles(self.mesh.domain.mesh, clip, frame)
-        if resting is not None:
-            return Placed(positions=self.mesh.posed(resting), triangles=triangles)
-        known = self._known[pair_of(clip, moment.interval)]
-        if known.series is not None and known.series.covers(moment.weight):
-            return Streamed(known.series, known.distortions, moment.weight, triangles)
-        if known.one is not None and known.one.weight == moment.weight:
-            return Placed(positions=known.one.positions, triangles=triangles)
-        if known.inbetweens is None:
+        found = self._find(clip, moment)
+        if isinstance(found, Pose):
+            positions = self.mesh.posed(found)
+        elif isinstance(found, OneFrame):
+            positions = found.positions
+        elif found is None or found.inbetweens is None:
             return None
-        positions = known.inbetweens.frame(moment.weight).positions
+        elif found.series is not None and found.series.covers(moment.weight):
+            return Streamed(found.series, found.distortions, moment.weight, triangles)
+        else:
+            positions = found.inbetweens.frame(moment.weight).positions
         return Placed(positions=positions, triangles=triangles)
+
+    def _find(self, clip: Clip, moment: Moment) -> Pose | OneFrame | KnownInterval | None:
+        """Return what shows a moment exactly."""
+        if clip.figure.domain is not self.mesh.source:
+            return None
+        resting, known = resting_pose(clip, moment), self.interval(clip, moment.interval)
+        if resting is not None or known is None:
+            return resting
+        if known.inbetweens is not None:
+            return known
+        return known.one if known.one and known.one.weight == moment.weight else None
 
     def positions(self, clip: Clip, frame: float) -> Complexes | None:
         """Return the same, worked out."""
@@ -152,7 +147,7 @@ class IntervalStore:
                 continue
             first = int(isinstance(transit.start, Joint))
             ends, keys = (transit.start, transit.end), transit.keys[first : first + 2]
-            for end, key, kept in zip(ends, keys, known.kept, strict=True):
+            for end, key, kept in zip(ends, keys, known.kept or (1.0, 1.0), strict=True):
                 if isinstance(end, Joint):
                     found[key.frame] = kept
         return found
@@ -160,7 +155,7 @@ class IntervalStore:
     @property
     def nbytes(self) -> int:
         """Bytes of all that is known."""
-        return sum(self._sizes.values())
+        return sum(map(sum, self._sizes.values()))
 
     def snapshot(self) -> "IntervalStore":
         """Return what a worker may read while this goes on."""
@@ -168,28 +163,21 @@ class IntervalStore:
         copied._known = dict(self._known)  # noqa: SLF001 - its own
         return copied
 
-    # What is missing, and what workers do about it.
-
     def missing(self, clip: Clip, frame: float) -> list[int]:
         """Return the numbers of intervals to prepare, the nearest first, and each pair once."""
-        pairs, nearest = self._of(clip), dict[Pair, int]()
+        pairs, nearest = self._pairs(clip), dict[Pair, int]()
         for number in _by_nearness(clip, frame):
-            nearest.setdefault(pairs[number], number)
-        return [number for pair, number in nearest.items() if not self._is_prepared(pair)]
+            known = self._known.get(pairs[number])
+            if known is None or known.inbetweens is None:
+                nearest.setdefault(pairs[number], number)
+        return list(nearest.values())
 
     def preparing(
         self, clip: Clip, wanted: Sequence[int], sibling: PoseSampler | None = None
     ) -> Callable[[], Found]:
         """Return what prepares some of a clip's intervals."""
-        return partial(
-            prepare_intervals,
-            clip,
-            wanted,
-            self.mesh,
-            self.sampler,
-            sibling=sibling,
-            keep=frozenset(self._poses()),
-        )
+        sampler, keep = self.sampler or sibling, self._poses()
+        return partial(prepare_intervals, clip, wanted, self.mesh, sampler, keep=keep)
 
     def making_frame(self, clip: Clip, frame: float) -> Callable[[], Found] | None:
         """Return what makes the in-between at a frame alone; None where it is there or cannot be.
@@ -199,78 +187,61 @@ class IntervalStore:
         figure, sampler = clip.figure, self.sampler
         if figure.domain is not self.mesh.source or self.is_exact(clip, frame):
             return None
-        if sampler is None or sampler.anchor != figure.anchor or clip.baseline is not None:
+        if sampler is None or sampler.anchor != figure.anchor:
             return None
-        keep = frozenset(self._poses())
-        return partial(prepare_frame, clip, frame, self.mesh, sampler, keep=keep)
+        return partial(prepare_frame, clip, frame, self.mesh, sampler, keep=self._poses())
 
     def has_room(self) -> bool:
-        """Tell whether another interval fits into the budget beside those that are needed."""
-        largest = max((each.nbytes - each.streamed for each in self._known.values()), default=0)
-        return self._needed() + largest <= self.budget
+        """Tell whether one more interval of the present clips can be prepared in the budget."""
+        return self._needed() + self._largest[0] <= self.budget
 
     def next_build(self, clip: Clip, frame: float, *, heat: bool) -> Build | None:
         """Hand out the series that is in the making, or is wanted next; None where all is there.
 
-        Parameters
-        ----------
-        clip : Clip
-        frame : float
-            The intervals nearest to it come first; those beyond the budget stay without.
-        heat : bool
-            Whether distortions are shown.
+        The intervals nearest to the frame come first; those beyond the budget stay without. Those
+        of the distortions are wanted where `heat` is shown.
         """
         build, self.build = self.build, None
         if not self.has(clip):
             return None
-        pairs = self._of(clip)
+        pairs, used = self._pairs(clip), self._needed()
         if build is not None and build.pair in pairs:
             return build
-        used = self._needed()
+        usual = EXPECTED * len(self.mesh.domain.mesh.vertices)
         for pair in dict.fromkeys(pairs[number] for number in _by_nearness(clip, frame)):
             known = self._known[pair]
             for distortions, series in enumerate((known.series, known.distortions)):
                 if series is not None:
-                    used += series.nbytes
+                    used += self._sizes[pair][1 + distortions]
                 elif known.sites is not None and (heat or not distortions):
-                    wanted = known.extents[distortions] or self._expected(distortions)
-                    if used + wanted > self.budget:
+                    if used + (self._largest[1 + distortions] or usual) > self.budget:
                         return None
                     return Build(pair, known, distortions=bool(distortions))
         return None
 
-    # What changes it.
-
     def pin(self, present: Sequence[Clip], nearby: Sequence[Clip], frame: float) -> None:
-        """Take note of the clips that are needed now.
+        """Take note of the clips that are needed now, the document's first, and of the playhead.
 
-        Parameters
-        ----------
-        present : sequence of Clip
-            The document's first.
-        nearby : sequence of Clip
-            Those to which undo and redo lead.
-        frame : float
-            Where the playhead is.
+        Undo and redo lead to those nearby.
         """
         self._frame = frame
-        clips = tuple(dict.fromkeys(present)), tuple(dict.fromkeys(nearby))
-        if clips != (tuple(self._present), tuple(self._nearby)):
-            for pair in self._pinned():
-                if pair in self._known:
-                    self._known[pair] = self._known.pop(pair)
-            self._nearby = {clip: self._of(clip) for clip in nearby}
-            self._present = {clip: self._of(clip) for clip in present}
-            wanted = set(self._present.values())
-            self._failures = frozenset(each for each in self._failures if each[1] in wanted)
+        if not (self._present.keys() == set(present) and self._nearby.keys() == set(nearby)):
+            pinned = self._pinned()
+            for pair in [pair for pair in self._known if pair in pinned]:
+                self._known[pair] = self._known.pop(pair)
+            self._nearby = {clip: self._pairs(clip) for clip in nearby}
+            self._present = {clip: self._pairs(clip) for clip in present}
+            there = self._present.values()
+            self._failures = {each for each in self._failures if each[1] in there}
             self._make_room()
         if self.whole != present[0] and self.has(present[0]):
             self.whole = present[0]
 
     def take(self, found: Found) -> None:
         """Take in what a worker has found, for whichever clip that was."""
-        if found.sampler is not None and self._fits(found.sampler):
-            self.sampler = found.sampler
+        anchors, sampler = {clip.figure.anchor for clip in self._present}, found.sampler
+        if sampler is not None and (not anchors or sampler.anchor in anchors):
+            self.sampler = sampler
         for pair, newer in found.intervals.items():
             older = self._known.pop(pair, None)
             self._set(pair, newer if older is None else older.joined(newer))
@@ -279,74 +250,64 @@ class IntervalStore:
     def take_build(self, build: Build) -> None:
         """Take a series back, finished or not."""
         self.build = build if build.series is None else None
-        self.take(build.found)
+        if build.series is not None:
+            positions, distortions = (
+                (None, build.series) if build.distortions else (build.series, None)
+            )
+            built = KnownInterval(build.poses, series=positions, distortions=distortions)
+            self.take(Found(None, {build.pair: built}))
 
     def fail(self, part: Part, clip: Clip) -> None:
-        """Take note that a part cannot be made for a clip: that is not tried again."""
-        self._failures |= {(part, self._of(clip))}
+        """Take note that a part of a clip cannot be made, as long as its keys are present."""
+        if self._pairs(clip) in self._present.values():
+            self._failures.add((part, self._pairs(clip)))
 
-    def _set(self, pair: Pair, interval: Interval) -> None:
-        self._known[pair] = interval
-        self._sizes[pair] = interval.nbytes
+    def has_failed(self, clip: Clip, part: Part = "in-betweens") -> bool:
+        """Tell whether a part of a clip is known to be impossible."""
+        return (part, self._pairs(clip)) in self._failures
 
-    def _drop(self, pair: Pair) -> None:
-        del self._known[pair], self._sizes[pair]
+    def _set(self, pair: Pair, interval: KnownInterval) -> None:
+        self._known[pair], self._sizes[pair] = interval, interval.sizes
+        self._largest = list(map(max, self._largest, interval.sizes))
 
     def _make_room(self) -> None:
         """Drop what is needed least, until the rest is within the budget."""
-        present, pinned = set(chain(*self._present.values())), set(self._pinned())
+        present, pinned = self._pinned(self._present), self._pinned()
         spare = [pair for pair in self._known if pair not in pinned]
-        while spare and (
-            self.nbytes > self.budget
-            or sum(map(self._sizes.__getitem__, spare)) > self.budget // SPARE
-        ):
-            self._drop(spare.pop(0))
-        nearby = [pair for pair in self._known if pair in pinned and pair not in present]
-        while nearby and self.nbytes > self.budget:
-            self._drop(nearby.pop(0))
-        if self.nbytes <= self.budget:
-            return
+        excess = sum(sum(self._sizes[pair]) for pair in spare) - self.budget // SPARE
+        excess = max(excess, self.nbytes - self.budget)
+        for pair in (*spare, *(pair for pair in self._known if pair in pinned - present)):
+            if excess <= 0:
+                return
+            excess -= sum(self._sizes.pop(pair))
+            del self._known[pair]
         for clip, pairs in reversed(self._present.items()):
             for number in reversed(_by_nearness(clip, self._frame)):
-                if self.nbytes > self.budget and pairs[number] in self._known:
-                    self._set(pairs[number], self._known[pairs[number]].without_series())
+                known = self._known.get(pairs[number])
+                if known is not None and self.nbytes > self.budget:
+                    self._set(pairs[number], known._replace(series=None, distortions=None))
 
     def _needed(self) -> int:
         """Return the bytes of what the present clips need, without series."""
-        pairs = set(chain(*self._present.values())) & self._known.keys()
-        return sum(self._sizes[pair] - self._known[pair].streamed for pair in pairs)
+        return sum(
+            self._sizes[pair][0] for pair in self._known.keys() & self._pinned(self._present)
+        )
 
-    def _expected(self, kind: int) -> int:
-        """Return the bytes that another series may take: as many as the largest one so far."""
-        series = [(each.series, each.distortions)[kind] for each in self._known.values()]
-        sizes = [each.nbytes for each in series if each is not None]
-        return max(sizes, default=EXPECTED * len(self.mesh.domain.mesh.vertices))
-
-    def _is_prepared(self, pair: Pair) -> bool:
-        known = self._known.get(pair)
-        return known is not None and known.inbetweens is not None
-
-    def _fits(self, sampler: PoseSampler) -> bool:
-        """Tell whether a sampler is of the present anchor."""
-        anchors = [clip.figure.anchor for clip in self._present]
-        return self.sampler is None or not anchors or anchors[0] == sampler.anchor
-
-    def _of(self, clip: Clip) -> tuple[Pair, ...]:
+    def _pairs(self, clip: Clip) -> tuple[Pair, ...]:
         """Return by what a clip's intervals are known."""
         known = self._present.get(clip) or self._nearby.get(clip)
-        if known is not None:
-            return known
-        return tuple(pair_of(clip, number) for number in range(len(intervals(clip))))
+        return known or tuple(pair_of(clip, number) for number in range(len(intervals(clip))))
 
-    def _pinned(self) -> Iterator[Pair]:
-        return chain(*self._nearby.values(), *self._present.values())
+    def _pinned(self, *clips: Mapping[Clip, tuple[Pair, ...]]) -> set[Pair]:
+        """Return the pairs of some clips, by default of all that are present or nearby."""
+        every = clips or (self._present, self._nearby)
+        return set(chain(*(pairs for each in every for pairs in each.values())))
 
-    def _poses(self) -> Iterator[Pose]:
-        """Yield the poses whose samples are of use."""
-        for known in self._known.values():
-            yield from known.poses
-        for clip in (*self._present, *self._nearby):
-            yield from (key.pose for key in clip.keys)
+    def _poses(self) -> frozenset[Pose]:
+        """Return the poses whose samples are of use."""
+        prepared = (known.poses for known in self._known.values() if known.inbetweens)
+        present = (key.pose for clip in self._present for key in clip.keys)
+        return frozenset(chain(*prepared, present))
 
 
 def _by_nearness(clip: Clip, frame: float) -> list[int]:

@@ -1,8 +1,7 @@
 """In-betweens of one interval on a mesh: by what they are known, and how a worker makes them."""
 
-from collections.abc import Callable, Generator, Mapping, Sequence
-from dataclasses import dataclass, replace
-from functools import partial
+from collections.abc import Generator, Mapping, Sequence
+from typing import NamedTuple
 
 from app.document import Clip, Pose, time_of, transits
 from app.motion.compared import RememberedFrames, prepare_compared
@@ -24,102 +23,53 @@ Prepared = Inbetweens | RememberedFrames
 BATCH = 400_000
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class OneFrame:
-    """One in-between alone, worked out before the others of its interval.
-
-    Parameters
-    ----------
-    pair : Pair
-    weight : float
-        Its time between the two keys, in [0, 1].
-    positions : complex128, shape (v,)
-        Of the mesh's vertices.
-    """
+class OneFrame(NamedTuple):
+    """One in-between alone, at a time between the two keys in [0, 1]."""
 
     pair: Pair
     weight: float
-    positions: Complexes
+    positions: Complexes  # of the mesh's vertices, (v,)
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Interval:
+class KnownInterval(NamedTuple):
     """What is known of the in-betweens of some poses.
 
-    Parameters
-    ----------
-    poses : tuple of Pose
-        Kept alive, so that the identities by which their in-betweens are known stay theirs.
-    one : OneFrame, optional
-    inbetweens : Prepared, optional
-        All of them, prepared.
-    kept : tuple of float
-        How much of its velocity the motion has at both ends.
-    sites : Sites, optional
-        Where they were prepared; None for methods whose in-betweens are not streamed.
-    series, distortions : Series, optional
-        Of the positions, and of f_z and f_z̄.
-    extents : tuple of int
-        The bytes that these two took before they made room for others; 0 where they never did.
+    It keeps the poses alive, so that the identities by which their in-betweens are known stay
+    theirs. `kept` tells how much of its velocity the motion has at both ends; methods that are not
+    streamed have no sites. The series are of the positions, and of f_z and f_z̄.
     """
 
     poses: tuple[Pose, ...]
     one: OneFrame | None = None
     inbetweens: Prepared | None = None
-    kept: tuple[float, float] = (1.0, 1.0)
+    kept: tuple[float, float] | None = None
     sites: Sites | None = None
     series: Series | None = None
     distortions: Series | None = None
-    extents: tuple[int, int] = (0, 0)
 
     @property
-    def streamed(self) -> int:
-        """Bytes of the series."""
-        return sum(each.nbytes for each in (self.series, self.distortions) if each is not None)
-
-    @property
-    def nbytes(self) -> int:
-        """Bytes of all of it; of its keys' samples those of one, as neighbours share them."""
-        found = self.streamed + (0 if self.one is None else self.one.positions.nbytes)
+    def sizes(self) -> tuple[int, int, int]:
+        """Bytes of what is prepared, with the samples of one key, and of both series."""
+        own = 0 if self.one is None else self.one.positions.nbytes
         if self.inbetweens is not None:
-            found += self.inbetweens.nbytes
-        if self.inbetweens is not None and not isinstance(self.inbetweens, RememberedFrames):
-            found += self.inbetweens.passage.ends[0].nbytes
-        return found
+            own += self.inbetweens.nbytes
+        if isinstance(self.inbetweens, Inbetweens):
+            # Those of the other key are its neighbour's.
+            own += self.inbetweens.passage.ends[0].nbytes
+        streamed = [each.nbytes if each else 0 for each in (self.series, self.distortions)]
+        return own, streamed[0], streamed[1]
 
-    def joined(self, newer: "Interval") -> "Interval":
+    def joined(self, newer: "KnownInterval") -> "KnownInterval":
         """Return what is known by both."""
-        prepared = self if newer.inbetweens is None else newer
-        return replace(
-            prepared,
-            one=newer.one or self.one,
-            series=newer.series or self.series,
-            distortions=newer.distortions or self.distortions,
-            extents=self.extents,
-        )
-
-    def without_series(self) -> "Interval":
-        """Return it with the bytes that its series took in place of them."""
-        taken = [
-            known if series is None else series.nbytes
-            for series, known in zip((self.series, self.distortions), self.extents, strict=True)
-        ]
-        return replace(self, series=None, distortions=None, extents=(taken[0], taken[1]))
+        pairs = zip(newer, self, strict=True)
+        return KnownInterval._make(new if new is not None else old for new, old in pairs)
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Found:
-    """What a worker has found of some intervals.
-
-    Parameters
-    ----------
-    sampler : PoseSampler or None
-        By which; None where none was needed.
-    intervals : mapping of Pair to Interval
-    """
+class Found(NamedTuple):
+    """What a worker has found of some intervals, and by which sampler, where that took one."""
 
     sampler: PoseSampler | None
-    intervals: Mapping[Pair, Interval]
+    intervals: Mapping[Pair, KnownInterval]
 
 
 def pair_of(clip: Clip, interval: int) -> Pair:
@@ -140,7 +90,6 @@ def prepare_intervals(
     mesh: PosableMesh,
     sampler: PoseSampler | None = None,
     *,
-    sibling: PoseSampler | None = None,
     keep: frozenset[Pose] = frozenset(),
 ) -> Found:
     """Prepare the in-betweens of some of a clip's intervals; on a worker thread.
@@ -152,34 +101,37 @@ def prepare_intervals(
         Numbers of the intervals.
     mesh : PosableMesh
     sampler : PoseSampler, optional
-        What it knows is used again, if it is of the mesh and the figure's anchor.
-    sibling : PoseSampler, optional
-        What it knows of the same outline and cage is used again.
+        Of the mesh and the figure's anchor, or else one whose knowledge of the outline is used
+        again, if it is of the same.
     keep : frozenset of Pose
         Whose samples are kept beside those of the clip.
     """
-    figure = clip.figure
-    intervals: dict[Pair, Interval] = {}
-    for number in wanted:
-        transit = transits(clip)[number]
-        poses = tuple(key.pose for key in transit.keys)
-        if clip.baseline is not None:
-            compared = prepare_compared(clip, clip.baseline, number, mesh.domain)
-            intervals[pair_of(clip, number)] = Interval(poses=poses, inbetweens=compared)
-            continue
-        if sampler is None or sampler.anchor != figure.anchor:
-            known = sampler or sibling
-            if known is not None and known.domain.cage is not mesh.domain.cage:
-                known = None
-            sampler = PoseSampler(mesh.domain, anchor=figure.anchor, sibling=known)
-        intervals[pair_of(clip, number)] = Interval(
-            poses=poses,
-            inbetweens=sampler.inbetweens_of(transit, figure.bounds, figure.variant),
-            kept=sampler.kept(transit, figure.bounds, figure.variant),
+    figure, every = clip.figure, transits(clip)
+    if clip.baseline is not None:
+        return Found(
+            sampler=None,
+            intervals={
+                pair_of(clip, number): KnownInterval(
+                    poses=tuple(key.pose for key in every[number].keys),
+                    inbetweens=prepare_compared(clip, clip.baseline, number, mesh.domain),
+                )
+                for number in wanted
+            },
+        )
+    if sampler is None or sampler.domain is not mesh.domain or sampler.anchor != figure.anchor:
+        is_sibling = sampler is not None and sampler.domain.cage is mesh.domain.cage
+        sibling = sampler if is_sibling else None
+        sampler = PoseSampler(mesh.domain, anchor=figure.anchor, sibling=sibling)
+    intervals = {
+        pair_of(clip, number): KnownInterval(
+            poses=tuple(key.pose for key in every[number].keys),
+            inbetweens=sampler.inbetweens_of(every[number], figure.bounds, figure.variant),
+            kept=sampler.kept(every[number], figure.bounds, figure.variant),
             sites=sampler.sites,
         )
-    if sampler is not None and clip.baseline is None:
-        sampler.keep_only(keep.union(key.pose for key in clip.keys))
+        for number in wanted
+    }
+    sampler.keep_only(keep.union(key.pose for key in clip.keys))
     return Found(sampler=sampler, intervals=intervals)
 
 
@@ -193,26 +145,16 @@ def prepare_frame(
 ) -> Found:
     """Work out the in-between at a frame, exactly as its interval will have it; on a worker thread.
 
-    Where the whole interval takes no longer, it is prepared instead.
-
-    Parameters
-    ----------
-    clip : Clip
-    frame : float
-    mesh : PosableMesh
-    sampler : PoseSampler
-        Of the mesh and the figure's anchor.
-    keep : frozenset of Pose
-        As in `prepare_intervals`.
+    The sampler is of the mesh and the figure's anchor. Where the whole interval takes no longer, it
+    is prepared instead.
     """
     moment, figure = time_of(clip, frame), clip.figure
     if not sampler.makes_single_frames(figure.variant):
         return prepare_intervals(clip, [moment.interval], mesh, sampler, keep=keep)
     transit, pair = transits(clip)[moment.interval], pair_of(clip, moment.interval)
     alone = sampler.frame_of(transit, figure.bounds, figure.variant, moment.weight)
-    one = OneFrame(pair=pair, weight=moment.weight, positions=alone.positions)
-    poses = tuple(key.pose for key in transit.keys)
-    return Found(sampler=sampler, intervals={pair: Interval(poses=poses, one=one)})
+    one = OneFrame(pair, moment.weight, alone.positions)
+    return Found(sampler, {pair: KnownInterval(tuple(key.pose for key in transit.keys), one=one)})
 
 
 class Build:
@@ -221,38 +163,22 @@ class Build:
     Parameters
     ----------
     pair : Pair
-    interval : Interval
+    interval : KnownInterval
         Prepared.
     distortions : bool
         Whether f_z and f_z̄ are streamed, and not the positions.
     """
 
-    def __init__(self, pair: Pair, interval: Interval, *, distortions: bool) -> None:
+    def __init__(self, pair: Pair, interval: KnownInterval, *, distortions: bool) -> None:
         inbetweens, sites = interval.inbetweens, interval.sites
         if inbetweens is None or sites is None or isinstance(inbetweens, RememberedFrames):
             raise TypeError("only in-betweens that are prepared at sites are streamed")
         self.pair = pair
+        self.poses = interval.poses
         self.distortions = distortions
         self.series: Series | None = None
-        self._poses = interval.poses
-        self._steps = _steps(
-            partial(Distortions.of, inbetweens, sites)
-            if distortions
-            else partial(Positions.of, inbetweens, sites)
-        )
+        self._steps = self._build(inbetweens, sites)
         self._batch = max(1, BATCH // len(sites.points))
-
-    @property
-    def found(self) -> Found:
-        """What it has come to; nothing before its end."""
-        if self.series is None:
-            return Found(sampler=None, intervals={})
-        interval = Interval(
-            poses=self._poses,
-            series=None if self.distortions else self.series,
-            distortions=self.series if self.distortions else None,
-        )
-        return Found(sampler=None, intervals={self.pair: interval})
 
     def advance(self) -> "Build":
         """Take some steps."""
@@ -264,8 +190,7 @@ class Build:
                 break
         return self
 
-
-def _steps(channels: Callable[[], Channels]) -> Generator[None, None, Series]:
-    source = channels()
-    yield
-    return (yield from build_series(source))
+    def _build(self, inbetweens: Inbetweens, sites: Sites) -> Generator[None, None, Series]:
+        source: Channels = (Distortions if self.distortions else Positions).of(inbetweens, sites)
+        yield
+        return (yield from build_series(source))

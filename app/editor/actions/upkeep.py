@@ -10,14 +10,13 @@ from app.editor.derived import Derived
 from app.editor.failures import report
 from app.editor.jobs import Job, LaneName
 from app.editor.project import Project, Puppet
-from app.editor.session import Session
+from app.editor.session import Session, with_project
 from app.editor.timeline_view import measure_shortfalls
 from app.motion import (
     IntervalStore,
     Joints,
     Part,
     PosableMesh,
-    PoseSampler,
     extent_source,
     hang_shown,
     joints_source,
@@ -29,34 +28,37 @@ from app.reports import measure_curves
 from app.storage import cut_picture, shrink
 
 STILL = 0.15  # seconds after which the playhead is taken to stay where it is
-GLIMPSING = "In-between"
-SKETCHING, REFINING, STREAMING = "In-betweens", "Finer in-betweens", "Smooth playback"
-COMPARING = "Other in-betweens"
-UNMADE = "The in-betweens of these keys cannot be made"
-# What of a clip's in-betweens the jobs make, and what is said where that cannot be.
-PARTS: Final[Mapping[str, tuple[Part, str]]] = {
-    GLIMPSING: ("frame", UNMADE),
-    SKETCHING: ("in-betweens", UNMADE),
-    COMPARING: ("in-betweens", "The in-betweens to compare with cannot be made"),
-    REFINING: ("fine", "The in-betweens cannot be made in full detail"),
-    STREAMING: ("series", "Playback cannot be made smooth"),
-}
 MOST_UNASKED = 1000  # frames whose extent is measured before anybody asks
-CUTTING = "Cutting out"
-MEASURING, SPANNING = "Measuring", "Measuring the motion"
-SHRINKING = "Small pictures"
 SMALL_SIDE = 96  # pixels of a picture in the list of layers
+GLIMPSING, SKETCHING, COMPARING = "In-between", "In-betweens", "Other in-betweens"
+REFINING, STREAMING = "Finer in-betweens", "Smooth playback"
+CUTTING, SHRINKING = "Cutting out", "Small pictures"
 HANGING, TRACING = "Joints", "Motion paths"
+MEASURING, SPANNING = "Measuring", "Measuring the motion"
+# What is said where a job fails.
+COMPLAINTS: Final[Mapping[str, str]] = {
+    GLIMPSING: "The in-betweens of these keys cannot be made",
+    SKETCHING: "The in-betweens of these keys cannot be made",
+    COMPARING: "The in-betweens to compare with cannot be made",
+    REFINING: "The in-betweens cannot be made in full detail",
+    STREAMING: "Playback cannot be made smooth",
+    CUTTING: "The picture cannot be cut out so",
+    SHRINKING: "The picture of a layer cannot be made small",
+    HANGING: "The joints cannot be followed between the keys",
+    TRACING: "The paths of the handles cannot be traced",
+    MEASURING: "The distortion could not be measured",
+    SPANNING: "The extent of the motion could not be measured",
+}
+# What is awaited, or takes a few milliseconds: it is not to wait until all in-betweens are there.
+QUICK = {GLIMPSING, SHRINKING}
 
 Source = TypeVar("Source")
 Value = TypeVar("Value")
 
 
-def maintain(session: Session) -> None:
+@with_project
+def maintain(session: Session, project: Project) -> None:
     """Ask the worker for what is missing, and settle what is drawn; once a frame."""
-    project = session.project
-    if project is None:
-        return
     posing.settle(session)
     posing.catch_up(session, project)
     project.extent.recall(extent_source(project.document))
@@ -80,102 +82,144 @@ def give_up(session: Session, kind: str) -> None:
     session.jobs.leave(kind)
 
 
-def missing(session: Session, project: Project) -> Iterator[Job]:
-    """Yield what the worker is to do next: what is missed most, of any figure."""
-    yield from _cut(session, project)
-    # First of all: they are watched while the hand moves, and are of few points only.
-    yield from _trace(session, project)
-    yield from _make_frames(session, project)
-    if _awaits_frame(session, project):
-        # On few cores it would come much later beside others.
-        return
-    urgent = next(_own_in_betweens(session, project), None)
-    if urgent is not None:
-        yield urgent
-        return
-    if project.is_posing:
-        # What follows takes longer than the hand stays where it is.
-        return
-    if session.export_frame is not None or project.awaits_extent:
-        yield from _span(session, project)
-    later = next(_other_in_betweens(session, project), None)
-    if later is not None:
-        yield later
-        return
-    yield from _hang(session, project)
-    yield from _stream(session, project)
-    yield from _measure(session, project)
-    shown = project.document.frames
-    if shown.last - shown.first < MOST_UNASKED:
-        yield from _span(session, project)
-
-
-def _derive(
-    session: Session,
-    into: Derived[Source, Value],
-    source: Source,
-    work: Callable[[], Value],
-    *,
-    kind: str,
-    complaint: str,
-    lane: LaneName = "display",
-    done: Callable[[Value], None] | None = None,
-) -> Iterator[Job]:
-    """Yield the job that works out the value of a source, unless it is there or cannot be."""
-
-    def failed(error: Exception) -> None:
-        into.failure = source
-        report(session, complaint, error)
-
-    if not (into.follows(source) or into.has_failed(source)):
-        done = done or partial(into.take, source)
-        yield Job(kind=kind, work=work, done=done, failed=failed, lane=lane)
-
-
-def _cut(session: Session, project: Project) -> Iterator[Job]:
-    """Yield what is to be cut out of pictures anew, and the small ones of the list of layers."""
-    for figure in project.document.figures:
-        puppet = project.puppets[figure.id]
-        yield from _derive(
-            session,
-            puppet.cut,
-            figure.cut_out,
-            partial(cut_picture, puppet.picture, figure.cut_out),
-            kind=CUTTING,
-            complaint="The picture cannot be cut out so",
-        )
-    for puppet in project.puppets.values():
-        yield from _derive(
-            session,
-            puppet.small,
-            puppet.cut.value,
-            partial(shrink, puppet.cut.value.texture, SMALL_SIDE),
-            kind=SHRINKING,
-            complaint="The picture of a layer cannot be made small",
-            # It takes a few milliseconds, and is not to wait until all in-betweens are there.
-            lane="hand",
-        )
-
-
 def _pin(session: Session, project: Project) -> None:
     """Tell all stores which clips are present, and to which ones undo and redo lead."""
     frame, tried = playback.current_frame(session, project), posing.tried_clips(session, project)
-    for figure, puppet in project.puppets.items():
-        own, twin = clip_of(project.document, figure), puppet.twin
-        present = [own, *(clip for clip in tried if clip.figure.id == figure)]
-        if twin is not None:
-            present.append(twin.clip(project.document))
+    for clip, puppet in _clips(project):
+        figure, twin = clip.figure.id, puppet.twin
+        others = [each for each in tried if each.figure.id == figure]
+        others += [] if twin is None else [twin.clip(project.document)]
         nearby = [
             clip_of(document, figure)
             for document in project.history.nearby
             if figure in [other.id for other in document.figures]
         ]
-        puppet.store.pin(present, nearby, frame)
+        puppet.store.pin([clip, *others], nearby, frame)
         if puppet.fine is not None:
-            puppet.fine.pin([own], nearby, frame)
+            puppet.fine.pin([clip], nearby, frame)
 
 
-def _job(
+def missing(session: Session, project: Project) -> Iterator[Job]:
+    """Yield what the worker is to do next: what is missed most, of any figure."""
+    yield from _cut(session, project)
+    # First of all: they are watched while the hand moves, and are of few points only.
+    yield from _trace(session, project)
+    if (session.export_frame is not None or project.awaits_extent) and not project.is_posing:
+        yield from _span(session, project)
+    yield from _make_frames(session, project)
+    if _awaits_frame(session, project):
+        # On few cores it would come much later beside others.
+        return
+    for kind, puppet, clip in _wanted(session, project):
+        if not puppet.store.has_failed(clip, _part(kind)):
+            job = _prepare(session, project, kind, puppet, clip)
+            if job is not None:
+                yield job
+                return
+    if project.is_posing:
+        # What follows takes longer than the hand stays where it is.
+        return
+    yield from _hang(session, project)
+    yield from _stream(session, project)
+    yield from _measure(session, project)
+    if project.document.frames.last - project.document.frames.first < MOST_UNASKED:
+        yield from _span(session, project)
+
+
+def _clips(project: Project) -> list[tuple[Clip, Puppet]]:
+    return [(clip_of(project.document, figure), each) for figure, each in project.puppets.items()]
+
+
+def _make_frames(session: Session, project: Project) -> Iterator[Job]:
+    """Yield the in-betweens at the playhead, before and beside all others of their intervals."""
+    frame = playback.current_frame(session, project)
+    for clip, puppet in _clips(project):
+        is_posed = clip.figure.id == project.active and project.unkeyed is not None
+        # What fails at one frame would at others, and is told of once.
+        if not is_posed and not puppet.store.has_failed(clip, "frame"):
+            work = puppet.store.making_frame(clip, frame)
+            if work is not None:
+                done = puppet.store.take
+                yield _interval_job(session, GLIMPSING, puppet, clip, work=work, done=done)
+
+
+def _awaits_frame(session: Session, project: Project) -> bool:
+    """Tell whether the first frame of the interval at the playhead is on its way."""
+    frame = playback.current_frame(session, project)
+    return GLIMPSING in session.jobs.kinds and any(
+        not puppet.store.is_exact(clip, frame)
+        and puppet.store.interval(clip, time_of(clip, frame).interval) is None
+        for clip, puppet in _clips(project)
+    )
+
+
+def _wanted(session: Session, project: Project) -> Iterator[tuple[str, Puppet, Clip]]:
+    """Yield the clips that are to have their in-betweens, what is missed most first."""
+    frame, clips = playback.current_frame(session, project), _clips(project)
+    clips = [(clip, puppet) for clip, puppet in clips if not puppet.store.has_failed(clip)]
+    # Where nobody sees them before the hand rests, they are not worked out for each move.
+    is_seen = session.overlays.onion or project.posing is None
+    if is_seen or posing.POSING not in session.jobs.kinds:
+        # Those that something stands in for come first.
+        for clip, puppet in sorted(clips, key=lambda each: each[1].store.is_exact(each[0], frame)):
+            yield SKETCHING, puppet, clip
+    for clip in posing.tried_clips(session, project):
+        yield SKETCHING, project.puppets[clip.figure.id], clip
+    if project.is_posing:
+        return
+    for puppet in project.puppets.values():
+        if puppet.twin is not None:
+            yield COMPARING, puppet, puppet.twin.clip(project.document)
+    for clip, puppet in clips:
+        if puppet.store.mesh.domain is not clip.figure.domain:
+            yield REFINING, puppet, clip
+
+
+def _prepare(
+    session: Session, project: Project, kind: str, puppet: Puppet, clip: Clip
+) -> Job | None:
+    """Return what prepares the nearest in-betweens that a clip lacks, or its mesh."""
+    domain, among = clip.figure.domain, len(project.puppets)
+    is_fine, frame = kind == REFINING, playback.current_frame(session, project)
+    store = puppet.fine if is_fine else puppet.store
+    if store is None or store.mesh.source is not domain:
+        make = PosableMesh.fine if is_fine else partial(PosableMesh.coarse, among=among)
+
+        def begin(mesh: PosableMesh) -> None:
+            setattr(puppet, "fine" if is_fine else "store", IntervalStore(mesh=mesh))
+
+        return _interval_job(session, kind, puppet, clip, work=partial(make, domain), done=begin)
+    lacking = store.missing(clip, frame)
+    if not lacking or (is_fine and not store.has_room()):
+        return None
+    # All at once where the hand has changed those around one key, and the ghosts are to stay
+    # together; else what is wanted next need not wait long.
+    if not (session.overlays.onion and project.posing is not None):
+        lacking = lacking[:1]
+    prepare = store.preparing(clip, lacking, puppet.store.sampler)
+    return _interval_job(session, kind, puppet, clip, work=prepare, done=store.take)
+
+
+def _stream(session: Session, project: Project) -> Iterator[Job]:
+    """Yield some steps of a series that is in the making or that is wanted next."""
+    frame, heat = playback.current_frame(session, project), session.overlays.heat_map != "none"
+    for clip, puppet in _clips(project):
+        for store in filter(None, (puppet.store, puppet.fine)):
+            if STREAMING in session.jobs.kinds or puppet.store.has_failed(clip, "series"):
+                break
+            build = store.next_build(clip, frame, heat=heat)
+            if build is not None:
+                work, done = build.advance, store.take_build
+                yield _interval_job(session, STREAMING, puppet, clip, work=work, done=done)
+
+
+def _part(kind: str) -> Part:
+    """Return which part of a clip's in-betweens a job makes."""
+    parts: dict[str, Part] = {GLIMPSING: "frame", REFINING: "fine", STREAMING: "series"}
+    return parts.get(kind, "in-betweens")
+
+
+def _interval_job(
     session: Session,
     kind: str,
     puppet: Puppet,
@@ -184,217 +228,94 @@ def _job(
     work: Callable[[], Value],
     done: Callable[[Value], None],
 ) -> Job:
-    """Return a job for some in-betweens of a clip; where it fails, that is told and remembered."""
-    part, complaint = PARTS[kind]
+    """Return a job for some in-betweens; what fails is not tried again for the same keys."""
+    return _job(session, kind, work, done, lambda: puppet.store.fail(_part(kind), clip))
 
+
+def _job(
+    session: Session,
+    kind: str,
+    work: Callable[[], Value],
+    done: Callable[[Value], None],
+    fail: Callable[[], None],
+) -> Job:
     def failed(error: Exception) -> None:
-        puppet.store.fail(part, clip)
-        report(session, complaint, error)
+        fail()
+        report(session, COMPLAINTS[kind], error)
 
-    lane: LaneName = "hand" if kind == GLIMPSING else "display"
+    lane: LaneName = "hand" if kind in QUICK else "display"
     return Job(kind=kind, work=work, done=done, failed=failed, lane=lane)
 
 
-def _movable(project: Project) -> list[tuple[Clip, Puppet]]:
-    """Return the clips whose in-betweens are there or can be, with their figures."""
-    clips = [(clip_of(project.document, figure), each) for figure, each in project.puppets.items()]
-    return [(clip, puppet) for clip, puppet in clips if not puppet.store.has_failed(clip)]
-
-
-def _make_frames(session: Session, project: Project) -> Iterator[Job]:
-    """Yield the in-betweens at the playhead, before and beside all others of their intervals."""
-    frame = playback.current_frame(session, project)
-    for figure, puppet in project.puppets.items():
-        clip, store = clip_of(project.document, figure), puppet.store
-        is_posed = figure == project.active and project.unkeyed is not None
-        # What fails at one frame would at others, and is told of once.
-        if is_posed or store.has_failed(clip, "frame"):
-            continue
-        work = store.making_frame(clip, frame)
-        if work is not None:
-            yield _job(session, GLIMPSING, puppet, clip, work=work, done=store.take)
-
-
-def _awaits_frame(session: Session, project: Project) -> bool:
-    """Tell whether the first frame of the interval at the playhead is on its way."""
-    frame = playback.current_frame(session, project)
-    clips = [(clip_of(project.document, figure), each) for figure, each in project.puppets.items()]
-    return GLIMPSING in session.jobs.kinds and any(
-        not puppet.store.is_exact(clip, frame)
-        and puppet.store.interval(clip, time_of(clip, frame).interval) is None
-        for clip, puppet in clips
-    )
-
-
-def _own_in_betweens(session: Session, project: Project) -> Iterator[Job]:
-    """Yield the document's in-betweens, those at the playhead first, and those of poses tried."""
-    frame = playback.current_frame(session, project)
-    # Where nobody sees them before the hand rests, they are not worked out for each move.
-    is_seen = session.overlays.onion or project.posing is None
-    if is_seen or posing.POSING not in session.jobs.kinds:
-        # All at once where the hand has changed those around one key, so that the ghosts stay
-        # together.
-        at_most = None if session.overlays.onion and project.posing is not None else 1
-        # Those that something stands in for come first.
-        for clip, puppet in sorted(
-            _movable(project), key=lambda each: each[1].store.is_exact(each[0], frame)
-        ):
-            yield from _prepare(session, project, SKETCHING, puppet, clip, at_most=at_most)
-    for clip in posing.tried_clips(session, project):
-        yield from _prepare(session, project, SKETCHING, project.puppets[clip.figure.id], clip)
-
-
-def _other_in_betweens(session: Session, project: Project) -> Iterator[Job]:
-    """Yield the in-betweens by the method that is compared, and those in full detail."""
-    for puppet in project.puppets.values():
-        clip = None if puppet.twin is None else puppet.twin.clip(project.document)
-        if clip is not None:
-            yield from _prepare(session, project, COMPARING, puppet, clip)
-    for clip, puppet in _movable(project):
-        if puppet.store.mesh.domain is not clip.figure.domain:
-            yield from _prepare(session, project, REFINING, puppet, clip)
-
-
-def _prepare(
+def _derive(
     session: Session,
-    project: Project,
     kind: str,
-    puppet: Puppet,
-    clip: Clip,
-    *,
-    at_most: int | None = 1,
+    into: Derived[Source, Value],
+    source: Source,
+    work: Callable[[], Value],
 ) -> Iterator[Job]:
-    """Yield what prepares the nearest in-betweens that a store lacks, or its mesh."""
-    is_fine, frame = kind == REFINING, playback.current_frame(session, project)
-    store = puppet.fine if is_fine else puppet.store
-    if puppet.store.has_failed(clip, PARTS[kind][0]):
-        return
-    if store is None or store.mesh.source is not clip.figure.domain:
-        yield _mesh(session, project, kind, puppet, clip)
-    elif (lacking := store.missing(clip, frame)[:at_most]) and (not is_fine or store.has_room()):
-        sibling = puppet.store.sampler if is_fine else None
-        work = store.preparing(clip, lacking, sibling)
-        yield _job(session, kind, puppet, clip, work=work, done=store.take)
+    """Yield the job that works out the value of a source, unless it is there or cannot be."""
+    if not (into.follows(source) or into.has_failed(source)):
+        yield _job(session, kind, work, partial(into.take, source), partial(into.fail, source))
 
 
-def _mesh(session: Session, project: Project, kind: str, puppet: Puppet, clip: Clip) -> Job:
-    """Return what makes the mesh of a figure whose domain is another than before."""
-    domain, among = clip.figure.domain, len(project.document.figures)
-
-    def work() -> IntervalStore:
-        if kind == REFINING:
-            return IntervalStore(mesh=PosableMesh.fine(domain))
-        return IntervalStore(mesh=PosableMesh.coarse(domain, among=among))
-
-    def done(store: IntervalStore) -> None:
-        if kind == REFINING:
-            puppet.fine = store
-        else:
-            puppet.store = store
-
-    return _job(session, kind, puppet, clip, work=work, done=done)
+def _cut(session: Session, project: Project) -> Iterator[Job]:
+    """Yield what is to be cut out of pictures anew, and the small ones of the list of layers."""
+    for figure in project.document.figures:
+        puppet, cut_out = project.puppets[figure.id], figure.cut_out
+        cut = partial(cut_picture, puppet.picture, cut_out)
+        yield from _derive(session, CUTTING, puppet.cut, cut_out, cut)
+        whole = puppet.cut.value
+        small = partial(shrink, whole.texture, SMALL_SIDE)
+        yield from _derive(session, SHRINKING, puppet.small, whole, small)
 
 
 def _trace(session: Session, project: Project) -> Iterator[Job]:
     """Yield the paths of the active figure's handles, while some are shown."""
     clip, paths = project.clip, project.paths
     if session.overlays.paths and project.selected:
-        yield from _derive(
-            session,
-            paths,
-            clip,
-            partial(trace_paths, clip, paths.value, project.puppet.store.sampler),
-            kind=TRACING,
-            complaint="The paths of the handles cannot be traced",
-        )
+        trace = partial(trace_paths, clip, paths.value, project.puppet.store.sampler)
+        yield from _derive(session, TRACING, paths, clip, trace)
 
 
 def _hang(session: Session, project: Project) -> Iterator[Job]:
     """Yield some frames of the joints of what hangs."""
-    document, joints = project.document, project.joints
-    source = joints_source(document)
-    if not source or joints.follows(source) or HANGING in session.jobs.kinds:
+    joints, source = project.joints, joints_source(project.document)
+    is_settled = not source or joints.follows(source) or joints.has_failed(source)
+    if is_settled or HANGING in session.jobs.kinds:
         return
     begun_of, begun = joints.begun or (None, joints.value)
     if begun is None or begun_of != source:
-        begun = Joints(document, siblings_of(project), begun)
+        begun = Joints(project.document, project.samplers, begun)
 
-    def done(advanced: Joints | None) -> None:
-        if advanced is not None and advanced.is_whole:
+    def done(advanced: Joints) -> None:
+        joints.begun = source, advanced
+        if advanced.is_whole:
             joints.take(source, advanced)
-        else:
-            joints.begun = source, advanced
 
-    yield from _derive(
-        session,
-        joints,
-        source,
-        begun.advance,
-        kind=HANGING,
-        complaint="The joints cannot be followed between the keys",
-        done=done,
-    )
-
-
-def siblings_of(project: Project) -> dict[int, PoseSampler]:
-    """Return what is known of the figures' outlines, by their ids."""
-    samplers = {figure: puppet.store.sampler for figure, puppet in project.puppets.items()}
-    return {figure: sampler for figure, sampler in samplers.items() if sampler is not None}
-
-
-def _stream(session: Session, project: Project) -> Iterator[Job]:
-    """Yield some steps of a series that is in the making or that is wanted next."""
-    if STREAMING in session.jobs.kinds:
-        return
-    frame, heat = playback.current_frame(session, project), session.overlays.heat_map != "none"
-    for clip, puppet in _movable(project):
-        if puppet.store.has_failed(clip, "series"):
-            continue
-        for store in filter(None, (puppet.store, puppet.fine)):
-            build = store.next_build(clip, frame, heat=heat)
-            if build is not None:
-                done = store.take_build
-                yield _job(session, STREAMING, puppet, clip, work=build.advance, done=done)
-                return
+    yield _job(session, HANGING, begun.advance, done, partial(joints.fail, source))
 
 
 def _measure(session: Session, project: Project) -> Iterator[Job]:
     """Yield what is measured of the in-betweens."""
-    store, twin = project.puppet.store, project.puppet.twin
-    wanted = [(project.clip, project.curves)]
+    twin, wanted = project.puppet.twin, [(project.clip, project.curves)]
     if twin is not None:
         wanted.append((twin.clip(project.document), project.twin_curves))
     for clip, curves in wanted:
-        inbetweens = store.prepared(clip)
+        inbetweens = project.puppet.store.prepared(clip)
         if inbetweens:
-            yield from _derive(
-                session,
-                curves,
-                clip,
-                partial(measure_curves, clip, inbetweens),
-                kind=MEASURING,
-                complaint="The distortion could not be measured",
-            )
+            measure = partial(measure_curves, clip, inbetweens)
+            yield from _derive(session, MEASURING, curves, clip, measure)
 
 
 def _span(session: Session, project: Project) -> Iterator[Job]:
-    """Yield the measurement of where the motion reaches."""
-    document, extent = project.document, project.extent
-    source, stores = extent_source(document), {}
-    if extent.follows(source):
+    """Yield the measurement of where the motion reaches, once all in-betweens are there."""
+    document, extent, source = project.document, project.extent, extent_source(project.document)
+    if extent.follows(source) or not all(each.store.has(clip) for clip, each in _clips(project)):
         return
-    for figure, puppet in project.puppets.items():
-        if not puppet.store.has(clip_of(document, figure)):
-            return
-        stores[figure] = puppet.store.snapshot()
-    yield from _derive(
-        session,
-        extent,
-        source,
-        partial(measure_extent, document, stores, project.joints.value),
-        kind=SPANNING,
-        complaint="The extent of the motion could not be measured",
-    )
+    stores = {figure: puppet.store.snapshot() for figure, puppet in project.puppets.items()}
+    span = partial(measure_extent, document, stores, project.joints.value)
+    yield from _derive(session, SPANNING, extent, source, span)
 
 
 def _fit_motion(session: Session, project: Project) -> None:
@@ -406,37 +327,28 @@ def _fit_motion(session: Session, project: Project) -> None:
 
 
 def _show(session: Session, project: Project) -> None:
-    """Settle what is drawn in the next frame."""
-    frame = playback.current_frame(session, project)
-    source, poses = joints_source(project.document), {}
-    shown = {}
-    for figure, puppet in project.puppets.items():
+    """Settle what is drawn in the next frame, and beside it by the method that is compared."""
+    frame, document = playback.current_frame(session, project), project.document
+    shown, twins, poses = {}, {}, {}
+    for clip, puppet in _clips(project):
+        figure, twin = clip.figure.id, puppet.twin
         if puppet.shown is not None and puppet.shown.frame != frame:
             project.moved_at = session.clock()
         pose = project.unkeyed if figure == project.active else None
-        clip, stores = clip_of(project.document, figure), _stores(session, project, puppet)
-        shown[figure] = show(clip, frame, pose, stores, puppet.shown)
         if pose is not None:
             poses[figure] = pose
-    joints = project.joints.value if project.joints.follows(source) else None
-    for figure, hung in hang_shown(project.document, shown, joints, poses).items():
+        stores = _stores(session, project, puppet)
+        shown[figure] = show(clip, frame, pose, stores, puppet.shown)
+        if twin is not None:
+            earlier, other = twin.shown or shown[figure], twin.clip(document)
+            # What a pose shows is the same in both.
+            twins[figure] = show(other, frame, pose, [puppet.store], earlier)
+    follows = project.joints.follows(joints_source(document))
+    joints = project.joints.value if follows else None
+    for figure, hung in hang_shown(document, shown, joints, poses).items():
         project.puppets[figure].shown = hung
-    _show_twins(project, frame)
-
-
-def _show_twins(project: Project, frame: int) -> None:
-    """Settle what is drawn beside that; what a pose shows is the same in both."""
-    shown = {}
-    for figure, puppet in project.puppets.items():
-        twin = puppet.twin
-        if twin is None or puppet.shown is None:
-            return
-        pose = project.unkeyed if figure == project.active else None
-        earlier = twin.shown or puppet.shown
-        clip = twin.clip(project.document)
-        shown[figure] = show(clip, frame, pose, [puppet.store], earlier)
     # By the meshes alone: the joints that are followed exactly are of the figures' own methods.
-    for figure, hung in hang_shown(project.document, shown, None, {}).items():
+    for figure, hung in hang_shown(document, twins, None, {}).items():
         if (twin := project.puppets[figure].twin) is not None:
             twin.shown = hung
 

@@ -1,7 +1,7 @@
 """Hanging one layer on another, and letting it go."""
 
 from app.document import Attachment, layer_commands
-from app.editor.actions import editing, playback, posing, upkeep
+from app.editor.actions import editing, playback, posing
 from app.editor.layering.working import put
 from app.editor.project import Project
 from app.editor.session import Session
@@ -48,7 +48,7 @@ def hang(
         return
     posing.drop(session)
     document, frame = project.document, playback.current_frame(session, project)
-    siblings = upkeep.siblings_of(project)
+    siblings = project.samplers
 
     def done(joint: tuple[complex, Attachment]) -> None:
         if session.project is project and project.document is document:

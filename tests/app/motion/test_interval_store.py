@@ -20,7 +20,7 @@ from app.editor.actions.upkeep import STREAMING, maintain, missing
 from app.editor.jobs import Jobs
 from app.editor.project import PoseInProgress
 from app.editor.session import Session
-from app.motion import Found, Interval, IntervalStore, Placed, PosableMesh, Streamed, show
+from app.motion import Found, IntervalStore, KnownInterval, Placed, PosableMesh, Streamed, show
 from app.motion.interval_store import SPARE
 from app.motion.intervals import Build, pair_of
 from engine import streaming
@@ -440,7 +440,7 @@ def test_the_worker_takes_few_steps_at_once(clip, prepared, monkeypatch):
         build.advance()
         batches += 1
     assert batches > 3
-    known: Interval = prepared.interval(clip, 0)
+    known: KnownInterval = prepared.interval(clip, 0)
     whole = streaming.finish(
         streaming.build_series(streaming.Positions.of(known.inbetweens, known.sites))
     )

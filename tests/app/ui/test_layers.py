@@ -1,6 +1,5 @@
 """A scene of several layers in the window: chosen, ordered, hidden, joined and painted in front."""
 
-
 import numpy as np
 import pytest
 from harness import Harness
