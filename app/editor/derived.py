@@ -1,10 +1,7 @@
 """Values that are worked out behind the scenes: what they follow from, and whether that failed."""
 
-from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Generic, TypeVar
-
-from app.editor.jobs import LaneName
 
 Source = TypeVar("Source")
 Value = TypeVar("Value")
@@ -21,6 +18,8 @@ class Derived(Generic[Source, Value]):
         What it was derived from; None before the first one.
     failure : Source, optional
         What none could be derived from: that is not tried again.
+    begun : tuple, optional
+        A source, and as much of its value as is worked out.
     remembers : int
         How many earlier values are kept for when their sources come back, as by undo.
     earlier : list of tuple
@@ -30,6 +29,7 @@ class Derived(Generic[Source, Value]):
     value: Value
     source: Source | None = None
     failure: Source | None = None
+    begun: tuple[Source, Value] | None = None
     remembers: int = 0
     earlier: list[tuple[Source, Value]] = field(default_factory=list)
 
@@ -41,11 +41,15 @@ class Derived(Generic[Source, Value]):
         """Tell whether a source is known to give no value."""
         return self.failure is not None and self.failure == source
 
+    def fail(self, source: Source) -> None:
+        """Take note that there is no value of a source."""
+        self.failure = source
+
     def take(self, source: Source, value: Value) -> None:
         """Hold the value of a source."""
         if self.remembers and self.source is not None:
             self.earlier = [*self.earlier, (self.source, self.value)][-self.remembers :]
-        self.source, self.value = source, value
+        self.source, self.value, self.begun = source, value, None
 
     def recall(self, source: Source) -> None:
         """Hold the value of a source again, if it is remembered."""
@@ -55,33 +59,3 @@ class Derived(Generic[Source, Value]):
             if known == source:
                 self.take(source, value)
                 return
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Derivation(Generic[Source, Value]):
-    """What the worker is to do for a derived value.
-
-    Parameters
-    ----------
-    kind : str
-        Of the job.
-    into : Derived
-    source : Source
-        What the value is derived from.
-    work : callable
-        Returns it; pure, on frozen input.
-    complaint : str
-        What is said where that fails.
-    done : callable, optional
-        Takes the value in place of `into`.
-    lane : str
-        Of the worker.
-    """
-
-    kind: str
-    into: Derived[Source, Value]
-    source: Source
-    work: Callable[[], Value]
-    complaint: str
-    done: Callable[[Value], None] | None = None
-    lane: LaneName = "display"

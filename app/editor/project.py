@@ -25,7 +25,7 @@ from app.editor.derived import Derived
 from app.editor.promise import Afterwards, Promise
 from app.editor.pull import Pull
 from app.editor.timeline_view import Timing
-from app.motion import Box, Build, Glimpse, Joints, Motion, MotionPaths, PosableMesh, Shown
+from app.motion import Box, IntervalStore, Joints, MotionPaths, PosableMesh, PoseSampler, Shown
 from app.render import View, fit_view
 from app.reports import Curves
 from app.solving import Renewal, Rig
@@ -36,14 +36,6 @@ from engine.maps import Bounds
 
 EXTENTS = 32  # of the motion, which are remembered for undo and redo
 FIT_MARGIN = 0.08  # of the viewport, left free around what is fitted into it
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Trial:
-    """A pose that was let go, and the motion with its in-betweens as far as they are prepared."""
-
-    pose: Pose
-    motion: Motion
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -92,15 +84,12 @@ class Twin:
     original, figure : Figure
         The figure as it is, and the same by the other variant, where the method is one.
     method : Variant or Baseline
-    motion : Derived
-        On the coarse mesh.
     shown : Shown, optional
     """
 
     original: Figure
     figure: Figure
     method: Variant | Baseline
-    motion: Derived[Clip, Motion]
     shown: Shown | None = None
 
     def clip(self, document: Document) -> Clip:
@@ -119,16 +108,14 @@ class Puppet:
         Decoded.
     is_opaque : bool
         Whether it has no transparency, so that its background was found by its colour.
-    coarse, fine : Derived
-        Its motion on a coarse mesh and on its own, which may not be there yet.
-    seen : Derived
-        The in-between at the playhead alone, where the motion lacks it.
+    file : PictureFile
+        That it was decoded from.
+    store, fine : IntervalStore
+        Its in-betweens on a coarse mesh, and on its own if that is another and is there.
     shown : Shown, optional
         None before the first frame of the window.
     rig : Rig, optional
         For the poses to come; None before the first of them.
-    build : Derived
-        The series that the worker makes when it has nothing else to do.
     cut : Derived
         What is left of the picture, as the newest cut-out has it.
     small : Derived
@@ -139,13 +126,12 @@ class Puppet:
 
     picture: Picture
     is_opaque: bool
-    coarse: Derived[Clip, Motion]
+    file: PictureFile
+    store: IntervalStore
     cut: Derived[CutOut, Cut]
-    fine: Derived[Clip, Motion | None] = field(default_factory=lambda: Derived(None))
-    seen: Derived[tuple[Clip, int], Glimpse | None] = field(default_factory=lambda: Derived(None))
+    fine: IntervalStore | None = None
     shown: Shown | None = None
     rig: Rig | None = None
-    build: Derived[Clip, Build | None] = field(default_factory=lambda: Derived(None))
     small: Derived[Cut, Bytes | None] = field(default_factory=lambda: Derived(None))
     twin: Twin | None = None
 
@@ -155,11 +141,11 @@ class Puppet:
 
         `among` tells how many figures there are.
         """
-        coarse = PosableMesh.coarse(clip.figure.domain, among=among)
         return cls(
             picture=picture,
             is_opaque=picture.is_opaque,
-            coarse=Derived(Motion.at_rest(clip, coarse)),
+            file=clip.figure.picture,
+            store=IntervalStore(mesh=PosableMesh.coarse(clip.figure.domain, among=among)),
             cut=Derived(cut_picture(picture, clip.figure.cut_out), clip.figure.cut_out),
         )
 
@@ -321,6 +307,12 @@ class Project:
         return self.puppets[self.active]
 
     @property
+    def samplers(self) -> dict[int, PoseSampler]:
+        """What is known of the figures' outlines, by their ids."""
+        samplers = {figure: puppet.store.sampler for figure, puppet in self.puppets.items()}
+        return {figure: sampler for figure, sampler in samplers.items() if sampler is not None}
+
+    @property
     def unkeyed(self) -> Pose | None:
         """The pose that is shown though no key holds it; None where there is none at this frame."""
         unkeyed = self.history.unkeyed
@@ -343,6 +335,11 @@ class Project:
         return mine[-1] if mine else None
 
     @property
+    def is_posing(self) -> bool:
+        """Whether the document has a pose that is on its way, or is to have the first."""
+        return any(pull.is_in(self.history) for pull in self.pulls)
+
+    @property
     def renewal(self) -> Renewal | None:
         """Keys that are being solved again, as far as that is."""
         return next((promise.renewal for promise in self.pending if promise.renewal), None)
@@ -358,13 +355,10 @@ class Project:
         """Let each figure have a twin by a method, or none."""
         for figure in self.document.figures:
             puppet = self.puppets[figure.id]
-            twin, coarse = puppet.twin, puppet.coarse.value
             if method is None:
                 puppet.twin = None
                 continue
-            if twin is None or twin.motion.value.mesh is not coarse.mesh:
-                motion: Derived[Clip, Motion] = Derived(Motion.at_rest(coarse.clip, coarse.mesh))
-                twin = Twin(original=figure, figure=figure, method=figure.variant, motion=motion)
+            twin = puppet.twin or Twin(original=figure, figure=figure, method=figure.variant)
             if twin.original is not figure or twin.method is not method:
                 twin.original, twin.method = figure, method
                 twin.figure = (

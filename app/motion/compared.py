@@ -20,6 +20,15 @@ class RememberedFrames:
         self._inbetweens = inbetweens
         self._frames: dict[float, MeshFrame] = {}
 
+    @property
+    def nbytes(self) -> int:
+        """Bytes of the frames."""
+        return sum(
+            array.nbytes
+            for frame in list(self._frames.values())
+            for array in (frame.positions, frame.fz, frame.fzbar)
+        )
+
     def frame(self, time: float) -> MeshFrame:
         """Return the in-between at a time in [0, 1]."""
         if time not in self._frames:

@@ -7,8 +7,8 @@ import numpy as np
 
 from app.document import Document, FrameRange, clip_of, exported_frames, framed_frames
 from app.errors import LissomError
+from app.motion.interval_store import IntervalStore
 from app.motion.joints import Joints
-from app.motion.prepared import Motion
 from engine.arrays import Complexes
 
 
@@ -52,22 +52,26 @@ def extent_source(document: Document) -> tuple[object, ...]:
     return (*motions, document.frames, document.loop, frames)
 
 
-def measure_extent(document: Document, motions: Mapping[int, Motion]) -> Box:
+def measure_extent(
+    document: Document, stores: Mapping[int, IntervalStore], joints: Joints | None = None
+) -> Box:
     """Return the box around all that an export of a document shows.
 
     Parameters
     ----------
     document : Document
-    motions : mapping of int to Motion
-        One for each figure, by its id, that knows its in-betweens.
+    stores : mapping of int to IntervalStore
+        One for each figure, by its id, that has its in-betweens.
+    joints : Joints, optional
+        What is true of them is used again.
     """
-    clips = {figure: clip_of(document, figure) for figure in motions}
+    clips = {figure: clip_of(document, figure) for figure in stores}
     frames = framed_frames(document, exported_frames(document))
-    samplers = {figure: motion.sampler for figure, motion in motions.items()}
-    joints = Joints(document, {figure: each for figure, each in samplers.items() if each})
+    samplers = {figure: store.sampler for figure, store in stores.items()}
+    joints = Joints(document, {figure: each for figure, each in samplers.items() if each}, joints)
 
     def place(figure: int, frame: int) -> Complexes | None:
-        positions = motions[figure].positions(clips[figure], frame)
+        positions = stores[figure].positions(clips[figure], frame)
         return None if positions is None else joints.placement(figure, frame).on(positions)
 
     box = motion_box(document, frames, place)

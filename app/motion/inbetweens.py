@@ -2,6 +2,7 @@
 
 import threading
 from collections.abc import Sequence
+from collections.abc import Set as AbstractSet
 
 import numpy as np
 
@@ -31,7 +32,8 @@ from engine.paths import root_sheets
 class PoseSampler:
     """Points of a domain at which in-betweens are wanted, with all that poses share there.
 
-    It keeps the samples of each pose that it met; poses are frozen, so that they stay true.
+    It keeps the samples of each pose that it met; poses are frozen, so that they stay true. Several
+    threads may use it at once.
 
     Parameters
     ----------
@@ -68,13 +70,10 @@ class PoseSampler:
             triangles=mesh.triangles if points is None else None,
             anchor=anchor,
         )
-        # Of its own, so that what asks for a sample or a frame need not wait for a whole interval.
-        self._interval_lock = threading.RLock()
         self._lock = threading.RLock()
         # Of its own, so that a sibling waits for the transform alone.
         self._transform_lock = threading.RLock()
         self._samples: dict[Pose, KeyframeSamples] = {}
-        self._inbetweens: dict[tuple[object, ...], tuple[tuple[Pose, ...], Inbetweens]] = {}
         self._tangents: dict[tuple[object, ...], tuple[tuple[Pose, ...], Tangent]] = {}
         self._sibling = sibling
         self._transform: HilbertTransform | None = None
@@ -101,21 +100,13 @@ class PoseSampler:
                 self._extension = self.transform.at(self.sites.paths.nodes, single=True)
             return self._extension
 
-    def keep_only(self, poses: Sequence[Pose]) -> None:
+    def keep_only(self, poses: AbstractSet[Pose]) -> None:
         """Forget what was kept for other poses."""
-        wanted = set(poses)
-        with self._interval_lock, self._lock:
-            self._samples = {p: s for p, s in self._samples.items() if p in wanted}
-            self._inbetweens = {
-                key: kept for key, kept in self._inbetweens.items() if wanted.issuperset(kept[0])
-            }
+        with self._lock:
+            self._samples = {p: s for p, s in self._samples.items() if p in poses}
             self._tangents = {
-                key: kept for key, kept in self._tangents.items() if wanted.issuperset(kept[0])
+                key: kept for key, kept in self._tangents.items() if poses >= set(kept[0])
             }
-
-    def has_sampled(self, pose: Pose) -> bool:
-        """Tell whether the samples of a pose are kept."""
-        return pose in self._samples
 
     def samples(self, pose: Pose) -> KeyframeSamples:
         """Return the samples of a pose's map."""
@@ -152,8 +143,12 @@ class PoseSampler:
         obeyed = bounds if transit.is_joined else None
         return self._prepared(poses, transit.turns, course, variant, bounds=obeyed)
 
+    def makes_single_frames(self, variant: Variant) -> bool:
+        """Tell whether one in-between alone takes less time than all of its interval."""
+        return variant.needs_transform and self.sites.closing is None
+
     def frame_of(self, transit: Transit, bounds: Bounds, variant: Variant, weight: float) -> Frame:
-        """Return one of these in-betweens; alone, where that takes less time than all of them.
+        """Return one of these in-betweens; a variant that `makes_single_frames` says so.
 
         Parameters
         ----------
@@ -162,8 +157,6 @@ class PoseSampler:
         weight : float
             Its time from one key to the other, in [0, 1].
         """
-        if not variant.needs_transform or self.sites.closing is not None:
-            return self.inbetweens_of(transit, bounds, variant).frame(weight)
         samples = [self.samples(key.pose) for key in transit.keys]
         return frame_at(
             weight,
@@ -220,22 +213,16 @@ class PoseSampler:
         *,
         bounds: Bounds | None = None,
     ) -> Inbetweens:
-        controls = None if course.controls is None else course.controls.tobytes()
-        key = (poses, turns, controls, bounds, variant)
-        with self._interval_lock:
-            if key not in self._inbetweens:
-                samples = [self.samples(pose) for pose in poses]
-                inbetweens = prepare_inbetweens(
-                    variant,
-                    self.sites,
-                    samples,
-                    _sheets(samples, turns),
-                    transform=self.extension if variant.needs_transform else None,
-                    course=course,
-                    bounds=bounds or Bounds(),
-                )
-                self._inbetweens[key] = poses, inbetweens
-            return self._inbetweens[key][1]
+        samples = [self.samples(pose) for pose in poses]
+        return prepare_inbetweens(
+            variant,
+            self.sites,
+            samples,
+            _sheets(samples, turns),
+            transform=self.extension if variant.needs_transform else None,
+            course=course,
+            bounds=bounds or Bounds(),
+        )
 
 
 def _sheets(samples: Sequence[KeyframeSamples], turns: Sequence[int]) -> Integers:
@@ -253,8 +240,8 @@ class Animation:
     points : complex128, shape (m,), optional
         By default the vertices of the domain's mesh.
     sampler : PoseSampler, optional
-        An earlier animation's; it is used again if its domain and anchor are the figure's, and
-        then only poses that changed cost anything.
+        An earlier animation's; it is used again if its domain and anchor are the figure's: poses
+        that it has sampled are not sampled again.
     """
 
     def __init__(
@@ -275,7 +262,8 @@ class Animation:
         ):
             sampler = PoseSampler(clip.figure.domain, anchor=clip.figure.anchor, points=points)
         self.sampler = sampler
-        sampler.keep_only([key.pose for key in clip.keys])
+        sampler.keep_only({key.pose for key in clip.keys})
+        self._prepared: dict[int, Inbetweens] = {}
 
     def positions(self, frame: float) -> Complexes:
         """Return where the points (m,) are at a frame, which may lie between two numbers."""
@@ -296,5 +284,7 @@ class Animation:
         return Frame(positions=positions, fz=fz, fzbar=fzbar, rho=None)
 
     def _inbetweens(self, interval: int) -> Inbetweens:
-        transit = transits(self.clip)[interval]
-        return self.sampler.inbetweens_of(transit, self.clip.figure.bounds, self.variant)
+        if interval not in self._prepared:
+            transit, bounds = transits(self.clip)[interval], self.clip.figure.bounds
+            self._prepared[interval] = self.sampler.inbetweens_of(transit, bounds, self.variant)
+        return self._prepared[interval]

@@ -1,6 +1,7 @@
 """Where figures that hang on others are, at any time (Section 7, "a user curve for the anchor")."""
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from itertools import product
 from typing import NamedTuple
 
 import numpy as np
@@ -8,6 +9,7 @@ import numpy as np
 from app.document import Attachment, Document, Figure, Pose, clip_of
 from app.errors import LissomError
 from app.motion.inbetweens import Animation, PoseSampler
+from app.motion.tracked_points import TrackedPoints
 from engine.arrays import Complexes
 from engine.errors import EngineError
 from engine.geometry import box_diagonal, contains, deepest_point
@@ -16,6 +18,9 @@ from engine.geometry import box_diagonal, contains, deepest_point
 MOST_STEPS = 20
 CLOSE = 1e-12  # of the figure's size
 MOST_STARTS = 2_000  # triangles among which the nearest one is where the search begins
+# Frames of figures that the worker works out before it looks for more urgent work, about a
+# millisecond each, and those that it looks at.
+BATCH, MOST_LOOKED_AT = 60, 5_000
 
 
 class Placement(NamedTuple):
@@ -83,10 +88,13 @@ class Joints:
 
     Attributes
     ----------
+    document : Document
     points : dict of int to list of complex
         Of each figure, those by which it hangs, or others hang on it.
-    animations : dict of int to Animation
-        Of figures at these points, where they were asked for.
+    tracked : dict of int to TrackedPoints
+        The same over time.
+    is_whole : bool
+        Whether all frames have been gone through.
 
     Raises
     ------
@@ -100,13 +108,27 @@ class Joints:
         siblings: Mapping[int, PoseSampler] | None = None,
         earlier: "Joints | None" = None,
     ) -> None:
-        self._document = document
+        self.document = document
         self.points = _points(document)
-        self.animations: dict[int, Animation] = {}
-        self._siblings = siblings or {}
+        self.is_whole = False
+        known = {} if earlier is None else earlier.tracked
+        siblings = siblings or {}
+        self.tracked: dict[int, TrackedPoints] = {
+            figure: TrackedPoints(
+                clip_of(document, figure), np.array(points), siblings.get(figure), known.get(figure)
+            )
+            for figure, points in self.points.items()
+            if points
+        }
+        self._siblings = siblings
         self._placements: dict[tuple[int, float], Placement] = {}
-        if earlier is not None:
-            self._take_over(earlier)
+        frames = range(document.frames.first, document.frames.last + 1)
+        self._ahead = product(frames, self.tracked.values())
+
+    @property
+    def worked_out(self) -> int:
+        """How many frames of figures had to be worked out, because nothing was known of them."""
+        return sum(each.worked_out for each in self.tracked.values())
 
     def placement(
         self, figure: int, frame: float, poses: Mapping[int, Pose] | None = None
@@ -120,7 +142,7 @@ class Joints:
         poses : mapping of int to Pose, optional
             Shown instead of what the figures with these ids have at the frame.
         """
-        chain = self._document.carriers(figure)
+        chain = self.document.carriers(figure)
         if len(chain) == 1:
             return HERE
         if poses:
@@ -129,11 +151,14 @@ class Joints:
             self._placements[figure, frame] = self._work_out(chain, frame, {})
         return self._placements[figure, frame]
 
-    def prepare(self) -> "Joints":
-        """Work out what all frames need, so that asking for one takes no time."""
-        for figure in self._document.figures:
-            for frame in range(self._document.frames.first, self._document.frames.last + 1):
-                self.placement(figure.id, frame)
+    def advance(self) -> "Joints":
+        """Go through some frames, so that asking for them takes no time."""
+        end = self.worked_out + BATCH
+        for looked_at, (frame, tracked) in enumerate(self._ahead, 1):
+            tracked.at(frame)
+            if self.worked_out >= end or looked_at == MOST_LOOKED_AT:
+                return self
+        self.is_whole = True
         return self
 
     def _work_out(
@@ -169,7 +194,7 @@ class Joints:
         LissomError
             If one of the two is not at that place.
         """
-        document = self._document
+        document = self.document
         own = document.figure(child)
         here, there = self.placement(child, frame), self.placement(parent, frame)
         if place is None:
@@ -189,26 +214,8 @@ class Joints:
         if figure.id in poses:
             return _hinge_of(figure, poses[figure.id], place)
         index = self.points[figure.id].index(place)
-        moved = self._animation(figure.id).frame(frame)
+        moved = self.tracked[figure.id].at(frame)
         return _joint(moved.positions[index], moved.fz[index])
-
-    def _take_over(self, earlier: "Joints") -> None:
-        for identity, before in earlier.animations.items():
-            if identity not in self.points:
-                continue
-            clip, sampler = clip_of(self._document, identity), before.sampler
-            if (
-                clip.figure.domain is sampler.domain
-                and clip.figure.anchor == sampler.anchor
-                and self.points[identity] == earlier.points[identity]
-            ):
-                self.animations[identity] = Animation(clip, sampler=sampler)
-
-    def _animation(self, figure: int) -> Animation:
-        if figure not in self.animations:
-            points = np.array(self.points[figure])
-            self.animations[figure] = self._animation_at(self._document.figure(figure), points)
-        return self.animations[figure]
 
     def _animation_at(self, figure: Figure, points: Complexes) -> Animation:
         sampler = PoseSampler(
@@ -217,7 +224,7 @@ class Joints:
             points=points,
             sibling=self._siblings.get(figure.id),
         )
-        return Animation(clip_of(self._document, figure.id), sampler=sampler)
+        return Animation(clip_of(self.document, figure.id), sampler=sampler)
 
     def _at(self, figure: Figure, place: complex, frame: float) -> Hinge:
         moved = self._animation_at(figure, np.array([place])).frame(frame)

@@ -5,7 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from app.document import Clip
-from app.motion.inbetweens import Animation, PoseSampler
+from app.motion.inbetweens import PoseSampler
+from app.motion.tracked_points import TrackedPoints
 from engine.arrays import Complexes, Indices, freeze
 
 MOST = 1000  # frames that are traced; of longer animations every second, third …
@@ -21,14 +22,14 @@ class MotionPaths:
     frames : intp, shape (f,)
     places : complex128, shape (f, h)
         Of each handle, on the figure by itself.
-    sampler : PoseSampler or None
+    tracked : TrackedPoints or None
         Of the worker alone; None where there are no handles.
     """
 
     clip: Clip
     frames: Indices
     places: Complexes
-    sampler: PoseSampler | None
+    tracked: TrackedPoints | None
 
 
 def trace_paths(
@@ -44,22 +45,11 @@ def trace_paths(
     sibling : PoseSampler, optional
         With the same outline and cage; what depends on them alone is shared.
     """
-    figure, first, last = clip.figure, clip.frames.first, clip.frames.last
+    first, last = clip.frames.first, clip.frames.last
     frames = np.arange(first, last + 1, 1 + (last - first) // MOST)
-    points = np.array([handle.position for handle in figure.handles], dtype=np.complex128)
-    if not len(points):
-        places = freeze(np.empty((len(frames), 0), dtype=np.complex128))
-        return MotionPaths(clip=clip, frames=freeze(frames), places=places, sampler=None)
-    sampler = None if earlier is None else earlier.sampler
-    if (
-        sampler is None
-        or sampler.domain is not figure.domain
-        or sampler.anchor != figure.anchor
-        or not np.array_equal(sampler.sites.points, points)
-    ):
-        sampler = PoseSampler(
-            figure.domain, anchor=figure.anchor, points=points, sibling=sibling or sampler
-        )
-    animation = Animation(clip, sampler=sampler)
-    places = np.array([animation.positions(float(frame)) for frame in frames])
-    return MotionPaths(clip=clip, frames=freeze(frames), places=freeze(places), sampler=sampler)
+    points = np.array([handle.position for handle in clip.figure.handles], dtype=np.complex128)
+    tracked, places = None, np.empty((len(frames), 0), dtype=np.complex128)
+    if len(points):
+        tracked = TrackedPoints(clip, points, sibling, earlier.tracked if earlier else None)
+        places = np.array([tracked.at(float(frame)).positions for frame in frames])
+    return MotionPaths(clip=clip, frames=freeze(frames), places=freeze(places), tracked=tracked)

@@ -1,16 +1,16 @@
 """What is on the screen: which pose of a figure, on which mesh."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from app.document import Clip, Document, Moment, Pose, intervals, resting_pose, time_of
-from app.motion.glimpse import Glimpse
+from app.document import Clip, Document, Pose, resting_pose, time_of
+from app.motion.interval_store import IntervalStore
+from app.motion.intervals import OneFrame
 from app.motion.joints import HERE, Hinge, Joints, Placement, along
 from app.motion.paint_order import painted_triangles
 from app.motion.posable_mesh import AttachedPoints, PosableMesh
-from app.motion.prepared import Motion
 from app.motion.vertices import Placed, Streamed, Vertices
 from engine.arrays import Complexes
 from engine.domain import Domain
@@ -33,8 +33,8 @@ class Shown:
         Of the figure's handles in the mesh.
     placement : Placement
         Where the figure is in the scene; all else is where it is by itself.
-    stand_in : Pose, Glimpse or Domain, optional
-        What is shown instead until the in-between is prepared: one of its two keys, or another
+    stand_in : Pose, OneFrame or Domain, optional
+        What is shown instead until the in-between is there: one of its two keys, or another
         in-between of theirs; or what was drawn of another domain.
     """
 
@@ -44,7 +44,7 @@ class Shown:
     mesh: PosableMesh
     vertices: Vertices
     handles: AttachedPoints
-    stand_in: Pose | Glimpse | Domain | None = None
+    stand_in: Pose | OneFrame | Domain | None = None
     placement: Placement = HERE
 
     @property
@@ -90,15 +90,14 @@ def show(
     clip: Clip,
     frame: int,
     pose: Pose | None,
-    motions: tuple[Motion, ...],
+    stores: Sequence[IntervalStore],
     earlier: Shown | None,
-    *,
-    seen: Glimpse | None = None,
 ) -> Shown:
-    """Return what to draw; the earlier one itself if nothing changed.
+    """Return the best there is to draw; the earlier one itself if nothing changed.
 
-    Until an in-between is prepared, the nearest in time of its two keys and of what is seen of
-    their in-betweens stands in: exact, and never the pose of another key.
+    Until an in-between is there, the nearest in time of its two keys and of what is known of their
+    in-betweens stands in: exact, and never the pose of another key. What was drawn of another
+    domain stays until there is a mesh of this one.
 
     Parameters
     ----------
@@ -106,92 +105,62 @@ def show(
     frame : int
     pose : Pose, optional
         Shown instead of what the figure has at the frame.
-    motions : tuple of Motion
+    stores : sequence of IntervalStore
         Where to look for it, the preferred one first; at least one.
     earlier : Shown, optional
         What was drawn before.
-    seen : Glimpse, optional
-        The last one.
     """
     if pose is None:
         pose = resting_pose(clip, time_of(clip, frame))
-    for motion in motions:
-        if motion.mesh.source is not clip.figure.domain:
-            continue
-        mesh = motion.mesh
-        if earlier is not None and _is_same(earlier, clip, frame, pose, mesh):
+    domain = clip.figure.domain
+    fitting = [store for store in stores if store.mesh.source is domain]
+    for store in fitting:
+        if earlier is not None and _is_same(earlier, clip, frame, pose, store.mesh):
             return earlier if earlier.frame == frame else replace(earlier, frame=frame)
         if pose is not None:
-            vertices: Vertices | None = Placed(
-                positions=mesh.posed(pose),
-                triangles=painted_triangles(mesh.domain.mesh, clip, frame),
-            )
-        else:
-            vertices = motion.vertices(clip, frame)
+            triangles = painted_triangles(store.mesh.domain.mesh, clip, frame)
+            posed = Placed(positions=store.mesh.posed(pose), triangles=triangles)
+            return _shown(clip, frame, pose, mesh=store.mesh, vertices=posed, earlier=earlier)
+        vertices = store.vertices(clip, frame)
         if vertices is not None:
-            handles = _locate(clip, mesh, earlier)
-            return Shown(
-                clip=clip,
-                frame=frame,
-                pose=pose,
-                mesh=mesh,
-                vertices=vertices,
-                handles=handles,
-            )
-    return _stand_in(clip, frame, motions[-1].mesh, earlier, seen)
+            return _shown(clip, frame, None, mesh=store.mesh, vertices=vertices, earlier=earlier)
+    if earlier is not None and (not fitting or earlier.mesh.source is not domain):
+        old = earlier.mesh.source
+        return earlier if earlier.stand_in is old else replace(earlier, stand_in=old)
+    if not fitting:
+        raise ValueError("none of the stores is of the figure's domain")
+    return _stand_in(clip, frame, fitting[-1], earlier)
 
 
-def _stand_in(
-    clip: Clip, frame: int, mesh: PosableMesh, earlier: Shown | None, seen: Glimpse | None
-) -> Shown:
-    """Return what to draw until the in-between is prepared; it, if that is what is seen.
-
-    What was drawn of another domain stays meanwhile.
-    """
-    domain = clip.figure.domain
-    if earlier is not None:
-        if earlier.mesh.source is not domain:
-            old = earlier.mesh.source
-            return earlier if earlier.stand_in is old else replace(earlier, stand_in=old)
-        mesh = mesh if mesh.source is domain else earlier.mesh
-    if mesh.source is not domain:
-        raise ValueError("none of the motions is of the figure's domain")
-    moment = time_of(clip, frame)
-    near = _nearest(clip, moment, seen)
-    is_exact = isinstance(near, Glimpse) and near.weight == moment.weight
-    stand_in = None if is_exact else near
+def _stand_in(clip: Clip, frame: int, store: IntervalStore, earlier: Shown | None) -> Shown:
+    """Return what to draw until the in-between is there."""
+    near = store.nearest(clip, time_of(clip, frame))
     if (
         earlier is not None
         and earlier.clip == clip
         and earlier.frame == frame
         and earlier.pose is None
-        and earlier.stand_in is stand_in
+        and earlier.stand_in is near
     ):
         return earlier
-    if isinstance(near, Glimpse):
-        mesh, positions = near.mesh, near.positions
-    else:
-        positions = mesh.posed(near)
-    triangles = painted_triangles(mesh.domain.mesh, clip, frame)
-    return Shown(
-        clip=clip,
-        frame=frame,
-        pose=None,
-        mesh=mesh,
-        vertices=Placed(positions=positions, triangles=triangles),
-        handles=_locate(clip, mesh, earlier),
-        stand_in=stand_in,
-    )
+    positions = near.positions if isinstance(near, OneFrame) else store.mesh.posed(near)
+    triangles = painted_triangles(store.mesh.domain.mesh, clip, frame)
+    placed = Placed(positions=positions, triangles=triangles)
+    shown = _shown(clip, frame, None, mesh=store.mesh, vertices=placed, earlier=earlier)
+    return replace(shown, stand_in=near)
 
 
-def _nearest(clip: Clip, moment: Moment, seen: Glimpse | None) -> Pose | Glimpse:
-    """Return which known pose between two keys, theirs included, is nearest to a moment."""
-    after = moment.weight > 0.5
-    distance = 1.0 - moment.weight if after else moment.weight
-    is_of = seen is not None and seen.is_of(clip, moment.interval)
-    if seen is not None and is_of and abs(seen.weight - moment.weight) <= distance:
-        return seen
-    return clip.keys[intervals(clip)[moment.interval][after]].pose
+def _shown(
+    clip: Clip,
+    frame: int,
+    pose: Pose | None,
+    *,
+    mesh: PosableMesh,
+    vertices: Vertices,
+    earlier: Shown | None,
+) -> Shown:
+    handles = _locate(clip, mesh, earlier)
+    return Shown(clip=clip, frame=frame, pose=pose, mesh=mesh, vertices=vertices, handles=handles)
 
 
 def hang_shown(

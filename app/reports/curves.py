@@ -1,12 +1,13 @@
 """Distortion over time at the worst points of a drawing, as the paper plots it (Section 8)."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
 from app.document import Clip, Extremes, intervals, transits
-from app.motion import Motion
+from app.motion import Prepared
 from app.storage import write_atomically
 from engine.arrays import Floats
 from engine.maps import distortion
@@ -47,27 +48,26 @@ class Curves:
         return Extremes(*(float(np.interp(frame, self.frames, row)) for row in self.extremes.T))
 
 
-def measure_curves(clip: Clip, motion: Motion) -> Curves:
-    """Measure a clip at the vertices of a motion's mesh.
+def measure_curves(clip: Clip, inbetweens: Sequence[Prepared]) -> Curves:
+    """Measure a clip.
 
     Parameters
     ----------
     clip : Clip
         With at least two keys.
-    motion : Motion
-        That knows it.
+    inbetweens : sequence of Prepared
+        Those of its intervals, at the points that are measured.
     """
     keys = clip.keys
     period = clip.period
     frames, ks, taus, extremes = [], [], [], []
-    pairs = zip(intervals(clip), transits(clip), strict=True)
-    for interval, ((first, last), transit) in enumerate(pairs):
-        inbetweens = motion.inbetweens(clip, interval)
+    every = zip(intervals(clip), transits(clip), inbetweens, strict=True)
+    for (first, last), transit, between in every:
         start = keys[first].frame
         end = keys[last].frame if last > first else keys[last].frame + period
         for share in np.linspace(0.0, 1.0, TIMES):
             t = transit.weight(keys[first].easing(float(share)))
-            blended = inbetweens.frame(t)
+            blended = between.frame(t)
             frames.append(start + share * (end - start))
             ks.append(distortion.k(blended.fz, blended.fzbar))
             taus.append(distortion.tau(blended.fz, blended.fzbar))

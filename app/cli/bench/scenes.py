@@ -19,7 +19,6 @@ from app.cli.bench.ui import REACH, Driver, dragging, playing
 from app.document import Document, Figure, Meshing, PictureFile, Pose, Variant, clip_of
 from app.editor import Puppet
 from app.editor.actions import files
-from app.motion import prepare_motion
 from app.storage import Picture, decode_picture, load_project, open_layered, sample_images
 from engine.arrays import Complexes
 from engine.domain import Domain, mesh_inside
@@ -200,7 +199,10 @@ def _memory(extent: SceneExtent) -> Table:
         for figure in document.figures:
             clip = clip_of(document, figure.id)
             puppet = Puppet.of(clip, picture)
-            kept.append(prepare_motion(clip, puppet.coarse.value))
+            store = puppet.store
+            store.pin([clip], [], 0)
+            store.take(store.preparing(clip, store.missing(clip, 0))())
+            kept.append(store)
         used = tracemalloc.get_traced_memory()[0] / 2**20
         tracemalloc.stop()
         note = f"{used:.1f} MiB, {used / count:.1f} each"

@@ -217,7 +217,7 @@ def follow_figures(project: Project) -> None:
         del project.pictures[file]
     for figure in document.figures:
         puppet = project.puppets.get(figure.id)
-        if puppet is not None and puppet.coarse.value.clip.figure.picture is figure.picture:
+        if puppet is not None and puppet.file is figure.picture:
             project.pictures[figure.picture] = puppet.picture
             continue
         if figure.picture not in project.pictures:

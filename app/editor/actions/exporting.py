@@ -40,7 +40,6 @@ from app.export_formats import EXPORT_FORMATS
 from app.motion import (
     Animation,
     Box,
-    Motion,
     PoseSampler,
     extent_source,
     hung_animations,
@@ -193,8 +192,8 @@ def _prepare(
         if frames is not None and unkeyed.frame in frames:
             document = posing.holding(session, project, unkeyed)(document)
     pictures = {figure: puppet.cut.value.texture for figure, puppet in project.puppets.items()}
-    motions = {
-        figure: puppet.fine.value or puppet.coarse.value
+    samplers = {
+        figure: (puppet.fine or puppet.store).sampler or puppet.store.sampler
         for figure, puppet in project.puppets.items()
     }
     extent = project.extent
@@ -204,7 +203,7 @@ def _prepare(
         detail = request.settings.shapes.triangles
         exported = document if format_.is_drawn else with_light_meshes(document, detail)
         alone = [
-            _animation(clip_of(exported, figure.id), motions[figure.id])
+            _animation(clip_of(exported, figure.id), samplers[figure.id])
             for figure in exported.figures
         ]
         hung = hung_animations(alone, exported)
@@ -223,9 +222,9 @@ def _prepare(
     )
 
 
-def _animation(clip: Clip, motion: Motion) -> Animation:
+def _animation(clip: Clip, sibling: PoseSampler | None) -> Animation:
     """Return the motion for an export, which neither waits for the window's own nor disturbs it."""
-    figure, sibling = clip.figure, motion.sampler
+    figure = clip.figure
     is_sibling = sibling is not None and sibling.domain.cage is figure.domain.cage
     sampler = PoseSampler(
         figure.domain, anchor=figure.anchor, sibling=sibling if is_sibling else None

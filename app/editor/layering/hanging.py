@@ -69,8 +69,7 @@ def _join(
     document = project.document
     if not {child, parent} <= project.puppets.keys():
         return
-    samplers = {figure: puppet.coarse.value.sampler for figure, puppet in project.puppets.items()}
-    siblings = {figure: sampler for figure, sampler in samplers.items() if sampler is not None}
+    siblings = project.samplers
 
     def done(joint: tuple[complex, Attachment]) -> None:
         if project.document is document:

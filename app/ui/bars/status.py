@@ -94,9 +94,9 @@ def hold_back(session: Session) -> str:
 def slow_down(session: Session) -> str:
     """Return at which keys the limits slow the motion down that should pass through; else ""."""
     project = session.project
-    if project is None or project.pulls or project.playhead.since is not None:
+    if project is None or project.is_posing or project.playhead.since is not None:
         return ""
-    kept = project.puppet.coarse.value.kept(project.clip) or {}
+    kept = project.puppet.store.kept(project.clip)
     slowed = sorted(frame for frame, share in kept.items() if share < SLOWED)
     stopped = [frame for frame in slowed if kept[frame] < STOPPED]
     if not slowed:

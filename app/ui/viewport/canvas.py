@@ -220,9 +220,8 @@ def _inputs(session: Session, project: Project) -> tuple[object, ...]:
         *(puppet.shown for puppet in project.puppets.values()),
         *(puppet.cut.value for puppet in project.puppets.values()),
         *(puppet.twin.shown for puppet in project.puppets.values() if puppet.twin),
-        project.puppet.coarse.value
-        if session.overlays.onion
-        else project.puppet.coarse.value.sampler,
+        project.puppet.store.whole if session.overlays.onion else None,
+        project.puppet.store.sampler,
         project.paths.value if session.overlays.paths else None,
         project.pull.targets if project.pull else None,
         project.active,
@@ -339,9 +338,7 @@ def _posed(
 
 def _meshes(puppet: Puppet) -> set[PosableMesh]:
     """Return the meshes on which a figure is shown, or may be soon."""
-    meshes = {
-        motion.mesh for motion in (puppet.coarse.value, puppet.fine.value) if motion is not None
-    }
+    meshes = {store.mesh for store in (puppet.store, puppet.fine) if store is not None}
     twin = puppet.twin
     shows = (puppet.shown, None if twin is None else twin.shown)
     return meshes | {shown.mesh for shown in shows if shown is not None}
@@ -350,11 +347,11 @@ def _meshes(puppet: Puppet) -> set[PosableMesh]:
 def _ghosts(
     session: Session, project: Project, shown: Shown, drawing: _Drawing
 ) -> tuple[Ghost, ...]:
-    choice, motion = session.preferences, project.puppet.coarse.value
-    if project.playhead.since is not None:
-        return ()
+    choice, store = session.preferences, project.puppet.store
     # While the hand moves, in-betweens come a moment later: until then the last ones stay.
-    known = project.clip if motion.knows(project.clip) else motion.clip
+    known = store.whole
+    if known is None or project.playhead.since is not None:
+        return ()
     ghosts = []
     sides = ((-1, choice.ghosts_before, GHOST_BEFORE), (1, choice.ghosts_after, GHOST_AFTER))
     number = 0
@@ -364,13 +361,13 @@ def _ghosts(
             frame = shown.frame + direction * step * choice.ghost_step
             if frame not in known.frames and not known.loop:
                 continue
-            vertices = motion.vertices(known, frame)
+            vertices = store.vertices(known, frame)
             if vertices is None or time_of(known, frame) == time_of(known, shown.frame):
                 continue
             placement = shown.placement
-            if project.joints.value is not None and known is project.clip:
+            if project.joints.value is not None and known == project.clip:
                 placement = project.joints.value.placement(project.active, frame)
-            drawn = drawing.drawn_mesh(project.active, motion.mesh, number)
+            drawn = drawing.drawn_mesh(project.active, store.mesh, number)
             pose = drawn.pose(vertices, placement=placement)
             ghosts.append(Ghost(meshes=(pose,), tint=tint, opacity=GHOST_OPACITY / step**0.5))
     return tuple(ghosts)

@@ -85,7 +85,7 @@ def mark_all(
 
 def find_anchor(project: Project, shown: Shown) -> complex | None:
     """Return where the anchor is in what is shown; None where a handle marks it, or none is yet."""
-    figure, sampler = shown.clip.figure, project.puppet.coarse.value.sampler
+    figure, sampler = shown.clip.figure, project.puppet.store.sampler
     rest = figure.anchor
     if rest is None and sampler is not None and sampler.anchor is None:
         rest = sampler.sites.anchor

@@ -53,7 +53,7 @@ class PosePictures:
         posable : callable
             Returns a mesh on the graphics card that can be posed.
         """
-        mesh = project.puppet.coarse.value.mesh
+        mesh = project.puppet.store.mesh
         kind = (mesh, self._side, session.preferences.theme)
         if kind != self._kind:
             self.release()

@@ -8,21 +8,19 @@ from numpy.testing import assert_allclose
 
 from app.document import History, clip_of, key_commands, scene_commands
 from app.document import layer_commands as layers
-from app.document.keyframe import Keyframe
+from app.document.keyframe import Keyframe, Passing
 from app.document.layering import Attachment
 from app.document.settings import FrameRange
 from app.errors import LissomError
 from app.motion import (
     HERE,
     Animation,
+    IntervalStore,
     Joints,
-    Motion,
     PosableMesh,
     Streamed,
-    next_build,
-    prepare_motion,
-    with_series,
 )
+from app.motion.joints import BATCH
 from app.storage import load_project, save_project
 from engine.domain.meshing import triangulate
 from engine.maps import distortion
@@ -244,22 +242,61 @@ def test_a_joint_that_is_streamed_stays_closed_on_the_screen():
             finer = replace(finer, anchor=complex(middle[0]), attachment=joint)
         document = document.with_figure(finer)
     joints = Joints(document)
-    motions = []
+    stores = []
     for figure in document.figures:
         clip = clip_of(document, figure.id)
-        motion = Motion.at_rest(clip, PosableMesh.fine(figure.domain))
-        motion = prepare_motion(clip, motion)
-        while build := next_build(motion, clip, 0, heat=False):
-            while build.series is None:
-                build.advance()
-            motion = with_series(motion, build, clip, 0)
-        motions.append((clip, motion))
+        store = IntervalStore(mesh=PosableMesh.fine(figure.domain))
+        store.take(store.preparing(clip, store.missing(clip, 0))())
+        while build := store.next_build(clip, 0, heat=False):
+            store.take_build(build.advance())
+        stores.append((clip, store))
     anchor, at = (int(np.argmin(np.abs(mesh.vertices - place))) for place in middle)
     for frame in np.random.default_rng(3).uniform(0, 48, 200):
-        shown = [motion.vertices(clip, frame) for clip, motion in motions]
+        shown = [store.vertices(clip, frame) for clip, store in stores]
         assert all(isinstance(each, Streamed) for each in shown)
         places = [
             joints.placement(number, frame).on(each.positions) for number, each in enumerate(shown)
         ]
         for child in (1, 2):
             assert abs(places[child][anchor] - places[child - 1][at]) < 1e-6 * SIZE
+
+
+def worked_out(joints):
+    """Go through all frames in batches; return how many had to be worked out, and in how many."""
+    batches = 0
+    while not joints.is_whole:
+        before = joints.worked_out
+        assert joints.advance() is joints
+        assert joints.worked_out - before <= BATCH
+        batches += 1
+    return joints.worked_out, batches
+
+
+def test_an_edit_costs_the_frames_of_its_intervals_and_undo_none():
+    document = chain()
+    frames = len(range(document.frames.first, document.frames.last + 1))
+    first = Joints(document)
+    count, batches = worked_out(first)
+    assert count == 3 * frames
+    assert batches > 1
+    # The last key of one of them: the way to it from the middle one passes through that.
+    figure = document.figure(1)
+    last = figure.keys[-1]
+    cornered = key_commands.set_passing(1, figure.key_frames, Passing.CORNER)(document)
+    edited = key_commands.pose_key(1, last.frame, bent(figure, 0.3, 1e-4, 2))(cornered)
+    before = Joints(cornered, earlier=first)
+    worked_out(before)
+    after = Joints(edited, earlier=before)
+    assert worked_out(after)[0] == last.frame - 20
+    check = Joints(edited)
+    for frame in (7, 33, 48):
+        for each in (1, 2):
+            expected = check.placement(each, frame)
+            assert_allclose([*after.placement(each, frame)], [*expected], rtol=0, atol=1e-9)
+    # So far only the frames of one figure; and nothing of what was is lost.
+    assert worked_out(Joints(cornered, earlier=after))[0] == 0
+    assert worked_out(Joints(document, earlier=after))[0] == 0
+    # What began and was left is gone on with.
+    begun = Joints(document).advance()
+    assert not begun.is_whole
+    assert worked_out(Joints(document, earlier=begun))[0] == 3 * frames - begun.worked_out

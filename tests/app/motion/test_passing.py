@@ -14,9 +14,8 @@ from app.document.keyframe import Keyframe, Passing
 from app.document.queries.clips import clip_of
 from app.document.settings import FrameRange
 from app.motion.inbetweens import Animation
+from app.motion.interval_store import IntervalStore
 from app.motion.posable_mesh import PosableMesh
-from app.motion.prepared import Motion, pair_of, prepare_motion
-from app.motion.series_queue import Build, with_series
 from engine.maps import Bounds
 
 TURNS = (1.0, np.exp(0.3j), np.exp(-0.4j), np.exp(0.2j), np.exp(0.5j), np.exp(-0.1j), np.exp(0.1j))
@@ -35,11 +34,14 @@ def row(count, *, loop=False, **settings):
     return altered(document, keys=keys, frames=frames, loop=loop, **settings)
 
 
-def prepared(document, earlier=None):
+def prepared(document, store=None):
+    """Return a store that has all in-betweens of a document, and how many were prepared for it."""
     clip = clip_of(document, 0)
-    return prepare_motion(
-        clip, earlier or Motion.at_rest(clip, PosableMesh.coarse(clip.figure.domain))
-    )
+    store = store or IntervalStore(mesh=PosableMesh.coarse(clip.figure.domain))
+    lacking = store.missing(clip, 0)
+    store.take(store.preparing(clip, lacking)())
+    assert store.has(clip)
+    return store, len(lacking)
 
 
 def jump(animation, frame):
@@ -69,43 +71,41 @@ def test_keys_are_passed_at_one_velocity_whatever_the_easings(easing):
 
 def test_what_is_shown_is_what_the_clip_moves_like():
     document = row(4)
-    clip, motion = clip_of(document, 0), prepared(document)
-    build = Build(motion, pair_of(clip, 1), distortions=False)
-    while build.series is None:
-        build.advance()
-    streamed = with_series(motion, build, clip, 13)
-    animation = Animation(clip, sampler=motion.sampler)
+    clip, (store, _) = clip_of(document, 0), prepared(document)
+    while build := store.next_build(clip, 13, heat=False):
+        store.take_build(build.advance())
+    animation = Animation(clip, sampler=store.sampler)
     for frame in (10, 12.5, 17, 20):
         assert_allclose(
-            streamed.vertices(clip, frame).positions, animation.positions(frame), rtol=0, atol=1e-2
+            store.vertices(clip, frame).positions, animation.positions(frame), rtol=0, atol=1e-2
         )
 
 
 def test_a_key_that_changes_has_four_intervals_prepared_again():
     document = row(7)
-    motion = prepared(document)
+    store, _ = prepared(document)
+    before = store.prepared(clip_of(document, 0))
     pose = document.figures[0].key(20).pose
     posed = key_commands.pose_key(0, 30, replace(pose, phi=1.01 * pose.phi))(document)
-    again = prepared(posed, motion)
-    clip, changed = clip_of(document, 0), clip_of(posed, 0)
-    kept = [
-        again.ready[pair_of(changed, i)] is motion.ready.get(pair_of(clip, i)) for i in range(6)
-    ]
+    assert prepared(posed, store)[1] == 4
+    after = store.prepared(clip_of(posed, 0))
+    kept = [new is old for new, old in zip(after, before, strict=True)]
     assert kept == [True, False, False, False, False, True]
     # Corners and stops blend two keys alike, at another pace.
     every = document.figures[0].key_frames
     cornered, stopped = (
-        prepared(key_commands.set_passing(0, every, passing)(document))
+        key_commands.set_passing(0, every, passing)(document)
         for passing in (Passing.CORNER, Passing.STOP)
     )
-    assert stopped.ready.keys() == cornered.ready.keys()
+    store, _ = prepared(cornered)
+    assert prepared(stopped, store)[1] == 0
 
 
 def test_how_much_of_their_velocity_keys_keep_is_told():
     document = row(4)
-    assert prepared(document).kept(clip_of(document, 0)) == {10: 1.0, 20: 1.0}
+    assert prepared(document)[0].kept(clip_of(document, 0)) == {10: 1.0, 20: 1.0}
     tight = altered(document, bounds=Bounds(k=0.01, sigma_a=1.01, sigma_b=0.99))
-    kept = prepared(tight).kept(clip_of(tight, 0))
+    kept = prepared(tight)[0].kept(clip_of(tight, 0))
     assert kept.keys() == {10, 20}
     assert max(kept.values()) < 0.01
-    assert prepared(tight).kept(clip_of(document, 0)) is None
+    assert prepared(tight)[0].kept(clip_of(document, 0)) == {}

@@ -6,7 +6,7 @@ from shapes import regular_polygon
 
 from app.document import clip_of
 from app.document.commands import key_commands
-from app.motion import Motion, PosableMesh, can_glimpse, glimpse_at, prepare_motion, show
+from app.motion import IntervalStore, PosableMesh, show
 from engine.domain import Domain
 from engine.domain.meshing import triangulate
 
@@ -18,14 +18,14 @@ def test_the_nearer_key_stands_in_until_the_in_between_is_prepared():
     first = figure.keys[0].pose
     turned = replace(first, phi=CENTRE + (first.phi - CENTRE) * np.exp(0.8j))
     clip = clip_of(key_commands.insert_key(figure.id, 24, turned)(document), figure.id)
-    motion = Motion.at_rest(clip, PosableMesh.coarse(figure.domain))
+    store = IntervalStore(mesh=PosableMesh.coarse(figure.domain))
     for frame, pose in ((6, first), (18, turned)):
-        shown = show(clip, frame, None, (motion,), None)
+        shown = show(clip, frame, None, [store], None)
         assert shown.stand_in is pose
         assert not shown.is_current
         assert shown.pose is None
-        np.testing.assert_array_equal(shown.positions, motion.mesh.posed(pose))
-        assert show(clip, frame, None, (motion,), shown) is shown
+        np.testing.assert_array_equal(shown.positions, store.mesh.posed(pose))
+        assert show(clip, frame, None, [store], shown) is shown
 
 
 def test_one_exact_in_between_stands_in_for_others_nearby():
@@ -33,23 +33,25 @@ def test_one_exact_in_between_stands_in_for_others_nearby():
     figure = document.figures[0]
     first = figure.keys[0].pose
     pair = clip_of(key_commands.insert_key(figure.id, 24, first)(document), figure.id)
-    motion = prepare_motion(pair, Motion.at_rest(pair, PosableMesh.coarse(figure.domain)))
+    store = IntervalStore(mesh=PosableMesh.coarse(figure.domain))
+    store.take(store.preparing(pair, [0])())
     bent = replace(first, phi=CENTRE + (first.phi - CENTRE) * np.exp(0.8j))
     clip = clip_of(key_commands.insert_key(figure.id, 24, bent)(document), figure.id)
-    assert not can_glimpse(pair, motion, 12)
-    assert can_glimpse(clip, motion, 12)
-    assert not can_glimpse(clip, motion, 24)
-    seen = glimpse_at(clip, motion, 12)
-    exact = prepare_motion(clip, motion)
+    assert store.making_frame(pair, 12) is None
+    assert store.making_frame(clip, 24) is None
+    store.take(store.making_frame(clip, 12)())
+    seen = store.interval(clip, 0).one
+    exact = IntervalStore(mesh=store.mesh)
+    exact.take(exact.preparing(clip, [0])())
     for frame, stand_in in ((12, None), (13, seen), (8, seen), (4, first), (22, bent)):
-        shown = show(clip, frame, None, (motion,), None, seen=seen)
+        shown = show(clip, frame, None, [store], None)
         assert shown.stand_in is stand_in
         if shown.is_current:
             expected = exact.positions(clip, frame)
             np.testing.assert_allclose(shown.positions, expected, atol=1e-5)
     # Of other keys it shows nothing.
     other = clip_of(key_commands.insert_key(figure.id, 24, turned_back(bent))(document), figure.id)
-    assert show(other, 12, None, (motion,), None, seen=seen).stand_in is first
+    assert show(other, 12, None, [store], None).stand_in is first
 
 
 def turned_back(pose):

@@ -34,8 +34,8 @@ def come(monkeypatch, window, bent):
 
 def in_between(project):
     """Return where the handles are in the in-between that is awaited."""
-    clip, motion, mesh = project.clip, project.puppet.coarse.value, project.puppet.coarse.value.mesh
-    positions = motion.positions(clip, FRAME)
+    store, mesh = project.puppet.store, project.puppet.store.mesh
+    positions = store.positions(project.clip, FRAME)
     rest = np.array([handle.position for handle in project.figure.handles])
     return mesh.locate(rest, mesh.domain.mesh.vertices).on(positions)
 
@@ -173,9 +173,9 @@ def test_undo_and_redo_need_not_wait(window, bent):
     for step in (editing.undo, editing.redo, editing.undo):
         step(window.session)
         assert bent.document in documents
-        assert bent.puppet.coarse.value.knows(bent.clip)
+        assert bent.puppet.store.has(bent.clip)
     # What leads on from here is worked out, and then nothing of the way back is lost.
     editing.undo(window.session)
     window.settle()
     editing.redo(window.session)
-    assert bent.puppet.coarse.value.knows(bent.clip)
+    assert bent.puppet.store.has(bent.clip)

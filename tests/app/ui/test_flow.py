@@ -187,12 +187,12 @@ def test_the_coarse_mesh_is_shown_while_the_playhead_moves(window):
     project = window.open(BAR)
     session.full_detail = False
     window.frames(30)
-    assert project.puppet.shown.mesh is project.puppet.fine.value.mesh
+    assert project.puppet.shown.mesh is project.puppet.fine.mesh
     playback.seek(session, 3)
     window.frames()
-    assert project.puppet.shown.mesh is project.puppet.coarse.value.mesh
+    assert project.puppet.shown.mesh is project.puppet.store.mesh
     window.frames(20)
-    assert project.puppet.shown.mesh is project.puppet.fine.value.mesh
+    assert project.puppet.shown.mesh is project.puppet.fine.mesh
 
 
 def test_a_shape_that_is_held_back_is_left_alone_when_the_hand_lets_go(window, bar):
@@ -214,7 +214,7 @@ def test_inbetweens_follow_a_drag_before_the_hand_lets_go(window, bar):
     window.settle()
     posing.wish(session, {1: Target(position=handle_places(bar)[1] + 120j)})
     window.settle()
-    before = bar.puppet.coarse.value.positions(bar.clip, 12)
+    before = bar.puppet.store.positions(bar.clip, 12)
     start = handle_places(bar)[1]
     ghosts, halfway = [], {}
 
@@ -223,13 +223,13 @@ def test_inbetweens_follow_a_drag_before_the_hand_lets_go(window, bar):
         robot.mouse_down(0)
         for step in range(1, 7):
             robot.mouse_move_to_pos(window.point(start + 25j * step))
-            ghosts.append(bar.puppet.coarse.value.vertices(bar.puppet.coarse.value.clip, 12))
+            ghosts.append(bar.puppet.store.vertices(bar.puppet.store.whole, 12))
         while session.jobs.kinds:
             robot.yield_()
         halfway.update(
             grab=bar.pull,
-            known=bar.puppet.coarse.value.knows(bar.clip),
-            positions=bar.puppet.coarse.value.positions(bar.clip, 12),
+            known=bar.puppet.store.has(bar.clip),
+            positions=bar.puppet.store.positions(bar.clip, 12),
         )
         robot.mouse_up(0)
 
@@ -239,8 +239,8 @@ def test_inbetweens_follow_a_drag_before_the_hand_lets_go(window, bar):
     assert halfway["known"]
     assert np.abs(halfway["positions"] - before).max() > 40
     window.settle()
-    assert bar.puppet.coarse.value.knows(bar.clip)
-    exact = bar.puppet.coarse.value.positions(bar.clip, 12)
+    assert bar.puppet.store.has(bar.clip)
+    exact = bar.puppet.store.positions(bar.clip, 12)
     np.testing.assert_allclose(
         halfway["positions"], exact, rtol=0, atol=0.01 * bar.puppet.picture.size[0]
     )
@@ -616,7 +616,7 @@ def test_ctrl_click_on_the_shape_puts_the_anchor_there(window, bent):
 def test_an_anchor_that_was_chosen_for_the_person_is_shown(window, bent):
     assert bent.document.figures[0].anchor is None
     place = marks.find_anchor(bent, bent.puppet.shown)
-    rest = bent.puppet.coarse.value.sampler.sites.anchor
+    rest = bent.puppet.store.sampler.sites.anchor
     moved = bent.document.figures[0].map_of(bent.document.figures[0].keys[1].pose)(np.array([rest]))
     assert abs(place - moved[0]) < 3
     shown = window.picture()

@@ -10,6 +10,7 @@ from app.document.commands import key_commands
 from app.document.keyframe import Target
 from app.editor.actions import editing, playback, posing
 from app.motion import PoseSampler
+from app.motion.intervals import pair_of
 
 
 def pull(window, bar, by):
@@ -83,7 +84,7 @@ def test_in_betweens_are_exact_while_the_pose_that_was_left_comes_to_rest(window
         assert (shown.frame, shown.clip) == (12, bent.clip)
         if shown.is_current and not any(exact):
             # It comes alone, before the others of its interval.
-            assert bent.puppet.coarse.value.lacks(bent.clip, 12)
+            assert not bent.puppet.store.has(bent.clip)
         exact.append(shown.is_current)
         check()
         assert len(exact) < 200
@@ -102,7 +103,7 @@ def test_in_betweens_are_exact_while_the_pose_that_was_left_comes_to_rest(window
 @pytest.fixture
 def check(bent):
     """What fails unless the right key is shown, or exactly an in-between of the right two."""
-    sampler = PoseSampler(bent.puppet.coarse.value.mesh.domain, anchor=None)
+    sampler = PoseSampler(bent.puppet.store.mesh.domain, anchor=None)
 
     def look():
         shown, clip = bent.puppet.shown, bent.clip
@@ -110,7 +111,7 @@ def check(bent):
         moment = time_of(clip, shown.frame)
         if shown.pose is None and not isinstance(shown.stand_in, Pose):
             if shown.stand_in is not None:
-                assert shown.stand_in.is_of(clip, moment.interval)
+                assert shown.stand_in.pair == pair_of(clip, moment.interval)
                 moment = moment._replace(weight=shown.stand_in.weight)
             transit, figure = transits(clip)[moment.interval], clip.figure
             exact = sampler.inbetweens_of(transit, figure.bounds, figure.variant)

@@ -1,7 +1,5 @@
 """A scene of several layers in the window: chosen, ordered, hidden, joined and painted in front."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 from harness import Harness
@@ -743,7 +741,7 @@ def test_handles_are_shown_of_the_layer_that_is_chosen_even_while_in_betweens_ar
     window.act(editing.select, frozenset())
     # As long as the worker has not made them, no layer has a sampler.
     for puppet in scene.puppets.values():
-        puppet.coarse.value = replace(puppet.coarse.value, sampler=None)
+        puppet.store.sampler = None
     before = np.asarray(window.picture()).astype(int)
     scene.active = identity(scene, "body")
     after = np.asarray(window.picture()).astype(int)

@@ -101,8 +101,23 @@ def test_methods_for_comparison_play_beside_the_drawing_and_are_measured(window,
     assert np.isfinite(curves.k).all()
     assert between.document is document
     # All frames are there before anybody looks.
-    (interval,) = twin.motion.value.ready.values()
-    assert len(interval.inbetweens._frames) >= 23
+    (inbetweens,) = between.puppet.store.prepared(twin.clip(document))
+    assert len(inbetweens._frames) >= 23
+
+
+def test_a_method_that_leads_handles_leads_a_new_one(window, between):
+    session = window.session
+    viewing.compare_with(session, Baseline.HANDLES)
+    window.settle()
+    shown = between.puppet.twin.shown
+    assert shown.is_current
+    middle = np.abs(shown.mesh.domain.mesh.vertices - shown.mesh.domain.mesh.vertices.mean())
+    posing.add_handle(session, complex(between.puppet.shown.positions[middle.argmin()]))
+    window.settle()
+    led = between.puppet.twin.shown
+    assert led.is_current
+    size = np.ptp(shown.positions.real)
+    assert np.abs(led.positions - shown.positions).max() > 1e-3 * size
 
 
 @pytest.mark.usefixtures("between")

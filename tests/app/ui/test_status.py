@@ -12,7 +12,7 @@ from app.document.keyframe import Target
 from app.document.queries.clips import clip_of
 from app.editor.actions import editing, playback, posing
 from app.errors import LissomError
-from app.motion.prepared import Motion, prepare_motion
+from app.motion import IntervalStore
 from app.reports.curves import TIMES, measure_curves
 from app.ui import bars
 from engine.maps import distortion
@@ -54,7 +54,7 @@ def test_inbetweens_show_what_was_measured(window, bent):
     window.settle()
     window.frames(2)
     shown, *_ = facts(window)
-    halfway = bent.puppet.coarse.value.inbetweens(bent.clip, 0).frame(0.5)
+    halfway = bent.puppet.store.prepared(bent.clip)[0].frame(0.5)
     fz, fzbar = halfway.fz, halfway.fzbar
     values = {
         "Shear": distortion.k(fz, fzbar).max(),
@@ -101,7 +101,7 @@ def test_a_pull_that_is_held_back_is_told_with_its_remedy(window, bent):
 
 
 def test_extremes_between_the_times_that_were_measured(bent):
-    curves = measure_curves(bent.clip, bent.puppet.coarse.value)
+    curves = measure_curves(bent.clip, bent.puppet.store.prepared(bent.clip))
     assert curves.extremes.shape == (TIMES, 3)
     np.testing.assert_array_equal(curves.extremes_at(0), curves.extremes[0])
     np.testing.assert_allclose(curves.extremes_at(24), curves.extremes[-1], rtol=1e-12, atol=0)
@@ -118,8 +118,9 @@ def test_extremes_between_the_times_that_were_measured(bent):
         frames=replace(bent.document.frames, last=48),
     )
     looped = clip_of(looped, 0)
-    motion = prepare_motion(looped, Motion.at_rest(looped, bent.puppet.coarse.value.mesh))
-    again = measure_curves(looped, motion)
+    store = IntervalStore(mesh=bent.puppet.store.mesh)
+    store.take(store.preparing(looped, store.missing(looped, 0))())
+    again = measure_curves(looped, store.prepared(looped))
     assert again.extremes_at(5) == again.extremes_at(53)
     assert again.extremes_at(5) != again.extremes_at(20)
 

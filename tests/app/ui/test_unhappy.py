@@ -392,7 +392,10 @@ def test_bound_that_bounds_nothing_is_refused_in_words(window, bent):
 # Work that takes long, or fails.
 
 
-INBETWEENS = "app.editor.actions.upkeep.prepare_motion", "app.editor.actions.upkeep.glimpse_at"
+INBETWEENS = (
+    "app.motion.interval_store.prepare_intervals",
+    "app.motion.interval_store.prepare_frame",
+)
 
 
 def test_scrubbing_while_the_worker_builds(window, bent, monkeypatch):
@@ -418,18 +421,19 @@ def test_poses_that_follow_each_other_twice_are_prepared_once(window, bent):
     window.settle()
     assert frames_of(bent) == [0, 24, 48, 72]
     # None of it is known of this one.
-    known = set(bent.puppet.coarse.value.ready)
     keys.set_variant(window.session, "metric")
     for _ in range(20):
         window.frames()
         window.session.jobs.settle()
-    assert bent.puppet.coarse.value.knows(bent.clip)
-    assert len(bent.puppet.coarse.value.ready.keys() - known) == 2
+    prepared = bent.puppet.store.prepared(bent.clip)
+    assert prepared is not None
+    assert prepared[0] is prepared[2]
+    assert len(set(prepared)) == 2
 
 
 FAILURES = {
     "In-betweens": (
-        "app.editor.actions.upkeep.prepare_motion",
+        "app.motion.interval_store.prepare_intervals",
         lambda session: keys.set_variant(session, "nu"),
     ),
     "Measuring": (
@@ -441,7 +445,7 @@ FAILURES = {
         lambda session: keys.set_variant(session, "nu"),
     ),
     "Smooth playback": (
-        "app.motion.series_queue.build_series",
+        "app.motion.intervals.build_series",
         lambda session: keys.set_variant(session, "nu"),
     ),
     "Solving the keys": ("app.editor.actions.rebuilding.go_on", rebuilding.solve_again),
@@ -508,7 +512,7 @@ def test_job_that_raises_is_told_once_and_the_window_lives_on(
 
 WAITING = {
     "In-betweens": (
-        "app.editor.actions.upkeep.prepare_motion",
+        "app.motion.interval_store.prepare_intervals",
         lambda session: keys.set_variant(session, "nu"),
     ),
     "Measuring the motion": (

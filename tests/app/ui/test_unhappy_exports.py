@@ -299,7 +299,7 @@ def test_export_and_in_betweens_of_the_window_do_not_wait_for_each_other(window,
     keys.set_variant(window.session, "nu")
     keys.insert_at(window.session, FRAMES - 1)
     window.settle()
-    sampler = project.puppet.coarse.value.sampler
+    sampler = project.puppet.store.sampler
     known = dict(sampler._samples)
     assert known
     with sampler._lock:  # as a worker has it while it prepares an interval

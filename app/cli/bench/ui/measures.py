@@ -274,14 +274,14 @@ def _rests(project: Project) -> bool:
 
 
 def _is_exact(project: Project) -> bool:
-    return project.puppet.coarse.value.knows(project.clip)
+    return project.puppet.store.has(project.clip)
 
 
 def _is_fine(project: Project) -> bool:
-    coarse, fine = project.puppet.coarse.value, project.puppet.fine.value
-    if coarse.mesh.domain is project.figure.domain:
+    store, fine = project.puppet.store, project.puppet.fine
+    if store.mesh.domain is project.figure.domain:
         return _is_exact(project)
-    return fine is not None and fine.knows(project.clip)
+    return fine is not None and fine.has(project.clip)
 
 
 def _latency(stage: Driver, extent: Extent) -> Table:

@@ -58,7 +58,7 @@ def fit_pose(
 ) -> None:
     """Let the worker find the pose that is nearest to what a clip shows at a frame."""
     puppet = project.puppets[clip.figure.id]
-    rig, sibling = Rig.of(clip.figure, puppet.rig), puppet.coarse.value.sampler
+    rig, sibling = Rig.of(clip.figure, puppet.rig), puppet.store.sampler
 
     def work() -> Pose:
         return pose_at(rig, clip, frame, sibling)

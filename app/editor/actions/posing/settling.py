@@ -76,8 +76,8 @@ def _tried_clip(project: Project, pull: Pull) -> Clip | None:
 
 def _has_inbetweens(project: Project, clip: Clip) -> bool:
     """Tell whether all in-betweens of a clip are there, or never will be."""
-    coarse = project.puppets[clip.figure.id].coarse
-    return coarse is not None
+    store = project.puppets[clip.figure.id].store
+    return store.has(clip) or store.has_failed(clip)
 
 
 def _follow_key(project: Project, pull: Pull) -> None:

@@ -51,7 +51,7 @@ def go_on(session: Session, project: Project) -> None:
         pull.frame,
         pull.before,
         None if puppet is None else puppet.rig,
-        None if puppet is None else puppet.coarse.value.sampler,
+        None if puppet is None else puppet.store.sampler,
     )
     aim = pull.targets if pull.targets is not None else tuple(pull.wishes.values())
     session.jobs.put(
@@ -74,7 +74,7 @@ def is_here(session: Session, project: Project, pull: Pull) -> bool:
 def is_there(session: Session, project: Project) -> bool:
     """Tell whether what should be shown is, or never will be."""
     shown = project.puppet.shown
-    if project.unkeyed is not None or project.puppet.coarse.has_failed(project.clip):
+    if project.unkeyed is not None or project.puppet.store.has_failed(project.clip):
         return True
     if shown is None or not shown.is_current:
         return False

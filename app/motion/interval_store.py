@@ -1,0 +1,316 @@
+"""All in-betweens of a figure on one mesh, by their content: what is there, and what is missing."""
+
+from collections.abc import Callable, Mapping, Sequence
+from copy import copy
+from dataclasses import dataclass, field
+from functools import partial
+from itertools import chain
+from typing import Literal
+
+from app.document import Clip, Moment, Pose, intervals, resting_pose, time_of, transits
+from app.motion.inbetweens import PoseSampler
+from app.motion.intervals import (
+    Build,
+    Found,
+    KnownInterval,
+    OneFrame,
+    Pair,
+    Prepared,
+    pair_of,
+    prepare_frame,
+    prepare_intervals,
+)
+from app.motion.paint_order import painted_triangles
+from app.motion.posable_mesh import PosableMesh
+from app.motion.vertices import Placed, Streamed, Vertices
+from engine.arrays import Complexes
+from engine.interpolation import Joint
+
+BUDGET = 2**30  # bytes of one store
+SPARE = 32  # the part of it that may be taken by what no present clip needs: a 32nd
+EXPECTED = 100  # bytes a vertex that a series is thought to take before one is built
+Part = Literal["frame", "in-betweens", "fine", "series"]  # of what is made of a clip
+
+
+@dataclass(slots=True, kw_only=True, eq=False)
+class IntervalStore:
+    """The in-betweens of a figure on a mesh; of the main thread alone.
+
+    They are known by their content (`Pair`), so that undo, a copied key or another method that is
+    tried again find what was made for them before. Of an interval there is nothing, one frame, all
+    of it prepared, or that as series. Workers are handed frozen input; what they find is taken in
+    whenever it comes, also where nothing asks for it any more.
+
+    All is kept within the budget: first what no clip needs makes room, the longest unwanted first;
+    then that to which undo and redo lead, then series, those farthest from the playhead first. What
+    is prepared of present clips stays.
+
+    Parameters
+    ----------
+    mesh : PosableMesh
+    budget : int
+        In bytes.
+    sampler : PoseSampler, optional
+        Of the workers; None as long as nothing moves.
+    whole : Clip, optional
+        The document's newest one all of whose in-betweens were there.
+    build : Build, optional
+        A series in the making, while no worker is at it.
+    """
+
+    mesh: PosableMesh
+    budget: int = BUDGET
+    sampler: PoseSampler | None = None
+    whole: Clip | None = None
+    build: Build | None = None
+    # By when they were wanted, the latest last; beside them their bytes, and the largest so far.
+    _known: dict[Pair, KnownInterval] = field(init=False, default_factory=dict)
+    _sizes: dict[Pair, tuple[int, int, int]] = field(init=False, default_factory=dict)
+    _largest: list[int] = field(init=False, default_factory=lambda: [0, 0, 0])
+    _present: dict[Clip, tuple[Pair, ...]] = field(init=False, default_factory=dict)
+    _nearby: dict[Clip, tuple[Pair, ...]] = field(init=False, default_factory=dict)
+    _failures: set[tuple[Part, tuple[Pair, ...]]] = field(init=False, default_factory=set)
+    _frame: float = field(init=False, default=0)
+
+    def interval(self, clip: Clip, number: int) -> KnownInterval | None:
+        """Return what is known of one of a clip's intervals."""
+        return self._known.get(pair_of(clip, number))
+
+    def prepared(self, clip: Clip) -> tuple[Prepared, ...] | None:
+        """Return the in-betweens of all of a clip's intervals; None where some are missing."""
+        if clip.figure.domain is not self.mesh.source:
+            return None
+        known = [self._known.get(pair) for pair in self._pairs(clip)]
+        every = [each.inbetweens for each in known if each is not None and each.inbetweens]
+        return tuple(every) if len(every) == len(known) else None
+
+    def has(self, clip: Clip) -> bool:
+        """Tell whether all in-betweens of a clip are prepared."""
+        return self.prepared(clip) is not None
+
+    def is_exact(self, clip: Clip, frame: float) -> bool:
+        """Tell whether what belongs to a frame is there, and nothing has to stand in for it."""
+        return self._find(clip, time_of(clip, frame)) is not None
+
+    def vertices(self, clip: Clip, frame: float) -> Vertices | None:
+        """Return where the vertices are at a frame; None where it is not exactly there."""
+        moment = time_of(clip, frame)
+        triangles = painted_triangles(self.mesh.domain.mesh, clip, frame)
+        found = self._find(clip, moment)
+        if isinstance(found, Pose):
+            positions = self.mesh.posed(found)
+        elif isinstance(found, OneFrame):
+            positions = found.positions
+        elif found is None or found.inbetweens is None:
+            return None
+        elif found.series is not None and found.series.covers(moment.weight):
+            return Streamed(found.series, found.distortions, moment.weight, triangles)
+        else:
+            positions = found.inbetweens.frame(moment.weight).positions
+        return Placed(positions=positions, triangles=triangles)
+
+    def _find(self, clip: Clip, moment: Moment) -> Pose | OneFrame | KnownInterval | None:
+        """Return what shows a moment exactly."""
+        if clip.figure.domain is not self.mesh.source:
+            return None
+        resting, known = resting_pose(clip, moment), self.interval(clip, moment.interval)
+        if resting is not None or known is None:
+            return resting
+        if known.inbetweens is not None:
+            return known
+        return known.one if known.one and known.one.weight == moment.weight else None
+
+    def positions(self, clip: Clip, frame: float) -> Complexes | None:
+        """Return the same, worked out."""
+        vertices = self.vertices(clip, frame)
+        return None if vertices is None else vertices.positions
+
+    def nearest(self, clip: Clip, moment: Moment) -> Pose | OneFrame:
+        """Return which known pose between two keys, theirs included, is nearest to a moment."""
+        after = moment.weight > 0.5
+        distance = 1.0 - moment.weight if after else moment.weight
+        known = self.interval(clip, moment.interval)
+        one = None if known is None else known.one
+        if one is not None and abs(one.weight - moment.weight) <= distance:
+            return one
+        return clip.keys[intervals(clip)[moment.interval][after]].pose
+
+    def kept(self, clip: Clip) -> Mapping[int, float]:
+        """Return how much of its velocity the bounds leave to the motion at keys, by their frames.
+
+        From 0, a stop, to 1; of those that it passes through, as far as that is known.
+        """
+        found: dict[int, float] = {}
+        for number, transit in enumerate(transits(clip)):
+            known = self.interval(clip, number)
+            if known is None or known.inbetweens is None:
+                continue
+            first = int(isinstance(transit.start, Joint))
+            ends, keys = (transit.start, transit.end), transit.keys[first : first + 2]
+            for end, key, kept in zip(ends, keys, known.kept or (1.0, 1.0), strict=True):
+                if isinstance(end, Joint):
+                    found[key.frame] = kept
+        return found
+
+    @property
+    def nbytes(self) -> int:
+        """Bytes of all that is known."""
+        return sum(map(sum, self._sizes.values()))
+
+    def snapshot(self) -> "IntervalStore":
+        """Return what a worker may read while this goes on."""
+        copied = copy(self)
+        copied._known = dict(self._known)  # noqa: SLF001 - its own
+        return copied
+
+    def missing(self, clip: Clip, frame: float) -> list[int]:
+        """Return the numbers of intervals to prepare, the nearest first, and each pair once."""
+        pairs, nearest = self._pairs(clip), dict[Pair, int]()
+        for number in _by_nearness(clip, frame):
+            known = self._known.get(pairs[number])
+            if known is None or known.inbetweens is None:
+                nearest.setdefault(pairs[number], number)
+        return list(nearest.values())
+
+    def preparing(
+        self, clip: Clip, wanted: Sequence[int], sibling: PoseSampler | None = None
+    ) -> Callable[[], Found]:
+        """Return what prepares some of a clip's intervals."""
+        sampler, keep = self.sampler or sibling, self._poses()
+        return partial(prepare_intervals, clip, wanted, self.mesh, sampler, keep=keep)
+
+    def making_frame(self, clip: Clip, frame: float) -> Callable[[], Found] | None:
+        """Return what makes the in-between at a frame alone; None where it is there or cannot be.
+
+        It cannot before the first in-betweens of a figure, which take longer.
+        """
+        figure, sampler = clip.figure, self.sampler
+        if figure.domain is not self.mesh.source or self.is_exact(clip, frame):
+            return None
+        if sampler is None or sampler.anchor != figure.anchor:
+            return None
+        return partial(prepare_frame, clip, frame, self.mesh, sampler, keep=self._poses())
+
+    def has_room(self) -> bool:
+        """Tell whether one more interval of the present clips can be prepared in the budget."""
+        return self._needed() + self._largest[0] <= self.budget
+
+    def next_build(self, clip: Clip, frame: float, *, heat: bool) -> Build | None:
+        """Hand out the series that is in the making, or is wanted next; None where all is there.
+
+        The intervals nearest to the frame come first; those beyond the budget stay without. Those
+        of the distortions are wanted where `heat` is shown.
+        """
+        build, self.build = self.build, None
+        if not self.has(clip):
+            return None
+        pairs, used = self._pairs(clip), self._needed()
+        if build is not None and build.pair in pairs:
+            return build
+        usual = EXPECTED * len(self.mesh.domain.mesh.vertices)
+        for pair in dict.fromkeys(pairs[number] for number in _by_nearness(clip, frame)):
+            known = self._known[pair]
+            for distortions, series in enumerate((known.series, known.distortions)):
+                if series is not None:
+                    used += self._sizes[pair][1 + distortions]
+                elif known.sites is not None and (heat or not distortions):
+                    if used + (self._largest[1 + distortions] or usual) > self.budget:
+                        return None
+                    return Build(pair, known, distortions=bool(distortions))
+        return None
+
+    def pin(self, present: Sequence[Clip], nearby: Sequence[Clip], frame: float) -> None:
+        """Take note of the clips that are needed now, the document's first, and of the playhead.
+
+        Undo and redo lead to those nearby.
+        """
+        self._frame = frame
+        if not (self._present.keys() == set(present) and self._nearby.keys() == set(nearby)):
+            pinned = self._pinned()
+            for pair in [pair for pair in self._known if pair in pinned]:
+                self._known[pair] = self._known.pop(pair)
+            self._nearby = {clip: self._pairs(clip) for clip in nearby}
+            self._present = {clip: self._pairs(clip) for clip in present}
+            there = self._present.values()
+            self._failures = {each for each in self._failures if each[1] in there}
+            self._make_room()
+        if self.whole != present[0] and self.has(present[0]):
+            self.whole = present[0]
+
+    def take(self, found: Found) -> None:
+        """Take in what a worker has found, for whichever clip that was."""
+        anchors, sampler = {clip.figure.anchor for clip in self._present}, found.sampler
+        if sampler is not None and (not anchors or sampler.anchor in anchors):
+            self.sampler = sampler
+        for pair, newer in found.intervals.items():
+            older = self._known.pop(pair, None)
+            self._set(pair, newer if older is None else older.joined(newer))
+        self._make_room()
+
+    def take_build(self, build: Build) -> None:
+        """Take a series back, finished or not."""
+        self.build = build if build.series is None else None
+        if build.series is not None:
+            positions, distortions = (
+                (None, build.series) if build.distortions else (build.series, None)
+            )
+            built = KnownInterval(build.poses, series=positions, distortions=distortions)
+            self.take(Found(None, {build.pair: built}))
+
+    def fail(self, part: Part, clip: Clip) -> None:
+        """Take note that a part of a clip cannot be made, as long as its keys are present."""
+        if self._pairs(clip) in self._present.values():
+            self._failures.add((part, self._pairs(clip)))
+
+    def has_failed(self, clip: Clip, part: Part = "in-betweens") -> bool:
+        """Tell whether a part of a clip is known to be impossible."""
+        return (part, self._pairs(clip)) in self._failures
+
+    def _set(self, pair: Pair, interval: KnownInterval) -> None:
+        self._known[pair], self._sizes[pair] = interval, interval.sizes
+        self._largest = list(map(max, self._largest, interval.sizes))
+
+    def _make_room(self) -> None:
+        """Drop what is needed least, until the rest is within the budget."""
+        present, pinned = self._pinned(self._present), self._pinned()
+        spare = [pair for pair in self._known if pair not in pinned]
+        excess = sum(sum(self._sizes[pair]) for pair in spare) - self.budget // SPARE
+        excess = max(excess, self.nbytes - self.budget)
+        for pair in (*spare, *(pair for pair in self._known if pair in pinned - present)):
+            if excess <= 0:
+                return
+            excess -= sum(self._sizes.pop(pair))
+            del self._known[pair]
+        for clip, pairs in reversed(self._present.items()):
+            for number in reversed(_by_nearness(clip, self._frame)):
+                known = self._known.get(pairs[number])
+                if known is not None and self.nbytes > self.budget:
+                    self._set(pairs[number], known._replace(series=None, distortions=None))
+
+    def _needed(self) -> int:
+        """Return the bytes of what the present clips need, without series."""
+        return sum(
+            self._sizes[pair][0] for pair in self._known.keys() & self._pinned(self._present)
+        )
+
+    def _pairs(self, clip: Clip) -> tuple[Pair, ...]:
+        """Return by what a clip's intervals are known."""
+        known = self._present.get(clip) or self._nearby.get(clip)
+        return known or tuple(pair_of(clip, number) for number in range(len(intervals(clip))))
+
+    def _pinned(self, *clips: Mapping[Clip, tuple[Pair, ...]]) -> set[Pair]:
+        """Return the pairs of some clips, by default of all that are present or nearby."""
+        every = clips or (self._present, self._nearby)
+        return set(chain(*(pairs for each in every for pairs in each.values())))
+
+    def _poses(self) -> frozenset[Pose]:
+        """Return the poses whose samples are of use."""
+        prepared = (known.poses for known in self._known.values() if known.inbetweens)
+        present = (key.pose for clip in self._present for key in clip.keys)
+        return frozenset(chain(*prepared, present))
+
+
+def _by_nearness(clip: Clip, frame: float) -> list[int]:
+    """Return the numbers of a clip's intervals, that at the frame first."""
+    current = time_of(clip, frame).interval
+    return sorted(range(len(intervals(clip))), key=lambda i: (abs(i - current), i < current))

@@ -1,0 +1,92 @@
+"""A few points of a figure over time; each moment is worked out once, as long as its keys stay."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from app.document import Clip, Pose, resting_pose, time_of, transits
+from app.motion.inbetweens import Animation, PoseSampler
+from app.motion.intervals import Pair, pair_of
+from engine.arrays import Complexes
+
+MOST_KNOWN = 20_000  # moments of other clips' that are remembered, for undo and redo
+
+
+class Tracked(NamedTuple):
+    """The points (p,) at a moment, and f_z there; the poses that they follow from stay alive."""
+
+    positions: Complexes
+    fz: Complexes
+    poses: tuple[Pose, ...]
+
+
+class TrackedPoints:
+    """Some points of a figure at any frame of a clip.
+
+    Parameters
+    ----------
+    clip : Clip
+    points : complex128, shape (p,)
+        Of the figure at rest; at least one.
+    sibling : PoseSampler, optional
+        With the same outline and cage; what it knows of them is used again.
+    earlier : TrackedPoints, optional
+        If it is of the same points, what it knows is used again.
+
+    Attributes
+    ----------
+    worked_out : int
+        How many moments had to be worked out, as nothing was known of them.
+    sampler : PoseSampler or None
+        None until the first of them.
+    known : dict
+        What was found, by the pair of the keys around and the weight between them.
+    """
+
+    def __init__(
+        self,
+        clip: Clip,
+        points: Complexes,
+        sibling: PoseSampler | None = None,
+        earlier: "TrackedPoints | None" = None,
+    ) -> None:
+        self.clip = clip
+        self.points = points
+        self.worked_out = 0
+        self.sampler: PoseSampler | None = None
+        self.known: dict[tuple[Pair, float], Tracked] = {}
+        self._sibling = sibling
+        self._animation: Animation | None = None
+        if earlier is None:
+            return
+        figure, own = earlier.clip.figure, clip.figure
+        is_same = figure.domain is own.domain and figure.anchor == own.anchor
+        if is_same and np.array_equal(points, earlier.points):
+            most = max(MOST_KNOWN, 2 * (clip.frames.last - clip.frames.first))
+            self.sampler = earlier.sampler
+            self.known = dict(list(earlier.known.items())[-most:])
+
+    def at(self, frame: float) -> Tracked:
+        """Return where the points are at a frame."""
+        moment = time_of(self.clip, frame)
+        resting = resting_pose(self.clip, moment)
+        if resting is None:
+            key = pair_of(self.clip, moment.interval), moment.weight
+        else:
+            key = (id(resting.phi), id(resting.psi)), 0.0
+        if key not in self.known:
+            moved = self._animate().frame(frame)
+            keys = transits(self.clip)[moment.interval].keys if resting is None else ()
+            poses = (resting,) if resting is not None else tuple(each.pose for each in keys)
+            self.known[key] = Tracked(moved.positions, moved.fz, poses)
+            self.worked_out += 1
+        return self.known[key]
+
+    def _animate(self) -> Animation:
+        if self._animation is None:
+            figure = self.clip.figure
+            sampler = self.sampler or PoseSampler(
+                figure.domain, anchor=figure.anchor, points=self.points, sibling=self._sibling
+            )
+            self._animation, self.sampler = Animation(self.clip, sampler=sampler), sampler
+        return self._animation

@@ -1,0 +1,447 @@
+"""What a store of in-betweens has, what it lacks, what it keeps, and what it shows of all that."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from animations import moving_document
+from documents import altered
+from numpy.testing import assert_allclose
+from projects import project_of
+from sessions import session_of, settle
+
+from app.document.commands import key_commands
+from app.document.history import History
+from app.document.keyframe import Keyframe, Passing
+from app.document.queries.clips import clip_of
+from app.document.settings import FrameRange
+from app.editor.actions import editing, keys, viewing
+from app.editor.actions.upkeep import STREAMING, maintain, missing
+from app.editor.jobs import Jobs
+from app.editor.project import PoseInProgress
+from app.editor.session import Session
+from app.motion import Found, IntervalStore, KnownInterval, Placed, PosableMesh, Streamed, show
+from app.motion.interval_store import SPARE
+from app.motion.intervals import Build, pair_of
+from engine import streaming
+from engine.variant import Variant
+
+FRAME = 13  # in the second of three intervals
+
+
+def three_intervals(variant="nu"):
+    document = moving_document(10)
+    last = document.figures[0].keys[-1]
+    turns = (1.0, np.exp(0.3j), np.exp(-0.4j), np.exp(0.2j))
+    keys = tuple(
+        Keyframe(frame=10 * i, pose=replace(last.pose, phi=turn * last.pose.phi))
+        for i, turn in enumerate(turns)
+    )
+    return altered(document, keys=keys, frames=FrameRange(0, 30), variant=variant)
+
+
+@pytest.fixture(scope="module")
+def document():
+    return three_intervals()
+
+
+@pytest.fixture(scope="module")
+def clip(document):
+    return clip_of(document, 0)
+
+
+@pytest.fixture(scope="module")
+def found(clip):
+    """All in-betweens of the clip."""
+    store = IntervalStore(mesh=PosableMesh.fine(clip.figure.domain))
+    return store.mesh, store.preparing(clip, [0, 1, 2])()
+
+
+@pytest.fixture
+def prepared(found):
+    mesh, intervals = found
+    store = IntervalStore(mesh=mesh)
+    store.take(intervals)
+    return store
+
+
+def prepare(store, clip, *wanted):
+    """Let a store have some of a clip's in-betweens, or all; return how many were prepared."""
+    lacking = [number for number in store.missing(clip, 0) if number in (wanted or range(99))]
+    store.take(store.preparing(clip, lacking)())
+    return len(lacking)
+
+
+def variant_of(clip, variant):
+    return replace(clip, figure=replace(clip.figure, variant=Variant(variant)))
+
+
+def posed(clip, frame):
+    """Return the clip with another pose at a key."""
+    pose = clip.figure.key(frame).pose
+    keys = tuple(
+        replace(key, pose=replace(pose, phi=1.01 * pose.phi)) if key.frame == frame else key
+        for key in clip.keys
+    )
+    return replace(clip, figure=replace(clip.figure, keys=keys))
+
+
+def finished(build: Build) -> Build:
+    while build.series is None:
+        assert build.advance() is build
+    return build
+
+
+def stream(store, clip, frame, *, heat=False):
+    """Build all that is wanted, and return the order of the intervals."""
+    numbers = {pair_of(clip, interval): interval for interval in range(3)}
+    order = []
+    store.pin([clip], [], frame)
+    while build := store.next_build(clip, frame, heat=heat):
+        order.append((numbers[build.pair], build.distortions))
+        store.take_build(finished(build))
+        assert store.nbytes <= store.budget
+        assert len(order) < 20
+    return order
+
+
+def streamed(store, clip):
+    return [store.interval(clip, i).series is not None for i in range(3)]
+
+
+# By their content.
+
+
+def test_what_was_made_once_is_found_wherever_it_comes_again(clip, prepared):
+    halves = [variant_of(clip, variant) for variant in ("eta", "nu")]
+    assert prepare(prepared, halves[0]) == 3
+    # The same variant again, as another figure of another document.
+    assert prepared.missing(halves[1], 0) == []
+    assert prepared.has(clip)
+    assert prepared.prepared(halves[1]) == prepared.prepared(clip)
+    # One key's pose is another, and then the old one again.
+    changed = posed(clip, 30)
+    assert prepare(prepared, changed) == 2
+    assert prepared.missing(clip, 0) == []
+
+
+def test_a_copied_key_costs_nothing(document):
+    every = document.figures[0].key_frames
+    corners = key_commands.set_passing(0, every, Passing.CORNER)(document)
+    clip = clip_of(corners, 0)
+    store = IntervalStore(mesh=PosableMesh.fine(clip.figure.domain))
+    assert prepare(store, clip) == 3
+    longer = replace(corners, frames=FrameRange(0, 60))
+    copied = clip_of(key_commands.copy_keys(0, {0, 10}, 40)(longer), 0)
+    # From the last key to the first of the copies is new; between the two it is not.
+    assert store.missing(copied, 0) == [3]
+
+
+def test_another_method_of_the_split_view_finds_the_figures_own(document, tmp_path):
+    session = session_of(document, tmp_path)
+    project, store = session.project, session.project.puppet.store
+    viewing.compare_with(session, Variant.ETA)
+    settle(session)
+    twin = project.puppet.twin
+    other = store.prepared(twin.clip(project.document))
+    assert other is not None
+    assert twin.shown.is_current
+    # The figure takes the method that it was compared with.
+    keys.set_variant(session, "eta")
+    assert store.prepared(project.clip) == other
+
+
+def test_undo_and_redo_find_what_was_made(document, tmp_path):
+    session = session_of(document, tmp_path)
+    project, store = session.project, session.project.puppet.store
+    made = [store.prepared(project.clip)]
+    for variant in ("eta", "nu", "eta"):
+        keys.set_variant(session, variant)
+        settle(session)
+        made.append(store.prepared(project.clip))
+    assert made[0] == made[2]
+    assert made[1] == made[3]
+    for expected in (made[2], made[1], made[0]):
+        editing.undo(session)
+        assert store.prepared(project.clip) == expected
+
+
+# What comes late, and what fails.
+
+
+def test_a_result_that_nobody_waits_for_any_more_is_used_when_its_keys_come_again(clip, prepared):
+    store = IntervalStore(mesh=prepared.mesh)
+    store.pin([clip], [], 0)
+    late = store.preparing(clip, [0])
+    store.pin([variant_of(clip, "eta")], [clip], 0)
+    store.take(late())
+    assert not store.has(clip)
+    store.pin([clip], [], 0)
+    assert store.missing(clip, 0) == [1, 2]
+    # So are series.
+    build = finished(prepared.next_build(clip, 0, heat=False))
+    prepared.pin([variant_of(clip, "eta")], [clip], 0)
+    prepared.take_build(build)
+    assert streamed(prepared, clip) == [True, False, False]
+
+
+def test_a_series_in_the_making_is_not_gone_on_with_for_other_keys(clip, prepared):
+    build = prepared.next_build(clip, 0, heat=False)
+    prepared.take_build(build)
+    assert prepared.next_build(clip, 0, heat=False) is build
+    prepared.take_build(build)
+    # Nothing is built for a clip whose in-betweens are not there yet.
+    other = variant_of(clip, "eta")
+    assert prepared.next_build(other, 0, heat=False) is None
+    prepare(prepared, other)
+    assert prepared.next_build(other, 0, heat=False).pair == pair_of(other, 0)
+
+
+def test_a_failure_is_known_of_the_same_keys_as_long_as_they_are_there(clip, prepared):
+    prepared.pin([clip], [], 0)
+    prepared.fail("in-betweens", clip)
+    assert prepared.has_failed(replace(clip, figure=replace(clip.figure)))
+    assert not prepared.has_failed(clip, "series")
+    other = variant_of(clip, "eta")
+    assert not prepared.has_failed(other)
+    prepared.pin([other], [clip], 0)
+    prepared.pin([clip], [other], 0)
+    assert not prepared.has_failed(clip)
+
+
+# One meaning of being there.
+
+
+@pytest.mark.parametrize("variant", ["metric", "nu"])
+def test_what_is_exact_is_shown_as_it_is_and_nothing_else(variant):
+    clip = clip_of(three_intervals(variant), 0)
+    store = IntervalStore(mesh=PosableMesh.fine(clip.figure.domain))
+    frames = (0, 4, 10, 13, 17, 25, 30)
+
+    def exact():
+        told = [frame for frame in frames if store.is_exact(clip, frame)]
+        shown = [show(clip, frame, None, [store], None) for frame in frames]
+        assert told == [each.frame for each in shown if each.is_current]
+        assert told == [frame for frame in frames if store.positions(clip, frame) is not None]
+        return told
+
+    keys = [0, 10, 30]
+    assert exact() == keys
+    # Before the first in-betweens, a frame alone would not come sooner.
+    assert store.making_frame(clip, FRAME) is None
+    prepare(store, clip, 0)
+    assert exact() == [0, 4, 10, 30]
+    store.take(store.making_frame(clip, FRAME)())
+    alone = [0, 4, 10, 13, 30] if variant == "metric" else [0, 4, 10, 13, 17, 30]
+    assert exact() == alone
+    assert store.making_frame(clip, FRAME) is None
+    one = store.positions(clip, FRAME)
+    prepare(store, clip)
+    assert exact() == list(frames)
+    whole = store.prepared(clip)[1].frame(0.3).positions
+    size = np.ptp(clip.figure.domain.mesh.vertices.real)
+    assert_allclose(one, whole, rtol=0, atol=1e-9 * size)
+    stream(store, clip, FRAME)
+    assert exact() == list(frames)
+    # Of another domain nothing is.
+    other = replace(clip, figure=replace(clip.figure, domain=replace(clip.figure.domain)))
+    assert not store.has(other)
+    assert not store.is_exact(other, 0)
+    assert store.positions(other, 0) is None
+
+
+# Within a budget.
+
+
+def test_what_nothing_present_needs_makes_room_and_the_oldest_first(clip, prepared):
+    others = [variant_of(clip, variant) for variant in ("eta", "linear")]
+    for other in others:
+        prepared.pin([other], [], 0)
+        prepare(prepared, other)
+    size = prepared.nbytes
+    prepared.pin([clip], [], 0)
+    assert all(map(prepared.has, (clip, *others)))
+    # Room for the present one, and not quite for both of the others.
+    own = sum(prepared.interval(clip, i).nbytes for i in range(3))
+    spare = size - own
+    prepared.budget = SPARE * (spare - 1)
+    prepared.pin([clip], [others[0]], 0)
+    prepared.pin([clip], [], 0)
+    assert prepared.has(clip)
+    assert not prepared.has(others[1]), "wanted before the other one"
+    assert prepared.has(others[0])
+    prepared.budget = own
+    prepared.pin([clip], [others[0]], 0)
+    assert prepared.has(clip)
+    assert not prepared.has(others[0]), "to which undo leads, if there is room"
+    assert prepared.nbytes <= own
+
+
+def test_memory_is_bounded_and_the_farthest_series_makes_room(clip, prepared, monkeypatch):
+    monkeypatch.setattr("app.motion.interval_store.EXPECTED", 1)
+    prepared.pin([clip], [], 0)
+    base = prepared.nbytes
+    stream(prepared, clip, 0)
+    sizes = [prepared.interval(clip, i).series.nbytes for i in range(3)]
+    prepared.budget = base + sizes[1] + max(sizes[0], sizes[2])
+    prepared.take(Found(sampler=None, intervals={}))
+    assert streamed(prepared, clip) == [True, True, False]
+    assert stream(prepared, clip, 0) == []
+    assert prepared.nbytes <= prepared.budget
+    # The playhead moves on to the last interval.
+    stream(prepared, clip, 25)
+    assert streamed(prepared, clip) == [False, True, True]
+    assert prepared.has(clip)
+    assert prepared.nbytes <= prepared.budget
+
+
+@pytest.mark.parametrize("frame", [0, 25])
+def test_what_did_not_fit_is_not_built_over_and_over(clip, found, monkeypatch, frame):
+    monkeypatch.setattr("app.motion.interval_store.EXPECTED", 1)
+    mesh, intervals = found
+    everything = IntervalStore(mesh=mesh)
+    everything.take(intervals)
+    base = everything.nbytes
+    stream(everything, clip, 0)
+    sizes = [everything.interval(clip, i).series.nbytes for i in range(3)]
+    # There is room for the nearest one, and not quite for the next.
+    store = IntervalStore(mesh=mesh, budget=base + sizes[1] + sizes[2 if frame else 0] - 1)
+    store.pin([clip], [], frame)
+    store.take(intervals)
+    order = stream(store, clip, frame)
+    assert len(order) == len(set(order))
+    assert streamed(store, clip)[2 if frame else 0]
+
+
+def test_full_detail_is_prepared_as_far_as_there_is_room(clip, found):
+    mesh, _ = found
+    store = IntervalStore(mesh=mesh)
+    store.pin([clip], [], 0)
+    prepare(store, clip, 0)
+    one = store.nbytes
+    store.budget = 2 * one
+    assert store.has_room()
+    store.budget = 2 * one - 1
+    assert not store.has_room()
+    assert IntervalStore(mesh=mesh, budget=1).has_room(), "nothing is known of their size"
+
+
+# Series.
+
+
+def test_what_a_series_leaves_out_is_shown_by_the_direct_path(clip, prepared):
+    stream(prepared, clip, FRAME, heat=True)
+    known = prepared.interval(clip, 1)
+    partly = IntervalStore(mesh=prepared.mesh)
+
+    def take(**series):
+        partly.take(Found(sampler=None, intervals={pair_of(clip, 1): replace(known, **series)}))
+
+    none = replace(known.distortions, pieces=())
+    take(distortions=none)
+    assert partly.vertices(clip, FRAME).derivatives is None
+    take(series=replace(known.series, pieces=()), distortions=none)
+    shown = partly.vertices(clip, FRAME)
+    assert isinstance(shown, Placed)
+    exact = known.inbetweens.frame(0.3).positions
+    assert_allclose(shown.positions, exact, rtol=0, atol=1e-12)
+
+
+def test_the_nearest_interval_is_built_first(clip, prepared):
+    assert isinstance(prepared.vertices(clip, FRAME), Placed)
+    frames = (3, 13, 13.5, 29)
+    direct = [prepared.positions(clip, frame) for frame in frames]
+    order = stream(prepared, clip, FRAME)
+    assert order == [(1, False), (2, False), (0, False)]
+    size = np.ptp(clip.figure.domain.mesh.vertices.real)
+    for frame, expected in zip(frames, direct, strict=True):
+        vertices = prepared.vertices(clip, frame)
+        assert isinstance(vertices, Streamed)
+        assert_allclose(vertices.positions, expected, rtol=0, atol=2e-6 * size)
+        assert vertices.derivatives is None
+    assert isinstance(prepared.vertices(clip, 20), Placed)  # a key itself
+
+
+def test_distortions_are_built_while_they_are_shown(clip, prepared):
+    order = stream(prepared, clip, 0, heat=True)
+    assert order == [(i, distortions) for i in range(3) for distortions in (False, True)]
+    fz, fzbar = prepared.vertices(clip, 4).derivatives
+    exact = prepared.prepared(clip)[0].frame(0.4)
+    assert_allclose(fz, exact.fz, rtol=0, atol=1e-4)
+    assert_allclose(fzbar, exact.fzbar, rtol=0, atol=1e-4)
+
+
+def test_a_session_streams_what_it_plays_and_stops_while_a_hand_pulls(document, clip, tmp_path):
+    session = session_of(document, tmp_path)
+    project, store = session.project, session.project.puppet.store
+    assert streamed(store, clip) == [True] * 3
+    project.playhead = project.playhead.seek(13, 0.0)
+    settle(session)
+    assert isinstance(project.puppet.shown.vertices, Streamed)
+    assert store.build is None
+    # Another key's pose: its two intervals are built anew, but not while it is being pulled.
+    key = clip.figure.keys[1]
+    moved = replace(key, pose=replace(key.pose, phi=key.pose.phi + 1))
+    edited = altered(document, keys=(clip.figure.keys[0], moved, *clip.figure.keys[2:]))
+    project.history = History(edited, saved=True)
+    settle(session)
+    assert streamed(store, clip_of(edited, 0)) == [True] * 3
+    project.puppet.store = IntervalStore(mesh=store.mesh)
+    prepare(project.puppet.store, clip)
+    project.history = History(document, saved=True)
+    project.posing = PoseInProgress(frame=13, targets={}, start=None, gesture=object())
+    assert not list(missing(session, project))
+
+
+def test_a_series_that_failed_once_is_built_anew_when_the_document_changes(
+    document, clip, tmp_path, monkeypatch
+):
+    project = project_of(document, np.zeros((90, 120, 4), np.uint8), "blob")
+    session = Session(clock=lambda: 0.0, jobs=Jobs(), folder=tmp_path, project=project)
+    asked = []
+
+    def settle():
+        for _ in range(1_000):
+            maintain(session)
+            if not session.jobs.kinds:
+                return
+            asked.extend(session.jobs.kinds)
+            assert session.jobs.settle()
+            session.jobs.deliver()
+        raise AssertionError(f"there is no end of {session.jobs.kinds}")
+
+    def broken(_):
+        yield
+        raise ZeroDivisionError("a bug")
+
+    with monkeypatch.context() as patch:
+        patch.setattr("app.motion.intervals.build_series", broken)
+        settle()
+        settle()
+    store = project.puppet.store
+    assert asked.count(STREAMING) == 1
+    assert [toast.text for toast in session.toasts] == ["Playback cannot be made smooth."]
+    assert streamed(store, clip) == [False] * 3
+    assert store.has_failed(clip, "series")
+    # The other intervals are as they were.
+    *others, last = clip.figure.keys
+    moved = replace(last, pose=replace(last.pose, phi=last.pose.phi + 1))
+    edited = altered(document, keys=(*others, moved))
+    project.history = History(edited, saved=True)
+    settle()
+    assert streamed(store, clip_of(edited, 0)) == [True] * 3
+
+
+def test_the_worker_takes_few_steps_at_once(clip, prepared, monkeypatch):
+    monkeypatch.setattr("app.motion.intervals.BATCH", 3 * len(clip.figure.domain.mesh.vertices))
+    build = prepared.next_build(clip, 0, heat=False)
+    batches = 0
+    while build.series is None:
+        build.advance()
+        batches += 1
+    assert batches > 3
+    known: KnownInterval = prepared.interval(clip, 0)
+    whole = streaming.finish(
+        streaming.build_series(streaming.Positions.of(known.inbetweens, known.sites))
+    )
+    assert_allclose(build.series.values(0.3), whole.values(0.3), rtol=0, atol=0)
