@@ -113,7 +113,8 @@ class IntervalStore:
         """Return what shows a moment exactly."""
         if clip.figure.domain is not self.mesh.source:
             return None
-        resting, known = resting_pose(clip, moment), self.interval(clip, moment.interval)
+        resting = resting_pose(clip, moment)
+        known = self.interval(clip, moment.interval) if resting is None else None
         if resting is not None or known is None:
             return resting
         if known.inbetweens is not None:
