@@ -15,7 +15,7 @@ ROOTS = ("app", "engine")
 MOST_IN_A_ROOM = 12  # modules and sub-packages together
 MOST_LOOSE = 5  # modules beside the packages of app and engine
 # Rooms whose modules are found by their names, and that nothing else imports from.
-BY_NAME = {"app.cli", "app.cli.bench", "app.cli.commands", "app.cli.usage"}
+BY_NAME = {"app.cli", "app.cli.commands", "app.cli.usage"}
 
 # Modules whose functions are only called by the module's name: the verbs of actions and commands,
 # and the ways in to panels and to the parts of the command line.

@@ -27,7 +27,6 @@ COMMANDS = {
     "thumbnail": "Write the small picture of a project, as file managers ask for it.",
     "desktop": "Enter Lissom into the menu of applications, or take it out again.",
     "doctor": "Tell what works on this machine, and what to install where it does not.",
-    "bench": "Measure the speed of every part on this machine.",
 }
 
 

@@ -21,7 +21,7 @@ from app.export.plan import (
 from app.export.poses import KeptPoses, Poses
 from app.export.run import export
 from app.export.run_shapes import ShapeExport
-from app.export.writers import encode_png, sheet_grid
+from app.export.writers import sheet_grid
 
 __all__ = [
     "PROJECT",
@@ -35,7 +35,6 @@ __all__ = [
     "check_request",
     "clipboard_program",
     "data_file",
-    "encode_png",
     "export",
     "folder_within",
     "frame_view",

@@ -73,7 +73,7 @@ def shader_is_faster(context: moderngl.Context) -> bool:
     """Tell whether the shader should place streamed vertices, and not the processor.
 
     Where the processor draws, its matrix-vector product with an upload is the faster of the two:
-    `lissom bench streaming` measures both. A graphics card needs nothing but the weights.
+    `python -m tests.bench streaming` measures both. A graphics card needs nothing but the weights.
     """
     return not is_software(context)
 

@@ -11,6 +11,7 @@ from typing import TypeVar
 
 from imgui_bundle import ImVec2, hello_imgui, imgui
 from invariants import check_invariants
+from offscreen import Offscreen
 from PIL import Image
 
 from app.document import History
@@ -26,7 +27,6 @@ from app.storage.preferences import Preferences
 from app.ui.style import FONT_SIZE
 from app.ui.viewport.ring import RADIUS
 from app.ui.viewport.viewport import GRIP
-from app.ui.window.offscreen import Offscreen
 from app.ui.window.window import Window
 
 Value = TypeVar("Value")

@@ -2,5 +2,5 @@
 
 In: parsed arguments.
 Out: an exit status.
-Imports: everything below `app.cli`, and `app.cli.bench`.
+Imports: everything below `app.cli`.
 """

@@ -6,7 +6,6 @@ Imports: `app.export.plan`, `app.export.moving_shape`, `app.storage`, Pillow; Py
 """
 
 from app.export.writers.frame_writer import FrameWriter
-from app.export.writers.png import encode_png
 from app.export.writers.spritesheet import sheet_grid
 from app.export.writers.table import (
     DATA_WRITERS,
@@ -22,7 +21,6 @@ __all__ = [
     "FOLDER_WRITERS",
     "SHAPE_WRITERS",
     "FrameWriter",
-    "encode_png",
     "open_writer",
     "sheet_grid",
 ]

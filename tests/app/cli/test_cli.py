@@ -99,7 +99,6 @@ except SystemExit as leaving:
         ("desktop --install --remove", 2),
         ("thumbnail no.lissom --out x.png", 2),
         ("thumbnail {here} --out x.png --size 0", 2),
-        ("bench everything", 2),
         ("nonsense", 2),
     ],
 )

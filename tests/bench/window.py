@@ -1,8 +1,6 @@
 """The window: its start, the way from a picture to a drag, its frames, and its latency."""
 
 import statistics
-import subprocess
-import sys
 import tempfile
 import time
 from collections.abc import Iterator
@@ -12,11 +10,17 @@ from pathlib import Path
 
 import numpy as np
 
-import app
-from app.cli.bench import idle
-from app.cli.bench.start import MARKS
-from app.cli.bench.table import Row, Table, row_at_most, row_of
-from app.cli.bench.ui.driver import (
+from app.cli.process import share_interpreter
+from app.document import Meshing, Target, Variant, clip_of
+from app.editor import Project, Puppet
+from app.editor.actions import files, playback
+from app.storage import decode_picture, load_project, sample_images
+from app.ui.window import share_heap
+from app.ui.window.window import SIZE
+from engine.domain import mesh_inside
+from tests.bench.stage import idle, start
+from tests.bench.stage.driver import (
+    REACH,
     Driver,
     HandleDrag,
     dragging,
@@ -25,46 +29,45 @@ from app.cli.bench.ui.driver import (
     scrubbing,
     still,
 )
-from app.cli.process import share_interpreter
-from app.document import Meshing, Target, Variant, clip_of
-from app.editor import Project, Puppet
-from app.editor.actions import files, playback
-from app.errors import LissomError
-from app.storage import decode_picture, load_project, sample_images
-from app.ui.window import SIZE, has_display, share_heap
-from engine.domain import mesh_inside
+from tests.bench.table import Row, Table, row_at_most, row_of
 
 SAMPLE, PICTURE = "giraffe.lissom", "dragon.png"
 TABS = ("Handle", "Deform", "Distortion", "Mesh", "Export")
-REACH = 40.0  # pixels around a handle in which it is dragged, unless told
 HARD = 6.0  # how much farther a hard pull goes
 LATER = 20  # pictures that are shown while a hand goes from a handle to the timeline
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Extent:
-    """How much is measured: repeats of the start and of opening, frames, moves of the pointer.
-
-    And in how many pixels around it a handle is dragged, for how many seconds the window is left
-    alone, how large it is, and by which variant the in-betweens are.
-    """
+    """How much is measured."""
 
     triangles: int = 100_000
-    repeats: int = 3
+    repeats: int = 3  # of the start, of opening, and of releases
     frames: int = 60
-    moves: int = 100
-    reach: float = REACH
-    idle: float = 10.0
+    moves: int = 100  # of the pointer
+    reach: float = REACH  # pixels around it in which a handle is dragged
+    idle: float = 10.0  # seconds in which nobody touches the window
     size: tuple[int, int] = SIZE
     variant: Variant = Variant.METRIC
 
 
-def tables(extent: Extent | None = None) -> Iterator[Table]:
+BRIEF = Extent(
+    triangles=1_000,
+    repeats=1,
+    frames=2,
+    moves=2,
+    reach=4.0,
+    idle=0.1,
+    size=(640, 440),
+    variant=Variant.NU,
+)
+
+
+def tables(extent: Extent) -> Iterator[Table]:
     """Measure the window without a display, on whatever draws here; its start also on one."""
-    extent = extent or Extent()
     share_interpreter()
     share_heap()
-    yield _start(extent)
+    yield start.table(extent.repeats)
     with tempfile.TemporaryDirectory() as folder:
         stage = Driver(Path(folder), extent.size)
         yield _opening(stage, extent)
@@ -78,48 +81,16 @@ def tables(extent: Extent | None = None) -> Iterator[Table]:
     yield idle.table(extent.idle)
 
 
-def _start(extent: Extent) -> Table:
-    """Measure from the command to the window, each time in a process of its own."""
-    times = [_open_window() for _ in range(extent.repeats)]
-    rows = [
-        row_at_most(mark, column)
-        for mark, column in zip(MARKS, zip(*times, strict=True), strict=True)
-    ]
-    where = "on the screen" if has_display() else "without a display"
-    return Table(title=f"From the command to the window, {where}", rows=tuple(rows))
-
-
-def _open_window() -> list[float]:
-    """Return the seconds to each mark."""
-    begun = time.perf_counter()
-    with subprocess.Popen(
-        [sys.executable, "-m", "app.cli.bench.start"],
-        cwd=Path(app.__file__).parents[1],
-        stdout=subprocess.PIPE,
-    ) as process:
-        times = [time.perf_counter() - begun for _ in process.stdout or ()]
-    if process.returncode or len(times) != len(MARKS):
-        raise LissomError(f"the window did not open: exit status {process.returncode}")
-    return times
-
-
 def _opening(stage: Driver, extent: Extent) -> Table:
     """Measure from a dropped picture to a drag."""
     stage.session.meshing = Meshing(triangles=extent.triangles)
     path = sample_images() / PICTURE
     times = [_open_and_drag(stage, path, extent.reach) for _ in range(extent.repeats)]
-    shown, followed = (
-        row_at_most(name, column)
-        for name, column in zip(
-            ("until a click adds a handle", "until that handle has followed the pointer"),
-            zip(*times, strict=True),
-            strict=True,
-        )
-    )
+    names = ("until a click adds a handle", "until that handle has followed the pointer")
     triangles = len(stage.project.figure.domain.mesh.triangles)
     return Table(
         title=f"From a dropped picture ({PICTURE}, {triangles:,} triangles) to a drag",
-        rows=(shown, followed),
+        rows=tuple(map(row_at_most, names, zip(*times, strict=True))),
     )
 
 
@@ -212,10 +183,8 @@ def _release(stage: Driver, extent: Extent) -> Table:
         "until its in-betweens are exact, as they are drawn while it moves",
         "until they are exact in full detail",
     )
-    rows = (
-        row_of(name, column) for name, column in zip(names, zip(*times, strict=True), strict=True)
-    )
-    return Table(title="From the release of a handle", rows=tuple(rows))
+    rows = tuple(map(row_of, names, zip(*times, strict=True)))
+    return Table(title="From the release of a handle", rows=rows)
 
 
 def _playhead(stage: Driver, extent: Extent) -> Table:

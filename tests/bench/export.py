@@ -3,19 +3,17 @@
 import io
 import json
 import struct
-import subprocess
 import sys
 import tempfile
 import time
 from collections import deque
-from collections.abc import Callable, Iterator
-from dataclasses import replace
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 from PIL import Image
 
-from app.cli.bench.table import Row, Table, measure
 from app.document import (
     Document,
     ExportSettings,
@@ -30,11 +28,11 @@ from app.export import (
     ExportRequest,
     KeptPoses,
     Painter,
-    encode_png,
     export,
     missing,
     plan_export,
 )
+from app.export.writers.png import encode_png
 from app.export_formats import EXPORT_FORMATS
 from app.motion import Animation, box_around
 from app.render import Renderer
@@ -42,41 +40,56 @@ from app.render.gpu import RenderTarget, create_context
 from app.storage import decode_picture, sample_images, save_project
 from engine.arrays import Complexes
 from engine.domain import build_domain
+from tests.bench.memory import Run, run_measured
+from tests.bench.table import Row, Table, measure
 
 FULL_HD, FOUR_K = (1920, 1080), (3840, 2160)
-TRIANGLES = 100_000
 
 
-def tables() -> Iterator[Table]:
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Extent:
+    """How much is measured."""
+
+    triangles: int = 100_000
+    frames: int = 24
+    large_frames: int = 300
+    formats: tuple[str, ...] = tuple(EXPORT_FORMATS)
+
+
+BRIEF = Extent(triangles=1_000, frames=2, large_frames=2, formats=("glb",))
+
+
+def tables(extent: Extent) -> Iterator[Table]:
     """Measure exports of the giraffe as it turns and bends."""
-    yield _speed()
+    yield _speed(extent)
     with tempfile.TemporaryDirectory() as folder:
-        yield _processes(Path(folder))
-        yield _formats(Path(folder))
+        yield _processes(Path(folder), extent)
+        yield _formats(Path(folder), extent.formats)
 
 
-def _speed() -> Table:
-    document = _bending_giraffe(FULL_HD, last=23)
+def _speed(extent: Extent) -> Table:
+    document = _bending_giraffe(FULL_HD, extent.triangles, frames=extent.frames)
     figure = document.figures[0]
     pictures = {figure.id: decode_picture(figure.picture.data, "").rgba}
     context = create_context()
     poses = {figure.id: KeptPoses(Animation(clip_of(document, figure.id)))}
-    places = poses[figure.id].positions(11.0)
+    middle = float((extent.frames - 1) // 2)
+    places = poses[figure.id].positions(middle)
     with tempfile.TemporaryDirectory() as folder:
         request = ExportRequest(out=Path(folder), settings=document.export, project="giraffe")
         plan = plan_export(document, request, poses)
         start = time.process_time()
         painter = Painter(context, document, pictures, poses, plan)
-        posed = painter.pose(11.0)
+        posed = painter.pose(middle)
         frame = painter.draw(posed)
         begun = time.process_time() - start
 
         def make_all() -> None:
             deque(export(plan, painter.pose, painter.draw), maxlen=0)
 
-        each = _by_the_clock(make_all) / len(plan.times)
+        each = measure(make_all, repeats=3, clock=time.perf_counter) / len(plan.times)
         worked = measure(make_all, repeats=3) / len(plan.times)
-        interpolated = measure(lambda: painter.pose(11.0))
+        interpolated = measure(lambda: painter.pose(middle))
         drawn = measure(lambda: painter.draw(posed))
         encoded = measure(lambda: encode_png(frame))
     target = RenderTarget(Renderer(context).programs, FULL_HD)
@@ -85,7 +98,8 @@ def _speed() -> Table:
     context.release()
     fewer = len(posed.vertices[0].triangles)
     return Table(
-        title=f"PNG frames of 1920 × 1080 pixels, {TRIANGLES:,} triangles, the processor's time",
+        title="PNG frames of 1920 × 1080 pixels, the processor's time, "
+        f"{extent.triangles:,} triangles",
         rows=(
             Row(name="a frame, by the clock", seconds=each, note=f"{1 / each:.1f} a second"),
             Row(name="a frame", seconds=worked, note="on all cores"),
@@ -105,38 +119,39 @@ def _part_around(points: Complexes) -> tuple[int, int, int, int]:
     return int(box.lower.real), int(box.lower.imag), int(size.real), int(size.imag)
 
 
-def _processes(folder: Path) -> Table:
+def _processes(folder: Path, extent: Extent) -> Table:
     small, large = folder / "small.lissom", folder / "large.lissom"
-    save_project(small, _bending_giraffe((480, 270), last=0))
-    save_project(large, _bending_giraffe(FOUR_K, last=299))
-    helped, _ = _run("export", "--help")
-    started, _ = _run("export", str(small), "--out", str(folder / "one"))
-    exported, peak = _run("export", str(large), "--out", str(folder / "many"))
+    save_project(small, _bending_giraffe((480, 270), extent.triangles))
+    save_project(large, _bending_giraffe(FOUR_K, extent.triangles, frames=extent.large_frames))
+    helped = _export("--help")
+    started = _export(str(small), "--out", str(folder / "one"))
+    exported = _export(str(large), "--out", str(folder / "many"))
     return Table(
         title="lissom export as a process, by the clock",
         rows=(
-            Row(name="--help", seconds=helped),
-            Row(name="one frame of 480 × 270 pixels", seconds=started),
+            Row(name="--help", seconds=helped.seconds),
+            Row(name="one frame of 480 × 270 pixels", seconds=started.seconds),
             Row(
-                name="300 frames of 3840 × 2160 pixels",
-                seconds=exported,
-                note=f"{peak / 2**30:.2f} GiB of memory at most",
+                name=f"{extent.large_frames} frames of 3840 × 2160 pixels",
+                seconds=exported.seconds,
+                note=exported.memory,
             ),
         ),
     )
 
 
-def _formats(folder: Path) -> Table:
+def _formats(folder: Path, names: tuple[str, ...]) -> Table:
     """Measure every format of one file on the animated giraffe, in frames that suit a web page."""
     project = sample_images() / "giraffe.lissom"
     rows = []
-    for name, format_ in EXPORT_FORMATS.items():
+    for name in names:
+        format_ = EXPORT_FORMATS[name]
         if not format_.suffixes or missing(name):
             continue
         out = folder / f"{name}{format_.suffixes[0]}"
         words = ["--format", name] if name == "glb" else ["--format", name, "--size", "480x464"]
         words += [] if format_.is_transparent else ["--background", "#ffffff"]
-        seconds, _ = _run("export", str(project), "--out", str(out), *words)
+        seconds = _export(str(project), "--out", str(out), *words).seconds
         note = f"{out.stat().st_size / 1000:,.0f} KB"
         if name == "glb":
             note += f", {_without_texture(out.read_bytes()) / 1000:,.0f} KB without the texture"
@@ -152,7 +167,7 @@ def _without_texture(glb: bytes) -> int:
     return len(glb) - sum(int(view["byteLength"]) for view in views)
 
 
-def _bending_giraffe(size: tuple[int, int], *, last: int) -> Document:
+def _bending_giraffe(size: tuple[int, int], triangles: int, *, frames: int = 1) -> Document:
     """Return the giraffe on a canvas, as it was drawn in frame 0, turned and bent in the last."""
     with Image.open(sample_images() / "giraffe.png") as drawing:
         giraffe = drawing.convert("RGBA")
@@ -163,7 +178,7 @@ def _bending_giraffe(size: tuple[int, int], *, last: int) -> Document:
     stream = io.BytesIO()
     canvas.save(stream, "PNG", compress_level=1)
     file = PictureFile(data=stream.getvalue(), suffix=".png", size=size)
-    domain, _ = build_domain(np.asarray(canvas), triangles=TRIANGLES, detail="normal")
+    domain, _ = build_domain(np.asarray(canvas), triangles=triangles, detail="normal")
     figure = new_figure(file, domain, Meshing())
     first = figure.keys[0]
     z = domain.cage - complex(*size) / 2
@@ -171,6 +186,7 @@ def _bending_giraffe(size: tuple[int, int], *, last: int) -> Document:
     bent = replace(
         first.pose, phi=first.pose.phi + z * (np.exp(0.3j) - 1) + z**2 / np.abs(z).max() / 8
     )
+    last = frames - 1
     keys = (first, Keyframe(frame=last, pose=bent)) if last else (first,)
     return Document(
         figures=(replace(figure, keys=keys),),
@@ -179,26 +195,5 @@ def _bending_giraffe(size: tuple[int, int], *, last: int) -> Document:
     )
 
 
-def _by_the_clock(function: Callable[[], object]) -> float:
-    return measure(function, repeats=3, clock=time.perf_counter)
-
-
-# A process that is started takes over the largest memory of the one that starts it, and this one
-# may have held more than what it measures.
-MEASURED = """
-import resource, subprocess, sys, time
-begun = time.perf_counter()
-subprocess.run(sys.argv[1:], stdout=subprocess.DEVNULL, check=True)
-print(time.perf_counter() - begun, resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss)
-"""
-
-
-def _run(*words: str) -> tuple[float, int]:
-    """Run the program; return its seconds and the largest memory that it held, in bytes."""
-    told = subprocess.run(  # noqa: S603 - this program itself
-        [sys.executable, "-c", MEASURED, sys.executable, "-m", "app", *words],
-        stdout=subprocess.PIPE,
-        check=True,
-    )
-    seconds, kilobytes = told.stdout.split()
-    return float(seconds), 1024 * int(kilobytes)
+def _export(*words: str) -> Run:
+    return run_measured(sys.executable, "-m", "app", "export", *words)

@@ -1,14 +1,12 @@
 """Every method of the paper's Figure 9 side by side: a frame against the number of vertices."""
 
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from functools import partial
 from typing import NamedTuple
 
 import numpy as np
 
-from app.cli.bench.interpolate import bent
-from app.cli.bench.streaming import Interval, posed_giraffe, seconds_played
-from app.cli.bench.table import Row, Table, measure
 from app.document import Figure, Variant
 from engine.baselines import (
     Baseline,
@@ -19,9 +17,10 @@ from engine.baselines import (
     prepare_baseline,
 )
 from engine.maps import HarmonicMap
+from tests.bench.interpolate import bent
+from tests.bench.streaming import Interval, posed_giraffe, seconds_played
+from tests.bench.table import Row, Table, measure
 
-SIZES = (1_000, 10_000, 50_000, 100_000)  # vertices
-REFINED = (1_000, 4_000, 16_000, 64_000)  # triangles
 MIDDLE = 0.5  # of the interval
 OURS = (Variant.NU, Variant.SCALED_ETA, Variant.METRIC)
 REPEATS = {
@@ -34,6 +33,17 @@ REPEATS = {
 }
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Extent:
+    """How much is measured."""
+
+    vertices: tuple[int, ...] = (1_000, 10_000, 50_000, 100_000)
+    refined: tuple[int, ...] = (1_000, 4_000, 16_000, 64_000)  # triangles
+
+
+BRIEF = Extent(vertices=(500,), refined=(1_000, 2_000))
+
+
 class Cost(NamedTuple):
     """The seconds of a frame, and a remark."""
 
@@ -41,11 +51,11 @@ class Cost(NamedTuple):
     note: str = ""
 
 
-def tables() -> Iterator[Table]:
+def tables(extent: Extent) -> Iterator[Table]:
     """Measure a frame by every method at each size, and how scaled η becomes integrable."""
     figure = posed_giraffe().figures[0]
     measured = []
-    for vertices in SIZES:
+    for vertices in extent.vertices:
         interval = Interval.of(figure, 2 * vertices)
         costs = frame_costs(figure, interval)
         measured.append((len(interval.mesh.vertices), costs))
@@ -55,7 +65,7 @@ def tables() -> Iterator[Table]:
         title = f"A frame by every method, {len(interval.mesh.vertices):,} vertices"
         yield Table(title=title, rows=tuple(rows))
     yield _ratios(measured)
-    yield _refinement(figure)
+    yield _refinement(figure, extent.refined)
 
 
 def frame_costs(figure: Figure, interval: Interval) -> dict[str, Cost]:
@@ -136,11 +146,11 @@ def _ratios(measured: Sequence[tuple[int, dict[str, Cost]]]) -> Table:
     return Table(title="A frame of Chen et al. (2013), over one of metric", rows=tuple(rows))
 
 
-def _refinement(figure: Figure) -> Table:
+def _refinement(figure: Figure, sizes: Sequence[int]) -> Table:
     """Measure the Poisson error with discrete harmonic keyframes on finer and finer meshes."""
     errors: dict[Baseline, list[float]] = {Baseline.MESH_ETA: [], Baseline.ARAP: []}
     counts, rows = [], []
-    for triangles in REFINED:
+    for triangles in sizes:
         interval = Interval.of(figure, triangles)
         mesh = interval.mesh
         domain = TriangulatedDomain.of(mesh.vertices, mesh.triangles)

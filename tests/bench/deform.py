@@ -1,11 +1,11 @@
 """The deformer: one certified step, its parts, and Newton's method from the identity."""
 
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 
-from app.cli.bench.table import Row, Table, measure
 from engine.arrays import Complexes
 from engine.deform import (
     Deformer,
@@ -17,16 +17,26 @@ from engine.deform import (
     newton_direction,
 )
 from engine.maps import Boundary, Bounds, certify
+from tests.bench.table import Row, Table, measure
 
-CAGE_VERTICES = (25, 50, 53, 100, 200)
 MOVING_STEPS = 40
 DRAG_STEPS = 20
 MOST_STEPS = 100
 
 
-def tables() -> Iterator[Table]:
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Extent:
+    """How much is measured."""
+
+    cages: tuple[int, ...] = (25, 50, 53, 100, 200)  # vertices
+
+
+BRIEF = Extent(cages=(25,))
+
+
+def tables(extent: Extent) -> Iterator[Table]:
     """Measure drags of a star over cages of more and more vertices."""
-    for count in CAGE_VERTICES:
+    for count in extent.cages:
         yield _drag(star(count))
 
 

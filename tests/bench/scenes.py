@@ -2,7 +2,6 @@
 
 import io
 import math
-import resource
 import tempfile
 import time
 import tracemalloc
@@ -14,14 +13,15 @@ from pathlib import Path
 import numpy as np
 from PIL import Image, ImageDraw
 
-from app.cli.bench.table import Row, Table, row_of
-from app.cli.bench.ui import REACH, Driver, dragging, playing
 from app.document import Document, Figure, Meshing, PictureFile, Pose, Variant, clip_of
 from app.editor import Puppet
 from app.editor.actions import files
 from app.storage import Picture, decode_picture, load_project, open_layered, sample_images
 from engine.arrays import Complexes
 from engine.domain import Domain, mesh_inside
+from tests.bench.memory import most_held
+from tests.bench.stage.driver import REACH, Driver, dragging, playing
+from tests.bench.table import Row, Table, row_of
 
 SAMPLE = "giraffe.lissom"
 ARMS = 5
@@ -29,30 +29,29 @@ GRAIN = 6  # levels: flat colours would be read too fast
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class SceneExtent:
-    """How much is measured: layers and their sides, figures, triangles of each, and frames.
-
-    And in how many pixels around it a handle is dragged.
-    """
+class Extent:
+    """How much is measured."""
 
     layers: int = 20
-    side: int = 2_000
+    side: int = 2_000  # pixels, of a layer
     figures: int = 10
-    triangles: int = 20_000
+    triangles: int = 20_000  # of each
     frames: int = 40
-    reach: float = REACH
+    reach: float = REACH  # pixels around it in which a handle is dragged
 
 
-def tables(extent: SceneExtent | None = None) -> Iterator[Table]:
+BRIEF = Extent(layers=2, side=160, figures=1, triangles=1_000, frames=2, reach=4.0)
+
+
+def tables(extent: Extent) -> Iterator[Table]:
     """Measure scenes as a window has them, without a display."""
-    extent = extent or SceneExtent()
     with tempfile.TemporaryDirectory() as folder:
         yield _opening(Path(folder), extent)
         yield _beside_one(Path(folder), extent)
     yield _memory(extent)
 
 
-def _opening(folder: Path, extent: SceneExtent) -> Table:
+def _opening(folder: Path, extent: Extent) -> Table:
     """Measure from a file on the disk to figures that can be drawn."""
     path = folder / "scene.ora"
     _write_drawing(path, extent)
@@ -61,18 +60,17 @@ def _opening(folder: Path, extent: SceneExtent) -> Table:
     read = time.perf_counter() - begun
     files.with_puppets(opened)
     shown = time.perf_counter() - begun
-    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 2**20
     return Table(
         title=f"Opening an .ora of {extent.layers} layers of {extent.side:,} pixels, on all cores",
         rows=(
             Row(name="read, outlined and triangulated", seconds=read),
             Row(name="and ready to be drawn", seconds=shown),
-            Row(name="peak memory", seconds=None, note=f"{peak:.2f} GiB of the whole process"),
+            Row(name="until here", seconds=None, note=most_held()),
         ),
     )
 
 
-def _write_drawing(path: Path, extent: SceneExtent) -> None:
+def _write_drawing(path: Path, extent: Extent) -> None:
     """Write a drawing of bodies with arms, each on a layer of the size of the canvas."""
     rng = np.random.default_rng(0)
     side = extent.side
@@ -102,7 +100,7 @@ def _write_drawing(path: Path, extent: SceneExtent) -> None:
             archive.writestr(name, file.getvalue())
 
 
-def _beside_one(folder: Path, extent: SceneExtent) -> Table:
+def _beside_one(folder: Path, extent: Extent) -> Table:
     """Play and drag one figure, and then several of as many triangles together."""
     stage = Driver(folder)
     rows = []
@@ -189,7 +187,7 @@ def _smaller(
     )
 
 
-def _memory(extent: SceneExtent) -> Table:
+def _memory(extent: Extent) -> Table:
     """Tell what figures take with their in-betweens, beside the picture that they share."""
     rows = []
     for count in sorted({1, max(1, extent.figures // 2), extent.figures}):

@@ -4,23 +4,18 @@ import json
 import time
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from itertools import cycle, pairwise
+from itertools import chain, cycle, islice, pairwise
 
 import numpy as np
 
-from app.cli.bench.deform import DRAG_STEPS, star
-from app.cli.bench.table import Row, Table
 from app.storage import decode_picture, sample_images
 from engine.arrays import Complexes
-from engine.deform import (
-    Deformer,
-    Handles,
-    State,
-    Status,
-)
+from engine.deform import Deformer, Handles, State, Status
 from engine.domain import build_domain
 from engine.geometry import contains
 from engine.maps import Boundary, Bounds, certify
+from tests.bench.deform import DRAG_STEPS, star
+from tests.bench.table import Row, Table
 
 # Hard requests: bounds from the tightest to the widest, and drawings to try them on.
 ROW_OF_BOUNDS = (
@@ -36,22 +31,34 @@ ROW_OF_BOUNDS = (
 DRAWINGS = ("bar", "s", "character", "giraffe")
 # One request in so many, of all kinds, is also followed along a path, and let go of after a drag.
 COMPARED = 5
-# Those that are followed through all bounds: swapped, collapsed, pulled far. Bounds under which a
-# drag is let go, and the ways that it goes: where it ends, the search for rest takes more or fewer
-# steps by chance.
-ROWS_OF_REQUESTS = (0, 9, 12, 27, 33, 39, 44)
+# Under which a drag is let go.
 RELEASED_BOUNDS = (ROW_OF_BOUNDS[1], ROW_OF_BOUNDS[2], Bounds())
-RELEASED_TURNS = np.arange(5.0)  # radians
 PATH_ROWS = 20
 # What is left of a motion that can be seen, of the diagonal.
 SEEN = 1e-4
 
 
-def tables() -> Iterator[Table]:
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Extent:
+    """How much is measured."""
+
+    shapes: int = 6  # with twelve requests each
+    # Requests that are followed through all bounds: swapped, collapsed, pulled far.
+    through_bounds: tuple[int, ...] = (0, 9, 12, 27, 33, 39, 44)
+    cages: tuple[int, ...] = (50, 100)  # vertices, of stars that are let go
+    # In different ways: where a drag ends, the search for rest takes more or fewer steps by chance.
+    releases: int = 5
+
+
+BRIEF = Extent(shapes=1, through_bounds=(), cages=(25,), releases=1)
+
+
+def tables(extent: Extent) -> Iterator[Table]:
     """Measure hard requests, rows of bounds under them, and releases."""
-    yield _hard_requests()
-    yield _rows_of_bounds()
-    yield _releases()
+    requests = list(_requests(extent.shapes))
+    yield _hard_requests(requests)
+    yield _rows_of_bounds({f"request {place}": requests[place] for place in extent.through_bounds})
+    yield _releases(extent)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -71,11 +78,10 @@ class _Request:
         )
 
 
-def _hard_requests() -> Table:
-    """Bring 72 requests to rest from the shape at rest, and compare with other ways there."""
+def _hard_requests(requests: list[_Request]) -> Table:
+    """Bring requests to rest from the shape at rest, and compare with other ways there."""
     steps, totals, seconds, resumed, paths, rest = [], [], [], [], [], []
     optimal = certified = 0
-    requests = list(_requests())
     for number, request in enumerate(requests):
         deformer = request.deformer()
         wish = deformer.handles.wish(request.targets)
@@ -113,12 +119,10 @@ def _hard_requests() -> Table:
     )
 
 
-def _rows_of_bounds() -> Table:
+def _rows_of_bounds(requests: dict[str, _Request]) -> Table:
     """Widen the bounds under the same requests: the energy must not rise."""
-    requests = list(_requests())
-    chosen = {f"request {number}": requests[number] for number in ROWS_OF_REQUESTS}
     rows = []
-    for name, request in {"the giraffe's bow": _bow(), **chosen}.items():
+    for name, request in {"the giraffe's bow": _bow(), **requests}.items():
         energies = []
         for bounds in ROW_OF_BOUNDS:
             deformer = replace(request, bounds=bounds).deformer()
@@ -132,14 +136,14 @@ def _rows_of_bounds() -> Table:
     )
 
 
-def _releases() -> Table:
+def _releases(extent: Extent) -> Table:
     """Let go of a star that was pulled far, and wait until its outline is at rest."""
     rows = []
-    for count in (50, 100):
+    for count in extent.cages:
         boundary = star(count)
         tips = 1.1 * np.exp(2j * np.pi * np.arange(5) / 5)
         points = np.append(tips, 0.0)
-        pulls = 0.4 * np.exp(2j * np.arange(6)) * np.exp(1j * RELEASED_TURNS)[:, None]
+        pulls = 0.4 * np.exp(2j * np.arange(6)) * np.exp(1j * np.arange(extent.releases))[:, None]
         for bounds in RELEASED_BOUNDS:
             seconds = [
                 _rest_after_release(
@@ -166,12 +170,11 @@ def _bow() -> _Request:
     )
 
 
-def _requests() -> Iterator[_Request]:
+def _requests(count: int) -> Iterator[_Request]:
     """Yield six kinds of requests on each shape, under bounds that follow each other."""
     bounds = cycle(ROW_OF_BOUNDS[(5 * place) % 8] for place in range(8))
-    shapes = [star(25), star(50)]
-    shapes += [_drawn(name) for name in DRAWINGS]
-    for number, boundary in enumerate(shapes):
+    shapes = chain(map(star, (25, 50)), map(_drawn, DRAWINGS))
+    for number, boundary in enumerate(islice(shapes, count)):
         rng = np.random.default_rng(number)
         size = boundary.size
         for _ in range(2):

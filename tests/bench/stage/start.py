@@ -1,5 +1,7 @@
-"""Opens the window as `lissom` does, tells how far it is, and closes it, for `app.cli.bench.ui`."""
+"""Opens the window as `lissom` does, tells how far it is, and closes it, to measure its start."""
 
+import subprocess
+import sys
 import tempfile
 import time
 from pathlib import Path
@@ -9,9 +11,30 @@ from app.editor.actions import files, saving
 from app.render import Renderer
 from app.render.gpu import create_context, window_context
 from app.storage import load_preferences
-from app.ui.window import Offscreen, Window, has_display
+from app.ui.window import Window, has_display
+from tests.bench.table import Table, row_at_most
+from tests.support.offscreen import Offscreen
 
 MARKS = ("first frame", "welcome view with all its pictures")
+
+
+def table(repeats: int) -> Table:
+    """Measure from the command to the window, each time in a process of its own."""
+    times = [_seconds_to_marks() for _ in range(repeats)]
+    rows = tuple(map(row_at_most, MARKS, zip(*times, strict=True)))
+    where = "on the screen" if has_display() else "without a display"
+    return Table(title=f"From the command to the window, {where}", rows=rows)
+
+
+def _seconds_to_marks() -> list[float]:
+    begun = time.perf_counter()
+    with subprocess.Popen(
+        [sys.executable, "-m", "tests.bench.stage.start"], stdout=subprocess.PIPE
+    ) as process:
+        times = [time.perf_counter() - begun for _ in process.stdout or ()]
+    if process.returncode or len(times) != len(MARKS):
+        raise RuntimeError(f"the window did not open: exit status {process.returncode}")
+    return times
 
 
 class Start:

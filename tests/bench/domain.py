@@ -1,34 +1,47 @@
 """Picture → domain, stage by stage, and the Cauchy coordinates."""
 
-import resource
 from collections.abc import Iterator
+from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
 
-from app.cli.bench.table import Row, Table, measure
 from app.storage import decode_picture, sample_images
 from engine.domain import build_domain
 from engine.domain.meshing import triangulate
 from engine.domain.outline import enclose
 from engine.domain.picture import matted, subject_mask
 from engine.maps import cauchy_coordinates, cauchy_derivatives, evaluate
+from tests.bench.memory import most_held
+from tests.bench.table import Row, Table, measure
 
 
-def tables() -> Iterator[Table]:
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Extent:
+    """How much is measured."""
+
+    triangles: int = 100_000
+    stages: tuple[int, ...] = (10_000, 100_000, 1_000_000)  # triangles
+    points: int = 50_000
+
+
+BRIEF = Extent(triangles=1_000, stages=(1_000,), points=500)
+
+
+def tables(extent: Extent) -> Iterator[Table]:
     """Measure the way from a picture's bytes to its domain."""
     pictures = {path.stem: path.read_bytes() for path in sorted(sample_images().glob("*.png"))}
-    yield _samples(pictures)
-    yield _stages(pictures["giraffe"])
-    yield _coordinates()
+    yield _samples(pictures, extent.triangles)
+    yield _stages(pictures["giraffe"], extent.stages)
+    yield _coordinates(extent.points)
 
 
-def _samples(pictures: dict[str, bytes]) -> Table:
+def _samples(pictures: dict[str, bytes], triangles: int) -> Table:
     rows = []
     for name, data in pictures.items():
 
         def build(data: bytes = data) -> None:
-            build_domain(decode_picture(data, "").rgba, triangles=100_000, detail="normal")
+            build_domain(decode_picture(data, "").rgba, triangles=triangles, detail="normal")
 
         domain, _ = build_domain(decode_picture(data, "").rgba, triangles=1000, detail="normal")
         rows.append(
@@ -38,10 +51,10 @@ def _samples(pictures: dict[str, bytes]) -> Table:
                 note=f"{len(domain.cage)} cage vertices",
             )
         )
-    return Table(title="Picture → domain, 100,000 triangles", rows=tuple(rows))
+    return Table(title=f"Picture → domain, {triangles:,} triangles", rows=tuple(rows))
 
 
-def _stages(data: bytes) -> Table:
+def _stages(data: bytes, sizes: tuple[int, ...]) -> Table:
     rgba = decode_picture(data, "").rgba
     subject = subject_mask(rgba)
     outline = enclose(subject.mask, detail="normal").outline
@@ -54,7 +67,7 @@ def _stages(data: bytes) -> Table:
             seconds=measure(lambda: enclose(subject.mask, detail="normal")),
         ),
     ]
-    for count in (10_000, 100_000, 1_000_000):
+    for count in sizes:
         seconds = measure(partial(triangulate, outline, count), repeats=3)
         rows.append(
             Row(
@@ -63,18 +76,17 @@ def _stages(data: bytes) -> Table:
                 note=f"{1e9 * seconds / count:.0f} ns a triangle",
             )
         )
-    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 2**20
-    rows.append(Row(name="peak memory", seconds=None, note=f"{peak:.2f} GiB of the whole process"))
+    rows.append(Row(name="until here", seconds=None, note=most_held()))
     return Table(title="Stages for the giraffe", rows=tuple(rows))
 
 
-def _coordinates() -> Table:
+def _coordinates(count: int) -> Table:
     cage = 1.2 * np.exp(2j * np.pi * np.arange(100) / 100)
     rng = np.random.default_rng(0)
-    points = np.sqrt(rng.random(50_000)) * np.exp(2j * np.pi * rng.random(50_000))
+    points = np.sqrt(rng.random(count)) * np.exp(2j * np.pi * rng.random(count))
     both = np.column_stack([cage**2, cage**3])
     return Table(
-        title="50,000 points × 100 cage vertices",
+        title=f"{count:,} points × 100 cage vertices",
         rows=(
             Row(name="coordinates C", seconds=measure(lambda: cauchy_coordinates(cage, points))),
             Row(name="derivatives D", seconds=measure(lambda: cauchy_derivatives(cage, points))),

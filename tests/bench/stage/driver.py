@@ -14,9 +14,11 @@ from app.editor import Jobs, Project, Session, do
 from app.editor.actions import playback
 from app.render import Renderer
 from app.render.gpu import create_context
-from app.ui.window import PAUSE, SIZE, Offscreen, Window
+from app.ui.window.window import PAUSE, SIZE, Window
+from tests.support.offscreen import Offscreen
 
 REFRESH = 1 / 60  # seconds from frame to frame of a screen
+REACH = 40.0  # pixels around a handle in which it is dragged, unless told
 PATIENCE = 120.0  # seconds that anything may take
 
 

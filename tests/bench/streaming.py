@@ -7,7 +7,6 @@ from functools import partial
 
 import numpy as np
 
-from app.cli.bench.table import Row, Table, measure
 from app.document import Document, Figure, Meshing, Pose, Variant
 from app.motion import PoseSampler
 from app.render import Renderer, Scene, fit_view
@@ -27,12 +26,23 @@ from engine.domain.meshing import Mesh, triangulate
 from engine.interpolation import Inbetweens
 from engine.maps import distortion
 from engine.streaming import Distortions, Positions, Series, build_series, finish
+from tests.bench.table import Row, Table, measure
 
-SIZES = (10_000, 100_000, 1_000_000)
 VARIANTS = (Variant.LINEAR, Variant.NU, Variant.ETA, Variant.SCALED_ETA, Variant.METRIC)
 # A second of playing: what a frame costs on the way, through all the pieces of a series.
 TIMES = tuple((i + 0.5) / 24 for i in range(24))
 REPEATS = 9
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Extent:
+    """How much is measured."""
+
+    triangles: tuple[int, ...] = (100_000, 1_000_000)
+    growth: tuple[int, ...] = (10_000, 100_000, 1_000_000)  # triangles
+
+
+BRIEF = Extent(triangles=(1_000,), growth=(1_000,))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -64,18 +74,18 @@ class Interval:
         return finish(build_series(Positions.of(self.inbetweens(variant), self.sampler.sites)))
 
 
-def tables() -> Iterator[Table]:
+def tables(extent: Extent) -> Iterator[Table]:
     """Measure frames, building, growth and drawing."""
     figure = posed_giraffe().figures[0]
-    for triangles in SIZES[1:]:
+    for triangles in extent.triangles:
         interval = Interval.of(figure, triangles)
         series = {variant: interval.build(variant) for variant in VARIANTS}
         yield _frames(interval, series)
-        if triangles == SIZES[1]:
+        if triangles == extent.triangles[0]:
             yield _heat(interval)
             yield _building(interval, series)
             yield _drawing(interval, series)
-    yield from _growth([Interval.of(figure, triangles) for triangles in SIZES])
+    yield from _growth([Interval.of(figure, triangles) for triangles in extent.growth])
 
 
 def posed_giraffe() -> Document:

@@ -7,7 +7,6 @@ from typing import NamedTuple, Self
 
 import numpy as np
 
-from app.cli.bench.table import Row, Table, measure
 from app.storage import decode_picture, sample_images
 from engine.arrays import Complexes, Integers
 from engine.dirichlet import Extension, HilbertTransform
@@ -25,11 +24,22 @@ from engine.interpolation import (
 from engine.maps import HarmonicMap, Span
 from engine.paths import root_sheets
 from engine.streaming import Positions, Series, build_series, finish
+from tests.bench.table import Row, Table, measure
 
-SIZES = (10_000, 50_000, 500_000)
-TRIANGLES = 100_000  # of the ring
 MIDDLE = 0.4  # of the interval
 INTEGRATED = (Variant.NU, Variant.ETA, Variant.SCALED_ETA, Variant.METRIC)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Extent:
+    """How much is measured."""
+
+    vertices: int = 50_000
+    growth: tuple[int, ...] = (10_000, 50_000, 500_000)  # vertices
+    triangles: int = 100_000  # of the ring
+
+
+BRIEF = Extent(vertices=500, growth=(500,), triangles=1_000)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -91,16 +101,16 @@ def sites_of(domain: Domain, mesh: Mesh) -> Sites:
     )
 
 
-def tables() -> Iterator[Table]:
+def tables(extent: Extent) -> Iterator[Table]:
     """Measure frames and preparation, and how both grow with the number of vertices."""
     picture = decode_picture((sample_images() / "giraffe.png").read_bytes(), "")
     domain, _ = build_domain(picture.rgba, triangles=1000, detail="normal")
     transform = HilbertTransform.on(domain.outline, domain.cage)
-    pairs = [KeyframePair.of(domain, vertices, transform) for vertices in SIZES]
-    yield _frames(pairs[1])
-    yield _preparation(domain, pairs[1])
-    yield _growth(domain, pairs)
-    yield _around_a_hole()
+    pair = KeyframePair.of(domain, extent.vertices, transform)
+    yield _frames(pair)
+    yield _preparation(domain, pair)
+    yield _growth(domain, [KeyframePair.of(domain, count, transform) for count in extent.growth])
+    yield _around_a_hole(extent.triangles)
 
 
 def _frames(pair: KeyframePair) -> Table:
@@ -140,10 +150,7 @@ def _preparation(domain: Domain, pair: KeyframePair) -> Table:
         ),
         Row(
             name="a keyframe",
-            seconds=measure(
-                pair.first_keyframe,
-                repeats=3,
-            ),
+            seconds=measure(pair.first_keyframe, repeats=3),
             note=_megabytes(pair.keyframes[0].nbytes),
         ),
     ]
@@ -161,10 +168,7 @@ def _growth(domain: Domain, pairs: Sequence[KeyframePair]) -> Table:
         inbetweens = pair.inbetweens(Variant.METRIC)
         steps = {
             "frame": measure(partial(inbetweens.offsets, MIDDLE)),
-            "keyframe": measure(
-                pair.first_keyframe,
-                repeats=1,
-            ),
+            "keyframe": measure(pair.first_keyframe, repeats=1),
             "interval": measure(partial(pair.inbetweens, Variant.METRIC), repeats=1),
             "paths": measure(partial(sites_of, domain, pair.mesh), repeats=1),
         }
@@ -179,11 +183,11 @@ def _growth(domain: Domain, pairs: Sequence[KeyframePair]) -> Table:
     return Table(title="Against the number of vertices, metric", rows=tuple(rows))
 
 
-def _around_a_hole() -> Table:
+def _around_a_hole(triangles: int) -> Table:
     """Measure one motion of the sample's ring, with its hole filled and with its hole kept."""
     picture = decode_picture((sample_images() / "ring.png").read_bytes(), "")
     rings = [
-        build_domain(picture.rgba, triangles=TRIANGLES, detail="normal", cut_out=CutOut(holes=way))[
+        build_domain(picture.rgba, triangles=triangles, detail="normal", cut_out=CutOut(holes=way))[
             0
         ]
         for way in ("fill", "keep")

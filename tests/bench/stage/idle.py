@@ -1,6 +1,6 @@
 """Opens the window and leaves it alone, to measure what it takes to do nothing.
 
-`python -m app.cli.bench.idle SECONDS [FILE]` prints the processor's seconds of all its threads.
+`python -m tests.bench.stage.idle SECONDS [FILE]` prints the processor's seconds of all its threads.
 """
 
 import subprocess
@@ -10,14 +10,13 @@ import threading
 import time
 from pathlib import Path
 
-import app
-from app.cli.bench.table import Row, Table
 from app.editor import Jobs, Session, do
 from app.editor.actions import files
 from app.render import Renderer
 from app.render.gpu import window_context
 from app.storage import sample_images
 from app.ui.window import Window, has_display
+from tests.bench.table import Row, Table
 
 SAMPLE = "dragon.png"  # samples that move would play
 REST = 8.0  # seconds without work, after which nothing is on its way any more
@@ -33,9 +32,8 @@ def table(seconds: float) -> Table:
     rows = []
     for name, path in (("the welcome view", None), (SAMPLE, sample_images() / SAMPLE)):
         files_named = [] if path is None else [str(path)]
-        done = subprocess.run(  # noqa: S603 - this very module
-            [sys.executable, "-m", "app.cli.bench.idle", str(seconds), *files_named],
-            cwd=Path(app.__file__).parents[1],
+        done = subprocess.run(
+            [sys.executable, "-m", "tests.bench.stage.idle", str(seconds), *files_named],
             stdout=subprocess.PIPE,
             text=True,
             check=True,

@@ -1,0 +1,67 @@
+"""The bench, cut short: parts in one call, and parts that fail."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from tests.bench import memory
+from tests.bench.__main__ import PARTS
+
+ROOT = Path(__file__).parents[1]
+
+
+def bench(*words: str, **variables: str) -> subprocess.CompletedProcess[str]:
+    command = [sys.executable, "-m", "tests.bench", "--brief", *words]
+    environment = {**os.environ, **variables}
+    return subprocess.run(
+        command, cwd=ROOT, env=environment, capture_output=True, text=True, check=False
+    )
+
+
+def rows_of_tables(said: str) -> list[int]:
+    machine, *tables = said.split("\n\n")
+    assert "cores" in machine
+    return [len(table.splitlines()) - 1 for table in tables]
+
+
+def test_parts_that_draw_are_measured_in_one_call():
+    done = bench("window", "scenes", DISPLAY="", WAYLAND_DISPLAY="")
+    assert done.returncode == 0, done.stderr
+    assert rows_of_tables(done.stdout) == [2, 2, 4, 14, 2, 3, 2, 1, 3, 4, 1]
+
+
+def test_all_parts_are_tried_though_some_fail(tmp_path):
+    # Of all parts only the deformer's does without Pillow.
+    (tmp_path / "PIL.py").write_text("raise ImportError('Pillow is broken')")
+    done = bench(PYTHONPATH=str(tmp_path))
+    assert done.returncode == 1
+    assert rows_of_tables(done.stdout) == [6]
+    assert done.stderr.count("\nImportError: Pillow is broken") == len(PARTS) - 1
+    failed = [part for part in PARTS if part != "deform"]
+    assert done.stderr.splitlines()[-1] == f"failed: {', '.join(failed)}"
+
+
+def test_a_part_that_is_not_there_is_refused():
+    done = bench("everything")
+    assert done.returncode == 2
+    assert "there is no part everything" in done.stderr
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows does not tell")
+def test_the_memory_of_a_command_is_its_own():
+    ours = bytearray(2**29)
+    small, large = (
+        memory.run_measured(sys.executable, "-c", f"bytearray({size})") for size in (0, 2**28)
+    )
+    assert len(ours) > 2**28
+    least, most = (float(run.memory.split()[0]) for run in (small, large))  # GiB
+    assert least < 0.1
+    assert 0.25 <= most < 0.4
+
+
+def test_where_the_system_does_not_tell_memory_is_not_measured(monkeypatch):
+    monkeypatch.setattr(memory.sys, "platform", "win32")
+    assert memory.most_held() == "memory is not measured here"
