@@ -23,9 +23,10 @@ def _has_osmesa() -> bool:
     return False
 
 
-# `.ci/setup` installs it wherever it can be had.
 HAS_OSMESA = _has_osmesa()
-NEEDS_OSMESA = pytest.mark.skipif(not HAS_OSMESA, reason="newer Mesa does not have OSMesa")
+NEEDS_OSMESA = pytest.mark.skipif(
+    not HAS_OSMESA, reason="no OSMesa here: bash .ci/setup installs it where Mesa still has it"
+)
 BACKENDS = ["egl", pytest.param("osmesa", marks=NEEDS_OSMESA)]
 
 

@@ -137,7 +137,9 @@ def test_caches_are_refreshed_where_the_programs_for_it_are(home, monkeypatch):
     assert calls == 2 * wanted
 
 
-@pytest.mark.skipif(shutil.which("update-mime-database") is None, reason="it is not installed")
+@pytest.mark.skipif(
+    shutil.which("update-mime-database") is None, reason="update-mime-database is not installed"
+)
 @pytest.mark.parametrize("has_others", [False, True])
 def test_the_systems_own_program_understands_it_and_nothing_is_left(home, monkeypatch, has_others):
     monkeypatch.undo()

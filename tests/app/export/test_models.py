@@ -245,7 +245,7 @@ def validator() -> Path | None:
 
 @pytest.mark.skipif(
     shutil.which("node") is None or validator() is None,
-    reason="the npm package gltf-validator is not there; .ci/setup test installs it beside node",
+    reason="no node or no gltf-validator here: bash .ci/setup test installs that where node is",
 )
 def test_the_validator_of_khronos_finds_nothing(giraffe, tmp_path):
     exported(two_figures(), tmp_path / "two.glb")

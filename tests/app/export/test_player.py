@@ -19,7 +19,10 @@ from app.storage import decode_picture
 from engine.arrays import Bytes
 
 if PROGRAM is None:
-    pytest.skip("Chromium is not installed", allow_module_level=True)
+    pytest.skip(
+        "no Chromium here: bash .ci/setup test installs it where it is a package",
+        allow_module_level=True,
+    )
 
 SIZE = (240, 200)
 MOMENTS = (0.0, 0.11, 0.2)  # seconds
