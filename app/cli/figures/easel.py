@@ -1,7 +1,7 @@
 """Pictures of posed shapes, by the renderer that the window draws with."""
 
 from collections.abc import Sequence
-from types import TracebackType
+from contextlib import ExitStack
 from typing import Self
 
 from app.cli.figures.shapes import Shape
@@ -24,26 +24,18 @@ class Easel:
     """
 
     def __init__(self) -> None:
+        self._owned = ExitStack()
         self._context = create_context()
+        self._owned.callback(self._context.release)
         self._renderer = Renderer(self._context)
+        self._owned.callback(self._renderer.release)
         self._drawn: dict[Shape, DrawnMesh] = {}
-        self._under: list[GpuMesh | GpuPicture] = []
 
     def __enter__(self) -> Self:
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
-        for drawn in self._drawn.values():
-            drawn.release()
-        for owned in self._under:
-            owned.release()
-        self._renderer.release()
-        self._context.release()
+    def __exit__(self, *_: object) -> None:
+        self._owned.close()
 
     def draw(self, shape: Shape, positions: Complexes, box: Box, *, pixels: int) -> Bytes:
         """Return a picture, uint8 (h, w, 4) with straight alpha, of what is in a box of the plane.
@@ -73,12 +65,12 @@ class Easel:
         if shape not in self._drawn:
             mesh = shape.domain.mesh
             picture = GpuPicture(self._context, shape.picture)
-            drawn = GpuMesh(
+            gpu = GpuMesh(
                 self._renderer.programs, picture, rest=mesh.vertices, triangles=mesh.triangles
             )
-            # A mesh is released before its picture.
-            self._under[:0] = [drawn, picture]
-            self._drawn[shape] = DrawnMesh(drawn, by_shader=False)
+            self._drawn[shape] = DrawnMesh(gpu, by_shader=False)
+            for owned in (picture, gpu, self._drawn[shape]):
+                self._owned.callback(owned.release)
         return self._drawn[shape]
 
 

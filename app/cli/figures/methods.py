@@ -7,7 +7,7 @@ from typing import Protocol
 from app.cli.figures.shapes import ShapePair
 from engine.arrays import Complexes
 from engine.baselines import Baseline, prepare_baseline
-from engine.interpolation import Variant, prepare
+from engine.interpolation import Prepared, Variant, prepare
 
 
 class Inbetween(Protocol):
@@ -48,21 +48,22 @@ class ComparedMethod:
     prepare: Callable[[ShapePair], FrameAt]
 
 
+def prepare_variant(pair: ShapePair, variant: Variant) -> Prepared:
+    """Prepare one of our variants at the vertices of a pair's mesh."""
+    domain = pair.shape.domain
+    return prepare(
+        (pair.first, pair.second),
+        domain.mesh.vertices,
+        outline=domain.outline,
+        variant=variant,
+        triangles=domain.mesh.triangles,
+        anchor=pair.anchor,
+    )
+
+
 def of_variant(variant: Variant) -> Callable[[ShapePair], FrameAt]:
     """Return the preparation of one of our variants."""
-
-    def prepare_pair(pair: ShapePair) -> FrameAt:
-        domain = pair.shape.domain
-        return prepare(
-            (pair.first, pair.second),
-            domain.mesh.vertices,
-            outline=domain.outline,
-            variant=variant,
-            triangles=domain.mesh.triangles,
-            anchor=pair.anchor,
-        ).frame
-
-    return prepare_pair
+    return lambda pair: prepare_variant(pair, variant).frame
 
 
 def of_baseline(baseline: Baseline) -> Callable[[ShapePair], FrameAt]:

@@ -111,14 +111,12 @@ def bar_to_ring(triangles: int) -> ShapePair:
     ν is −0.1 in the first and 0.1 in the second, everywhere: the stretch turns by a right angle.
     """
     shape = _sample_picture("bar", triangles)
-    cage, outline = shape.domain.cage, shape.domain.outline
-    middle = complex(outline.mean())
-    rate = complex(RING_GROWTH, RING_TURN) / float(np.ptp(outline.real))
-    phi = (np.exp(rate * (cage - middle)) - 1) / rate
+    middle = complex(shape.domain.outline.mean())
+    offset = shape.domain.cage - middle
     return ShapePair(
         shape=shape,
-        first=HarmonicMap(cage=cage, phi=cage - middle, psi=-RING_NU * (cage - middle)),
-        second=HarmonicMap(cage=cage, phi=phi, psi=RING_NU * phi),
+        first=HarmonicMap(cage=shape.domain.cage, phi=offset, psi=-RING_NU * offset),
+        second=_wound(shape, middle, turn=RING_TURN, growth=RING_GROWTH, nu=RING_NU),
         anchor=middle,
     )
 
@@ -158,11 +156,28 @@ def spiral(shape: Shape, *, turn: float, growth: float, nu: float) -> HarmonicMa
     nu : float
         conj(f_z̄) / f_z; k is its modulus.
     """
-    cage, outline = shape.domain.cage, shape.domain.outline
-    rate = complex(growth, turn) / float(np.ptp(outline.real))
+    outline = shape.domain.outline
     start = complex(outline.real.min(), outline.imag.mean())
+    return _wound(shape, start, turn=turn, growth=growth, nu=nu).moved(1, start)
+
+
+def bent(offset: Complexes, *, turn: float, growth: float = 0.0) -> Complexes:
+    """Return places about the origin bent so that what is across stays straight.
+
+    By `turn` radians over their extent along x, on which they also grow by exp(`growth`).
+    """
+    along, across = offset.real, offset.imag
+    rate = complex(growth, turn) / float(np.ptp(along))
+    turned: Complexes = (np.exp(rate * along) - 1) / rate + 1j * across * np.exp(rate * along)
+    return turned
+
+
+def _wound(shape: Shape, start: complex, *, turn: float, growth: float, nu: float) -> HarmonicMap:
+    """Return `spiral`, with a place that goes to the origin and neither turns nor grows there."""
+    cage = shape.domain.cage
+    rate = complex(growth, turn) / float(np.ptp(shape.domain.outline.real))
     phi = (np.exp(rate * (cage - start)) - 1) / rate
-    return HarmonicMap(cage=cage, phi=phi + start, psi=nu * phi)
+    return HarmonicMap(cage=cage, phi=phi, psi=nu * phi)
 
 
 def _block(width: int, height: int, *, cells: int, triangles: int) -> Shape:

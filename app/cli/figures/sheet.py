@@ -1,7 +1,7 @@
 """Sheets: rows of pictures of posed shapes with plots beside them, by matplotlib."""
 
 import io
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from importlib.util import find_spec
 from typing import TYPE_CHECKING
 
@@ -62,19 +62,33 @@ def show(
     axes.set_axis_off()
 
 
+def show_panels(
+    easel: Easel, panels: Sequence[tuple[str, Tracked, float]], size: tuple[float, float]
+) -> "Figure":
+    """Return a sheet, of a size in inches, with titled in-betweens side by side at one scale."""
+    sheet = new_sheet(*size)
+    boxes = alike([box_of(track.frame(time).positions) for _, track, time in panels])
+    columns = sheet.subplots(1, len(panels))
+    for axes, (title, track, time), box in zip(columns, panels, boxes, strict=True):
+        show(axes, easel, track, time, box=box)
+        axes.set_title(title, color=INK, fontsize=11)
+    return sheet
+
+
 def show_strip(
     rows: Sequence[Sequence["Axes"]],
     easel: Easel,
-    tracks: Sequence[Tracked],
+    tracks: Mapping[str, Tracked],
     times: Sequence[float],
 ) -> None:
-    """Draw each method's in-betweens in a row, all at the same scale."""
-    boxes = alike([box_of(*(track.frame(time).positions for track in tracks)) for time in times])
-    for row, track in zip(rows, tracks, strict=True):
-        for axes, time, box in zip(row, times, boxes, strict=False):
+    """Draw in-betweens in rows with names, all at the same scale."""
+    every = tracks.values()
+    boxes = alike([box_of(*(track.frame(time).positions for track in every)) for time in times])
+    for row, (named, track) in zip(rows, tracks.items(), strict=True):
+        for axes, time, box in zip(row, times, boxes, strict=True):
             show(axes, easel, track, time, box=box)
-        name(row[0], track.method.name)
-    for axes, time in zip(rows[0], times, strict=False):
+        name(row[0], named)
+    for axes, time in zip(rows[0], times, strict=True):
         axes.set_title(f"t = {time:g}", color=INK, fontsize=9)
 
 

@@ -1,5 +1,6 @@
 """What a method does to a pair: frames, and how far they distort the shape (Section 8)."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -68,13 +69,12 @@ class Tracked:
         """Likewise τ − 1, (t, 100)."""
         return relative_to_keys(worst_points(self.tau - 1.0))
 
-    def measured(self, name: str = "") -> "Measured":
-        """Return the numbers that stand beside the pictures, by default under the method's name."""
+    def measured(self) -> "Measured":
+        """Return the numbers that stand beside the pictures."""
         mesh = self.pair.shape.domain.mesh
         areas = np.array([area_of(mesh, frame.positions) for frame in self.frames])
         ends = np.minimum(areas[0], areas[-1])
         return Measured(
-            name=name or self.method.name,
             k=float(self.k_shares.max()),
             tau=float(self.tau_shares.max()),
             k_of_all=float(self.k.max() / max(self.k[0].max(), self.k[-1].max())),
@@ -91,8 +91,6 @@ class Measured:
 
     Parameters
     ----------
-    name : str
-        Of the method, or of the pair.
     k, tau : float
         The largest k and τ − 1 of the 100 worst points, each relative to the larger key of its
         point: at most 1 where distortion is bounded point by point.
@@ -103,12 +101,18 @@ class Measured:
         The least area over time, relative to the smaller key.
     """
 
-    name: str
     k: float
     tau: float
     k_of_all: float
     tau_of_all: float
     area: float
+
+
+def tracked(
+    pair: ShapePair, methods: Sequence[ComparedMethod], times: int = TIMES
+) -> dict[str, Tracked]:
+    """Return the in-betweens of a pair by several methods, by their names."""
+    return {method.name: Tracked(pair, method, times) for method in methods}
 
 
 def area_of(mesh: Mesh, positions: Complexes) -> float:

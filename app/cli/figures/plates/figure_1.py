@@ -1,11 +1,10 @@
 """Figure 1: the giraffe halfway to the ground, by each method."""
 
-from app.cli.figures.easel import alike, box_of
 from app.cli.figures.methods import ARAP, HANDLES, LINEAR, METRIC, NU
-from app.cli.figures.plates.plate import BOUNDED, Plate, Studio, bounded_rows
-from app.cli.figures.shapes import ShapePair, sample
-from app.cli.figures.sheet import INK, as_png, new_sheet, show
-from app.cli.figures.track import Measured, Tracked
+from app.cli.figures.plates.plate import Plate, Studio, bounded_plate
+from app.cli.figures.shapes import sample
+from app.cli.figures.sheet import show_panels
+from app.cli.figures.track import tracked
 
 TIME = 0.5
 MEASURED = 3  # times: the middle, and both keyframes
@@ -18,36 +17,11 @@ CAPTION = (
 )
 
 
-def pair(triangles: int) -> ShapePair:
-    """Return the giraffe upright and with its head at the ground."""
-    return sample("giraffe", 0, 1, triangles)
-
-
-def measure(triangles: int) -> tuple[Measured, ...]:
-    """Measure all methods."""
-    both = pair(triangles)
-    return tuple(Tracked(both, method, MEASURED).measured() for method in METHODS)
-
-
 def make(studio: Studio) -> Plate:
     """Draw the figure."""
-    both = pair(studio.triangles)
-    tracks = [Tracked(both, method, MEASURED) for method in METHODS]
-    panels = [
-        ("source", tracks[-1], 0.0),
-        *((track.method.name, track, TIME) for track in tracks),
-        ("target", tracks[-1], 1.0),
-    ]
-    sheet = new_sheet(14, 3.4)
-    boxes = alike([box_of(track.frame(time).positions) for _, track, time in panels])
-    columns = sheet.subplots(1, len(panels))
-    for axes, (title, track, time), box in zip(columns, panels, boxes, strict=True):
-        show(axes, studio.easel, track, time, box=box)
-        axes.set_title(title, color=INK, fontsize=11)
-    return Plate(
-        title="The giraffe",
-        caption=CAPTION,
-        picture=as_png(sheet),
-        heads=BOUNDED,
-        rows=bounded_rows(tuple(track.measured() for track in tracks)),
-    )
+    tracks = tracked(sample("giraffe", 0, 1, studio.triangles), METHODS, MEASURED)
+    metric = tracks[METRIC.name]
+    between = ((name, track, TIME) for name, track in tracks.items())
+    panels = [("source", metric, 0.0), *between, ("target", metric, 1.0)]
+    sheet = show_panels(studio.easel, panels, (14, 3.4))
+    return bounded_plate("The giraffe", CAPTION, sheet, tracks)

@@ -1,10 +1,10 @@
 """Figure 10: what the metric variant makes of this project's own drawings."""
 
 from app.cli.figures.methods import METRIC
-from app.cli.figures.plates.plate import BOUNDED, Plate, Studio, bounded_rows
-from app.cli.figures.shapes import ShapePair, bar_to_ring, letter_s, sample
-from app.cli.figures.sheet import as_png, name, new_sheet, show_row
-from app.cli.figures.track import Measured, Tracked
+from app.cli.figures.plates.plate import Plate, Studio, bounded_plate
+from app.cli.figures.shapes import bar_to_ring, letter_s, sample
+from app.cli.figures.sheet import name, new_sheet, show_row
+from app.cli.figures.track import Tracked
 
 TIMES = (0.0, 0.25, 0.5, 0.75, 1.0)
 TIMES_MEASURED = 21
@@ -15,9 +15,10 @@ CAPTION = (
 )
 
 
-def pairs(triangles: int) -> dict[str, ShapePair]:
-    """Return the collection, by name."""
-    return {
+def make(studio: Studio) -> Plate:
+    """Draw the figure."""
+    triangles = studio.triangles
+    pairs = {
         "giraffe": sample("giraffe", 0, 1, triangles),
         "dragon": sample("dragon", 1, 2, triangles),
         "octopus": sample("octopus", 1, 2, triangles),
@@ -26,31 +27,10 @@ def pairs(triangles: int) -> dict[str, ShapePair]:
         "bar to ring": bar_to_ring(triangles),
         "ring": sample("ring", 0, 3, triangles),
     }
-
-
-def measure(triangles: int) -> tuple[Measured, ...]:
-    """Measure all of them."""
-    return tuple(track.measured(named) for named, track in _tracks(triangles).items())
-
-
-def make(studio: Studio) -> Plate:
-    """Draw the figure."""
-    tracks = _tracks(studio.triangles)
+    tracks = {named: Tracked(pair, METRIC, TIMES_MEASURED) for named, pair in pairs.items()}
     sheet = new_sheet(12, 1.9 * len(tracks))
     rows = sheet.subplots(len(tracks), len(TIMES))
     for row, (named, track) in zip(rows, tracks.items(), strict=True):
         show_row(row, studio.easel, track, TIMES)
         name(row[0], named)
-    return Plate(
-        title="A collection",
-        caption=CAPTION,
-        picture=as_png(sheet),
-        heads=BOUNDED,
-        rows=bounded_rows(tuple(track.measured(named) for named, track in tracks.items())),
-    )
-
-
-def _tracks(triangles: int) -> dict[str, Tracked]:
-    return {
-        named: Tracked(pair, METRIC, TIMES_MEASURED) for named, pair in pairs(triangles).items()
-    }
+    return bounded_plate("A collection", CAPTION, sheet, tracks)

@@ -4,11 +4,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from app.cli.figures.easel import alike, box_of
 from app.cli.figures.methods import MESH_ETA, ComparedMethod
 from app.cli.figures.plates.plate import Plate, Studio
-from app.cli.figures.shapes import Shape, ShapePair, beam, sample
-from app.cli.figures.sheet import INK, as_png, new_sheet, show
+from app.cli.figures.shapes import Shape, ShapePair, beam, bent, sample
+from app.cli.figures.sheet import as_png, show_panels
 from app.cli.figures.track import Tracked
 from engine.arrays import Complexes
 from engine.baselines import Baseline, PreparedBaseline, discrete_harmonic, prepare_baseline
@@ -57,15 +56,11 @@ def make(studio: Studio) -> Plate:
         prepare=lambda _: _prepared(shape, *keyframes).frame,
     )
     track = Tracked(ShapePair(shape=shape, first=still, second=still), method)
-    sheet = new_sheet(13, 3)
-    boxes = alike([box_of(track.frame(time).positions) for time in TIMES])
-    for axes, time, box in zip(sheet.subplots(1, len(TIMES)), TIMES, boxes, strict=True):
-        show(axes, studio.easel, track, time, box=box)
-        axes.set_title(f"t = {time:g}", color=INK, fontsize=10)
+    panels = [(f"t = {time:g}", track, time) for time in TIMES]
     return Plate(
         title="Meshes",
         caption=CAPTION,
-        picture=as_png(sheet),
+        picture=as_png(show_panels(studio.easel, panels, (13, 3))),
         heads=("", "triangles", "Poisson error"),
         rows=tuple(
             (loss.name, f"{loss.triangles:,}", f"{loss.error:.2e}")
@@ -92,11 +87,10 @@ def _bent(shape: Shape) -> tuple[Complexes, Complexes]:
     """Return the discrete harmonic maps that shear the border of a bar, and bend it."""
     rest = shape.domain.mesh.vertices
     offset = rest - rest.mean()
-    rate = 1j * TURN / float(np.ptp(offset.real))
     domain = _prepared(shape, rest, rest).domain
-    sheared = offset + SHEAR * offset.conj()
-    bent = (np.exp(rate * offset.real) - 1) / rate + 1j * offset.imag * np.exp(rate * offset.real)
-    return discrete_harmonic(domain, sheared), discrete_harmonic(domain, bent)
+    keys = (offset + SHEAR * offset.conj(), bent(offset, turn=TURN))
+    first, second = (discrete_harmonic(domain, positions) for positions in keys)
+    return first, second
 
 
 def _prepared(shape: Shape, first: Complexes, second: Complexes) -> PreparedBaseline:

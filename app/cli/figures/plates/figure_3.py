@@ -4,11 +4,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from app.cli.figures.easel import alike, box_of
 from app.cli.figures.methods import METRIC, NU, SCALED_ETA
 from app.cli.figures.plates.plate import Plate, Studio
 from app.cli.figures.shapes import ShapePair, square
-from app.cli.figures.sheet import INK, as_png, new_sheet, show
+from app.cli.figures.sheet import as_png, show_panels
 from app.cli.figures.track import Tracked
 from engine.maps import HarmonicMap, distortion
 
@@ -68,7 +67,6 @@ def make(studio: Studio) -> Plate:
     nu, eta = Tracked(both, NU), Tracked(both, SCALED_ETA)
     identity = HarmonicMap.identity(both.shape.domain.cage)
     rest = Tracked(ShapePair(shape=both.shape, first=identity, second=both.first), NU)
-    sheet = new_sheet(12, 2.8)
     panels = (
         ("(a) Ω", rest, 0.0),
         ("(b) f⁰", nu, 0.0),
@@ -76,15 +74,10 @@ def make(studio: Studio) -> Plate:
         ("(d) scaled η, t = 0.8", eta, TIME),
         ("(e) f¹", nu, 1.0),
     )
-    boxes = alike([box_of(track.frame(time).positions) for _, track, time in panels])
-    panels_in_a_row = sheet.subplots(1, len(panels))
-    for axes, (title, track, time), box in zip(panels_in_a_row, panels, boxes, strict=True):
-        show(axes, studio.easel, track, time, box=box)
-        axes.set_title(title, color=INK, fontsize=10)
     return Plate(
         title="Stretch direction",
         caption=CAPTION,
-        picture=as_png(sheet),
+        picture=as_png(show_panels(studio.easel, panels, (12, 2.8))),
         heads=("t = 0.8", "direction off by", "k (keys: 0.3333)"),
         rows=tuple((one.name, f"{one.direction:.4f}°", f"{one.k:.4f}") for one in measure()),
     )

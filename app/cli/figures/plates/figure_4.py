@@ -2,10 +2,10 @@
 
 from app.cli.figures.easel import box_of
 from app.cli.figures.methods import ETA, SCALED_ETA
-from app.cli.figures.plates.plate import BOUNDED, Plate, Studio, bounded_rows
+from app.cli.figures.plates.plate import Plate, Studio, bounded_plate
 from app.cli.figures.shapes import ShapePair, beam, spiral
-from app.cli.figures.sheet import as_png, name, new_sheet, plot_shares, show
-from app.cli.figures.track import Measured, Tracked
+from app.cli.figures.sheet import name, new_sheet, plot_shares, show
+from app.cli.figures.track import Tracked, tracked
 from app.motion import Box
 from engine.maps import HarmonicMap
 
@@ -20,41 +20,27 @@ CAPTION = (
 )
 
 
-def pair(triangles: int) -> ShapePair:
-    """Return the bar at rest, and wound up."""
+def bar_wound_up(triangles: int) -> dict[str, Tracked]:
+    """Return η and scaled η on the bar at rest, and wound up."""
     shape = beam(triangles)
     identity = HarmonicMap.identity(shape.domain.cage)
-    return ShapePair(
-        shape=shape, first=identity, second=spiral(shape, turn=TURN, growth=GROWTH, nu=NU)
-    )
-
-
-def measure(triangles: int) -> tuple[Measured, ...]:
-    """Measure η and scaled η."""
-    both = pair(triangles)
-    return tuple(Tracked(both, method).measured() for method in (ETA, SCALED_ETA))
+    wound = spiral(shape, turn=TURN, growth=GROWTH, nu=NU)
+    return tracked(ShapePair(shape=shape, first=identity, second=wound), (ETA, SCALED_ETA))
 
 
 def make(studio: Studio) -> Plate:
     """Draw the figure."""
-    both = pair(studio.triangles)
-    tracks = [Tracked(both, method) for method in (ETA, SCALED_ETA)]
+    tracks = bar_wound_up(studio.triangles)
     sheet = new_sheet(11, 5.2)
-    for row, track in zip(sheet.subplots(2, 4), tracks, strict=True):
-        positions = track.frame(TIME).positions
-        box = box_of(positions)
-        worst = positions[abs(track.frame(TIME).fzbar / track.frame(TIME).fz).argmax()]
+    for row, track in zip(sheet.subplots(2, 4), tracks.values(), strict=True):
+        frame = track.frame(TIME)
+        box = box_of(frame.positions)
+        worst = frame.positions[abs(frame.fzbar / frame.fz).argmax()]
         side = ZOOM * max(box.upper.real - box.lower.real, box.upper.imag - box.lower.imag)
         near = Box(worst - side * (1 + 1j), worst + side * (1 + 1j))
-        show(row[0], studio.easel, track, TIME)
+        show(row[0], studio.easel, track, TIME, box=box)
         show(row[1], studio.easel, track, TIME, box=near)
         show(row[2], studio.easel, track, 1.0)
         name(row[0], track.method.name)
         plot_shares(row[3], track.times, track.k_shares, "k", track.method.colour)
-    return Plate(
-        title="Scaling η",
-        caption=CAPTION,
-        picture=as_png(sheet),
-        heads=BOUNDED,
-        rows=bounded_rows(tuple(track.measured() for track in tracks)),
-    )
+    return bounded_plate("Scaling η", CAPTION, sheet, tracks)

@@ -4,11 +4,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from app.cli.figures.easel import alike, box_of
+from app.cli.figures.easel import box_of
 from app.cli.figures.methods import METRIC, SCALED_ETA, SIG13
 from app.cli.figures.plates.plate import Plate, Studio
 from app.cli.figures.shapes import ShapePair, sample
-from app.cli.figures.sheet import INK, as_png, new_sheet, show
+from app.cli.figures.sheet import as_png, show_panels
 from app.cli.figures.track import Tracked
 from engine.arrays import Complexes
 from engine.maps import HarmonicMap
@@ -78,16 +78,10 @@ def make(studio: Studio) -> Plate:
         ("Chen et al. 2013", chen, TIME),
         ("f¹", metric, 1.0),
     )
-    boxes = alike([box_of(track.frame(time).positions) for _, track, time in panels])
-    sheet = new_sheet(14, 2.6)
-    columns = sheet.subplots(1, len(panels))
-    for axes, (title, track, time), box in zip(columns, panels, boxes, strict=True):
-        show(axes, studio.easel, track, time, box=box)
-        axes.set_title(title, color=INK, fontsize=11)
     return Plate(
         title="The dragon's tail",
         caption=CAPTION,
-        picture=as_png(sheet),
+        picture=as_png(show_panels(studio.easel, panels, (14, 2.6))),
         heads=("t = 0.5", "of the tail's turn", "from metric, of the diameter"),
         rows=tuple(
             (one.name, f"{one.turned:.3f}", f"{one.from_metric:.2%}") for one in measure(tracks)

@@ -5,11 +5,11 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
 
-from app.cli.figures.methods import METHODS, METRIC, SIG13, ComparedMethod
+from app.cli.figures.methods import METHODS, METRIC, SIG13, ComparedMethod, prepare_variant
 from app.cli.figures.plates.plate import Plate, Studio
 from app.cli.figures.shapes import ShapePair, sample
 from app.cli.figures.sheet import INK, as_png, new_sheet, plain
-from engine.interpolation import Variant, prepare
+from engine.interpolation import Variant
 from engine.streaming import Positions, build_series, finish
 
 SIZES = (1_000, 3_000, 10_000, 50_000, 100_000)
@@ -99,15 +99,7 @@ def make(studio: Studio) -> Plate:
 
 def _played(pair: ShapePair) -> Callable[[float], object]:
     """Return what plays the metric variant's series."""
-    domain = pair.shape.domain
-    prepared = prepare(
-        (pair.first, pair.second),
-        domain.mesh.vertices,
-        outline=domain.outline,
-        variant=Variant.METRIC,
-        triangles=domain.mesh.triangles,
-        anchor=pair.anchor,
-    )
+    prepared = prepare_variant(pair, Variant.METRIC)
     return finish(build_series(Positions.of(prepared.intervals[0], prepared.sites))).values
 
 

@@ -1,10 +1,17 @@
 """What every figure comes to, and what it is made with."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from app.cli.figures.easel import Easel
-from app.cli.figures.sheet import told
-from app.cli.figures.track import Measured
+from app.cli.figures.sheet import as_png, told
+from app.cli.figures.track import Tracked
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+BOUNDED = ("", "k, of its key", "τ − 1, of its key", "largest k", "largest τ − 1", "least area")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -46,19 +53,15 @@ class Plate:
     rows: tuple[tuple[str, ...], ...]
 
 
-BOUNDED = ("", "k, of its key", "τ − 1, of its key", "largest k", "largest τ − 1", "least area")
-
-
-def bounded_rows(measured: tuple[Measured, ...]) -> tuple[tuple[str, ...], ...]:
-    """Return the rows below `BOUNDED`."""
-    return tuple(
-        (
-            one.name,
-            told(one.k),
-            told(one.tau),
-            told(one.k_of_all),
-            told(one.tau_of_all),
-            f"{one.area:.3f}",
-        )
-        for one in measured
+def bounded_plate(
+    title: str, caption: str, sheet: "Figure", tracks: Mapping[str, Tracked]
+) -> Plate:
+    """Return a figure, and beside it how far in-betweens keep to their keyframes, by name."""
+    rows = []
+    for name, track in tracks.items():
+        one = track.measured()
+        numbers = map(told, (one.k, one.tau, one.k_of_all, one.tau_of_all))
+        rows.append((name, *numbers, f"{one.area:.3f}"))
+    return Plate(
+        title=title, caption=caption, picture=as_png(sheet), heads=BOUNDED, rows=tuple(rows)
     )

@@ -42,7 +42,7 @@ def test_figure_3_nu_loses_the_direction_of_the_stretch_and_the_others_keep_it()
 
 
 def test_figure_4_scaling_brings_eta_back_within_the_bounds():
-    unscaled, scaled = figure_4.measure(TRIANGLES)
+    unscaled, scaled = (each.measured() for each in figure_4.bar_wound_up(TRIANGLES).values())
     assert unscaled.k > 2
     assert unscaled.tau == np.inf
     assert scaled.k <= 1 + ROUNDING
