@@ -3,12 +3,16 @@
 import argparse
 import json
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
-from app.document import clip_of
+from app.document import Extremes, clip_of
 from app.reports import IntervalReport, Report, certify_clip
 from app.storage import load_project
+from engine.interpolation import Proof
+from engine.maps import Certificate
+
+NAMES = ("k", "sigma_a", "sigma_b")
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -25,8 +29,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _as_json(reports: Mapping[str, Report]) -> str:
     blocks = {name: _block(report) for name, report in reports.items()}
-    (first, *others) = blocks.values()
-    content = {"figures": blocks} if others else first
+    content = {"figures": blocks} if len(blocks) != 1 else next(iter(blocks.values()))
     return json.dumps(content, indent=2)
 
 
@@ -37,83 +40,53 @@ def _as_tables(reports: Mapping[str, Report]) -> str:
 
 
 def _block(report: Report) -> dict[str, Any]:
+    keys = [
+        {"frame": frame, **_named(own), "certified": own.certified} for frame, own in report.keys
+    ]
     return {
         "certified": report.certified,
-        "keys": [
-            {
-                "frame": frame,
-                "k": _finite(certificate.k),
-                "sigma_a": certificate.sigma_a,
-                "sigma_b": certificate.sigma_b,
-                "certified": certificate.certified,
-            }
-            for frame, certificate in report.keys
-        ],
-        "intervals": [
-            {
-                "from": interval.first,
-                "to": interval.last,
-                "k": interval.reached.k,
-                "sigma_a": interval.reached.sigma_a,
-                "sigma_b": interval.reached.sigma_b,
-                "k_keys": interval.keys.k,
-                "sigma_a_keys": interval.keys.sigma_a,
-                "sigma_b_keys": interval.keys.sigma_b,
-                "correction": interval.correction,
-                "proven": _proof_of(interval),
-            }
-            for interval in report.intervals
-        ],
+        "keys": keys,
+        "intervals": [_interval_block(interval) for interval in report.intervals],
     }
 
 
-def _proof_of(interval: IntervalReport) -> dict[str, Any]:
-    proof, excess = interval.proof, interval.excess
+def _interval_block(interval: IntervalReport) -> dict[str, Any]:
     return {
-        "k": _finite(proof.k),
-        "sigma_a": _finite(proof.sigma_a),
-        "sigma_b": proof.sigma_b,
-        "excess": [_finite(excess.k), _finite(excess.sigma_a), excess.sigma_b],
-        "never_folds": proof.never_folds,
-        "unsettled_frames": list(interval.unsettled),
+        "from": interval.first,
+        "to": interval.last,
+        **_named(interval.reached),
+        **{f"{name}_keys": value for name, value in _named(interval.keys).items()},
+        "correction": interval.correction,
+        "proven": {
+            **_named(interval.proof),
+            "excess": list(_named(interval.excess).values()),
+            "never_folds": interval.proof.never_folds,
+            "unsettled_frames": list(interval.unsettled),
+        },
     }
 
 
-def _finite(value: float) -> float | None:
-    """Return the number, or None (JSON null) where nothing is proven: JSON has no infinity."""
-    return value if math.isfinite(value) else None
+def _named(values: Certificate | Extremes | Proof) -> dict[str, float | None]:
+    """Return each number by its name, None (JSON null) where nothing is proven: JSON has no ∞."""
+    return {
+        name: value if math.isfinite(value) else None
+        for name, value in zip(NAMES, _numbers(values), strict=True)
+    }
 
 
-def _proof_lines(interval: IntervalReport) -> list[str]:
-    """Return what is proven of an interval, and where it is not."""
-    proof, excess = interval.proof, interval.excess
-    pairs = zip((proof.k, proof.sigma_a, proof.sigma_b), ("+", "+", "-"), excess, strict=True)
-    figures = " ".join(f"{f'{value:.4f} ({sign}{by:.4f})':>18}" for value, sign, by in pairs)
-    verdict = "NOT PROVEN" if interval.may_fold else "never folds"
-    lines = [f"{'  proven':<16} {figures}  {verdict}"]
-    if interval.unsettled:
-        frames = ", ".join(map(str, interval.unsettled))
-        what = "  may fold" if interval.may_fold else "  less tight"
-        lines.append(f"{what:<16} frame{'s' * (len(interval.unsettled) > 1)} {frames}")
-    return lines
+def _numbers(values: Certificate | Extremes | Proof) -> tuple[float, float, float]:
+    return values.k, values.sigma_a, values.sigma_b
 
 
 def _as_table(report: Report) -> str:
-    lines = [f"{'':<16} {'k':>18} {'sigma_a':>18} {'sigma_b':>18}"]
+    lines = [_line("", NAMES)]
     for frame, own in report.keys:
-        verdict = "certified" if own.certified else "NOT CERTIFIED"
-        figures = " ".join(f"{value:>18.4f}" for value in (own.k, own.sigma_a, own.sigma_b))
-        lines.append(f"{f'key {frame}':<16} {figures}  {verdict}")
-    for interval in report.intervals:
-        pairs = (
-            (interval.reached.k, interval.keys.k),
-            (interval.reached.sigma_a, interval.keys.sigma_a),
-            (interval.reached.sigma_b, interval.keys.sigma_b),
+        cells = [f"{value:.4f}" for value in _numbers(own)]
+        lines.append(
+            _line(f"key {frame}", cells, "certified" if own.certified else "NOT CERTIFIED")
         )
-        figures = " ".join(f"{f'{reached:.4f} ({own:.4f})':>18}" for reached, own in pairs)
-        verdict = "within" if interval.is_within else "OVER"
-        lines.append(f"{f'{interval.first} to {interval.last}':<16} {figures}  {verdict}")
-        lines += _proof_lines(interval)
+    for interval in report.intervals:
+        lines += _interval_lines(interval)
     lines.append(
         "In brackets: the worse of the two keyframes; of what is proven, how far that is beyond it"
         " (or beyond the figure's bounds, where the motion passes through a key)."
@@ -125,3 +98,30 @@ def _as_table(report: Report) -> str:
             "close; what is kept of the bounds is proven above."
         )
     return "\n".join(lines)
+
+
+def _interval_lines(interval: IntervalReport) -> list[str]:
+    """Return what is reached in an interval, what is proven of it, and where it is not."""
+    reached = zip(_numbers(interval.reached), interval.keys, strict=True)
+    proven = zip(_numbers(interval.proof), ("+", "+", "-"), interval.excess, strict=True)
+    lines = [
+        _line(
+            f"{interval.first} to {interval.last}",
+            [f"{value:.4f} ({keys:.4f})" for value, keys in reached],
+            "within" if interval.is_within else "OVER",
+        ),
+        _line(
+            "  proven",
+            [f"{value:.4f} ({sign}{by:.4f})" for value, sign, by in proven],
+            "NOT PROVEN" if interval.may_fold else "never folds",
+        ),
+    ]
+    if interval.unsettled:
+        frames = ", ".join(map(str, interval.unsettled))
+        what = "  may fold" if interval.may_fold else "  less tight"
+        lines.append(f"{what:<16} frame{'s' * (len(interval.unsettled) > 1)} {frames}")
+    return lines
+
+
+def _line(name: str, cells: Sequence[str], verdict: str = "") -> str:
+    return f"{name:<16} {' '.join(f'{cell:>18}' for cell in cells)}  {verdict}".rstrip()

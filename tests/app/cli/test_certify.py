@@ -1,11 +1,14 @@
 """`lissom certify`: what is proven of an animation, and where it is not."""
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
 from app.cli.main import main
+from app.document import Document, Meshing, new_figure
+from app.storage import load_project, save_project
 
 SAMPLE = Path(__file__).parents[3] / "sample_images/giraffe.lissom"
 
@@ -40,3 +43,12 @@ def test_frames_that_fold_are_named(capsys):
     assert not first["proven"]["never_folds"]
     assert first["sigma_b"] < 0
     assert second["proven"]["never_folds"]
+
+
+def test_where_every_layer_stands_still_there_is_nothing_to_certify(tmp_path, capsys):
+    (drawn,) = load_project(SAMPLE).figures
+    still = replace(new_figure(drawn.picture, drawn.domain, Meshing()), still=True)
+    path = tmp_path / "still.lissom"
+    save_project(path, Document(figures=(still,)))
+    assert main(["certify", str(path), "--json"]) == 0
+    assert json.loads(capsys.readouterr().out) == {"figures": {}}
