@@ -2,7 +2,7 @@
 
 import argparse
 import sys
-from typing import NoReturn
+from typing import NoReturn, Self
 
 EXIT_ERROR = 2
 
@@ -28,16 +28,21 @@ def notice(message: str) -> None:
 
 
 class StatusLine:
-    """One line on a terminal that tells what is going on; without a terminal it says nothing."""
+    """One line on a terminal that tells what is going on; without a terminal it says nothing.
+
+    At the end of its `with` it is left empty for whatever is printed next.
+    """
 
     def __init__(self) -> None:
         self._is_seen = sys.stderr.isatty()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.show("")
 
     def show(self, text: str) -> None:
         """Put a text in place of the one before."""
         if self._is_seen:
             print(f"\r\x1b[K{text}", end="", file=sys.stderr, flush=True)
-
-    def clear(self) -> None:
-        """Leave the line empty for whatever is printed next."""
-        self.show("")

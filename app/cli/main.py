@@ -75,7 +75,9 @@ def build_parser(words: Sequence[str]) -> argparse.ArgumentParser:
             formatter_class=argparse.RawDescriptionHelpFormatter,
         )
         if name in words:
-            importlib.import_module(f"app.cli.usage.{name}").add_arguments(subparser)
+            usage = importlib.import_module(f"app.cli.usage.{name}")
+            usage.add_arguments(subparser)
+            subparser.epilog = usage.EPILOG
     return parser
 
 

@@ -6,6 +6,8 @@ told at once; a test compares them with it.
 
 import argparse
 import re
+import sys
+from collections.abc import Callable
 from pathlib import Path
 
 from app.errors import LissomError
@@ -36,6 +38,28 @@ def input_file(text: str) -> Path:
     except OSError as error:
         raise LissomError(f"cannot read {text}: {error.strerror}") from error
     return path
+
+
+def whole_number(least: int, most: int = sys.maxsize) -> Callable[[str], int]:
+    """Return what reads a whole number in a range, both ends included."""
+    wanted = f"at least {least:,}" if most == sys.maxsize else f"between {least:,} and {most:,}"
+
+    def read(text: str) -> int:
+        if not text.isdecimal() or not least <= int(text) <= most:
+            raise argparse.ArgumentTypeError(f"expected a whole number, {wanted}, not {text!r}")
+        return int(text)
+
+    return read
+
+
+def add_project(parser: argparse.ArgumentParser) -> None:
+    """Declare the project that is read."""
+    parser.add_argument("project", metavar="PROJECT", type=input_file, help="the .lissom file")
+
+
+def add_out(parser: argparse.ArgumentParser, metavar: str, about: str = "where to write") -> None:
+    """Declare where to write."""
+    parser.add_argument("--out", metavar=metavar, type=Path, required=True, help=about)
 
 
 def add_meshing_options(parser: argparse.ArgumentParser) -> None:

@@ -2,7 +2,7 @@
 
 import argparse
 from collections.abc import Mapping
-from contextlib import closing
+from contextlib import ExitStack, closing
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -77,9 +77,10 @@ def _draw(
     request: ExportRequest,
     arguments: argparse.Namespace,
 ) -> str:
-    context = create_context()
-    status = StatusLine()
-    try:
+    with ExitStack() as ending:
+        context = create_context()
+        ending.callback(context.release)
+        status = ending.enter_context(StatusLine())
         status.show("preparing the in-betweens")
         poses = _poses(document, arguments)
         plan = plan_export(document, request, poses)
@@ -87,9 +88,6 @@ def _draw(
         with closing(export(plan, painter.pose, painter.draw)) as steps:
             for done in steps:
                 status.show(f"{done} of {len(plan.times)} frames")
-    finally:
-        status.clear()
-        context.release()
     for message in (*painter.notices, *plan.notices):
         notice(message)
     return _summary_of_frames(plan)
@@ -101,8 +99,7 @@ def _film(
     request: ExportRequest,
     arguments: argparse.Namespace,
 ) -> str:
-    status = StatusLine()
-    try:
+    with StatusLine() as status:
         status.show("preparing the in-betweens")
         poses = _poses(document, arguments)
         plan = plan_export(document, request, poses)
@@ -110,8 +107,6 @@ def _film(
         with closing(maker.run()) as steps:
             for done in steps:
                 status.show(f"{done} of {len(plan.times)} frames")
-    finally:
-        status.clear()
     for message in maker.notices:
         notice(message)
     return _summary_of_shapes(maker, plan)

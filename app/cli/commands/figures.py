@@ -1,42 +1,41 @@
 """`lissom figures`: the figures of the paper, made anew."""
 
 import argparse
+from pathlib import Path
 
 from app.cli.console import StatusLine
-from app.cli.figures import MAKERS, make_figures
-from app.errors import LissomError
-
-FEWEST_TRIANGLES, MOST_TRIANGLES = 1_000, 2_000_000
-SMALLEST = 1_000
+from app.cli.figures import MAKERS, Easel, Plate, Studio, lay_out, require_matplotlib
+from app.storage import write_atomically
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Make the figures and print what was measured."""
-    if not FEWEST_TRIANGLES <= arguments.triangles <= MOST_TRIANGLES:
-        raise LissomError(
-            f"--triangles must be between {FEWEST_TRIANGLES:,} and {MOST_TRIANGLES:,}, not "
-            f"{arguments.triangles:,}"
-        )
-    if arguments.largest < SMALLEST:
-        raise LissomError(f"--largest must be at least {SMALLEST:,}, not {arguments.largest:,}")
-    status = StatusLine()
-    try:
-        plates = make_figures(
-            arguments.out,
-            sorted(set(arguments.only)) if arguments.only else tuple(MAKERS),
-            triangles=arguments.triangles,
-            largest=arguments.largest,
-            progress=status.show,
-        )
-    finally:
-        status.clear()
+    require_matplotlib()
+    arguments.out.mkdir(parents=True, exist_ok=True)
+    plates = {}
+    with StatusLine() as status, Easel() as easel:
+        studio = Studio(easel=easel, triangles=arguments.triangles, largest=arguments.largest)
+        for number in sorted(set(arguments.only or MAKERS)):
+            status.show(f"making figure {number}")
+            plates[number] = plate = MAKERS[number](studio)
+            _write(arguments.out / f"figure_{number}.png", plate.picture)
+    _write(arguments.out / "figures.html", lay_out(plates).encode())
     for number, plate in plates.items():
-        print(f"\nFigure {number}: {plate.title}")
-        table = [plate.heads, *plate.rows]
-        widths = [max(map(len, column)) for column in zip(*table, strict=True)]
-        for row in table:
-            cells = [row[0].ljust(widths[0])]
-            cells += [word.rjust(width) for word, width in zip(row[1:], widths[1:], strict=True)]
-            print("  " + "  ".join(cells).rstrip())
+        print(f"\nFigure {number}: {plate.title}\n{_as_table(plate)}")
     print(f"\n{arguments.out}: {len(plates)} figures")
     return 0
+
+
+def _as_table(plate: Plate) -> str:
+    """Return the numbers beside a figure in columns."""
+    table = [plate.heads, *plate.rows]
+    widths = [max(map(len, column)) for column in zip(*table, strict=True)]
+    lines = []
+    for name, *numbers in table:
+        cells = map(str.rjust, numbers, widths[1:])
+        lines.append("  ".join(["", name.ljust(widths[0]), *cells]).rstrip())
+    return "\n".join(lines)
+
+
+def _write(path: Path, content: bytes) -> None:
+    write_atomically(path, lambda file: file.write(content))

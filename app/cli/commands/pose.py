@@ -31,9 +31,8 @@ def run(arguments: argparse.Namespace) -> int:
         opened = as_scene(open_picture(arguments.picture, meshing, cut_out))
     for message in opened.notices:
         notice(message)
-    status = StatusLine()
-    document, lags = pose_document(opened.document, script, status.show)
-    status.clear()
+    with StatusLine() as status:
+        document, lags = pose_document(opened.document, script, status.show)
     for message in lags:
         notice(message)
     textures = {

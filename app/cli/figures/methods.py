@@ -2,30 +2,13 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Protocol
 
 from app.cli.figures.shapes import ShapePair
-from engine.arrays import Complexes
-from engine.baselines import Baseline, prepare_baseline
-from engine.interpolation import Prepared, Variant, prepare
+from engine.baselines import Baseline, MeshFrame, prepare_baseline
+from engine.interpolation import Frame, Prepared, Variant, prepare
 
-
-class Inbetween(Protocol):
-    """An in-between: where the vertices are, and derivatives wherever the method has them."""
-
-    @property
-    def positions(self) -> Complexes:
-        """Of the vertices, (v,)."""
-
-    @property
-    def fz(self) -> Complexes:
-        """f_z at vertices or in triangles, the same at all times, (p,)."""
-
-    @property
-    def fzbar(self) -> Complexes:
-        """f_z̄ at the same places."""
-
-
+# With the positions of the vertices; fz and fzbar at vertices or in triangles, always the same.
+Inbetween = Frame | MeshFrame
 FrameAt = Callable[[float], Inbetween]
 
 

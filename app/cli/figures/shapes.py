@@ -190,10 +190,11 @@ def _block(width: int, height: int, *, cells: int, triangles: int) -> Shape:
     colour = warm + share[..., None] * (cold - warm)
     rgb = np.where(((rows + columns) % 2 == 0)[..., None], colour, light)
     picture = np.dstack([rgb, np.full((height, width), 255)]).astype(np.uint8)
-    corners = np.array([0, width, width + 1j * height, 1j * height], dtype=np.complex128)
+    corners: Complexes = np.array([0, width, width + 1j * height, 1j * height])
     outline = _subdivided(corners, height / 5)
-    # Half a side off, so that the cage keeps its corners at the outline's.
-    cage = _subdivided(_grown(corners, height / 16), height / 5)
+    # A third of a side's length off.
+    grown = corners + height / 16 * np.array([-1 - 1j, 1 - 1j, 1 + 1j, -1 + 1j])
+    cage = _subdivided(grown, height / 5)
     domain = Domain(outline=outline, cage=cage, mesh=mesh_inside(outline, triangles=triangles))
     return Shape(picture=picture, domain=domain)
 
@@ -204,13 +205,6 @@ def _subdivided(polygon: Complexes, longest: float) -> Complexes:
         count = int(np.ceil(abs(side) / longest))
         parts.append(start + side * np.arange(count) / count)
     return np.concatenate(parts)
-
-
-def _grown(corners: Complexes, by: float) -> Complexes:
-    middle = corners.mean()
-    offset = corners - middle
-    grown: Complexes = corners + by * (np.sign(offset.real) + 1j * np.sign(offset.imag))
-    return grown
 
 
 def _sample_picture(name: str, triangles: int) -> Shape:

@@ -26,22 +26,20 @@ class Tracked:
     method : ComparedMethod
     times : int
         At how many times, even from 0 to 1, the distortion is looked at.
+
+    Its `frame` returns the in-between at a time in [0, 1].
     """
 
     def __init__(self, pair: ShapePair, method: ComparedMethod, times: int = TIMES) -> None:
         self.pair = pair
         self.method = method
         self.times: Floats = np.linspace(0.0, 1.0, times)
-        self._motion = method.prepare(pair)
-
-    def frame(self, time: float) -> Inbetween:
-        """Return the in-between at a time in [0, 1]."""
-        return self._motion(time)
+        self.frame = method.prepare(pair)
 
     @cached_property
     def frames(self) -> tuple[Inbetween, ...]:
         """The in-betweens at all times."""
-        return tuple(self._motion(float(time)) for time in self.times)
+        return tuple(self.frame(float(time)) for time in self.times)
 
     @cached_property
     def k(self) -> Floats:
@@ -89,16 +87,10 @@ class Tracked:
 class Measured:
     """How far a method's in-betweens are from the keyframes'.
 
-    Parameters
-    ----------
-    k, tau : float
-        The largest k and τ − 1 of the 100 worst points, each relative to the larger key of its
-        point: at most 1 where distortion is bounded point by point.
-    k_of_all, tau_of_all : float
-        The largest k and τ − 1 of all points relative to the largest of both keys: at most 1 where
-        it is bounded as a whole.
-    area : float
-        The least area over time, relative to the smaller key.
+    `k` and `tau` are the largest k and τ − 1 of the 100 worst points, each relative to the larger
+    key of its point: at most 1 where distortion is bounded point by point. `k_of_all` and
+    `tau_of_all` are those of all points relative to the largest of both keys: at most 1 where it is
+    bounded as a whole. `area` is the least over time, relative to the smaller key.
     """
 
     k: float

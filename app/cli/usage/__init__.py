@@ -1,4 +1,4 @@
-"""What is said to each command, one command a module with `add_arguments(parser)`.
+"""What is said to each command, a module each: `add_arguments(parser)`, and an `EPILOG` of help.
 
 In: words of a command line.
 Out: parsed arguments, or an error of usage.

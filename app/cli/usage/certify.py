@@ -2,7 +2,7 @@
 
 import argparse
 
-from app.cli.options import add_variant_option, input_file
+from app.cli.options import add_project, add_variant_option
 
 EPILOG = """\
 Keyframes are certified: their k, sigma_a and sigma_b hold at every point of the shape, not only at
@@ -20,7 +20,6 @@ examples:
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the options of `lissom certify`."""
-    parser.epilog = EPILOG
-    parser.add_argument("project", metavar="PROJECT", type=input_file, help="the .lissom file")
+    add_project(parser)
     add_variant_option(parser)
     parser.add_argument("--json", action="store_true", help="print JSON instead of a table")

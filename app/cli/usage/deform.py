@@ -1,9 +1,8 @@
 """What is said to `lissom deform`."""
 
 import argparse
-from pathlib import Path
 
-from app.cli.options import input_file
+from app.cli.options import add_out, input_file
 
 EPILOG = """\
 CASE.npz holds the shape and what is asked of it:
@@ -34,8 +33,7 @@ examples:
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the options of `lissom deform`."""
-    parser.epilog = EPILOG
     parser.add_argument(
         "case", metavar="CASE.npz", type=input_file, help="shape, handles and targets"
     )
-    parser.add_argument("--out", metavar="MAP.npz", type=Path, required=True, help="where to write")
+    add_out(parser, "MAP.npz")

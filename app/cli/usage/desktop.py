@@ -16,7 +16,6 @@ examples:
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the options of `lissom desktop`."""
-    parser.epilog = EPILOG
     either = parser.add_mutually_exclusive_group(required=True)
     either.add_argument("--install", action="store_true", help="enter Lissom into the desktop")
     either.add_argument("--remove", action="store_true", help="take all of that away again")

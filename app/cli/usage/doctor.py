@@ -11,6 +11,5 @@ examples:
 """
 
 
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Declare the options of `lissom doctor`."""
-    parser.epilog = EPILOG
+def add_arguments(_: argparse.ArgumentParser) -> None:
+    """Declare nothing: `lissom doctor` has no options."""

@@ -3,7 +3,7 @@
 import argparse
 from pathlib import Path
 
-from app.cli.options import add_cut_out_options, add_meshing_options, input_file
+from app.cli.options import add_cut_out_options, add_meshing_options, add_out, input_file
 
 EPILOG = """\
 The picture may be a PNG, JPEG, GIF, WebP, AVIF, TIFF, BMP, TGA, PPM or ICO, or a layer of an
@@ -41,11 +41,8 @@ examples:
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the options of `lissom domain`."""
-    parser.epilog = EPILOG
     parser.add_argument("picture", metavar="PICTURE", type=input_file, help="the drawing")
-    parser.add_argument(
-        "--out", metavar="DOMAIN.npz", type=Path, required=True, help="where to write"
-    )
+    add_out(parser, "DOMAIN.npz")
     parser.add_argument(
         "--layer",
         metavar="NAME",

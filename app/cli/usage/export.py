@@ -3,17 +3,28 @@
 import argparse
 import re
 import textwrap
-from pathlib import Path
 
-from app.cli.options import FRAMINGS, add_variant_option, input_file
+from app.cli.options import FRAMINGS, add_out, add_project, add_variant_option
 from app.export_formats import EXPORT_FORMATS, format_by_suffix
 
-EPILOG = """\
+COLUMN = max(map(len, EXPORT_FORMATS)) + 4
+FORMATS = "\n".join(
+    textwrap.fill(
+        format_.about,
+        width=98,
+        initial_indent=f"  {name}".ljust(COLUMN),
+        subsequent_indent=" " * COLUMN,
+        break_on_hyphens=False,
+    )
+    for name, format_ in EXPORT_FORMATS.items()
+)
+*OTHERS, LAST = format_by_suffix()  # ends of names
+EPILOG = f"""\
 What is not given is as the project's own export settings have it.
 
 formats:
-{formats}
-Without --format, an --out that ends in {telling} chooses it. Animations
+{FORMATS}
+Without --format, an --out that ends in {", ".join(OTHERS)} or {LAST} chooses it. Animations
 of a project that loops play for ever, others once. PNGs have straight alpha; colours are those of
 sRGB. Interrupted, png leaves the frames that are done, each of them whole, and every other format
 nothing. Files of before are replaced.
@@ -29,15 +40,8 @@ examples:
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the options of `lissom export`."""
-    parser.epilog = EPILOG.format(formats=_formats(), telling=_telling())
-    parser.add_argument("project", metavar="PROJECT", type=input_file, help="the .lissom file")
-    parser.add_argument(
-        "--out",
-        metavar="DIR_OR_FILE",
-        type=Path,
-        required=True,
-        help="a folder for PNG frames, a file for every other format",
-    )
+    add_project(parser)
+    add_out(parser, "DIR_OR_FILE", "a folder for PNG frames, a file for every other format")
     either = parser.add_mutually_exclusive_group()
     either.add_argument(
         "--frames", metavar="A:B", type=_frames, help="frames of the timeline, both ends included"
@@ -89,27 +93,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--figure", metavar="NAME", help="export this layer alone")
     add_variant_option(parser)
     parser.add_argument("--format", choices=tuple(EXPORT_FORMATS), help="what to write")
-
-
-def _formats() -> str:
-    """Return what the help tells of the formats."""
-    column = max(map(len, EXPORT_FORMATS)) + 4
-    return "\n".join(
-        textwrap.fill(
-            format_.about,
-            width=98,
-            initial_indent=f"  {name}".ljust(column),
-            subsequent_indent=" " * column,
-            break_on_hyphens=False,
-        )
-        for name, format_ in EXPORT_FORMATS.items()
-    )
-
-
-def _telling() -> str:
-    """Return the ends of names that choose a format, in words."""
-    *others, last = format_by_suffix()
-    return f"{', '.join(others)} or {last}"
 
 
 def _frames(text: str) -> tuple[int, int]:

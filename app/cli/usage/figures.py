@@ -1,11 +1,10 @@
 """What is said to `lissom figures`."""
 
 import argparse
-from pathlib import Path
+
+from app.cli.options import add_out, whole_number
 
 FIGURES = (1, 3, 4, 5, 6, 7, 8, 9, 10, 11)
-TRIANGLES = 6_000
-LARGEST = 10_000
 
 EPILOG = """\
 Makes the figures of the paper anew with Lissom's own drawings: DIR/figure_N.png, and one page,
@@ -23,8 +22,7 @@ examples:
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the options of `lissom figures`."""
-    parser.epilog = EPILOG
-    parser.add_argument("--out", metavar="DIR", type=Path, required=True, help="where to write")
+    add_out(parser, "DIR")
     parser.add_argument(
         "--only",
         metavar="N",
@@ -36,14 +34,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--triangles",
         metavar="N",
-        type=int,
-        default=TRIANGLES,
+        type=whole_number(1_000, 2_000_000),
+        default=6_000,
         help="of each drawing, 1000 to 2000000 (default: %(default)s)",
     )
     parser.add_argument(
         "--largest",
         metavar="N",
-        type=int,
-        default=LARGEST,
+        type=whole_number(1_000),
+        default=10_000,
         help="vertices of the largest mesh in figure 9, at least 1000 (default: %(default)s)",
     )

@@ -1,9 +1,8 @@
 """What is said to `lissom interpolate`."""
 
 import argparse
-from pathlib import Path
 
-from app.cli.options import METHODS, input_file
+from app.cli.options import METHODS, add_out, input_file
 
 EPILOG = """\
 KEYFRAMES is one NPZ file, or a mesh for each of q keyframes: OBJ files in the plane of x and y, or
@@ -70,7 +69,6 @@ examples:
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the options of `lissom interpolate`."""
-    parser.epilog = EPILOG
     parser.add_argument(
         "keyframes",
         metavar="KEYFRAMES",
@@ -89,7 +87,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--times",
         required=True,
         metavar="T,T,...",
-        type=_times,
+        type=_numbers,
         help="in [0, q - 1], with --loop in [0, q], in any order, separated by commas",
     )
     parser.add_argument(
@@ -113,10 +111,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="with arap and mesh-eta: angles of each triangle between -180 and 180 degrees by "
         "itself, which fails where shapes turn far",
     )
-    parser.add_argument("--out", metavar="OUT.npz", type=Path, required=True, help="where to write")
+    add_out(parser, "OUT.npz")
 
 
-def _times(text: str) -> tuple[float, ...]:
+def _numbers(text: str) -> tuple[float, ...]:
     try:
         return tuple(float(word) for word in text.split(","))
     except ValueError:
@@ -125,11 +123,10 @@ def _times(text: str) -> tuple[float, ...]:
         ) from None
 
 
-def _bounds(text: str) -> tuple[float, float, float]:
-    try:
-        k, sigma_a, sigma_b = (float(word) for word in text.split(","))
-    except ValueError:
+def _bounds(text: str) -> tuple[float, ...]:
+    bounds = _numbers(text)
+    if len(bounds) != 3:
         raise argparse.ArgumentTypeError(
             f"{text!r} is not three numbers separated by commas, such as 0.5,2,0.5"
-        ) from None
-    return k, sigma_a, sigma_b
+        )
+    return bounds

@@ -1,9 +1,8 @@
 """What is said to `lissom pose`."""
 
 import argparse
-from pathlib import Path
 
-from app.cli.options import add_cut_out_options, add_meshing_options, input_file
+from app.cli.options import add_cut_out_options, add_meshing_options, add_out, input_file
 
 EPILOG = """\
 SCRIPT.json is an animation as a small text. Coordinates are pixels of the picture with the origin
@@ -50,11 +49,8 @@ examples:
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the options of `lissom pose`."""
-    parser.epilog = EPILOG
     parser.add_argument("picture", metavar="DRAWING", type=input_file, help="the drawing")
     parser.add_argument("script", metavar="SCRIPT.json", type=input_file, help="handles and keys")
-    parser.add_argument(
-        "--out", metavar="PROJECT.lissom", type=Path, required=True, help="where to write"
-    )
+    add_out(parser, "PROJECT.lissom")
     add_meshing_options(parser)
     add_cut_out_options(parser)

@@ -1,9 +1,8 @@
 """What is said to `lissom thumbnail`."""
 
 import argparse
-from pathlib import Path
 
-from app.cli.options import input_file
+from app.cli.options import add_out, add_project, whole_number
 
 EPILOG = """\
 The small picture is the one that was saved with the project; nothing is rendered. It is never made
@@ -17,21 +16,12 @@ examples:
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the options of `lissom thumbnail`."""
-    parser.epilog = EPILOG
-    parser.add_argument("project", metavar="PROJECT", type=input_file, help="the .lissom file")
-    parser.add_argument(
-        "--out", metavar="OUT.png", type=Path, required=True, help="where to write the picture"
-    )
+    add_project(parser)
+    add_out(parser, "OUT.png")
     parser.add_argument(
         "--size",
         metavar="N",
-        type=_size,
+        type=whole_number(1),
         default=256,
         help="pixels of its longer side, at most (default: %(default)s)",
     )
-
-
-def _size(text: str) -> int:
-    if not text.isdecimal() or int(text) == 0:
-        raise argparse.ArgumentTypeError(f"expected a number of pixels, such as 128, not {text!r}")
-    return int(text)

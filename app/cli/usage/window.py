@@ -17,7 +17,6 @@ examples:
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the options of `lissom window`."""
-    parser.epilog = EPILOG
     parser.add_argument(
         "file", metavar="FILE", nargs="?", type=_existing, help="a picture or a .lissom project"
     )

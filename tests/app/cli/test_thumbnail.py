@@ -45,5 +45,5 @@ def test_what_cannot_be_done_is_said(tmp_path, capsys):
     assert "is a folder" in refusal([project, "--out", tmp_path], capsys)
     project.write_bytes(b"PK")
     assert "holds no small picture" in refusal([project, "--out", out], capsys)
-    assert "such as 128" in refusal([project, "--out", out, "--size", "large"], capsys)
+    assert "at least 1, not 'large'" in refusal([project, "--out", out, "--size", "large"], capsys)
     assert not out.exists()

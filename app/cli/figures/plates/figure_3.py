@@ -23,18 +23,10 @@ CAPTION = (
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class StretchSeen:
-    """How a method stretches the square at t = 0.8.
-
-    Parameters
-    ----------
-    name : str
-    direction : float
-        By how many degrees the direction of the stretch is off the keyframes'.
-    k : float
-    """
+    """How a method stretches the square at t = 0.8."""
 
     name: str
-    direction: float
+    direction: float  # degrees by which the direction of the stretch is off the keyframes'
     k: float
 
 

@@ -23,20 +23,11 @@ CAPTION = (
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Tail:
-    """Where a method's in-betweens are at t = 0.5.
-
-    Parameters
-    ----------
-    name : str
-    turned : float
-        Which part of its way the tip of the tail has turned.
-    from_metric : float
-        The largest distance from the metric variant, as a part of the diameter.
-    """
+    """Where a method's in-betweens are at t = 0.5."""
 
     name: str
-    turned: float
-    from_metric: float
+    turned: float  # the part of its way that the tip of the tail has turned
+    from_metric: float  # the largest distance from the metric variant, over the diameter
 
 
 def pair(triangles: int) -> ShapePair:

@@ -16,20 +16,11 @@ BOUNDED = ("", "k, of its key", "τ − 1, of its key", "largest k", "largest τ
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Studio:
-    """What figures are made with.
-
-    Parameters
-    ----------
-    easel : Easel
-    triangles : int
-        Of a shape's mesh.
-    largest : int
-        Vertices of the largest mesh that is timed.
-    """
+    """What figures are made with."""
 
     easel: Easel
-    triangles: int
-    largest: int
+    triangles: int  # of a shape's mesh
+    largest: int  # vertices of the largest mesh that is timed
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
