@@ -95,6 +95,7 @@ except SystemExit as leaving:
         ("interpolate {here} --variant nu --times one --out x.npz", 2),
         ("export no.lissom --out x", 2),
         ("export {here} --out x --size big", 2),
+        ("figures --out x --triangles 10", 2),
         ("desktop", 2),
         ("desktop --install --remove", 2),
         ("thumbnail no.lissom --out x.png", 2),
