@@ -10,12 +10,12 @@ from typing import Literal
 from app.document import Clip, Moment, Pose, intervals, resting_pose, time_of, transits
 from app.motion.inbetweens import PoseSampler
 from app.motion.intervals import (
+    AnyInbetweens,
     Build,
-    Found,
+    FoundIntervals,
     KnownInterval,
     OneFrame,
     Pair,
-    Prepared,
     pair_of,
     prepare_frame,
     prepare_intervals,
@@ -76,7 +76,7 @@ class IntervalStore:
         """Return what is known of one of a clip's intervals."""
         return self._known.get(pair_of(clip, number))
 
-    def prepared(self, clip: Clip) -> tuple[Prepared, ...] | None:
+    def prepared(self, clip: Clip) -> tuple[AnyInbetweens, ...] | None:
         """Return the in-betweens of all of a clip's intervals; None where some are missing."""
         if clip.figure.domain is not self.mesh.source:
             return None
@@ -92,11 +92,13 @@ class IntervalStore:
         """Tell whether what belongs to a frame is there, and nothing has to stand in for it."""
         return self._find(clip, time_of(clip, frame)) is not None
 
-    def vertices(self, clip: Clip, frame: float) -> Vertices | None:
-        """Return where the vertices are at a frame; None where it is not exactly there."""
+    def vertices(
+        self, clip: Clip, frame: float, instead: Pose | OneFrame | None = None
+    ) -> Vertices | None:
+        """Return where the vertices are at a frame, or what is shown instead; None if not there."""
         moment = time_of(clip, frame)
         triangles = painted_triangles(self.mesh.domain.mesh, clip, frame)
-        found = self._find(clip, moment)
+        found = instead or self._find(clip, moment)
         if isinstance(found, Pose):
             positions = self.mesh.posed(found)
         elif isinstance(found, OneFrame):
@@ -115,10 +117,8 @@ class IntervalStore:
             return None
         resting = resting_pose(clip, moment)
         known = self.interval(clip, moment.interval) if resting is None else None
-        if resting is not None or known is None:
-            return resting
-        if known.inbetweens is not None:
-            return known
+        if known is None or known.inbetweens is not None:
+            return known or resting
         return known.one if known.one and known.one.weight == moment.weight else None
 
     def positions(self, clip: Clip, frame: float) -> Complexes | None:
@@ -175,12 +175,12 @@ class IntervalStore:
 
     def preparing(
         self, clip: Clip, wanted: Sequence[int], sibling: PoseSampler | None = None
-    ) -> Callable[[], Found]:
+    ) -> Callable[[], FoundIntervals]:
         """Return what prepares some of a clip's intervals."""
         sampler, keep = self.sampler or sibling, self._poses()
         return partial(prepare_intervals, clip, wanted, self.mesh, sampler, keep=keep)
 
-    def making_frame(self, clip: Clip, frame: float) -> Callable[[], Found] | None:
+    def making_frame(self, clip: Clip, frame: float) -> Callable[[], FoundIntervals] | None:
         """Return what makes the in-between at a frame alone; None where it is there or cannot be.
 
         It cannot before the first in-betweens of a figure, which take longer.
@@ -238,7 +238,7 @@ class IntervalStore:
         if self.whole != present[0] and self.has(present[0]):
             self.whole = present[0]
 
-    def take(self, found: Found) -> None:
+    def take(self, found: FoundIntervals) -> None:
         """Take in what a worker has found, for whichever clip that was."""
         anchors, sampler = {clip.figure.anchor for clip in self._present}, found.sampler
         if sampler is not None and (not anchors or sampler.anchor in anchors):
@@ -256,7 +256,7 @@ class IntervalStore:
                 (None, build.series) if build.distortions else (build.series, None)
             )
             built = KnownInterval(build.poses, series=positions, distortions=distortions)
-            self.take(Found(None, {build.pair: built}))
+            self.take(FoundIntervals(None, {build.pair: built}))
 
     def fail(self, part: Part, clip: Clip) -> None:
         """Take note that a part of a clip cannot be made, as long as its keys are present."""
