@@ -7,7 +7,7 @@ Imports: `app.document`.
 
 from app.motion.extent import Box, box_around, extent_source, measure_extent, motion_box
 from app.motion.inbetweens import Animation, PoseSampler
-from app.motion.interval_store import IntervalStore, Part
+from app.motion.interval_store import IntervalPart, IntervalStore
 from app.motion.intervals import AnyInbetweens, Build, FoundIntervals, KnownInterval, OneFrame
 from app.motion.joints import HERE, Joints, Placement, hung_animations, joints_source
 from app.motion.motion_paths import MotionPaths, trace_paths
@@ -24,12 +24,12 @@ __all__ = [
     "Box",
     "Build",
     "FoundIntervals",
+    "IntervalPart",
     "IntervalStore",
     "Joints",
     "KnownInterval",
     "MotionPaths",
     "OneFrame",
-    "Part",
     "Placed",
     "Placement",
     "PosableMesh",

@@ -29,7 +29,7 @@ from engine.interpolation import Joint
 BUDGET = 2**30  # bytes of one store
 SPARE = 32  # the part of it that may be taken by what no present clip needs: a 32nd
 EXPECTED = 100  # bytes a vertex that a series is thought to take before one is built
-Part = Literal["frame", "in-betweens", "fine", "series"]  # of what is made of a clip
+IntervalPart = Literal["frame", "in-betweens", "fine", "series"]  # of what is made of a clip
 
 
 @dataclass(slots=True, kw_only=True, eq=False)
@@ -69,7 +69,7 @@ class IntervalStore:
     _largest: list[int] = field(init=False, default_factory=lambda: [0, 0, 0])
     _present: dict[Clip, tuple[Pair, ...]] = field(init=False, default_factory=dict)
     _nearby: dict[Clip, tuple[Pair, ...]] = field(init=False, default_factory=dict)
-    _failures: set[tuple[Part, tuple[Pair, ...]]] = field(init=False, default_factory=set)
+    _failures: set[tuple[IntervalPart, tuple[Pair, ...]]] = field(init=False, default_factory=set)
     _frame: float = field(init=False, default=0)
 
     def interval(self, clip: Clip, number: int) -> KnownInterval | None:
@@ -258,12 +258,12 @@ class IntervalStore:
             built = KnownInterval(build.poses, series=positions, distortions=distortions)
             self.take(FoundIntervals(None, {build.pair: built}))
 
-    def fail(self, part: Part, clip: Clip) -> None:
+    def fail(self, part: IntervalPart, clip: Clip) -> None:
         """Take note that a part of a clip cannot be made, as long as its keys are present."""
         if self._pairs(clip) in self._present.values():
             self._failures.add((part, self._pairs(clip)))
 
-    def has_failed(self, clip: Clip, part: Part = "in-betweens") -> bool:
+    def has_failed(self, clip: Clip, part: IntervalPart = "in-betweens") -> bool:
         """Tell whether a part of a clip is known to be impossible."""
         return (part, self._pairs(clip)) in self._failures
 

@@ -75,12 +75,13 @@ class FoundIntervals(NamedTuple):
 def pair_of(clip: Clip, interval: int) -> Pair:
     """Return by what the in-betweens of one of a clip's intervals are known."""
     transit, figure = transits(clip)[interval], clip.figure
+    # As numbers, which are hashed far sooner than the dataclass.
+    bounds = (figure.bounds.k, figure.bounds.sigma_a, figure.bounds.sigma_b)
     maps = [identity for key in transit.keys for identity in (id(key.pose.phi), id(key.pose.psi))]
-    joined = (transit.start, transit.end, figure.bounds) if transit.is_joined else ()
+    joined = (transit.start, transit.end, bounds) if transit.is_joined else ()
     if clip.baseline is None:
         return *maps, *transit.turns, *joined, figure.anchor, figure.variant
-    places = tuple(handle.position for handle in figure.handles)
-    rest = (figure.bounds, places, clip.frames)
+    rest = (bounds, tuple(handle.position for handle in figure.handles), clip.frames)
     return *maps, *transit.turns, *joined, figure.anchor, clip.baseline, *rest
 
 
