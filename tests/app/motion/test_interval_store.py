@@ -18,7 +18,7 @@ from app.document.settings import FrameRange
 from app.editor.actions import editing, keys, viewing
 from app.editor.actions.upkeep import STREAMING, maintain, missing
 from app.editor.jobs import Jobs
-from app.editor.project import PoseInProgress
+from app.editor.pull import Pull
 from app.editor.session import Session
 from app.motion import (
     FoundIntervals,
@@ -399,7 +399,8 @@ def test_a_session_streams_what_it_plays_and_stops_while_a_hand_pulls(document, 
     project.puppet.store = IntervalStore(mesh=store.mesh)
     prepare(project.puppet.store, clip)
     project.history = History(document, saved=True)
-    project.posing = PoseInProgress(frame=13, targets={}, start=None, gesture=object())
+    pull = Pull(clip=clip, frame=13, gesture=object(), start=None, before=None)
+    project.pending.append(pull)
     assert not list(missing(session, project))
 
 
