@@ -7,8 +7,8 @@ Imports: `app.document`.
 
 from app.motion.extent import Box, box_around, extent_source, measure_extent, motion_box
 from app.motion.inbetweens import Animation, PoseSampler
-from app.motion.interval_store import IntervalStore, Part
-from app.motion.intervals import Build, Found, KnownInterval, OneFrame, Prepared
+from app.motion.interval_store import IntervalPart, IntervalStore
+from app.motion.intervals import AnyInbetweens, Build, FoundIntervals, KnownInterval, OneFrame
 from app.motion.joints import HERE, Joints, Placement, hung_animations, joints_source
 from app.motion.motion_paths import MotionPaths, trace_paths
 from app.motion.paint_order import painted_depths, painted_triangles
@@ -19,21 +19,21 @@ from app.motion.vertices import Placed, Streamed, Vertices
 __all__ = [
     "HERE",
     "Animation",
+    "AnyInbetweens",
     "AttachedPoints",
     "Box",
     "Build",
-    "Found",
+    "FoundIntervals",
+    "IntervalPart",
     "IntervalStore",
     "Joints",
     "KnownInterval",
     "MotionPaths",
     "OneFrame",
-    "Part",
     "Placed",
     "Placement",
     "PosableMesh",
     "PoseSampler",
-    "Prepared",
     "Shown",
     "Streamed",
     "Vertices",

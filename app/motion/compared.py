@@ -5,7 +5,6 @@ import numpy as np
 from app.document import Clip, intervals, resting_pose, time_of
 from engine.baselines import Baseline, MeshFrame, MeshInbetweens, prepare_baseline
 from engine.domain import Domain
-from engine.maps import HarmonicMap
 
 
 class RememberedFrames:
@@ -57,19 +56,9 @@ def prepare_compared(
         If the method is not for these keys.
     """
     keys = [clip.keys[index] for index in intervals(clip)[interval]]
-    maps = [
-        HarmonicMap(
-            cage=domain.cage,
-            phi=key.pose.phi,
-            psi=key.pose.psi,
-            holes=domain.holes,
-            logs=key.pose.logs,
-        )
-        for key in keys
-    ]
     prepared = prepare_baseline(
         baseline,
-        maps,
+        [clip.figure.map_of(key.pose) for key in keys],
         domain.mesh.vertices,
         domain.mesh.triangles,
         outline=domain.outline,

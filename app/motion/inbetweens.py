@@ -74,7 +74,7 @@ class PoseSampler:
         # Of its own, so that a sibling waits for the transform alone.
         self._transform_lock = threading.RLock()
         self._samples: dict[Pose, KeyframeSamples] = {}
-        self._tangents: dict[tuple[object, ...], tuple[tuple[Pose, ...], Tangent]] = {}
+        self._tangents: dict[tuple[tuple[Pose, ...], Joint, Bounds, Variant], Tangent] = {}
         self._sibling = sibling
         self._transform: HilbertTransform | None = None
         self._extension: Extension | None = None
@@ -104,9 +104,7 @@ class PoseSampler:
         """Forget what was kept for other poses."""
         with self._lock:
             self._samples = {p: s for p, s in self._samples.items() if p in poses}
-            self._tangents = {
-                key: kept for key, kept in self._tangents.items() if poses >= set(kept[0])
-            }
+            self._tangents = {k: t for k, t in self._tangents.items() if poses >= set(k[0])}
 
     def samples(self, pose: Pose) -> KeyframeSamples:
         """Return the samples of a pose's map."""
@@ -197,12 +195,11 @@ class PoseSampler:
         self, poses: Sequence[Pose], joint: Joint, bounds: Bounds, variant: Variant
     ) -> Tangent:
         with self._lock:
-            key = (*poses, joint, bounds, variant)
+            key = tuple(poses), joint, bounds, variant
             if key not in self._tangents:
                 maps = [self.samples(pose).map for pose in poses]
-                tangent = shortened(variant, maps, joint, bounds, self.sites.boundary)
-                self._tangents[key] = tuple(poses), tangent
-            return self._tangents[key][1]
+                self._tangents[key] = shortened(variant, maps, joint, bounds, self.sites.boundary)
+            return self._tangents[key]
 
     def _prepared(
         self,

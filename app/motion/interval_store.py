@@ -10,12 +10,12 @@ from typing import Literal
 from app.document import Clip, Moment, Pose, intervals, resting_pose, time_of, transits
 from app.motion.inbetweens import PoseSampler
 from app.motion.intervals import (
+    AnyInbetweens,
     Build,
-    Found,
+    FoundIntervals,
     KnownInterval,
     OneFrame,
     Pair,
-    Prepared,
     pair_of,
     prepare_frame,
     prepare_intervals,
@@ -29,7 +29,7 @@ from engine.interpolation import Joint
 BUDGET = 2**30  # bytes of one store
 SPARE = 32  # the part of it that may be taken by what no present clip needs: a 32nd
 EXPECTED = 100  # bytes a vertex that a series is thought to take before one is built
-Part = Literal["frame", "in-betweens", "fine", "series"]  # of what is made of a clip
+IntervalPart = Literal["frame", "in-betweens", "fine", "series"]  # of what is made of a clip
 
 
 @dataclass(slots=True, kw_only=True, eq=False)
@@ -69,14 +69,14 @@ class IntervalStore:
     _largest: list[int] = field(init=False, default_factory=lambda: [0, 0, 0])
     _present: dict[Clip, tuple[Pair, ...]] = field(init=False, default_factory=dict)
     _nearby: dict[Clip, tuple[Pair, ...]] = field(init=False, default_factory=dict)
-    _failures: set[tuple[Part, tuple[Pair, ...]]] = field(init=False, default_factory=set)
+    _failures: set[tuple[IntervalPart, tuple[Pair, ...]]] = field(init=False, default_factory=set)
     _frame: float = field(init=False, default=0)
 
     def interval(self, clip: Clip, number: int) -> KnownInterval | None:
         """Return what is known of one of a clip's intervals."""
         return self._known.get(pair_of(clip, number))
 
-    def prepared(self, clip: Clip) -> tuple[Prepared, ...] | None:
+    def prepared(self, clip: Clip) -> tuple[AnyInbetweens, ...] | None:
         """Return the in-betweens of all of a clip's intervals; None where some are missing."""
         if clip.figure.domain is not self.mesh.source:
             return None
@@ -92,11 +92,13 @@ class IntervalStore:
         """Tell whether what belongs to a frame is there, and nothing has to stand in for it."""
         return self._find(clip, time_of(clip, frame)) is not None
 
-    def vertices(self, clip: Clip, frame: float) -> Vertices | None:
-        """Return where the vertices are at a frame; None where it is not exactly there."""
+    def vertices(
+        self, clip: Clip, frame: float, instead: Pose | OneFrame | None = None
+    ) -> Vertices | None:
+        """Return where the vertices are at a frame, or what is shown instead; None if not there."""
         moment = time_of(clip, frame)
         triangles = painted_triangles(self.mesh.domain.mesh, clip, frame)
-        found = self._find(clip, moment)
+        found = instead or self._find(clip, moment)
         if isinstance(found, Pose):
             positions = self.mesh.posed(found)
         elif isinstance(found, OneFrame):
@@ -115,10 +117,8 @@ class IntervalStore:
             return None
         resting = resting_pose(clip, moment)
         known = self.interval(clip, moment.interval) if resting is None else None
-        if resting is not None or known is None:
-            return resting
-        if known.inbetweens is not None:
-            return known
+        if known is None or known.inbetweens is not None:
+            return known or resting
         return known.one if known.one and known.one.weight == moment.weight else None
 
     def positions(self, clip: Clip, frame: float) -> Complexes | None:
@@ -175,12 +175,12 @@ class IntervalStore:
 
     def preparing(
         self, clip: Clip, wanted: Sequence[int], sibling: PoseSampler | None = None
-    ) -> Callable[[], Found]:
+    ) -> Callable[[], FoundIntervals]:
         """Return what prepares some of a clip's intervals."""
         sampler, keep = self.sampler or sibling, self._poses()
         return partial(prepare_intervals, clip, wanted, self.mesh, sampler, keep=keep)
 
-    def making_frame(self, clip: Clip, frame: float) -> Callable[[], Found] | None:
+    def making_frame(self, clip: Clip, frame: float) -> Callable[[], FoundIntervals] | None:
         """Return what makes the in-between at a frame alone; None where it is there or cannot be.
 
         It cannot before the first in-betweens of a figure, which take longer.
@@ -238,7 +238,7 @@ class IntervalStore:
         if self.whole != present[0] and self.has(present[0]):
             self.whole = present[0]
 
-    def take(self, found: Found) -> None:
+    def take(self, found: FoundIntervals) -> None:
         """Take in what a worker has found, for whichever clip that was."""
         anchors, sampler = {clip.figure.anchor for clip in self._present}, found.sampler
         if sampler is not None and (not anchors or sampler.anchor in anchors):
@@ -256,14 +256,14 @@ class IntervalStore:
                 (None, build.series) if build.distortions else (build.series, None)
             )
             built = KnownInterval(build.poses, series=positions, distortions=distortions)
-            self.take(Found(None, {build.pair: built}))
+            self.take(FoundIntervals(None, {build.pair: built}))
 
-    def fail(self, part: Part, clip: Clip) -> None:
+    def fail(self, part: IntervalPart, clip: Clip) -> None:
         """Take note that a part of a clip cannot be made, as long as its keys are present."""
         if self._pairs(clip) in self._present.values():
             self._failures.add((part, self._pairs(clip)))
 
-    def has_failed(self, clip: Clip, part: Part = "in-betweens") -> bool:
+    def has_failed(self, clip: Clip, part: IntervalPart = "in-betweens") -> bool:
         """Tell whether a part of a clip is known to be impossible."""
         return (part, self._pairs(clip)) in self._failures
 

@@ -16,7 +16,7 @@ from engine.streaming import Channels, Distortions, Positions, Series, build_ser
 # variant. The same keys have the same, whichever clip they are in.
 Pair = tuple[object, ...]
 # All in-betweens of two keys, ready to be evaluated.
-Prepared = Inbetweens | RememberedFrames
+AnyInbetweens = Inbetweens | RememberedFrames
 
 # Vertices times steps of a series that the worker takes before it looks for more urgent work: some
 # hundredths of a second.
@@ -41,7 +41,7 @@ class KnownInterval(NamedTuple):
 
     poses: tuple[Pose, ...]
     one: OneFrame | None = None
-    inbetweens: Prepared | None = None
+    inbetweens: AnyInbetweens | None = None
     kept: tuple[float, float] | None = None
     sites: Sites | None = None
     series: Series | None = None
@@ -65,7 +65,7 @@ class KnownInterval(NamedTuple):
         return KnownInterval._make(new if new is not None else old for new, old in pairs)
 
 
-class Found(NamedTuple):
+class FoundIntervals(NamedTuple):
     """What a worker has found of some intervals, and by which sampler, where that took one."""
 
     sampler: PoseSampler | None
@@ -75,12 +75,13 @@ class Found(NamedTuple):
 def pair_of(clip: Clip, interval: int) -> Pair:
     """Return by what the in-betweens of one of a clip's intervals are known."""
     transit, figure = transits(clip)[interval], clip.figure
+    # As numbers, which are hashed far sooner than the dataclass.
+    bounds = (figure.bounds.k, figure.bounds.sigma_a, figure.bounds.sigma_b)
     maps = [identity for key in transit.keys for identity in (id(key.pose.phi), id(key.pose.psi))]
-    joined = (transit.start, transit.end, figure.bounds) if transit.is_joined else ()
+    joined = (transit.start, transit.end, bounds) if transit.is_joined else ()
     if clip.baseline is None:
         return *maps, *transit.turns, *joined, figure.anchor, figure.variant
-    places = tuple(handle.position for handle in figure.handles)
-    rest = (figure.bounds, places, clip.frames)
+    rest = (bounds, tuple(handle.position for handle in figure.handles), clip.frames)
     return *maps, *transit.turns, *joined, figure.anchor, clip.baseline, *rest
 
 
@@ -91,7 +92,7 @@ def prepare_intervals(
     sampler: PoseSampler | None = None,
     *,
     keep: frozenset[Pose] = frozenset(),
-) -> Found:
+) -> FoundIntervals:
     """Prepare the in-betweens of some of a clip's intervals; on a worker thread.
 
     Parameters
@@ -108,7 +109,7 @@ def prepare_intervals(
     """
     figure, every = clip.figure, transits(clip)
     if clip.baseline is not None:
-        return Found(
+        return FoundIntervals(
             sampler=None,
             intervals={
                 pair_of(clip, number): KnownInterval(
@@ -132,7 +133,7 @@ def prepare_intervals(
         for number in wanted
     }
     sampler.keep_only(keep.union(key.pose for key in clip.keys))
-    return Found(sampler=sampler, intervals=intervals)
+    return FoundIntervals(sampler=sampler, intervals=intervals)
 
 
 def prepare_frame(
@@ -142,7 +143,7 @@ def prepare_frame(
     sampler: PoseSampler,
     *,
     keep: frozenset[Pose] = frozenset(),
-) -> Found:
+) -> FoundIntervals:
     """Work out the in-between at a frame, exactly as its interval will have it; on a worker thread.
 
     The sampler is of the mesh and the figure's anchor. Where the whole interval takes no longer, it
@@ -154,7 +155,9 @@ def prepare_frame(
     transit, pair = transits(clip)[moment.interval], pair_of(clip, moment.interval)
     alone = sampler.frame_of(transit, figure.bounds, figure.variant, moment.weight)
     one = OneFrame(pair, moment.weight, alone.positions)
-    return Found(sampler, {pair: KnownInterval(tuple(key.pose for key in transit.keys), one=one)})
+    return FoundIntervals(
+        sampler, {pair: KnownInterval(tuple(key.pose for key in transit.keys), one=one)}
+    )
 
 
 class Build:

@@ -11,7 +11,7 @@ from app.motion.intervals import OneFrame
 from app.motion.joints import HERE, Hinge, Joints, Placement, along
 from app.motion.paint_order import painted_triangles
 from app.motion.posable_mesh import AttachedPoints, PosableMesh
-from app.motion.vertices import Placed, Streamed, Vertices
+from app.motion.vertices import Streamed, Vertices
 from engine.arrays import Complexes
 from engine.domain import Domain
 
@@ -110,57 +110,38 @@ def show(
     earlier : Shown, optional
         What was drawn before.
     """
-    if pose is None:
-        pose = resting_pose(clip, time_of(clip, frame))
-    domain = clip.figure.domain
+    domain, moment = clip.figure.domain, time_of(clip, frame)
+    pose = pose or resting_pose(clip, moment)
     fitting = [store for store in stores if store.mesh.source is domain]
-    for store in fitting:
-        if earlier is not None and _is_same(earlier, clip, frame, pose, store.mesh):
-            return earlier if earlier.frame == frame else replace(earlier, frame=frame)
-        if pose is not None:
-            triangles = painted_triangles(store.mesh.domain.mesh, clip, frame)
-            posed = Placed(positions=store.mesh.posed(pose), triangles=triangles)
-            return _shown(clip, frame, pose, mesh=store.mesh, vertices=posed, earlier=earlier)
-        vertices = store.vertices(clip, frame)
-        if vertices is not None:
-            return _shown(clip, frame, None, mesh=store.mesh, vertices=vertices, earlier=earlier)
-    if earlier is not None and (not fitting or earlier.mesh.source is not domain):
+    exact = [store for store in fitting if pose is not None or store.is_exact(clip, frame)]
+    if not exact and earlier is not None and (not fitting or earlier.mesh.source is not domain):
         old = earlier.mesh.source
         return earlier if earlier.stand_in is old else replace(earlier, stand_in=old)
     if not fitting:
         raise ValueError("none of the stores is of the figure's domain")
-    return _stand_in(clip, frame, fitting[-1], earlier)
-
-
-def _stand_in(clip: Clip, frame: int, store: IntervalStore, earlier: Shown | None) -> Shown:
-    """Return what to draw until the in-between is there."""
-    near = store.nearest(clip, time_of(clip, frame))
+    store = (*exact, fitting[-1])[0]
+    mesh, near = store.mesh, None if exact else store.nearest(clip, moment)
+    triangles = painted_triangles(mesh.domain.mesh, clip, frame)
     if (
         earlier is not None
-        and earlier.clip == clip
-        and earlier.frame == frame
-        and earlier.pose is None
+        and (earlier.clip, earlier.mesh, earlier.pose) == (clip, mesh, pose)
+        and (earlier.frame == frame or pose is not None)
         and earlier.stand_in is near
+        and earlier.vertices.triangles is triangles
     ):
-        return earlier
-    positions = near.positions if isinstance(near, OneFrame) else store.mesh.posed(near)
-    triangles = painted_triangles(store.mesh.domain.mesh, clip, frame)
-    placed = Placed(positions=positions, triangles=triangles)
-    shown = _shown(clip, frame, None, mesh=store.mesh, vertices=placed, earlier=earlier)
-    return replace(shown, stand_in=near)
-
-
-def _shown(
-    clip: Clip,
-    frame: int,
-    pose: Pose | None,
-    *,
-    mesh: PosableMesh,
-    vertices: Vertices,
-    earlier: Shown | None,
-) -> Shown:
-    handles = _locate(clip, mesh, earlier)
-    return Shown(clip=clip, frame=frame, pose=pose, mesh=mesh, vertices=vertices, handles=handles)
+        return earlier if earlier.frame == frame else replace(earlier, frame=frame)
+    vertices = store.vertices(clip, frame, near or pose)
+    if vertices is None:
+        raise ValueError("what is exact has vertices")
+    return Shown(
+        clip=clip,
+        frame=frame,
+        pose=pose,
+        mesh=mesh,
+        vertices=vertices,
+        handles=_locate(clip, mesh, earlier),
+        stand_in=near,
+    )
 
 
 def hang_shown(
@@ -193,17 +174,6 @@ def hang_shown(
         same = placement == each.placement
         hung[identity] = each if same else replace(each, placement=placement)
     return hung
-
-
-def _is_same(earlier: Shown, clip: Clip, frame: int, pose: Pose | None, mesh: PosableMesh) -> bool:
-    return (
-        earlier.is_current
-        and earlier.clip == clip
-        and earlier.mesh is mesh
-        and earlier.pose is pose
-        and (earlier.frame == frame or pose is not None)
-        and earlier.vertices.triangles is painted_triangles(mesh.domain.mesh, clip, frame)
-    )
 
 
 def _locate(clip: Clip, mesh: PosableMesh, earlier: Shown | None) -> AttachedPoints:

@@ -12,7 +12,7 @@ from engine.arrays import Complexes
 MOST_KNOWN = 20_000  # moments of other clips' that are remembered, for undo and redo
 
 
-class Tracked(NamedTuple):
+class TrackedFrame(NamedTuple):
     """The points (p,) at a moment, and f_z there; the poses that they follow from stay alive."""
 
     positions: Complexes
@@ -54,7 +54,7 @@ class TrackedPoints:
         self.points = points
         self.worked_out = 0
         self.sampler: PoseSampler | None = None
-        self.known: dict[tuple[Pair, float], Tracked] = {}
+        self.known: dict[tuple[Pair, float], TrackedFrame] = {}
         self._sibling = sibling
         self._animation: Animation | None = None
         if earlier is None:
@@ -66,7 +66,7 @@ class TrackedPoints:
             self.sampler = earlier.sampler
             self.known = dict(list(earlier.known.items())[-most:])
 
-    def at(self, frame: float) -> Tracked:
+    def at(self, frame: float) -> TrackedFrame:
         """Return where the points are at a frame."""
         moment = time_of(self.clip, frame)
         resting = resting_pose(self.clip, moment)
@@ -78,7 +78,7 @@ class TrackedPoints:
             moved = self._animate().frame(frame)
             keys = transits(self.clip)[moment.interval].keys if resting is None else ()
             poses = (resting,) if resting is not None else tuple(each.pose for each in keys)
-            self.known[key] = Tracked(moved.positions, moved.fz, poses)
+            self.known[key] = TrackedFrame(moved.positions, moved.fz, poses)
             self.worked_out += 1
         return self.known[key]
 

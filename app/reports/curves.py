@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from app.document import Clip, Extremes, intervals, transits
-from app.motion import Prepared
+from app.motion import AnyInbetweens
 from app.storage import write_atomically
 from engine.arrays import Floats
 from engine.maps import distortion
@@ -48,14 +48,14 @@ class Curves:
         return Extremes(*(float(np.interp(frame, self.frames, row)) for row in self.extremes.T))
 
 
-def measure_curves(clip: Clip, inbetweens: Sequence[Prepared]) -> Curves:
+def measure_curves(clip: Clip, inbetweens: Sequence[AnyInbetweens]) -> Curves:
     """Measure a clip.
 
     Parameters
     ----------
     clip : Clip
         With at least two keys.
-    inbetweens : sequence of Prepared
+    inbetweens : sequence of AnyInbetweens
         Those of its intervals, at the points that are measured.
     """
     keys = clip.keys

@@ -2,7 +2,7 @@
 
 import statistics
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import partial
 
 import numpy as np
@@ -52,6 +52,7 @@ class Interval:
     sampler: PoseSampler
     first: Pose
     second: Pose
+    prepared: dict[Variant, Inbetweens] = field(default_factory=dict)
 
     @classmethod
     def of(cls, figure: Figure, triangles: int) -> "Interval":
@@ -67,7 +68,9 @@ class Interval:
 
     def inbetweens(self, variant: Variant) -> Inbetweens:
         """Prepare the direct path, once."""
-        return self.sampler.inbetweens(self.first, self.second, variant)
+        if variant not in self.prepared:
+            self.prepared[variant] = self.sampler.inbetweens(self.first, self.second, variant)
+        return self.prepared[variant]
 
     def build(self, variant: Variant) -> Series:
         """Build the series of the positions."""

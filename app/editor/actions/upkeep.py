@@ -13,9 +13,9 @@ from app.editor.project import Project, Puppet
 from app.editor.session import Session, with_project
 from app.editor.timeline_view import measure_shortfalls
 from app.motion import (
+    IntervalPart,
     IntervalStore,
     Joints,
-    Part,
     PosableMesh,
     extent_source,
     hang_shown,
@@ -212,9 +212,9 @@ def _stream(session: Session, project: Project) -> Iterator[Job]:
                 yield _interval_job(session, STREAMING, puppet, clip, work=work, done=done)
 
 
-def _part(kind: str) -> Part:
+def _part(kind: str) -> IntervalPart:
     """Return which part of a clip's in-betweens a job makes."""
-    parts: dict[str, Part] = {GLIMPSING: "frame", REFINING: "fine", STREAMING: "series"}
+    parts: dict[str, IntervalPart] = {GLIMPSING: "frame", REFINING: "fine", STREAMING: "series"}
     return parts.get(kind, "in-betweens")
 
 

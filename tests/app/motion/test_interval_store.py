@@ -18,9 +18,17 @@ from app.document.settings import FrameRange
 from app.editor.actions import editing, keys, viewing
 from app.editor.actions.upkeep import STREAMING, maintain, missing
 from app.editor.jobs import Jobs
-from app.editor.project import PoseInProgress
+from app.editor.pull import Pull
 from app.editor.session import Session
-from app.motion import Found, IntervalStore, KnownInterval, Placed, PosableMesh, Streamed, show
+from app.motion import (
+    FoundIntervals,
+    IntervalStore,
+    KnownInterval,
+    Placed,
+    PosableMesh,
+    Streamed,
+    show,
+)
 from app.motion.interval_store import SPARE
 from app.motion.intervals import Build, pair_of
 from engine import streaming
@@ -262,7 +270,7 @@ def test_what_nothing_present_needs_makes_room_and_the_oldest_first(clip, prepar
     prepared.pin([clip], [], 0)
     assert all(map(prepared.has, (clip, *others)))
     # Room for the present one, and not quite for both of the others.
-    own = sum(prepared.interval(clip, i).nbytes for i in range(3))
+    own = sum(sum(prepared.interval(clip, i).sizes) for i in range(3))
     spare = size - own
     prepared.budget = SPARE * (spare - 1)
     prepared.pin([clip], [others[0]], 0)
@@ -284,7 +292,7 @@ def test_memory_is_bounded_and_the_farthest_series_makes_room(clip, prepared, mo
     stream(prepared, clip, 0)
     sizes = [prepared.interval(clip, i).series.nbytes for i in range(3)]
     prepared.budget = base + sizes[1] + max(sizes[0], sizes[2])
-    prepared.take(Found(sampler=None, intervals={}))
+    prepared.take(FoundIntervals(sampler=None, intervals={}))
     assert streamed(prepared, clip) == [True, True, False]
     assert stream(prepared, clip, 0) == []
     assert prepared.nbytes <= prepared.budget
@@ -335,7 +343,9 @@ def test_what_a_series_leaves_out_is_shown_by_the_direct_path(clip, prepared):
     partly = IntervalStore(mesh=prepared.mesh)
 
     def take(**series):
-        partly.take(Found(sampler=None, intervals={pair_of(clip, 1): replace(known, **series)}))
+        partly.take(
+            FoundIntervals(sampler=None, intervals={pair_of(clip, 1): known._replace(**series)})
+        )
 
     none = replace(known.distortions, pieces=())
     take(distortions=none)
@@ -389,7 +399,8 @@ def test_a_session_streams_what_it_plays_and_stops_while_a_hand_pulls(document, 
     project.puppet.store = IntervalStore(mesh=store.mesh)
     prepare(project.puppet.store, clip)
     project.history = History(document, saved=True)
-    project.posing = PoseInProgress(frame=13, targets={}, start=None, gesture=object())
+    pull = Pull(clip=clip, frame=13, gesture=object(), start=None, before=None)
+    project.pending.append(pull)
     assert not list(missing(session, project))
 
 
