@@ -53,7 +53,7 @@ class Start:
 
 
 # Returns where handles are wished, of a pull's start and of what was wished of it before.
-Wish = Callable[[Start, Mapping[int, Target]], Mapping[int, Target]]
+WishFrom = Callable[[Start, Mapping[int, Target]], Mapping[int, Target]]
 
 
 @dataclass(slots=True, kw_only=True, eq=False)
@@ -76,7 +76,7 @@ class Pull(Promise):
         None as long as the in-between that it begins with is not worked out.
     before : Pose, optional
         The one that the key or the frame had; None for a new key.
-    wishes : dict of object to Wish
+    wishes : dict of object to WishFrom
         By the gestures that they are of, in order; each knows what was wished before it.
     targets : mapping of int to Target, optional
         What all of that comes to; None as long as there is no start.
@@ -106,7 +106,7 @@ class Pull(Promise):
     gesture: object
     start: Start | None
     before: Pose | None
-    wishes: dict[object, Wish] = field(default_factory=dict)
+    wishes: dict[object, WishFrom] = field(default_factory=dict)
     targets: Mapping[int, Target] | None = None
     is_held: bool = True
     drag: Drag | None = None
@@ -118,8 +118,8 @@ class Pull(Promise):
     ready: Pose | None = None
     is_left: bool = False
 
-    def wish(self, gesture: object, wish: Wish) -> None:
-        """Wish something else of a gesture, in place of what it wished before."""
+    def wish(self, gesture: object, wish: WishFrom) -> None:
+        """WishFrom something else of a gesture, in place of what it wished before."""
         self.wishes[gesture] = wish
         self.aim()
 
@@ -185,7 +185,7 @@ class Pull(Promise):
         return of
 
 
-def targets_of(start: Start, wishes: Iterable[Wish]) -> Mapping[int, Target]:
+def targets_of(start: Start, wishes: Iterable[WishFrom]) -> Mapping[int, Target]:
     """Return what some wishes, one after the other, come to."""
     targets = dict(start.targets)
     for wish in wishes:

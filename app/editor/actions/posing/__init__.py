@@ -14,7 +14,7 @@ from app.editor.actions.posing.handles import (
     suggest_handles,
 )
 from app.editor.actions.posing.inserting import INSERTING, fit_pose, insert_key, insert_key_at
-from app.editor.actions.posing.keeping import holding, retargeted, show_pose
+from app.editor.actions.posing.keeping import holding, retargeted
 from app.editor.actions.posing.pulling import (
     end_at,
     free_turn,
@@ -54,7 +54,6 @@ __all__ = [
     "put_anchor",
     "remove_handles",
     "retargeted",
-    "show_pose",
     "suggest_handles",
     "take_back",
     "tried_clips",

@@ -3,11 +3,11 @@
 from collections.abc import Callable
 from functools import partial
 
-from app.document import Clip, Pose, clip_of
+from app.document import Clip, Pose, UnkeyedPose, clip_of
 from app.editor import promises
 from app.editor.action import do
 from app.editor.actions import playback
-from app.editor.actions.posing.keeping import holding, inserting
+from app.editor.actions.posing.keeping import holding
 from app.editor.project import Project
 from app.editor.session import Session, with_project
 from app.solving import Rig, pose_at
@@ -69,7 +69,8 @@ def fit_pose(
 def _insert(session: Session, project: Project, clip: Clip, frame: int, pose: Pose) -> None:
     figure = clip.figure.id
     if figure in project.puppets and clip_of(project.document, figure) == clip:
-        project.history.do(inserting(session, figure, frame, pose))
+        found = UnkeyedPose(figure=figure, frame=frame, pose=pose)
+        project.history.do(holding(session, project, found))
         if project.active == figure:
             project.chosen = frozenset({frame})
     else:

@@ -61,45 +61,24 @@ def _keep_first(session: Session, project: Project, pull: Pull, pose: Pose) -> b
             return False
         pull.frame = min(moved)
     pose = pull.brought_to(pose)(figure, retargeted(figure, pose))
-    show_pose(session, project, pull.figure, pull.frame, pose, gesture=pull.gesture)
+    found = UnkeyedPose(figure=pull.figure, frame=pull.frame, pose=pose)
+    if not session.preferences.auto_key:
+        project.history.pose(found, gesture=pull.gesture)
+        return True
+    command = replace(holding(session, project, found), label="Pose")
+    project.history.do(command, gesture=pull.gesture)
+    unkeyed = project.history.unkeyed
+    if unkeyed is not None and (unkeyed.figure, unkeyed.frame) == (pull.figure, pull.frame):
+        project.history.pose(None, gesture=pull.gesture)
     return True
 
 
-def show_pose(
-    session: Session, project: Project, figure: int, frame: int, pose: Pose, *, gesture: object
-) -> None:
-    """Let a figure have a pose at a frame: in a key, or in none if the person wants none made."""
-    if session.preferences.auto_key:
-        hold(session, project, figure, frame, pose, gesture=gesture)
-    else:
-        unkeyed = UnkeyedPose(figure=figure, frame=frame, pose=pose)
-        project.history.pose(unkeyed, gesture=gesture)
-
-
-def hold(
-    session: Session, project: Project, figure: int, frame: int, pose: Pose, *, gesture: object
-) -> None:
-    """Let a key hold a pose; none is left there that no key holds."""
-    held = UnkeyedPose(figure=figure, frame=frame, pose=pose)
-    command = replace(holding(session, project, held), label="Pose")
-    project.history.do(command, gesture=gesture)
-    unkeyed = project.history.unkeyed
-    if unkeyed is not None and (unkeyed.figure, unkeyed.frame) == (figure, frame):
-        project.history.pose(None, gesture=gesture)
-
-
 def holding(session: Session, project: Project, unkeyed: UnkeyedPose) -> Command:
-    """Return the command that lets a key hold a pose that none holds."""
+    """Return the command that lets a key hold a pose, a new one if there is none at its frame."""
     figure, frame, pose = unkeyed.figure, unkeyed.frame, unkeyed.pose
     if frame in project.document.figure(figure).key_frames:
         return key_commands.pose_key(figure, frame, pose)
-    return inserting(session, figure, frame, pose)
-
-
-def inserting(session: Session, figure: int, frame: int, pose: Pose) -> Command:
-    """Return the command that inserts a key as the person wants new ones."""
-    easing = session.preferences.easing
-    return key_commands.insert_key(figure, frame, pose, easing=easing)
+    return key_commands.insert_key(figure, frame, pose, easing=session.preferences.easing)
 
 
 def retargeted(figure: Figure, pose: Pose) -> Pose:

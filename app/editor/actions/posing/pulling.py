@@ -9,7 +9,7 @@ from app.editor.actions import playback
 from app.editor.actions.posing.keeping import keep
 from app.editor.actions.posing.solving import POSING, go_on
 from app.editor.project import Project
-from app.editor.pull import Pull, Start, Wish
+from app.editor.pull import Pull, Start, WishFrom
 from app.editor.session import Session, with_project
 
 
@@ -17,11 +17,11 @@ from app.editor.session import Session, with_project
 def pull(
     session: Session,
     project: Project,
-    wish: Wish | Mapping[int, Target],
+    wish: WishFrom | Mapping[int, Target],
     *,
     gesture: object | None = None,
 ) -> None:
-    """Wish handles elsewhere in the pose of the present frame; the others keep their wishes.
+    """WishFrom handles elsewhere in the pose of the present frame; the others keep their wishes.
 
     Pulls of one gesture are one step of undo, in which the later wish takes the place of the
     earlier; without one, each is a step until it is let go. An in-between that is not there yet is
@@ -46,7 +46,7 @@ def let_go(session: Session, project: Project) -> None:  # noqa: ARG001 - of an 
 
 
 def wish(session: Session, wishes: Mapping[int, Target]) -> None:
-    """Wish handles elsewhere, as a field of the panel says."""
+    """WishFrom handles elsewhere, as a field of the panel says."""
     _once(session, wishes)
 
 
@@ -123,7 +123,7 @@ def _wherever(
     return {i: wish for i, wish in wishes.items() if i in targets}
 
 
-def _once(session: Session, wish: Wish | Mapping[int, Target]) -> None:
+def _once(session: Session, wish: WishFrom | Mapping[int, Target]) -> None:
     pull(session, wish)
     let_go(session)
 

@@ -10,7 +10,7 @@ from app.editor.actions.posing.keeping import keep
 from app.editor.failures import report
 from app.editor.jobs import Job
 from app.editor.project import Project
-from app.editor.pull import MOST_STEPS, Pull, Start, Wish, targets_of
+from app.editor.pull import MOST_STEPS, Pull, Start, WishFrom, targets_of
 from app.editor.session import Session
 from app.motion import PoseSampler
 from app.solving import Drag, Rig, pose_at
@@ -111,7 +111,7 @@ class _Steps(NamedTuple):
 def _take_steps(
     drag: Drag | None,
     begin: Callable[[], tuple[Drag, Pose]],
-    aim: Mapping[int, Target] | Sequence[Wish],
+    aim: Mapping[int, Target] | Sequence[WishFrom],
     pace: _Pace,
     clock: Callable[[], float],
 ) -> _Steps:
