@@ -100,8 +100,14 @@ def test_a_drag_comes_to_rest_whatever_follows(window, bent, name):
     assert not bent.pulls
 
 
-def test_moved_and_copied_keys_come_to_rest_too(window, bent):
-    drag(window, bent)
+@pytest.mark.parametrize("is_seen", [True, False])
+def test_moved_and_copied_keys_come_to_rest_too(window, bent, is_seen, monkeypatch):
+    if is_seen:
+        drag(window, bent)
+    else:
+        with held_up(monkeypatch, "app.editor.actions.posing.solving._take_steps"):
+            drag(window, bent)
+        assert bent.pulls[-1].kept is None
     editing.edit(window.session, key_commands.copy_keys(0, {24}, 24))
     editing.edit(window.session, key_commands.move_keys(0, {24}, 6))
     window.settle()

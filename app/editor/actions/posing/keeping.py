@@ -51,26 +51,33 @@ def _keep_first(session: Session, project: Project, pull: Pull, pose: Pose) -> b
     figure = project.document.figure(pull.figure)
     if figure.domain is not pull.clip.figure.domain:
         return False
-    keys = {key.frame: key for key in figure.keys}
-    if pull.frame not in keys and pull.frame in pull.clip.figure.key_frames:
-        # The key was moved, or it is gone.
-        was = pull.clip.figure.key(pull.frame).pose
-        frames = {frame for frame, key in keys.items() if key.pose.phi is was.phi}
-        moved = frames - pull.clip.figure.key_frames
-        if not moved:
-            return False
-        pull.frame = min(moved)
+    frames = _frames_now(figure, pull)
+    if not frames:
+        return False
+    pull.frame = pull.frame if pull.frame in frames else min(frames)
     pose = pull.brought_to(pose)(figure, retargeted(figure, pose))
-    found = UnkeyedPose(figure=pull.figure, frame=pull.frame, pose=pose)
     if not session.preferences.auto_key:
-        project.history.pose(found, gesture=pull.gesture)
+        unkeyed = UnkeyedPose(figure=pull.figure, frame=pull.frame, pose=pose)
+        project.history.pose(unkeyed, gesture=pull.gesture)
         return True
-    command = replace(holding(session, project, found), label="Pose")
-    project.history.do(command, gesture=pull.gesture)
-    unkeyed = project.history.unkeyed
-    if unkeyed is not None and (unkeyed.figure, unkeyed.frame) == (pull.figure, pull.frame):
+    for frame in frames:
+        found = UnkeyedPose(figure=pull.figure, frame=frame, pose=pose)
+        command = replace(holding(session, project, found), label="Pose")
+        project.history.do(command, gesture=pull.gesture)
+    left = project.history.unkeyed
+    if left is not None and (left.figure, left.frame) == (pull.figure, pull.frame):
         project.history.pose(None, gesture=pull.gesture)
     return True
+
+
+def _frames_now(figure: Figure, pull: Pull) -> set[int]:
+    """Return the frames of the key that is pulled and of its copies since; of a new key its own."""
+    then = pull.clip.figure
+    if pull.frame not in then.key_frames:
+        return {pull.frame}
+    was = then.key(pull.frame).pose
+    alike = {key.frame for key in figure.keys if key.pose.phi is was.phi}
+    return (alike - then.key_frames) | ({pull.frame} & figure.key_frames)
 
 
 def holding(session: Session, project: Project, unkeyed: UnkeyedPose) -> Command:

@@ -44,11 +44,11 @@ def _bring(session: Session, project: Project, pull: Pull, *, is_here: bool) -> 
     if pull.is_held:
         pull.tried = None
         return
-    if pull.tried is None and newest not in (pull.ready, pull.kept if not is_here else None):
-        pull.tried = newest
     clip = _tried_clip(project, pull)
     if clip is not None and _has_inbetweens(project, clip):
         pull.ready, pull.tried = pull.tried, None
+    if pull.tried is None and newest not in (pull.ready, pull.kept if not is_here else None):
+        pull.tried = newest
     if not is_here and pull.ready is not None:
         keep(session, project, pull, pull.ready)
     elif not is_here and pull.is_at_rest and project.afterwards:
