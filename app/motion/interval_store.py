@@ -27,7 +27,7 @@ from engine.arrays import Complexes
 from engine.interpolation import Joint
 
 BUDGET = 2**30  # bytes of one store
-SPARE = 32  # the part of it that may be taken by what no present clip needs: a 32nd
+SPARE = 64  # the part of it that may be taken by what no present clip needs: a 64th
 EXPECTED = 100  # bytes a vertex that a series is thought to take before one is built
 IntervalPart = Literal["frame", "in-betweens", "fine", "series"]  # of what is made of a clip
 

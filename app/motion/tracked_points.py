@@ -9,7 +9,7 @@ from app.motion.inbetweens import Animation, PoseSampler
 from app.motion.intervals import Pair, pair_of
 from engine.arrays import Complexes
 
-MOST_KNOWN = 20_000  # moments of other clips' that are remembered, for undo and redo
+REMEMBERED = 4  # times as many moments as a clip has frames, for undo and redo
 
 
 class TrackedFrame(NamedTuple):
@@ -62,7 +62,7 @@ class TrackedPoints:
         figure, own = earlier.clip.figure, clip.figure
         is_same = figure.domain is own.domain and figure.anchor == own.anchor
         if is_same and np.array_equal(points, earlier.points):
-            most = max(MOST_KNOWN, 2 * (clip.frames.last - clip.frames.first))
+            most = REMEMBERED * (1 + clip.frames.last - clip.frames.first)
             self.sampler = earlier.sampler
             self.known = dict(list(earlier.known.items())[-most:])
 
