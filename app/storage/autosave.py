@@ -15,6 +15,7 @@ from types import MappingProxyType
 from typing import NamedTuple
 
 from app.document import Document
+from app.errors import shown_name
 from app.storage.files import is_locked, lock
 from app.storage.preferences import make_settings_folder
 from app.storage.project_file import load_member, load_project, save_project
@@ -127,9 +128,9 @@ def _origin(told: bytes) -> Origin:
     try:
         match json.loads(told):
             case {"name": str(name), "path": str(path)} if Path(path).is_absolute():
-                return Origin(name, Path(path))
+                return Origin(shown_name(name), Path(path))
             case {"name": str(name)}:
-                return Origin(name, None)
+                return Origin(shown_name(name), None)
     except (ValueError, RecursionError):
         pass
     return UNKNOWN

@@ -5,7 +5,7 @@ import math
 from collections import Counter
 from typing import Any
 
-from app.errors import LissomError
+from app.errors import LissomError, shown_name
 
 
 class JsonObject(dict[str, Any]):
@@ -37,7 +37,7 @@ def as_text(content: object, where: str) -> str:
     """Return a text."""
     if not isinstance(content, str):
         raise LissomError(f"{where} must be a text, not {shown(content)}")
-    return content
+    return shown_name(content)
 
 
 def as_flag(content: object, where: str) -> bool:

@@ -19,7 +19,7 @@ from app.document import (
     layer_commands,
     new_figure,
 )
-from app.errors import LissomError
+from app.errors import LissomError, shown_name
 from app.storage.files import read_file
 from app.storage.opening import OpenedPicture
 from app.storage.pictures import (
@@ -103,7 +103,7 @@ def open_pictures(paths: Sequence[Path], meshing: Meshing) -> OpenedScene:
         max(picture.size[1] for picture in pictures),
     )
     for path, (data, _), picture in zip(paths, files, pictures, strict=True):
-        name = layer_commands.numbered_name(path.stem, taken)
+        name = layer_commands.numbered_name(shown_name(path.stem), taken)
         taken.add(name)
         corner = complex((size[0] - picture.size[0]) // 2, (size[1] - picture.size[1]) // 2)
         layers.append(Layer(name=name, data=data, picture=picture, corner=corner))

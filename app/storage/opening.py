@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import NamedTuple, Self
 
 from app.document import Document, Meshing, PictureFile, new_figure
+from app.errors import shown_name
 from app.storage.files import read_file
 from app.storage.pictures import Picture, decode_picture
 from engine.arrays import Booleans, Bytes, freeze
@@ -62,7 +63,7 @@ def open_picture(path: Path, meshing: Meshing, cut_out: CutOut = CutOut()) -> Op
     )
     file = PictureFile(data=data, suffix=picture.suffix, size=picture.size)
     figure = new_figure(file, domain, meshing, cut_out)
-    named = replace(figure, name=path.stem.strip() or figure.name)
+    named = replace(figure, name=shown_name(path.stem).strip() or figure.name)
     document = Document(figures=(named,))
     return OpenedPicture(document, picture, picture.notices + remedies)
 

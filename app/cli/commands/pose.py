@@ -2,7 +2,7 @@
 
 import argparse
 
-from app.cli.console import StatusLine, notice
+from app.cli.console import StatusLine, notice, say
 from app.cli.cut_out import read_cut_out
 from app.document import Meshing
 from app.solving import load_pose_script, pose_document
@@ -45,5 +45,5 @@ def run(arguments: argparse.Namespace) -> int:
     keys = sum(len(figure.keys) for figure in posed)
     handles = sum(len(figure.handles) for figure in posed)
     layers = "" if len(document.figures) == 1 else f"{len(document.figures)} layers, "
-    print(f"{arguments.out}: {layers}{keys} keys, {handles} handles")
+    say(f"{arguments.out}: {layers}{keys} keys, {handles} handles")
     return 0
