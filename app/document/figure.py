@@ -2,9 +2,10 @@
 
 import hashlib
 import re
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field, replace
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 
@@ -14,6 +15,7 @@ from app.document.keyframe import Handle, KeptPose, Keyframe, Pose
 from app.document.layering import Attachment, Switch, require_in_order
 from app.document.settings import NATURAL, VARIANTS, Meshing
 from app.errors import LissomError
+from engine.arrays import Booleans, Complexes
 from engine.domain import CutOut, Domain
 from engine.geometry import box_diagonal, contains
 from engine.maps import Bounds, Certificate, HarmonicMap
@@ -185,6 +187,21 @@ class Figure:
             places = [float(self.domain.outline.real.min()), float(self.domain.outline.real.max())]
         return sum(places) / len(places)
 
+    def with_poses(self, poses: Iterable[Pose], **changes: Any) -> "Figure":
+        """Return the figure with others for its `poses`, in their order, and with other changes."""
+        given = tuple(poses)
+        if len(given) != len(self.poses):
+            raise LissomError(f"The figure has {len(self.poses)} poses, not {len(given)}.")
+        left = iter(given)
+        keys = tuple(replace(key, pose=next(left)) for key in self.keys)
+        library = tuple(replace(kept, pose=next(left)) for kept in self.library)
+        return replace(self, keys=keys, library=library, **changes)
+
+    def covers(self, points: Complexes, *, tolerance: float = 0.0) -> Booleans:
+        """Tell of each point whether it lies on the shape, or within so many pixels of it."""
+        outline, *holes = self.domain.loops
+        return contains(outline, points, holes=holes, tolerance=tolerance)
+
     def kept_pose(self, name: str) -> KeptPose:
         """Return the pose of the library with this name."""
         for kept in self.library:
@@ -265,11 +282,8 @@ class Figure:
             require_place(self.anchor, "The anchor")
             places["anchor"] = self.anchor
         if places:
-            outline, *holes = self.domain.loops
             points = np.array(list(places.values()), dtype=np.complex128)
-            inside = contains(
-                outline, points, holes=holes, tolerance=ON_OUTLINE * box_diagonal(outline)
-            )
+            inside = self.covers(points, tolerance=ON_OUTLINE * box_diagonal(self.domain.outline))
             for (name, place), is_inside in zip(places.items(), inside, strict=True):
                 require(
                     bool(is_inside),
@@ -318,7 +332,7 @@ def new_figure(
     """Return the figure of a picture just opened: one key at frame 0, as it was drawn."""
     rest = HarmonicMap.identity(domain.cage, domain.holes)
     undistorted = Certificate(k=0.0, sigma_a=1.0, sigma_b=1.0, winding=0, certified=True)
-    pose = Pose(targets={}, phi=rest.phi, psi=rest.psi, logs=rest.logs, certificate=undistorted)
+    pose = Pose.of(rest, {}, undistorted)
     return Figure(
         picture=picture,
         domain=domain,

@@ -40,8 +40,6 @@ from app.storage.json_values import (
     without_repeats,
 )
 from app.storage.layers import (
-    OpenedScene,
-    as_scene,
     flattened,
     is_layered,
     layer_figure,
@@ -51,7 +49,7 @@ from app.storage.layers import (
     still_figure,
     still_picture,
 )
-from app.storage.opening import Cut, cut_picture, open_picture
+from app.storage.opening import Cut, OpenedScene, cut_picture, open_picture
 from app.storage.pictures import (
     Layer,
     LayeredPicture,
@@ -104,7 +102,6 @@ __all__ = [
     "as_number",
     "as_object",
     "as_point",
-    "as_scene",
     "as_text",
     "as_whole",
     "atomic_file",

@@ -3,7 +3,6 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import NamedTuple
 
 import numpy as np
 from PIL import Image
@@ -21,7 +20,7 @@ from app.document import (
 )
 from app.errors import LissomError, shown_name
 from app.storage.files import read_file
-from app.storage.opening import OpenedPicture
+from app.storage.opening import OpenedScene
 from app.storage.pictures import (
     Layer,
     LayeredPicture,
@@ -39,14 +38,6 @@ READERS = {".ora": read_openraster, ".psd": read_photoshop}
 # However many layers share the triangles, each gets so many.
 FEWEST_TRIANGLES = 4_000
 WHOLE = CutOut(background="none")  # only what is transparent is left out
-
-
-class OpenedScene(NamedTuple):
-    """A new document, its decoded pictures by the ids of figures, and what was done, in words."""
-
-    document: Document
-    pictures: Mapping[int, Picture]
-    notices: tuple[str, ...]
 
 
 def is_layered(path: Path) -> bool:
@@ -110,12 +101,6 @@ def open_pictures(paths: Sequence[Path], meshing: Meshing) -> OpenedScene:
         notices += [f"{name}: {notice}" for notice in picture.notices]
     drawing = LayeredPicture(size=size, layers=tuple(layers), notices=tuple(notices))
     return _scene(drawing, meshing, is_cut_out=False)
-
-
-def as_scene(opened: OpenedPicture) -> OpenedScene:
-    """Return a picture as a scene of one figure."""
-    document, picture, notices = opened
-    return OpenedScene(document, {document.figures[0].id: picture}, notices)
 
 
 def flattened(document: Document, textures: Mapping[int, Bytes]) -> Bytes:

@@ -7,7 +7,6 @@ from app.cli.cut_out import read_cut_out
 from app.document import Meshing
 from app.solving import load_pose_script, pose_document
 from app.storage import (
-    as_scene,
     check_writable,
     cut_picture,
     draw_thumbnail,
@@ -28,7 +27,7 @@ def run(arguments: argparse.Namespace) -> int:
     if is_layered(arguments.picture):
         opened = open_layered(arguments.picture, meshing)
     else:
-        opened = as_scene(open_picture(arguments.picture, meshing, cut_out))
+        opened = open_picture(arguments.picture, meshing, cut_out)
     for message in opened.notices:
         notice(message)
     with StatusLine() as status:

@@ -4,7 +4,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import TypeVar
 
-from app.document.commands.command import figure_command
+from app.document.commands.command import figure_command, numbered
 from app.document.figure import Figure
 from app.document.keyframe import KeptPose, Keyframe, Pose
 from app.document.model import Document
@@ -17,7 +17,9 @@ Posed = TypeVar("Posed", Keyframe, KeptPose)
 @figure_command("Keep pose")
 def keep_pose(figure: Figure, pose: Pose, name: str | None = None) -> Figure:
     """Put a pose into the library, by default under a name that no other one has."""
-    kept = KeptPose(name=_free_name(figure) if name is None else name, pose=pose)
+    taken = {kept.name for kept in figure.library}
+    free = numbered("Pose", taken, len(taken) + 1)
+    kept = KeptPose(name=free if name is None else name, pose=pose)
     return replace(figure, library=(*figure.library, kept))
 
 
@@ -63,11 +65,3 @@ def _exchanged(
         replace(each, pose=new(figure, each.pose)) if each.pose.phi is old.phi else each
         for each in posed
     )
-
-
-def _free_name(figure: Figure) -> str:
-    taken = {kept.name for kept in figure.library}
-    number = len(taken) + 1
-    while f"Pose {number}" in taken:
-        number += 1
-    return f"Pose {number}"

@@ -281,10 +281,9 @@ def _decoded(document: Document, name: str) -> Opened:
 
 
 def _read_picture(path: Path, meshing: Meshing) -> Opened:
-    document, picture, notices = open_picture(path, meshing)
-    identity = document.figures[0].id
-    puppet = Puppet.of(clip_of(document, identity), picture)
-    return Opened(document, {identity: puppet}, notices, _offer(puppet))
+    opened = with_puppets(open_picture(path, meshing))
+    (puppet,) = opened.puppets.values()
+    return opened._replace(offer=_offer(puppet))
 
 
 def _offer(puppet: Puppet) -> Offer | None:

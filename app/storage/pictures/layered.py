@@ -4,6 +4,7 @@ from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
+from app.document import layer_commands
 from app.errors import LissomError
 from app.storage.pictures.picture import Picture
 
@@ -91,10 +92,7 @@ def layered_picture(
     layers = []
     for group, layer in kept:
         name = f"{group}/{layer.name}" if group and own[layer.name] > 1 else layer.name
-        number, free = 1, name
-        while free in taken:
-            number += 1
-            free = f"{name} {number}"
+        free = layer_commands.numbered_name(name, taken)
         taken.add(free)
         layers.append(replace(layer, name=free))
     return LayeredPicture(size=size, layers=tuple(layers), notices=tuple(notices))

@@ -233,8 +233,7 @@ def _read_figure(fields: dict[str, Any], archive: Archive) -> Figure:
         targets, f = dict(given), members.map(domain, kind, index)
         if len(targets) < len(given):
             raise LissomError(f"one of its {kind} has two targets for one handle")
-        proven = certify(f, boundary, fields["bounds"])
-        return Pose(targets=targets, phi=f.phi, psi=f.psi, logs=f.logs, certificate=proven)
+        return Pose.of(f, targets, certify(f, boundary, fields["bounds"]))
 
     for index, key in enumerate(fields["keys"]):
         key["pose"] = pose("keys", index, key.pop("targets"))
