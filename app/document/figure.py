@@ -5,7 +5,7 @@ import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from itertools import pairwise
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -21,6 +21,7 @@ from engine.geometry import box_diagonal, contains
 from engine.maps import Bounds, Certificate, HarmonicMap
 from engine.variant import Variant
 
+Posed = TypeVar("Posed", Keyframe, KeptPose)
 # Handles may sit on the outline itself, where rounding decides on which side they are.
 ON_OUTLINE = 1e-9
 
@@ -193,8 +194,8 @@ class Figure:
         if len(given) != len(self.poses):
             raise LissomError(f"The figure has {len(self.poses)} poses, not {len(given)}.")
         left = iter(given)
-        keys = tuple(replace(key, pose=next(left)) for key in self.keys)
-        library = tuple(replace(kept, pose=next(left)) for kept in self.library)
+        keys = tuple(_with_pose(key, next(left)) for key in self.keys)
+        library = tuple(_with_pose(kept, next(left)) for kept in self.library)
         return replace(self, keys=keys, library=library, **changes)
 
     def covers(self, points: Complexes, *, tolerance: float = 0.0) -> Booleans:
@@ -324,6 +325,10 @@ class Figure:
             len(pose.logs) == len(self.domain.holes),
             f"{what} is around {len(pose.logs)} holes, not {len(self.domain.holes)}.",
         )
+
+
+def _with_pose(each: Posed, pose: Pose) -> Posed:
+    return each if each.pose is pose else replace(each, pose=pose)
 
 
 def new_figure(

@@ -71,7 +71,7 @@ def flipped_targets(figure: Figure, pose: Pose, axis: float) -> Mapping[int, Tar
 def _flipped(
     shape: HarmonicMap, axis: float, place: complex, wished: complex, point: complex
 ) -> complex:
-    """Return where a point goes that does, mirrored, what a place does that is wished somewhere."""
+    """Return where a point goes if it moves as the mirror image of a place with a target."""
     (fz,), _ = shape.derivatives(np.array([place]))
     turned = complex(np.conj(fz) / abs(fz))
     return _reflect(wished, axis) + turned * (point - _reflect(place, axis))

@@ -113,11 +113,6 @@ def go_on(renewal: Renewal, picture: Bytes) -> Renewal:
         One that is not over.
     picture : uint8, shape (h, w, 4)
         The figure's, decoded.
-
-    Raises
-    ------
-    EngineError, LissomError
-        If there is no domain, or a handle lies outside of it.
     """
     if renewal.meshing is not None and renewal.into is None:
         return _with_domain(renewal, picture, renewal.meshing)

@@ -1,7 +1,8 @@
 """Files: pictures, projects, preferences, unsaved work, and what ships with Lissom.
 
 In: paths, and the bytes behind them.
-Out: documents, decoded pictures and settings; files that are whole or absent.
+Out: documents, decoded pictures and settings; files that are whole or absent. What cannot be read
+or written is a `LissomError`, also where a docstring does not say so.
 Imports: `app.document`.
 """
 

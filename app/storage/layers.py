@@ -46,13 +46,7 @@ def is_layered(path: Path) -> bool:
 
 
 def read_layered(path: Path) -> LayeredPicture:
-    """Read a drawing on layers.
-
-    Raises
-    ------
-    LissomError
-        If the file is missing, damaged, or holds no layers that can be used.
-    """
+    """Read a drawing on layers."""
     data = read_file(path)
     try:
         return READERS[path.suffix.lower()](data)
@@ -65,11 +59,6 @@ def open_layered(path: Path, meshing: Meshing) -> OpenedScene:
 
     A layer that is opaque all over, or on which no shape is found, becomes a still picture. All
     layers together have the triangles that one picture would have.
-
-    Raises
-    ------
-    LissomError
-        If the file is missing, damaged, or holds no layers that can be used.
     """
     return _scene(read_layered(path), meshing, is_cut_out=True)
 
@@ -78,11 +67,6 @@ def open_pictures(paths: Sequence[Path], meshing: Meshing) -> OpenedScene:
     """Read several pictures, and make each of them a figure, the first one behind all others.
 
     The canvas is as large as the largest of them; the others stand in its middle.
-
-    Raises
-    ------
-    LissomError
-        If one of the files is no picture.
     """
     layers: list[Layer] = []
     taken: set[str] = set()

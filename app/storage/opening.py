@@ -45,7 +45,7 @@ class Cut:
 
     @classmethod
     def of(cls, kept: Booleans, texture: Bytes, holes: HoleMap | None = None) -> Self:
-        """Look once whether anything was cut off; pictures are large."""
+        """Return a cut, with its `is_all` found once: pictures are large."""
         return cls(kept, texture, holes, bool(kept.all()))
 
 

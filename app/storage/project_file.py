@@ -57,11 +57,6 @@ def save_project(path: Path, document: Document, *, thumbnail: bytes | None = No
     -------
     str
         What `project_digest` returns as long as nobody else writes there.
-
-    Raises
-    ------
-    LissomError
-        If the file cannot be written.
     """
     content = write_document(document)
     members = {
@@ -84,13 +79,7 @@ def save_project(path: Path, document: Document, *, thumbnail: bytes | None = No
 
 
 def project_digest(path: Path) -> str | None:
-    """Return what tells the contents of a project file from others; None where there is none.
-
-    Raises
-    ------
-    LissomError
-        If it cannot be read.
-    """
+    """Return what tells the contents of a project file from others; None where there is none."""
     try:
         require_file(path)
         with path.open("rb") as file:

@@ -40,7 +40,7 @@ def replace_figure(document: Document, identity: int, figure: Figure) -> Documen
 
 @command("Keep joints")
 def keep_joints(document: Document, identity: int) -> Document:
-    """Let what hangs on a figure hang on the nearest points of it where its shape has shrunk."""
+    """Move joints that are beside a figure now to the nearest points of it."""
     domain = document.figure(identity).domain
     for child in document.figures:
         joint = child.attachment
@@ -139,7 +139,7 @@ def switch_at(figure: Figure, frame: int, *, visible: bool | None) -> Figure:
 
 @figure_command("Move visibility")
 def move_switch(figure: Figure, frame: int, to: int) -> Figure:
-    """Let a figure that comes to be seen or hidden at a frame do so at another one."""
+    """Move the frame at which a figure is shown or hidden."""
     moved = [switch for switch in figure.switches if switch.frame == frame]
     if not moved:
         raise LissomError(f"{figure.name!r} is neither shown nor hidden at frame {frame}.")

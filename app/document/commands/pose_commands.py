@@ -2,16 +2,14 @@
 
 from collections.abc import Callable
 from dataclasses import replace
-from typing import TypeVar
 
 from app.document.commands.command import figure_command, numbered
 from app.document.figure import Figure
-from app.document.keyframe import KeptPose, Keyframe, Pose
+from app.document.keyframe import KeptPose, Pose
 from app.document.model import Document
 
 # Of a figure and a pose of it: the pose to which that one has gone on.
 Settled = Callable[[Figure, Pose], Pose]
-Posed = TypeVar("Posed", Keyframe, KeptPose)
 
 
 @figure_command("Keep pose")
@@ -49,19 +47,7 @@ def set_mirror(figure: Figure, mirror: float | None) -> Figure:
 def exchanged(document: Document, old: Pose, new: Settled) -> Document:
     """Return a document in which another pose stands wherever one with the map of `old` does."""
     for figure in document.figures:
-        keys = _exchanged(figure, figure.keys, old, new)
-        library = _exchanged(figure, figure.library, old, new)
-        if keys is not figure.keys or library is not figure.library:
-            document = document.with_figure(replace(figure, keys=keys, library=library))
+        if any(pose.phi is old.phi for pose in figure.poses):
+            poses = (new(figure, pose) if pose.phi is old.phi else pose for pose in figure.poses)
+            document = document.with_figure(figure.with_poses(poses))
     return document
-
-
-def _exchanged(
-    figure: Figure, posed: tuple[Posed, ...], old: Pose, new: Settled
-) -> tuple[Posed, ...]:
-    if all(each.pose.phi is not old.phi for each in posed):
-        return posed
-    return tuple(
-        replace(each, pose=new(figure, each.pose)) if each.pose.phi is old.phi else each
-        for each in posed
-    )

@@ -73,11 +73,6 @@ def layered_picture(
         From back to front, each with the names of the groups that it is in, as "limbs/left"; layers
         of which nothing is to be seen are left out.
     notices : sequence of str
-
-    Raises
-    ------
-    LissomError
-        If no layer is left.
     """
     notices, kept = list(notices), []
     for group, layer in found:
@@ -116,7 +111,7 @@ def require_room(sizes: Sequence[tuple[int, int]]) -> None:
 
 
 def corner_from_top(left: float, top: float, size: tuple[int, int], canvas: int) -> complex:
-    """Return the lower left corner of a layer, y up, whose upper left one was counted from above.
+    """Return the lower left corner of a layer, y up, from its upper left one, y down.
 
     Parameters
     ----------
