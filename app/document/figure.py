@@ -9,7 +9,14 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from app.document.checks import NOTHING, Unknown, require, require_place, require_size
+from app.document.checks import (
+    NOTHING,
+    Unknown,
+    require,
+    require_distinct,
+    require_place,
+    require_size,
+)
 from app.document.handle_pairs import pairs_by_name
 from app.document.keyframe import Handle, KeptPose, Keyframe, Pose
 from app.document.layering import Attachment, Switch, require_in_order
@@ -265,15 +272,10 @@ class Figure:
         }
 
     def _check_handles(self) -> None:
-        for what, values in (
-            ("id", [handle.id for handle in self.handles]),
-            ("name", [handle.name for handle in self.handles]),
-            ("place", [handle.position for handle in self.handles]),
-        ):
-            seen = set()
-            for value in values:
-                require(value not in seen, f"Two handles have the {what} {value!r}.")
-                seen.add(value)
+        handles = self.handles
+        require_distinct((handle.id for handle in handles), "Two handles have the id {!r}.")
+        require_distinct((handle.name for handle in handles), "Two handles have the name {!r}.")
+        require_distinct((each.position for each in handles), "Two handles have the place {!r}.")
         require(
             all(handle.id < self.next_handle for handle in self.handles),
             f"The next handle's id {self.next_handle} is taken.",
@@ -305,10 +307,8 @@ class Figure:
             )
 
     def _check_library(self) -> None:
-        names = set()
+        require_distinct((kept.name for kept in self.library), "Two poses have the name {!r}.")
         for kept in self.library:
-            require(kept.name not in names, f"Two poses have the name {kept.name!r}.")
-            names.add(kept.name)
             self._check_pose(kept.pose, f"The pose {kept.name!r}")
 
     def _check_pose(self, pose: Pose, what: str) -> None:

@@ -38,30 +38,19 @@ class Rig:
     @classmethod
     def of(cls, figure: Figure, earlier: "Rig | None" = None) -> Self:
         """Return the rig of a figure; what did not change is taken from an earlier one."""
-        boundary = (
-            earlier.deformer.boundary
-            if earlier is not None and earlier.figure.domain is figure.domain
-            else Boundary.sample(figure.domain.outline, figure.domain.cage, figure.domain.holes)
-        )
-        handles = (
-            earlier.deformer.handles
-            if earlier is not None
-            and earlier.deformer.boundary is boundary
-            and earlier.figure.handles == figure.handles
-            and _pins(earlier.figure) == _pins(figure)
-            else Handles.place(
-                boundary,
-                np.array(
-                    [*(handle.position for handle in figure.handles), *_pins(figure)],
-                    dtype=np.complex128,
-                ),
-                [*(handle.pull for handle in figure.handles), *(PIN for _ in _pins(figure))],
-            )
-        )
-        return cls(
-            figure=figure,
-            deformer=Deformer(boundary=boundary, handles=handles, bounds=figure.bounds),
-        )
+        domain, pins = figure.domain, _pins(figure)
+        if earlier is not None and earlier.figure.domain is domain:
+            boundary = earlier.deformer.boundary
+        else:
+            boundary, earlier = Boundary.sample(domain.outline, domain.cage, domain.holes), None
+        if earlier and earlier.figure.handles == figure.handles and earlier.pins == pins:
+            handles = earlier.deformer.handles
+        else:
+            places = [*(handle.position for handle in figure.handles), *pins]
+            pulls = [*(handle.pull for handle in figure.handles), *(PIN for _ in pins)]
+            handles = Handles.place(boundary, np.array(places, dtype=np.complex128), pulls)
+        deformer = Deformer(boundary=boundary, handles=handles, bounds=figure.bounds)
+        return cls(figure=figure, deformer=deformer)
 
     @property
     def pins(self) -> tuple[complex, ...]:

@@ -19,15 +19,9 @@ SYMMETRIC = 0.9
 
 
 def flip_poses(rig: Rig, poses: Sequence[Pose], axis: float) -> list[Pose]:
-    """Return poses mirrored at an upright axis, solved within the bounds of the rig's figure.
+    """Return poses of a rig's figure mirrored at an upright axis, solved within its bounds.
 
-    Parameters
-    ----------
-    rig : Rig
-    poses : sequence of Pose
-        Of the rig's figure.
-    axis : float
-        Where it crosses the picture, in pixels from the left.
+    The axis is told in pixels from the left.
     """
     return [_flip(rig, pose, axis) for pose in poses]
 

@@ -166,22 +166,22 @@ def _figure(script: JsonObject, where: str, usual: Mapping[str, Any]) -> FigureS
     if not isinstance(keys, list) or not keys:
         raise LissomError(f"{where}keys must be a list of at least one key")
     parsed = tuple(_key(key, f"{where}keys[{index}]", handles) for index, key in enumerate(keys))
-    for before, after in pairwise(parsed):
-        if after.frame <= before.frame:
-            raise LissomError(
-                f"{where}keys are out of order: frame {after.frame} after {before.frame}"
-            )
+    _require_order([key.frame for key in parsed], f"{where}keys are")
     if script.get("anchor") is not None:
         own["anchor"] = as_point(script["anchor"], f"{where}anchor")
     if script.get("attach") is not None:
         own["attach"] = _joint(script["attach"], f"{where}attach")
     visible = as_list(script.get("visible", []), f"{where}visible")
     switches = [_switch(switch, f"{where}visible[{index}]") for index, switch in enumerate(visible)]
-    for (frame, _), (later, _) in pairwise(switches):
-        if later <= frame:
-            raise LissomError(f"{where}visible is out of order: frame {later} after {frame}")
+    _require_order([frame for frame, _ in switches], f"{where}visible is")
     own["visible"] = tuple(switches)
     return FigureScript(handles=handles, keys=parsed, **own)
+
+
+def _require_order(frames: list[int], what: str) -> None:
+    for before, after in pairwise(frames):
+        if after <= before:
+            raise LissomError(f"{what} out of order: frame {after} after {before}")
 
 
 def _handle(content: object, where: str) -> ScriptHandle:

@@ -7,6 +7,7 @@ import numpy as np
 
 from app.document.commands.command import command, figure_command, numbered
 from app.document.commands.handle_commands import with_handles
+from app.document.commands.key_commands import exchange
 from app.document.figure import Figure
 from app.document.keyframe import Pose, Target
 from app.document.layering import Attachment, Switch
@@ -195,8 +196,7 @@ def key_front(figure: Figure, frame: int, identity: int, front: float | None) ->
         fronts[handle.id] = float(front)
     if fronts == key.fronts:
         return figure
-    changed = replace(key, fronts=fronts)
-    return replace(figure, keys=tuple(changed if k is key else k for k in figure.keys))
+    return exchange(figure, {frame: replace(key, fronts=fronts)})
 
 
 def free_identity(document: Document) -> int:

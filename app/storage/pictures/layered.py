@@ -110,15 +110,6 @@ def require_room(sizes: Sequence[tuple[int, int]]) -> None:
         )
 
 
-def corner_from_top(left: float, top: float, size: tuple[int, int], canvas: int) -> complex:
-    """Return the lower left corner of a layer, y up, from its upper left one, y down.
-
-    Parameters
-    ----------
-    left, top : float
-    size : tuple of int
-        Of the layer.
-    canvas : int
-        The canvas's height.
-    """
-    return complex(left, canvas - top - size[1])
+def corner_from_top(left: float, top: float, size: tuple[int, int], height: int) -> complex:
+    """Return a layer's lower left corner, y up on a canvas so high, from its upper left one."""
+    return complex(left, height - top - size[1])
