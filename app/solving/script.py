@@ -85,8 +85,8 @@ class PoseScript:
     """A whole animation."""
 
     figures: tuple[FigureScript, ...]
-    fps: float = 24.0
-    loop: bool = False
+    fps: float
+    loop: bool
 
 
 def load_pose_script(path: Path) -> PoseScript:
@@ -128,16 +128,9 @@ def parse_pose_script(content: object) -> PoseScript:
     schema = script.get("schema")
     if schema != SCHEMA or isinstance(schema, bool):
         raise LissomError(f"schema must be {SCHEMA}, not {json.dumps(schema)}")
-    times: dict[str, Any] = {}
-    if "fps" in script:
-        times["fps"] = as_number(script["fps"], "fps")
-    if "loop" in script:
-        times["loop"] = as_flag(script["loop"], "loop")
     usual = _options(script, "")
-    if "figures" not in script:
-        return PoseScript(figures=(_figure(script, "", usual),), **times)
-    figures = []
-    for index, entry in enumerate(as_list(script["figures"], "figures")):
+    figures = [] if "figures" in script else [_figure(script, "", usual)]
+    for index, entry in enumerate(as_list(script.get("figures", []), "figures")):
         where = f"figures[{index}]."
         fields = _object(entry, where[:-1], FIGURE_FIELDS)
         figures.append(_figure(fields, where, usual))
@@ -147,7 +140,11 @@ def parse_pose_script(content: object) -> PoseScript:
             raise LissomError(f"two figures are of the layer {layer!r}")
     if not figures:
         raise LissomError("figures must be a list of at least one figure")
-    return PoseScript(figures=tuple(figures), **times)
+    return PoseScript(
+        figures=tuple(figures),
+        fps=as_number(script.get("fps", 24.0), "fps"),
+        loop=as_flag(script.get("loop", False), "loop"),
+    )
 
 
 def _figure(script: JsonObject, where: str, usual: Mapping[str, Any]) -> FigureScript:
@@ -155,9 +152,6 @@ def _figure(script: JsonObject, where: str, usual: Mapping[str, Any]) -> FigureS
     own: dict[str, Any] = {**usual, **_options(script, where)}
     if where:
         own["layer"] = as_text(script["layer"], f"{where}layer")
-    for name in ("handles", "keys"):
-        if name not in script:
-            raise LissomError(f"{where}{name} is missing")
     handles = {
         name: _handle(handle, f"{where}handle {name!r}")
         for name, handle in as_object(script["handles"], f"{where}handles").items()

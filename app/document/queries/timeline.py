@@ -77,14 +77,11 @@ def changed_stretches(before: Document, after: Document) -> list[FrameRange]:
     others = {figure.id: figure for figure in before.figures}
     for figure in after.figures:
         other = others.get(figure.id)
-        if other is not None and other.keys is not figure.keys and _are_alike(other, figure):
+        is_alike = other and other.domain is figure.domain and other.handles == figure.handles
+        if other and is_alike and other.keys is not figure.keys:
             stretches += _changed_keys(other, figure)
     marks = set(before.markers) ^ set(after.markers)
     return stretches + [FrameRange(marker.frame, marker.frame) for marker in marks]
-
-
-def _are_alike(figure: Figure, other: Figure) -> bool:
-    return figure.domain is other.domain and figure.handles == other.handles
 
 
 def _changed_keys(before: Figure, after: Figure) -> list[FrameRange]:
