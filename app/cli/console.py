@@ -4,6 +4,8 @@ import argparse
 import sys
 from typing import NoReturn, Self
 
+from app.errors import shown_name
+
 EXIT_ERROR = 2
 
 
@@ -17,14 +19,19 @@ class Parser(argparse.ArgumentParser):
 
 def fail(message: str) -> NoReturn:
     """Print one line of error and leave with the exit status of bad input."""
-    line = " ".join(message.split())
+    line = " ".join(shown_name(message).split())
     print(f"lissom: error: {line}", file=sys.stderr)
     raise SystemExit(EXIT_ERROR)
 
 
+def say(message: str) -> None:
+    """Print what a command found or made."""
+    print(shown_name(message))
+
+
 def notice(message: str) -> None:
     """Tell the person what was done on their behalf."""
-    print(f"lissom: {message}", file=sys.stderr)
+    print(f"lissom: {shown_name(message)}", file=sys.stderr)
 
 
 class StatusLine:

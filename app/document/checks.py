@@ -1,6 +1,6 @@
 """Conditions of the document's values, and numbers that they share."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from types import MappingProxyType
 from typing import Any
 
@@ -18,6 +18,15 @@ def require(condition: bool, message: str) -> None:  # noqa: FBT001 - reads as a
     """Raise a `LissomError` with the message unless the condition holds."""
     if not condition:
         raise LissomError(message)
+
+
+def require_distinct(values: Iterable[object], message: str) -> None:
+    """Raise a `LissomError` if a value comes twice; the message has {!r} in its place."""
+    seen = set()
+    for value in values:
+        if value in seen:
+            raise LissomError(message.format(value))
+        seen.add(value)
 
 
 def require_place(place: complex, name: str) -> None:

@@ -2,23 +2,33 @@
 
 import hashlib
 import re
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field, replace
 from itertools import pairwise
+from typing import Any, TypeVar
 
 import numpy as np
 
-from app.document.checks import NOTHING, Unknown, require, require_place, require_size
+from app.document.checks import (
+    NOTHING,
+    Unknown,
+    require,
+    require_distinct,
+    require_place,
+    require_size,
+)
 from app.document.handle_pairs import pairs_by_name
 from app.document.keyframe import Handle, KeptPose, Keyframe, Pose
 from app.document.layering import Attachment, Switch, require_in_order
 from app.document.settings import NATURAL, VARIANTS, Meshing
 from app.errors import LissomError
+from engine.arrays import Booleans, Complexes
 from engine.domain import CutOut, Domain
 from engine.geometry import box_diagonal, contains
 from engine.maps import Bounds, Certificate, HarmonicMap
 from engine.variant import Variant
 
+Posed = TypeVar("Posed", Keyframe, KeptPose)
 # Handles may sit on the outline itself, where rounding decides on which side they are.
 ON_OUTLINE = 1e-9
 
@@ -185,6 +195,21 @@ class Figure:
             places = [float(self.domain.outline.real.min()), float(self.domain.outline.real.max())]
         return sum(places) / len(places)
 
+    def with_poses(self, poses: Iterable[Pose], **changes: Any) -> "Figure":
+        """Return the figure with others for its `poses`, in their order, and with other changes."""
+        given = tuple(poses)
+        if len(given) != len(self.poses):
+            raise LissomError(f"The figure has {len(self.poses)} poses, not {len(given)}.")
+        left = iter(given)
+        keys = tuple(_with_pose(key, next(left)) for key in self.keys)
+        library = tuple(_with_pose(kept, next(left)) for kept in self.library)
+        return replace(self, keys=keys, library=library, **changes)
+
+    def covers(self, points: Complexes, *, tolerance: float = 0.0) -> Booleans:
+        """Tell of each point whether it lies on the shape, or within so many pixels of it."""
+        outline, *holes = self.domain.loops
+        return contains(outline, points, holes=holes, tolerance=tolerance)
+
     def kept_pose(self, name: str) -> KeptPose:
         """Return the pose of the library with this name."""
         for kept in self.library:
@@ -247,15 +272,10 @@ class Figure:
         }
 
     def _check_handles(self) -> None:
-        for what, values in (
-            ("id", [handle.id for handle in self.handles]),
-            ("name", [handle.name for handle in self.handles]),
-            ("place", [handle.position for handle in self.handles]),
-        ):
-            seen = set()
-            for value in values:
-                require(value not in seen, f"Two handles have the {what} {value!r}.")
-                seen.add(value)
+        handles = self.handles
+        require_distinct((handle.id for handle in handles), "Two handles have the id {!r}.")
+        require_distinct((handle.name for handle in handles), "Two handles have the name {!r}.")
+        require_distinct((each.position for each in handles), "Two handles have the place {!r}.")
         require(
             all(handle.id < self.next_handle for handle in self.handles),
             f"The next handle's id {self.next_handle} is taken.",
@@ -265,11 +285,8 @@ class Figure:
             require_place(self.anchor, "The anchor")
             places["anchor"] = self.anchor
         if places:
-            outline, *holes = self.domain.loops
             points = np.array(list(places.values()), dtype=np.complex128)
-            inside = contains(
-                outline, points, holes=holes, tolerance=ON_OUTLINE * box_diagonal(outline)
-            )
+            inside = self.covers(points, tolerance=ON_OUTLINE * box_diagonal(self.domain.outline))
             for (name, place), is_inside in zip(places.items(), inside, strict=True):
                 require(
                     bool(is_inside),
@@ -290,10 +307,8 @@ class Figure:
             )
 
     def _check_library(self) -> None:
-        names = set()
+        require_distinct((kept.name for kept in self.library), "Two poses have the name {!r}.")
         for kept in self.library:
-            require(kept.name not in names, f"Two poses have the name {kept.name!r}.")
-            names.add(kept.name)
             self._check_pose(kept.pose, f"The pose {kept.name!r}")
 
     def _check_pose(self, pose: Pose, what: str) -> None:
@@ -312,13 +327,17 @@ class Figure:
         )
 
 
+def _with_pose(each: Posed, pose: Pose) -> Posed:
+    return each if each.pose is pose else replace(each, pose=pose)
+
+
 def new_figure(
     picture: PictureFile, domain: Domain, meshing: Meshing, cut_out: CutOut = CutOut()
 ) -> Figure:
     """Return the figure of a picture just opened: one key at frame 0, as it was drawn."""
     rest = HarmonicMap.identity(domain.cage, domain.holes)
     undistorted = Certificate(k=0.0, sigma_a=1.0, sigma_b=1.0, winding=0, certified=True)
-    pose = Pose(targets={}, phi=rest.phi, psi=rest.psi, logs=rest.logs, certificate=undistorted)
+    pose = Pose.of(rest, {}, undistorted)
     return Figure(
         picture=picture,
         domain=domain,

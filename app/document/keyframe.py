@@ -151,6 +151,14 @@ class Pose:
         object.__setattr__(self, "psi", as_points(self.psi, "psi", at_least=3))
         object.__setattr__(self, "logs", as_points(self.logs, "logs"))
 
+    @classmethod
+    def of(
+        cls, harmonic_map: HarmonicMap, targets: Mapping[int, Target], certificate: Certificate
+    ) -> "Pose":
+        """Return a map as a pose with these wishes."""
+        f = harmonic_map
+        return cls(targets=targets, phi=f.phi, psi=f.psi, logs=f.logs, certificate=certificate)
+
     @property
     def nbytes(self) -> int:
         """Memory that the map takes, in bytes."""

@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from itertools import pairwise
 
-from app.document.checks import NOTHING, Unknown, require, require_size
+from app.document.checks import NOTHING, Unknown, require, require_distinct, require_size
 from app.document.figure import Figure
 from app.document.settings import FASTEST, ExportSettings, FrameRange, Marker
 from app.errors import LissomError
@@ -127,12 +127,9 @@ class Document:
         require(len(self.figures) > 0, "A document has at least one figure.")
         if self.size is not None:
             require_size(self.size, "canvas")
-        identities, names = set(), set()
+        require_distinct((figure.id for figure in self.figures), "Two figures have the id {!r}.")
+        require_distinct((figure.name for figure in self.figures), "Two figures are called {!r}.")
         for figure in self.figures:
-            require(figure.id not in identities, f"Two figures have the id {figure.id}.")
-            require(figure.name not in names, f"Two figures are called {figure.name!r}.")
-            identities.add(figure.id)
-            names.add(figure.name)
             for key in figure.keys:
                 require(
                     key.frame in self.frames,

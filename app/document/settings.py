@@ -52,7 +52,7 @@ def stretch_of(bounds: Bounds) -> Stretch | None:
 
 
 def loosened(bounds: Bounds) -> Bounds | None:
-    """Return what allows all that some bounds do and more; None where they are rubbery already."""
+    """Return the next wider bounds; None where they allow all that the widest do."""
     for stretch in STRETCHES:
         wider = Bounds(
             k=max(bounds.k, stretch.bounds.k),

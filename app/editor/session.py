@@ -12,6 +12,7 @@ from app.editor.action import Action
 from app.editor.dialogs import Dialog
 from app.editor.jobs import Jobs
 from app.editor.project import Project
+from app.errors import shown_name
 from app.export import ExportPlan, Poses
 from app.motion import Box
 from app.storage import Autosave, Preferences, home_folder
@@ -251,6 +252,7 @@ class Session:
         action: Action | None = None,
     ) -> None:
         """Show a message; one that shows already starts its time again."""
+        text, details = shown_name(text), shown_name(details)
         self.toasts = [
             toast
             for toast in self.toasts

@@ -1,7 +1,7 @@
 """Poses from handles: drags that go on step by step, and poses to begin them with."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Self
 
 import numpy as np
@@ -10,6 +10,7 @@ from app.document import Clip, Figure, Pose, Target, resting_pose, time_of
 from app.motion import Animation, PoseSampler
 from engine.arrays import Booleans, Complexes
 from engine.deform import Deformer, Handles, State, Wish
+from engine.errors import EngineError
 from engine.maps import Boundary, Bounds, HarmonicMap, certify
 
 # A pose that the present bounds do not allow is the start of a drag back into them: its own
@@ -37,30 +38,19 @@ class Rig:
     @classmethod
     def of(cls, figure: Figure, earlier: "Rig | None" = None) -> Self:
         """Return the rig of a figure; what did not change is taken from an earlier one."""
-        boundary = (
-            earlier.deformer.boundary
-            if earlier is not None and earlier.figure.domain is figure.domain
-            else Boundary.sample(figure.domain.outline, figure.domain.cage, figure.domain.holes)
-        )
-        handles = (
-            earlier.deformer.handles
-            if earlier is not None
-            and earlier.deformer.boundary is boundary
-            and earlier.figure.handles == figure.handles
-            and _pins(earlier.figure) == _pins(figure)
-            else Handles.place(
-                boundary,
-                np.array(
-                    [*(handle.position for handle in figure.handles), *_pins(figure)],
-                    dtype=np.complex128,
-                ),
-                [*(handle.pull for handle in figure.handles), *(PIN for _ in _pins(figure))],
-            )
-        )
-        return cls(
-            figure=figure,
-            deformer=Deformer(boundary=boundary, handles=handles, bounds=figure.bounds),
-        )
+        domain, pins = figure.domain, _pins(figure)
+        if earlier is not None and earlier.figure.domain is domain:
+            boundary = earlier.deformer.boundary
+        else:
+            boundary, earlier = Boundary.sample(domain.outline, domain.cage, domain.holes), None
+        if earlier and earlier.figure.handles == figure.handles and earlier.pins == pins:
+            handles = earlier.deformer.handles
+        else:
+            places = [*(handle.position for handle in figure.handles), *pins]
+            pulls = [*(handle.pull for handle in figure.handles), *(PIN for _ in pins)]
+            handles = Handles.place(boundary, np.array(places, dtype=np.complex128), pulls)
+        deformer = Deformer(boundary=boundary, handles=handles, bounds=figure.bounds)
+        return cls(figure=figure, deformer=deformer)
 
     @property
     def pins(self) -> tuple[complex, ...]:
@@ -74,6 +64,13 @@ class Rig:
             np.array([target.position for target in wanted], dtype=np.complex128),
             [np.nan if target.rotation is None else target.rotation for target in wanted],
         )
+
+    def beginning_at(self, shape: HarmonicMap) -> State:
+        """Return the solver's state at a map; where that folds, at rest, which leads everywhere."""
+        try:
+            return self.deformer.resume(shape)
+        except EngineError:
+            return self.deformer.start()
 
     def within_bounds_of(self, pose: Pose) -> Deformer:
         """Return a deformer that allows a pose, be it outside the figure's present bounds."""
@@ -139,17 +136,11 @@ class Drag:
             state = self.deformer.step(state, wish)
             if state.status.is_final:
                 break
-        return Drag(rig=self.rig, deformer=self.deformer, state=state, pins=self.pins)
+        return replace(self, state=state)
 
     def pose(self, targets: Mapping[int, Target]) -> Pose:
         """Return where the drag is, as a pose with these wishes."""
-        return Pose(
-            targets=targets,
-            phi=self.state.map.phi,
-            psi=self.state.map.psi,
-            logs=self.state.map.logs,
-            certificate=self.state.certificate,
-        )
+        return Pose.of(self.state.map, targets, self.state.certificate)
 
 
 def pins_of(figure: Figure, pose: Pose) -> tuple[Target, ...]:
@@ -209,13 +200,7 @@ def pose_at(rig: Rig, clip: Clip, frame: float, sibling: PoseSampler | None = No
         handle.id: Target(position=complex(place))
         for handle, place in zip(figure.handles, places, strict=True)
     }
-    return Pose(
-        targets=targets,
-        phi=mixed.phi,
-        psi=mixed.psi,
-        logs=mixed.logs,
-        certificate=certificate,
-    )
+    return Pose.of(mixed, targets, certificate)
 
 
 def fit_map(

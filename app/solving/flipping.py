@@ -6,9 +6,8 @@ from dataclasses import replace
 import numpy as np
 
 from app.document import Figure, Handle, Pose, Target, pairs_by_name
-from app.solving.drag import Drag, Rig, fit_map
-from engine.arrays import Booleans, Complexes
-from engine.errors import EngineError
+from app.solving.drag import Rig, fit_map, pins_of
+from engine.arrays import Complexes
 from engine.geometry import box_diagonal, contains
 from engine.maps import HarmonicMap, certify
 
@@ -20,15 +19,9 @@ SYMMETRIC = 0.9
 
 
 def flip_poses(rig: Rig, poses: Sequence[Pose], axis: float) -> list[Pose]:
-    """Return poses mirrored at an upright axis, solved within the bounds of the rig's figure.
+    """Return poses of a rig's figure mirrored at an upright axis, solved within its bounds.
 
-    Parameters
-    ----------
-    rig : Rig
-    poses : sequence of Pose
-        Of the rig's figure.
-    axis : float
-        Where it crosses the picture, in pixels from the left.
+    The axis is told in pixels from the left.
     """
     return [_flip(rig, pose, axis) for pose in poses]
 
@@ -57,7 +50,7 @@ def flipped_targets(figure: Figure, pose: Pose, axis: float) -> Mapping[int, Tar
         place, target = handle.position, pose.targets[handle.id]
         if partner is not None:
             place, target = partner.position, pose.targets[partner.id]
-        elif is_symmetric and _is_on(figure, np.array([_reflect(place, axis)]))[0]:
+        elif is_symmetric and figure.covers(np.array([_reflect(place, axis)]))[0]:
             place = _reflect(place, axis)
             target = replace(target, position=complex(shape(np.array([place]))[0]), rotation=None)
         position = _flipped(shape, axis, place, target.position, handle.position)
@@ -72,7 +65,7 @@ def flipped_targets(figure: Figure, pose: Pose, axis: float) -> Mapping[int, Tar
 def _flipped(
     shape: HarmonicMap, axis: float, place: complex, wished: complex, point: complex
 ) -> complex:
-    """Return where a point goes that does, mirrored, what a place does that is wished somewhere."""
+    """Return where a point goes if it moves as the mirror image of a place with a target."""
     (fz,), _ = shape.derivatives(np.array([place]))
     turned = complex(np.conj(fz) / abs(fz))
     return _reflect(wished, axis) + turned * (point - _reflect(place, axis))
@@ -82,23 +75,17 @@ def _flip(rig: Rig, pose: Pose, axis: float) -> Pose:
     deformer = rig.deformer
     targets = flipped_targets(rig.figure, pose, axis)
     shape = rig.figure.map_of(pose)
-    joints = zip(rig.pins, shape(np.array(rig.pins, dtype=np.complex128)), strict=True)
     pins = tuple(
-        Target(position=_flipped(shape, axis, joint, complex(there), joint))
-        for joint, there in joints
+        Target(position=_flipped(shape, axis, joint, pin.position, joint))
+        for joint, pin in zip(rig.pins, pins_of(rig.figure, pose), strict=True)
     )
     state = deformer.start()
     if _is_symmetric(rig.figure, axis):
-        try:
-            state = deformer.resume(_flipped_map(rig, pose, axis))
-        except EngineError:
-            # It folds: from the drawing at rest every pose can be reached.
-            state = deformer.start()
+        state = rig.beginning_at(_flipped_map(rig, pose, axis))
     state, _ = deformer.settle(state, rig.wish(targets, pins), at_most=MOST_STEPS)
-    flipped = Drag(rig=rig, deformer=deformer, state=state, pins=pins).pose(targets)
     # Steps that walk into the bounds are proven for wider ones.
     proven = certify(state.map, deformer.boundary, deformer.bounds)
-    return replace(flipped, certificate=proven)
+    return Pose.of(state.map, targets, proven)
 
 
 def _flipped_map(rig: Rig, pose: Pose, axis: float) -> HarmonicMap:
@@ -130,12 +117,7 @@ def _partners(figure: Figure, axis: float) -> Mapping[int, Handle]:
 
 def _is_symmetric(figure: Figure, axis: float) -> bool:
     mirrored = _reflected(figure.domain.mesh.vertices, axis)
-    return bool(_is_on(figure, mirrored).mean() >= SYMMETRIC)
-
-
-def _is_on(figure: Figure, points: Complexes) -> Booleans:
-    outline, *holes = figure.domain.loops
-    return contains(outline, points, holes=holes)
+    return bool(figure.covers(mirrored).mean() >= SYMMETRIC)
 
 
 def _reflected(points: Complexes, axis: float) -> Complexes:

@@ -18,7 +18,6 @@ from app.document import (
 from app.solving.drag import Rig, fit_map, pins_of
 from engine.arrays import Bytes
 from engine.domain import build_domain
-from engine.errors import EngineError
 from engine.geometry import contains
 from engine.maps import Bounds, HarmonicMap, certify
 
@@ -114,11 +113,6 @@ def go_on(renewal: Renewal, picture: Bytes) -> Renewal:
         One that is not over.
     picture : uint8, shape (h, w, 4)
         The figure's, decoded.
-
-    Raises
-    ------
-    EngineError, LissomError
-        If there is no domain, or a handle lies outside of it.
     """
     if renewal.meshing is not None and renewal.into is None:
         return _with_domain(renewal, picture, renewal.meshing)
@@ -149,13 +143,8 @@ def _with_domain(renewal: Renewal, picture: Bytes, meshing: Meshing) -> Renewal:
     before = renewal.before
     domain = domain.moved(before.corner)
     rest = HarmonicMap.identity(domain.cage, domain.holes)
-    into = replace(
-        before,
-        domain=domain,
-        meshing=meshing,
-        keys=tuple(replace(key, pose=key.pose.with_map(rest)) for key in before.keys),
-        library=tuple(replace(kept, pose=kept.pose.with_map(rest)) for kept in before.library),
-    )
+    poses = (pose.with_map(rest) for pose in before.poses)
+    into = before.with_poses(poses, domain=domain, meshing=meshing)
     return replace(renewal, into=into, notices=notices)
 
 
@@ -172,13 +161,8 @@ def _solved(renewal: Renewal, rig: Rig, index: int) -> Pose:
             pins = tuple(carried(pin, shape, before.anchor, into.anchor) for pin in pins)
     if not renewal.pulls and certify(first, boundary, bounds).certified:
         return pose
-    try:
-        state = rig.deformer.resume(first)
-    except EngineError:
-        # It folds over the new cage: from the drawing at rest every pose can be reached.
-        state = rig.deformer.start()
     wish = rig.wish(pose.targets, pins)
-    state, _ = rig.deformer.settle(state, wish, at_most=MOST_STEPS)
+    state, _ = rig.deformer.settle(rig.beginning_at(first), wish, at_most=MOST_STEPS)
     certificate = certify(state.map, boundary, bounds)
     if into is not None and not certificate.certified:
         # Where the new shape is larger, what was carried over may have no way back into the bounds.

@@ -31,8 +31,8 @@ def begin_replacing(before: Figure, made: Figure, canvas: tuple[int, int]) -> Re
     domain = made.domain.moved(corner)
     places = _places(before, domain)
     handles = tuple(replace(handle, position=places[handle.position]) for handle in before.handles)
-    into = replace(
-        before,
+    into = before.with_poses(
+        (_at_rest(before, pose, domain, places) for pose in before.poses),
         picture=made.picture,
         corner=corner,
         cut_out=made.cut_out,
@@ -40,13 +40,6 @@ def begin_replacing(before: Figure, made: Figure, canvas: tuple[int, int]) -> Re
         domain=domain,
         handles=handles,
         anchor=None if before.anchor is None else places[before.anchor],
-        keys=tuple(
-            replace(key, pose=_at_rest(before, key.pose, domain, places)) for key in before.keys
-        ),
-        library=tuple(
-            replace(kept, pose=_at_rest(before, kept.pose, domain, places))
-            for kept in before.library
-        ),
         unknown={
             name: value
             for name, value in before.unknown.items()

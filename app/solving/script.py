@@ -85,8 +85,8 @@ class PoseScript:
     """A whole animation."""
 
     figures: tuple[FigureScript, ...]
-    fps: float = 24.0
-    loop: bool = False
+    fps: float
+    loop: bool
 
 
 def load_pose_script(path: Path) -> PoseScript:
@@ -128,16 +128,9 @@ def parse_pose_script(content: object) -> PoseScript:
     schema = script.get("schema")
     if schema != SCHEMA or isinstance(schema, bool):
         raise LissomError(f"schema must be {SCHEMA}, not {json.dumps(schema)}")
-    times: dict[str, Any] = {}
-    if "fps" in script:
-        times["fps"] = as_number(script["fps"], "fps")
-    if "loop" in script:
-        times["loop"] = as_flag(script["loop"], "loop")
     usual = _options(script, "")
-    if "figures" not in script:
-        return PoseScript(figures=(_figure(script, "", usual),), **times)
-    figures = []
-    for index, entry in enumerate(as_list(script["figures"], "figures")):
+    figures = [] if "figures" in script else [_figure(script, "", usual)]
+    for index, entry in enumerate(as_list(script.get("figures", []), "figures")):
         where = f"figures[{index}]."
         fields = _object(entry, where[:-1], FIGURE_FIELDS)
         figures.append(_figure(fields, where, usual))
@@ -147,7 +140,11 @@ def parse_pose_script(content: object) -> PoseScript:
             raise LissomError(f"two figures are of the layer {layer!r}")
     if not figures:
         raise LissomError("figures must be a list of at least one figure")
-    return PoseScript(figures=tuple(figures), **times)
+    return PoseScript(
+        figures=tuple(figures),
+        fps=as_number(script.get("fps", 24.0), "fps"),
+        loop=as_flag(script.get("loop", False), "loop"),
+    )
 
 
 def _figure(script: JsonObject, where: str, usual: Mapping[str, Any]) -> FigureScript:
@@ -155,9 +152,6 @@ def _figure(script: JsonObject, where: str, usual: Mapping[str, Any]) -> FigureS
     own: dict[str, Any] = {**usual, **_options(script, where)}
     if where:
         own["layer"] = as_text(script["layer"], f"{where}layer")
-    for name in ("handles", "keys"):
-        if name not in script:
-            raise LissomError(f"{where}{name} is missing")
     handles = {
         name: _handle(handle, f"{where}handle {name!r}")
         for name, handle in as_object(script["handles"], f"{where}handles").items()
@@ -166,22 +160,22 @@ def _figure(script: JsonObject, where: str, usual: Mapping[str, Any]) -> FigureS
     if not isinstance(keys, list) or not keys:
         raise LissomError(f"{where}keys must be a list of at least one key")
     parsed = tuple(_key(key, f"{where}keys[{index}]", handles) for index, key in enumerate(keys))
-    for before, after in pairwise(parsed):
-        if after.frame <= before.frame:
-            raise LissomError(
-                f"{where}keys are out of order: frame {after.frame} after {before.frame}"
-            )
+    _require_order([key.frame for key in parsed], f"{where}keys are")
     if script.get("anchor") is not None:
         own["anchor"] = as_point(script["anchor"], f"{where}anchor")
     if script.get("attach") is not None:
         own["attach"] = _joint(script["attach"], f"{where}attach")
     visible = as_list(script.get("visible", []), f"{where}visible")
     switches = [_switch(switch, f"{where}visible[{index}]") for index, switch in enumerate(visible)]
-    for (frame, _), (later, _) in pairwise(switches):
-        if later <= frame:
-            raise LissomError(f"{where}visible is out of order: frame {later} after {frame}")
+    _require_order([frame for frame, _ in switches], f"{where}visible is")
     own["visible"] = tuple(switches)
     return FigureScript(handles=handles, keys=parsed, **own)
+
+
+def _require_order(frames: list[int], what: str) -> None:
+    for before, after in pairwise(frames):
+        if after <= before:
+            raise LissomError(f"{what} out of order: frame {after} after {before}")
 
 
 def _handle(content: object, where: str) -> ScriptHandle:

@@ -24,7 +24,6 @@ from app.solving.drag import Drag, Rig
 from app.solving.script import FigureScript, PoseKey, PoseScript
 from app.storage import still_figure
 from engine.errors import EngineError
-from engine.geometry import contains
 
 # A drag that is not at rest by then creeps along a bound.
 MOST_STEPS = 1500
@@ -132,9 +131,9 @@ def _prepared(document: Document, identity: int, part: FigureScript) -> Document
     parent = _layer({figure.name: figure for figure in document.figures}, part.attach.to)
     at = part.attach.at
     what = f"it is attached at ({at.real:g}, {at.imag:g})"
-    if not _is_on(parent, at):
+    if not parent.covers(np.array([at])).all():
         raise LissomError(f"{what}, which is not on {parent.name!r}")
-    if part.anchor is None and not _is_on(document.figure(identity), at):
+    if part.anchor is None and not document.figure(identity).covers(np.array([at])).all():
         raise LissomError(
             f"{what}, which is on {parent.name!r} but not on itself; give it an anchor by which it "
             "hangs there, or choose a point that is on both"
@@ -142,11 +141,6 @@ def _prepared(document: Document, identity: int, part: FigureScript) -> Document
     anchor = at if part.anchor is None else part.anchor
     joint = Attachment(to=parent.id, at=part.attach.at, turns=part.attach.turns)
     return layer_commands.attach(identity, anchor, joint)(document)
-
-
-def _is_on(figure: Figure, place: complex) -> bool:
-    outline, *holes = figure.domain.loops
-    return bool(contains(outline, np.array([place]), holes=holes)[0])
 
 
 def _posed(

@@ -1,7 +1,8 @@
 """Files: pictures, projects, preferences, unsaved work, and what ships with Lissom.
 
 In: paths, and the bytes behind them.
-Out: documents, decoded pictures and settings; files that are whole or absent.
+Out: documents, decoded pictures and settings; files that are whole or absent. What cannot be read
+or written is a `LissomError`, also where a docstring does not say so.
 Imports: `app.document`.
 """
 
@@ -40,8 +41,6 @@ from app.storage.json_values import (
     without_repeats,
 )
 from app.storage.layers import (
-    OpenedScene,
-    as_scene,
     flattened,
     is_layered,
     layer_figure,
@@ -51,7 +50,7 @@ from app.storage.layers import (
     still_figure,
     still_picture,
 )
-from app.storage.opening import Cut, cut_picture, open_picture
+from app.storage.opening import Cut, OpenedScene, cut_picture, open_picture
 from app.storage.pictures import (
     Layer,
     LayeredPicture,
@@ -104,7 +103,6 @@ __all__ = [
     "as_number",
     "as_object",
     "as_point",
-    "as_scene",
     "as_text",
     "as_whole",
     "atomic_file",

@@ -13,24 +13,12 @@ def sample_images() -> Path:
 
 
 def shader_source(name: str) -> str:
-    """Return the text of a GLSL file.
-
-    Raises
-    ------
-    LissomError
-        If the installation lacks it.
-    """
+    """Return the text of a GLSL file."""
     return _read(_folder("shaders") / name).decode()
 
 
 def app_icon() -> bytes:
-    """Return the icon of Lissom, a PNG picture of 512 × 512 pixels.
-
-    Raises
-    ------
-    LissomError
-        If the installation lacks it.
-    """
+    """Return the icon of Lissom, a PNG picture of 512 × 512 pixels."""
     return _read(_folder("icon") / "lissom.png")
 
 

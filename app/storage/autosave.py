@@ -15,6 +15,7 @@ from types import MappingProxyType
 from typing import NamedTuple
 
 from app.document import Document
+from app.errors import shown_name
 from app.storage.files import is_locked, lock
 from app.storage.preferences import make_settings_folder
 from app.storage.project_file import load_member, load_project, save_project
@@ -53,11 +54,6 @@ class Autosave:
         """Keep a document and where it came from, in place of an earlier one.
 
         What another thread still writes is waited for, so that the last one asked for stays.
-
-        Raises
-        ------
-        LissomError
-            If the file cannot be written.
         """
         told = json.dumps({"name": origin.name, "path": origin.path and str(origin.path)}).encode()
         # One file with both, so that they are of one time however this ends.
@@ -88,7 +84,7 @@ class Autosave:
 
 
 def find_leftovers(folder: Path) -> list[Path]:
-    """Return what windows kept that are gone, the newest first."""
+    """Return the files of unsaved work whose windows are gone, the newest first."""
     found = {}
     for path in folder.glob("unsaved-*.lissom"):
         if not is_locked(_lock_of(path)):
@@ -98,13 +94,7 @@ def find_leftovers(folder: Path) -> list[Path]:
 
 
 def load_leftover(path: Path) -> tuple[Document, Origin]:
-    """Read what a window kept that is gone, and where that came from.
-
-    Raises
-    ------
-    LissomError
-        As `load_project`.
-    """
+    """Read unsaved work, and where it came from."""
     document = load_project(path)
     attachments = dict(document.attachments)
     origin = _origin(attachments.pop(ORIGIN, b""))
@@ -112,12 +102,12 @@ def load_leftover(path: Path) -> tuple[Document, Origin]:
 
 
 def leftover_origin(path: Path) -> Origin:
-    """Return where work came from that a window kept, without reading the work itself."""
+    """Return where unsaved work came from, without reading the work itself."""
     return _origin(load_member(path, ORIGIN, LARGEST_ORIGIN) or b"")
 
 
 def remove_leftover(path: Path) -> None:
-    """Remove what a window kept that is gone."""
+    """Remove unsaved work of a window that is gone."""
     path.unlink(missing_ok=True)
     _lock_of(path).unlink(missing_ok=True)
 
@@ -127,9 +117,9 @@ def _origin(told: bytes) -> Origin:
     try:
         match json.loads(told):
             case {"name": str(name), "path": str(path)} if Path(path).is_absolute():
-                return Origin(name, Path(path))
+                return Origin(shown_name(name), Path(path))
             case {"name": str(name)}:
-                return Origin(name, None)
+                return Origin(shown_name(name), None)
     except (ValueError, RecursionError):
         pass
     return UNKNOWN

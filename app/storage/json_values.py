@@ -1,11 +1,17 @@
-"""Reading decoded JSON by kind; the errors name the field, what it must be and what it is."""
+"""Decoded JSON, read and written by kind; errors name the field, what it must be and what it is."""
 
 import json
 import math
 from collections import Counter
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from operator import attrgetter
+from types import MappingProxyType
 from typing import Any
 
-from app.errors import LissomError
+from app.errors import LissomError, shown_name
+
+MISSING: Any = object()  # in place of a value that there is not
 
 
 class JsonObject(dict[str, Any]):
@@ -37,7 +43,7 @@ def as_text(content: object, where: str) -> str:
     """Return a text."""
     if not isinstance(content, str):
         raise LissomError(f"{where} must be a text, not {shown(content)}")
-    return content
+    return shown_name(content)
 
 
 def as_flag(content: object, where: str) -> bool:
@@ -87,3 +93,172 @@ def without_repeats(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
         (repeated, _), *_ = Counter(name for name, _ in pairs).most_common(1)
         raise LissomError(f"the field {repeated!r} is given twice in one object")
     return content
+
+
+@dataclass(frozen=True, slots=True)
+class Codec:
+    """How the values of one kind are written as JSON, and read.
+
+    Parameters
+    ----------
+    write : callable
+        Returns the JSON of a value.
+    read : callable
+        Returns the value of some JSON; the second argument tells where that stands.
+    known : mapping
+        For an object, the fields in it by their names, and those in them likewise: what else there
+        is in it is kept by the object that it is in. Empty for one that keeps that itself.
+    """
+
+    write: Callable[[Any], Any]
+    read: Callable[[object, str], Any]
+    known: Mapping[str, Any] = field(default_factory=dict)
+
+
+def as_it_is(value: Any, _: str = "") -> Any:
+    """Return a value that is its own JSON."""
+    return value
+
+
+ANYTHING = Codec(as_it_is, as_it_is)
+FLAG = Codec(as_it_is, as_flag)
+WHOLE = Codec(as_it_is, as_whole)
+NUMBER = Codec(as_it_is, as_number)
+TEXT = Codec(as_it_is, as_text)
+POINT = Codec(lambda point: [point.real, point.imag], as_point)
+
+
+def optional(codec: Codec) -> Codec:
+    """Return a codec whose values may be None."""
+    return Codec(
+        lambda value: None if value is None else codec.write(value),
+        lambda content, where: None if content is None else codec.read(content, where),
+        codec.known,
+    )
+
+
+def several(codec: Codec) -> Codec:
+    """Return a codec of tuples of so many values as there are."""
+    return Codec(
+        lambda values: [codec.write(value) for value in values],
+        lambda content, where: tuple(
+            codec.read(each, f"{where}[{i}]") for i, each in enumerate(as_list(content, where))
+        ),
+    )
+
+
+def pair(
+    first: Codec,
+    second: Codec,
+    what: str,
+    *,
+    make: Callable[[Any, Any], Any] = lambda one, other: (one, other),
+    of: Callable[[Any], tuple[Any, Any]] = as_it_is,
+) -> Codec:
+    """Return a codec of what is made of two values, which errors call by the words `what`."""
+
+    def write(value: Any) -> list[Any]:
+        one, other = of(value)
+        return [first.write(one), second.write(other)]
+
+    def read(content: object, where: str) -> Any:
+        values = as_list(content, where)
+        if len(values) != 2:
+            raise LissomError(f"{where} must be {what}, not {shown(values)}")
+        return make(first.read(values[0], where), second.read(values[1], where))
+
+    return Codec(write, read)
+
+
+@dataclass(frozen=True, slots=True)
+class Field:
+    """A field of an object.
+
+    Parameters
+    ----------
+    name : str
+    codec : Codec
+    of : callable, optional
+        Returns what it is of an object; by default, that is the attribute of its name.
+    usual : object, optional
+        What it is where it is not written, and where it is, it is not written.
+    earlier : object, optional
+        What it was in files of before it was written, as it always is now.
+    """
+
+    name: str
+    codec: Codec
+    of: Callable[[Any], Any] | None = None
+    usual: Any = MISSING
+    earlier: Any = MISSING
+
+    def told(self, value: Any) -> Any:
+        """Return what the field is of an object."""
+        return getattr(value, self.name) if self.of is None else self.of(value)
+
+    def read(self, content: JsonObject, where: str) -> Any:
+        """Return what the field of some JSON is."""
+        absent = self.earlier if self.usual is MISSING else self.usual
+        if self.name not in content and absent is not MISSING:
+            return absent
+        return self.codec.read(content[self.name], f"{where}.{self.name}" if where else self.name)
+
+
+def record(
+    make: Callable[..., Any],
+    *fields: Field,
+    unknown: Callable[[Any], Mapping[str, Any]] | None = attrgetter("unknown"),
+) -> Codec:
+    """Return a codec of objects.
+
+    Parameters
+    ----------
+    make : callable
+        Makes one of its fields, by their names, and of what else there is in it as `unknown`.
+    *fields : Field
+    unknown : callable, optional
+        Returns what else there was in an object.
+    """
+    known = {field.name: field.codec.known for field in fields}
+
+    def write(value: Any) -> dict[str, Any]:
+        told = ((field, field.told(value)) for field in fields)
+        written = {field.name: field.codec.write(of) for field, of in told if of != field.usual}
+        return with_unknown(written, unknown(value) if unknown else {}, known)
+
+    def read(content: object, where: str) -> Any:
+        content = as_object(content, where or "project.json")
+        values = {field.name: field.read(content, where) for field in fields}
+        return make(**values, **({"unknown": unknown_in(content, known)} if unknown else {}))
+
+    return Codec(write, read, {} if unknown else known)
+
+
+def part(make: Callable[..., Any], *fields: Field) -> Codec:
+    """Return a codec of objects whose unknown fields are kept by the object that they are in."""
+    return record(make, *fields, unknown=None)
+
+
+def unknown_in(content: Mapping[str, Any], known: Mapping[str, Any]) -> Mapping[str, Any]:
+    """Return the fields that are not known, those of inner objects among them."""
+    unknown = {}
+    for name, value in content.items():
+        if name not in known:
+            unknown[name] = value
+        elif known[name] and isinstance(value, dict):
+            inner = unknown_in(value, known[name])
+            if inner:
+                unknown[name] = inner
+    return MappingProxyType(unknown)
+
+
+def with_unknown(
+    written: dict[str, Any], unknown: Mapping[str, Any], known: Mapping[str, Any]
+) -> dict[str, Any]:
+    """Return an object with the unknown fields, which never take a known one's place."""
+    for name, value in unknown.items():
+        if name not in known:
+            written[name] = value
+        elif isinstance(written.get(name), dict):
+            written[name] = with_unknown(written[name], value, known[name])
+    return written

@@ -3,7 +3,6 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import NamedTuple
 
 import numpy as np
 from PIL import Image
@@ -19,9 +18,9 @@ from app.document import (
     layer_commands,
     new_figure,
 )
-from app.errors import LissomError
+from app.errors import LissomError, shown_name
 from app.storage.files import read_file
-from app.storage.opening import OpenedPicture
+from app.storage.opening import OpenedScene
 from app.storage.pictures import (
     Layer,
     LayeredPicture,
@@ -41,27 +40,13 @@ FEWEST_TRIANGLES = 4_000
 WHOLE = CutOut(background="none")  # only what is transparent is left out
 
 
-class OpenedScene(NamedTuple):
-    """A new document, its decoded pictures by the ids of figures, and what was done, in words."""
-
-    document: Document
-    pictures: Mapping[int, Picture]
-    notices: tuple[str, ...]
-
-
 def is_layered(path: Path) -> bool:
     """Tell whether a file's name is that of a drawing on layers."""
     return path.suffix.lower() in READERS
 
 
 def read_layered(path: Path) -> LayeredPicture:
-    """Read a drawing on layers.
-
-    Raises
-    ------
-    LissomError
-        If the file is missing, damaged, or holds no layers that can be used.
-    """
+    """Read a drawing on layers."""
     data = read_file(path)
     try:
         return READERS[path.suffix.lower()](data)
@@ -74,11 +59,6 @@ def open_layered(path: Path, meshing: Meshing) -> OpenedScene:
 
     A layer that is opaque all over, or on which no shape is found, becomes a still picture. All
     layers together have the triangles that one picture would have.
-
-    Raises
-    ------
-    LissomError
-        If the file is missing, damaged, or holds no layers that can be used.
     """
     return _scene(read_layered(path), meshing, is_cut_out=True)
 
@@ -87,11 +67,6 @@ def open_pictures(paths: Sequence[Path], meshing: Meshing) -> OpenedScene:
     """Read several pictures, and make each of them a figure, the first one behind all others.
 
     The canvas is as large as the largest of them; the others stand in its middle.
-
-    Raises
-    ------
-    LissomError
-        If one of the files is no picture.
     """
     layers: list[Layer] = []
     taken: set[str] = set()
@@ -103,19 +78,13 @@ def open_pictures(paths: Sequence[Path], meshing: Meshing) -> OpenedScene:
         max(picture.size[1] for picture in pictures),
     )
     for path, (data, _), picture in zip(paths, files, pictures, strict=True):
-        name = layer_commands.numbered_name(path.stem, taken)
+        name = layer_commands.numbered_name(shown_name(path.stem), taken)
         taken.add(name)
         corner = complex((size[0] - picture.size[0]) // 2, (size[1] - picture.size[1]) // 2)
         layers.append(Layer(name=name, data=data, picture=picture, corner=corner))
         notices += [f"{name}: {notice}" for notice in picture.notices]
     drawing = LayeredPicture(size=size, layers=tuple(layers), notices=tuple(notices))
     return _scene(drawing, meshing, is_cut_out=False)
-
-
-def as_scene(opened: OpenedPicture) -> OpenedScene:
-    """Return a picture as a scene of one figure."""
-    document, picture, notices = opened
-    return OpenedScene(document, {document.figures[0].id: picture}, notices)
 
 
 def flattened(document: Document, textures: Mapping[int, Bytes]) -> Bytes:

@@ -1,10 +1,12 @@
 """From a picture file to a new document, and from a picture to what is painted on its mesh."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import NamedTuple, Self
 
 from app.document import Document, Meshing, PictureFile, new_figure
+from app.errors import shown_name
 from app.storage.files import read_file
 from app.storage.pictures import Picture, decode_picture
 from engine.arrays import Booleans, Bytes, freeze
@@ -12,11 +14,11 @@ from engine.domain import CutOut, HoleMap, build_domain, find_holes, subject_mas
 from engine.errors import EngineError
 
 
-class OpenedPicture(NamedTuple):
-    """A new document, its decoded picture, and every remedy that was applied, in words."""
+class OpenedScene(NamedTuple):
+    """A new document, its decoded pictures by the ids of figures, and what was done, in words."""
 
     document: Document
-    picture: Picture
+    pictures: Mapping[int, Picture]
     notices: tuple[str, ...]
 
 
@@ -43,11 +45,11 @@ class Cut:
 
     @classmethod
     def of(cls, kept: Booleans, texture: Bytes, holes: HoleMap | None = None) -> Self:
-        """Look once whether anything was cut off; pictures are large."""
+        """Return a cut, with its `is_all` found once: pictures are large."""
         return cls(kept, texture, holes, bool(kept.all()))
 
 
-def open_picture(path: Path, meshing: Meshing, cut_out: CutOut = CutOut()) -> OpenedPicture:
+def open_picture(path: Path, meshing: Meshing, cut_out: CutOut = CutOut()) -> OpenedScene:
     """Read a picture, find its outline, and return the document that shows it as it was drawn.
 
     Raises
@@ -62,9 +64,9 @@ def open_picture(path: Path, meshing: Meshing, cut_out: CutOut = CutOut()) -> Op
     )
     file = PictureFile(data=data, suffix=picture.suffix, size=picture.size)
     figure = new_figure(file, domain, meshing, cut_out)
-    named = replace(figure, name=path.stem.strip() or figure.name)
-    document = Document(figures=(named,))
-    return OpenedPicture(document, picture, picture.notices + remedies)
+    named = replace(figure, name=shown_name(path.stem).strip() or figure.name)
+    notices = picture.notices + remedies
+    return OpenedScene(Document(figures=(named,)), {named.id: picture}, notices)
 
 
 def cut_picture(picture: Picture, cut_out: CutOut) -> Cut:

@@ -99,13 +99,7 @@ def settings_folder() -> Path:
 
 
 def make_settings_folder(folder: Path) -> None:
-    """Make the folder for settings and unsaved work.
-
-    Raises
-    ------
-    LissomError
-        If that is not possible, or nothing can be written there.
-    """
+    """Make the folder for settings and unsaved work."""
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
@@ -126,13 +120,7 @@ def load_preferences(folder: Path) -> Preferences:
 
 
 def save_preferences(folder: Path, preferences: Preferences) -> None:
-    """Write the preferences; where that fails, they are as before next time.
-
-    Raises
-    ------
-    LissomError
-        If it fails.
-    """
+    """Write the preferences; where that fails, they are as before next time."""
     # Paths, alone or in a list, are what JSON does not know.
     content = {**asdict(preferences), "easing": preferences.easing.written()}
     text = json.dumps(content, indent=1, default=str).encode()

@@ -8,6 +8,7 @@ from imgui_bundle import icons_fontawesome_6 as icons
 
 from app.editor import Action, Session, do
 from app.editor.actions import files
+from app.errors import shown_name
 from app.render import Thumbnail
 from app.ui.shortcuts import BINDINGS
 from app.ui.style import LARGE, SMALL, TITLE, Look, ink, main_button, show_picture
@@ -155,11 +156,11 @@ def _row(look: Look, path: Path, index: int, image: Thumbnail | None, *, is_ther
         _write(icons.ICON_FA_CLOCK_ROTATE_LEFT, corner.x + em, corner.y + 0.5 * size.y)
     else:
         show_picture(image.texture, image.size, corner, ImVec2(3 * em, size.y))
-    _write(path.name, corner.x + 3.6 * em, corner.y + 0.3 * size.y)
+    _write(shown_name(path.name), corner.x + 3.6 * em, corner.y + 0.3 * size.y)
     imgui.push_font(None, SMALL * imgui.get_style().font_size_base)
     imgui.push_style_color(imgui.Col_.text, look.palette.dim)
     where = str(path.parent) if is_there else f"not found in {path.parent}"
-    _write(where, corner.x + 3.6 * em, corner.y + 0.72 * size.y)
+    _write(shown_name(where), corner.x + 3.6 * em, corner.y + 0.72 * size.y)
     imgui.pop_style_color()
     imgui.pop_font()
     imgui.pop_clip_rect()

@@ -297,7 +297,7 @@ def full_document() -> Document:
             extent=12.5,
             unknown=more,
         ),
-        Handle(id=4, name="Fuß\n\ud800", position=60 + 100j),
+        Handle(id=4, name="Fuß\n\N{REPLACEMENT CHARACTER}", position=60 + 100j),
     )
     targets = {
         1: Target(position=1e3 - 0.1j, rotation=-0.25, unknown=more),

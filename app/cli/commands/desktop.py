@@ -15,6 +15,7 @@ import sysconfig
 from contextlib import suppress
 from pathlib import Path
 
+from app.cli.console import say
 from app.errors import LissomError
 from app.storage import app_icon, decode_picture, draw_thumbnail, home_folder, write_atomically
 
@@ -87,12 +88,10 @@ def run(arguments: argparse.Namespace) -> int:
     try:
         if arguments.install:
             _install(home)
-            print(
-                f"Lissom is in the menu of applications, and .lissom files open with it ({home})."
-            )
+            say(f"Lissom is in the menu of applications, and .lissom files open with it ({home}).")
         else:
             _remove(home)
-            print(f"Nothing of Lissom is left in {home}.")
+            say(f"Nothing of Lissom is left in {home}.")
     except OSError as error:
         raise LissomError(f"cannot change {error.filename}: {error.strerror}") from error
     return 0

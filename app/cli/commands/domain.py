@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from app.cli.console import notice
+from app.cli.console import notice, say
 from app.cli.cut_out import read_cut_out
 from app.cli.hole_arrays import hole_arrays
 from app.errors import LissomError
@@ -59,7 +59,7 @@ def run(arguments: argparse.Namespace) -> int:
         },
     )
     kept = f", {len(holes)} {'hole' if len(holes) == 1 else 'holes'}" if holes else ""
-    print(
+    say(
         f"{arguments.out}: {picture.size[0]} × {picture.size[1]} pixels, outline and cage of "
         f"{sum(map(len, domain.cages))} vertices{kept}, {len(mesh.triangles):,} triangles"
     )

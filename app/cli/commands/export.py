@@ -7,7 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from app.cli.console import StatusLine, notice
+from app.cli.console import StatusLine, notice, say
 from app.document import Document, ExportSettings, FrameRange, clip_of
 from app.errors import LissomError
 from app.export import (
@@ -56,7 +56,7 @@ def run(arguments: argparse.Namespace) -> int:
     else:
         light = with_light_meshes(document, request.settings.shapes.triangles)
         summary = _film(light, pictures, request, arguments)
-    print(summary)
+    say(summary)
     return 0
 
 

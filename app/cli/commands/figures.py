@@ -3,7 +3,7 @@
 import argparse
 from pathlib import Path
 
-from app.cli.console import StatusLine
+from app.cli.console import StatusLine, say
 from app.cli.figures import MAKERS, Easel, Plate, Studio, lay_out, require_matplotlib
 from app.storage import write_atomically
 
@@ -22,7 +22,7 @@ def run(arguments: argparse.Namespace) -> int:
     _write(arguments.out / "figures.html", lay_out(plates).encode())
     for number, plate in plates.items():
         print(f"\nFigure {number}: {plate.title}\n{_as_table(plate)}")
-    print(f"\n{arguments.out}: {len(plates)} figures")
+    say(f"\n{arguments.out}: {len(plates)} figures")
     return 0
 
 

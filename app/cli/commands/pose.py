@@ -2,12 +2,11 @@
 
 import argparse
 
-from app.cli.console import StatusLine, notice
+from app.cli.console import StatusLine, notice, say
 from app.cli.cut_out import read_cut_out
 from app.document import Meshing
 from app.solving import load_pose_script, pose_document
 from app.storage import (
-    as_scene,
     check_writable,
     cut_picture,
     draw_thumbnail,
@@ -28,7 +27,7 @@ def run(arguments: argparse.Namespace) -> int:
     if is_layered(arguments.picture):
         opened = open_layered(arguments.picture, meshing)
     else:
-        opened = as_scene(open_picture(arguments.picture, meshing, cut_out))
+        opened = open_picture(arguments.picture, meshing, cut_out)
     for message in opened.notices:
         notice(message)
     with StatusLine() as status:
@@ -45,5 +44,5 @@ def run(arguments: argparse.Namespace) -> int:
     keys = sum(len(figure.keys) for figure in posed)
     handles = sum(len(figure.handles) for figure in posed)
     layers = "" if len(document.figures) == 1 else f"{len(document.figures)} layers, "
-    print(f"{arguments.out}: {layers}{keys} keys, {handles} handles")
+    say(f"{arguments.out}: {layers}{keys} keys, {handles} handles")
     return 0

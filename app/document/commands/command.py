@@ -15,7 +15,7 @@ it changes nothing.
 """
 
 import functools
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from dataclasses import dataclass
 from typing import Concatenate, ParamSpec
 
@@ -23,6 +23,13 @@ from app.document.figure import Figure
 from app.document.model import Document
 
 Arguments = ParamSpec("Arguments")
+
+
+def numbered(name: str, taken: Collection[str], number: int) -> str:
+    """Return a name with the first number, from one on, with which it is not taken."""
+    while f"{name} {number}" in taken:
+        number += 1
+    return f"{name} {number}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,14 +75,12 @@ def figure_command(
     def make(
         change: Callable[Concatenate[Figure, Arguments], Figure],
     ) -> Callable[Concatenate[int, Arguments], Command]:
+        @command(label)
         @functools.wraps(change)
-        def bind(figure: int, /, *args: Arguments.args, **kwargs: Arguments.kwargs) -> Command:
-            return Command(
-                label,
-                lambda document: document.with_figure(
-                    change(document.figure(figure), *args, **kwargs)
-                ),
-            )
+        def bind(
+            document: Document, figure: int, /, *args: Arguments.args, **kwargs: Arguments.kwargs
+        ) -> Document:
+            return document.with_figure(change(document.figure(figure), *args, **kwargs))
 
         return bind
 

@@ -7,7 +7,6 @@ from app.document.commands.command import figure_command
 from app.document.figure import Figure
 from app.document.keyframe import Pose
 from app.document.settings import Meshing
-from app.errors import LissomError
 from engine.domain import CutOut, Domain, Stroke
 from engine.maps import Bounds
 from engine.variant import Variant
@@ -38,7 +37,7 @@ def set_bounds(figure: Figure, bounds: Bounds, poses: Sequence[Pose] | None = No
         they are.
     """
     if poses is not None:
-        return replace(_posed(figure, poses), bounds=bounds)
+        return figure.with_poses(poses, bounds=bounds)
     return figure if bounds == figure.bounds else replace(figure, bounds=bounds)
 
 
@@ -74,23 +73,4 @@ def replace_domain(
         One for each of the figure's, solved again over the new cage.
     """
     unknown = {name: value for name, value in figure.unknown.items() if name != "domain"}
-    posed = _posed(figure, poses, domain)
-    return replace(posed, meshing=meshing, is_stale=False, unknown=unknown)
-
-
-def _posed(figure: Figure, poses: Sequence[Pose], domain: Domain | None = None) -> Figure:
-    """Return the figure with other poses, in the order of `Figure.poses`, over a domain."""
-    if len(poses) != len(figure.poses):
-        raise LissomError(f"There are {len(figure.poses)} poses, but {len(poses)} in their place.")
-    count = len(figure.keys)
-    return replace(
-        figure,
-        domain=domain or figure.domain,
-        keys=tuple(
-            replace(key, pose=pose) for key, pose in zip(figure.keys, poses[:count], strict=True)
-        ),
-        library=tuple(
-            replace(kept, pose=pose)
-            for kept, pose in zip(figure.library, poses[count:], strict=True)
-        ),
-    )
+    return figure.with_poses(poses, domain=domain, meshing=meshing, is_stale=False, unknown=unknown)

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from app.document.commands.command import figure_command
+from app.document.commands.command import figure_command, numbered
 from app.document.figure import Figure
 from app.document.keyframe import Handle, Pose, Target
 
@@ -78,28 +78,28 @@ def remove_handles(figure: Figure, identities: Collection[int]) -> Figure:
 @figure_command("Rename handle")
 def rename_handle(figure: Figure, identity: int, name: str) -> Figure:
     """Give a handle another name."""
-    return _with_handles(figure, {identity}, name=name)
+    return with_handles(figure, {identity}, name=name)
 
 
 @figure_command("Set handle weight")
 def weigh_handles(figure: Figure, identities: Collection[int], weight: float) -> Figure:
     """Let handles pull more or less strongly in poses that are solved from now on."""
-    return _with_handles(figure, identities, weight=weight)
+    return with_handles(figure, identities, weight=weight)
 
 
 @figure_command("Lock or unlock handles")
 def lock_handles(figure: Figure, identities: Collection[int], *, locked: bool) -> Figure:
     """Let handles hold their places, or not any more."""
-    return _with_handles(figure, identities, locked=locked)
+    return with_handles(figure, identities, locked=locked)
 
 
 @figure_command("Group handles")
 def group_handles(figure: Figure, identities: Collection[int], group: str) -> Figure:
     """Let handles be taken together under a name; "" parts them from others."""
-    return _with_handles(figure, identities, group=group.strip())
+    return with_handles(figure, identities, group=group.strip())
 
 
-def _with_handles(figure: Figure, identities: Collection[int], **changes: Any) -> Figure:
+def with_handles(figure: Figure, identities: Collection[int], **changes: Any) -> Figure:
     """Return the figure with some fields of some handles changed, itself if they have them."""
     for identity in identities:
         figure.handle(identity)
@@ -114,12 +114,10 @@ def _with_poses(
     figure: Figure, change: Callable[[Pose], Pose], handles: tuple[Handle, ...]
 ) -> Figure:
     """Return the figure with other handles, and every pose of it changed."""
-    return replace(
-        figure,
+    return figure.with_poses(
+        map(change, figure.poses),
         handles=handles,
         next_handle=max([figure.next_handle, *(handle.id + 1 for handle in handles)]),
-        keys=tuple(replace(key, pose=change(key.pose)) for key in figure.keys),
-        library=tuple(replace(kept, pose=change(kept.pose)) for kept in figure.library),
     )
 
 
@@ -135,7 +133,4 @@ def _follow(figure: Figure, handle: Handle, pose: Pose) -> Pose:
 def free_name(figure: Figure, after: int = 0) -> str:
     """Return a name that no handle has, for the next handle but `after`."""
     taken = {handle.name for handle in figure.handles}
-    number = figure.next_handle + 1 + after
-    while f"handle {number}" in taken:
-        number += 1
-    return f"handle {number}"
+    return numbered("handle", taken, figure.next_handle + 1 + after)

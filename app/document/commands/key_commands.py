@@ -14,7 +14,7 @@ from app.errors import LissomError
 @figure_command("Pose")
 def pose_key(figure: Figure, frame: int, pose: Pose) -> Figure:
     """Give the key at a frame another pose."""
-    return _exchange(figure, {frame: replace(figure.key(frame), pose=pose)})
+    return exchange(figure, {frame: replace(figure.key(frame), pose=pose)})
 
 
 @figure_command("Insert key")
@@ -34,7 +34,7 @@ def put_pose(figure: Figure, frame: int, pose: Pose, easing: Easing) -> Figure:
     if frame not in figure.key_frames:
         return _inserted(figure, frame, pose, easing)
     old = figure.key(frame)
-    return figure if old.pose is pose else _exchange(figure, {frame: replace(old, pose=pose)})
+    return figure if old.pose is pose else exchange(figure, {frame: replace(old, pose=pose)})
 
 
 @figure_command("Paste keys")
@@ -47,10 +47,8 @@ def put_keys(figure: Figure, keys: Sequence[Keyframe]) -> Figure:
 @figure_command("Move keys")
 def move_keys(figure: Figure, frames: Collection[int], by: int) -> Figure:
     """Move the keys at some frames by a number of frames."""
-    keys = _keys_at(figure, frames)
-    if by == 0 or not keys:
-        return figure
-    return _exchange(figure, {key.frame: replace(key, frame=key.frame + by) for key in keys})
+    moved = {key.frame: replace(key, frame=key.frame + by) for key in _keys_at(figure, frames)}
+    return exchange(figure, moved) if by else figure
 
 
 @figure_command("Copy keys")
@@ -97,7 +95,7 @@ def reverse_keys(
         key.frame: replace(key, frame=ends - key.frame, easing=easing, turns=turns)
         for key, (easing, turns) in zip(keys, ways, strict=True)
     }
-    return _exchange(figure, turned)
+    return exchange(figure, turned)
 
 
 @figure_command("Scale time of keys")
@@ -119,10 +117,9 @@ def scale_keys(
     if factor == 1 or not keys:
         return figure
     first = keys[0].frame if first is None else first
-    if all(key.frame == first for key in keys):
-        return figure
-    return _exchange(
-        figure, {key.frame: replace(key, frame=scaled(key.frame, first, factor)) for key in keys}
+    moved = [key for key in keys if key.frame != first]
+    return exchange(
+        figure, {key.frame: replace(key, frame=scaled(key.frame, first, factor)) for key in moved}
     )
 
 
@@ -134,16 +131,14 @@ def match_ends(figure: Figure) -> Figure:
         raise LissomError("A loop needs two keys; insert a second one first.")
     if first.pose is last.pose:
         return figure
-    return _exchange(figure, {last.frame: replace(last, pose=first.pose)})
+    return exchange(figure, {last.frame: replace(last, pose=first.pose)})
 
 
 @figure_command("Set easing")
 def set_easing(figure: Figure, frames: Collection[int], easing: Easing) -> Figure:
     """Set how time runs from the keys at some frames to the next ones."""
     keys = [key for key in _keys_at(figure, frames) if key.easing != easing]
-    if not keys:
-        return figure
-    return _exchange(figure, {key.frame: replace(key, easing=easing) for key in keys})
+    return exchange(figure, {key.frame: replace(key, easing=easing) for key in keys})
 
 
 @figure_command("Set passing")
@@ -158,16 +153,14 @@ def set_passing(figure: Figure, frames: Collection[int], passing: Passing) -> Fi
         else:
             easing = LINEAR if key.easing == HOLD else key.easing
             changed[key.frame] = replace(key, easing=easing, passing=passing)
-    return _exchange(figure, changed) if changed else figure
+    return exchange(figure, changed)
 
 
 @figure_command("Set turns")
 def set_turns(figure: Figure, frames: Collection[int], turns: int) -> Figure:
     """Set how often the shape turns round on the way from the keys at some frames."""
     keys = [key for key in _keys_at(figure, frames) if key.turns != turns]
-    if not keys:
-        return figure
-    return _exchange(figure, {key.frame: replace(key, turns=turns) for key in keys})
+    return exchange(figure, {key.frame: replace(key, turns=turns) for key in keys})
 
 
 def _inserted(figure: Figure, frame: int, pose: Pose, easing: Easing) -> Figure:
@@ -186,9 +179,10 @@ def _keys_at(figure: Figure, frames: Iterable[int]) -> list[Keyframe]:
     return [figure.key(frame) for frame in sorted(set(frames))]
 
 
-def _exchange(figure: Figure, changed: dict[int, Keyframe]) -> Figure:
-    """Return the figure with others for the keys at some frames."""
-    return _with_keys(figure, [changed.get(key.frame, key) for key in figure.keys])
+def exchange(figure: Figure, changed: dict[int, Keyframe]) -> Figure:
+    """Return the figure with others for the keys at some frames, itself if there are none."""
+    keys = [changed.get(key.frame, key) for key in figure.keys]
+    return _with_keys(figure, keys) if changed else figure
 
 
 def _with_keys(figure: Figure, keys: Iterable[Keyframe]) -> Figure:

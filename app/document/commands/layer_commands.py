@@ -5,7 +5,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from app.document.commands.command import command, figure_command
+from app.document.commands.command import command, figure_command, numbered
+from app.document.commands.handle_commands import with_handles
+from app.document.commands.key_commands import exchange
 from app.document.figure import Figure
 from app.document.keyframe import Pose, Target
 from app.document.layering import Attachment, Switch
@@ -39,7 +41,7 @@ def replace_figure(document: Document, identity: int, figure: Figure) -> Documen
 
 @command("Keep joints")
 def keep_joints(document: Document, identity: int) -> Document:
-    """Let what hangs on a figure hang on the nearest points of it where its shape has shrunk."""
+    """Move joints that are beside a figure now to the nearest points of it."""
     domain = document.figure(identity).domain
     for child in document.figures:
         joint = child.attachment
@@ -138,7 +140,7 @@ def switch_at(figure: Figure, frame: int, *, visible: bool | None) -> Figure:
 
 @figure_command("Move visibility")
 def move_switch(figure: Figure, frame: int, to: int) -> Figure:
-    """Let a figure that comes to be seen or hidden at a frame do so at another one."""
+    """Move the frame at which a figure is shown or hidden."""
     moved = [switch for switch in figure.switches if switch.frame == frame]
     if not moved:
         raise LissomError(f"{figure.name!r} is neither shown nor hidden at frame {frame}.")
@@ -174,24 +176,14 @@ def detach(document: Document, identity: int, factor: complex, shift: complex) -
     figure = document.figure(identity)
     if figure.attachment is None:
         return document
-    keys = tuple(
-        replace(key, pose=_carried(figure, key.pose, factor, shift)) for key in figure.keys
-    )
-    library = tuple(
-        replace(kept, pose=_carried(figure, kept.pose, factor, shift)) for kept in figure.library
-    )
-    return document.with_figure(replace(figure, keys=keys, library=library, attachment=None))
+    poses = (_carried(figure, pose, factor, shift) for pose in figure.poses)
+    return document.with_figure(figure.with_poses(poses, attachment=None))
 
 
 @figure_command("Set depth")
 def set_front(figure: Figure, identity: int, front: float, extent: float | None) -> Figure:
     """Set what is in front around a handle, where no key says otherwise, and how far around it."""
-    handle = figure.handle(identity)
-    if (handle.front, handle.extent) == (front, extent):
-        return figure
-    changed = replace(handle, front=float(front), extent=extent)
-    handles = tuple(changed if other.id == identity else other for other in figure.handles)
-    return replace(figure, handles=handles)
+    return with_handles(figure, {identity}, front=float(front), extent=extent)
 
 
 @figure_command("Set depth from here on")
@@ -204,8 +196,7 @@ def key_front(figure: Figure, frame: int, identity: int, front: float | None) ->
         fronts[handle.id] = float(front)
     if fronts == key.fronts:
         return figure
-    changed = replace(key, fronts=fronts)
-    return replace(figure, keys=tuple(changed if k is key else k for k in figure.keys))
+    return exchange(figure, {frame: replace(key, fronts=fronts)})
 
 
 def free_identity(document: Document) -> int:
@@ -220,11 +211,7 @@ def free_name(document: Document, name: str) -> str:
 
 def numbered_name(name: str, taken: Collection[str]) -> str:
     """Return a name that is not taken: this one, or this one with a number."""
-    number, free = 1, name
-    while free in taken:
-        number += 1
-        free = f"{name} {number}"
-    return free
+    return numbered(name, taken, 2) if name in taken else name
 
 
 def _with(document: Document, identity: int, **changes: object) -> Document:

@@ -2,22 +2,22 @@
 
 from collections.abc import Callable
 from dataclasses import replace
-from typing import TypeVar
 
-from app.document.commands.command import figure_command
+from app.document.commands.command import figure_command, numbered
 from app.document.figure import Figure
-from app.document.keyframe import KeptPose, Keyframe, Pose
+from app.document.keyframe import KeptPose, Pose
 from app.document.model import Document
 
 # Of a figure and a pose of it: the pose to which that one has gone on.
 Settled = Callable[[Figure, Pose], Pose]
-Posed = TypeVar("Posed", Keyframe, KeptPose)
 
 
 @figure_command("Keep pose")
 def keep_pose(figure: Figure, pose: Pose, name: str | None = None) -> Figure:
     """Put a pose into the library, by default under a name that no other one has."""
-    kept = KeptPose(name=_free_name(figure) if name is None else name, pose=pose)
+    taken = {kept.name for kept in figure.library}
+    free = numbered("Pose", taken, len(taken) + 1)
+    kept = KeptPose(name=free if name is None else name, pose=pose)
     return replace(figure, library=(*figure.library, kept))
 
 
@@ -47,27 +47,7 @@ def set_mirror(figure: Figure, mirror: float | None) -> Figure:
 def exchanged(document: Document, old: Pose, new: Settled) -> Document:
     """Return a document in which another pose stands wherever one with the map of `old` does."""
     for figure in document.figures:
-        keys = _exchanged(figure, figure.keys, old, new)
-        library = _exchanged(figure, figure.library, old, new)
-        if keys is not figure.keys or library is not figure.library:
-            document = document.with_figure(replace(figure, keys=keys, library=library))
+        if any(pose.phi is old.phi for pose in figure.poses):
+            poses = (new(figure, pose) if pose.phi is old.phi else pose for pose in figure.poses)
+            document = document.with_figure(figure.with_poses(poses))
     return document
-
-
-def _exchanged(
-    figure: Figure, posed: tuple[Posed, ...], old: Pose, new: Settled
-) -> tuple[Posed, ...]:
-    if all(each.pose.phi is not old.phi for each in posed):
-        return posed
-    return tuple(
-        replace(each, pose=new(figure, each.pose)) if each.pose.phi is old.phi else each
-        for each in posed
-    )
-
-
-def _free_name(figure: Figure) -> str:
-    taken = {kept.name for kept in figure.library}
-    number = len(taken) + 1
-    while f"Pose {number}" in taken:
-        number += 1
-    return f"Pose {number}"

@@ -4,7 +4,7 @@ from collections.abc import Iterable
 from dataclasses import replace
 from itertools import pairwise
 
-from app.document.commands.command import command
+from app.document.commands.command import command, numbered
 from app.document.commands.key_commands import require_factor, scaled, stretched
 from app.document.model import Document
 from app.document.settings import ExportSettings, FrameRange, Marker
@@ -82,10 +82,8 @@ def scale_time(document: Document, factor: float) -> Document:
 def add_marker(document: Document, frame: int, name: str | None = None) -> Document:
     """Mark a frame, by default under a name that no other marker has."""
     taken = {marker.name for marker in document.markers}
-    number = len(document.markers) + 1
-    while f"Marker {number}" in taken:
-        number += 1
-    marker = Marker(frame=frame, name=f"Marker {number}" if name is None else name)
+    free = numbered("Marker", taken, len(document.markers) + 1)
+    marker = Marker(frame=frame, name=free if name is None else name)
     return _with_markers(document, (*document.markers, marker))
 
 

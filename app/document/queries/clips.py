@@ -49,8 +49,7 @@ def clip_of(document: Document, figure: int) -> Clip:
 def closes(clip: Clip) -> bool:
     """Tell whether there are frames that blend the last key into the first one."""
     between = clip.keys[-1].frame - clip.keys[0].frame
-    period = clip.period
-    return clip.loop and 0 < between < period
+    return clip.loop and 0 < between < clip.period
 
 
 def intervals(clip: Clip) -> tuple[tuple[int, int], ...]:

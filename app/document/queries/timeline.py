@@ -37,13 +37,7 @@ def time_of(clip: Clip, frame: float) -> Moment:
 
     Before the first key and after the last one their poses stand still. In a loop the last key
     leads on to the first one across the end of the animation, whose last frame is its first one
-    again; frames beyond the ends come round.
-
-    Parameters
-    ----------
-    clip : Clip
-    frame : float
-        Frame number; fractions lie between frames.
+    again; frames beyond the ends come round. Fractions lie between frames.
     """
     keys = clip.keys
     period = clip.period
@@ -83,14 +77,11 @@ def changed_stretches(before: Document, after: Document) -> list[FrameRange]:
     others = {figure.id: figure for figure in before.figures}
     for figure in after.figures:
         other = others.get(figure.id)
-        if other is not None and other.keys is not figure.keys and _are_alike(other, figure):
+        is_alike = other and other.domain is figure.domain and other.handles == figure.handles
+        if other and is_alike and other.keys is not figure.keys:
             stretches += _changed_keys(other, figure)
     marks = set(before.markers) ^ set(after.markers)
     return stretches + [FrameRange(marker.frame, marker.frame) for marker in marks]
-
-
-def _are_alike(figure: Figure, other: Figure) -> bool:
-    return figure.domain is other.domain and figure.handles == other.handles
 
 
 def _changed_keys(before: Figure, after: Figure) -> list[FrameRange]:
@@ -132,24 +123,20 @@ def framed_frames(document: Document, exported: FrameRange) -> FrameRange:
 
 def _is_same(document: Document, first: int, second: int) -> bool:
     """Tell whether two frames show the same pose, or two that were solved for the same wishes."""
-    return all(
-        _poses_alike(clip_of(document, figure.id), first, second) for figure in document.figures
-    )
+    clips = (clip_of(document, figure.id) for figure in document.figures)
+    return all(_poses_alike(clip, time_of(clip, first), time_of(clip, second)) for clip in clips)
 
 
-def _poses_alike(clip: Clip, first: int, second: int) -> bool:
-    moments = time_of(clip, first), time_of(clip, second)
-    if moments[0] == moments[1]:
+def _poses_alike(clip: Clip, first: Moment, second: Moment) -> bool:
+    if first == second:
         return True
-    poses = [resting_pose(clip, moment) for moment in moments]
-    if poses[0] is None or poses[1] is None:
+    one, other = resting_pose(clip, first), resting_pose(clip, second)
+    if one is None or other is None:
         return False
-    if poses[0] is poses[1]:
-        return True
-    pairs = [(target, poses[1].targets[handle]) for handle, target in poses[0].targets.items()]
-    return all(
-        abs(one.position - other.position) <= SAME_PLACE and one.rotation == other.rotation
-        for one, other in pairs
+    return one is other or all(
+        abs(target.position - other.targets[handle].position) <= SAME_PLACE
+        and target.rotation == other.targets[handle].rotation
+        for handle, target in one.targets.items()
     )
 
 

@@ -44,7 +44,7 @@ class Transit:
         return len(self.keys) > 2
 
     def weight(self, share: float) -> float:
-        """Return how far a share of the interval's time, in [0, 1], leads on the way."""
+        """Return which share of the way is done after a share of the interval's time."""
         if isinstance(self.start, Joint) or isinstance(self.end, Joint):
             return share
         if self.start == self.end == 1.0:
@@ -110,7 +110,7 @@ def _passed(clip: Clip, index: int) -> tuple[Passed, Passed]:
 
 
 def _rest(pace: float) -> float:
-    """Return the share of a straight blend's pace with which a key is met at rest."""
+    """Return 0 where a blend must stop at a key, and 1 where its easing stops there by itself."""
     return 1.0 if pace == 0.0 else 0.0
 
 

@@ -22,7 +22,7 @@ from app.editor.failures import report, sentence
 from app.editor.jobs import Job
 from app.editor.project import Project
 from app.editor.session import ExportRun, Session, with_project
-from app.errors import LissomError
+from app.errors import LissomError, shown_name
 from app.export import (
     ExportRequest,
     FrameNames,
@@ -339,7 +339,7 @@ def open_folder(session: Session, folder: Path) -> None:
         subprocess.Popen([opener, folder], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)  # noqa: S603
     except OSError:
         raise LissomError(f"no file manager was found; the folder is {folder}") from None
-    session.hint = str(folder)
+    session.hint = shown_name(folder)
 
 
 @with_project

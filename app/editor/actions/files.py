@@ -16,6 +16,7 @@ from app.editor.failures import report, sentence
 from app.editor.jobs import Job
 from app.editor.project import Project, Puppet
 from app.editor.session import Session
+from app.errors import shown_name
 from app.storage import (
     Hold,
     HoldError,
@@ -138,7 +139,7 @@ def open_file(session: Session, path: Path) -> None:
     meshing = session.meshing
     session.jobs.put(
         Job(
-            kind=f"{OPENING} {path.name}",
+            kind=shown_name(f"{OPENING} {path.name}"),
             work=lambda: _read(path, meshing),
             done=lambda opened: saving.unless_unsaved(session, do(show, path, opened)),
             failed=lambda error: report(session, f"{path.name} cannot be opened", error),
@@ -215,7 +216,7 @@ def _show(
     saving.put_project(
         session,
         Project(
-            name=path.stem,
+            name=shown_name(path.stem),
             history=History(opened.document, saved=True),
             puppets=opened.puppets,
             active=_foremost(opened.document),
@@ -280,10 +281,9 @@ def _decoded(document: Document, name: str) -> Opened:
 
 
 def _read_picture(path: Path, meshing: Meshing) -> Opened:
-    document, picture, notices = open_picture(path, meshing)
-    identity = document.figures[0].id
-    puppet = Puppet.of(clip_of(document, identity), picture)
-    return Opened(document, {identity: puppet}, notices, _offer(puppet))
+    opened = with_puppets(open_picture(path, meshing))
+    (puppet,) = opened.puppets.values()
+    return opened._replace(offer=_offer(puppet))
 
 
 def _offer(puppet: Puppet) -> Offer | None:

@@ -12,6 +12,7 @@ from app.editor.jobs import Job
 from app.editor.project import Project
 from app.editor.promise import Promise
 from app.editor.session import Session, with_project
+from app.errors import shown_name
 from app.reports import draw_curves, write_curves
 from app.storage import (
     SECONDS,
@@ -85,7 +86,7 @@ def write_now(session: Session, project: Project, path: Path, then: Action | Non
     def done(digest: str) -> None:
         project.pending.remove(saving)
         project.history.mark_saved(document)
-        project.name, project.path, project.is_recovered = path.stem, path, False
+        project.name, project.path, project.is_recovered = shown_name(path.stem), path, False
         project.read_as = digest
         _hold_saved(session, project, path)
         session.preferences = session.preferences.with_recent(path)

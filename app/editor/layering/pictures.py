@@ -14,7 +14,7 @@ from app.editor.failures import sentence
 from app.editor.layering.arranging import choose
 from app.editor.project import Project, Puppet
 from app.editor.session import Session, with_project
-from app.errors import LissomError
+from app.errors import LissomError, shown_name
 from app.solving import Renewal, begin_replacing
 from app.storage import (
     Layer,
@@ -178,7 +178,7 @@ def _drawing(path: Path) -> LayeredPicture:
         return read_layered(path)
     data = read_file(path)
     picture = decode_picture(data, path.name)
-    layer = Layer(name=path.stem.strip() or "layer", data=data, picture=picture)
+    layer = Layer(name=shown_name(path.stem).strip() or "layer", data=data, picture=picture)
     return LayeredPicture(size=picture.size, layers=(layer,), notices=())
 
 

@@ -12,6 +12,7 @@ from typing import Any, Final
 import numpy as np
 import numpy.typing as npt
 
+from app.errors import shown_name
 from app.export.moving_shape import MovingShape
 from app.export.plan import ExportPlan
 from app.export.writers.png import encode_png
@@ -86,7 +87,7 @@ class _Asset:
 
     def file(self) -> bytes:
         """Return the whole file."""
-        name = self._plan.out.stem
+        name = shown_name(self._plan.out.stem)
         content: dict[str, Any] = {
             "asset": {
                 "version": "2.0",

@@ -11,6 +11,7 @@ from typing import Any, Final
 
 import numpy as np
 
+from app.errors import shown_name
 from app.export.framing import shown_box
 from app.export.moving_shape import MovingShape
 from app.export.plan import ExportPlan
@@ -45,7 +46,7 @@ def html_page(shapes: Sequence[MovingShape], plan: ExportPlan) -> bytes:
         "figures": [_packed(shape) for shape in shapes],
     }
     page = Template(_PAGE.read_text(encoding="utf-8")).substitute(
-        title=html.escape(plan.out.stem),
+        title=html.escape(shown_name(plan.out.stem)),
         generator=f"Lissom {version('lissom')}",
         background="transparent" if colour is None else f"rgb{colour}",
         # Nothing in it may end the element that holds it.

@@ -14,7 +14,7 @@ from typing import IO, Any, Final, NamedTuple, cast
 
 import numpy as np
 
-from app.errors import LissomError
+from app.errors import LissomError, shown_name
 from app.export.plan import ExportPlan
 from app.export.writers.frame_writer import FrameWriter, duration
 from app.export.writers.png import save_png
@@ -215,7 +215,7 @@ def _data(
     meta = {
         "app": "Lissom",
         "version": version("lissom"),
-        "image": plan.out.name,
+        "image": shown_name(plan.out.name),
         "format": "RGBA8888",
         "size": _size(size),
         "scale": "1",

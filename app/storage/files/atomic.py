@@ -130,7 +130,7 @@ def atomic_file(path: Path) -> Iterator[IO[bytes]]:
 
 
 def clear_abandoned(folder: Path) -> None:
-    """Remove what processes left half written in a folder that were killed.
+    """Remove the files in a folder that killed processes left half written.
 
     What another process still writes stays, and so does all where the disk knows no locks.
     """
@@ -145,9 +145,9 @@ def clear_abandoned(folder: Path) -> None:
 
 
 def passing_picture(folder: Path) -> Path:
-    """Return where a picture may be written that is soon given away.
+    """Return a new name for a picture in a folder that is soon removed.
 
-    Like what is half written it is removed at the next start, unless somebody holds a lock on it.
+    If it is not, the next start removes it, like files half written, unless it is locked.
     """
     return folder / f"{_part_name()}.png"
 

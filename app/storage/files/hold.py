@@ -22,7 +22,7 @@ class HoldError(LissomError):
 
 
 class Hold:
-    """That this process works on a file, which others see until it is released or the process ends.
+    """A lock that shows others that this process works on a file, until it is released or ends.
 
     Parameters
     ----------

@@ -5,6 +5,8 @@ A process's number is soon given to another one, and proves nothing.
 
 import os
 import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 if sys.platform == "win32":
@@ -16,6 +18,9 @@ else:
 HELD = (BlockingIOError, PermissionError)
 # Not through a link that somebody else put there, and not until somebody writes to a pipe.
 PLAIN = getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_NONBLOCK", 0)
+# The byte that is locked on Windows, the last one that can be: nobody else may read it there, and
+# what stands in a file is to be read.
+LOCKED_BYTE = 2**31 - 2
 
 
 def open_to_lock(path: Path, flags: int = 0) -> int:
@@ -42,12 +47,24 @@ def lock(descriptor: int) -> bool:
     """
     try:
         if sys.platform == "win32":
-            msvcrt.locking(descriptor, msvcrt.LK_NBLCK, 1)
+            with beyond_content(descriptor):
+                msvcrt.locking(descriptor, msvcrt.LK_NBLCK, 1)
         else:
             fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
     except HELD:
         return False
     return True
+
+
+@contextmanager
+def beyond_content(descriptor: int) -> Iterator[None]:
+    """Go to the byte of an open file that is locked, and back again after the `with` block."""
+    place = os.lseek(descriptor, 0, os.SEEK_CUR)
+    os.lseek(descriptor, LOCKED_BYTE, os.SEEK_SET)
+    try:
+        yield
+    finally:
+        os.lseek(descriptor, place, os.SEEK_SET)
 
 
 def is_locked(path: Path) -> bool:

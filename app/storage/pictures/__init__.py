@@ -2,7 +2,7 @@
 
 In: the bytes of a picture file.
 Out: decoded pictures, and in words what was done to them.
-Imports: `app.errors`, `engine.arrays`.
+Imports: `app.document`, `engine.arrays`.
 """
 
 from app.storage.pictures.cores import side_by_side

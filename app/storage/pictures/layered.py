@@ -4,6 +4,7 @@ from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
+from app.document import layer_commands
 from app.errors import LissomError
 from app.storage.pictures.picture import Picture
 
@@ -72,11 +73,6 @@ def layered_picture(
         From back to front, each with the names of the groups that it is in, as "limbs/left"; layers
         of which nothing is to be seen are left out.
     notices : sequence of str
-
-    Raises
-    ------
-    LissomError
-        If no layer is left.
     """
     notices, kept = list(notices), []
     for group, layer in found:
@@ -91,10 +87,7 @@ def layered_picture(
     layers = []
     for group, layer in kept:
         name = f"{group}/{layer.name}" if group and own[layer.name] > 1 else layer.name
-        number, free = 1, name
-        while free in taken:
-            number += 1
-            free = f"{name} {number}"
+        free = layer_commands.numbered_name(name, taken)
         taken.add(free)
         layers.append(replace(layer, name=free))
     return LayeredPicture(size=size, layers=tuple(layers), notices=tuple(notices))
@@ -117,15 +110,6 @@ def require_room(sizes: Sequence[tuple[int, int]]) -> None:
         )
 
 
-def corner_from_top(left: float, top: float, size: tuple[int, int], canvas: int) -> complex:
-    """Return the lower left corner of a layer, y up, whose upper left one was counted from above.
-
-    Parameters
-    ----------
-    left, top : float
-    size : tuple of int
-        Of the layer.
-    canvas : int
-        The canvas's height.
-    """
-    return complex(left, canvas - top - size[1])
+def corner_from_top(left: float, top: float, size: tuple[int, int], height: int) -> complex:
+    """Return a layer's lower left corner, y up on a canvas so high, from its upper left one."""
+    return complex(left, height - top - size[1])

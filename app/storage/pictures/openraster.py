@@ -45,13 +45,7 @@ class _Place:
 
 
 def read_openraster(data: bytes) -> LayeredPicture:
-    """Read the layers of an OpenRaster file.
-
-    Raises
-    ------
-    LissomError
-        If it is none, is damaged or too large, or nothing is drawn on it.
-    """
+    """Read the layers of an OpenRaster file."""
     try:
         with zipfile.ZipFile(io.BytesIO(data)) as archive:
             return _read(archive)

@@ -95,25 +95,13 @@ def decode_picture(data: bytes, name: str) -> Picture:
 
 
 def decode_pictures(files: Sequence[tuple[bytes, str]]) -> list[Picture]:
-    """Decode the bytes of several picture files, each with what errors call it.
-
-    Raises
-    ------
-    LissomError
-        As `decode_picture`.
-    """
+    """Decode the bytes of several picture files, each with what errors call it."""
     with _only_bombs_told():
         return side_by_side(lambda file: _decode(*file), files)
 
 
 def decode_mask(data: bytes, name: str) -> Mask:
-    """Decode a mask: what is light, and not transparent, is kept.
-
-    Raises
-    ------
-    LissomError
-        As `decode_picture`.
-    """
+    """Decode a mask: what is light, and not transparent, is kept."""
     rgba = decode_picture(data, name).rgba
     light: Booleans = rgba[..., :3].mean(axis=2) >= HALF
     return Mask.of(light & (rgba[..., 3] >= HALF))
@@ -127,13 +115,7 @@ def encode_mask(mask: Mask) -> bytes:
 
 
 def stored_size(data: bytes, name: str) -> tuple[int, int]:
-    """Return the width and height in pixels that a picture file tells, without decoding it.
-
-    Raises
-    ------
-    LissomError
-        If it is no picture, or says to be unreasonably large.
-    """
+    """Return the width and height in pixels that a picture file tells, without decoding it."""
     with (
         _only_bombs_told(),
         _told(name),

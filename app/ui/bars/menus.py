@@ -7,6 +7,7 @@ from imgui_bundle import imgui
 from app.document import PRESETS
 from app.editor import Action, Session, do
 from app.editor.actions import files, keys
+from app.errors import shown_name
 from app.ui.bars import backdrop_menu
 from app.ui.shortcuts import BINDINGS, bound_item
 from app.ui.style import Look, tip
@@ -54,10 +55,10 @@ def _recent(session: Session) -> list[Action]:
         colour = imgui.Col_.text if is_there else imgui.Col_.text_disabled
         imgui.push_style_color(imgui.Col_.text, imgui.get_style_color_vec4(colour))
         note = "" if is_there else "not found"
-        if imgui.menu_item(f"{path.name}###recent {index}", note, False)[0]:  # noqa: FBT003
+        if imgui.menu_item(f"{shown_name(path.name)}###recent {index}", note, False)[0]:  # noqa: FBT003
             actions.append(do(files.open_recent, path))
         imgui.pop_style_color()
-        tip(str(path))
+        tip(shown_name(path))
     imgui.end_menu()
     return actions
 

@@ -16,6 +16,7 @@ from app.editor import (
     do,
 )
 from app.editor.actions import answer, browse, close_dialog, use_own_dialogs
+from app.errors import shown_name
 from app.ui.dialogs.file_browser import FileBrowser, LookUp
 from app.ui.dialogs.native_dialog import NativeDialog
 from app.ui.dialogs.recovery import draw_recovery
@@ -131,7 +132,7 @@ def _question(question: Question, look: Look) -> list[Action]:
     # Keys press a button only where one sees which.
     imgui.set_nav_cursor_visible(True)
     imgui.push_text_wrap_pos(30 * look.em)
-    imgui.text_unformatted(question.text)
+    imgui.text_unformatted(shown_name(question.text))
     imgui.pop_text_wrap_pos()
     imgui.dummy(ImVec2(0, 0.4 * look.em))
     for index, (text, action) in enumerate(question.answers):

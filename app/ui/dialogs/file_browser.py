@@ -10,6 +10,7 @@ from imgui_bundle import icons_fontawesome_6 as icons
 
 from app.editor import Action, FileDialog, Session, do
 from app.editor.actions import browse, choose, close_dialog
+from app.errors import shown_name
 from app.render import Thumbnail
 from app.storage import home_folder
 from app.ui.dialogs.folder_listing import Entry, Listing, read_folder
@@ -87,7 +88,7 @@ class FileBrowser:
         if path is not None and now.writes and _is(Path.is_file, path):
             imgui.same_line()
             imgui.align_text_to_frame_padding()
-            imgui.text_colored(look.palette.warning, f"{path.name} will be replaced.")
+            imgui.text_colored(look.palette.warning, f"{shown_name(path.name)} will be replaced.")
         if is_accepted and folder is not None:
             now = _enter(now, folder)
         elif is_accepted and path is not None:
@@ -119,7 +120,7 @@ class FileBrowser:
                 is_here = place.folder == dialog.folder
                 if imgui.selectable(f"###{title} {index}", is_here, PLACE_FLAGS)[0]:
                     dialog = _enter(dialog, place.folder)
-                tip(str(place.folder))
+                tip(shown_name(place.folder))
                 imgui.same_line(0.3 * look.em)
                 imgui.text_colored(look.palette.dim, place.icon)
                 imgui.same_line(2.0 * look.em)
@@ -158,9 +159,11 @@ class FileBrowser:
         while clipper.step():
             for index in range(clipper.display_start, clipper.display_end):
                 entry = self._entries[index]
+                imgui.push_id(index)  # two names may look alike
                 if _row(entry, look, thumbnail, is_marked=index == marked):
                     dialog = _mark(dialog, entry)
                     is_opened = imgui.is_mouse_double_clicked(imgui.MouseButton_.left)
+                imgui.pop_id()
                 if index == marked and shows_marked:
                     imgui.set_scroll_here_y()
         if not self._entries:
@@ -200,14 +203,14 @@ def _way(dialog: FileDialog, look: Look, width: float) -> FileDialog:
     gap = imgui.calc_text_size(SEPARATOR).x
     shown: list[Path] = []
     for folder in (dialog.folder, *dialog.folder.parents):
-        name = imgui.calc_text_size(folder.name or folder.anchor)
+        name = imgui.calc_text_size(shown_name(folder.name or folder.anchor))
         room -= name.x + 2 * style.frame_padding.x + gap
         if shown and room < 0:
             break
         shown.insert(0, folder)
     for folder in shown:
         imgui.push_style_color(imgui.Col_.button, (0, 0, 0, 0))
-        if imgui.button(f"{folder.name or folder.anchor}###in {len(folder.parts)}"):
+        if imgui.button(f"{shown_name(folder.name or folder.anchor)}###in {len(folder.parts)}"):
             dialog = _enter(dialog, folder)
         imgui.pop_style_color()
         if folder is not shown[-1]:
@@ -223,7 +226,7 @@ def _row(entry: Entry, look: Look, thumbnail: LookUp, *, is_marked: bool) -> boo
     imgui.table_next_row()
     imgui.table_next_column()
     palette, em = look.palette, look.em
-    name, height = entry.path.name, ROW * em
+    name, height = shown_name(entry.path.name), ROW * em
     corner = imgui.get_cursor_screen_pos()
     clicked, _ = imgui.selectable(f"###entry {name}", is_marked, ROW_FLAGS, ImVec2(0, height))
     middle = corner.y + (height - imgui.get_text_line_height()) / 2
@@ -261,8 +264,9 @@ def _name_field(dialog: FileDialog, width: float, *, is_new: bool, is_set: bool)
             state.reload_user_buf_and_move_to_end()
     imgui.set_next_item_width(width)
     hint = "Name of the folder" if dialog.wants_folder else "Name of the file"
-    _, name = imgui.input_text_with_hint(NAME_FIELD, hint, dialog.name)
-    return dialog if name == dialog.name else replace(dialog, name=name, marked="")
+    shown = shown_name(dialog.name)
+    _, name = imgui.input_text_with_hint(NAME_FIELD, hint, shown)
+    return dialog if name == shown else replace(dialog, name=name, marked="")
 
 
 def _mark(dialog: FileDialog, entry: Entry) -> FileDialog:

@@ -7,6 +7,7 @@ from imgui_bundle import portable_file_dialogs
 
 from app.editor import Action, FileDialog, Question, do
 from app.editor.actions import choose, close_dialog, show_dialog, use_own_dialogs
+from app.errors import shown_name
 from app.export import folder_within
 
 # Nobody finds and cancels a dialog so soon: one that is gone by then never came up. The system
@@ -35,7 +36,11 @@ class NativeDialog:
         """Return what follows from the person's answer, once it is there; never waits."""
         if not self._running.ready(0):
             return []
-        result = self._running.result()
+        try:
+            result = self._running.result()
+        except UnicodeDecodeError:
+            # A name that is not UTF-8, of which it knows no other form.
+            return [do(use_own_dialogs)]
         chosen = result if isinstance(result, str) else next(iter(result), "")
         if chosen:
             return [_follow(self.dialog, Path(chosen))]
@@ -56,13 +61,13 @@ Running = (
 
 def _open(dialog: FileDialog) -> Running:
     # With a slash at its end a folder is where to begin, and not what to choose.
-    folder = f"{dialog.folder}/"
+    folder = shown_name(f"{dialog.folder}/")
     if dialog.wants_folder:
         return portable_file_dialogs.select_folder(dialog.title, folder)
     filters = _filters(dialog.suffixes)
     if dialog.writes:
         # macOS begins only at what exists.
-        start = folder if sys.platform == "darwin" else str(dialog.folder / dialog.name)
+        start = folder if sys.platform == "darwin" else shown_name(dialog.folder / dialog.name)
         return portable_file_dialogs.save_file(dialog.title, start, filters)
     return portable_file_dialogs.open_file(dialog.title, folder, filters)
 

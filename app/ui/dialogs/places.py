@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 from imgui_bundle import icons_fontawesome_6 as icons
 
+from app.errors import shown_name
 from app.storage import home_folder
 
 MOST_RECENT = 5
@@ -37,7 +38,7 @@ def usual_places() -> tuple[Place, ...]:
     for name, key, icon in FOLDERS:
         folder = named.get(key, home / name)
         if folder != home and _is_there(folder):
-            places.append(Place(folder, folder.name, icon))
+            places.append(Place(folder, shown_name(folder.name), icon))
     return tuple(places)
 
 
@@ -46,7 +47,9 @@ def recent_places(recent: Iterable[Path]) -> tuple[Place, ...]:
     folders = dict.fromkeys(path.parent for path in recent)
     found = [folder for folder in folders if _is_there(folder)]
     icon = icons.ICON_FA_CLOCK_ROTATE_LEFT
-    return tuple(Place(folder, folder.name or str(folder), icon) for folder in found[:MOST_RECENT])
+    return tuple(
+        Place(folder, shown_name(folder.name or folder), icon) for folder in found[:MOST_RECENT]
+    )
 
 
 def _named_by_desktop(home: Path) -> dict[str, Path]:

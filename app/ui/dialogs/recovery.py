@@ -4,6 +4,7 @@ from imgui_bundle import ImVec2, imgui
 
 from app.editor import Action, Leftover, Recovery, do
 from app.editor.actions import answer, close_dialog, files
+from app.errors import shown_name
 from app.ui.dialogs.folder_listing import Entry
 from app.ui.style import Look, main_button, shortened, tip
 
@@ -42,7 +43,7 @@ def _row(leftover: Leftover, look: Look, *, is_main: bool) -> list[Action]:
     imgui.align_text_to_frame_padding()
     origin = leftover.origin
     imgui.text_unformatted(shortened(origin.name, WIDEST * look.em))
-    tip(str(origin.path) if origin.path else "Never saved")
+    tip(shown_name(origin.path) if origin.path else "Never saved")
     imgui.same_line(TOLD_AT * look.em)
     imgui.text_disabled(f"{entry.changed_in_words}   {entry.size_in_words}   ")
     imgui.same_line(BUTTONS_AT * look.em)

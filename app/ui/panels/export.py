@@ -18,6 +18,7 @@ from app.document import (
 )
 from app.editor import Action, Project, Session, do
 from app.editor.actions import exporting
+from app.errors import shown_name
 from app.export import frame_view, missing, shown_box
 from app.export_formats import EXPORT_FORMATS
 from app.motion import Box, box_around, extent_source
@@ -304,9 +305,9 @@ def _output(session: Session, look: Look, project: Project) -> list[Action]:
     gap = imgui.get_style().item_inner_spacing.x
     imgui.set_next_item_width(imgui.get_content_region_avail().x - button - gap)
     imgui.begin_disabled(True)  # noqa: FBT003 - chosen by the button beside it
-    imgui.input_text("##out", out.name if out else "not chosen yet")
+    imgui.input_text("##out", shown_name(out.name) if out else "not chosen yet")
     imgui.end_disabled()
-    tip(str(out) if out else "Choose where to")
+    tip(shown_name(out) if out else "Choose where to")
     imgui.same_line(0, gap)
     if icon_button(look, icons.ICON_FA_FOLDER_OPEN, "choose output", "Choose where to…"):
         actions.append(do(exporting.choose))

@@ -18,7 +18,7 @@ import glfw  # isort: skip
 from app.document import Pose
 from app.editor import Action, FileDialog, Session, do, layering
 from app.editor.actions import saving
-from app.errors import EXPECTED_ERRORS, LissomError
+from app.errors import EXPECTED_ERRORS, LissomError, shown_name
 from app.render import LayerPictures, Renderer, Textures, Thumbnail, Thumbnails
 from app.render.gpu import is_software
 from app.storage import app_icon, sample_images
@@ -26,6 +26,7 @@ from app.ui.panel import Panel
 from app.ui.panels import cut_out, deform, distortion, domain, export, handle, layers, poses
 from app.ui.timeline import timeline
 from app.ui.viewport import Canvas, SplitTextures, viewport
+from app.ui.window.dropped import accept_files
 from app.ui.window.exporter import Exporter
 from app.ui.window.memory import FreeMemory
 from app.ui.window.modifiers import release_stuck_modifiers
@@ -88,6 +89,7 @@ class Window:
         self._memory = FreeMemory(session)
         self._title = NAME
         self._is_open = False
+        self._dropped: object = None
 
     def runner_params(self) -> hello_imgui.RunnerParams:
         """Return the parameters to run the window with."""
@@ -133,7 +135,9 @@ class Window:
             release_stuck_modifiers, calls.pre_new_frame
         )
         params.ini_folder_type = hello_imgui.IniFolderType.absolute_path
-        params.ini_filename = str(self.session.folder / "window.ini")
+        ini = str(self.session.folder / "window.ini")
+        params.ini_filename = shown_name(ini)
+        params.ini_disable = params.ini_filename != ini  # a name that ImGui cannot write to
         params.app_window_params.window_geometry.size = SIZE
         params.app_window_params.restore_previous_geometry = True
         _name_application()
@@ -274,7 +278,10 @@ class Window:
     def _accept_files(self) -> None:
         """Open what is dropped on the window."""
         window = glfw_utils.glfw_window_hello_imgui()
-        glfw.set_drop_callback(window, self._take_dropped)  # type: ignore[arg-type]  # a list of paths
+        self._dropped = accept_files(window, self._take_dropped)
+
+    def _take_dropped(self, paths: list[Path]) -> None:
+        self.ask(do(layering.drop, paths))
 
     def _rename(self) -> None:
         """Name the window after what is open."""
@@ -282,9 +289,6 @@ class Window:
         if title != self._title:
             self._title = title
             glfw.set_window_title(glfw_utils.glfw_window_hello_imgui(), title)
-
-    def _take_dropped(self, _: object, paths: list[str]) -> None:
-        self.ask(do(layering.drop, [Path(path) for path in paths]))
 
     def _release(self) -> None:
         self._shell.release()

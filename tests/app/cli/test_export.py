@@ -14,6 +14,7 @@ from PIL import Image, ImageSequence
 
 from app.cli.main import main
 from app.document.settings import ExportSettings, FrameRange
+from app.export_formats import EXPORT_FORMATS
 from app.storage.project_file import save_project
 from engine.arrays import Bytes
 
@@ -270,3 +271,19 @@ def test_an_interrupted_export_leaves_whole_frames_only(tmp_path):
         with Image.open(out / name) as image:
             image.load()
             assert image.size == (120, 90)
+
+
+@pytest.mark.parametrize("kind", ["html", "glb", "spritesheet", "gif", "picture"])
+def test_names_that_are_not_utf_8_are_written_and_told(project, tmp_path, capsys, kind):
+    odd = os.fsdecode(b"caf\xe9")
+    try:
+        renamed = project.rename(tmp_path / f"{odd}.lissom")
+    except OSError:
+        pytest.skip("this system lets no name be anything but UTF-8")
+    ending = EXPORT_FORMATS[kind].suffixes[0]
+    still = ("--frame", 0) if kind == "picture" else ()
+    export(renamed, "--format", kind, "--out", tmp_path / f"{{name}}{ending}", *still)
+    assert capsys.readouterr().out.startswith(f"{tmp_path}/caf\N{REPLACEMENT CHARACTER}{ending}: ")
+    assert (tmp_path / f"{odd}{ending}").stat().st_size
+    told = error_of(capsys, tmp_path / f"{odd} too.lissom", "--out", tmp_path / odd)
+    assert "caf\N{REPLACEMENT CHARACTER} too.lissom" in told

@@ -358,9 +358,9 @@ OTHER_CAGE = random_pose(np.random.default_rng(0), DOCUMENT, disc_domain(13))
         (poses.delete_pose(0, "bow"), "no pose 'bow'"),
         (poses.keep_pose(0, POSE, "  "), "needs a name"),
         (poses.keep_pose(0, OTHER_CAGE, "bow"), "cage of 13"),
-        (figures.set_bounds(0, Bounds(), [POSE]), "3 poses, but 1"),
+        (figures.set_bounds(0, Bounds(), [POSE]), "3 poses, not 1"),
         (figures.replace_domain(0, disc_domain(13), Meshing(), [POSE] * 3), "cage of 12"),
-        (figures.replace_domain(0, disc_domain(13), Meshing(), [OTHER_CAGE]), "3 poses, but 1"),
+        (figures.replace_domain(0, disc_domain(13), Meshing(), [OTHER_CAGE]), "3 poses, not 1"),
     ],
 )
 def test_what_is_not_possible_says_why(command, message):

@@ -3,6 +3,8 @@ import io
 import os
 import stat
 import struct
+import subprocess
+import sys
 import zipfile
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
@@ -26,6 +28,8 @@ from app.storage.files import (
     write_arrays,
     write_atomically,
 )
+from app.storage.files.hold import MOST_TOLD
+from app.storage.files.locks import beyond_content
 from app.storage.files.reading import LARGEST_FILE
 from app.storage.project_file import load_project, save_project
 from app.storage.thumbnail import read_thumbnail
@@ -331,6 +335,39 @@ def test_one_holds_a_file_and_others_are_told_who(tmp_path):
     hold.release()
     assert list(tmp_path.iterdir()) == []
     Hold(path).release()
+
+
+LOCK_CONTENT = """
+import fcntl, sys
+with open(sys.argv[1], "r+b") as file:
+    fcntl.lockf(file, fcntl.LOCK_EX | fcntl.LOCK_NB, int(sys.argv[2]))
+"""
+
+
+def test_on_windows_no_byte_is_locked_that_others_read(tmp_path):
+    """There a lock is of bytes and keeps others from reading them; `lockf` locks bytes here."""
+    fcntl = pytest.importorskip("fcntl")
+    path = tmp_path / "lock"
+
+    def lets_others_read():
+        words = [sys.executable, "-c", LOCK_CONTENT, path, str(MOST_TOLD)]
+        return subprocess.run(words, stderr=subprocess.DEVNULL, check=False).returncode == 0
+
+    def lock_byte(file):
+        # Where the file is just then, as msvcrt.locking does.
+        fcntl.lockf(file, fcntl.LOCK_EX | fcntl.LOCK_NB, 1, 0, os.SEEK_CUR)
+
+    with path.open("w+b") as file:
+        file.write(b"who")
+        file.flush()
+        with beyond_content(file.fileno()):
+            lock_byte(file.fileno())
+        assert file.tell() == os.lseek(file.fileno(), 0, os.SEEK_CUR) == 3
+        assert lets_others_read()
+        file.seek(0)
+        lock_byte(file.fileno())
+        assert not lets_others_read()
+    assert path.read_bytes() == b"who"
 
 
 def test_a_lock_file_that_a_dead_process_left_holds_nothing(tmp_path):

@@ -14,7 +14,7 @@ import pytest
 from documents import differences, full_document
 
 from app.errors import LissomError
-from app.storage.archive import MIMETYPE
+from app.storage.project.archive import MIMETYPE
 from app.storage.project_file import load_project, save_project
 
 MEBIBYTE = 1024 * 1024

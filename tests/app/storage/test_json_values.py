@@ -1,9 +1,11 @@
 """Repeated fields are found without comparing each with each: a file may hold millions of them."""
 
+import json
+
 import pytest
 
 from app.errors import LissomError
-from app.storage.json_values import without_repeats
+from app.storage.json_values import as_text, without_repeats
 
 
 def test_a_repeated_field_among_many_is_found_at_little_cost():
@@ -23,3 +25,10 @@ def test_a_repeated_field_among_many_is_found_at_little_cost():
     with pytest.raises(LissomError, match=f"'{count - 1}' is given twice"):
         without_repeats([(name, None) for name in names])
     assert compared < 5 * count
+
+
+def test_no_text_has_parts_that_no_window_can_show():
+    assert (
+        as_text(json.loads(r'"caf\udce9 \ud83d\udc12"'), "name")
+        == "caf\N{REPLACEMENT CHARACTER} 🐒"
+    )

@@ -1,6 +1,7 @@
 """Preferences survive being written, and whatever stands in their file does no harm."""
 
 import json
+import os
 from dataclasses import replace
 from pathlib import Path
 
@@ -24,7 +25,7 @@ CHOSEN = Preferences(
     ghosts_before=0,
     ghosts_after=6,
     ghost_step=24,
-    recent=(Path("/drawings/cow.png"), Path("/drawings/walk – Ä.lissom")),
+    recent=(Path("/drawings/cow.png"), Path("/walk – Ä.lissom"), Path(os.fsdecode(b"/caf\xe9"))),
     folder=Path("/drawings"),
 )
 

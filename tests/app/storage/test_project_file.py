@@ -1,5 +1,6 @@
 import io
 import json
+import re
 import struct
 import tracemalloc
 import zipfile
@@ -19,20 +20,25 @@ from documents import (
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from app.document.commands import handle_commands, key_commands
+from app.document.commands import handle_commands, key_commands, layer_commands
 from app.document.keyframe import Passing
 from app.errors import LissomError
-from app.storage.archive import MIMETYPE
+from app.storage.assets import sample_images
+from app.storage.project.archive import MIMETYPE
 from app.storage.project_file import load_project, load_thumbnail, save_project
-from app.storage.project_json import USUAL_LAYER
 from engine.domain.picture.cut_out import CutOut
 from engine.maps import Boundary, certify
 
 CAGE, MESH = disc_domain().cage, disc_domain().mesh
 THUMBNAIL = b"\x89PNG small"
-# Written once, by `save_project(STORED, full_document(), thumbnail=THUMBNAIL)`. It stays as it is:
-# it stands for the files that people have.
+# Written once, by `save_project(STORED, full_document(), thumbnail=THUMBNAIL)`, and STORED_2 later,
+# without a thumbnail. They stay as they are: they stand for the files that people have.
 STORED = Path(__file__).parent / "data" / "schema_1.lissom"
+STORED_2 = Path(__file__).parent / "data" / "schema_2.lissom"
+
+# The fields that a scene of one figure says nothing of.
+LAYER = ("name", "corner", "still", "reference", "locked", "hidden", "switches", "opacity")
+LAYER += ("attachment",)
 
 
 @pytest.fixture(scope="module")
@@ -104,7 +110,7 @@ def test_a_stored_file_of_schema_1_opens():
     full = full_document()
     figure = full.figures[0]
     usual = disc_document().figures[0]
-    as_layer = {name: getattr(usual, name) for name in USUAL_LAYER}
+    as_layer = {name: getattr(usual, name) for name in LAYER}
     first = altered(
         replace(full, figures=(replace(figure, attachment=None),), size=None),
         markers=(),
@@ -120,6 +126,31 @@ def test_a_stored_file_of_schema_1_opens():
     )
     assert not differences(load_project(STORED), first)
     assert load_thumbnail(STORED) == THUMBNAIL
+
+
+def test_a_stored_file_of_schema_2_is_written_again_as_it_was(tmp_path):
+    document = load_project(STORED_2)
+    assert not differences(document, full_document())
+    save_project(tmp_path / "a", document)
+    written, stored = read_members(tmp_path / "a"), read_members(STORED_2)
+    own = re.compile(b'"app_version": ".*"')
+    written["project.json"], stored["project.json"] = (
+        own.sub(b"", members["project.json"]) for members in (written, stored)
+    )
+    assert list(written.items()) == list(stored.items())
+
+
+@pytest.mark.parametrize("sample", sorted(sample_images().glob("*.lissom")), ids=lambda p: p.stem)
+def test_samples_are_written_again_as_they_were(tmp_path, sample):
+    stored = read_members(sample)
+    del stored["thumbnail.png"]
+    save_project(tmp_path / "a", load_project(sample))
+    written = read_members(tmp_path / "a")
+    content = json.loads(stored.pop("project.json"))
+    for figure in content["figures"]:
+        figure["domain"].setdefault("enclosed", "keep")  # which came later
+    assert json.loads(written.pop("project.json")) == content
+    assert written == stored
 
 
 def test_what_played_in_a_file_of_schema_1_is_still_exported(tmp_path):
@@ -178,6 +209,16 @@ def test_unknown_fields_are_kept_everywhere(tmp_path, members):
     save_project(tmp_path / "b", changed)
     figure["handles"][1]["name"] = "other"
     assert json.loads(read_members(tmp_path / "b")["project.json"]) == content
+
+
+def test_an_unknown_field_of_a_joint_goes_with_the_joint(tmp_path, members):
+    newer = with_json(members, "figures", 0, "attachment", "spring", value=0.5)
+    document = load_project(pack(tmp_path / "a", newer))
+    save_project(tmp_path / "b", document)
+    figures = json.loads(read_members(tmp_path / "b")["project.json"])["figures"]
+    assert figures[0]["attachment"]["spring"] == 0.5
+    save_project(tmp_path / "b", layer_commands.detach(0, 1.0, 0j)(document))
+    assert load_project(tmp_path / "b").figures[0].attachment is None
 
 
 def test_unknown_members_are_handed_on_and_never_unpacked(tmp_path, members):
@@ -329,7 +370,7 @@ def test_every_field_is_needed(tmp_path, members):
     known = json.loads(members["project.json"].replace(b'"nested"', b'"colour"'))
     kept = {"colour", "nested", "list", "tau", "extension", "quality", "visible", "app_version"}
     # What is as usual is not written.
-    kept |= {"size", "front", "extent", "fronts", "passing", *USUAL_LAYER}
+    kept |= {"size", "front", "extent", "fronts", "passing", *LAYER}
     kept |= {"names", "sheet", "shapes"}  # of exports; earlier versions did not write them
     # Of the cut-out, likewise.
     kept |= {"background", "enclosed", "mask", "strokes", "holes", "swapped", "stale"}

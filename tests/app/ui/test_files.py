@@ -27,10 +27,10 @@ def project(window):
 
 @pytest.fixture
 def drop(window):
-    """Drops files on the window, as GLFW tells of it."""
+    """Drops files on the window."""
 
     def take(*paths):
-        window._window._take_dropped(None, [str(path) for path in paths])
+        window._window._take_dropped(list(paths))
         window.frames(2)
         window.settle()
 

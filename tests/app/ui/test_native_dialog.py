@@ -25,7 +25,7 @@ place = Path(os.path.dirname(os.path.abspath(__file__)))
 while not (place / "answer").exists():
     time.sleep(0.002)
 answer, status = json.loads((place / "answer").read_text())
-print(answer, end="")
+sys.stdout.buffer.write(os.fsencode(answer))
 sys.exit(status)
 """
 
@@ -184,6 +184,18 @@ def test_a_folder_is_chosen_as_such(program, ask, chosen, tmp_path):
     program.answer(f"{empty}\n")
     program.wait_for_the_window()
     assert chosen == [empty]
+
+
+def test_a_name_that_is_not_utf_8_is_left_to_our_own_browser(
+    window, program, ask, chosen, tmp_path
+):
+    ask(folder=tmp_path / os.fsdecode(b"caf\xe9"), name=os.fsdecode(b"\xe9.png"))
+    assert f"--filename={tmp_path}/caf\N{REPLACEMENT CHARACTER}/" in " ".join(program.asked())
+    program.answer(os.fsdecode(b"/caf\xe9.png"))
+    program.wait_for_the_window()
+    assert not window.session.system_dialogs
+    assert isinstance(window.session.dialog, FileDialog)
+    assert chosen == []
 
 
 def test_cancelling_the_dialog_closes_it(window, program, ask, chosen):

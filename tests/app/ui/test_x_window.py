@@ -288,6 +288,21 @@ def test_a_person_animates_a_drawing_and_finds_it_again(window, bar, person, tmp
     assert len(recovered.markers) == 1
 
 
+def test_names_that_are_not_utf_8_keep_nobody_out(display, tmp_path):
+    odd, shown = os.fsdecode(b"caf\xe9"), "caf\N{REPLACEMENT CHARACTER}"
+    home = tmp_path / odd
+    try:
+        home.mkdir()
+    except OSError:
+        pytest.skip("this system lets no name be anything but UTF-8")
+    drawing, person = home / f"{odd}.png", Person(display, home)
+    shutil.copy(BAR, drawing)
+    with person.starts(drawing, sign=(NEAR, NEAR)) as process:
+        until(lambda: person.title() == f"{shown} – Lissom", "the drawing")
+        person.quit(process)
+    assert load_preferences(person.settings).recent == (drawing,)
+
+
 WATCH = """
 import time
 from imgui_bundle import glfw_utils

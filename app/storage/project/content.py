@@ -1,0 +1,272 @@
+"""The document as `project.json`, except for its figures' pictures and arrays."""
+
+from dataclasses import astuple
+from importlib.metadata import version
+from operator import attrgetter
+from typing import Any, Literal
+
+import numpy as np
+
+from app.document import (
+    FRAME_NAMES,
+    Attachment,
+    Document,
+    Easing,
+    ExportSettings,
+    Figure,
+    FrameRange,
+    Handle,
+    KeptPose,
+    Keyframe,
+    Marker,
+    Meshing,
+    Passing,
+    Pose,
+    ShapeDetail,
+    SheetLayout,
+    Switch,
+    Target,
+)
+from app.errors import LissomError
+from app.storage.json_values import (
+    ANYTHING,
+    FLAG,
+    NUMBER,
+    POINT,
+    TEXT,
+    WHOLE,
+    Codec,
+    Field,
+    JsonObject,
+    as_it_is,
+    as_list,
+    as_object,
+    as_whole,
+    optional,
+    pair,
+    part,
+    record,
+    several,
+)
+from app.storage.project.archive import Archive
+from app.storage.project.members import FigureMembers
+from engine.domain import CutOut, Stroke
+from engine.maps import Boundary, Bounds, certify
+
+SCHEMA = 2
+SIZE = pair(WHOLE, WHOLE, "two whole numbers")
+RANGE = pair(WHOLE, WHOLE, "two whole numbers", make=FrameRange, of=astuple)
+MARKER = record(Marker, Field("frame", WHOLE), Field("name", TEXT))
+SHEET = part(
+    SheetLayout, Field("trimmed", FLAG), Field("padding", WHOLE), Field("power_of_two", FLAG)
+)
+SHAPES = part(ShapeDetail, Field("triangles", WHOLE), Field("tolerance", optional(NUMBER)))
+EXPORT = part(
+    ExportSettings,
+    Field("format", TEXT),
+    Field("size", optional(SIZE)),
+    Field("background", TEXT),
+    Field("framing", TEXT),
+    Field("frames", optional(RANGE)),
+    Field("names", TEXT, earlier=FRAME_NAMES),
+    Field("sheet", SHEET, earlier=SheetLayout()),
+    Field("shapes", SHAPES, earlier=ShapeDetail()),
+)
+HANDLE = record(
+    Handle,
+    Field("id", WHOLE),
+    Field("name", TEXT),
+    Field("position", POINT),
+    Field("weight", NUMBER),
+    Field("front", NUMBER, usual=0.0),
+    Field("extent", optional(NUMBER), usual=None),
+    Field("locked", FLAG, usual=False),
+    Field("group", TEXT, usual=""),
+)
+FRONTS = several(pair(WHOLE, NUMBER, "a handle and a number"))
+TARGETS = several(
+    record(
+        lambda handle, **target: (handle, Target(**target)),
+        Field("handle", WHOLE, lambda pair: pair[0]),
+        Field("position", POINT, lambda pair: pair[1].position),
+        Field("rotation", optional(NUMBER), lambda pair: pair[1].rotation),
+        unknown=lambda pair: pair[1].unknown,
+    )
+)
+# Keys and poses are read as their fields, which have no map yet.
+KEY = record(
+    dict,
+    Field("frame", WHOLE),
+    Field("easing", Codec(Easing.written, lambda content, _: Easing.parse(content))),
+    # Before there were passings, every key had a corner.
+    Field("passing", TEXT, earlier=Passing.CORNER),
+    Field("turns", WHOLE),
+    Field("targets", TARGETS, lambda key: key.pose.targets.items()),
+    Field("fronts", FRONTS, lambda key: tuple(key.fronts.items()), usual=()),
+)
+KEPT_POSE = record(
+    dict,
+    Field("name", TEXT),
+    Field("targets", TARGETS, lambda kept: kept.pose.targets.items()),
+)
+BACKGROUND = Codec(
+    lambda value: list(value) if isinstance(value, tuple) else value,
+    lambda content, where: (several(WHOLE) if isinstance(content, list) else TEXT).read(
+        content, where
+    ),
+)
+STROKE = part(
+    dict,
+    Field("points", WHOLE, lambda stroke: len(stroke.points)),
+    Field("radius", NUMBER),
+    Field("keeps", FLAG),
+)
+# How a figure's domain was made, from the figure.
+DOMAIN = part(
+    dict,
+    Field("detail", TEXT, attrgetter("meshing.detail")),
+    Field("triangles", WHOLE, attrgetter("meshing.triangles")),
+    Field("tolerance", WHOLE, attrgetter("cut_out.tolerance")),
+    Field("background", BACKGROUND, attrgetter("cut_out.background"), earlier="auto"),
+    Field("enclosed", TEXT, attrgetter("cut_out.enclosed"), earlier="keep"),
+    Field("mask", FLAG, lambda figure: figure.cut_out.mask is not None, earlier=False),
+    Field("strokes", several(STROKE), attrgetter("cut_out.strokes"), earlier=()),
+    Field("holes", TEXT, attrgetter("cut_out.holes"), earlier="fill"),
+    Field("swapped", several(POINT), attrgetter("cut_out.swapped"), earlier=()),
+    Field("stale", FLAG, attrgetter("is_stale"), earlier=False),
+)
+SWITCH = pair(WHOLE, FLAG, "a frame and true or false", make=Switch, of=astuple)
+ATTACHMENT = part(
+    Attachment,
+    Field("to", WHOLE),
+    Field("at", POINT),
+    Field("turns", FLAG),
+    Field("rest", NUMBER),
+)
+FIGURE = record(
+    dict,
+    Field("id", WHOLE),
+    Field("picture", part(dict, Field("suffix", TEXT), Field("sha256", TEXT), Field("size", SIZE))),
+    Field("domain", DOMAIN, as_it_is),
+    Field("handles", several(HANDLE)),
+    Field("next_handle", WHOLE),
+    Field("keys", several(KEY)),
+    Field("anchor", optional(POINT)),
+    Field("variant", TEXT),
+    Field("bounds", part(Bounds, *(Field(name, NUMBER) for name in ("k", "sigma_a", "sigma_b")))),
+    Field("library", several(KEPT_POSE)),
+    Field("mirror", optional(NUMBER)),
+    # What it is as a layer: a scene of one figure says none of it.
+    Field("name", TEXT, usual="figure"),
+    Field("corner", POINT, usual=0j),
+    Field("still", FLAG, usual=False),
+    Field("reference", FLAG, usual=False),
+    Field("locked", FLAG, usual=False),
+    Field("hidden", FLAG, usual=False),
+    Field("switches", several(SWITCH), usual=()),
+    Field("opacity", NUMBER, usual=1.0),
+    Field("attachment", optional(ATTACHMENT), usual=None),
+)
+DOCUMENT = record(
+    dict,
+    Field("schema", WHOLE, lambda _: SCHEMA),
+    Field("app_version", ANYTHING, lambda _: version("lissom"), earlier=None),
+    Field("figures", several(FIGURE)),
+    Field("frames", RANGE),
+    Field("preview", optional(RANGE)),
+    Field("markers", several(MARKER)),
+    Field("fps", NUMBER),
+    Field("loop", FLAG),
+    Field("export", EXPORT),
+    Field("size", optional(SIZE), usual=None),
+)
+
+
+def write_document(document: Document) -> dict[str, Any]:
+    """Return the fields of a document, those that this version does not know among them."""
+    written: dict[str, Any] = DOCUMENT.write(document)
+    return written
+
+
+def read_document(content: JsonObject, archive: Archive) -> Document:
+    """Return the document with these fields, and with the pictures and arrays of an archive.
+
+    Raises
+    ------
+    LissomError, EngineError
+        If a field is missing or of another kind, or the document would not be valid.
+    """
+    if as_whole(content["schema"], "schema") < SCHEMA:
+        _bring_up_to_schema_2(content)
+    fields = DOCUMENT.read(content, "")
+    del fields["schema"], fields["app_version"]
+    figures = fields.pop("figures")
+    if len({figure["id"] for figure in figures}) < len(figures):
+        # Told before their members are read, once for each.
+        raise LissomError("two of its figures have the same id")
+    return Document(figures=tuple(_read_figure(figure, archive) for figure in figures), **fields)
+
+
+def _bring_up_to_schema_2(content: JsonObject) -> None:
+    """Give the fields of schema 1 those that came with schema 2, so that nothing looks different.
+
+    What played was what was exported, unless exports had frames of their own.
+    """
+    work = content.pop("work")
+    content |= {"preview": work, "markers": []}
+    export = as_object(content["export"], "export")
+    if export["frames"] is None:
+        content["export"] = {**export, "frames": work}
+    content["figures"] = [
+        {**as_object(figure, f"figures[{i}]"), "library": [], "mirror": None}
+        for i, figure in enumerate(as_list(content["figures"], "figures"))
+    ]
+
+
+def _read_figure(fields: dict[str, Any], archive: Archive) -> Figure:
+    """Return the figure with these fields; what holds of its maps is proven anew."""
+    members, made = FigureMembers(archive, fields["id"]), fields.pop("domain")
+    picture, domain = members.picture(**fields["picture"]), members.domain()
+    boundary = Boundary.sample(domain.outline, domain.cage, domain.holes)
+
+    def pose(kind: Literal["keys", "poses"], index: int, given: tuple[Any, ...]) -> Pose:
+        targets, f = dict(given), members.map(domain, kind, index)
+        if len(targets) < len(given):
+            raise LissomError(f"one of its {kind} has two targets for one handle")
+        return Pose.of(f, targets, certify(f, boundary, fields["bounds"]))
+
+    for index, key in enumerate(fields["keys"]):
+        key["pose"] = pose("keys", index, key.pop("targets"))
+        key["fronts"] = dict(key["fronts"])
+    for index, kept in enumerate(fields["library"]):
+        kept["pose"] = pose("poses", index, kept.pop("targets"))
+    return Figure(
+        **fields
+        | {
+            "picture": picture,
+            "domain": domain,
+            "meshing": Meshing(detail=made.pop("detail"), triangles=made.pop("triangles")),
+            "is_stale": made.pop("stale"),
+            "cut_out": _cut_out(made, members, picture.size),
+            "keys": tuple(Keyframe(**key) for key in fields["keys"]),
+            "library": tuple(KeptPose(**kept) for kept in fields["library"]),
+        }
+    )
+
+
+def _cut_out(fields: dict[str, Any], members: FigureMembers, size: tuple[int, int]) -> CutOut:
+    strokes = fields.pop("strokes")
+    points = members.strokes() if strokes else np.empty(0, dtype=np.complex128)
+    counts = [stroke.pop("points") for stroke in strokes]
+    if min(counts, default=1) < 1 or sum(counts) != len(points):
+        raise LissomError("the strokes of a cut-out do not have as many points as there are")
+    ways = np.split(points, np.cumsum(counts)[:-1]) if counts else []
+    return CutOut(
+        **fields
+        | {
+            "mask": members.mask(size) if fields["mask"] else None,
+            "strokes": tuple(
+                Stroke(points=way, **stroke) for stroke, way in zip(strokes, ways, strict=True)
+            ),
+        }
+    )

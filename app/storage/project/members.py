@@ -1,0 +1,148 @@
+"""The members of a project file that hold a figure's picture and arrays.
+
+They are in a folder of the figure: the picture byte for byte as `source.*`, the arrays of the
+domain, what was cut out by hand, and phi and psi of each key under `keys/` and of the library's
+poses under `poses/`. Where the domain has holes, their outlines and cages are under `holes/`, their
+centres beside it, and the coefficients of a map's logarithms beside its phi and psi.
+"""
+
+from typing import Any, Literal
+
+import numpy as np
+import numpy.typing as npt
+
+from app.document import Figure, PictureFile
+from app.errors import LissomError
+from app.storage.pictures import stored_size
+from app.storage.project.archive import Archive, array_member
+from engine.arrays import Complexes, as_points
+from engine.domain import MOST_MESH_TRIANGLES, MOST_STROKE_POINTS, Domain, Mask, require_domain
+from engine.domain.meshing import Mesh
+from engine.domain.outline import LARGEST_OUTLINE
+from engine.geometry import Hole
+from engine.maps import HarmonicMap
+
+CENTRES = "hole_centres.npy"
+
+
+def figure_members(figure: Figure) -> dict[str, bytes]:
+    """Return the members of a figure by their names."""
+    mesh, cut_out, holes = figure.domain.mesh, figure.cut_out, figure.domain.holes
+    arrays: dict[str, npt.NDArray[Any]] = {
+        "outline.npy": figure.domain.outline,
+        "cage.npy": figure.domain.cage,
+        "vertices.npy": mesh.vertices,
+        "triangles.npy": mesh.triangles,
+    }
+    if cut_out.mask is not None:
+        arrays["mask.npy"] = cut_out.mask.bits
+    if cut_out.strokes:
+        arrays["strokes.npy"] = np.concatenate([stroke.points for stroke in cut_out.strokes])
+    if holes:
+        arrays[CENTRES] = np.array([hole.centre for hole in holes], dtype=np.complex128)
+    for index, hole in enumerate(holes):
+        outline, cage = _of_hole(index)
+        arrays |= {outline: hole.outline, cage: hole.cage}
+    keys = [key.pose for key in figure.keys]
+    for kind, poses in (("keys", keys), ("poses", [kept.pose for kept in figure.library])):
+        for index, pose in enumerate(poses):
+            phi, psi, logs = _of_map(kind, index)
+            arrays |= {phi: pose.phi, psi: pose.psi}
+            if holes:
+                arrays[logs] = pose.logs
+    folder = _folder(figure.id)
+    picture = {f"{folder}/source{figure.picture.suffix}": figure.picture.data}
+    return picture | {f"{folder}/{name}": array_member(array) for name, array in arrays.items()}
+
+
+class FigureMembers:
+    """The members of a figure, as they are read."""
+
+    def __init__(self, archive: Archive, figure: int) -> None:
+        self._archive = archive
+        self._folder = _folder(figure)
+
+    def picture(self, *, suffix: str, sha256: str, size: tuple[int, int]) -> PictureFile:
+        """Return the picture, which must be the one that was saved."""
+        data = self._archive.read(f"{self._folder}/source{suffix}")
+        picture = PictureFile(data=data, suffix=suffix, size=size)
+        if picture.sha256 != sha256:
+            raise LissomError("its picture is not the one that was saved: the checksums differ")
+        # A camera's note on its orientation may have turned it by a quarter.
+        width, height = stored_size(picture.data, "its picture")
+        if size not in {(width, height), (height, width)}:
+            raise LissomError(
+                f"its picture has {width} × {height} pixels, not {size[0]} × {size[1]} as it says"
+            )
+        return picture
+
+    def domain(self) -> Domain:
+        """Return the domain."""
+        outline, cage, vertices = (
+            as_points(self._points(f"{name}.npy", most), name, at_least=3)
+            for name, most in (
+                ("outline", LARGEST_OUTLINE),
+                ("cage", LARGEST_OUTLINE),
+                ("vertices", MOST_MESH_TRIANGLES),
+            )
+        )
+        triangles = self._archive.triangles(
+            f"{self._folder}/triangles.npy", most=MOST_MESH_TRIANGLES
+        )
+        domain = Domain(
+            outline=outline,
+            cage=cage,
+            mesh=Mesh(vertices=vertices, triangles=triangles),
+            holes=self._holes(),
+        )
+        require_domain(domain)
+        return domain
+
+    def mask(self, size: tuple[int, int]) -> Mask:
+        """Return the mask of the cut-out."""
+        most = -(-size[0] * size[1] // 8)
+        return Mask(bits=self._archive.bytes(f"{self._folder}/mask.npy", most=most), size=size)
+
+    def strokes(self) -> Complexes:
+        """Return the points of all strokes of the cut-out."""
+        return self._points("strokes.npy", MOST_STROKE_POINTS)
+
+    def map(self, domain: Domain, kind: Literal["keys", "poses"], index: int) -> HarmonicMap:
+        """Return the map of a key, or of a pose of the library."""
+        phi, psi, logs = _of_map(kind, index)
+        return HarmonicMap(
+            cage=domain.cage,
+            phi=self._points(phi),
+            psi=self._points(psi),
+            holes=domain.holes,
+            logs=self._points(logs) if domain.holes else np.empty(0, dtype=np.complex128),
+        )
+
+    def _holes(self) -> tuple[Hole, ...]:
+        if not self._archive.has(f"{self._folder}/{CENTRES}"):
+            return ()
+        # A hole has three corners at least.
+        centres = as_points(self._points(CENTRES, LARGEST_OUTLINE // 3), "hole_centres")
+        holes = []
+        for index, centre in enumerate(centres):
+            outline, cage = map(self._points, _of_hole(index))
+            holes.append(Hole(outline=outline, cage=cage, centre=complex(centre)))
+        return tuple(holes)
+
+    def _points(self, name: str, most: int = LARGEST_OUTLINE) -> Complexes:
+        return self._archive.points(f"{self._folder}/{name}", most=most)
+
+
+def _folder(figure: int) -> str:
+    return f"figures/{figure}"
+
+
+def _of_hole(index: int) -> tuple[str, str]:
+    """Return the names of outline and cage of a hole."""
+    return f"holes/{index:05}.outline.npy", f"holes/{index:05}.cage.npy"
+
+
+def _of_map(kind: str, index: int) -> tuple[str, str, str]:
+    """Return the names of the coefficients of a map: phi, psi, and those of its logarithms."""
+    first = f"{kind}/{index:05}"
+    return f"{first}.phi.npy", f"{first}.psi.npy", f"{first}.logs.npy"
