@@ -154,9 +154,9 @@ class History:
         for index in indices[begun:]:
             step = self._steps[index]
             document, unkeyed = exchanged(step.document, old, new), step.unkeyed
-            if unkeyed is not None and unkeyed.pose.phi is old.phi:
-                figure = document.figure(unkeyed.figure)
-                unkeyed = replace(unkeyed, pose=new(figure, unkeyed.pose))
+            for figure in document.figures:
+                if unkeyed and unkeyed.figure == figure.id and unkeyed.pose.phi is old.phi:
+                    unkeyed = replace(unkeyed, pose=new(figure, unkeyed.pose))
             if document is not step.document or unkeyed is not step.unkeyed:
                 self._put(index, replace(step, document=document, unkeyed=unkeyed))
         return True

@@ -180,10 +180,12 @@ class Harness:
         self.frames()
 
     def settle(self) -> None:
-        """Draw frames until no job is left."""
+        """Draw frames until no job is left, and no pose is on its way."""
         for _ in range(MOST_FRAMES):
             self.frames()
-            if not self.session.jobs.kinds:
+            project = self.session.project
+            pulls = project.pulls if project else []
+            if not self.session.jobs.kinds and all(pull.is_settled for pull in pulls):
                 break
             assert self.session.jobs.settle(PATIENCE), self.session.jobs.kinds
         self.frames(2)

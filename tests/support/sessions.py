@@ -6,7 +6,7 @@ import numpy as np
 from projects import project_of
 
 from app.document import Document
-from app.editor import Jobs, Session
+from app.editor import Jobs, Session, promises
 from app.editor.actions import playback
 from app.editor.actions.upkeep import maintain
 from engine.arrays import Bytes
@@ -25,6 +25,7 @@ def session_of(document: Document, folder: Path, picture: Bytes = BLANK) -> Sess
 def settle(session: Session) -> None:
     """Let the worker do all that there is to do."""
     while True:
+        promises.go_on(session)
         maintain(session)
         if not session.jobs.kinds:
             return

@@ -281,8 +281,7 @@ def leave(session: Session) -> None:
 
 
 def maintain(session: Session) -> None:
-    """Do what has waited for the document, and write what is due; once a frame."""
-    promises.go_on(session)
+    """Write what is due: unsaved work, preferences; once a frame."""
     autosave(session)
     write_preferences(session)
 

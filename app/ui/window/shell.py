@@ -7,7 +7,7 @@ from pathlib import Path
 
 from imgui_bundle import ImVec2, hello_imgui, imgui, implot
 
-from app.editor import Action, FileDialog, Session, do, sentence
+from app.editor import Action, FileDialog, Session, do, promises, sentence
 from app.editor.actions import editing, playback, saving, upkeep
 from app.errors import EXPECTED_ERRORS
 from app.render import Thumbnail
@@ -210,6 +210,7 @@ class Shell:
         # After the actions, so that a pull goes on with the newest wish; before the picture is
         # drawn, so that it shows at once how far the solver has come.
         self.attempt(self.session.jobs.deliver)
+        self.attempt(partial(promises.go_on, self.session))
         self.attempt(partial(upkeep.maintain, self.session))
         self.attempt(partial(saving.maintain, self.session))
         self._idle_frames = self._idle_frames + 1 if _awaits_in_between(self.session) else 0
@@ -229,7 +230,7 @@ def _is_busy(session: Session) -> bool:
     # The system's own dialog has its own input, and is asked for its answer.
     asks_system = session.system_dialogs and isinstance(session.dialog, FileDialog)
     is_working = bool(session.jobs.kinds) or session.export is not None
-    is_working |= project is not None and project.stale is not None
+    is_working |= project is not None and bool(project.stale or project.afterwards)
     return is_moving or is_working or asks_system or bool(session.toasts)
 
 

@@ -11,6 +11,7 @@ from app.document.commands import (
     figure_commands,
     handle_commands,
     key_commands,
+    layer_commands,
     pose_commands,
     scene_commands,
 )
@@ -366,5 +367,11 @@ def test_an_unkeyed_pose_goes_on_too_and_other_poses_stay():
     assert history.amend(gesture, pose, lambda *_: rest)
     assert history.unkeyed.pose is rest
     assert history.document is first
+    # Also where the layer that it is of is gone later on.
+    history.do(layer_commands.add_figure(replace(figure, id=figure.id + 100)))
+    history.do(layer_commands.remove_figure(figure.id))
+    assert history.amend(gesture, rest, lambda *_: replace(rest))
+    history.undo()
+    history.undo()
     history.undo()
     assert history.unkeyed is None

@@ -21,8 +21,13 @@ def keep_up(session: Session, project: Project) -> None:
         if pull.is_settled and not pull.is_held and pull in project.pending:
             project.pending.remove(pull)
     unseen = [pull for pull in project.pulls if not pull.is_in(project.history)]
+    for pull in unseen:
+        # Nobody sees its in-betweens; it waits for nothing but the solver.
+        if pull.newest is not None:
+            keep(session, project, pull, pull.newest)
     for pull in unseen[:-MOST_UNSEEN]:
-        project.pending.remove(pull)
+        if pull in project.pending:
+            project.pending.remove(pull)
     go_on(session, project)
 
 
