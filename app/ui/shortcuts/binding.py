@@ -4,7 +4,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from app.editor import Action, Session
-from app.ui.shortcuts.keys import in_words
+from app.ui.shortcuts.keys import IS_MAC, in_words
 
 Test = Callable[[Session], bool]
 
@@ -36,6 +36,8 @@ class Binding:
         Whether it is a button of the icon bar as well.
     keys : tuple of int
         ImGui's key chords; any of them does it.
+    mac_keys : tuple of int
+        In their place on macOS, where the system has them for itself.
     told : str
         Its keys in words, where they are not pressed as such.
     icon : str
@@ -57,6 +59,7 @@ class Binding:
     parted: bool = False
     in_bar: bool = False
     keys: tuple[int, ...] = ()
+    mac_keys: tuple[int, ...] = ()
     told: str = ""
     icon: str = ""
     hint: str = ""
@@ -65,10 +68,14 @@ class Binding:
     active: Test | None = None
     repeats: bool = False
 
+    def chords(self, *, is_mac: bool = IS_MAC) -> tuple[int, ...]:
+        """Return the key chords that do it on this system, or on another one."""
+        return (is_mac and self.mac_keys) or self.keys
+
     @property
     def keys_in_words(self) -> str:
         """The first of the keys, as menus show it."""
-        return in_words(self.keys[0]) if self.keys else self.told
+        return in_words(self.chords()[0]) if self.keys else self.told
 
     def title(self, session: Session) -> str:
         """Return the text of its menu entry now; its id is the label."""

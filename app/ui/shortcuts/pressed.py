@@ -20,7 +20,7 @@ def pressed(session: Session) -> list[Action]:
     actions = []
     for binding in BINDINGS.values():
         # What is typed during a drag is for the tool in hand.
-        keys = [key for key in binding.keys if session.pointer is None or not _is_typed(key)]
+        keys = [key for key in binding.chords() if session.pointer is None or not _is_typed(key)]
         flags = imgui.InputFlags_.route_always
         if binding.repeats:
             flags |= imgui.InputFlags_.repeat

@@ -443,6 +443,7 @@ BINDINGS: dict[str, Binding] = {
         action=do(viewing.toggle, "mirror"),
         menu="View",
         keys=(CTRL | int(Key.m),),
+        mac_keys=(CTRL | SHIFT | int(Key.m),),
         hint="Show where flipped poses are mirrored",
         active=lambda session: session.overlays.mirror,
     ),

@@ -176,7 +176,8 @@ def test_layers_that_are_chosen_hidden_and_switched(window, tmp_path, check):
         check(identity)
 
 
-def test_menus_messages_and_dialogs(window, bent, tmp_path, check):
+@pytest.mark.usefixtures("bent")
+def test_menus_messages_and_dialogs(window, tmp_path, check):
     session = window.session
     for tone in ("info", "good", "error"):
         session.tell(f"A message that is {tone}.", tone=tone, details="Its details")

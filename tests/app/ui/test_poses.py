@@ -245,7 +245,7 @@ def test_the_axis_is_entered_shown_and_put_back(window, project):
     assert flipping.shows_axis(window.session)
     window.run(lambda robot: robot.item_click("//###Poses/Middle"))
     assert project.figure.mirror is None
-    press(window, BINDINGS["mirror axis"].keys[0])
+    press(window, BINDINGS["mirror axis"].chords()[0])
     assert not flipping.shows_axis(window.session)
 
 
