@@ -27,6 +27,7 @@ from app.editor.session import (
     SweepMark,
     Toast,
     ToolInHand,
+    with_project,
 )
 from app.editor.timeline_view import (
     Edge,
@@ -82,4 +83,5 @@ __all__ = [
     "do",
     "layering",
     "sentence",
+    "with_project",
 ]

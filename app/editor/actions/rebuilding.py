@@ -7,7 +7,7 @@ from app.editor.actions import editing, posing
 from app.editor.failures import report, sentence
 from app.editor.jobs import Job
 from app.editor.project import Project
-from app.editor.session import Session
+from app.editor.session import Session, with_project
 from app.solving import Renewal, go_on
 from engine.maps import Bounds
 
@@ -15,17 +15,15 @@ RENEWING = "Solving the keys"
 REST = 0.5  # seconds after which a brush is taken to rest
 
 
-def draft_bounds(session: Session, bounds: Bounds) -> None:
+@with_project
+def draft_bounds(_: Session, project: Project, bounds: Bounds) -> None:
     """Try bounds while their knob is dragged; nothing is solved yet."""
-    if session.project:
-        session.project.drafted_bounds = bounds
+    project.drafted_bounds = bounds
 
 
-def choose_bounds(session: Session, bounds: Bounds) -> None:
+@with_project
+def choose_bounds(session: Session, project: Project, bounds: Bounds) -> None:
     """Set the bounds; keys that are outside of them are solved again."""
-    project = session.project
-    if project is None:
-        return
     project.drafted_bounds = None
     certificates = [pose.certificate for pose in project.figure.poses]
     if all(bounds.allow(k=c.k, sigma_a=c.sigma_a, sigma_b=c.sigma_b) for c in certificates):
@@ -35,11 +33,11 @@ def choose_bounds(session: Session, bounds: Bounds) -> None:
         begin(session, Renewal(before=project.figure, bounds=bounds, pulls=False))
 
 
-def loosen(session: Session) -> None:
+@with_project
+def loosen(session: Session, project: Project) -> None:
     """Allow the next looser stretch, and pull the pose that is shown to its targets again."""
-    project = session.project
-    bounds = loosened(project.figure.bounds) if project else None
-    if project is None or bounds is None:
+    bounds = loosened(project.figure.bounds)
+    if bounds is None:
         return
     cancel(session)
     posing.drop(session)
@@ -49,11 +47,11 @@ def loosen(session: Session) -> None:
     posing.pull_again(session, gesture=gesture)
 
 
-def loosen_bounds(session: Session) -> None:
+@with_project
+def loosen_bounds(session: Session, project: Project) -> None:
     """Allow the next looser stretch on the way between the keys; poses stay as they are."""
-    project = session.project
-    bounds = loosened(project.figure.bounds) if project else None
-    if project is not None and bounds is not None:
+    bounds = loosened(project.figure.bounds)
+    if bounds is not None:
         cancel(session)
         project.history.do(figure_commands.set_bounds(project.active, bounds))
 
@@ -69,27 +67,22 @@ def enter_bound(session: Session, bounds: Bounds, name: str, value: float) -> No
     choose_bounds(session, replace(bounds, **{name: value}))
 
 
-def solve_again(session: Session) -> None:
+@with_project
+def solve_again(session: Session, project: Project) -> None:
     """Pull every key's handles to their places again, within the bounds of now."""
-    if session.project:
-        figure = session.project.figure
-        begin(session, Renewal(before=figure, bounds=figure.bounds))
+    begin(session, Renewal(before=project.figure, bounds=project.figure.bounds))
 
 
-def rebuild(session: Session) -> None:
+@with_project
+def rebuild(session: Session, project: Project) -> None:
     """Find the outline and build the mesh again; handles stay, keys are solved again."""
-    project = session.project
-    if project:
-        figure = project.figure
-        meshing = project.meshing or figure.meshing
-        begin(session, Renewal(before=figure, bounds=figure.bounds, meshing=meshing))
+    figure, meshing = project.figure, project.meshing or project.figure.meshing
+    begin(session, Renewal(before=figure, bounds=figure.bounds, meshing=meshing))
 
 
-def keep_up(session: Session) -> None:
+@with_project
+def keep_up(session: Session, project: Project) -> None:
     """Rebuild a domain whose cut-out has changed as soon as the brush rests; once a frame."""
-    project = session.project
-    if project is None:
-        return
     stale = next((f for f in project.document.figures if f.is_stale and not f.still), None)
     if stale is None or stale is project.unbuildable:
         project.stale = None
@@ -107,21 +100,20 @@ def _catches_up(renewal: Renewal) -> bool:
     return renewal.before.is_stale and renewal.meshing == renewal.before.meshing
 
 
-def cancel(session: Session) -> None:
+@with_project
+def cancel(session: Session, project: Project) -> None:
     """Give up what is being solved or rebuilt."""
     session.jobs.drop(RENEWING)
-    project = session.project
-    if project:
-        if project.renewal is not None and _catches_up(project.renewal):
-            project.unbuildable = project.renewal.before
-        project.renewal = None
+    if project.renewal is not None and _catches_up(project.renewal):
+        project.unbuildable = project.renewal.before
+    project.renewal = None
 
 
-def begin(session: Session, renewal: Renewal) -> None:
+@with_project
+def begin(session: Session, project: Project, renewal: Renewal) -> None:
     """Begin what replaces a figure's poses, in place of what is under way."""
     posing.drop(session)
-    if session.project:
-        _go_on(session, session.project, renewal)
+    _go_on(session, project, renewal)
 
 
 def _go_on(session: Session, project: Project, renewal: Renewal) -> None:

@@ -4,7 +4,7 @@ from app.document import Attachment, layer_commands
 from app.editor.actions import editing, playback, posing
 from app.editor.layering.working import put
 from app.editor.project import Project
-from app.editor.session import Session
+from app.editor.session import Session, with_project
 from app.motion import Joints
 
 HANGING = "Hanging a layer"
@@ -15,8 +15,10 @@ def hangs_on(project: Project, identity: int, carrier: int) -> bool:
     return any(each.id == carrier for each in project.document.carriers(identity))
 
 
+@with_project
 def hang(
     session: Session,
+    project: Project,
     child: int,
     parent: int,
     turns: bool = True,  # noqa: FBT001, FBT002 - of an action
@@ -27,6 +29,7 @@ def hang(
     Parameters
     ----------
     session : Session
+    project : Project
     child, parent : int
         Ids of layers.
     turns : bool
@@ -34,9 +37,6 @@ def hang(
     place : complex, optional
         Of the joint, in the scene; by default the anchor's, or the middle of where they overlap.
     """
-    project = session.project
-    if project is None:
-        return
     if hangs_on(project, parent, child):
         names = [project.document.figure(identity).name for identity in (parent, child)]
         session.tell(
@@ -64,17 +64,17 @@ def hang(
     )
 
 
-def let_hang(session: Session, child: int) -> None:
+@with_project
+def let_hang(session: Session, project: Project, child: int) -> None:
     """Let a layer hang on nothing any more; nothing moves at the present frame."""
-    project = session.project
-    shown = project.puppets[child].shown if project else None
-    if project and shown is not None:
+    shown = project.puppets[child].shown
+    if shown is not None:
         editing.edit(session, layer_commands.detach(child, *shown.placement))
 
 
-def turn_with(session: Session, child: int, turns: bool) -> None:  # noqa: FBT001 - of an action
+@with_project
+def turn_with(session: Session, project: Project, child: int, turns: bool) -> None:  # noqa: FBT001 - of an action
     """Let a layer turn with the one that it hangs on, or keep its own turn; nothing moves now."""
-    project = session.project
-    joint = project.document.figure(child).attachment if project else None
+    joint = project.document.figure(child).attachment
     if joint is not None and turns != joint.turns:
         hang(session, child, joint.to, turns)

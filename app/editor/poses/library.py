@@ -8,15 +8,15 @@ from app.document import Figure, Keyframe, Pose, Target, pose_commands
 from app.editor.actions import editing, playback, posing
 from app.editor.poses import putting
 from app.editor.project import PoseBlend, Project
-from app.editor.session import Session
+from app.editor.session import Session, with_project
 
 KEEPING = "Keeping a pose"
 
 
-def keep(session: Session) -> None:
+@with_project
+def keep(session: Session, project: Project) -> None:
     """Put the pose of the chosen key into the library, or else the one that is shown."""
-    project = session.project
-    if project is None or project.puppet.shown is None:
+    if project.puppet.shown is None:
         return
     keys = putting.shown_keys(project)
     if keys:
@@ -35,20 +35,18 @@ def _keep(session: Session, project: Project, figure: Figure, keys: tuple[Keyfra
     project.kept = project.figure.library[-1].name
 
 
-def apply(session: Session, name: str) -> None:
+@with_project
+def apply(session: Session, project: Project, name: str) -> None:
     """Let a key at the present frame hold a pose of the library."""
-    project = session.project
-    if project is not None:
-        _put(session, project, name, putting.stand_at_frame(session, project))
+    _put(session, project, name, putting.stand_at_frame(session, project))
 
 
-def apply_at(session: Session, name: str, frame: int) -> None:
+@with_project
+def apply_at(session: Session, project: Project, name: str, frame: int) -> None:
     """Let a key at a frame hold a pose of the library, and go there."""
-    project = session.project
-    if project is not None and frame >= 0:
-        putting.stand_at_frame(session, project)
-        _put(session, project, name, frame)
-        playback.seek(session, frame)
+    putting.stand_at_frame(session, project)
+    _put(session, project, name, frame)
+    playback.seek(session, frame)
 
 
 def _put(session: Session, project: Project, name: str, frame: int) -> None:
@@ -58,19 +56,20 @@ def _put(session: Session, project: Project, name: str, frame: int) -> None:
     putting.put(session, project, frame, keys, label="Use pose")
 
 
-def blend(session: Session, name: str, share: float) -> None:
+@with_project
+def blend(session: Session, project: Project, name: str, share: float) -> None:
     """Mix a pose of the library into the one that is shown, as it was when this began.
 
     Parameters
     ----------
     session : Session
+    project : Project
     name : str
     share : float
         Of the pose in the library: 0 changes nothing, 1 is that pose itself. Between them the
         handles are on the way, and the shape follows within its limits.
     """
-    project = session.project
-    if project is None or project.puppet.shown is None:
+    if project.puppet.shown is None:
         return
     if posing.waits(session, partial(blend, name=name, share=share), gesture=blend):
         return
@@ -88,10 +87,11 @@ def blend(session: Session, name: str, share: float) -> None:
         posing.pull(session, _mixed(begun.wishes, pose, share), gesture=begun.gesture)
 
 
-def end_blend(session: Session) -> None:
+@with_project
+def end_blend(session: Session, project: Project) -> None:
     """Let the pose be as it is mixed now."""
-    if session.project and not (session.project.awaiting and posing.waits(session, end_blend)):
-        session.project.blend = None
+    if not (project.awaiting and posing.waits(session, end_blend)):
+        project.blend = None
         posing.let_go(session)
 
 
@@ -112,11 +112,11 @@ def _between(one: Target, other: Target, share: float) -> Target:
     return Target(position=position, rotation=rotation)
 
 
-def rename(session: Session, name: str, to: str) -> None:
+@with_project
+def rename(session: Session, project: Project, name: str, to: str) -> None:
     """Give a pose of the library another name."""
-    if session.project:
-        editing.edit_figure(session, pose_commands.rename_pose, name, to)
-        session.project.kept = to
+    editing.edit_figure(session, pose_commands.rename_pose, name, to)
+    project.kept = to
 
 
 def delete(session: Session, name: str) -> None:

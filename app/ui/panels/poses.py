@@ -182,7 +182,7 @@ def _flip(session: Session, look: Look, project: Project) -> list[Action]:
     actions: list[Action] = []
     figure, binding = project.figure, BINDINGS["paste flipped"]
     width = imgui.get_content_region_avail().x
-    imgui.begin_disabled(not binding.possible(session))
+    imgui.begin_disabled(not binding.is_possible(session))
     if imgui.button(f"{icons.ICON_FA_PASTE}  {binding.label}###flip", ImVec2(width, 0)):
         actions.append(binding.action)
     imgui.end_disabled()

@@ -24,7 +24,7 @@ def pressed(session: Session) -> list[Action]:
         flags = imgui.InputFlags_.route_always
         if binding.repeats:
             flags |= imgui.InputFlags_.repeat
-        if any(imgui.shortcut(chord, flags) for chord in keys) and binding.possible(session):
+        if any(imgui.shortcut(chord, flags) for chord in keys) and binding.is_possible(session):
             actions.append(binding.action)
     return actions + _nudges(session) + _space(session)
 

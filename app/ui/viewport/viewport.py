@@ -200,7 +200,7 @@ class _Axis(NamedTuple):
 
 
 def _axis(session: Session, look: Look, canvas: _Canvas) -> _Axis:
-    if not flipping.shows_axis(session):
+    if not flipping.shows_axis(session, canvas.project):
         return _Axis()
     x = canvas.point(complex(canvas.project.figure.axis)).x
     return _Axis(x, *axis_grip(look, x))
@@ -365,13 +365,17 @@ def _hint(session: Session, canvas: _Canvas, spot: Spot) -> str:
         told = [f"{_how(hint)} {hint.what}" for hint in session.pointer.ways]
         return _sentence([*told, "Esc takes it back"])
     if session.cutting is not None:
-        found = [hint for tool in tools_of(session) for hint in tool.hints(session, spot)]
+        found = [
+            hint for tool in tools_of(session) for hint in tool.hints(session, canvas.project, spot)
+        ]
         return _sentence([*(f"{_how(hint)} {hint.what}" for hint in found), "Esc goes back"])
     if canvas.project.playhead.since is not None:
         return "Space stops"
     if not session.overlays.handles:
         return "The handles are hidden: H shows them"
-    found = [hint for tool in tools_of(session) for hint in tool.hints(session, spot)]
+    found = [
+        hint for tool in tools_of(session) for hint in tool.hints(session, canvas.project, spot)
+    ]
     told = [f"{_how(hint)} {hint.what}" for hint in found]
     if spot.handle is not None:
         names = {handle.id: handle.name for handle in canvas.shown.clip.figure.handles}

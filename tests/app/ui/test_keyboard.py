@@ -6,7 +6,7 @@ from imgui_bundle import imgui
 from app.editor import Question, do
 from app.editor.actions import posing, show_dialog
 from app.storage.assets import sample_images
-from app.ui.shortcuts import BINDINGS
+from app.ui.shortcuts import BINDINGS, MENUS
 from app.ui.shortcuts.keys import in_words, with_key
 
 OPEN = imgui.test_engine.TestAction.open
@@ -148,11 +148,12 @@ def test_the_fonts_have_the_signs_of_all_keys(window):
 def test_menus_are_made_from_the_table(window):
     """Each entry is in its menu, and does what its keys do."""
     found = []
+    entries = [(menu, *each) for menu, bindings in MENUS.items() for each in bindings.items()]
 
     def look(robot):
         robot.set_ref("##MainMenuBar")
-        for name, binding in BINDINGS.items():
-            robot.menu_click(binding.menu)
+        for menu, name, binding in entries:
+            robot.menu_click(menu)
             path = f"//$FOCUSED/{'###' if binding.detail else ''}{binding.label}"
             if robot.item_exists(path):
                 found.append(name)
