@@ -28,6 +28,7 @@ from app.editor.session import (
     SweepMark,
     Toast,
     ToolInHand,
+    with_project,
 )
 from app.editor.timeline_view import (
     Edge,
@@ -84,4 +85,5 @@ __all__ = [
     "layering",
     "promises",
     "sentence",
+    "with_project",
 ]

@@ -77,8 +77,25 @@ class Strip:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class KeyDrag:
-    """The pointer moves keys in time, or copies of them.
+class TimeDrag:
+    """The pointer moves something in time.
+
+    Parameters
+    ----------
+    start : float
+        The pointer's frame at the press.
+    before, after : Document
+        At the press, and with what is moved where it is now.
+    """
+
+    start: float
+    before: Document
+    after: Document
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class KeyDrag(TimeDrag):
+    """The pointer moves keys, or copies of them.
 
     Parameters
     ----------
@@ -86,32 +103,39 @@ class KeyDrag:
         Their frames in `before`, by the ids of their figures.
     pressed : int
         The frame of the one under the pointer, which is of the active figure.
-    start : float
-        The pointer's frame at the press.
     copies : bool
-    before, after : Document
-        At the press, and with the keys where they are now.
     by : int
         How far they are, in frames.
     """
 
     keys: Mapping[int, frozenset[int]]
     pressed: int
-    start: float
     copies: bool
-    before: Document
-    after: Document
     by: int = 0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class EdgeDrag:
+class EdgeDrag(TimeDrag):
     """The pointer moves an end of the preview range, all of it, or the animation's end."""
 
     edge: Edge
-    start: float
-    before: Document
-    after: Document
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class MarkerDrag(TimeDrag):
+    """The pointer moves a marker from a frame in `before` to where it is `at` now."""
+
+    marker: int
+    at: int
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class SwitchDrag(TimeDrag):
+    """The pointer moves where a figure is shown or hidden: from a frame in `before` to `at`."""
+
+    figure: int
+    switch: int
+    at: int
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -140,30 +164,7 @@ class Scrub:
     offset: float = 0.0
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class MarkerDrag:
-    """The pointer moves a marker from a frame in `before` to where it is `at` now."""
-
-    marker: int
-    at: int
-    start: float
-    before: Document
-    after: Document
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class SwitchDrag:
-    """The pointer moves where a figure is shown or hidden: from a frame in `before` to `at`."""
-
-    figure: int
-    switch: int
-    at: int
-    start: float
-    before: Document
-    after: Document
-
-
-TimeGesture = KeyDrag | EdgeDrag | KeyBox | MarkerDrag | SwitchDrag | Scrub
+TimeGesture = TimeDrag | KeyBox | Scrub
 
 
 # By how many pixels handles, by their ids, fall short of their targets in each key's pose.
@@ -172,22 +173,14 @@ Shortfalls = Mapping[Pose, Mapping[int, float]]
 
 def measure_shortfalls(figure: Figure, earlier: Derived[Figure, Shortfalls]) -> Shortfalls:
     """Measure the poses of a figure; those that were measured before are not again."""
-    known: Shortfalls = {}
-    if earlier.source is not None and _has_same_shape(figure, earlier.source):
-        known = earlier.value
+    known, source = earlier.value, earlier.source
+    if source is None or figure.handles != source.handles or figure.domain is not source.domain:
+        known = {}
     lags: dict[Pose, Mapping[int, float]] = {}
     for pose in (key.pose for key in figure.keys):
-        if pose in known:
-            lags[pose] = known[pose]
-        elif figure.handles:
-            lags[pose] = find_shortfall(figure, pose).lags
-        else:
-            lags[pose] = {}
+        usual = find_shortfall(figure, pose).lags if figure.handles and pose not in known else {}
+        lags[pose] = known.get(pose, usual)
     return lags
-
-
-def _has_same_shape(figure: Figure, other: Figure) -> bool:
-    return figure.handles == other.handles and figure.domain is other.domain
 
 
 @dataclass(slots=True, kw_only=True, eq=False)

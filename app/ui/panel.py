@@ -4,7 +4,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Literal
 
-from app.editor import Action, Session
+from app.editor import Action, Project, Session
 from app.ui.style import Look
 
 
@@ -20,13 +20,14 @@ class Panel:
     place : str
         Where it is docked at first.
     draw : callable
-        Reads the session and returns what the person asked for.
+        Reads the session and its project, and returns what the person asked for. Without a project
+        it is not called.
     """
 
     title: str
     icon: str
     place: Literal["MainDockSpace", "side", "bottom"]
-    draw: Callable[[Session, Look], list[Action]]
+    draw: Callable[[Session, Look, Project], list[Action]]
 
     @property
     def labels(self) -> tuple[str, str, str]:

@@ -231,6 +231,12 @@ class Harness:
         self._frame(painted=True)
         return self._screen.picture()
 
+    def repainted(self) -> Image.Image:
+        """Return the last frame painted once more, with what was changed of its draw lists."""
+        with self.gl:
+            self._screen.paint()
+        return self._screen.picture()
+
     def _frame(self, *, painted: bool = False) -> None:
         self.clock.now += FRAME
         self._screen.frame(painted=painted)

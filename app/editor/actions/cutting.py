@@ -13,14 +13,8 @@ from app.editor.dialogs import FileDialog
 from app.editor.failures import report
 from app.editor.jobs import Job
 from app.editor.project import Project
-from app.editor.session import CutTool, Session
-from app.storage import (
-    cut_picture,
-    decode_mask,
-    encode_mask,
-    read_file,
-    write_atomically,
-)
+from app.editor.session import CutTool, Session, with_project
+from app.storage import cut_picture, decode_mask, encode_mask, read_file, write_atomically
 from engine.domain import Mask, Stroke
 
 READING, WRITING = "Loading the mask", "Saving the mask"
@@ -31,11 +25,11 @@ FIRST_BRUSH = 0.03  # of the picture's longer side
 DROP = 2  # pixels around the one that is picked whose colour counts
 
 
-def take_up(session: Session, tool: CutTool | None) -> None:
+@with_project
+def take_up(session: Session, _: Project, tool: CutTool | None) -> None:
     """Take a tool in hand that cuts out; None, or the same one again, goes back to posing."""
-    if session.project is None or session.pointer is not None:
-        return
-    session.cutting = None if tool == session.cutting else tool
+    if session.pointer is None:
+        session.cutting = None if tool == session.cutting else tool
 
 
 def begin_or_swap(session: Session) -> None:
@@ -43,22 +37,22 @@ def begin_or_swap(session: Session) -> None:
     take_up(session, "keep" if session.cutting == "remove" else "remove")
 
 
-def enlarge_brush(session: Session) -> None:
+@with_project
+def enlarge_brush(session: Session, project: Project) -> None:
     """Make the brush larger."""
-    if session.project:
-        set_brush(session, brush_radius(session.project) * BRUSH_STEP)
+    set_brush(session, brush_radius(project) * BRUSH_STEP)
 
 
-def shrink_brush(session: Session) -> None:
+@with_project
+def shrink_brush(session: Session, project: Project) -> None:
     """Make the brush smaller."""
-    if session.project:
-        set_brush(session, brush_radius(session.project) / BRUSH_STEP)
+    set_brush(session, brush_radius(project) / BRUSH_STEP)
 
 
-def set_brush(session: Session, radius: float) -> None:
+@with_project
+def set_brush(_: Session, project: Project, radius: float) -> None:
     """Set the radius of the brush, in pixels of the picture."""
-    if session.project:
-        session.project.brush = min(max(radius, SMALLEST_BRUSH), LARGEST_BRUSH)
+    project.brush = min(max(radius, SMALLEST_BRUSH), LARGEST_BRUSH)
 
 
 def brush_radius(project: Project) -> float:
@@ -68,11 +62,11 @@ def brush_radius(project: Project) -> float:
     return max(4.0, FIRST_BRUSH * max(project.figure.picture.size))
 
 
-def change(session: Session, **changes: Any) -> None:
+@with_project
+def change(session: Session, project: Project, /, **changes: Any) -> None:
     """Give the cut-out other values of its fields."""
-    if session.project:
-        cut_out = replace(session.project.figure.cut_out, **changes)
-        editing.edit_figure(session, figure_commands.set_cut_out, cut_out)
+    cut_out = replace(project.figure.cut_out, **changes)
+    editing.edit_figure(session, figure_commands.set_cut_out, cut_out)
 
 
 def set_tolerance(session: Session, tolerance: int) -> None:
@@ -90,11 +84,9 @@ def set_enclosed(session: Session, enclosed: Any) -> None:
     change(session, enclosed=enclosed)
 
 
-def pick(session: Session, place: complex) -> None:
+@with_project
+def pick(session: Session, project: Project, place: complex) -> None:
     """Take the colour of the picture at a place for the background's."""
-    project = session.project
-    if project is None:
-        return
     rgba = project.puppet.picture.rgba
     height, width = rgba.shape[:2]
     point = place - project.figure.corner
@@ -113,15 +105,12 @@ def brush(session: Session, stroke: Stroke) -> None:
     editing.edit_figure(session, figure_commands.brush, stroke)
 
 
-def swap_hole(session: Session, place: complex) -> None:
+@with_project
+def swap_hole(session: Session, project: Project, place: complex) -> None:
     """Keep the hole at a place that would be filled, or fill one that would be kept."""
-    project = session.project
-    holes = project.puppet.cut.value.holes if project else None
-    if project is None or holes is None:
-        return
-    point = place - project.figure.corner
-    number = holes.number_at(point)
-    if not number:
+    holes, point = project.puppet.cut.value.holes, place - project.figure.corner
+    number = holes.number_at(point) if holes is not None else 0
+    if holes is None or not number:
         return
     swapped = project.figure.cut_out.swapped
     others = tuple(other for other in swapped if holes.number_at(other) != number)
@@ -144,11 +133,9 @@ def ask_mask(session: Session) -> None:
     )
 
 
-def load_mask(session: Session, path: Path) -> None:
+@with_project
+def load_mask(session: Session, project: Project, path: Path) -> None:
     """Read a mask on the worker; it takes the place of the background and of all strokes."""
-    project = session.project
-    if project is None:
-        return
     identity = project.active
 
     def take(mask: Mask) -> None:
@@ -165,24 +152,22 @@ def load_mask(session: Session, path: Path) -> None:
     )
 
 
-def ask_mask_path(session: Session) -> None:
+@with_project
+def ask_mask_path(session: Session, project: Project) -> None:
     """Ask where to save the mask."""
-    if session.project:
-        session.dialog = FileDialog(
-            title="Save the mask",
-            folder=session.usual_folder,
-            name=f"{session.project.name} mask.png",
-            suffixes=MASKS,
-            writes=True,
-            chosen=lambda path: do(save_mask, path),
-        )
+    session.dialog = FileDialog(
+        title="Save the mask",
+        folder=session.usual_folder,
+        name=f"{project.name} mask.png",
+        suffixes=MASKS,
+        writes=True,
+        chosen=lambda path: do(save_mask, path),
+    )
 
 
-def save_mask(session: Session, path: Path) -> None:
+@with_project
+def save_mask(session: Session, project: Project, path: Path) -> None:
     """Write what is kept as a black and white picture."""
-    project = session.project
-    if project is None:
-        return
     picture, cut_out = project.puppet.picture, project.figure.cut_out
 
     def work() -> None:

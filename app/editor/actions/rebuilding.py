@@ -18,10 +18,10 @@ RENEWING = "Solving the keys"
 REST = 0.5  # seconds after which a brush is taken to rest
 
 
-def draft_bounds(session: Session, bounds: Bounds) -> None:
+@with_project
+def draft_bounds(_: Session, project: Project, bounds: Bounds) -> None:
     """Try bounds while their knob is dragged; nothing is solved yet."""
-    if session.project:
-        session.project.drafted_bounds = bounds
+    project.drafted_bounds = bounds
 
 
 @with_project
@@ -42,11 +42,11 @@ def _set_bounds(session: Session, project: Project, bounds: Bounds) -> None:
         begin(session, Renewal(before=project.figure, bounds=bounds, pulls=False))
 
 
-def loosen(session: Session) -> None:
+@with_project
+def loosen(session: Session, project: Project) -> None:
     """Allow the next looser stretch, and pull the pose that is shown to its targets again."""
-    project = session.project
-    bounds = loosened(project.figure.bounds) if project else None
-    if project is None or bounds is None:
+    bounds = loosened(project.figure.bounds)
+    if bounds is None:
         return
     cancel(session)
     gesture = object()
@@ -55,11 +55,11 @@ def loosen(session: Session) -> None:
     posing.pull_again(session, gesture=gesture)
 
 
-def loosen_bounds(session: Session) -> None:
+@with_project
+def loosen_bounds(session: Session, project: Project) -> None:
     """Allow the next looser stretch on the way between the keys; poses stay as they are."""
-    project = session.project
-    bounds = loosened(project.figure.bounds) if project else None
-    if project is not None and bounds is not None:
+    bounds = loosened(project.figure.bounds)
+    if bounds is not None:
         cancel(session)
         project.history.do(figure_commands.set_bounds(project.active, bounds))
 
@@ -92,8 +92,7 @@ def rebuild(session: Session) -> None:
 
 @with_project
 def _rebuild(session: Session, project: Project) -> None:
-    figure = project.figure
-    meshing = project.meshing or figure.meshing
+    figure, meshing = project.figure, project.meshing or project.figure.meshing
     begin(session, Renewal(before=figure, bounds=figure.bounds, meshing=meshing))
 
 
@@ -117,14 +116,13 @@ def _catches_up(renewal: Renewal) -> bool:
     return renewal.before.is_stale and renewal.meshing == renewal.before.meshing
 
 
-def cancel(session: Session) -> None:
+@with_project
+def cancel(session: Session, project: Project) -> None:
     """Give up what is being solved or rebuilt."""
     session.jobs.drop(RENEWING)
-    project = session.project
-    if project and project.renewal is not None:
-        if _catches_up(project.renewal):
-            project.unbuildable = project.renewal.before
-        project.pending = [promise for promise in project.pending if not promise.renewal]
+    if project.renewal is not None and _catches_up(project.renewal):
+        project.unbuildable = project.renewal.before
+    project.pending = [promise for promise in project.pending if not promise.renewal]
 
 
 @with_project

@@ -16,7 +16,7 @@ from app.document import (
 from app.editor.actions import editing, playback
 from app.editor.actions.keys import retime
 from app.editor.project import Project
-from app.editor.session import Session
+from app.editor.session import Session, with_project
 from app.editor.timeline_view import (
     EdgeDrag,
     KeyBox,
@@ -25,18 +25,18 @@ from app.editor.timeline_view import (
     Scrub,
     Strip,
     SwitchDrag,
+    TimeDrag,
     TimeGesture,
 )
 
 
-def look_at(session: Session, strip: Strip | None) -> None:
+@with_project
+def look_at(_: Session, project: Project, strip: Strip | None) -> None:
     """Show a stretch of time; None fits all frames."""
-    if session.project:
-        timing = session.project.timing
-        if timing.gesture is None:
-            timing.strip = strip
-        else:
-            timing.held = strip
+    if project.timing.gesture is None:
+        project.timing.strip = strip
+    else:
+        project.timing.held = strip
 
 
 def fit(session: Session) -> None:
@@ -44,55 +44,58 @@ def fit(session: Session) -> None:
     look_at(session, None)
 
 
-def follow(session: Session, frame: int, strip: Strip | None) -> None:
+@with_project
+def follow(session: Session, project: Project, frame: int, strip: Strip | None) -> None:
     """Note that the playhead is at a frame, and show a stretch of time that it is in, if given."""
-    if session.project:
-        session.project.timing.seen = frame
-        if strip is not None:
-            look_at(session, strip)
+    project.timing.seen = frame
+    if strip is not None:
+        look_at(session, strip)
 
 
-def scroll_rows(session: Session, to: float) -> None:
+@with_project
+def scroll_rows(_: Session, project: Project, to: float) -> None:
     """Scroll the rows of figures to a number of em below the first one; the active one is seen."""
-    if session.project:
-        timing = session.project.timing
-        timing.scrolled, timing.seen_row = to, session.project.active
+    project.timing.scrolled, project.timing.seen_row = to, project.active
 
 
-def begin(session: Session, gesture: TimeGesture, strip: Strip) -> None:
+@with_project
+def begin(_: Session, project: Project, gesture: TimeGesture, strip: Strip) -> None:
     """Begin a gesture; what is shown stays until it ends."""
-    if session.project:
-        session.project.timing.gesture = gesture
-        session.project.timing.held = strip
+    project.timing.gesture, project.timing.held = gesture, strip
 
 
-def move(session: Session, frame: float, row: int) -> None:
+@with_project
+def move(session: Session, project: Project, frame: float, row: int) -> None:
     """Follow the pointer to another time, on the row of a figure."""
-    project = session.project
-    if project is None:
-        return
     match project.timing.gesture:
-        case KeyDrag() as drag:
-            _drag_keys(session, project, drag, frame)
-        case EdgeDrag() as drag:
-            _drag_edge(session, project, drag, frame)
-        case MarkerDrag() as drag:
-            _drag_marker(session, project, drag, frame)
-        case SwitchDrag() as drag:
-            _drag_switch(session, project, drag, frame)
         case KeyBox() as box:
             editing.choose_keys_of(session, _inside(project.document, box, frame, row))
         case Scrub(offset=offset):
             playback.scrub(session, round(frame + offset))
+        case TimeDrag() as drag:
+            _drag(session, project, drag, frame)
 
 
-def end(session: Session) -> None:
+@with_project
+def end(_: Session, project: Project) -> None:
     """End the gesture where it is."""
-    if session.project:
-        timing = session.project.timing
-        if timing.strip is not None:
-            timing.strip = timing.held
-        timing.gesture = timing.held = None
+    timing = project.timing
+    if timing.strip is not None:
+        timing.strip = timing.held
+    timing.gesture = timing.held = None
+
+
+@with_project
+def cancel(session: Session, project: Project) -> None:
+    """End the gesture, and take back what it did."""
+    gesture = project.timing.gesture
+    if isinstance(gesture, KeyBox):
+        editing.choose_keys_of(session, gesture.keeps)
+    elif isinstance(gesture, TimeDrag) and project.document is gesture.after:
+        _become(session, gesture.before, "Drag")
+        if isinstance(gesture, KeyDrag):
+            editing.choose_keys_of(session, gesture.keys)
+    end(session)
 
 
 def _inside(
@@ -109,25 +112,6 @@ def _inside(
         frames = frozenset(key for key in figure.key_frames if low <= key <= high)
         inside[figure.id] = inside.get(figure.id, frozenset()) | frames
     return inside
-
-
-def cancel(session: Session) -> None:
-    """End the gesture, and take back what it did."""
-    if session.project is None:
-        return
-    match session.project.timing.gesture:
-        case KeyDrag(before=before, after=after, keys=keys) if session.project.document is after:
-            _become(session, before, "Move keys")
-            editing.choose_keys_of(session, keys)
-        case EdgeDrag(before=before, after=after) if session.project.document is after:
-            _become(session, before, "Set preview range")
-        case MarkerDrag(before=before, after=after) if session.project.document is after:
-            _become(session, before, "Move marker")
-        case SwitchDrag(before=before, after=after) if session.project.document is after:
-            _become(session, before, "Move visibility")
-        case KeyBox(keeps=keeps):
-            editing.choose_keys_of(session, keeps)
-    end(session)
 
 
 def shift_of(
@@ -161,58 +145,50 @@ def shift_of(
     raise AssertionError("unreachable: 0 is always possible")
 
 
-def _drag_keys(session: Session, project: Project, drag: KeyDrag, frame: float) -> None:
-    wanted = round(frame - drag.start)
-    by = shift_of(drag.before, drag.keys, wanted, copies=drag.copies)
-    if by == drag.by:
+def _drag(session: Session, project: Project, drag: TimeDrag, frame: float) -> None:
+    """Move what is dragged to the pointer's frame, unless something else changed meanwhile."""
+    moved = _moved(drag, frame)
+    if moved is None:
         return
     if project.document is not drag.after:
         end(session)
         return
-    change = key_commands.copy_keys if drag.copies else key_commands.move_keys
-    command = editing.change_keys(lambda figure, frames: change(figure, frames, by), drag.keys)
-    _become(session, command(drag.before) if by else drag.before, command.label)
-    editing.choose_keys_of(
-        session,
-        {figure: frozenset(key + by for key in frames) for figure, frames in drag.keys.items()},
-    )
-    project.timing.gesture = replace(drag, by=by, after=project.document)
-
-
-def _drag_edge(session: Session, project: Project, drag: EdgeDrag, frame: float) -> None:
-    if project.document is not drag.after:
-        end(session)
-        return
-    command = _trim(drag, frame)
+    drag, command = moved
     _become(session, command(drag.before), command.label)
+    if isinstance(drag, KeyDrag):
+        by = drag.by
+        chosen = {i: frozenset(key + by for key in frames) for i, frames in drag.keys.items()}
+        editing.choose_keys_of(session, chosen)
     project.timing.gesture = replace(drag, after=project.document)
 
 
-def _drag_marker(session: Session, project: Project, drag: MarkerDrag, frame: float) -> None:
-    if project.document is not drag.after:
-        end(session)
-        return
-    wanted = min(max(drag.marker + round(frame - drag.start), 0), LAST_FRAME)
-    others = {marker.frame for marker in drag.before.markers} - {drag.marker}
-    if wanted == drag.at or wanted in others:
-        return
-    command = scene_commands.move_marker(drag.marker, wanted)
-    _become(session, command(drag.before), command.label)
-    project.timing.gesture = replace(drag, at=wanted, after=project.document)
+def _moved(drag: TimeDrag, frame: float) -> tuple[TimeDrag, Command] | None:
+    """Return the drag with what it moves as near to a frame as can be, and the command for that.
 
-
-def _drag_switch(session: Session, project: Project, drag: SwitchDrag, frame: float) -> None:
-    if project.document is not drag.after:
-        end(session)
-        return
-    document = drag.before
-    wanted = document.frames.clamp(drag.switch + round(frame - drag.start))
-    others = {switch.frame for switch in document.figure(drag.figure).switches} - {drag.switch}
-    if wanted == drag.at or wanted in others:
-        return
-    command = layer_commands.move_switch(drag.figure, drag.switch, wanted)
-    _become(session, command(document), command.label)
-    project.timing.gesture = replace(drag, at=wanted, after=project.document)
+    The command is for the document as it was before; None where nothing moves.
+    """
+    by, before = round(frame - drag.start), drag.before
+    match drag:
+        case EdgeDrag():
+            return drag, _trim(drag, frame)
+        case KeyDrag():
+            by = shift_of(before, drag.keys, by, copies=drag.copies)
+            change = key_commands.copy_keys if drag.copies else key_commands.move_keys
+            command = editing.change_keys(lambda figure, at: change(figure, at, by), drag.keys)
+            if not by:
+                command = Command(command.label, lambda document: document)
+            return None if by == drag.by else (replace(drag, by=by), command)
+        case MarkerDrag(marker=marker):
+            at = min(max(marker + by, 0), LAST_FRAME)
+            others = {each.frame for each in before.markers} - {marker}
+            command = scene_commands.move_marker(marker, at)
+            return None if at in others | {drag.at} else (replace(drag, at=at), command)
+        case SwitchDrag(figure=figure, switch=switch):
+            at = before.frames.clamp(switch + by)
+            others = {each.frame for each in before.figure(figure).switches} - {switch}
+            command = layer_commands.move_switch(figure, switch, at)
+            return None if at in others | {drag.at} else (replace(drag, at=at), command)
+    raise AssertionError("unreachable: there are no other drags")
 
 
 def _trim(drag: EdgeDrag, pointed: float) -> Command:

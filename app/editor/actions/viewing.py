@@ -8,8 +8,8 @@ from typing import Any, Literal
 from app.document import Baseline, Meshing, Variant
 from app.editor.action import Action
 from app.editor.dialogs import Dialog, FileDialog, ShortcutSheet
-from app.editor.project import view_around
-from app.editor.session import CurveKind, HeatMap, Session, Toast
+from app.editor.project import Project, view_around
+from app.editor.session import CurveKind, HeatMap, Session, Toast, with_project
 from app.motion import Box, box_around
 from app.render import View
 from app.storage import LARGEST_GHOST_STEP, LARGEST_SCALE, MOST_GHOSTS, SMALLEST_SCALE, ThemeName
@@ -21,36 +21,34 @@ OverlayName = Literal["handles", "wireframe", "outline", "cage", "onion", "mirro
 HEAT_MAPS: tuple[HeatMap, ...] = ("none", "k", "sigma_a", "sigma_b")
 
 
-def look_from(session: Session, camera: View | None) -> None:
+@with_project
+def look_from(_: Session, project: Project, camera: View | None) -> None:
     """Move the camera; None fits the picture's frame into the viewport, whatever its size."""
-    if session.project:
-        session.project.camera = camera
-        session.project.awaits_extent = False
+    project.camera = camera
+    project.awaits_extent = False
 
 
-def fit_pose(session: Session) -> None:
+@with_project
+def fit_pose(session: Session, project: Project) -> None:
     """Show all figures as they are in this frame, whole."""
-    if session.project:
-        shown = [puppet.shown for puppet in session.project.puppets.values()]
-        boxes = [
-            box_around(each.placement.on(each.positions)) for each in shown if each is not None
-        ]
-        if boxes:
-            look_at(session, reduce(Box.joined, boxes))
+    shown = [puppet.shown for puppet in project.puppets.values()]
+    boxes = [box_around(each.placement.on(each.positions)) for each in shown if each is not None]
+    if boxes:
+        look_at(session, reduce(Box.joined, boxes))
 
 
-def fit_motion(session: Session) -> None:
+@with_project
+def fit_motion(_: Session, project: Project) -> None:
     """Show where all figures get to in any frame, as soon as that is measured."""
-    if session.project:
-        session.project.awaits_extent = True
+    project.awaits_extent = True
 
 
-def fit_selection(session: Session) -> None:
+@with_project
+def fit_selection(session: Session, project: Project) -> None:
     """Show the selected handles with some of the figure around them, or the whole figure."""
-    project = session.project
-    if project is None or project.puppet.shown is None:
-        return
     shown = project.puppet.shown
+    if shown is None:
+        return
     box = box_around(shown.placement.on(shown.positions))
     selected = [handle.id in project.selected for handle in shown.clip.figure.handles]
     if any(selected):
@@ -65,10 +63,10 @@ def look_at(session: Session, box: Box) -> None:
     look_from(session, view_around(box, session.screen))
 
 
-def actual_size(session: Session) -> None:
+@with_project
+def actual_size(session: Session, project: Project) -> None:
     """Show one pixel of the picture as one of the screen, around the same centre."""
-    if session.project:
-        look_from(session, replace(session.project.view(session.screen), scale=1.0))
+    look_from(session, replace(project.view(session.screen), scale=1.0))
 
 
 def resize(session: Session, width: int, height: int) -> None:
@@ -141,10 +139,10 @@ def set_backdrop(session: Session, backdrop: str) -> None:
     session.preferences = replace(session.preferences, backdrop=backdrop)
 
 
-def draft_meshing(session: Session, meshing: Meshing) -> None:
+@with_project
+def draft_meshing(_: Session, project: Project, meshing: Meshing) -> None:
     """Choose what the domain will be rebuilt with."""
-    if session.project:
-        session.project.meshing = meshing
+    project.meshing = meshing
 
 
 def toggle_theme(session: Session) -> None:

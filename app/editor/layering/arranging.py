@@ -58,7 +58,7 @@ def is_at(project: Project, identity: int, place: complex) -> bool:
 
 def rename(session: Session, identity: int, name: str) -> None:
     """Give a layer another name."""
-    if session.project and name.strip():
+    if name.strip():
         editing.edit(session, layer_commands.rename_figure(identity, name))
 
 
@@ -67,25 +67,25 @@ def move(session: Session, identity: int, index: int) -> None:
     editing.edit(session, layer_commands.move_figure(identity, index))
 
 
-def show(session: Session, identity: int) -> None:
+@with_project
+def show(session: Session, project: Project, identity: int) -> None:
     """Hide a layer, or show it again."""
-    if session.project:
-        hidden = session.project.document.figure(identity).hidden
-        editing.edit(session, layer_commands.set_hidden(identity, hidden=not hidden))
+    hidden = project.document.figure(identity).hidden
+    editing.edit(session, layer_commands.set_hidden(identity, hidden=not hidden))
 
 
-def lock(session: Session, identity: int) -> None:
+@with_project
+def lock(session: Session, project: Project, identity: int) -> None:
     """Let clicks on the drawing pass through a layer, or stop at it again."""
-    if session.project:
-        locked = session.project.document.figure(identity).locked
-        editing.edit(session, layer_commands.set_locked(identity, locked=not locked))
+    locked = project.document.figure(identity).locked
+    editing.edit(session, layer_commands.set_locked(identity, locked=not locked))
 
 
-def refer(session: Session, identity: int) -> None:
+@with_project
+def refer(session: Session, project: Project, identity: int) -> None:
     """Leave a layer out of exports, or take it in again."""
-    if session.project:
-        reference = session.project.document.figure(identity).reference
-        editing.edit(session, layer_commands.set_reference(identity, reference=not reference))
+    reference = project.document.figure(identity).reference
+    editing.edit(session, layer_commands.set_reference(identity, reference=not reference))
 
 
 def fade(session: Session, identity: int, opacity: float) -> None:
@@ -93,28 +93,25 @@ def fade(session: Session, identity: int, opacity: float) -> None:
     editing.edit(session, layer_commands.set_opacity(identity, opacity))
 
 
-def switch_here(session: Session, identity: int) -> None:
+@with_project
+def switch_here(session: Session, project: Project, identity: int) -> None:
     """Show or hide a layer from the present frame on: the other way than it is there."""
-    project = session.project
-    if project:
-        frame = playback.current_frame(session, project)
-        figure = project.document.figure(identity)
-        visible = not is_visible(figure, frame)
-        editing.edit(session, layer_commands.switch_at(identity, frame, visible=visible))
+    frame = playback.current_frame(session, project)
+    visible = not is_visible(project.document.figure(identity), frame)
+    editing.edit(session, layer_commands.switch_at(identity, frame, visible=visible))
 
 
-def unswitch_here(session: Session, identity: int) -> None:
+@with_project
+def unswitch_here(session: Session, project: Project, identity: int) -> None:
     """Take back that a layer is shown or hidden from the present frame on."""
-    project = session.project
-    if project:
-        frame = playback.current_frame(session, project)
-        editing.edit(session, layer_commands.switch_at(identity, frame, visible=None))
+    frame = playback.current_frame(session, project)
+    editing.edit(session, layer_commands.switch_at(identity, frame, visible=None))
 
 
-def list_active(session: Session) -> None:
+@with_project
+def list_active(_: Session, project: Project) -> None:
     """Note that the list of layers shows the one that is posed."""
-    if session.project:
-        session.project.listed = session.project.active
+    project.listed = project.active
 
 
 def ask_name(session: Session, identity: int | None) -> None:
@@ -122,21 +119,17 @@ def ask_name(session: Session, identity: int | None) -> None:
     session.named_layer = identity
 
 
-def duplicate(session: Session, identity: int) -> None:
+@with_project
+def duplicate(session: Session, project: Project, identity: int) -> None:
     """Put a copy of a layer in front of it, and choose it."""
-    project = session.project
-    if project is None:
-        return
     free = layer_commands.free_identity(project.document)
     editing.edit(session, layer_commands.duplicate_figure(identity))
     choose(session, free)
 
 
-def remove(session: Session, identity: int) -> None:
+@with_project
+def remove(session: Session, project: Project, identity: int) -> None:
     """Delete a layer; where it was the one that is posed, its neighbour is now."""
-    project = session.project
-    if project is None:
-        return
     order = [figure.id for figure in project.document.figures]
     index, was_active = order.index(identity), identity == project.active
     editing.edit(session, layer_commands.remove_figure(identity))

@@ -32,6 +32,7 @@ def hang(
     Parameters
     ----------
     session : Session
+    project : Project
     child, parent : int
         Ids of layers.
     turns : bool
@@ -87,17 +88,17 @@ def _join(
     )
 
 
-def let_hang(session: Session, child: int) -> None:
+@with_project
+def let_hang(session: Session, project: Project, child: int) -> None:
     """Let a layer hang on nothing any more; nothing moves at the present frame."""
-    project = session.project
-    shown = project.puppets[child].shown if project else None
-    if project and shown is not None:
+    shown = project.puppets[child].shown
+    if shown is not None:
         editing.edit(session, layer_commands.detach(child, *shown.placement))
 
 
-def turn_with(session: Session, child: int, turns: bool) -> None:  # noqa: FBT001 - of an action
+@with_project
+def turn_with(session: Session, project: Project, child: int, turns: bool) -> None:  # noqa: FBT001 - of an action
     """Let a layer turn with the one that it hangs on, or keep its own turn; nothing moves now."""
-    project = session.project
-    joint = project.document.figure(child).attachment if project else None
+    joint = project.document.figure(child).attachment
     if joint is not None and turns != joint.turns:
         hang(session, child, joint.to, turns)

@@ -42,19 +42,17 @@ class _Made(NamedTuple):
     puppet: Puppet | None = None
 
 
-def stand_still(session: Session, identity: int) -> None:
+@with_project
+def stand_still(session: Session, project: Project, identity: int) -> None:
     """Make a layer a still picture, without handles and keys."""
-    if session.project:
-        still = still_figure(session.project.document.figure(identity))
-        command = layer_commands.replace_figure(identity, still)
-        editing.edit(session, replace(command, label="Make still"))
+    still = still_figure(project.document.figure(identity))
+    command = layer_commands.replace_figure(identity, still)
+    editing.edit(session, replace(command, label="Make still"))
 
 
-def stand_up(session: Session, identity: int) -> None:
+@with_project
+def stand_up(session: Session, project: Project, identity: int) -> None:
     """Let a still picture be posed: the shape that is drawn on it, as it was drawn."""
-    project = session.project
-    if project is None:
-        return
     figure, picture = project.document.figure(identity), project.puppets[identity].picture
     layer = Layer(
         name=figure.name,
@@ -125,11 +123,9 @@ def _replace_picture(session: Session, project: Project, identity: int, path: Pa
     )
 
 
-def add(session: Session, paths: Sequence[Path]) -> None:
+@with_project
+def add(session: Session, project: Project, paths: Sequence[Path]) -> None:
     """Add pictures, and the layers of drawings, as layers in front of all others."""
-    project = session.project
-    if project is None:
-        return
     meshing, before = session.meshing, project.document
     canvas = before.canvas
 
@@ -193,17 +189,16 @@ def ask(session: Session) -> None:
     )
 
 
-def ask_replace(session: Session, identity: int) -> None:
+@with_project
+def ask_replace(session: Session, project: Project, identity: int) -> None:
     """Ask for a picture that takes the place of a layer's own."""
-    if session.project:
-        name = session.project.document.figure(identity).name
-        session.dialog = FileDialog(
-            title=f"Replace the picture of {name}",
-            folder=session.usual_folder,
-            suffixes=files.PICTURES,
-            writes=False,
-            chosen=lambda path: do(replace_picture, identity, path),
-        )
+    session.dialog = FileDialog(
+        title=f"Replace the picture of {project.document.figure(identity).name}",
+        folder=session.usual_folder,
+        suffixes=files.PICTURES,
+        writes=False,
+        chosen=lambda path: do(replace_picture, identity, path),
+    )
 
 
 def point_at(session: Session, identity: int) -> None:

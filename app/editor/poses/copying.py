@@ -34,14 +34,12 @@ def _take(session: Session, figure: Figure, keys: tuple[Keyframe, ...]) -> None:
     session.copied = (CopiedKeys(figure, keys),)
 
 
-def copied_for(session: Session) -> Mapping[int, CopiedKeys]:
+def copied_for(session: Session, project: Project) -> Mapping[int, CopiedKeys]:
     """Return what was copied of each figure, by the id of that on which it can be pasted.
 
     Keys of several figures go to those that they are of, keys of one to that which is posed.
     """
-    project, copied = session.project, session.copied
-    if project is None:
-        return {}
+    copied = session.copied
     if len(copied) > 1:
         domains = {figure.id: figure.domain for figure in project.document.figures}
         return {
@@ -54,26 +52,14 @@ def copied_for(session: Session) -> Mapping[int, CopiedKeys]:
     return {}
 
 
-def copied_here(session: Session) -> CopiedKeys | None:
+def copied_here(session: Session, project: Project) -> CopiedKeys | None:
     """Return what was copied for the figure that is posed, None where that is nothing."""
-    return copied_for(session).get(session.project.active) if session.project else None
+    return copied_for(session, project).get(project.active)
 
 
-def can_paste(session: Session) -> bool:
-    """Tell whether there is a figure on which what was copied can be pasted."""
-    return bool(copied_for(session))
-
-
-def can_paste_here(session: Session) -> bool:
-    """Tell whether what was copied can be pasted on the figure that is posed."""
-    return copied_here(session) is not None
-
-
-def can_paste_on_selected(session: Session) -> bool:
-    """Tell whether there are handles on which what was copied can be pasted."""
-    return (
-        can_paste_here(session) and session.project is not None and bool(session.project.selected)
-    )
+def copied_for_selected(session: Session, project: Project) -> CopiedKeys | None:
+    """Return what was copied for the figure that is posed, if handles of it are selected."""
+    return copied_here(session, project) if project.selected else None
 
 
 @with_project
@@ -85,7 +71,7 @@ def paste(session: Session, project: Project) -> None:
 
 @with_project
 def _paste(session: Session, project: Project, frame: int) -> None:
-    copied = copied_for(session)
+    copied = copied_for(session, project)
     if not copied:
         return
     keys = {
@@ -95,14 +81,14 @@ def _paste(session: Session, project: Project, frame: int) -> None:
     putting.put(session, project, frame, keys)
 
 
-def paste_on_selected(session: Session) -> None:
-    """Let the selected handles go where they were in what was copied, and the shape follow."""
-    copied = copied_here(session)
-    if copied is not None and can_paste_on_selected(session):
-        pull_selected(session, copied.keys[0].pose.targets)
-
-
 @with_project
+def paste_on_selected(session: Session, project: Project) -> None:
+    """Let the selected handles go where they were in what was copied, and the shape follow."""
+    copied = copied_for_selected(session, project)
+    if copied is not None:
+        pull_selected(session, project, copied.keys[0].pose.targets)
+
+
 def pull_selected(session: Session, project: Project, targets: Mapping[int, Target]) -> None:
     """Wish the selected handles, as far as they are known, where a pose has them."""
     wishes = {i: targets[i] for i in project.selected if i in targets}

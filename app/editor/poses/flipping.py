@@ -24,21 +24,22 @@ def paste(session: Session, project: Project) -> None:
 
 @with_project
 def _paste(session: Session, project: Project, frame: int) -> None:
-    copied = copying.copied_here(session)
+    copied = copying.copied_here(session, project)
     if copied is None:
         return
     keys = putting.fitted(project, project.active, copied.keys, copied.figure.bounds)
     _flip(session, project, frame, keys, gesture=object())
 
 
-def paste_on_selected(session: Session) -> None:
+@with_project
+def paste_on_selected(session: Session, project: Project) -> None:
     """Let the selected handles go where their partners were, and the shape follow."""
-    project, copied = session.project, copying.copied_here(session)
-    if project is None or copied is None or not copying.can_paste_on_selected(session):
+    copied = copying.copied_for_selected(session, project)
+    if copied is None:
         return
     (key, *_) = putting.fitted(project, project.active, copied.keys, copied.figure.bounds)
     figure = project.figure
-    copying.pull_selected(session, flipped_targets(figure, key.pose, figure.axis))
+    copying.pull_selected(session, project, flipped_targets(figure, key.pose, figure.axis))
 
 
 def is_fresh(project: Project) -> bool:
@@ -52,26 +53,22 @@ def is_fresh(project: Project) -> bool:
     )
 
 
-def shows_axis(session: Session) -> bool:
+def shows_axis(session: Session, project: Project) -> bool:
     """Tell whether the axis is shown: after a flip, and as long as the person wants to see it."""
-    project = session.project
-    if project is None or project.playhead.since is not None:
-        return False
-    return session.overlays.mirror or is_fresh(project)
+    return project.playhead.since is None and (session.overlays.mirror or is_fresh(project))
 
 
-def move_axis(session: Session, x: float | None, gesture: object) -> None:
+@with_project
+def move_axis(_: Session, project: Project, x: float | None, gesture: object) -> None:
     """Put the axis elsewhere, or in the middle."""
-    if session.project:
-        command = pose_commands.set_mirror(session.project.active, x)
-        session.project.history.do(command, gesture=gesture)
+    project.history.do(pose_commands.set_mirror(project.active, x), gesture=gesture)
 
 
-def flip_again(session: Session, gesture: object) -> None:
+@with_project
+def flip_again(session: Session, project: Project, gesture: object) -> None:
     """Flip once more what was flipped last, at the axis of now."""
-    project = session.project
-    if project is not None and project.flip is not None and is_fresh(project):
-        flip = project.flip
+    flip = project.flip
+    if flip is not None and is_fresh(project):
         _flip(session, project, min(flip.frames), flip.keys, gesture=gesture)
 
 

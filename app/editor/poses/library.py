@@ -44,10 +44,9 @@ def apply(session: Session, project: Project, name: str) -> None:
 @with_project
 def apply_at(session: Session, project: Project, name: str, frame: int) -> None:
     """Let a key at a frame hold a pose of the library, and go there."""
-    if frame >= 0:
-        putting.stand_at_frame(session, project)
-        _put(session, project, name, frame)
-        playback.seek(session, frame)
+    putting.stand_at_frame(session, project)
+    _put(session, project, name, frame)
+    playback.seek(session, frame)
 
 
 def _put(session: Session, project: Project, name: str, frame: int) -> None:
@@ -64,6 +63,7 @@ def blend(session: Session, project: Project, name: str, share: float) -> None:
     Parameters
     ----------
     session : Session
+    project : Project
     name : str
     share : float
         Of the pose in the library: 0 changes nothing, 1 is that pose itself. Between them the

@@ -4,18 +4,17 @@ from dataclasses import dataclass
 from typing import Self
 
 from app.editor.actions import posing
-from app.editor.session import Hint, Mark, Session
-from app.editor.tools.tool import Selection, Spot, take_back
+from app.editor.project import Project
+from app.editor.session import Hint, Session
+from app.editor.tools.tool import Spot, Tool
 
 
 @dataclass(slots=True, kw_only=True, eq=False)
-class Anchoring:
+class Anchoring(Tool):
     """The pointer has set the anchor; until it is let go, that can be taken back."""
 
-    before: Selection
-
     @classmethod
-    def hints(cls, session: Session, spot: Spot) -> tuple[Hint, ...]:  # noqa: ARG003 - as a tool's
+    def hints(cls, _: Session, __: Project, spot: Spot) -> tuple[Hint, ...]:
         """Tell that a click with Ctrl sets it."""
         if spot.on_ring:
             return ()
@@ -24,38 +23,13 @@ class Anchoring:
         return (Hint("click", "to put the anchor here", "ctrl"),) if spot.on_shape else ()
 
     @classmethod
-    def press(cls, session: Session, spot: Spot) -> Self | None:
+    def press(cls, session: Session, project: Project, spot: Spot) -> Self | None:
         """Set it where the shape is pressed; the handle that is it already gives it back."""
-        if session.project is None or not spot.ctrl or spot.on_ring:
+        if not spot.ctrl or spot.on_ring or not (spot.on_shape or spot.handle is not None):
             return None
-        anchoring = cls(before=Selection.of(session.project))
+        anchoring = cls(project=project)
         if spot.handle is not None:
             posing.anchor_at(session, spot.handle, gesture=anchoring)
-        elif spot.on_shape:
-            posing.put_anchor(session, spot.place, gesture=anchoring)
         else:
-            return None
+            posing.put_anchor(session, spot.place, gesture=anchoring)
         return anchoring
-
-    def move(self, session: Session, place: complex) -> None:
-        """Leave it where it was set."""
-
-    def type(self, session: Session, characters: str) -> None:
-        """Take nothing."""
-
-    def end(self, session: Session, place: complex) -> None:
-        """Leave it where it was set."""
-
-    def cancel(self, session: Session) -> None:
-        """Put it back where it was."""
-        take_back(session, self, self.before)
-
-    @property
-    def marks(self) -> tuple[Mark, ...]:
-        """Nothing: the anchor is shown as it is."""
-        return ()
-
-    @property
-    def ways(self) -> tuple[Hint, ...]:
-        """Return what can be done until it ends."""
-        return ()

@@ -11,13 +11,13 @@ from app.editor.session import Hint, JointMark, Mark, Session
 from app.editor.tools.anchoring import Anchoring
 from app.editor.tools.choosing import Choosing
 from app.editor.tools.pulling import Pulling
-from app.editor.tools.tool import Spot, is_away
+from app.editor.tools.tool import Spot, Tool
 
 FREE_HAND = (Choosing, Pulling, Anchoring)
 
 
 @dataclass(slots=True, kw_only=True, eq=False)
-class Joining:
+class Joining(Tool):
     """The pointer holds the anchor of a layer over the one that it is to hang on.
 
     Parameters
@@ -46,49 +46,43 @@ class Joining:
     moved: bool = False
 
     @classmethod
-    def hints(cls, session: Session, spot: Spot) -> tuple[Hint, ...]:
+    def hints(cls, session: Session, project: Project, spot: Spot) -> tuple[Hint, ...]:
         """Tell that the anchor is dragged."""
-        if _scene(session, spot) is None:
+        if not _is_held(session, project, spot):
             return ()
         what = "to hang it on another layer"
         return (Hint("drag", what) if spot.handle is None else Hint("drag", what, "ctrl"),)
 
     @classmethod
-    def press(cls, session: Session, spot: Spot) -> Self | None:
+    def press(cls, session: Session, project: Project, spot: Spot) -> Self | None:
         """Take hold of the anchor; where a handle is the anchor, with Ctrl."""
-        project = _scene(session, spot)
-        if project is None or (spot.handle is not None and not spot.ctrl):
+        if not _is_held(session, project, spot) or (spot.handle is not None and not spot.ctrl):
             return None
         names = {figure.id: figure.name for figure in project.document.figures}
-        return cls(spot=spot, child=project.active, names=names, place=spot.place)
+        child = project.active
+        return cls(project=project, spot=spot, child=child, names=names, place=spot.place)
 
     def move(self, session: Session, place: complex) -> None:
         """Look which layer is under the pointer."""
-        project = session.project
+        project = self.project
         self.place = place
-        self.moved = self.moved or is_away(session, self.spot.place, place)
-        if project is None or not self.moved or project.active != self.child:
-            return
-        on_scene = _on_scene(project, place)
-        self.parent = layering.figure_at(project, on_scene, besides=self.child)
-        self.is_circle = self.parent is not None and layering.hangs_on(
-            project, self.parent, self.child
-        )
-
-    def type(self, session: Session, characters: str) -> None:
-        """Take nothing."""
+        self.moved = self.moved or self.is_away(session, self.spot.place, place)
+        if self.moved and project.active == self.child:
+            on_scene = _on_scene(project, place)
+            self.parent = parent = layering.figure_at(project, on_scene, besides=self.child)
+            self.is_circle = parent is not None and layering.hangs_on(project, parent, self.child)
 
     def end(self, session: Session, place: complex) -> None:
         """Hang the layer on the one under the pointer; what was only clicked is for another."""
         self.move(session, place)
-        project = session.project
+        project = self.project
         if not self.moved:
             spot = replace(self.spot, on_anchor=False)
-            gestures = (tool.press(session, spot) for tool in FREE_HAND)
+            gestures = (tool.press(session, project, spot) for tool in FREE_HAND)
             gesture = next((each for each in gestures if each is not None), None)
             if gesture is not None:
                 gesture.end(session, place)
-        elif project is not None and self.parent is not None:
+        elif self.parent is not None:
             joint = project.document.figure(self.child).attachment
             turns = joint is None or joint.turns
             # On both of them the joint is just there; else by the anchor.
@@ -97,9 +91,6 @@ class Joining:
             layering.hang(session, self.child, self.parent, turns, there if is_on_both else None)
         else:
             session.tell("Let the anchor go over another layer to hang it there.", topic="joint")
-
-    def cancel(self, session: Session) -> None:
-        """Leave it as it was: nothing is done before the end."""
 
     @property
     def marks(self) -> tuple[Mark, ...]:
@@ -127,13 +118,10 @@ class Joining:
         return (Hint("let go", what),)
 
 
-def _scene(session: Session, spot: Spot) -> Project | None:
-    """Return the project, if it has several layers and the pointer is on the anchor of one."""
-    project = session.project
-    is_held = spot.shift or spot.alt or spot.on_ring
-    if project is None or not spot.on_anchor or is_held or not session.overlays.handles:
-        return None
-    return project if len(project.document.figures) > 1 else None
+def _is_held(session: Session, project: Project, spot: Spot) -> bool:
+    """Tell whether a press takes hold of the anchor of a layer, in a scene of several."""
+    is_free = not (spot.shift or spot.alt or spot.on_ring) and session.overlays.handles
+    return spot.on_anchor and is_free and len(project.document.figures) > 1
 
 
 def _on_scene(project: Project, place: complex) -> complex:

@@ -1,16 +1,17 @@
 """The pointer in the viewport, from press to release: the tool that takes the press has it."""
 
-from app.editor.session import Session
+from app.editor.project import Project
+from app.editor.session import Session, with_project
 from app.editor.tools.table import tools_of
 from app.editor.tools.tool import Spot
 
 
-def press(session: Session, spot: Spot) -> None:
+@with_project
+def press(session: Session, project: Project, spot: Spot) -> None:
     """Give a press to the first tool that takes it."""
-    if session.project is None or session.project.puppet.shown is None:
-        return
-    gestures = (tool.press(session, spot) for tool in tools_of(session))
-    session.pointer = next((gesture for gesture in gestures if gesture is not None), None)
+    if project.puppet.shown is not None:
+        gestures = (tool.press(session, project, spot) for tool in tools_of(session))
+        session.pointer = next((gesture for gesture in gestures if gesture is not None), None)
 
 
 def move(session: Session, place: complex) -> None:
@@ -24,28 +25,28 @@ def move_in_steps(session: Session, place: complex) -> None:
 
 
 def _move(session: Session, place: complex, *, snaps: bool) -> None:
-    if session.project and session.pointer:
+    if session.pointer:
         session.snaps = snaps
         session.pointer.move(session, place)
 
 
 def type_in(session: Session, characters: str) -> None:
     """Give what is typed during a drag to the tool in hand."""
-    if session.project and session.pointer:
+    if session.pointer:
         session.pointer.type(session, characters)
 
 
 def end(session: Session, place: complex) -> None:
     """End what the pointer does where it is."""
     gesture, session.pointer = session.pointer, None
-    if session.project and gesture:
+    if gesture:
         gesture.end(session, place)
 
 
 def cancel(session: Session) -> None:
     """End what the pointer does, and take it back."""
     gesture, session.pointer = session.pointer, None
-    if session.project and gesture:
+    if gesture:
         gesture.cancel(session)
 
 

@@ -10,18 +10,17 @@ from app.editor.project import Project
 from app.editor.pull import Start
 from app.editor.session import EntryMark, Hint, Mark, Session
 from app.editor.tools.entry import TypedWay
-from app.editor.tools.tool import Selection, Spot, is_away, take_back
+from app.editor.tools.tool import Spot, Tool
 
 
 @dataclass(slots=True, kw_only=True, eq=False)
-class Pulling:
+class Pulling(Tool):
     """The pointer pulls handles.
 
     Parameters
     ----------
     start : complex
         Where it was pressed.
-    before : Selection
     handles : frozenset of int
         Those that are pulled, by id.
     entry : TypedWay
@@ -33,17 +32,16 @@ class Pulling:
     """
 
     start: complex
-    before: Selection
-    handles: frozenset[int]
+    handles: frozenset[int] = frozenset()
     entry: TypedWay = field(default_factory=TypedWay)
     place: complex | None = None
     moved: bool = False
 
     @classmethod
-    def hints(cls, session: Session, spot: Spot) -> tuple[Hint, ...]:
+    def hints(cls, session: Session, project: Project, spot: Spot) -> tuple[Hint, ...]:
         """Tell that handles are dragged, and that a click adds one."""
         if spot.handle is not None:
-            if session.project and session.project.figure.is_locked(spot.handle):
+            if project.figure.is_locked(spot.handle):
                 return (Hint("click", "to select; it is locked"),)
             return (Hint("drag", "to pose"),)
         if spot.on_shape and session.overlays.handles and not spot.on_ring:
@@ -51,21 +49,21 @@ class Pulling:
         return ()
 
     @classmethod
-    def press(cls, session: Session, spot: Spot) -> Self | None:
+    def press(cls, session: Session, project: Project, spot: Spot) -> Self | None:
         """Take hold of a handle and of all that are selected with it, or of a new one."""
-        project = session.project
-        if project is None or spot.ctrl or spot.shift or spot.on_ring:
+        if spot.ctrl or spot.shift or spot.on_ring:
             return None
-        before = Selection.of(project)
         if spot.handle is not None:
             if spot.alt:
                 return None
+            pulling = cls(project=project, start=spot.place)
             if spot.handle not in project.selected:
                 editing.select(session, project.figure.together_with(spot.handle))
-            return cls(start=spot.place, before=before, handles=_movable(project))
+            pulling.handles = _movable(project)
+            return pulling
         if not spot.on_shape or not session.overlays.handles:
             return None
-        pulling = cls(start=spot.place, before=before, handles=frozenset())
+        pulling = cls(project=project, start=spot.place)
         posing.add_handle(session, spot.place, gesture=pulling)
         pulling.handles = project.selected
         return pulling
@@ -73,7 +71,7 @@ class Pulling:
     def move(self, session: Session, place: complex) -> None:
         """Pull the handles as far as the pointer goes; each keeps the turn that it wishes."""
         self.place = place
-        self.moved = self.moved or is_away(session, self.start, place)
+        self.moved = self.moved or self.is_away(session, self.start, place)
         self._pull(session)
 
     def type(self, session: Session, characters: str) -> None:
@@ -83,9 +81,7 @@ class Pulling:
         self._pull(session)
 
     def _pull(self, session: Session) -> None:
-        project = session.project
-        known = {handle.id for handle in project.figure.handles} if project else set()
-        pulled = self.handles & known
+        pulled = self.handles & {handle.id for handle in self.project.figure.handles}
         if not (self.moved and pulled):
             return
         way = self.entry.way((self.start if self.place is None else self.place) - self.start)
@@ -96,13 +92,9 @@ class Pulling:
 
         posing.pull(session, as_far, gesture=self)
 
-    def end(self, session: Session, place: complex) -> None:  # noqa: ARG002 - as a tool's
+    def end(self, session: Session, _: complex) -> None:
         """Let the handles go."""
         posing.let_go(session)
-
-    def cancel(self, session: Session) -> None:
-        """Put the shape back where it was, without the handle that was added."""
-        take_back(session, self, self.before)
 
     @property
     def marks(self) -> tuple[Mark, ...]:
@@ -115,7 +107,7 @@ class Pulling:
 
     @property
     def ways(self) -> tuple[Hint, ...]:
-        """Return what can be done until it ends."""
+        """What can be done until it ends."""
         return (Hint("type", "a number of pixels"), Hint("X or Y", "to keep to an axis"))
 
 

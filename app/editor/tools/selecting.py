@@ -4,20 +4,20 @@ from dataclasses import dataclass
 from typing import Self
 
 from app.editor.actions import editing
+from app.editor.project import Project
 from app.editor.session import BoxMark, Hint, Mark, Session
-from app.editor.tools.tool import Selection, Spot, take_back
+from app.editor.tools.tool import Spot, Tool
 from app.motion import Box
 
 
 @dataclass(slots=True, kw_only=True, eq=False)
-class Selecting:
+class Selecting(Tool):
     """The pointer spans a box to select what is in it, or has selected a handle by a click.
 
     Parameters
     ----------
     start, place : complex
         Where it was pressed, and where it is.
-    before : Selection
     adds : bool
         Whether what was selected stays so.
     has_box : bool
@@ -25,47 +25,37 @@ class Selecting:
 
     start: complex
     place: complex
-    before: Selection
     adds: bool
     has_box: bool
 
     @classmethod
-    def hints(cls, session: Session, spot: Spot) -> tuple[Hint, ...]:  # noqa: ARG003 - as a tool's
+    def hints(cls, _: Session, __: Project, spot: Spot) -> tuple[Hint, ...]:
         """Tell that dragging beside the shape selects."""
         is_free = spot.handle is None and not spot.on_shape and not spot.on_ring
         return (Hint("drag", "to select"),) if is_free else ()
 
     @classmethod
-    def press(cls, session: Session, spot: Spot) -> Self | None:
+    def press(cls, session: Session, project: Project, spot: Spot) -> Self | None:
         """Begin a box; with Shift, on a handle, select it beside the others or not any more."""
-        project = session.project
-        if project is None or spot.on_ring:
+        has_box, at = spot.handle is None, spot.place
+        if spot.on_ring or not (has_box or spot.shift):
             return None
-        has_box = spot.handle is None
-        if not (has_box or spot.shift):
-            return None
-        before = Selection.of(project)
+        selecting = cls(project=project, start=at, place=at, adds=spot.shift, has_box=has_box)
         if spot.handle is not None:
             fellows = project.figure.together_with(spot.handle)
             is_selected = spot.handle in project.selected
             chosen = project.selected - fellows if is_selected else project.selected | fellows
             editing.select(session, chosen)
-        return cls(
-            start=spot.place, place=spot.place, before=before, adds=spot.shift, has_box=has_box
-        )
+        return selecting
 
-    def move(self, session: Session, place: complex) -> None:  # noqa: ARG002 - as a tool's
+    def move(self, _: Session, place: complex) -> None:
         """Span the box up to the pointer."""
         self.place = place
 
-    def type(self, session: Session, characters: str) -> None:
-        """Take nothing."""
-
     def end(self, session: Session, place: complex) -> None:
         """Select what is in the box."""
-        project = session.project
-        shown = project.puppet.shown if project else None
-        if project is None or shown is None or not self.has_box:
+        project, shown = self.project, self.project.puppet.shown
+        if shown is None or not self.has_box:
             return
         x, y = sorted((self.start.real, place.real)), sorted((self.start.imag, place.imag))
         box = Box(complex(x[0], y[0]), complex(x[1], y[1]))
@@ -77,16 +67,7 @@ class Selecting:
         }
         editing.select(session, project.selected | inside if self.adds else frozenset(inside))
 
-    def cancel(self, session: Session) -> None:
-        """Select what was selected before."""
-        take_back(session, self, self.before)
-
     @property
     def marks(self) -> tuple[Mark, ...]:
         """The box."""
         return (BoxMark(corner=self.start, opposite=self.place),) if self.has_box else ()
-
-    @property
-    def ways(self) -> tuple[Hint, ...]:
-        """Return what can be done until it ends."""
-        return ()

@@ -1,12 +1,13 @@
 """What a tool is: it takes a press, and then has the pointer until the button is let go."""
 
+from abc import ABC, abstractmethod
 from collections.abc import Mapping
-from dataclasses import dataclass
-from typing import Protocol, Self
+from dataclasses import dataclass, field
+from typing import Self
 
 from app.editor.actions import editing
 from app.editor.project import Project
-from app.editor.session import Hint, Session, ToolInHand
+from app.editor.session import Hint, Mark, Session
 
 CLICK = 3.0  # pixels of the screen that a click may wander
 
@@ -47,18 +48,6 @@ class Spot:
     alt: bool = False
 
 
-class Tool(ToolInHand, Protocol):
-    """Something that the pointer does; an instance has it in hand, from press to release."""
-
-    @classmethod
-    def hints(cls, session: Session, spot: Spot) -> tuple[Hint, ...]:
-        """Return what it would do at a spot, in words."""
-
-    @classmethod
-    def press(cls, session: Session, spot: Spot) -> Self | None:
-        """Begin at a spot; None where it is for another tool."""
-
-
 @dataclass(frozen=True, slots=True)
 class Selection:
     """What was selected when a gesture began."""
@@ -66,21 +55,62 @@ class Selection:
     handles: frozenset[int]
     keys: Mapping[int, frozenset[int]]
 
+
+@dataclass(slots=True, kw_only=True, eq=False)
+class Tool(ABC):
+    """Something that the pointer does; an instance has it in hand, from press to release.
+
+    Parameters
+    ----------
+    project : Project
+        In which it began.
+
+    Attributes
+    ----------
+    before : Selection
+    """
+
+    project: Project
+    before: Selection = field(init=False)
+
+    def __post_init__(self) -> None:
+        """Keep what is selected."""
+        self.before = Selection(self.project.selected, self.project.chosen_of)
+
     @classmethod
-    def of(cls, project: Project) -> Self:
-        """Return what is selected now."""
-        return cls(project.selected, project.chosen_of)
+    @abstractmethod
+    def hints(cls, session: Session, project: Project, spot: Spot) -> tuple[Hint, ...]:
+        """Return what it would do at a spot, in words."""
 
+    @classmethod
+    @abstractmethod
+    def press(cls, session: Session, project: Project, spot: Spot) -> Self | None:
+        """Begin at a spot; None where it is for another tool."""
 
-def take_back(session: Session, gesture: ToolInHand, before: Selection) -> None:
-    """Undo what a gesture did to the document and to the selection."""
-    if session.project:
-        session.project.selected, session.project.chosen_of = before.handles, before.keys
-        editing.take_back(session, gesture)
+    def move(self, session: Session, place: complex) -> None:  # noqa: B027 - not every tool cares
+        """Follow the pointer to another place of the plane."""
 
+    def type(self, session: Session, characters: str) -> None:  # noqa: B027 - not every tool cares
+        """Take what is typed meanwhile."""
 
-def is_away(session: Session, start: complex, place: complex) -> bool:
-    """Tell whether the pointer has gone farther than a click may."""
-    if session.project is None:
-        return False
-    return abs(place - start) * session.project.view(session.screen).scale > CLICK
+    def end(self, session: Session, place: complex) -> None:  # noqa: B027 - not every tool cares
+        """End where the pointer is."""
+
+    def cancel(self, session: Session) -> None:
+        """Undo what it did to the document and to the selection."""
+        self.project.selected, self.project.chosen_of = self.before.handles, self.before.keys
+        editing.take_back(session, self)
+
+    @property
+    def marks(self) -> tuple[Mark, ...]:
+        """What is drawn of it over the picture."""
+        return ()
+
+    @property
+    def ways(self) -> tuple[Hint, ...]:
+        """What can be done until it ends."""
+        return ()
+
+    def is_away(self, session: Session, start: complex, place: complex) -> bool:
+        """Tell whether the pointer has gone farther than a click may."""
+        return abs(place - start) * self.project.view(session.screen).scale > CLICK

@@ -8,17 +8,18 @@ from typing import Self
 
 from app.document import Target
 from app.editor.actions import editing, posing
+from app.editor.project import Project
 from app.editor.pull import Start
 from app.editor.session import EntryMark, Hint, Mark, Session, SweepMark
 from app.editor.tools.entry import TypedWay
-from app.editor.tools.tool import Selection, Spot, is_away, take_back
+from app.editor.tools.tool import Spot, Tool
 
 STEP = math.radians(15.0)  # of turning in steps
 LEAST_ARM = 12.0  # pixels of the screen from a handle, within which a press has no direction
 
 
 @dataclass(slots=True, kw_only=True, eq=False)
-class Turning:
+class Turning(Tool):
     """The pointer turns the shape around a handle.
 
     Parameters
@@ -28,7 +29,6 @@ class Turning:
         Where that is.
     start : complex
         Where the pointer was pressed.
-    before : Selection
     turn : float
         By how much the shape was turned there at the start, in radians.
     deletes : bool
@@ -43,7 +43,6 @@ class Turning:
     handle: int
     centre: complex
     start: complex
-    before: Selection
     turn: float
     deletes: bool
     swept: float = 0.0
@@ -51,49 +50,45 @@ class Turning:
     moved: bool = False
 
     @classmethod
-    def hints(cls, session: Session, spot: Spot) -> tuple[Hint, ...]:
+    def hints(cls, _: Session, project: Project, spot: Spot) -> tuple[Hint, ...]:
         """Tell how the shape is turned."""
         if spot.on_ring:
             return (Hint("drag", "to turn the shape around the handle"),)
-        project = session.project
-        if project is None or spot.handle is None or project.figure.is_locked(spot.handle):
+        if spot.handle is None or project.figure.is_locked(spot.handle):
             return ()
         # Of both gestures the one that no window manager takes for itself, as many do Alt+drag.
         return (Hint("drag its ring", "to turn"),)
 
     @classmethod
-    def press(cls, session: Session, spot: Spot) -> Self | None:
+    def press(cls, session: Session, project: Project, spot: Spot) -> Self | None:
         """Take hold of the ring around the selected handle, or of a handle with Alt."""
-        project = session.project
-        shown = project.puppet.shown if project else None
-        if project is None or shown is None:
-            return None
+        shown = project.puppet.shown
         is_by_key = spot.handle is not None and spot.alt and not (spot.ctrl or spot.shift)
-        if not is_by_key and not (spot.on_ring and len(project.selected) == 1):
+        is_by_ring = spot.on_ring and len(project.selected) == 1
+        if shown is None or not (is_by_key or is_by_ring):
             return None
-        before = Selection.of(project)
         handle = spot.handle if is_by_key else next(iter(project.selected))
         identities = [handle.id for handle in shown.clip.figure.handles]
         if handle is None or handle not in identities or project.figure.is_locked(handle):
             return None
-        editing.select(session, frozenset({handle}))
         index = identities.index(handle)
-        return cls(
+        turning = cls(
+            project=project,
             handle=handle,
             centre=complex(shown.handle_places[index]),
             start=spot.place,
-            before=before,
             turn=shown.handle_turns[index],
             deletes=is_by_key,
         )
+        editing.select(session, frozenset({handle}))
+        return turning
 
     def move(self, session: Session, place: complex) -> None:
         """Turn the shape as far as the pointer goes around the handle, maybe in steps."""
-        project = session.project
-        if project is None or not (self.moved or is_away(session, self.start, place)):
+        if not (self.moved or self.is_away(session, self.start, place)):
             return
         if not self.moved:
-            arm = abs(self.start - self.centre) * project.view(session.screen).scale
+            arm = abs(self.start - self.centre) * self.project.view(session.screen).scale
             if arm < LEAST_ARM:
                 # From so near, the direction in which it leaves is where the turn begins.
                 self.start = place
@@ -108,14 +103,14 @@ class Turning:
         """Turn the shape by as many degrees as are typed."""
         self.entry.take(characters)
         self.entry.axis = ""
-        if session.project is not None and self.entry.value is not None:
+        if self.entry.value is not None:
             self.moved = True
             self.swept = math.radians(self.entry.value)
             self._turn(session)
 
     def _turn(self, session: Session) -> None:
-        project, handle, swept = session.project, self.handle, self.swept
-        if project is None or handle not in {each.id for each in project.figure.handles}:
+        handle, swept = self.handle, self.swept
+        if handle not in {each.id for each in self.project.figure.handles}:
             return
 
         def turned(start: Start, targets: Mapping[int, Target]) -> Mapping[int, Target]:
@@ -126,16 +121,12 @@ class Turning:
 
         posing.pull(session, turned, gesture=self)
 
-    def end(self, session: Session, place: complex) -> None:  # noqa: ARG002 - as a tool's
+    def end(self, session: Session, _: complex) -> None:
         """Let the shape go; delete the handle that was only clicked."""
         if self.deletes and not self.moved:
             posing.remove_handles(session, frozenset({self.handle}))
         else:
             posing.let_go(session)
-
-    def cancel(self, session: Session) -> None:
-        """Turn the shape back."""
-        take_back(session, self, self.before)
 
     @property
     def marks(self) -> tuple[Mark, ...]:
@@ -147,5 +138,5 @@ class Turning:
 
     @property
     def ways(self) -> tuple[Hint, ...]:
-        """Return what can be done until it ends."""
+        """What can be done until it ends."""
         return (Hint("turn", "by steps of 15°", "ctrl"), Hint("type", "a number of degrees"))

@@ -2,22 +2,24 @@
 
 from imgui_bundle import ImVec2, imgui
 
-from app.editor import Action, Session
-from app.ui.shortcuts import BINDINGS, bound_button
+from app.editor import Action, Project, Session
+from app.ui.shortcuts import bound_button
 from app.ui.style import Look
 
+# By their names in the table of shortcuts; there is a gap between two groups.
+GROUPS = (
+    ("fit",),
+    ("handles", "wireframe", "outline", "heat map", "split view", "onion skin", "motion paths"),
+    ("auto-key",),
+)
 
-def draw_icons(session: Session, look: Look) -> list[Action]:
-    """Draw the bar, as the table of shortcuts has it."""
+
+def draw_icons(session: Session, look: Look, _: Project) -> list[Action]:
+    """Draw the bar."""
     actions: list[Action] = []
-    if session.project is None:
-        return actions
-    shown = [name for name, binding in BINDINGS.items() if binding.in_bar]
-    menu = BINDINGS[shown[0]].menu
-    for name in shown:
-        binding = BINDINGS[name]
-        if binding.parted or binding.menu != menu:
+    for number, names in enumerate(GROUPS):
+        if number:
             imgui.dummy(ImVec2(0, 0.4 * look.em))
-        menu = binding.menu
-        actions += bound_button(session, look, name)
+        for name in names:
+            actions += bound_button(session, look, name)
     return actions

@@ -9,19 +9,17 @@ from app.editor import Action, Session, do
 from app.editor.actions import files, keys
 from app.errors import shown_name
 from app.ui.bars import backdrop_menu
-from app.ui.shortcuts import BINDINGS, bound_item
+from app.ui.shortcuts import MENUS, bound_item
 from app.ui.style import Look, tip
 
 
 def draw_menus(session: Session, _: Look) -> list[Action]:
     """Draw the menus, as the table of shortcuts has them."""
     actions: list[Action] = []
-    for title in dict.fromkeys(binding.menu for binding in BINDINGS.values()):
+    for title, bindings in MENUS.items():
         if not imgui.begin_menu(title):
             continue
-        for name, binding in BINDINGS.items():
-            if binding.menu != title:
-                continue
+        for name, binding in bindings.items():
             if binding.parted:
                 imgui.separator()
             actions += bound_item(session, name)

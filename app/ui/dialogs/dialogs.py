@@ -20,7 +20,7 @@ from app.errors import shown_name
 from app.ui.dialogs.file_browser import FileBrowser, LookUp
 from app.ui.dialogs.native_dialog import NativeDialog
 from app.ui.dialogs.recovery import draw_recovery
-from app.ui.shortcuts import BINDINGS, GESTURES
+from app.ui.shortcuts import GESTURES, MENUS
 from app.ui.style import Look, heading, main_button
 
 HEADING = 2  # rows that the heading of a group takes
@@ -150,14 +150,13 @@ def _question(question: Question, look: Look) -> list[Action]:
 
 
 def _shortcuts(look: Look) -> None:
-    groups = list(dict.fromkeys(binding.menu for binding in BINDINGS.values()))
     rows: dict[str, list[tuple[str, str]]] = {
-        group: [
+        menu: [
             (binding.label, binding.keys_in_words)
-            for binding in BINDINGS.values()
-            if binding.menu == group and binding.keys_in_words
+            for binding in bindings.values()
+            if binding.keys_in_words
         ]
-        for group in groups
+        for menu, bindings in MENUS.items()
     }
     rows["Pointer"] = [(gesture.what, gesture.how) for gesture in GESTURES]
     style = imgui.get_style()

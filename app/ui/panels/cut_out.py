@@ -31,11 +31,8 @@ BRUSH_TOOLS: tuple[tuple[CutTool, str, str, str], ...] = (
 )
 
 
-def draw(session: Session, look: Look) -> list[Action]:
+def draw(session: Session, look: Look, project: Project) -> list[Action]:
     """Draw what tells the subject from the rest of the picture."""
-    project = session.project
-    if project is None:
-        return []
     cut_out = project.figure.cut_out
     heading(look, "Background")
     actions = _background(session, look, project, cut_out)

@@ -76,10 +76,9 @@ LIMITS = (
 LEAST = {"k": 0.05, "sigma_a": 1.05, "sigma_b": 0.95}  # the tightest bounds on the tracks
 
 
-def draw(session: Session, look: Look) -> list[Action]:
+def draw(session: Session, look: Look, project: Project) -> list[Action]:
     """Draw the bounds with what the pose makes of them, the solver's state, and all keys."""
-    project = session.project
-    if project is None or project.puppet.shown is None:
+    if project.puppet.shown is None:
         return []
     bounds = _wanted_bounds(project)
     actions = _stretch(look, bounds)

@@ -39,10 +39,9 @@ QUIET = (
 )
 
 
-def draw(session: Session, look: Look) -> list[Action]:
+def draw(session: Session, look: Look, project: Project) -> list[Action]:
     """Draw the choice of the heat map, the histogram, and the curves."""
-    project = session.project
-    if project is None or project.puppet.shown is None:
+    if project.puppet.shown is None:
         return []
     _style_plots(look)
     heading(look, "On the drawing")

@@ -32,11 +32,8 @@ SHOWN: tuple[tuple[OverlayName, str, str], ...] = (
 )
 
 
-def draw(session: Session, look: Look) -> list[Action]:
+def draw(session: Session, look: Look, project: Project) -> list[Action]:
     """Draw what the domain is like, and the settings to build another one."""
-    project = session.project
-    if project is None:
-        return []
     heading(look, "Show")
     actions = _toggles(session.overlays)
     heading(look, "Facts")

@@ -54,10 +54,9 @@ LARGEST = 65_535
 PREVIEW, LARGEST_PREVIEW = 3.2, 6.0  # em: at least and at most
 
 
-def draw(session: Session, look: Look) -> list[Action]:
+def draw(session: Session, look: Look, project: Project) -> list[Action]:
     """Draw the settings of the export with a preview of its frame, or its progress."""
-    project = session.project
-    if project is None or project.puppet.shown is None:
+    if project.puppet.shown is None:
         return []
     settings = project.document.export
     motion = project.extent.value or box_around(project.puppet.shown.positions)

@@ -43,10 +43,9 @@ HOLDS = {"Soft": 0.1, "Normal": 1.0, "Firm": 10.0}
 WEIGHTS = Scale(left=0.01, right=100.0, logarithmic=True)
 
 
-def draw(session: Session, look: Look) -> list[Action]:
+def draw(session: Session, look: Look, project: Project) -> list[Action]:
     """Draw the list of handles and the one that is selected."""
-    project = session.project
-    if project is None or project.puppet.shown is None:
+    if project.puppet.shown is None:
         return []
     figure = project.figure
     if not figure.handles:

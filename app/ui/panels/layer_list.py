@@ -29,6 +29,7 @@ FEWEST, OTHERS = 4.5, 20.0  # rows at least, and em that are left to the setting
 HIDDEN = 0.35  # opacity of the pictures of layers that are not seen now
 PULL = 0.25  # em by which the list scrolls in each frame while a row is dragged at its edge
 PAPER = imgui.IM_COL32(128, 130, 136, 255)  # on which both dark and light drawings are seen
+SIGN = imgui.IM_COL32(12, 13, 16, 255)  # on the paper
 SmallPictures = Callable[[int, Bytes], Thumbnail | None]
 
 
@@ -180,7 +181,7 @@ def _picture(
     is_seen: bool,
 ) -> None:
     """Draw the small picture of a layer right of a point, or a sign where there is none yet."""
-    palette, em = look.palette, look.em
+    em = look.em
     pad = 0.12 * em
     half = ROW / 2 * em - pad
     low = ImVec2(left.x, left.y - half)
@@ -193,7 +194,7 @@ def _picture(
         icon = icons.ICON_FA_IMAGE if figure.still else icons.ICON_FA_PERSON
         size = imgui.calc_text_size(icon)
         middle = ImVec2((low.x + high.x - size.x) / 2, (low.y + high.y - size.y) / 2)
-        draw_list.add_text(middle, ink(palette.text if is_seen else palette.dim), icon)
+        draw_list.add_text(middle, SIGN, icon)
         return
     room = ImVec2(high.x - low.x - 2 * pad, high.y - low.y - 2 * pad)
     show_picture(

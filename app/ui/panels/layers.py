@@ -12,7 +12,7 @@ PERCENT = Scale(left=0, right=100)
 NOTHING = "nothing"
 
 
-def draw(session: Session, look: Look, pictures: SmallPictures) -> list[Action]:
+def draw(session: Session, look: Look, project: Project, pictures: SmallPictures) -> list[Action]:
     """Draw the list of layers, and the settings of the chosen one.
 
     Parameters
@@ -22,9 +22,6 @@ def draw(session: Session, look: Look, pictures: SmallPictures) -> list[Action]:
     pictures : callable
         Returns the texture of a layer's small picture, by the layer's id.
     """
-    project = session.project
-    if project is None:
-        return []
     actions = draw_list(session, look, project, pictures)
     if len(project.document.figures) == 1:
         small(look, "Drop another picture here, or open an .ora or .psd file, for more layers.")

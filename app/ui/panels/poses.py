@@ -31,7 +31,7 @@ SHARES = Scale(left=0.0, right=1.0)
 Pictures = Callable[[Pose, int], int | None]
 
 
-def draw(session: Session, look: Look, pictures: Pictures) -> list[Action]:
+def draw(session: Session, look: Look, project: Project, pictures: Pictures) -> list[Action]:
     """Draw the poses that are kept, and where poses are flipped.
 
     Parameters
@@ -41,8 +41,7 @@ def draw(session: Session, look: Look, pictures: Pictures) -> list[Action]:
     pictures : callable
         Returns the texture of a pose, of a number of pixels each way.
     """
-    project = session.project
-    if project is None or project.puppet.shown is None:
+    if project.puppet.shown is None:
         return []
     heading(look, "Poses", framed=True)
     at_end(1.15 * imgui.get_frame_height())
@@ -182,7 +181,7 @@ def _flip(session: Session, look: Look, project: Project) -> list[Action]:
     actions: list[Action] = []
     figure, binding = project.figure, BINDINGS["paste flipped"]
     width = imgui.get_content_region_avail().x
-    imgui.begin_disabled(not binding.possible(session))
+    imgui.begin_disabled(not binding.is_possible(session))
     if imgui.button(f"{icons.ICON_FA_PASTE}  {binding.label}###flip", ImVec2(width, 0)):
         actions.append(binding.action)
     imgui.end_disabled()

@@ -3,20 +3,10 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from app.editor import Action, Session
-from app.ui.shortcuts.keys import in_words
+from app.editor import Action, Project, Session
+from app.ui.shortcuts.keys import IS_MAC, in_words
 
-Test = Callable[[Session], bool]
-
-
-def always(_: Session) -> bool:
-    """Tell that something can be done at any time."""
-    return True
-
-
-def with_project(session: Session) -> bool:
-    """Tell whether a project is open."""
-    return session.project is not None
+Test = Callable[[Session, Project], object]  # passed where it returns what counts as true
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -28,23 +18,24 @@ class Binding:
     label : str
         In menus and in the sheet of keys.
     action : Action
-    menu : str
-        In which it is an entry, and under which the sheet lists it.
     parted : bool
-        Whether a line parts it from the entry above.
-    in_bar : bool
-        Whether it is a button of the icon bar as well.
+        Whether a line parts it from the entry above in its menu.
     keys : tuple of int
         ImGui's key chords; any of them does it.
+    mac_keys : tuple of int
+        In their place on macOS, where the system has them for itself.
     told : str
         Its keys in words, where they are not pressed as such.
     icon : str
     hint : str
         Tooltip; the label where it is empty.
+    needs_project : bool
+        Whether it can be done only with an open project. Without one, none of the tests below is
+        asked.
     detail : callable
         What it would do now, in words that follow the label in its menu.
     possible : callable
-        Whether it can be done now.
+        Whether it can be done now; always where there is none.
     active : callable
         Whether what it switches is on.
     repeats : bool
@@ -53,28 +44,40 @@ class Binding:
 
     label: str
     action: Action
-    menu: str
     parted: bool = False
-    in_bar: bool = False
     keys: tuple[int, ...] = ()
+    mac_keys: tuple[int, ...] = ()
     told: str = ""
     icon: str = ""
     hint: str = ""
-    detail: Callable[[Session], str | None] | None = None
-    possible: Test = with_project
+    needs_project: bool = True
+    detail: Callable[[Session, Project], str | None] | None = None
+    possible: Test | None = None
     active: Test | None = None
     repeats: bool = False
+
+    def chords(self, *, is_mac: bool = IS_MAC) -> tuple[int, ...]:
+        """Return the key chords that do it on this system, or on another one."""
+        return (is_mac and self.mac_keys) or self.keys
 
     @property
     def keys_in_words(self) -> str:
         """The first of the keys, as menus show it."""
-        return in_words(self.keys[0]) if self.keys else self.told
+        return in_words(self.chords()[0]) if self.keys else self.told
 
     def title(self, session: Session) -> str:
         """Return the text of its menu entry now; its id is the label."""
-        detail = self.detail(session) if self.detail is not None else None
+        project = session.project
+        detail = self.detail(session, project) if self.detail and project else None
         return f"{self.label} “{detail}”###{self.label}" if detail else self.label
 
+    def is_possible(self, session: Session) -> bool:
+        """Tell whether it can be done now."""
+        if session.project is None:
+            return not self.needs_project
+        return self.possible is None or bool(self.possible(session, session.project))
+
     def is_active(self, session: Session) -> bool:
-        """Tell whether what it switches is on."""
-        return self.active is not None and self.active(session)
+        """Tell whether what it switches is on in the open project."""
+        project = session.project
+        return bool(self.active and project and self.active(session, project))

@@ -20,11 +20,11 @@ def pressed(session: Session) -> list[Action]:
     actions = []
     for binding in BINDINGS.values():
         # What is typed during a drag is for the tool in hand.
-        keys = [key for key in binding.keys if session.pointer is None or not _is_typed(key)]
+        keys = [key for key in binding.chords() if session.pointer is None or not _is_typed(key)]
         flags = imgui.InputFlags_.route_always
         if binding.repeats:
             flags |= imgui.InputFlags_.repeat
-        if any(imgui.shortcut(chord, flags) for chord in keys) and binding.possible(session):
+        if any(imgui.shortcut(chord, flags) for chord in keys) and binding.is_possible(session):
             actions.append(binding.action)
     return actions + _nudges(session) + _space(session)
 

@@ -16,7 +16,7 @@ def bound_item(session: Session, name: str) -> list[Action]:
         binding.title(session),
         binding.keys_in_words,
         binding.is_active(session),
-        binding.possible(session),
+        binding.is_possible(session),
     )
     return [binding.action] if clicked else []
 
@@ -25,7 +25,7 @@ def bound_text_button(session: Session, name: str, size: ImVec2) -> list[Action]
     """Draw the button of a named action with its icon and its words."""
     binding = BINDINGS[name]
     is_active = binding.is_active(session)
-    imgui.begin_disabled(not binding.possible(session))
+    imgui.begin_disabled(not binding.is_possible(session))
     if is_active:
         imgui.push_style_color(imgui.Col_.button, imgui.get_style_color_vec4(PRESSED))
     is_pressed = imgui.button(f"{binding.icon}  {binding.label}###{name}", size)
@@ -46,6 +46,6 @@ def bound_button(session: Session, look: Look, name: str, icon: str = "") -> lis
         binding.hint or binding.label,
         keys=binding.keys_in_words,
         active=binding.is_active(session),
-        enabled=binding.possible(session),
+        enabled=binding.is_possible(session),
     )
     return [binding.action] if is_pressed else []

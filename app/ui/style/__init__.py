@@ -7,6 +7,7 @@ Imports: Dear ImGui.
 
 from app.ui.style.sliders import FIELD, Scale, number, slider, track
 from app.ui.style.theme import (
+    CHOSEN,
     FONT_SIZE,
     LARGE,
     PALETTES,
@@ -37,6 +38,7 @@ from app.ui.style.widgets import (
 )
 
 __all__ = [
+    "CHOSEN",
     "FIELD",
     "FILL",
     "FONT_SIZE",

@@ -8,7 +8,7 @@ from imgui_bundle import icons_fontawesome_6 as icons
 from app.document import Figure, is_visible, layer_commands
 from app.editor import Action, SwitchDrag, TimeGesture, do, layering
 from app.editor.actions import editing, timeline_pointing
-from app.ui.style import SMALL, begin_tip, ink, shortened
+from app.ui.style import CHOSEN, SMALL, begin_tip, ink, shortened
 from app.ui.timeline.track import THIN, FigureRow, Track, in_hand, is_pressed, write_tag
 
 HATCH = 0.55  # em between the lines over a time in which a figure is hidden
@@ -56,7 +56,7 @@ def _draw_names(track: Track, frame: int) -> list[Action]:
         if track.button(f"name {row.figure.id}", *box):
             actions.append(do(layering.choose, row.figure.id))
         if row.is_active or in_hand():
-            colour = ink(palette.accent, 0.25) if row.is_active else ink(palette.hovered)
+            colour = ink(palette.accent, CHOSEN) if row.is_active else ink(palette.hovered)
             draw_list.add_rect_filled(*box, colour, 0.2 * em)
         icon = icons.ICON_FA_IMAGE if row.figure.still else icons.ICON_FA_PERSON
         text = shortened(row.figure.name, box[1].x - low.x - 2.6 * em)

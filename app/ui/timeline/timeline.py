@@ -36,11 +36,8 @@ PULL = 0.12
 FLAGS = imgui.WindowFlags_.no_scrollbar | imgui.WindowFlags_.no_scroll_with_mouse
 
 
-def draw(session: Session, look: Look) -> list[Action]:
+def draw(session: Session, look: Look, project: Project) -> list[Action]:
     """Draw the timeline of the open project."""
-    project = session.project
-    if project is None:
-        return []
     actions = draw_bar(session, look, project)
     imgui.begin_child("track", imgui.get_content_region_avail(), 0, FLAGS)
     track = Track(look, project)

@@ -103,7 +103,7 @@ def draw_divider(session: Session, look: Look, parts: Parts, width: float) -> li
         draw_list.add_circle_filled(knob, KNOB * look.em, ink(colour))
         size = imgui.calc_text_size(icons.ICON_FA_LEFT_RIGHT)
         corner = ImVec2(x - size.x / 2, knob.y - size.y / 2)
-        draw_list.add_text(corner, ink(palette.desk), icons.ICON_FA_LEFT_RIGHT)
+        draw_list.add_text(corner, ink(palette.on_accent), icons.ICON_FA_LEFT_RIGHT)
     _names(look, project, split.method, x, top)
     return actions
 

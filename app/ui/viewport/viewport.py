@@ -47,7 +47,7 @@ GRIP = 0.75  # em: radius within which a handle is grabbed
 SMALLEST_ZOOM, LARGEST_ZOOM = 0.02, 64.0
 
 
-def draw(session: Session, look: Look, pictures: SplitTextures) -> list[Action]:
+def draw(session: Session, look: Look, project: Project, pictures: SplitTextures) -> list[Action]:
     """Show the pictures that were drawn of the project, and take what the pointer does there.
 
     Where the viewport is divided into two, `pictures` has the other method's picture, too.
@@ -62,13 +62,7 @@ def draw(session: Session, look: Look, pictures: SplitTextures) -> list[Action]:
     actions: list[Action] = []
     if screen != session.screen:
         actions.append(do(viewing.resize, *screen))
-    project = session.project
-    if (
-        project is None
-        or project.puppet.shown is None
-        or pictures.own is None
-        or min(room.x, room.y) < 1
-    ):
+    if project.puppet.shown is None or pictures.own is None or min(room.x, room.y) < 1:
         return actions
     draw_pictures(parts, pictures.own, pictures.twin)
     canvas = _Canvas(project, project.puppet.shown, project.view(session.screen), corner, density)
@@ -200,7 +194,7 @@ class _Axis(NamedTuple):
 
 
 def _axis(session: Session, look: Look, canvas: _Canvas) -> _Axis:
-    if not flipping.shows_axis(session):
+    if not flipping.shows_axis(session, canvas.project):
         return _Axis()
     x = canvas.point(complex(canvas.project.figure.axis)).x
     return _Axis(x, *axis_grip(look, x))
@@ -365,13 +359,17 @@ def _hint(session: Session, canvas: _Canvas, spot: Spot) -> str:
         told = [f"{_how(hint)} {hint.what}" for hint in session.pointer.ways]
         return _sentence([*told, "Esc takes it back"])
     if session.cutting is not None:
-        found = [hint for tool in tools_of(session) for hint in tool.hints(session, spot)]
+        found = [
+            hint for tool in tools_of(session) for hint in tool.hints(session, canvas.project, spot)
+        ]
         return _sentence([*(f"{_how(hint)} {hint.what}" for hint in found), "Esc goes back"])
     if canvas.project.playhead.since is not None:
         return "Space stops"
     if not session.overlays.handles:
         return "The handles are hidden: H shows them"
-    found = [hint for tool in tools_of(session) for hint in tool.hints(session, spot)]
+    found = [
+        hint for tool in tools_of(session) for hint in tool.hints(session, canvas.project, spot)
+    ]
     told = [f"{_how(hint)} {hint.what}" for hint in found]
     if spot.handle is not None:
         names = {handle.id: handle.name for handle in canvas.shown.clip.figure.handles}

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from imgui_bundle import ImVec2, hello_imgui, imgui, implot
 
-from app.editor import Action, FileDialog, Session, do, promises, sentence
+from app.editor import Action, FileDialog, Project, Session, do, promises, sentence
 from app.editor.actions import editing, playback, saving, upkeep
 from app.errors import EXPECTED_ERRORS
 from app.render import Thumbnail
@@ -80,9 +80,8 @@ class Shell:
         options = hello_imgui.EdgeToolbarOptions()
         options.size_em = 2.7
         options.window_padding_em = ImVec2(0.35, 0.5)
-        calls.add_edge_toolbar(
-            hello_imgui.EdgeToolbarType.left, self._part("The icon bar", bars.draw_icons), options
-        )
+        icons = self._part("The icon bar", _with_project(bars.draw_icons))
+        calls.add_edge_toolbar(hello_imgui.EdgeToolbarType.left, icons, options)
         params.fps_idling.fps_idle = IDLE_FPS
         params.fps_idling.time_active_after_last_event = AWAKE
         return params
@@ -131,7 +130,7 @@ class Shell:
         return layout
 
     def _window(self, panel: Panel) -> hello_imgui.DockableWindow:
-        draw = self._part(f"The panel {panel.title}", panel.draw)
+        draw = self._part(f"The panel {panel.title}", _with_project(panel.draw))
         window = hello_imgui.DockableWindow(panel.label, panel.place, draw)
         window.can_be_closed = False
         if panel.place == "MainDockSpace":
@@ -221,6 +220,17 @@ class Shell:
         # The window's own close button; the answer comes as an action.
         self._actions.append(do(saving.quit_lissom))
         return False
+
+
+def _with_project(
+    draw: Callable[[Session, Look, Project], list[Action]],
+) -> Callable[[Session, Look], list[Action]]:
+    """Return what draws a part that there is only with a project."""
+
+    def drawn(session: Session, look: Look) -> list[Action]:
+        return draw(session, look, session.project) if session.project else []
+
+    return drawn
 
 
 def _is_busy(session: Session) -> bool:

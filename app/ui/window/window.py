@@ -227,7 +227,9 @@ class Window:
                 title="Viewport",
                 icon=icons.ICON_FA_IMAGE,
                 place="MainDockSpace",
-                draw=lambda session, look: viewport.draw(session, look, self._pictures),
+                draw=lambda session, look, project: viewport.draw(
+                    session, look, project, self._pictures
+                ),
             ),
             Panel(title="Timeline", icon=icons.ICON_FA_FILM, place="bottom", draw=timeline.draw),
             Panel(title="Handle", icon=icons.ICON_FA_CIRCLE_DOT, place="side", draw=handle.draw),
@@ -235,13 +237,17 @@ class Window:
                 title="Layers",
                 icon=icons.ICON_FA_LAYER_GROUP,
                 place="side",
-                draw=lambda session, look: layers.draw(session, look, self._layer_picture),
+                draw=lambda session, look, project: layers.draw(
+                    session, look, project, self._layer_picture
+                ),
             ),
             Panel(
                 title="Poses",
                 icon=icons.ICON_FA_PERSON_RUNNING,
                 place="side",
-                draw=lambda session, look: poses.draw(session, look, self._pose_picture),
+                draw=lambda session, look, project: poses.draw(
+                    session, look, project, self._pose_picture
+                ),
             ),
             Panel(title="Deform", icon=icons.ICON_FA_SLIDERS, place="side", draw=deform.draw),
             Panel(

@@ -6,7 +6,7 @@ from imgui_bundle import imgui
 from app.editor import Question, do
 from app.editor.actions import posing, show_dialog
 from app.storage.assets import sample_images
-from app.ui.shortcuts import BINDINGS
+from app.ui.shortcuts import BINDINGS, MENUS
 from app.ui.shortcuts.keys import in_words, with_key
 
 OPEN = imgui.test_engine.TestAction.open
@@ -138,7 +138,7 @@ def test_the_fonts_have_the_signs_of_all_keys(window):
     window.frames()
     font = imgui.get_font()
     signs = {
-        sign for binding in BINDINGS.values() for key in binding.keys for sign in in_words(key)
+        sign for binding in BINDINGS.values() for key in binding.chords() for sign in in_words(key)
     }
     for sign in signs | set("⌥⇧⌘σ×−…“”–"):
         assert font.is_glyph_in_font(ord(sign)), sign
@@ -148,11 +148,12 @@ def test_the_fonts_have_the_signs_of_all_keys(window):
 def test_menus_are_made_from_the_table(window):
     """Each entry is in its menu, and does what its keys do."""
     found = []
+    entries = [(menu, *each) for menu, bindings in MENUS.items() for each in bindings.items()]
 
     def look(robot):
         robot.set_ref("##MainMenuBar")
-        for name, binding in BINDINGS.items():
-            robot.menu_click(binding.menu)
+        for menu, name, binding in entries:
+            robot.menu_click(menu)
             path = f"//$FOCUSED/{'###' if binding.detail else ''}{binding.label}"
             if robot.item_exists(path):
                 found.append(name)
@@ -233,6 +234,30 @@ def test_no_frame_stays_around_a_button_when_a_question_is_gone(window):
     assert window.picture() == before
 
 
-def test_no_two_actions_have_the_same_key():
-    chords = [int(chord) for binding in BINDINGS.values() for chord in binding.keys]
+@pytest.mark.parametrize("is_mac", [False, True])
+def test_no_two_actions_have_the_same_key(is_mac):
+    chords = [int(key) for binding in BINDINGS.values() for key in binding.chords(is_mac=is_mac)]
     assert len(set(chords)) == len(chords)
+
+
+def test_no_action_has_a_key_that_macos_takes():
+    """Dear ImGui takes the command key for Ctrl there."""
+    key = imgui.Key
+    taken = {
+        *(CTRL | int(each) for each in (key.m, key.h, key.tab, key.space, key.grave_accent)),
+        *(CTRL | int(each) for each in (key.comma, key.f5)),
+        *(CTRL | ALT | int(each) for each in (key.m, key.h, key.d, key.w, key.space, key.escape)),
+        *(CTRL | SHIFT | int(each) for each in (key.q, key.tab, key.slash, key.grave_accent)),
+        *(CTRL | SHIFT | int(each) for each in (key._3, key._4, key._5, key._6)),
+        *(CTRL | ALT | SHIFT | int(each) for each in (key.q, key.escape)),
+        int(key.f11),
+    }
+    for name, binding in BINDINGS.items():
+        assert taken.isdisjoint(binding.chords(is_mac=True)), name
+        assert (CTRL | int(key.q) in binding.chords(is_mac=True)) == (name == "quit")
+
+
+def test_the_mirror_axis_has_another_key_on_macos():
+    axis = BINDINGS["mirror axis"]
+    assert [in_words(chord, is_mac=True) for chord in axis.chords(is_mac=True)] == ["⇧⌘M"]
+    assert [in_words(chord, is_mac=False) for chord in axis.chords(is_mac=False)] == ["Ctrl+M"]

@@ -644,7 +644,7 @@ def test_keys_of_several_rows_are_copied_and_pasted_each_on_its_own(window, keye
     assert (frames_of(keyed, "arm"), frames_of(keyed, "body")) == ((0, 12, 24, 42), (0, 18, 30, 48))
     assert keyed.document.figure(arm).key(42).turns == 1
     assert keyed.chosen_of == {arm: {42}, body: {30, 48}}
-    assert not copying.can_paste_here(window.session)
+    assert not copying.copied_here(window.session, window.session.project)
     window.act(editing.undo)
     assert keyed.document is before
     # The rest can be pasted where one of the layers is gone.

@@ -71,7 +71,7 @@ def test_a_pose_is_pasted_flipped_and_again_where_its_axis_is_moved(window, proj
     before = project.document
     press(window, CTRL | int(window.Key.c))
     go(window, 24)
-    assert not flipping.shows_axis(window.session)
+    assert not flipping.shows_axis(window.session, window.session.project)
     press(window, CTRL | SHIFT | int(window.Key.v))
     way = targets(project, 12)[LEFT] - HANDLES["arm.L"]
     now = targets(project, 24)
@@ -79,7 +79,7 @@ def test_a_pose_is_pasted_flipped_and_again_where_its_axis_is_moved(window, proj
     assert now[LEFT] == pytest.approx(HANDLES["arm.L"], abs=1e-6)
     assert project.figure.key(24).pose.certificate.certified
     # While that is what is chosen, the axis is there to be moved.
-    assert flipping.shows_axis(window.session)
+    assert flipping.shows_axis(window.session, window.session.project)
     pasted = project.document
 
     def drag(robot, key=None):
@@ -101,13 +101,13 @@ def test_a_pose_is_pasted_flipped_and_again_where_its_axis_is_moved(window, proj
     assert moved > 5
     # Where the axis is not in the middle, a turned arm lands elsewhere.
     assert project.figure.key(24).pose is not pasted.figures[0].key(24).pose
-    assert flipping.shows_axis(window.session)
+    assert flipping.shows_axis(window.session, window.session.project)
     editing.undo(window.session)
     assert project.document is pasted
     editing.undo(window.session)
     assert project.document is before
     window.frames(2)
-    assert not flipping.shows_axis(window.session)
+    assert not flipping.shows_axis(window.session, window.session.project)
 
 
 def test_only_the_selected_handles_are_pasted_flipped(window, project):
@@ -242,11 +242,11 @@ def test_the_axis_is_entered_shown_and_put_back(window, project):
 
     window.run(enter)
     assert project.figure.axis == 70
-    assert flipping.shows_axis(window.session)
+    assert flipping.shows_axis(window.session, window.session.project)
     window.run(lambda robot: robot.item_click("//###Poses/Middle"))
     assert project.figure.mirror is None
-    press(window, BINDINGS["mirror axis"].keys[0])
-    assert not flipping.shows_axis(window.session)
+    press(window, BINDINGS["mirror axis"].chords()[0])
+    assert not flipping.shows_axis(window.session, window.session.project)
 
 
 def test_poses_of_the_library_are_solved_for_other_limits_with_the_keys(window, project):

@@ -51,7 +51,9 @@ MOST_HANDLES, MOST_KEYS, MOST_LAYERS = 6, 8, 4
 LAST = 90  # frame beyond which the walk does not go
 # What ends the project is left out; what asks first is answered by Escape.
 LEAVING = {"close", "quit"}
-BOUND = [key for name, binding in BINDINGS.items() if name not in LEAVING for key in binding.keys]
+BOUND = [
+    key for name, binding in BINDINGS.items() if name not in LEAVING for key in binding.chords()
+]
 TABS = ("Handle", "Layers", "Deform", "Distortion", "Mesh", "Cut-out", "Export")
 WIDGETS = (
     *("button", "invisible_button", "selectable", "checkbox", "begin_combo", "slider_int"),

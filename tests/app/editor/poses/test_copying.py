@@ -27,7 +27,7 @@ def session(tmp_path):
 
 def test_a_pose_is_pasted_at_another_frame_as_one_step(session):
     project, before = session.project, session.project.document
-    assert not copying.can_paste(session)
+    assert not copying.copied_for(session, session.project)
     go(session, 6)
     copying.copy(session)
     bent = project.figure.key(6).pose
@@ -77,7 +77,7 @@ def test_only_the_selected_handles_take_what_was_copied(session):
     copying.copy(session)
     bent = project.figure.key(6).pose.targets
     go(session, 0)
-    assert not copying.can_paste_on_selected(session)
+    assert not copying.copied_for_selected(session, session.project)
     editing.select(session, frozenset({1}))
     copying.paste_on_selected(session)
     settle(session)
@@ -133,7 +133,7 @@ def test_a_pose_of_another_shape_cannot_be_pasted(session):
     session.project = project_of(moving_document(), BLANK, "other")
     before = session.project.document
     settle(session)
-    assert not copying.can_paste(session)
+    assert not copying.copied_for(session, session.project)
     copying.paste(session)
     assert session.project.document is before
 

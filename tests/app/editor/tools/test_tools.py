@@ -220,14 +220,14 @@ def test_handles_that_go_while_they_are_dragged_are_let_be(session):
 
 @pytest.mark.parametrize("spot", [AT_LEFT, ON_SHAPE, BESIDE, ON_RING])
 def test_there_is_a_hint_wherever_something_can_be_done(session, spot):
-    hints = [hint for tool in TOOLS for hint in tool.hints(session, spot)]
+    hints = [hint for tool in TOOLS for hint in tool.hints(session, session.project, spot)]
     assert hints
     for hint in hints:
         held = {hint.key: True} if hint.key else {}
         there = ON_RING if "its ring" in hint.how else spot
         pointing.press(session, replace(there, **held))
         named = type(session.pointer)
-        assert hint in named.hints(session, spot)
+        assert hint in named.hints(session, session.project, spot)
         pointing.cancel(session)
 
 

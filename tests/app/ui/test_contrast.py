@@ -1,0 +1,218 @@
+"""Texts stand out from all that they are written on, in both themes."""
+
+from itertools import product
+
+import numpy as np
+import pytest
+from imgui_bundle import imgui
+from layered import openraster
+from legibility import LEAST, contrast, glyphs
+from PIL import Image
+
+from app.document import Variant
+from app.document.keyframe import Target
+from app.editor import FileDialog, Question, do, layering
+from app.editor.actions import (
+    close_dialog,
+    cutting,
+    editing,
+    playback,
+    posing,
+    show_dialog,
+    timeline_pointing,
+    viewing,
+)
+from app.editor.timeline_view import Strip
+from app.solving import Renewal
+from app.storage.assets import sample_images
+from app.ui.style import PALETTES
+
+TABS = ("Handle", "Layers", "Poses", "Deform", "Distortion", "Mesh", "Cut-out", "Export")
+OPEN = imgui.test_engine.TestAction.open
+TEXTS = ("text", "dim", "accent", "good", "warning", "danger", "anchor")
+SURFACES = ("desk", "panel", "raised", "hovered", "pressed")
+FILLED = (("on_accent", "accent"), ("on_accent", "warning"), ("on_accent", "text"))
+
+
+@pytest.fixture(params=["light", "dark"])
+def theme(window, request):
+    if window.session.preferences.theme != request.param:
+        viewing.toggle_theme(window.session)
+    window.frames(3)
+    return request.param
+
+
+@pytest.fixture
+def check(window, theme):
+    """Checks all that is written in the window as it is, and says where a text is hard to read."""
+
+    def look(state):
+        window.settle()
+        # Messages have faded in by then.
+        window.frames(20)
+        seen = [glyph for glyph in glyphs(window) if is_enabled(glyph)]
+        assert len(seen) > 15, state
+        faint = {(each.ink, each.ground): each for each in seen if each.contrast < LEAST}
+        assert not faint, (theme, state, *faint.values())
+
+    return look
+
+
+def is_enabled(glyph):
+    """Tell whether a glyph is not dimmed by a dialog in front of it."""
+    dialog = imgui.internal.get_top_most_popup_modal()
+    corners = (imgui.ImVec2(*glyph.box[:2]), imgui.ImVec2(*glyph.box[2:]))
+    return dialog is None or all(map(dialog.rect().contains, corners))
+
+
+def levels(colour):
+    return 255 * np.array([colour.x, colour.y, colour.z])
+
+
+def over(colour, ground):
+    """Return a translucent colour on another one."""
+    return ground + colour.w * (levels(colour) - ground)
+
+
+@pytest.mark.usefixtures("window")
+def test_each_colour_of_texts_stands_out_from_each_surface(theme):
+    palette = PALETTES[theme]
+    surfaces = {name: levels(getattr(palette, name)) for name in SURFACES}
+    surfaces["chosen row"] = over(imgui.get_style_color_vec4(imgui.Col_.header), surfaces["panel"])
+    texts = {name: levels(getattr(palette, name)) for name in TEXTS}
+    found = {
+        (text, surface): contrast(texts[text], surfaces[surface])
+        for text, surface in product(texts, surfaces)
+    }
+    for ink, ground in FILLED:
+        found[ink, ground] = contrast(*(levels(getattr(palette, name)) for name in (ink, ground)))
+    for colour in ("text_selected_bg", "plot_histogram"):
+        filled = over(imgui.get_style_color_vec4(imgui.Col_[colour]), surfaces["raised"])
+        found["text", colour] = contrast(texts["text"], filled)
+    assert not {pair: value for pair, value in found.items() if value < LEAST}
+
+
+def test_the_welcome_view(window, tmp_path, check):
+    preferences = window.session.preferences
+    for path in (sample_images() / "bar.png", tmp_path / "gone.png"):
+        preferences = preferences.with_recent(path)
+    window.session.preferences = preferences
+    check("welcome")
+
+    def point(robot):
+        robot.set_ref("Welcome")
+        robot.mouse_move("**/###recent 1")
+
+    window.run(point)
+    check("a recent file")
+
+
+def test_all_tabs_of_a_pose_that_falls_short(window, bent, check):
+    session = window.session
+    width, height = bent.document.canvas
+    posing.wish(session, {1: Target(position=complex(2.4 * width, 0.5 * height))})
+    window.settle()
+    viewing.compare_with(session, Variant.LINEAR)
+    for tab in TABS:
+        window.show_tab(tab)
+        check(tab)
+    bent.renewal = Renewal(
+        before=bent.figure, bounds=bent.figure.bounds, poses=bent.figure.poses[:-1]
+    )
+    window.show_tab("Deform")
+    check("progress")
+
+
+@pytest.mark.usefixtures("bent")
+def test_rows_buttons_and_keys_under_the_pointer(window, check):
+    window.show_tab("Deform")
+
+    def hold(robot, ref, item):
+        robot.set_ref(ref)
+        robot.mouse_move(item)
+        robot.mouse_down(0)
+        robot.yield_(2)
+
+    for ref, item in (("//Deform", "**/###key 24"), ("//Deform", "**/###Stiff")):
+        window.run(lambda robot, ref=ref, item=item: hold(robot, ref, item))
+        check(item)
+        window.run(lambda robot: robot.mouse_up(0))
+    window.run(lambda robot: robot.mouse_move("//Timeline/**/key 24"))
+    window.frames(60)
+    check("key")
+
+
+def test_a_pose_that_no_key_holds_and_a_cut_out(window, bent, check):
+    session = window.session
+    viewing.toggle_auto_key(session)
+    bent.selected = frozenset({1})
+    posing.nudge(session, 30j)
+    window.settle()
+    assert bent.unkeyed is not None
+    check("unkeyed")
+    cutting.take_up(session, "remove")
+    window.show_tab("Cut-out")
+    check("cut-out")
+
+
+def test_layers_that_are_chosen_hidden_and_switched(window, tmp_path, check):
+    names = ("arm", "body", "wall")
+    stack = "".join(f'<layer name="{n}" src="data/{i}.png"/>' for i, n in enumerate(names))
+    picture = Image.new("RGBA", (240, 200))
+    picture.paste((40, 40, 200, 255), (60, 25, 110, 180))
+    path = tmp_path / "man.ora"
+    path.write_bytes(openraster((240, 200), stack, [picture] * 3))
+    project = window.open(path)
+    session = window.session
+    (wall, _, arm) = (figure.id for figure in project.document.figures)
+    layering.fade(session, arm, 0.5)
+    layering.show(session, arm)
+    layering.switch_here(session, wall)
+    playback.seek(session, 12)
+    timeline_pointing.look_at(session, Strip(0.0, 1.0))
+    for identity in (arm, wall):
+        layering.choose(session, identity)
+        window.show_tab("Layers")
+        check(identity)
+
+
+@pytest.mark.usefixtures("bent")
+def test_menus_messages_and_dialogs(window, tmp_path, check):
+    session = window.session
+    for tone in ("info", "good", "error"):
+        session.tell(f"A message that is {tone}.", tone=tone, details="Its details")
+    session.hint = "A hint"
+    editing.select(session, frozenset({0, 1}))
+    check("messages")
+    session.toasts = []
+
+    def open_menu(robot):
+        robot.set_ref("##MainMenuBar")
+        robot.menu_action(OPEN, "Edit")
+        robot.mouse_move("//$FOCUSED/Copy pose")
+
+    window.run(open_menu)
+    check("menu")
+    window.run(lambda robot: robot.popup_close_all())
+    viewing.show_shortcuts(session)
+    check("keys")
+    close_dialog(session)
+    answers = (("Yes", do(close_dialog)), ("No", do(close_dialog)))
+    show_dialog(session, Question(title="Question", text="?", answers=answers))
+    check("question")
+    for name in ("one.png", "two.png"):
+        (tmp_path / name).write_bytes(b"")
+    show_dialog(
+        session,
+        FileDialog(
+            title="Save",
+            folder=tmp_path,
+            name="one.png",
+            suffixes=(".png",),
+            writes=True,
+            chosen=lambda _: do(close_dialog),
+        ),
+    )
+    window.frames(3)
+    window.run(lambda robot: robot.item_click("//###dialog/**/###entry two.png"))
+    check("files")
