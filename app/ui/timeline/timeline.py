@@ -7,6 +7,7 @@ from app.editor import (
     EdgeDrag,
     KeyDrag,
     MarkerDrag,
+    Project,
     Scrub,
     Session,
     SwitchDrag,
