@@ -8,7 +8,7 @@ from harness import Harness, Robot
 from app.editor import Jobs, Session
 from app.render import Renderer
 from app.render.gpu import create_context
-from app.ui.shortcuts import BINDINGS
+from app.ui.shortcuts import MENUS
 from app.ui.window import Window
 
 Shown = dict[str, list[str]]
@@ -25,7 +25,7 @@ def shown_now() -> Shown:
     session = Session(clock=lambda: 0.0, jobs=Jobs(), folder=Path())
     params = Window(session, lambda: Renderer(create_context())).runner_params()
     return {
-        "menus": list(dict.fromkeys(binding.menu for binding in BINDINGS.values())),
+        "menus": list(MENUS),
         "tabs": [
             panel.label.rpartition("###")[2]
             for panel in params.docking_params.dockable_windows
