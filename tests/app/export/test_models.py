@@ -286,8 +286,8 @@ def test_figures_are_seen_when_and_as_much_as_they_should(tmp_path, monkeypatch)
     first, second = document.figures
     switched = replace(second, switches=(Switch(0, visible=False), Switch(4, visible=True)))
     monkeypatch.setattr(
-        "app.export.moving_shape.painted_triangles",
-        lambda mesh, _, n: mesh.triangles if n < 3 else mesh.triangles[::-1],
+        "app.export.moving_shape.PaintOrder.triangles",
+        lambda _, clip, n: clip.figure.domain.mesh.triangles[:: 1 if n < 3 else -1],
     )
     faint = replace(first, opacity=0.5)
     _, maker = exported(replace(document, figures=(faint, switched)), out)
