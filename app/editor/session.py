@@ -14,7 +14,7 @@ from app.editor.jobs import Jobs
 from app.editor.project import Project
 from app.export import ExportPlan, Poses
 from app.motion import Box
-from app.storage import Autosave, Preferences, home_folder
+from app.storage import Autosave, Cancellation, Preferences, home_folder
 from engine.arrays import Bytes
 
 HeatMap = Literal["none", "k", "sigma_a", "sigma_b"]
@@ -180,13 +180,15 @@ class ToolInHand(Protocol):
 class ExportRun:
     """An export that is under way: what it draws, how, and how many frames are drawn.
 
-    Where it is for the clipboard, its file goes there and does not stay.
+    Where it is for the clipboard, its file goes there and does not stay. Its files are cancelled by
+    `cancellation`.
     """
 
     document: Document
     pictures: Mapping[int, Bytes]
     poses: Mapping[int, Poses]
     plan: ExportPlan
+    cancellation: Cancellation = field(default_factory=Cancellation)
     for_clipboard: bool = False
     done: int = 0
 

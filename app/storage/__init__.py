@@ -16,6 +16,7 @@ from app.storage.autosave import (
     remove_leftover,
 )
 from app.storage.files import (
+    Cancellation,
     Hold,
     HoldError,
     atomic_file,
@@ -87,6 +88,7 @@ __all__ = [
     "SECONDS",
     "SMALLEST_SCALE",
     "Autosave",
+    "Cancellation",
     "Cut",
     "Hold",
     "HoldError",

@@ -233,12 +233,19 @@ def _animation(clip: Clip, sibling: PoseSampler | None) -> Animation:
 
 
 def cancel(session: Session) -> None:
-    """Give the export up; frames that are written stay."""
+    """Give the export up, unless its file is complete already; frames that are written stay."""
+    run, is_prepared = session.export, PREPARING in session.jobs.kinds
+    if run is None and not is_prepared:
+        return
+    # Dropped first, so that nobody is told of a failure; then left, as it may take long.
     session.jobs.drop(PREPARING)
-    run, session.export = session.export, None
-    if run is not None:
-        left = "Nothing was written" if _is_one_file(run) else "Frames that were written stay"
-        session.tell(f"The export was cancelled. {left}.")
+    session.jobs.leave(PREPARING)
+    is_nothing_written = run is None or run.cancellation.cancel()
+    if run is not None and _is_one_file(run) and not is_nothing_written:
+        return
+    session.export = None
+    left = "Nothing was written" if is_nothing_written else "Frames that were written stay"
+    session.tell(f"The export was cancelled. {left}.")
 
 
 def unless_running(session: Session, then: Action) -> None:

@@ -17,7 +17,7 @@ import glfw  # isort: skip
 
 from app.document import Pose
 from app.editor import Action, FileDialog, Session, do, layering
-from app.editor.actions import saving
+from app.editor.actions import exporting, saving
 from app.errors import EXPECTED_ERRORS, LissomError
 from app.render import LayerPictures, Renderer, Textures, Thumbnail, Thumbnails
 from app.render.gpu import is_software
@@ -287,6 +287,7 @@ class Window:
         self.ask(do(layering.drop, [Path(path) for path in paths]))
 
     def _release(self) -> None:
+        exporting.cancel(self.session)
         self._shell.release()
         owners = (self._exporter, self._canvas, self._thumbnails, self._layer_pictures)
         for owner in (*owners, self._renderer):
