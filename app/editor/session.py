@@ -180,15 +180,13 @@ class ToolInHand(Protocol):
 class ExportRun:
     """An export that is under way: what it draws, how, and how many frames are drawn.
 
-    Where it is for the clipboard, its file goes there and does not stay. Its files are cancelled by
-    `cancellation`.
+    Where it is for the clipboard, its file goes there and does not stay.
     """
 
     document: Document
     pictures: Mapping[int, Bytes]
     poses: Mapping[int, Poses]
     plan: ExportPlan
-    cancellation: Cancellation = field(default_factory=Cancellation)
     for_clipboard: bool = False
     done: int = 0
 
@@ -213,6 +211,7 @@ class Session:
     dialog: Dialog | None = None
     system_dialogs: bool = False  # whether the system's own file dialogs are used
     export: ExportRun | None = None
+    cancellation: Cancellation = field(default_factory=Cancellation)  # of an export
     named_layer: int | None = None  # for which a name is asked
     pointed_layer: int | None = None  # on whose row in the list the pointer is
     export_frame: Box | None = None  # shown in the viewport while the export's settings are

@@ -44,7 +44,7 @@ from app.motion import (
     extent_source,
     hung_animations,
 )
-from app.storage import make_settings_folder, passing_picture
+from app.storage import Cancellation, make_settings_folder, passing_picture
 
 PREPARING, COPYING = "Preparing the export", "Copying the picture"
 
@@ -198,6 +198,7 @@ def _prepare(
     }
     extent = project.extent
     box = extent.value if extent.follows(extent_source(document)) else None
+    cancellation = session.cancellation = Cancellation()
 
     def work() -> ExportRun:
         detail = request.settings.shapes.triangles
@@ -207,7 +208,7 @@ def _prepare(
             for figure in exported.figures
         ]
         hung = hung_animations(alone, exported)
-        poses = {figure: KeptPoses(animation) for figure, animation in hung.items()}
+        poses = {figure: KeptPoses(animation, cancellation) for figure, animation in hung.items()}
         plan = plan_export(exported, request, poses, box)
         return ExportRun(document=exported, pictures=pictures, poses=poses, plan=plan)
 
@@ -240,7 +241,7 @@ def cancel(session: Session) -> None:
     # Dropped first, so that nobody is told of a failure; then left, as it may take long.
     session.jobs.drop(PREPARING)
     session.jobs.leave(PREPARING)
-    is_nothing_written = run is None or run.cancellation.cancel()
+    is_nothing_written = session.cancellation.cancel()
     if run is not None and _is_one_file(run) and not is_nothing_written:
         return
     session.export = None

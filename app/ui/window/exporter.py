@@ -54,11 +54,15 @@ class Exporter:
                 painter = Painter(self._context, run.document, run.pictures, run.poses, run.plan)
                 self._maker = painter
                 self._steps = export(
-                    run.plan, painter.pose, painter.draw, waits=False, cancellation=run.cancellation
+                    run.plan,
+                    painter.pose,
+                    painter.draw,
+                    waits=False,
+                    cancellation=session.cancellation,
                 )
             else:
                 self._maker = ShapeExport(run.document, run.pictures, run.poses, run.plan)
-                self._steps = self._maker.run(waits=False, cancellation=run.cancellation)
+                self._steps = self._maker.run(waits=False, cancellation=session.cancellation)
         begun = session.clock()
         drawn = run.done
         for done in self._steps:

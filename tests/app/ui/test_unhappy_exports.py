@@ -179,6 +179,7 @@ def test_quitting_asks_about_an_export_that_runs(window, tmp_path):
 def test_cancelled_frames_are_whole_and_the_next_export_works(window, project, tmp_path):
     out = tmp_path / "frames"
     begin(window, out)
+    window.until(lambda: any(out.glob("frame_*.png")))
     window.act(exporting.cancel)
     window.settle()
     assert window.session.export is None
