@@ -15,6 +15,7 @@ from app.export.plan import ExportPlan
 from app.export.poses import Poses
 from app.export.run import come
 from app.export.writers import SHAPE_WRITERS
+from app.export_formats import EXPORT_FORMATS
 from app.storage import Cancellation, write_atomically
 from engine.arrays import Bytes
 
@@ -91,7 +92,7 @@ class ShapeExport:
     @property
     def notices(self) -> tuple[str, ...]:
         """What the person should know about the shapes that were found."""
-        wanted = self._plan.shapes.tolerance
+        wanted, format_ = self._plan.shapes.tolerance, EXPORT_FORMATS[self._plan.format]
         found = []
         for shape in self.shapes:
             count, error = len(shape.motion.targets), shape.motion.error
@@ -105,10 +106,10 @@ class ShapeExport:
                     f"{shape.name} has {count} shapes, and viewers of glTF need show only "
                     f"{MOST_TARGETS}; a larger tolerance takes fewer"
                 )
-            if len(shape.orders) > 1 and self._plan.format == "glb":
+            if len(shape.orders) > 1 and not format_.keeps_order:
                 found.append(
-                    f"what lies in front of what changes in {shape.name}; a glTF model keeps what "
-                    "is so at first"
+                    f"what lies in front of what changes in {shape.name}; a {format_.label} keeps "
+                    "what is so at first"
                 )
         return tuple(found)
 

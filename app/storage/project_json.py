@@ -26,14 +26,13 @@ from app.document import (
     Passing,
     PictureFile,
     Pose,
-    ShapeDetail,
-    SheetLayout,
     Switch,
     Target,
     Unknown,
     Variant,
 )
 from app.errors import LissomError
+from app.export_formats import FormatOptions, FormatSettings
 from app.storage.json_values import (
     JsonObject,
     as_flag,
@@ -108,8 +107,7 @@ def write_document(document: Document) -> Json:
             "framing": document.export.framing,
             "frames": _write_range(document.export.frames),
             "names": document.export.names,
-            "sheet": asdict(document.export.sheet),
-            "shapes": asdict(document.export.shapes),
+            **{name: asdict(options) for name, options in document.export.options().items()},
         },
     }
     if document.size is not None:
@@ -397,26 +395,28 @@ def _read_export(content: JsonObject) -> ExportSettings:
         frames=_read_optional(content["frames"], "export.frames", _read_range),
         # Earlier versions did not know the rest.
         names=as_text(content.get("names", FRAME_NAMES), "export.names"),
-        sheet=_read_sheet(as_object(content.get("sheet", asdict(SheetLayout())), "export.sheet")),
-        shapes=_read_shapes(
-            as_object(content.get("shapes", asdict(ShapeDetail())), "export.shapes")
-        ),
+        **{
+            name: _read_options(
+                as_object(content.get(name, asdict(usual)), f"export.{name}"), usual
+            )
+            for name, usual in FormatSettings().options().items()
+        },
     )
 
 
-def _read_sheet(content: JsonObject) -> SheetLayout:
-    return SheetLayout(
-        trimmed=as_flag(content["trimmed"], f"{content.where}.trimmed"),
-        padding=as_whole(content["padding"], f"{content.where}.padding"),
-        power_of_two=as_flag(content["power_of_two"], f"{content.where}.power_of_two"),
-    )
-
-
-def _read_shapes(content: JsonObject) -> ShapeDetail:
-    return ShapeDetail(
-        triangles=as_whole(content["triangles"], f"{content.where}.triangles"),
-        tolerance=_read_optional(content["tolerance"], f"{content.where}.tolerance", as_number),
-    )
+def _read_options(content: JsonObject, usual: FormatOptions) -> FormatOptions:
+    """Return the options of a format; which they are, and of which kinds, the usual ones tell."""
+    read: dict[str, Any] = {}
+    for name in usual.asked():
+        where = f"{content.where}.{name}"
+        match getattr(usual, name):
+            case bool():
+                read[name] = as_flag(content[name], where)
+            case int():
+                read[name] = as_whole(content[name], where)
+            case _:
+                read[name] = _read_optional(content[name], where, as_number)
+    return replace(usual, **read)
 
 
 def _write_handle(handle: Handle) -> Json:

@@ -36,7 +36,7 @@ from app.export import (
     suited,
     with_light_meshes,
 )
-from app.export_formats import EXPORT_FORMATS
+from app.export_formats import EXPORT_FORMATS, STILL
 from app.motion import (
     Animation,
     Box,
@@ -63,8 +63,9 @@ def choose(session: Session) -> None:
 def export_to(_: Session, project: Project, out: Path) -> None:
     """Note where the next export goes, as the person chose it."""
     project.export_to = out
-    format_ = EXPORT_FORMATS[project.document.export.format]
-    if format_.suffixes and not (format_.data_suffix and data_file(out).exists()):
+    name = project.document.export.format
+    data = data_file(out, name)
+    if EXPORT_FORMATS[name].suffixes and not (data is not None and data.exists()):
         # The dialog has asked already whether it is to be replaced.
         project.replaceable = out
 
@@ -145,7 +146,7 @@ def copy_picture(session: Session, project: Project) -> None:
     clipboard_program()  # tells what to install where there is none
     make_settings_folder(session.folder)
     out = passing_picture(session.folder)
-    settings = replace(project.document.export, format="picture")
+    settings = replace(project.document.export, format=STILL)
     request = _request(session, project, out, settings)
     check_request(project.document, request)
     promises.once_settled(session, do(_begin_copy, request), "Copy the picture")

@@ -72,11 +72,11 @@ def open_writer(plan: ExportPlan, cancellation: Cancellation) -> Iterator[FrameW
             raise LissomError(f"cannot make the folder {plan.out}: {error.strerror}") from error
         with closing(FOLDER_WRITERS[plan.format](plan, cancellation)) as writer:
             yield writer
-    elif plan.format in DATA_WRITERS:
+    elif (beside := data_file(plan.out, plan.format)) is not None:
         with (
-            atomic_file(data_file(plan.out), cancellation) as data,
+            atomic_file(beside, cancellation) as data,
             atomic_file(plan.out, cancellation) as file,
-            _removed_at_end(data_file(plan.out), cancellation),
+            _removed_at_end(beside, cancellation),
             closing(DATA_WRITERS[plan.format](file, data, plan)) as writer,
         ):
             yield writer

@@ -17,7 +17,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 from PIL import Image
 from pygltflib import GLTF2
 
-from app.document import HOLD, ExportSettings, FrameRange, ShapeDetail, Switch, clip_of
+from app.document import HOLD, ExportSettings, FrameRange, Switch, clip_of
 from app.errors import LissomError
 from app.export import (
     ExportRequest,
@@ -27,6 +27,7 @@ from app.export import (
     plan_export,
     with_light_meshes,
 )
+from app.export_formats import ShapeDetail
 from app.motion import Animation
 from app.storage import decode_picture, load_project, sample_images
 from engine.arrays import Complexes, Floats
