@@ -1,14 +1,137 @@
-"""The formats that animations are exported to: one entry of a table each.
+"""The formats that animations are exported to: one entry of a table each, and what each asks.
 
-It loads nothing, so that the command line can tell of the formats at once.
+It loads nothing, so that the command line can tell of the formats at once. A new format is an entry
+here and a writer in `app.export.writers`; the window and the command line ask for its options, and
+project files hold them, by what stands here.
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field, fields
 from types import MappingProxyType
-from typing import Final
+from typing import Any, Final
+
+from app.errors import LissomError
 
 VIDEO: Final = "pip install 'lissom[video]'"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Option:
+    """Something that only some formats ask.
+
+    Parameters
+    ----------
+    label, tip : str
+        In the window.
+    flag, about : str
+        On the command line: its name without dashes, and its help.
+    words : tuple of (value, str)
+        Words to choose from, and the values that they stand for. Where such a value is a number,
+        another one may be entered, and always where there are no words.
+    least, most : float
+        Of numbers.
+    """
+
+    label: str
+    tip: str = ""
+    flag: str
+    about: str
+    words: tuple[tuple[bool | float | None, str], ...] = ()
+    least: float = 0
+    most: float = 1
+
+
+def _asked(usual: Any, **option: Any) -> Any:
+    """Return a field of options, with what is asked for it."""
+    return field(default=usual, metadata={"option": Option(**option)})
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FormatOptions:
+    """What some formats ask; the base of all such."""
+
+    def __post_init__(self) -> None:
+        for name, option in self.asked().items():
+            value = getattr(self, name)
+            if value is not None and not option.least <= value <= option.most:
+                raise LissomError(
+                    f"{name.capitalize()} must be {option.least:,} to {option.most:,}, not {value}."
+                )
+
+    @classmethod
+    def asked(cls) -> dict[str, Option]:
+        """Return what is asked, by the names of the fields."""
+        return {each.name: each.metadata["option"] for each in fields(cls)}
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SheetLayout(FormatOptions):
+    """How the frames lie on a sprite sheet."""
+
+    trimmed: bool = _asked(
+        True,  # noqa: FBT003 - the usual value
+        label="Frames are",
+        words=((True, "Trimmed"), (False, "All alike")),
+        flag="trim",
+        about="keep only what is seen of a frame on a sprite sheet (default: the project's, yes)",
+    )
+    padding: int = _asked(
+        2,
+        label="Padding",
+        tip="Transparent pixels between frames and at the border",
+        flag="padding",
+        about="pixels between frames of a sprite sheet",
+        most=256,
+    )
+    power_of_two: bool = _asked(
+        False,  # noqa: FBT003 - the usual value
+        label="Sheet sides",
+        words=((False, "Any"), (True, "Powers of two")),
+        flag="power-of-two",
+        about="let the sides of a sprite sheet be powers of two",
+    )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ShapeDetail(FormatOptions):
+    """How closely an export of shapes follows the motion, in how many triangles of each figure.
+
+    Without a tolerance it is half a pixel, with no more shapes than every viewer shows.
+    """
+
+    triangles: int = _asked(
+        4_000,
+        label="Triangles",
+        tip="Of each figure, about: more of them bend more smoothly, in a larger file",
+        flag="triangles",
+        about="of a model, about (default: 4000)",
+        least=100,
+        most=2_000_000,  # as many as a domain may have
+    )
+    tolerance: float | None = _asked(
+        None,
+        label="Within",
+        tip="How far the shapes may be from the motion, in pixels. As usual, it takes at most 8 of "
+        "them, which every viewer shows; a tolerance of your own takes as many as it needs",
+        words=((None, "½ px, 8 shapes"), (0.5, "Own")),
+        flag="tolerance",
+        about="how far a model may be from the motion, in pixels, with as many shapes as that "
+        "takes (default: 0.5, with 8 shapes at most)",
+        least=0.001,
+        most=100,
+    )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FormatSettings:
+    """All options; an export uses those that its format asks, by `ExportFormat.options`."""
+
+    sheet: SheetLayout = SheetLayout()
+    shapes: ShapeDetail = ShapeDetail()
+
+    def options(self) -> dict[str, Any]:
+        """Return the options by the names of the fields."""
+        return {each.name: getattr(self, each.name) for each in fields(FormatSettings)}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -34,17 +157,23 @@ class ExportFormat:
         Whether it keeps what is transparent; one that does not needs a background.
     is_drawn : bool
         Whether it holds pictures; else it holds shapes, and plays at any rate.
+    has_frame : bool
+        Whether it shows a part of the plane, before a background; else it is in the plane itself.
+    keeps_order : bool
+        Whether what lies in front of what may change in it.
     largest : int, optional
         Pixels of a picture each way, at most.
     is_still : bool
         Whether it is one frame, at the playhead or the first one.
-    is_even : bool
-        Whether the sides of its pictures are even.
+    block : int
+        Pixels of which the sides of its pictures are multiples.
     fastest : float, optional
         Pictures a second, at most.
     library, remedy : str
         The module of Python that it needs beyond what Lissom always has, and how to install it;
         both empty where there is none.
+    options : str
+        The field of `FormatSettings` with what it asks; empty where it asks nothing of its own.
     """
 
     label: str
@@ -55,12 +184,20 @@ class ExportFormat:
     data_suffix: str = ""
     is_transparent: bool = True
     is_drawn: bool = True
+    has_frame: bool = True
+    keeps_order: bool = True
     largest: int | None = None
     is_still: bool = False
-    is_even: bool = False
+    block: int = 1
     fastest: float | None = None
     library: str = ""
     remedy: str = ""
+    options: str = ""
+
+    def whole_blocks(self, size: tuple[int, int]) -> tuple[int, int]:
+        """Return the least size not below another one whose sides the format can have."""
+        width, height = (side + -side % self.block for side in size)
+        return width, height
 
 
 EXPORT_FORMATS: Final[Mapping[str, ExportFormat]] = MappingProxyType(
@@ -115,7 +252,7 @@ EXPORT_FORMATS: Final[Mapping[str, ExportFormat]] = MappingProxyType(
             suffixes=(".mp4",),
             is_transparent=False,
             largest=16_384,
-            is_even=True,
+            block=2,
             library="av",
             remedy=VIDEO,
         ),
@@ -150,6 +287,7 @@ EXPORT_FORMATS: Final[Mapping[str, ExportFormat]] = MappingProxyType(
             suffixes=(".png",),
             data_suffix=".json",
             largest=16_384,
+            options="sheet",
         ),
         "glb": ExportFormat(
             label="glTF model",
@@ -160,6 +298,9 @@ EXPORT_FORMATS: Final[Mapping[str, ExportFormat]] = MappingProxyType(
             "100 pixels are a metre, the middle of the canvas' lower edge is the origin",
             suffixes=(".glb",),
             is_drawn=False,
+            has_frame=False,
+            keeps_order=False,
+            options="shapes",
         ),
         "html": ExportFormat(
             label="Web page",
@@ -169,9 +310,13 @@ EXPORT_FORMATS: Final[Mapping[str, ExportFormat]] = MappingProxyType(
             "it fills its frame, is dragged to scrub and clicked to pause",
             suffixes=(".html", ".htm"),
             is_drawn=False,
+            options="shapes",
         ),
     }
 )
+
+# Of one frame.
+STILL: Final = next(name for name, format_ in EXPORT_FORMATS.items() if format_.is_still)
 
 
 def format_by_suffix() -> dict[str, str]:

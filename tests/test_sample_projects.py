@@ -8,7 +8,7 @@ from numpy.testing import assert_allclose
 
 from app.document.queries.fronts import is_visible
 from app.document.queries.timeline import clip_of, exported_frames
-from app.motion import Animation, Joints, painted_triangles
+from app.motion import Animation, Joints, PaintOrder
 from app.reports.certification import certify_clip
 from app.solving.script import load_pose_script
 from app.storage.pictures import read_openraster
@@ -88,7 +88,7 @@ def test_the_octopus_crosses_its_arms_one_way_and_then_the_other():
     places = {handle.name: handle.position for handle in document.figures[0].handles}
     higher = []
     for frame in (16, 48):
-        order = painted_triangles(mesh, clip, frame)
+        order = PaintOrder(mesh).triangles(clip, frame)
         middles = mesh.vertices[order].mean(axis=1)
         left, right = (
             np.flatnonzero(np.abs(middles - places[name]) < 20) for name in ("left 4", "right 4")

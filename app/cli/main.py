@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from importlib.metadata import version
 
 from app.cli.console import Parser, fail
-from app.cli.process import Endings, use_one_thread
+from app.cli.process import Endings, has_threads_left, use_one_thread
 from app.errors import EXPECTED_ERRORS
 
 EXIT_PIPE_CLOSED = 141
@@ -50,7 +50,10 @@ def main(argv: Sequence[str] | None = None) -> int:
     except MemoryError:
         fail("not enough memory for this; ask for fewer triangles or a smaller picture")
     except KeyboardInterrupt:
-        print(f"lissom: interrupted by {endings.name}", file=sys.stderr)
+        print(f"lissom: interrupted by {endings.name}", file=sys.stderr, flush=True)
+        if has_threads_left():
+            # What was under way may take long, and must not be taken down under its threads.
+            os._exit(endings.status)
         return endings.status
     except BrokenPipeError:
         # Whoever read the output has seen enough; Python must not try to write the rest at its end.

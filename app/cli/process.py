@@ -123,6 +123,12 @@ class Endings:
         os.close(pipe)
 
 
+def has_threads_left() -> bool:
+    """Tell whether Python would wait for other threads, as of an export that was cancelled."""
+    others = set(threading.enumerate()) - {threading.main_thread()}
+    return any(not thread.daemon for thread in others)
+
+
 def end_within(seconds: float, status: int) -> None:
     """End the process after so many seconds at the latest, whatever hangs in it."""
 

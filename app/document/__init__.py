@@ -49,9 +49,6 @@ from app.document.queries import (
     transits,
 )
 from app.document.settings import (
-    COARSEST_TOLERANCE,
-    FEWEST_TRIANGLES,
-    FINEST_TOLERANCE,
     FRAME_NAMES,
     FRAMINGS,
     LAST_FRAME,
@@ -60,23 +57,17 @@ from app.document.settings import (
     STIFF,
     STRETCHES,
     VARIANTS,
-    WIDEST_PADDING,
     ExportSettings,
     FrameRange,
     Framing,
     Marker,
     Meshing,
-    ShapeDetail,
-    SheetLayout,
     loosened,
     stretch_of,
 )
 from engine.variant import Baseline, Variant
 
 __all__ = [
-    "COARSEST_TOLERANCE",
-    "FEWEST_TRIANGLES",
-    "FINEST_TOLERANCE",
     "FRAME_NAMES",
     "FRAMINGS",
     "HOLD",
@@ -90,7 +81,6 @@ __all__ = [
     "STRETCHES",
     "USUAL_EXTENT",
     "VARIANTS",
-    "WIDEST_PADDING",
     "Attachment",
     "Baseline",
     "Clip",
@@ -115,8 +105,6 @@ __all__ = [
     "Playhead",
     "Pose",
     "Settled",
-    "ShapeDetail",
-    "SheetLayout",
     "Shortfall",
     "Switch",
     "Target",

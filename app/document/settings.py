@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from typing import Final, Literal, NamedTuple, get_args
 
 from app.document.checks import NOTHING, Unknown, require, require_size
-from app.export_formats import EXPORT_FORMATS
+from app.export_formats import EXPORT_FORMATS, FormatSettings
 from engine.domain import MOST_TRIANGLES
 from engine.domain.outline import Detail
 from engine.maps import Bounds
@@ -69,9 +69,6 @@ FASTEST = 1000.0
 FRAME_NAMES = "frame_####"
 # What some system or other takes for more than a character of a name.
 _LITERAL = r'[^#/\\:*?"<>|\x00-\x1f\ud800-\udfff]{0,100}'
-WIDEST_PADDING = 256
-FEWEST_TRIANGLES = 100
-FINEST_TOLERANCE, COARSEST_TOLERANCE = 0.001, 100.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -120,60 +117,7 @@ class Marker:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class SheetLayout:
-    """How the frames lie on a sprite sheet.
-
-    Parameters
-    ----------
-    trimmed : bool
-        Whether each frame keeps no more than what is seen of it; else all cells are alike.
-    padding : int
-        Transparent pixels between frames and at the border.
-    power_of_two : bool
-        Whether both sides of the sheet are powers of two.
-    """
-
-    trimmed: bool = True
-    padding: int = 2
-    power_of_two: bool = False
-
-    def __post_init__(self) -> None:
-        require(
-            0 <= self.padding <= WIDEST_PADDING,
-            f"The padding is 0 to {WIDEST_PADDING} pixels, not {self.padding}.",
-        )
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ShapeDetail:
-    """How closely an export of shapes follows the motion.
-
-    Parameters
-    ----------
-    triangles : int
-        Of each figure, about.
-    tolerance : float, optional
-        In pixels, with as many shapes as that takes; None is half a pixel with no more shapes than
-        every viewer shows.
-    """
-
-    triangles: int = 4_000
-    tolerance: float | None = None
-
-    def __post_init__(self) -> None:
-        require(
-            FEWEST_TRIANGLES <= self.triangles <= MOST_TRIANGLES,
-            f"There are {FEWEST_TRIANGLES} to {MOST_TRIANGLES:,} triangles, not {self.triangles}.",
-        )
-        require(
-            self.tolerance is None or FINEST_TOLERANCE <= self.tolerance <= COARSEST_TOLERANCE,
-            f"The tolerance is {FINEST_TOLERANCE} to {COARSEST_TOLERANCE:g} pixels, not "
-            f"{self.tolerance}.",
-        )
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ExportSettings:
+class ExportSettings(FormatSettings):
     """What the person last chose for exports.
 
     Parameters
@@ -191,8 +135,8 @@ class ExportSettings:
     names : str
         Of the files of frames, without their ending: "#" for each digit of the frame's number, and
         "{name}" for that of the project.
-    sheet : SheetLayout
-    shapes : ShapeDetail
+    sheet, shapes
+        What single formats ask.
     """
 
     format: str = "png"
@@ -201,8 +145,6 @@ class ExportSettings:
     framing: Framing = "fit"
     frames: FrameRange | None = None
     names: str = FRAME_NAMES
-    sheet: SheetLayout = SheetLayout()
-    shapes: ShapeDetail = ShapeDetail()
 
     def __post_init__(self) -> None:
         require(

@@ -18,6 +18,7 @@ from app.errors import LissomError
 LaneName = Literal["hand", "export", "display", "keep"]
 CANCELLED = "it was cancelled"
 PATIENCE = 10.0  # seconds that the end of the program waits for what runs
+MOMENT = 0.5  # seconds that it waits for what was given up
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -177,7 +178,7 @@ class Jobs:
         Parameters
         ----------
         patience : float
-            Seconds to wait for that.
+            Seconds to wait for that; for what was left behind, at most `MOMENT`.
 
         Returns
         -------
@@ -189,11 +190,13 @@ class Jobs:
             self._is_closed = True
             self._waiting.clear()
             self._condition.notify_all()
-        end = time.monotonic() + patience
-        threads = [lane.thread for lane in (*self._lanes.values(), *self._left) if lane.thread]
-        for thread in threads:
-            thread.join(max(0.0, end - time.monotonic()))
-        return not any(thread.is_alive() for thread in threads)
+        begun, is_over = time.monotonic(), True
+        for lanes, most in ((self._lanes.values(), patience), (self._left, MOMENT)):
+            for lane in lanes:
+                if lane.thread is not None:
+                    lane.thread.join(max(0.0, begun + min(patience, most) - time.monotonic()))
+                    is_over &= not lane.thread.is_alive()
+        return is_over
 
     def _staff(self, name: LaneName) -> None:
         """Give a lane its thread."""

@@ -15,7 +15,7 @@ from app.editor.project import Project
 from app.errors import shown_name
 from app.export import ExportPlan, Poses
 from app.motion import Box
-from app.storage import Autosave, Preferences, home_folder
+from app.storage import Autosave, Cancellation, Preferences, home_folder
 from engine.arrays import Bytes
 
 HeatMap = Literal["none", "k", "sigma_a", "sigma_b"]
@@ -212,6 +212,7 @@ class Session:
     dialog: Dialog | None = None
     system_dialogs: bool = False  # whether the system's own file dialogs are used
     export: ExportRun | None = None
+    cancellation: Cancellation = field(default_factory=Cancellation)  # of an export
     named_layer: int | None = None  # for which a name is asked
     pointed_layer: int | None = None  # on whose row in the list the pointer is
     export_frame: Box | None = None  # shown in the viewport while the export's settings are

@@ -60,11 +60,11 @@ def check_destination(out: Path, name: str) -> None:
         If it is a folder instead of a file or the other way round, is named like another format,
         or its folder is missing or may not be written to.
     """
-    suffixes = EXPORT_FORMATS[name].suffixes
+    suffixes, label = EXPORT_FORMATS[name].suffixes, EXPORT_FORMATS[name].label
     if suffixes:
         check_writable(out)
-        if EXPORT_FORMATS[name].data_suffix:
-            check_writable(data_file(out))
+        if (data := data_file(out, name)) is not None:
+            check_writable(data)
         ending = out.suffix.lower()
         if ending not in suffixes and (ending in _all_suffixes() or _ENDING.fullmatch(ending)):
             raise LissomError(
@@ -75,7 +75,7 @@ def check_destination(out: Path, name: str) -> None:
             raise LissomError(f"cannot write frames to {out}: it is a file; name a folder")
         if out.suffix.lower() in _all_suffixes():
             raise LissomError(
-                f"PNG frames go to a folder, but {out} is named like a file; name a folder, or "
+                f"{label} go to a folder, but {out} is named like a file; name a folder, or "
                 "choose the format of the name"
             )
         if not out.parent.is_dir():
@@ -111,11 +111,11 @@ def check_room(out: Path, needed: int) -> None:
         )
 
 
-def data_file(out: Path) -> Path:
-    """Return where the data of a sprite sheet go: beside it."""
-    is_ending = out.suffix.lower() in EXPORT_FORMATS["spritesheet"].suffixes
-    name = out.stem if is_ending else out.name
-    return out.with_name(f"{name}{EXPORT_FORMATS['spritesheet'].data_suffix}")
+def data_file(out: Path, name: str) -> Path | None:
+    """Return where the data of a format go, beside its file; None where it has none."""
+    format_ = EXPORT_FORMATS[name]
+    stem = out.stem if out.suffix.lower() in format_.suffixes else out.name
+    return out.with_name(f"{stem}{format_.data_suffix}") if format_.data_suffix else None
 
 
 def suited(out: Path, name: str) -> Path:
@@ -153,8 +153,8 @@ def folder_within(chosen: Path, name: str, is_frame: Callable[[str], bool]) -> P
 def replaced(out: Path, name: str, frames: list[str]) -> list[str]:
     """Return the names of the files that an export would take the place of."""
     if EXPORT_FORMATS[name].suffixes:
-        files = [out, data_file(out)] if EXPORT_FORMATS[name].data_suffix else [out]
-        return [file.name for file in files if file.exists()]
+        files = (out, data_file(out, name))
+        return [file.name for file in files if file is not None and file.exists()]
     return [frame for frame in frames if (out / frame).exists()]
 
 

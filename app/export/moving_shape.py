@@ -12,7 +12,7 @@ from app.errors import LissomError
 from app.export.bleeding import bled
 from app.export.plan import ExportPlan
 from app.export.poses import Poses
-from app.motion import box_around, painted_triangles
+from app.motion import PaintOrder, box_around
 from engine.arrays import Bytes, Complexes, Floats, Integers, freeze
 from engine.domain.meshing import in_order_of, triangulate
 from engine.streaming import ShapeTargets, build_targets
@@ -116,7 +116,8 @@ def moving_shapes(
         )
         motion = yield from _share(steps, plan.span, (index, len(clips)))
         texture, uv = _cut_out(pictures[figure.id], mesh.vertices - figure.corner)
-        orders = [(frame, painted_triangles(mesh, clip, frame)) for frame in numbers]
+        order = PaintOrder(mesh)
+        orders = [(frame, order.triangles(clip, frame)) for frame in numbers]
         sights = [(frame, is_visible(figure, frame)) for frame in numbers]
         shape = MovingShape(
             name=plan.out.stem if len(document.figures) == 1 else figure.name,

@@ -14,7 +14,7 @@ from app.export.framing import shown_box
 from app.export.plan import ExportPlan
 from app.export.poses import Poses
 from app.export.thinning import Thinning
-from app.motion import Placed, box_around, painted_triangles
+from app.motion import PaintOrder, Placed, box_around
 from app.render import TRANSPARENT, Backdrop, Colour, DrawnMesh, Renderer, Scene, View
 from app.render.gpu import (
     Context,
@@ -88,6 +88,7 @@ class Painter:
         self._view = plan.view
         self._background = Backdrop(colour=_colour(plan))
         meshes = [figure.domain.mesh for figure in figures]
+        self._orders = [PaintOrder(mesh) for mesh in meshes]
         self._thinnings = [
             Thinning(figure.domain, plan.view.scale) if _pays(plan, mesh, context) else None
             for figure, mesh in zip(figures, meshes, strict=True)
@@ -141,9 +142,9 @@ class Painter:
             raise LissomError(f"frame {frame:g} cannot be drawn: its points are not all finite")
         self._reach = self._reach.joined(box)
         vertices = []
-        figures = zip(positions, self._clips, self._thinnings, strict=True)
-        for places, clip, thinning in figures:
-            triangles = painted_triangles(clip.figure.domain.mesh, clip, frame)
+        figures = zip(positions, self._clips, self._orders, self._thinnings, strict=True)
+        for places, clip, order, thinning in figures:
+            triangles = order.triangles(clip, frame)
             if thinning is not None:
                 triangles = thinning.triangles(places, triangles)
             vertices.append(Placed(positions=places, triangles=triangles))

@@ -13,8 +13,6 @@ from app.document import (
     Document,
     ExportSettings,
     FrameRange,
-    ShapeDetail,
-    SheetLayout,
     exported_frames,
     frame_times,
     framed_frames,
@@ -29,7 +27,7 @@ from app.export.destination import (
 )
 from app.export.framing import frame_view
 from app.export.poses import KeptPoses
-from app.export_formats import EXPORT_FORMATS
+from app.export_formats import EXPORT_FORMATS, FormatSettings
 from app.motion import Box, box_around, motion_box
 from app.render import View
 
@@ -73,7 +71,7 @@ class Tag(NamedTuple):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class ExportPlan:
+class ExportPlan(FormatSettings):
     """What an export makes.
 
     Parameters
@@ -102,8 +100,8 @@ class ExportPlan:
         Of the pictures, where each is a file of its own.
     tags : tuple of Tag
         Parts of the motion, from marker to marker; all of it where there is none.
-    sheet : SheetLayout
-    shapes : ShapeDetail
+    sheet, shapes
+        What single formats ask.
     notices : tuple of str
         What the person should know about it.
     """
@@ -120,8 +118,6 @@ class ExportPlan:
     loop: bool
     frame_names: FrameNames
     tags: tuple[Tag, ...]
-    sheet: SheetLayout
-    shapes: ShapeDetail
     notices: tuple[str, ...] = ()
 
     @property
@@ -153,11 +149,12 @@ def check_request(document: Document, request: ExportRequest) -> None:
     check_destination(request.out, name)
     if settings.size is not None and format_.is_drawn:
         _check_size(name, settings.size)
-        if format_.is_even and any(side % 2 for side in settings.size):
-            width, height = (side + side % 2 for side in settings.size)
+        width, height = format_.whole_blocks(settings.size)
+        if (width, height) != settings.size:
             raise LissomError(
-                f"{name} keeps colours in blocks of 2 × 2 pixels, and {settings.size[0]} × "
-                f"{settings.size[1]} has an odd side; choose {width} × {height}"
+                f"{name} keeps colours in blocks of {format_.block} × {format_.block} pixels, and "
+                f"{settings.size[0]} × {settings.size[1]} has an odd side; choose {width} × "
+                f"{height}"
             )
     if request.fps is not None and not format_.is_drawn:
         raise LissomError(f"{name} plays at any rate; leave the frames per second out")
@@ -238,8 +235,7 @@ def plan_export(
         loop=document.loop,
         frame_names=request.names,
         tags=_tags(document, request, times),
-        sheet=settings.sheet,
-        shapes=settings.shapes,
+        **settings.options(),
     )
     if EXPORT_FORMATS[plan.format].is_drawn:
         _check_size(plan.format, plan.view.size)
@@ -288,12 +284,13 @@ def _colour(background: str) -> tuple[int, int, int] | None:
 
 
 def _added_pixels(plan: ExportPlan) -> tuple[str, ...]:
-    """Tell of rows and columns that a format of even sides needs."""
-    width, height = plan.view.size
-    if not EXPORT_FORMATS[plan.format].is_even or (width % 2 == height % 2 == 0):
+    """Tell of rows and columns that a format of whole blocks needs."""
+    width, height = EXPORT_FORMATS[plan.format].whole_blocks(plan.view.size)
+    if (width, height) == plan.view.size:
         return ()
-    even = f"{width + width % 2} × {height + height % 2}"
-    return (f"{plan.format} needs even sides: the frames got background, to {even} pixels",)
+    return (
+        f"{plan.format} needs even sides: the frames got background, to {width} × {height} pixels",
+    )
 
 
 def _left_frames(plan: ExportPlan) -> tuple[str, ...]:

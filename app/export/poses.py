@@ -5,6 +5,7 @@ from typing import Final, Protocol
 import numpy as np
 import numpy.typing as npt
 
+from app.storage import Cancellation
 from engine.arrays import Complexes
 
 KEPT: Final = 2**28  # bytes of positions that are kept from the framing for the drawing
@@ -26,17 +27,23 @@ class KeptPoses:
     Parameters
     ----------
     poses : Poses
+    cancellation : Cancellation, optional
+        Of the export: once it was cancelled, no more of them are worked out.
     budget : int
         In bytes; what does not fit is worked out again.
     """
 
-    def __init__(self, poses: Poses, budget: int = KEPT) -> None:
+    def __init__(
+        self, poses: Poses, cancellation: Cancellation | None = None, *, budget: int = KEPT
+    ) -> None:
         self._poses = poses
+        self._cancellation = cancellation or Cancellation()
         self._room = budget
         self._kept: dict[float, npt.NDArray[np.complex64]] = {}
 
     def keep(self, frame: float) -> Complexes:
         """Return the positions, and keep them for when they are asked for again."""
+        self._cancellation.check()
         positions = self._poses.positions(frame)
         if frame not in self._kept and 8 * len(positions) <= self._room:
             self._room -= 8 * len(positions)
@@ -45,5 +52,6 @@ class KeptPoses:
 
     def positions(self, frame: float) -> Complexes:
         """Return the positions, and keep them no longer."""
+        self._cancellation.check()
         kept = self._kept.pop(frame, None)
         return self._poses.positions(frame) if kept is None else kept.astype(np.complex128)

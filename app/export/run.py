@@ -2,12 +2,14 @@
 
 from collections import deque
 from collections.abc import Callable, Generator, Iterator
-from concurrent.futures import Future, ThreadPoolExecutor
-from contextlib import contextmanager
-from typing import Any, Final, TypeVar
+from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
+from queue import SimpleQueue
+from typing import Any, Final, NamedTuple, TypeVar
 
 from app.export.plan import ExportPlan
 from app.export.writers import FrameWriter, open_writer
+from app.export_formats import EXPORT_FORMATS
+from app.storage import Cancellation
 from engine.arrays import Bytes
 
 T = TypeVar("T")
@@ -18,12 +20,20 @@ AHEAD: Final = 4  # frames that are posed but not yet drawn
 QUEUED_BYTES, MOST_QUEUED = 2**26, 8
 
 
+class _Due(NamedTuple):
+    """A frame that is to be written, and what is done when it is."""
+
+    encoded: Future[bytes]
+    written: Future[None]
+
+
 def export(
     plan: ExportPlan,
     pose: Callable[[float], T],
     draw: Callable[[T], Bytes],
     *,
     waits: bool = True,
+    cancellation: Cancellation | None = None,
 ) -> Generator[int]:
     """Make what was planned, one frame at each step.
 
@@ -38,7 +48,10 @@ def export(
         takes the steps, which may be the one of a window.
     waits : bool
         Whether a step waits until another frame is drawn. Else it returns at once where there is
-        nothing to draw yet, and nowhere does the thread that takes it wait for others.
+        nothing to draw yet, and nowhere does the thread that takes it wait for others, not even
+        where the export ends early.
+    cancellation : Cancellation, optional
+        By which it can be cancelled before the iterator is closed.
 
     Yields
     ------
@@ -53,66 +66,81 @@ def export(
     Notes
     -----
     Closing the iterator, or an exception, ends the export: PNG frames that are written stay, each
-    of them whole, and of any other format nothing stays. The memory does not grow with the number
-    of frames (that of a sprite sheet does with its size), nor with how slowly they are encoded.
+    of them whole, and of any other format nothing stays. The pose under way is left to itself, as
+    it may take long. The memory does not grow with the number of frames (that of a sprite sheet
+    does with its size), nor with how slowly they are encoded.
     """
-    with (
-        open_writer(plan) as writer,
-        threads("poses", 1) as poses,
-        threads("encoder", ENCODERS) as encoders,
-        threads("writer", 1) as writers,
-        _stopped_early(writer),
-    ):
-        width, height = plan.view.size
-        queued = min(max(1, QUEUED_BYTES // (4 * width * height)), MOST_QUEUED)
-        times = iter(plan.times)
-        posed: deque[Future[T]] = deque()
-        written: deque[Future[None]] = deque()
-        for index in range(len(plan.times)):
+    cancellation = cancellation or Cancellation()
+    width, height = plan.view.size
+    queued = min(max(1, QUEUED_BYTES // (4 * width * height)), MOST_QUEUED)
+    times, total = iter(plan.times), len(plan.times)
+    posed: deque[Future[T]] = deque()
+    written: deque[Future[None]] = deque()
+    opened: Future[FrameWriter] = Future()
+    due: SimpleQueue[_Due | None] = SimpleQueue()
+    poses, encoders, writers = (ThreadPoolExecutor(count) for count in (1, ENCODERS, 1))
+    end = writers.submit(_write, plan, cancellation, opened, due)
+    is_idle, finishes_frames = False, waits and not EXPORT_FORMATS[plan.format].suffixes
+    try:
+        yield from come(opened, end, count=0, waits=waits)
+        for index in range(total):
             while len(posed) <= AHEAD and (time := next(times, None)) is not None:
                 posed.append(poses.submit(pose, time))
             while len(written) >= queued or (written and written[0].done()):
-                yield from come(written[0], index, waits=waits)
-                written.popleft().result()
-            yield from come(posed[0], index, waits=waits)
+                yield from come(written[0], end, count=index, waits=waits)
+                written.popleft()
+            yield from come(posed[0], end, count=index, waits=waits)
             frame = draw(posed.popleft().result())
-            encoded = encoders.submit(writer.encode, index, frame)
-            written.append(writers.submit(_add, writer, encoded))
+            encoded = encoders.submit(opened.result().encode, index, frame)
+            written.append(Future())
+            due.put(_Due(encoded, written[-1]))
             yield index + 1
-        for due in written:
-            yield from come(due, len(plan.times), waits=waits)
-            due.result()
-        end = writers.submit(writer.finish)
-        yield from come(end, len(plan.times), waits=waits)
-        end.result()
-
-
-def come(due: Future[Any], count: int, *, waits: bool) -> Iterator[int]:
-    """Go on yielding the count until something is done, unless it may be waited for."""
-    while not waits and not due.done():
-        yield count
-
-
-def _add(writer: FrameWriter, encoded: Future[bytes]) -> None:
-    writer.add(encoded.result())
-
-
-@contextmanager
-def _stopped_early(writer: FrameWriter) -> Iterator[None]:
-    """Let a writer stop where the block ends with an exception, before its threads are awaited."""
-    try:
-        yield
+        due.put(None)
+        yield from come(end, count=total, waits=waits)
+        is_idle = True
     except BaseException:
-        writer.stop()
+        if not finishes_frames:
+            cancellation.cancel()
         raise
-
-
-@contextmanager
-def threads(name: str, count: int) -> Iterator[ThreadPoolExecutor]:
-    """Lend threads; what they have not begun at the end of the block they never do."""
-    pool = ThreadPoolExecutor(count, thread_name_prefix=name)
-    try:
-        yield pool
     finally:
-        # Files that are half written are finished first.
-        pool.shutdown(cancel_futures=True)
+        due.put(None)
+        poses.shutdown(wait=is_idle, cancel_futures=True)
+        encoders.shutdown(wait=is_idle, cancel_futures=True)
+        writers.shutdown(wait=is_idle or finishes_frames)
+
+
+def come(*awaited: Future[Any], count: int, waits: bool) -> Iterator[int]:
+    """Go on yielding the count until one of some is done, unless they may be waited for.
+
+    Raises
+    ------
+    Exception
+        What one of them failed with.
+    """
+    while not waits and not any(each.done() for each in awaited):
+        yield count
+    for each in wait(awaited, return_when=FIRST_COMPLETED).done:
+        each.result()
+
+
+def _write(
+    plan: ExportPlan,
+    cancellation: Cancellation,
+    opened: Future[FrameWriter],
+    due: SimpleQueue[_Due | None],
+) -> None:
+    """Write what is due until nothing more is; on the one thread that has the files in its hands.
+
+    Raises
+    ------
+    LissomError
+        If something cannot be written, or was cancelled.
+    """
+    with open_writer(plan, cancellation) as writer:
+        opened.set_result(writer)
+        while (frame := due.get()) is not None:
+            cancellation.check()
+            writer.add(frame.encoded.result())
+            frame.written.set_result(None)
+        cancellation.check()
+        writer.finish()

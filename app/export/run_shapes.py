@@ -1,11 +1,10 @@
 """Exports of shapes: nothing is drawn, and a few steps of the work are taken at a time."""
 
-import threading
 from collections.abc import Generator, Mapping
-from typing import IO, Final
+from concurrent.futures import ThreadPoolExecutor
+from typing import Final
 
 from app.document import Document
-from app.errors import LissomError
 from app.export.moving_shape import (
     DEFAULT_TOLERANCE,
     MOST_TARGETS,
@@ -14,9 +13,10 @@ from app.export.moving_shape import (
 )
 from app.export.plan import ExportPlan
 from app.export.poses import Poses
-from app.export.run import come, threads
+from app.export.run import come
 from app.export.writers import SHAPE_WRITERS
-from app.storage import write_atomically
+from app.export_formats import EXPORT_FORMATS
+from app.storage import Cancellation, write_atomically
 from engine.arrays import Bytes
 
 _BATCH: Final = 16  # steps between two looks at whether the export is still wanted
@@ -48,12 +48,14 @@ class ShapeExport:
         self._share = 0.0
         self.shapes: list[MovingShape] = []
 
-    def run(self, *, waits: bool = True) -> Generator[int]:
+    def run(
+        self, *, waits: bool = True, cancellation: Cancellation | None = None
+    ) -> Generator[int]:
         """Make what was planned, a part of it at each step.
 
         Parameters
         ----------
-        waits : bool
+        waits, cancellation
             As in `export`.
 
         Yields
@@ -68,34 +70,29 @@ class ShapeExport:
 
         Notes
         -----
-        Closing the iterator, or an exception, ends the export, and nothing of it stays.
+        Closing the iterator, or an exception, ends the export, and nothing of it stays. What is
+        under way is left to itself, as it may take long.
         """
-        total, stopped = len(self._plan.times), threading.Event()
-
-        def write(file: IO[bytes]) -> None:
-            file.write(SHAPE_WRITERS[self._plan.format](self.shapes, self._plan))
-            if stopped.is_set():
-                raise LissomError("the export was stopped")
-
-        with threads("shapes", 1) as worker:
-            try:
-                while not self.shapes:
-                    batch = worker.submit(self._advance)
-                    yield from come(batch, int(self._share * total), waits=waits)
-                    batch.result()
-                    yield int(self._share * total)
-                end = worker.submit(write_atomically, self._plan.out, write)
-                yield from come(end, total, waits=waits)
-                end.result()
-            except BaseException:
-                stopped.set()
-                raise
+        cancellation = cancellation or Cancellation()
+        total, worker = len(self._plan.times), ThreadPoolExecutor(1)
+        try:
+            while not self.shapes:
+                batch = worker.submit(self._advance)
+                yield from come(batch, count=int(self._share * total), waits=waits)
+                yield int(self._share * total)
+            end = worker.submit(self._write, cancellation)
+            yield from come(end, count=total, waits=waits)
+        except BaseException:
+            cancellation.cancel()
+            raise
+        finally:
+            worker.shutdown(wait=False, cancel_futures=True)
         yield total
 
     @property
     def notices(self) -> tuple[str, ...]:
         """What the person should know about the shapes that were found."""
-        wanted = self._plan.shapes.tolerance
+        wanted, format_ = self._plan.shapes.tolerance, EXPORT_FORMATS[self._plan.format]
         found = []
         for shape in self.shapes:
             count, error = len(shape.motion.targets), shape.motion.error
@@ -109,12 +106,16 @@ class ShapeExport:
                     f"{shape.name} has {count} shapes, and viewers of glTF need show only "
                     f"{MOST_TARGETS}; a larger tolerance takes fewer"
                 )
-            if len(shape.orders) > 1 and self._plan.format == "glb":
+            if len(shape.orders) > 1 and not format_.keeps_order:
                 found.append(
-                    f"what lies in front of what changes in {shape.name}; a glTF model keeps what "
-                    "is so at first"
+                    f"what lies in front of what changes in {shape.name}; a {format_.label} keeps "
+                    "what is so at first"
                 )
         return tuple(found)
+
+    def _write(self, cancellation: Cancellation) -> None:
+        contents = SHAPE_WRITERS[self._plan.format](self.shapes, self._plan)
+        write_atomically(self._plan.out, lambda file: file.write(contents), cancellation)
 
     def _advance(self) -> None:
         for _ in range(_BATCH):

@@ -11,7 +11,7 @@ from app.motion.interval_store import IntervalPart, IntervalStore
 from app.motion.intervals import AnyInbetweens, Build, FoundIntervals, KnownInterval, OneFrame
 from app.motion.joints import HERE, Joints, Placement, hung_animations, joints_source
 from app.motion.motion_paths import MotionPaths, trace_paths
-from app.motion.paint_order import painted_depths, painted_triangles
+from app.motion.paint_order import PaintOrder
 from app.motion.posable_mesh import AttachedPoints, PosableMesh
 from app.motion.shown_frame import Shown, hang_shown, show
 from app.motion.vertices import Placed, Streamed, Vertices
@@ -30,6 +30,7 @@ __all__ = [
     "KnownInterval",
     "MotionPaths",
     "OneFrame",
+    "PaintOrder",
     "Placed",
     "Placement",
     "PosableMesh",
@@ -44,8 +45,6 @@ __all__ = [
     "joints_source",
     "measure_extent",
     "motion_box",
-    "painted_depths",
-    "painted_triangles",
     "show",
     "trace_paths",
 ]

@@ -20,7 +20,6 @@ from app.motion.intervals import (
     prepare_frame,
     prepare_intervals,
 )
-from app.motion.paint_order import painted_triangles
 from app.motion.posable_mesh import PosableMesh
 from app.motion.vertices import Placed, Streamed, Vertices
 from engine.arrays import Complexes
@@ -97,7 +96,7 @@ class IntervalStore:
     ) -> Vertices | None:
         """Return where the vertices are at a frame, or what is shown instead; None if not there."""
         moment = time_of(clip, frame)
-        triangles = painted_triangles(self.mesh.domain.mesh, clip, frame)
+        triangles = self.mesh.order.triangles(clip, frame)
         found = instead or self._find(clip, moment)
         if isinstance(found, Pose):
             positions = self.mesh.posed(found)

@@ -1,11 +1,12 @@
 """A mesh on the screen: it takes any pose to the places of its vertices, and points with it."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 import numpy.typing as npt
 
 from app.document import Pose
+from app.motion.paint_order import PaintOrder
 from engine.arrays import Booleans, Complexes, Floats, Integers
 from engine.domain import Domain
 from engine.domain.meshing import Mesh, in_order_of, triangulate
@@ -66,11 +67,20 @@ class PosableMesh:
     coordinates : complex64, shape (v, n)
         Values at the vertices of the functions that maps are made of: single precision is plenty
         for a screen.
+
+    Attributes
+    ----------
+    order : PaintOrder
+        In which order the mesh's triangles are painted.
     """
 
     domain: Domain
     source: Domain
     coordinates: npt.NDArray[np.complex64]
+    order: PaintOrder = field(init=False)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "order", PaintOrder(self.domain.mesh))
 
     @classmethod
     def fine(cls, source: Domain) -> "PosableMesh":

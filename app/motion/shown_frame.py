@@ -9,7 +9,6 @@ from app.document import Clip, Document, Pose, resting_pose, time_of
 from app.motion.interval_store import IntervalStore
 from app.motion.intervals import OneFrame
 from app.motion.joints import HERE, Hinge, Joints, Placement, along
-from app.motion.paint_order import painted_triangles
 from app.motion.posable_mesh import AttachedPoints, PosableMesh
 from app.motion.vertices import Streamed, Vertices
 from engine.arrays import Complexes
@@ -121,7 +120,7 @@ def show(
         raise ValueError("none of the stores is of the figure's domain")
     store = (*exact, fitting[-1])[0]
     mesh, near = store.mesh, None if exact else store.nearest(clip, moment)
-    triangles = painted_triangles(mesh.domain.mesh, clip, frame)
+    triangles = mesh.order.triangles(clip, frame)
     if (
         earlier is not None
         and (earlier.clip, earlier.mesh, earlier.pose) == (clip, mesh, pose)

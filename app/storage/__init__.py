@@ -17,6 +17,7 @@ from app.storage.autosave import (
     remove_leftover,
 )
 from app.storage.files import (
+    Cancellation,
     Hold,
     HoldError,
     atomic_file,
@@ -86,6 +87,7 @@ __all__ = [
     "SECONDS",
     "SMALLEST_SCALE",
     "Autosave",
+    "Cancellation",
     "Cut",
     "Hold",
     "HoldError",

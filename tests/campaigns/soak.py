@@ -19,10 +19,10 @@ from layered import blob, openraster
 from PIL import Image
 
 from app.document.keyframe import Target
-from app.document.settings import ExportSettings, FrameRange, Meshing, ShapeDetail
+from app.document.settings import ExportSettings, FrameRange, Meshing
 from app.editor.actions import editing, exporting, playback, posing, saving, viewing
 from app.editor.layering import choose, hang
-from app.export_formats import EXPORT_FORMATS
+from app.export_formats import EXPORT_FORMATS, ShapeDetail
 from app.render.gpu import finish_drawing
 from app.storage.assets import sample_images
 from app.ui.window.memory import REST, share_heap

@@ -8,7 +8,8 @@ from harness import Harness, Robot
 from app.editor import Jobs, Session
 from app.render import Renderer
 from app.render.gpu import create_context
-from app.ui.shortcuts import MENUS
+from app.ui.bars.icons import GROUPS
+from app.ui.shortcuts import BINDINGS, MENUS
 from app.ui.window import Window
 
 Shown = dict[str, list[str]]
@@ -31,7 +32,7 @@ def shown_now() -> Shown:
             for panel in params.docking_params.dockable_windows
             if panel.dock_space_name == "side"
         ],
-        "tools": [binding.label for binding in BINDINGS.values() if binding.in_bar],
+        "tools": [BINDINGS[name].label for names in GROUPS for name in names],
     }
 
 

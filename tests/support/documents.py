@@ -31,10 +31,8 @@ from app.document.settings import (
     FrameRange,
     Marker,
     Meshing,
-    ShapeDetail,
-    SheetLayout,
 )
-from app.export_formats import EXPORT_FORMATS
+from app.export_formats import EXPORT_FORMATS, ShapeDetail, SheetLayout
 from engine.domain.build import Domain
 from engine.domain.meshing.mesh import Mesh
 from engine.domain.picture.cut_out import CutOut, Mask, Stroke

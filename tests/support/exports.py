@@ -4,10 +4,11 @@ from pathlib import Path
 
 import numpy as np
 
-from app.document import FRAME_NAMES, ShapeDetail, SheetLayout
+from app.document import FRAME_NAMES
 from app.export.destination import FrameNames
 from app.export.plan import ExportPlan, Tag
 from app.export.run import export
+from app.export_formats import ShapeDetail, SheetLayout
 from app.render.view import canvas_view
 from engine.arrays import Bytes
 

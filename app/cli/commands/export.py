@@ -24,7 +24,7 @@ from app.export import (
     sheet_grid,
     with_light_meshes,
 )
-from app.export_formats import EXPORT_FORMATS, format_by_suffix
+from app.export_formats import EXPORT_FORMATS, STILL, FormatSettings, format_by_suffix
 from app.motion import Animation, hung_animations
 from app.render.gpu import create_context
 from app.storage import cut_picture, decode_picture, load_project
@@ -132,18 +132,13 @@ def _settings(own: ExportSettings, arguments: argparse.Namespace, out: Path) -> 
         "frames": None if frames is None else FrameRange(*frames),
         "names": arguments.names,
     }
-    sheet = {
-        "trimmed": arguments.trim,
-        "padding": arguments.padding,
-        "power_of_two": arguments.power_of_two,
+    options = {
+        group: replace(
+            asking, **_known({name: getattr(arguments, name) for name in asking.asked()})
+        )
+        for group, asking in own.options().items()
     }
-    shapes = {"triangles": arguments.triangles, "tolerance": arguments.tolerance}
-    return replace(
-        own,
-        **_known(given),
-        sheet=replace(own.sheet, **_known(sheet)),
-        shapes=replace(own.shapes, **_known(shapes)),
-    )
+    return replace(own, **_known(given), **options)
 
 
 def _check_options(name: str, arguments: argparse.Namespace) -> None:
@@ -154,17 +149,15 @@ def _check_options(name: str, arguments: argparse.Namespace) -> None:
     LissomError
         If there is one.
     """
-    is_drawn = EXPORT_FORMATS[name].is_drawn
-    useless = {
-        "triangles": is_drawn,
-        "tolerance": is_drawn,
-        "names": name != "png",
-        **dict.fromkeys(("trim", "padding", "power_of_two"), name != "spritesheet"),
-        **dict.fromkeys(("size", "background", "framing"), name == "glb"),
-    }
-    for option, is_useless in useless.items():
-        if is_useless and getattr(arguments, option) is not None:
-            raise LissomError(f"{name} has no use for --{option.replace('_', '-')}; leave it out")
+    format_ = EXPORT_FORMATS[name]
+    framing = () if format_.has_frame else ("size", "background", "framing")
+    useless = {option: option for option in (*framing, *(("names",) if format_.suffixes else ()))}
+    for group, asking in FormatSettings().options().items():
+        if group != format_.options:
+            useless |= {each: option.flag for each, option in asking.asked().items()}
+    for each, flag in useless.items():
+        if getattr(arguments, each) is not None:
+            raise LissomError(f"{name} has no use for --{flag}; leave it out")
 
 
 def _known(given: dict[str, Any]) -> dict[str, Any]:
@@ -195,7 +188,7 @@ def _format_of(out: Path, own: ExportSettings, *, is_one: bool) -> str | None:
         return None if is_own else format_by_suffix()[suffix]
     several = [name for name, format_ in EXPORT_FORMATS.items() if suffix in format_.suffixes]
     if is_one:
-        return next(name for name in several if EXPORT_FORMATS[name].is_still)
+        return STILL
     raise LissomError(
         f"{out} may be {' or '.join(several)}: say --format, or --frame N for the picture of a "
         "frame"
@@ -209,11 +202,11 @@ def _summary_of_frames(plan: ExportPlan) -> str:
     if not EXPORT_FORMATS[plan.format].suffixes:
         names = dict.fromkeys((plan.names[0], plan.names[-1]))
         return f"{text}, {' to '.join(names)}"
-    if plan.format == "spritesheet":
-        if plan.sheet.trimmed:
-            return f"{text}, trimmed, as {data_file(plan.out).name} tells"
+    data = data_file(plan.out, plan.format)
+    if data is not None:
         columns, rows = sheet_grid(plan)
-        return f"{text} in {columns} columns and {rows} rows, as {data_file(plan.out).name} tells"
+        grid = f" in {columns} columns and {rows} rows"
+        return f"{text}{', trimmed' if plan.sheet.trimmed else grid}, as {data.name} tells"
     return f"{text}, {plan.fps:g} a second"
 
 

@@ -9,7 +9,7 @@ from contextlib import suppress
 from pathlib import Path
 
 from app.cli.console import fail, notice
-from app.cli.process import PATIENCE, Endings, end_within, share_interpreter
+from app.cli.process import PATIENCE, Endings, end_within, has_threads_left, share_interpreter
 from app.editor import Jobs, Session
 from app.editor.actions import files, saving
 from app.errors import EXPECTED_ERRORS
@@ -53,7 +53,7 @@ def run(arguments: argparse.Namespace) -> int:
         if session.quitting:
             # One that was being written when the person left.
             session.autosave.forget()
-    if status == EXIT_FAILED or not have_ended:
+    if status == EXIT_FAILED or not have_ended or has_threads_left():
         # What a worker that never ends uses must not be taken down under it, and after an exception
         # nobody knows what may be.
         sys.stderr.flush()

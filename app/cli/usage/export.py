@@ -3,9 +3,10 @@
 import argparse
 import re
 import textwrap
+from typing import Any
 
 from app.cli.options import FRAMINGS, add_out, add_project, add_variant_option
-from app.export_formats import EXPORT_FORMATS, format_by_suffix
+from app.export_formats import EXPORT_FORMATS, FormatSettings, format_by_suffix
 
 COLUMN = max(map(len, EXPORT_FORMATS)) + 4
 FORMATS = "\n".join(
@@ -67,29 +68,15 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help='of the files of PNG frames, such as "{name}_####": "#" for each digit of the number, '
         "{name} for the project's name, here and in --out (default: the project's, frame_####)",
     )
-    parser.add_argument(
-        "--triangles", metavar="N", type=int, help="of a model, about (default: 4000)"
-    )
-    parser.add_argument(
-        "--tolerance",
-        metavar="PX",
-        type=float,
-        help="how far a model may be from the motion, in pixels, with as many shapes as that takes "
-        "(default: 0.5, with 8 shapes at most)",
-    )
-    parser.add_argument(
-        "--trim",
-        action=argparse.BooleanOptionalAction,
-        help="keep only what is seen of a frame on a sprite sheet (default: the project's, yes)",
-    )
-    parser.add_argument(
-        "--padding", metavar="N", type=int, help="pixels between frames of a sprite sheet"
-    )
-    parser.add_argument(
-        "--power-of-two",
-        action=argparse.BooleanOptionalAction,
-        help="let the sides of a sprite sheet be powers of two",
-    )
+    for options in FormatSettings().options().values():
+        for name, option in options.asked().items():
+            usual = getattr(options, name)
+            if isinstance(usual, bool):
+                how: dict[str, Any] = {"action": argparse.BooleanOptionalAction}
+            else:
+                is_whole = isinstance(usual, int)
+                how = {"metavar": "N" if is_whole else "PX", "type": int if is_whole else float}
+            parser.add_argument(f"--{option.flag}", dest=name, help=option.about, **how)
     parser.add_argument("--figure", metavar="NAME", help="export this layer alone")
     add_variant_option(parser)
     parser.add_argument("--format", choices=tuple(EXPORT_FORMATS), help="what to write")

@@ -36,7 +36,7 @@ from app.export import (
     suited,
     with_light_meshes,
 )
-from app.export_formats import EXPORT_FORMATS
+from app.export_formats import EXPORT_FORMATS, STILL
 from app.motion import (
     Animation,
     Box,
@@ -44,7 +44,7 @@ from app.motion import (
     extent_source,
     hung_animations,
 )
-from app.storage import make_settings_folder, passing_picture
+from app.storage import Cancellation, make_settings_folder, passing_picture
 
 PREPARING, COPYING = "Preparing the export", "Copying the picture"
 
@@ -63,8 +63,9 @@ def choose(session: Session) -> None:
 def export_to(_: Session, project: Project, out: Path) -> None:
     """Note where the next export goes, as the person chose it."""
     project.export_to = out
-    format_ = EXPORT_FORMATS[project.document.export.format]
-    if format_.suffixes and not (format_.data_suffix and data_file(out).exists()):
+    name = project.document.export.format
+    data = data_file(out, name)
+    if EXPORT_FORMATS[name].suffixes and not (data is not None and data.exists()):
         # The dialog has asked already whether it is to be replaced.
         project.replaceable = out
 
@@ -145,7 +146,7 @@ def copy_picture(session: Session, project: Project) -> None:
     clipboard_program()  # tells what to install where there is none
     make_settings_folder(session.folder)
     out = passing_picture(session.folder)
-    settings = replace(project.document.export, format="picture")
+    settings = replace(project.document.export, format=STILL)
     request = _request(session, project, out, settings)
     check_request(project.document, request)
     promises.once_settled(session, do(_begin_copy, request), "Copy the picture")
@@ -198,6 +199,7 @@ def _prepare(
     }
     extent = project.extent
     box = extent.value if extent.follows(extent_source(document)) else None
+    cancellation = session.cancellation = Cancellation()
 
     def work() -> ExportRun:
         detail = request.settings.shapes.triangles
@@ -207,7 +209,7 @@ def _prepare(
             for figure in exported.figures
         ]
         hung = hung_animations(alone, exported)
-        poses = {figure: KeptPoses(animation) for figure, animation in hung.items()}
+        poses = {figure: KeptPoses(animation, cancellation) for figure, animation in hung.items()}
         plan = plan_export(exported, request, poses, box)
         return ExportRun(document=exported, pictures=pictures, poses=poses, plan=plan)
 
@@ -233,12 +235,19 @@ def _animation(clip: Clip, sibling: PoseSampler | None) -> Animation:
 
 
 def cancel(session: Session) -> None:
-    """Give the export up; frames that are written stay."""
+    """Give the export up, unless its file is complete already; frames that are written stay."""
+    run, is_prepared = session.export, PREPARING in session.jobs.kinds
+    if run is None and not is_prepared:
+        return
+    # Dropped first, so that nobody is told of a failure; then left, as it may take long.
     session.jobs.drop(PREPARING)
-    run, session.export = session.export, None
-    if run is not None:
-        left = "Nothing was written" if _is_one_file(run) else "Frames that were written stay"
-        session.tell(f"The export was cancelled. {left}.")
+    session.jobs.leave(PREPARING)
+    is_nothing_written = session.cancellation.cancel()
+    if run is not None and _is_one_file(run) and not is_nothing_written:
+        return
+    session.export = None
+    left = "Nothing was written" if is_nothing_written else "Frames that were written stay"
+    session.tell(f"The export was cancelled. {left}.")
 
 
 def unless_running(session: Session, then: Action) -> None:

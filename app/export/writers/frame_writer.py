@@ -7,8 +7,7 @@ class FrameWriter:
     """One format's way to files; the base of all of them.
 
     `encode` is called once for each frame, on several threads and out of order; all else on one
-    thread at a time, in the order of the frames. Nothing is called on the thread that draws, but
-    `stop` and `close`.
+    thread, in the order of the frames. Nothing is called on the thread that draws.
     """
 
     def encode(self, index: int, frame: Bytes) -> bytes:
@@ -20,9 +19,6 @@ class FrameWriter:
 
     def finish(self) -> None:
         """Write what comes after the last frame."""
-
-    def stop(self) -> None:
-        """Let what is under way end soon, on its own thread: nothing is wanted of it any more."""
 
     def close(self) -> None:
         """Let go of what must not outlive the file, whether it is finished or not."""

@@ -12,7 +12,7 @@ from zlib_ng import zlib_ng
 
 from app.export.plan import ExportPlan
 from app.export.writers.frame_writer import FrameWriter
-from app.storage import write_atomically
+from app.storage import Cancellation, write_atomically
 from engine.arrays import Bytes
 
 SIGNATURE: Final = b"\x89PNG\r\n\x1a\n"
@@ -72,18 +72,21 @@ class PngSequence(FrameWriter):
     ----------
     plan : ExportPlan
         Its folder exists.
+    cancellation : Cancellation
+        By which no more of them take their places.
     """
 
-    def __init__(self, plan: ExportPlan) -> None:
-        self._folder = plan.out
-        self._names = plan.names
+    def __init__(self, plan: ExportPlan, cancellation: Cancellation) -> None:
+        self._paths = iter([plan.out / name for name in plan.names])
+        self._cancellation = cancellation
 
-    def encode(self, index: int, frame: Bytes) -> bytes:
-        """Write a frame's file."""
-        data = encode_png(frame)
-        path = self._folder / self._names[index]
-        write_atomically(path, lambda file: file.write(data))
-        return b""
+    def encode(self, index: int, frame: Bytes) -> bytes:  # noqa: ARG002 - all frames are alike
+        """Return the frame's file."""
+        return encode_png(frame)
+
+    def add(self, encoded: bytes) -> None:
+        """Write it."""
+        write_atomically(next(self._paths), lambda file: file.write(encoded), self._cancellation)
 
 
 class PngPicture(FrameWriter):

@@ -4,13 +4,11 @@ The JSON is that of TexturePacker ("hash"), with the durations and tags of Asepr
 https://www.aseprite.org/docs/cli/#sheet
 """
 
-import io
 import json
 import math
-import threading
 from collections.abc import Sequence
 from importlib.metadata import version
-from typing import IO, Any, Final, NamedTuple, cast
+from typing import IO, Final, NamedTuple
 
 import numpy as np
 
@@ -63,7 +61,6 @@ class SpritesheetWriter(FrameWriter):
             sheet_grid(plan)
         self._file, self._data = file, data
         self._plan = plan
-        self._stopped = threading.Event()
         self._cells: dict[int, _Cell] = {}
 
     def encode(self, index: int, frame: Bytes) -> bytes:
@@ -90,26 +87,9 @@ class SpritesheetWriter(FrameWriter):
         for cell, (left, top) in zip(kept, sheet.corners, strict=True):
             wide, high = cell.size
             pixels[top : top + high, left : left + wide] = cell.pixels
-        save_png(pixels, cast(IO[bytes], _Stoppable(self._file, self._stopped)))
+        save_png(pixels, self._file)
         corners = [sheet.corners[place] for place in places]
         self._data.write(_data(plan, sheet.size, cells, corners))
-
-    def stop(self) -> None:
-        """End the writing of the sheet, which may take seconds."""
-        self._stopped.set()
-
-
-class _Stoppable(io.BufferedIOBase):
-    """A file for writing that refuses to go on once it was stopped."""
-
-    def __init__(self, file: IO[bytes], stopped: threading.Event) -> None:
-        self._file = file
-        self._stopped = stopped
-
-    def write(self, buffer: Any) -> int:
-        if self._stopped.is_set():
-            raise LissomError("the export was stopped")
-        return self._file.write(buffer)
 
 
 def sheet_grid(plan: ExportPlan) -> tuple[int, int]:

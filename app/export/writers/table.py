@@ -18,7 +18,7 @@ from app.export.writers.html import html_page
 from app.export.writers.png import PngPicture, PngSequence
 from app.export.writers.spritesheet import SpritesheetWriter
 from app.export.writers.webp import WebpWriter
-from app.storage import atomic_file
+from app.storage import Cancellation, atomic_file
 
 
 def _video(file: IO[bytes], plan: ExportPlan) -> FrameWriter:
@@ -29,8 +29,8 @@ def _video(file: IO[bytes], plan: ExportPlan) -> FrameWriter:
 
 # By the names of `EXPORT_FORMATS`: those of frames in a folder, those of frames in one file, and
 # those of shapes, which return the contents of their file.
-FOLDER_WRITERS: Final[Mapping[str, Callable[[ExportPlan], FrameWriter]]] = MappingProxyType(
-    {"png": PngSequence}
+FOLDER_WRITERS: Final[Mapping[str, Callable[[ExportPlan, Cancellation], FrameWriter]]] = (
+    MappingProxyType({"png": PngSequence})
 )
 FILE_WRITERS: Final[Mapping[str, Callable[[IO[bytes], ExportPlan], FrameWriter]]] = (
     MappingProxyType(
@@ -55,7 +55,7 @@ SHAPE_WRITERS: Final[Mapping[str, Callable[[Sequence[MovingShape], ExportPlan], 
 
 
 @contextmanager
-def open_writer(plan: ExportPlan) -> Iterator[FrameWriter]:
+def open_writer(plan: ExportPlan, cancellation: Cancellation) -> Iterator[FrameWriter]:
     """Lend the writer of a plan's format for as long as a `with` block lasts.
 
     A file takes its place when the block ends, and is absent if that is with an error.
@@ -70,28 +70,30 @@ def open_writer(plan: ExportPlan) -> Iterator[FrameWriter]:
             plan.out.mkdir(exist_ok=True)
         except OSError as error:
             raise LissomError(f"cannot make the folder {plan.out}: {error.strerror}") from error
-        with closing(FOLDER_WRITERS[plan.format](plan)) as writer:
+        with closing(FOLDER_WRITERS[plan.format](plan, cancellation)) as writer:
             yield writer
-    elif plan.format in DATA_WRITERS:
+    elif (beside := data_file(plan.out, plan.format)) is not None:
         with (
-            atomic_file(data_file(plan.out)) as data,
-            atomic_file(plan.out) as file,
-            _removed_at_end(data_file(plan.out)),
+            atomic_file(beside, cancellation) as data,
+            atomic_file(plan.out, cancellation) as file,
+            _removed_at_end(beside, cancellation),
             closing(DATA_WRITERS[plan.format](file, data, plan)) as writer,
         ):
             yield writer
     else:
         with (
-            atomic_file(plan.out) as file,
+            atomic_file(plan.out, cancellation) as file,
             closing(FILE_WRITERS[plan.format](file, plan)) as writer,
         ):
             yield writer
 
 
 @contextmanager
-def _removed_at_end(data: Path) -> Iterator[None]:
+def _removed_at_end(data: Path, cancellation: Cancellation) -> Iterator[None]:
     """Remove earlier data before their picture is replaced: they are there only with their own."""
     yield
+    # From here on there is no way back.
+    cancellation.settle()
     try:
         data.unlink(missing_ok=True)
     except OSError as error:

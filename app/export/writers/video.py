@@ -13,6 +13,7 @@ from app.errors import LissomError
 from app.export.bleeding import bled
 from app.export.plan import ExportPlan
 from app.export.writers.frame_writer import FrameWriter
+from app.export_formats import EXPORT_FORMATS
 from engine.arrays import Bytes
 
 _BT709: Final = 1  # as FFmpeg numbers colour spaces, primaries and transfer curves
@@ -124,9 +125,7 @@ class VideoWriter(FrameWriter):
 
     def __init__(self, file: IO[bytes], plan: ExportPlan) -> None:
         codec = _CODECS[plan.format]
-        width, height = plan.view.size
-        blocks = 2 if plan.format == "mp4" else 1
-        self._size = width + width % blocks, height + height % blocks
+        self._size = EXPORT_FORMATS[plan.format].whole_blocks(plan.view.size)
         self._background = plan.background
         self._pixels = codec.transparent if plan.background is None else codec.opaque
         self._count = 0

@@ -14,12 +14,14 @@ from app.storage.files.atomic import (
     sync_folder,
     write_atomically,
 )
+from app.storage.files.cancellation import Cancellation
 from app.storage.files.hold import Hold, HoldError
 from app.storage.files.locks import is_locked, lock
 from app.storage.files.reading import DAMAGED_ZIP, read_file, require_file, tail_digest
 
 __all__ = [
     "DAMAGED_ZIP",
+    "Cancellation",
     "Hold",
     "HoldError",
     "atomic_file",

@@ -19,6 +19,7 @@ from pathlib import Path
 from typing import IO, TypeVar
 
 from app.errors import LissomError
+from app.storage.files.cancellation import Cancellation
 from app.storage.files.locks import lock, open_to_lock
 
 T = TypeVar("T")
@@ -60,7 +61,9 @@ def _size(count: int) -> str:
     return f"{count / 1e6:,.1f} MB" if count >= 1e6 else f"{count / 1e3:,.1f} KB"
 
 
-def write_atomically(path: Path, write: Callable[[IO[bytes]], T]) -> T:
+def write_atomically(
+    path: Path, write: Callable[[IO[bytes]], T], cancellation: Cancellation | None = None
+) -> T:
     """Write a file so that at any moment the old or the new one is whole.
 
     Parameters
@@ -69,6 +72,8 @@ def write_atomically(path: Path, write: Callable[[IO[bytes]], T]) -> T:
         Used exactly as given; an existing file is replaced. Of a link, that is what it points to.
     write : callable
         Writes the contents to the open binary file that it is handed, which can be read as well.
+    cancellation : Cancellation, optional
+        By which it can be cancelled before the file takes its place; that is a `LissomError`.
 
     Returns
     -------
@@ -81,7 +86,7 @@ def write_atomically(path: Path, write: Callable[[IO[bytes]], T]) -> T:
         As `check_writable`, or if the disk refuses.
     """
     try:
-        with atomic_file(path) as file:
+        with atomic_file(path, cancellation) as file:
             return write(file)
     except NoRoomError as error:
         with suppress(OSError):
@@ -93,8 +98,13 @@ def write_atomically(path: Path, write: Callable[[IO[bytes]], T]) -> T:
 
 
 @contextmanager
-def atomic_file(path: Path) -> Iterator[IO[bytes]]:
+def atomic_file(path: Path, cancellation: Cancellation | None = None) -> Iterator[IO[bytes]]:
     """Open a file that takes the place of `path` when the `with` block ends without an error.
+
+    Parameters
+    ----------
+    path, cancellation
+        As in `write_atomically`.
 
     Raises
     ------
@@ -111,9 +121,13 @@ def atomic_file(path: Path) -> Iterator[IO[bytes]]:
         mode = stat.S_IMODE(target.stat().st_mode) if target.exists() else None
         temporary, descriptor = _new_part(target.parent, 0o666 if mode is None else 0o600)
         with os.fdopen(descriptor, "w+b") as file:
+            if cancellation is not None:
+                cancellation.begin(temporary)
             yield file
             file.flush()
             os.fsync(file.fileno())
+            if cancellation is not None:
+                cancellation.settle()
             if mode is not None:
                 temporary.chmod(mode)
             if sys.platform != "win32":

@@ -22,12 +22,11 @@ from app.document import (
     Meshing,
     Passing,
     Pose,
-    ShapeDetail,
-    SheetLayout,
     Switch,
     Target,
 )
 from app.errors import LissomError
+from app.export_formats import FormatOptions, FormatSettings
 from app.storage.json_values import (
     ANYTHING,
     FLAG,
@@ -57,10 +56,16 @@ SCHEMA = 2
 SIZE = pair(WHOLE, WHOLE, "two whole numbers")
 RANGE = pair(WHOLE, WHOLE, "two whole numbers", make=FrameRange, of=astuple)
 MARKER = record(Marker, Field("frame", WHOLE), Field("name", TEXT))
-SHEET = part(
-    SheetLayout, Field("trimmed", FLAG), Field("padding", WHOLE), Field("power_of_two", FLAG)
-)
-SHAPES = part(ShapeDetail, Field("triangles", WHOLE), Field("tolerance", optional(NUMBER)))
+
+
+def _options(usual: FormatOptions) -> Codec:
+    """Return how the options of a format are held; of which kinds they are, the usual ones tell."""
+    kinds: dict[type, Codec] = {bool: FLAG, int: WHOLE}
+    named = {name: kinds.get(type(getattr(usual, name))) for name in usual.asked()}
+    fields = (Field(name, kind or optional(NUMBER)) for name, kind in named.items())
+    return part(type(usual), *fields)
+
+
 EXPORT = part(
     ExportSettings,
     Field("format", TEXT),
@@ -69,8 +74,10 @@ EXPORT = part(
     Field("framing", TEXT),
     Field("frames", optional(RANGE)),
     Field("names", TEXT, earlier=FRAME_NAMES),
-    Field("sheet", SHEET, earlier=SheetLayout()),
-    Field("shapes", SHAPES, earlier=ShapeDetail()),
+    *(
+        Field(name, _options(usual), earlier=usual)
+        for name, usual in FormatSettings().options().items()
+    ),
 )
 HANDLE = record(
     Handle,

@@ -6,14 +6,8 @@ from imgui_bundle import ImVec2, imgui
 from imgui_bundle import icons_fontawesome_6 as icons
 
 from app.document import (
-    COARSEST_TOLERANCE,
-    FEWEST_TRIANGLES,
-    FINEST_TOLERANCE,
-    WIDEST_PADDING,
     ExportSettings,
     FrameRange,
-    ShapeDetail,
-    SheetLayout,
     exported_frames,
 )
 from app.editor import Action, Project, Session, do
@@ -23,6 +17,7 @@ from app.export import frame_view, missing, shown_box
 from app.export_formats import EXPORT_FORMATS
 from app.motion import Box, box_around, extent_source
 from app.render import View
+from app.ui.panels.format_options import draw_options
 from app.ui.shortcuts import BINDINGS
 from app.ui.style import (
     FILL,
@@ -37,14 +32,9 @@ from app.ui.style import (
     small,
     tip,
 )
-from engine.domain import MOST_TRIANGLES
 
 BACKGROUNDS = (("transparent", "Transparent"), ("colour", "Colour"))
 FRAMINGS = (("fit", "All motion"), ("canvas", "Canvas"))
-CELLS = (("trimmed", "Trimmed"), ("alike", "All alike"))
-SIDES = (("any", "Any"), ("powers", "Powers of two"))
-TOLERANCES = (("usual", "½ px, 8 shapes"), ("own", "Own"))
-FRAMELESS = {"glb"}  # has no frame, no size and no background
 RANGES = (("all", "All frames"), ("own", "From – to"))
 WHITE = "#ffffff"
 MEASURES = "Measuring where the motion reaches…"
@@ -65,7 +55,7 @@ def draw(session: Session, look: Look, project: Project) -> list[Action]:
     actions = [do(exporting.show_frame, box)]
     heading(look, "Picture")
     chosen = _format(look, settings)
-    if settings.format not in FRAMELESS:
+    if EXPORT_FORMATS[settings.format].has_frame:
         chosen = _picture(look, chosen)
         chosen, more = _size(session, look, chosen, view)
         actions += more
@@ -117,12 +107,12 @@ def _picture(look: Look, settings: ExportSettings) -> ExportSettings:
 
 def _details(look: Look, settings: ExportSettings) -> ExportSettings:
     """Draw what only some formats have."""
-    if settings.format == "png":
-        return _names(look, settings)
-    if settings.format == "spritesheet":
-        return replace(settings, sheet=_sheet(look, settings.sheet))
-    if not EXPORT_FORMATS[settings.format].is_drawn:
-        return replace(settings, shapes=_shapes(look, settings.shapes))
+    format_ = EXPORT_FORMATS[settings.format]
+    if not format_.suffixes:
+        settings = _names(look, settings)
+    if format_.options:
+        options = draw_options(look, settings.options()[format_.options])
+        settings = replace(settings, **{format_.options: options})
     return settings
 
 
@@ -132,55 +122,6 @@ def _names(look: Look, settings: ExportSettings) -> ExportSettings:
     done = imgui.is_item_deactivated_after_edit()
     tip("One # for each digit of a frame's number; {name} is the project's name")
     return replace(settings, names=names) if done and names else settings
-
-
-def _sheet(look: Look, sheet: SheetLayout) -> SheetLayout:
-    label(look, "Frames are")
-    match segments(look, "trimmed", CELLS, "trimmed" if sheet.trimmed else "alike"):
-        case "trimmed":
-            sheet = replace(sheet, trimmed=True)
-        case "alike":
-            sheet = replace(sheet, trimmed=False)
-    label(look, "Padding")
-    _, padding = imgui.input_int("##padding", sheet.padding, 0)
-    if imgui.is_item_deactivated_after_edit():
-        sheet = replace(sheet, padding=min(max(padding, 0), WIDEST_PADDING))
-    tip("Transparent pixels between frames and at the border")
-    label(look, "Sheet sides")
-    match segments(look, "sides", SIDES, "powers" if sheet.power_of_two else "any"):
-        case "powers":
-            sheet = replace(sheet, power_of_two=True)
-        case "any":
-            sheet = replace(sheet, power_of_two=False)
-    return sheet
-
-
-def _shapes(look: Look, shapes: ShapeDetail) -> ShapeDetail:
-    label(look, "Triangles")
-    _, triangles = imgui.input_int("##triangles", shapes.triangles, 0)
-    if imgui.is_item_deactivated_after_edit():
-        shapes = replace(shapes, triangles=min(max(triangles, FEWEST_TRIANGLES), MOST_TRIANGLES))
-    tip("Of each figure, about: more of them bend more smoothly, in a larger file")
-    label(look, "Within")
-    own = shapes.tolerance is not None
-    room = 4.0 * look.em if own else 0.0
-    match segments(look, "tolerance", TOLERANCES, "own" if own else "usual", room=room):
-        case "usual":
-            return replace(shapes, tolerance=None)
-        case "own":
-            return replace(shapes, tolerance=0.5)
-    tip(
-        "How far the shapes may be from the motion. As usual, it takes at most 8 of them, which "
-        "every viewer shows; a tolerance of your own takes as many as it needs"
-    )
-    if shapes.tolerance is not None:
-        imgui.same_line(0, imgui.get_style().item_inner_spacing.x)
-        imgui.set_next_item_width(FILL)
-        _, tolerance = imgui.input_float("##pixels", shapes.tolerance, 0.0, 0.0, "%.3g px")
-        if imgui.is_item_deactivated_after_edit():
-            tolerance = min(max(round(tolerance, 6), FINEST_TOLERANCE), COARSEST_TOLERANCE)
-            shapes = replace(shapes, tolerance=tolerance)
-    return shapes
 
 
 def _with_format(settings: ExportSettings, name: str) -> ExportSettings:

@@ -8,7 +8,7 @@ import numpy as np
 
 from app.document import is_visible, time_of
 from app.editor import HeatMap, Project, Puppet, Session
-from app.motion import PosableMesh, Shown, Vertices, painted_depths
+from app.motion import PosableMesh, Shown, Vertices
 from app.render import (
     DrawnMesh,
     Ghost,
@@ -329,7 +329,7 @@ def _posed(
         )
         poses.append(pose)
         if session.tints_depth:
-            depths = painted_depths(shown.mesh.domain.mesh, shown.clip, shown.frame)
+            depths = shown.mesh.order.depths(shown.clip, shown.frame)
             drawing.tint(pose, depths if figure.id == project.active else 0 * depths)
         elif heat_map != "none":
             drawing.heat(pose, shown, heat_map)

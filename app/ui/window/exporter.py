@@ -40,7 +40,7 @@ class Exporter:
             exporting.fail(session, error)
 
     def release(self) -> None:
-        """End the export that is under way; whole frames stay."""
+        """End the export that is under way; whole frames stay, and what is prepared is left."""
         if self._steps is not None:
             self._steps.close()
         if isinstance(self._maker, Painter):
@@ -53,10 +53,16 @@ class Exporter:
             if EXPORT_FORMATS[run.plan.format].is_drawn:
                 painter = Painter(self._context, run.document, run.pictures, run.poses, run.plan)
                 self._maker = painter
-                self._steps = export(run.plan, painter.pose, painter.draw, waits=False)
+                self._steps = export(
+                    run.plan,
+                    painter.pose,
+                    painter.draw,
+                    waits=False,
+                    cancellation=session.cancellation,
+                )
             else:
                 self._maker = ShapeExport(run.document, run.pictures, run.poses, run.plan)
-                self._steps = self._maker.run(waits=False)
+                self._steps = self._maker.run(waits=False, cancellation=session.cancellation)
         begun = session.clock()
         drawn = run.done
         for done in self._steps:

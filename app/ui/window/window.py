@@ -17,7 +17,7 @@ import glfw  # isort: skip
 
 from app.document import Pose
 from app.editor import Action, FileDialog, Session, do, layering
-from app.editor.actions import saving
+from app.editor.actions import exporting, saving
 from app.errors import EXPECTED_ERRORS, LissomError, shown_name
 from app.render import LayerPictures, Renderer, Textures, Thumbnail, Thumbnails
 from app.render.gpu import is_software
@@ -297,6 +297,7 @@ class Window:
             glfw.set_window_title(glfw_utils.glfw_window_hello_imgui(), title)
 
     def _release(self) -> None:
+        exporting.cancel(self.session)
         self._shell.release()
         owners = (self._exporter, self._canvas, self._thumbnails, self._layer_pictures)
         for owner in (*owners, self._renderer):

@@ -287,3 +287,36 @@ def test_names_that_are_not_utf_8_are_written_and_told(project, tmp_path, capsys
     assert (tmp_path / f"{odd}{ending}").stat().st_size
     told = error_of(capsys, tmp_path / f"{odd} too.lissom", "--out", tmp_path / odd)
     assert "caf\N{REPLACEMENT CHARACTER} too.lissom" in told
+
+
+# An export whose in-betweens are never prepared.
+STUCK = """
+import sys, threading
+from app.cli.main import main
+from app.motion import inbetweens
+def prepare(*_, **__):
+    print("stuck", flush=True)
+    threading.Event().wait()
+inbetweens.prepare_inbetweens = prepare
+sys.exit(main(sys.argv[1:]))
+"""
+
+
+@pytest.mark.parametrize("name", ["frames", "film.gif", "film.webm", "model.glb"])
+def test_an_interrupt_is_answered_at_once_whatever_is_being_prepared(tmp_path, name):
+    project, out = tmp_path / "walk.lissom", tmp_path / "out" / name
+    out.parent.mkdir()
+    save_project(project, altered(moving_document(), export=ExportSettings(framing="canvas")))
+    words = ["env", "--default-signal=INT", sys.executable, "-c", STUCK]
+    words += ["export", str(project), "--out", str(out)]
+    with subprocess.Popen(
+        words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    ) as process:
+        assert process.stdout is not None
+        assert process.stdout.readline() == "stuck\n"
+        process.send_signal(signal.SIGINT)
+        _, said = process.communicate()
+    # After ten seconds the process would end without a word.
+    assert "interrupted by SIGINT" in said
+    assert process.returncode == 130
+    assert all(path.suffix == ".png" for path in out.parent.rglob("*") if path.is_file())

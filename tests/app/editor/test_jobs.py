@@ -270,6 +270,18 @@ def test_closing_does_not_wait_for_ever(stuck):
     assert not jobs.close(patience=0.05)
 
 
+def test_closing_does_not_wait_for_what_was_left(stuck):
+    work, has_begun = stuck
+    jobs = Jobs()
+    jobs.put(job("stuck", work, []))
+    has_begun()
+    jobs.leave("stuck")
+    closing = threading.Thread(target=jobs.close, args=(60.0,), daemon=True)
+    closing.start()
+    closing.join(20)
+    assert not closing.is_alive()
+
+
 def test_closing_waits_for_what_runs_and_drops_what_waits():
     jobs, begun, results = Jobs(), threading.Event(), []
     gate = threading.Event()

@@ -17,7 +17,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 from PIL import Image
 from pygltflib import GLTF2
 
-from app.document import HOLD, ExportSettings, FrameRange, ShapeDetail, Switch, clip_of
+from app.document import HOLD, ExportSettings, FrameRange, Switch, clip_of
 from app.errors import LissomError
 from app.export import (
     ExportRequest,
@@ -27,6 +27,7 @@ from app.export import (
     plan_export,
     with_light_meshes,
 )
+from app.export_formats import ShapeDetail
 from app.motion import Animation
 from app.storage import decode_picture, load_project, sample_images
 from engine.arrays import Complexes, Floats
@@ -286,8 +287,8 @@ def test_figures_are_seen_when_and_as_much_as_they_should(tmp_path, monkeypatch)
     first, second = document.figures
     switched = replace(second, switches=(Switch(0, visible=False), Switch(4, visible=True)))
     monkeypatch.setattr(
-        "app.export.moving_shape.painted_triangles",
-        lambda mesh, _, n: mesh.triangles if n < 3 else mesh.triangles[::-1],
+        "app.export.moving_shape.PaintOrder.triangles",
+        lambda _, clip, n: clip.figure.domain.mesh.triangles[:: 1 if n < 3 else -1],
     )
     faint = replace(first, opacity=0.5)
     _, maker = exported(replace(document, figures=(faint, switched)), out)

@@ -202,7 +202,7 @@ def test_what_lies_in_front_changes_when_it_should(browser, tmp_path, monkeypatc
     first = document.figures[0].domain.mesh.triangles
     then = first[::-1].copy()
     monkeypatch.setattr(
-        "app.export.moving_shape.painted_triangles", lambda _, __, n: first if n < 3 else then
+        "app.export.moving_shape.PaintOrder.triangles", lambda _, __, n: first if n < 3 else then
     )
     exported(document, out)
     page = opened(browser, out)

@@ -1,15 +1,18 @@
 import numpy as np
+import pytest
 from animations import BLOB, moving_document, still_document
 from documents import altered
 from numpy.testing import assert_array_equal
 
 from app.document.queries.clips import clip_of
 from app.document.settings import FrameRange
+from app.errors import LissomError
 from app.export.painting import Painter
 from app.export.plan import ExportRequest, plan_export
 from app.export.poses import KeptPoses
 from app.motion.extent import box_around
 from app.motion.inbetweens import Animation
+from app.storage import Cancellation
 
 
 class Counted:
@@ -70,3 +73,22 @@ def test_what_is_kept_has_its_budget():
     assert counted.asked == [2, 3]
     poses.positions(0)
     assert counted.asked == [2, 3, 0]
+
+
+def test_once_it_was_cancelled_an_export_works_out_no_more_poses(tmp_path):
+    """What is left behind ends with the frame it is at, though it was to measure all of them."""
+    document, cancellation = moving_document(), Cancellation()
+    (figure,) = document.figures
+    animation = Animation(clip_of(document, figure.id))
+
+    class Cancelled(Counted):
+        def positions(self, frame: float):
+            if frame == 2:
+                cancellation.cancel()
+            return super().positions(frame)
+
+    counted = Cancelled(animation)
+    request = ExportRequest(out=tmp_path, settings=document.export, project="walk")
+    with pytest.raises(LissomError, match="cancelled"):
+        plan_export(document, request, {figure.id: KeptPoses(counted, cancellation)})
+    assert counted.asked == [0, 1, 2]

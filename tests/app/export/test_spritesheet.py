@@ -9,11 +9,11 @@ from exports import FRAMES, SIZE, draw, plan_for, run
 from numpy.testing import assert_array_equal
 from PIL import Image
 
-from app.document import SheetLayout
 from app.errors import LissomError
 from app.export import data_file
 from app.export.plan import Tag
 from app.export.writers import spritesheet
+from app.export_formats import SheetLayout
 from engine.arrays import Bytes
 
 
@@ -25,7 +25,7 @@ def exported(folder, drawing=draw, *, tags=None, **layout):
     run(plan, drawing)
     with Image.open(plan.out) as image:
         sheet = np.asarray(image)
-    return sheet, json.loads(data_file(plan.out).read_text())
+    return sheet, json.loads(data_file(plan.out, "spritesheet").read_text())
 
 
 def placed(sheet: Bytes, entry) -> Bytes:
@@ -104,8 +104,8 @@ def test_what_does_not_fit_on_a_sheet_is_refused_and_leaves_nothing(tmp_path, mo
 
 
 def test_data_lie_beside_their_sheet(tmp_path):
-    assert data_file(tmp_path / "a.png") == tmp_path / "a.json"
-    assert data_file(tmp_path / "v1.2") == tmp_path / "v1.2.json"
+    assert data_file(tmp_path / "a.png", "spritesheet") == tmp_path / "a.json"
+    assert data_file(tmp_path / "v1.2", "spritesheet") == tmp_path / "v1.2.json"
 
 
 @pytest.mark.parametrize("calls", [1, 2])

@@ -1,3 +1,4 @@
+import weakref
 from dataclasses import replace
 
 import numpy as np
@@ -5,7 +6,7 @@ from documents import CENTRE, disc_document
 from shapes import regular_polygon
 
 from app.document import clip_of
-from app.document.commands import key_commands
+from app.document.commands import handle_commands, key_commands, layer_commands
 from app.motion import IntervalStore, PosableMesh, show
 from engine.domain import Domain
 from engine.domain.meshing import triangulate
@@ -56,6 +57,39 @@ def test_one_exact_in_between_stands_in_for_others_nearby():
 
 def turned_back(pose):
     return replace(pose, phi=CENTRE + (pose.phi - CENTRE) * np.exp(-0.4j))
+
+
+def test_twenty_figures_with_something_in_front_are_drawn_again_as_they_are():
+    """Each in the order that it was painted in before, without finding or uploading it anew."""
+    document = handle_commands.add_handle(0, CENTRE)(disc_document())
+    document = layer_commands.set_front(0, 0, 1.0, None)(document)
+    clip = clip_of(document, 0)
+    figure = clip.figure
+    stores = []
+    for triangles in range(300, 500, 10):
+        mesh = triangulate(figure.domain.outline, triangles)
+        own = replace(figure, domain=replace(figure.domain, mesh=mesh))
+        clip = replace(clip, figure=own)
+        stores.append((clip, IntervalStore(mesh=PosableMesh.fine(own.domain))))
+    shows = [show(clip, 0, None, [store], None) for clip, store in stores]
+    for (clip, store), shown in zip(stores, shows, strict=True):
+        order = shown.vertices.triangles
+        assert not np.array_equal(order, store.mesh.domain.mesh.triangles)
+        assert show(clip, 0, None, [store], shown) is shown
+        assert show(clip, 5, None, [store], shown).vertices is shown.vertices
+
+
+def test_a_mesh_with_something_in_front_goes_with_what_showed_it():
+    document = handle_commands.add_handle(0, CENTRE)(disc_document())
+    clip = clip_of(layer_commands.set_front(0, 0, 1.0, None)(document), 0)
+    mesh = triangulate(clip.figure.domain.outline, 300)
+    posable = PosableMesh.fine(replace(clip.figure.domain, mesh=mesh))
+    order, depths = posable.order.triangles(clip, 0), posable.order.depths(clip, 0)
+    assert not np.array_equal(order, mesh.triangles)
+    np.testing.assert_allclose(depths.max(), 1, rtol=0, atol=1e-6)
+    vertices = weakref.ref(mesh.vertices)
+    del mesh, posable
+    assert vertices() is None
 
 
 def test_figures_that_are_drawn_together_share_the_coarse_triangles():

@@ -12,7 +12,7 @@ from app.document import clip_of
 from app.document.commands import handle_commands, layer_commands
 from app.document.keyframe import Keyframe
 from app.document.model import Document
-from app.motion import PosableMesh, painted_triangles
+from app.motion import PaintOrder, PosableMesh
 from app.render import Backdrop, Scene, View
 from engine.arrays import Booleans, Bytes, Complexes
 
@@ -160,7 +160,7 @@ def test_no_pixel_of_what_is_behind_shows_through(easel, seed, is_coarse):
             easel_mesh = easel.mesh(picture, mesh.vertices, triangles)
             return easel.frame(VIEW, Scene(meshes=(easel.pose(easel_mesh, positions),))).astype(int)
 
-        order = painted_triangles(mesh, clip, frame)
+        order = PaintOrder(mesh).triangles(clip, frame)
         whole = drawn(order)
         alone = [drawn(mesh.triangles[part])[..., 3] for part in (red, blue, ~(red | blue))]
         is_red, is_blue = (alpha == 255 for alpha in alone[:2])
@@ -198,7 +198,7 @@ def test_arms_that_cross(easel, check_golden, name):
     frames = []
     for posable in (PosableMesh.fine, PosableMesh.coarse):
         mesh = posable(clip.figure.domain).domain.mesh
-        drawn = easel.mesh(picture, mesh.vertices, painted_triangles(mesh, clip, 0))
+        drawn = easel.mesh(picture, mesh.vertices, PaintOrder(mesh).triangles(clip, 0))
         pose = easel.pose(drawn, CROSSED.bent(mesh.vertices, 1.0))
         frames.append(easel.frame(VIEW, Scene(background=paper, meshes=(pose,))))
     check_golden(name, frames[0])

@@ -17,6 +17,7 @@ from numpy.testing import assert_array_equal
 
 from app.errors import LissomError
 from app.storage.files import (
+    Cancellation,
     Hold,
     HoldError,
     atomic_file,
@@ -388,3 +389,31 @@ def test_nonsense_in_a_lock_file_is_told_as_what_is_known(tmp_path, told):
     with pytest.raises(HoldError, match="in another window"):
         Hold(tmp_path / "a.lissom")
     hold.release()
+
+
+def test_a_file_that_is_cancelled_while_it_is_written_is_gone_at_once(tmp_path):
+    path, cancellation = tmp_path / "a", Cancellation()
+    path.write_bytes(b"before")
+
+    def write(file):
+        file.write(b"new")
+        assert len(list(tmp_path.iterdir())) == 2
+        assert cancellation.cancel()
+        assert os.name == "nt" or list(tmp_path.iterdir()) == [path]
+        file.write(b"more, as whoever writes it cannot know")
+
+    with pytest.raises(LissomError, match="cancelled"):
+        write_atomically(path, write, cancellation)
+    assert list(tmp_path.iterdir()) == [path]
+    assert path.read_bytes() == b"before"
+    with pytest.raises(LissomError, match="cancelled"):
+        write_atomically(path, lambda file: file.write(b"never"), cancellation)
+    assert path.read_bytes() == b"before"
+
+
+def test_a_file_that_is_in_its_place_cannot_be_cancelled_but_those_after_it_can(tmp_path):
+    first, second, cancellation = tmp_path / "a", tmp_path / "b", Cancellation()
+    write_atomically(first, lambda file: file.write(b"new"), cancellation)
+    with pytest.raises(LissomError), atomic_file(second, cancellation):
+        assert not cancellation.cancel()
+    assert list(tmp_path.iterdir()) == [first]

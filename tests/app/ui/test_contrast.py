@@ -22,6 +22,7 @@ from app.editor.actions import (
     timeline_pointing,
     viewing,
 )
+from app.editor.promise import Promise
 from app.editor.timeline_view import Strip
 from app.solving import Renewal
 from app.storage.assets import sample_images
@@ -116,9 +117,9 @@ def test_all_tabs_of_a_pose_that_falls_short(window, bent, check):
     for tab in TABS:
         window.show_tab(tab)
         check(tab)
-    bent.renewal = Renewal(
-        before=bent.figure, bounds=bent.figure.bounds, poses=bent.figure.poses[:-1]
-    )
+    solved = bent.figure.poses[:-1]
+    renewal = Renewal(before=bent.figure, bounds=bent.figure.bounds, poses=solved)
+    bent.pending.append(Promise(label="Solving the keys", renewal=renewal))
     window.show_tab("Deform")
     check("progress")
 

@@ -1,9 +1,13 @@
 """Exports that are cancelled, fail midway, or outlive their project."""
 
 import errno
+import gc
 import os
 import sys
+import threading
+import weakref
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -15,6 +19,7 @@ from app.document import UnkeyedPose
 from app.document.settings import ExportSettings
 from app.editor.actions import editing, exporting, files, keys, playback, posing, saving
 from app.editor.dialogs import Question
+from app.motion import inbetweens
 from app.storage.assets import sample_images
 from app.ui.window import exporter
 
@@ -174,6 +179,7 @@ def test_quitting_asks_about_an_export_that_runs(window, tmp_path):
 def test_cancelled_frames_are_whole_and_the_next_export_works(window, project, tmp_path):
     out = tmp_path / "frames"
     begin(window, out)
+    window.until(lambda: any(out.glob("frame_*.png")))
     window.act(exporting.cancel)
     window.settle()
     assert window.session.export is None
@@ -218,6 +224,134 @@ def test_export_is_cancelled_while_it_is_prepared(window, project, tmp_path):
     assert window.session.export is None
     assert project.export_to is None
     assert list(tmp_path.iterdir()) == []
+
+
+class Held:
+    """A worker that comes to a place as the first: it waits until it is let go on, or in vain."""
+
+    def __init__(self) -> None:
+        self.begun, self.end = threading.Event(), threading.Event()
+        self.has_waited_in_vain = False
+
+    def wait(self) -> None:
+        if not self.begun.is_set():
+            self.begun.set()
+            self.has_waited_in_vain = not self.end.wait(20)
+
+
+@pytest.fixture
+def held(monkeypatch):
+    """Returns the worker that is held where it calls a function of a module."""
+    every = []
+
+    def hold(module, name, is_meant=lambda: True):
+        real, held = getattr(module, name), Held()
+        every.append(held)
+
+        def waits(*given, **options):
+            if is_meant():
+                held.wait()
+            return real(*given, **options)
+
+        monkeypatch.setattr(module, name, waits)
+        return held
+
+    yield hold
+    for held in every:
+        held.end.set()
+
+
+# The sites are prepared before an export is planned, intervals while it is made.
+@pytest.mark.parametrize("stage", ["prepare_sites", "prepare_inbetweens"])
+@pytest.mark.parametrize("name", ["frames", "bar.gif", "sheet.png", "bar.webm", "bar.html"])
+@pytest.mark.usefixtures("bent")
+def test_a_cancel_is_answered_at_once_whatever_is_being_prepared(
+    window, tmp_path, held, name, stage
+):
+    session, out = window.session, tmp_path / name
+    format_ = {"frames": "png", "sheet.png": "spritesheet"}.get(name, name[4:])
+    exporting.set_export(session, ExportSettings(format=format_, size=SIZE, framing="canvas"))
+    window.settle()
+    worker = held(inbetweens, stage)
+    window.act(exporting.start, out)
+    window.until(worker.begun.is_set)
+    assert (session.export is None) == (stage == "prepare_sites")
+    left = weakref.ref(session.export.poses[0]) if session.export else None
+    window.act(exporting.cancel)
+    window.frames()
+    assert not worker.has_waited_in_vain
+    assert session.export is None
+    assert exporting.PREPARING not in session.jobs.kinds
+    # Nothing is half there.
+    written = [path for path in tmp_path.rglob("*") if path.is_file()]
+    assert all(map(is_whole, written))
+    stays = "Frames that were written stay" if written else "Nothing was written"
+    assert f"The export was cancelled. {stays}." in texts(window)
+    # The next one begins at once, and what was left takes no part in it.
+    window.act(exporting.start, out)
+    window.until(lambda: any("Exported" in text for text in texts(window)))
+    assert not worker.has_waited_in_vain
+    made = {path: path.stat().st_mtime_ns for path in tmp_path.rglob("*")}
+    worker.end.set()
+    window.until(lambda: left is None or is_gone(left))
+    window.until(lambda: not any(lane.thread.is_alive() for lane in session.jobs._left))
+    assert {path: path.stat().st_mtime_ns for path in tmp_path.rglob("*")} == made
+
+
+def is_gone(reference):
+    gc.collect()
+    return reference() is None
+
+
+@pytest.mark.usefixtures("project")
+@pytest.mark.parametrize("name", ["bar.glb", "bar.gif", "pose.png"])
+def test_a_late_cancel_says_what_is_so(window, tmp_path, held, name):
+    """Until the disk has all of a file it can be cancelled; then it is there, and told so."""
+    session, out = window.session, tmp_path / name
+    format_ = "picture" if name == "pose.png" else name[4:]
+    exporting.set_export(session, ExportSettings(format=format_, size=SIZE))
+    worker = held(os, "fsync", is_of_an_export)
+    window.act(exporting.start, out)
+    window.until(worker.begun.is_set)
+    window.act(exporting.cancel)
+    assert not worker.has_waited_in_vain
+    assert "The export was cancelled. Nothing was written." in texts(window)
+    assert list(tmp_path.iterdir()) == []
+    worker.end.set()
+    window.until(lambda: not export_threads())
+    assert list(tmp_path.iterdir()) == []
+    worker, session.toasts = held(Path, "replace", is_of_an_export), []
+    window.act(exporting.start, out)
+    window.until(worker.begun.is_set)
+    window.act(exporting.cancel)
+    assert session.export is not None
+    worker.end.set()
+    finish(window)
+    assert not any("cancelled" in text for text in texts(window))
+    assert any("Exported" in text for text in texts(window))
+    assert list(tmp_path.iterdir()) == [out]
+
+
+@pytest.mark.usefixtures("project")
+def test_a_sheet_and_its_data_are_both_there_or_neither(window, tmp_path, held):
+    session, out = window.session, tmp_path / "sheet.png"
+    exporting.set_export(session, ExportSettings(format="spritesheet", size=SIZE))
+    worker = held(Path, "replace", is_of_an_export)
+    window.act(exporting.start, out)
+    window.until(worker.begun.is_set)
+    window.act(exporting.cancel)
+    worker.end.set()
+    finish(window)
+    assert any("Exported" in text for text in texts(window))
+    assert sorted(tmp_path.iterdir()) == [tmp_path / "sheet.json", out]
+
+
+def is_of_an_export(thread=None):
+    return "ThreadPoolExecutor" in (thread or threading.current_thread()).name
+
+
+def export_threads():
+    return list(filter(is_of_an_export, threading.enumerate()))
 
 
 def test_disk_that_gets_full_midway_ends_the_export(window, project, tmp_path, monkeypatch):
