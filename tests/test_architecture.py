@@ -136,10 +136,14 @@ def test_the_engine_computes_nothing_when_it_is_loaded(name):
 
 @cache
 def public_names(package: str) -> set[str]:
-    for node in parsed(package).body:
-        if isinstance(node, ast.Assign) and ast.unparse(node.targets[0]) == "__all__":
-            return set(ast.literal_eval(node.value))
-    return set()
+    """Return what a face shows: what it imports by its own name."""
+    return {
+        alias.asname
+        for node in parsed(package).body
+        if isinstance(node, ast.ImportFrom)
+        for alias in node.names
+        if alias.asname is not None
+    }
 
 
 def defined_names(name: str) -> tuple[set[str], set[str]]:

@@ -5,85 +5,58 @@ Out: a `Session`: the document, what is shown of it, and what is under way.
 Imports: every room below but the command line and the panels.
 """
 
-from app.editor import layering, promises
-from app.editor.action import Action, do
-from app.editor.dialogs import Dialog, FileDialog, Leftover, Question, Recovery, ShortcutSheet
-from app.editor.failures import sentence
-from app.editor.jobs import Jobs
-from app.editor.project import Flip, PoseBlend, Project, Puppet, Twin
-from app.editor.pull import Pull
+from app.editor import (
+    layering as layering,
+    promises as promises,
+)
+from app.editor.action import (
+    Action as Action,
+    do as do,
+)
+from app.editor.dialogs import (
+    Dialog as Dialog,
+    FileDialog as FileDialog,
+    Leftover as Leftover,
+    Question as Question,
+    Recovery as Recovery,
+    ShortcutSheet as ShortcutSheet,
+)
+from app.editor.failures import sentence as sentence
+from app.editor.jobs import Jobs as Jobs
+from app.editor.project import (
+    Flip as Flip,
+    PoseBlend as PoseBlend,
+    Project as Project,
+    Puppet as Puppet,
+    Twin as Twin,
+)
+from app.editor.pull import Pull as Pull
 from app.editor.session import (
-    BoxMark,
-    CurveKind,
-    CutTool,
-    EntryMark,
-    ExportRun,
-    HeatMap,
-    Hint,
-    JointMark,
-    Overlays,
-    Session,
-    Split,
-    StrokeMark,
-    SweepMark,
-    Toast,
-    ToolInHand,
-    with_project,
+    BoxMark as BoxMark,
+    CurveKind as CurveKind,
+    CutTool as CutTool,
+    EntryMark as EntryMark,
+    ExportRun as ExportRun,
+    HeatMap as HeatMap,
+    Hint as Hint,
+    JointMark as JointMark,
+    Overlays as Overlays,
+    Session as Session,
+    Split as Split,
+    StrokeMark as StrokeMark,
+    SweepMark as SweepMark,
+    Toast as Toast,
+    ToolInHand as ToolInHand,
+    with_project as with_project,
 )
 from app.editor.timeline_view import (
-    Edge,
-    EdgeDrag,
-    KeyBox,
-    KeyDrag,
-    MarkerDrag,
-    Scrub,
-    Strip,
-    SwitchDrag,
-    TimeGesture,
+    Edge as Edge,
+    EdgeDrag as EdgeDrag,
+    KeyBox as KeyBox,
+    KeyDrag as KeyDrag,
+    MarkerDrag as MarkerDrag,
+    Scrub as Scrub,
+    Strip as Strip,
+    SwitchDrag as SwitchDrag,
+    TimeGesture as TimeGesture,
 )
-
-__all__ = [
-    "Action",
-    "BoxMark",
-    "CurveKind",
-    "CutTool",
-    "Dialog",
-    "Edge",
-    "EdgeDrag",
-    "EntryMark",
-    "ExportRun",
-    "FileDialog",
-    "Flip",
-    "HeatMap",
-    "Hint",
-    "Jobs",
-    "JointMark",
-    "KeyBox",
-    "KeyDrag",
-    "Leftover",
-    "MarkerDrag",
-    "Overlays",
-    "PoseBlend",
-    "Project",
-    "Pull",
-    "Puppet",
-    "Question",
-    "Recovery",
-    "Scrub",
-    "Session",
-    "ShortcutSheet",
-    "Split",
-    "Strip",
-    "StrokeMark",
-    "SweepMark",
-    "SwitchDrag",
-    "TimeGesture",
-    "Toast",
-    "ToolInHand",
-    "Twin",
-    "do",
-    "layering",
-    "promises",
-    "sentence",
-    "with_project",
-]

@@ -5,46 +5,51 @@ Out: where the vertices are, and how far they reach.
 Imports: `app.document`.
 """
 
-from app.motion.extent import Box, box_around, extent_source, measure_extent, motion_box
-from app.motion.inbetweens import Animation, PoseSampler
-from app.motion.interval_store import IntervalPart, IntervalStore
-from app.motion.intervals import AnyInbetweens, Build, FoundIntervals, KnownInterval, OneFrame
-from app.motion.joints import HERE, Joints, Placement, hung_animations, joints_source
-from app.motion.motion_paths import MotionPaths, trace_paths
-from app.motion.paint_order import PaintOrder
-from app.motion.posable_mesh import AttachedPoints, PosableMesh
-from app.motion.shown_frame import Shown, hang_shown, show
-from app.motion.vertices import Placed, Streamed, Vertices
-
-__all__ = [
-    "HERE",
-    "Animation",
-    "AnyInbetweens",
-    "AttachedPoints",
-    "Box",
-    "Build",
-    "FoundIntervals",
-    "IntervalPart",
-    "IntervalStore",
-    "Joints",
-    "KnownInterval",
-    "MotionPaths",
-    "OneFrame",
-    "PaintOrder",
-    "Placed",
-    "Placement",
-    "PosableMesh",
-    "PoseSampler",
-    "Shown",
-    "Streamed",
-    "Vertices",
-    "box_around",
-    "extent_source",
-    "hang_shown",
-    "hung_animations",
-    "joints_source",
-    "measure_extent",
-    "motion_box",
-    "show",
-    "trace_paths",
-]
+from app.motion.extent import (
+    Box as Box,
+    box_around as box_around,
+    extent_source as extent_source,
+    measure_extent as measure_extent,
+    motion_box as motion_box,
+)
+from app.motion.inbetweens import (
+    Animation as Animation,
+    PoseSampler as PoseSampler,
+)
+from app.motion.interval_store import (
+    IntervalPart as IntervalPart,
+    IntervalStore as IntervalStore,
+)
+from app.motion.intervals import (
+    AnyInbetweens as AnyInbetweens,
+    Build as Build,
+    FoundIntervals as FoundIntervals,
+    KnownInterval as KnownInterval,
+    OneFrame as OneFrame,
+)
+from app.motion.joints import (
+    HERE as HERE,
+    Joints as Joints,
+    Placement as Placement,
+    hung_animations as hung_animations,
+    joints_source as joints_source,
+)
+from app.motion.motion_paths import (
+    MotionPaths as MotionPaths,
+    trace_paths as trace_paths,
+)
+from app.motion.paint_order import PaintOrder as PaintOrder
+from app.motion.posable_mesh import (
+    AttachedPoints as AttachedPoints,
+    PosableMesh as PosableMesh,
+)
+from app.motion.shown_frame import (
+    Shown as Shown,
+    hang_shown as hang_shown,
+    show as show,
+)
+from app.motion.vertices import (
+    Placed as Placed,
+    Streamed as Streamed,
+    Vertices as Vertices,
+)

@@ -1,8 +1,7 @@
 """The in-betweens of a figure at any frame: the one way to them for window, export and checks."""
 
 import threading
-from collections.abc import Sequence
-from collections.abc import Set as AbstractSet
+from collections.abc import Sequence, Set as AbstractSet
 
 import numpy as np
 

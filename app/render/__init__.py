@@ -5,49 +5,40 @@ Out: pixels in a target.
 Imports: `app.motion`, `app.storage`; with `app.render.gpu` it alone sees OpenGL.
 """
 
-from app.render.draw_lists import DrawLists, Textures
-from app.render.drawn_mesh import DrawnMesh, shader_is_faster
-from app.render.handles import HandleMark, HandleStyle, mark_anchor, mark_handles
-from app.render.ramp import heat_ramp
-from app.render.renderer import Renderer
-from app.render.scene import (
-    TRANSPARENT,
-    Backdrop,
-    Colour,
-    Disc,
-    Ghost,
-    Heat,
-    Line,
-    Scene,
-    Wireframe,
+from app.render.draw_lists import (
+    DrawLists as DrawLists,
+    Textures as Textures,
 )
-from app.render.thumbnails import LayerPictures, Thumbnail, Thumbnails
-from app.render.view import View, canvas_view, fit_view
-
-__all__ = [
-    "TRANSPARENT",
-    "Backdrop",
-    "Colour",
-    "Disc",
-    "DrawLists",
-    "DrawnMesh",
-    "Ghost",
-    "HandleMark",
-    "HandleStyle",
-    "Heat",
-    "LayerPictures",
-    "Line",
-    "Renderer",
-    "Scene",
-    "Textures",
-    "Thumbnail",
-    "Thumbnails",
-    "View",
-    "Wireframe",
-    "canvas_view",
-    "fit_view",
-    "heat_ramp",
-    "mark_anchor",
-    "mark_handles",
-    "shader_is_faster",
-]
+from app.render.drawn_mesh import (
+    DrawnMesh as DrawnMesh,
+    shader_is_faster as shader_is_faster,
+)
+from app.render.handles import (
+    HandleMark as HandleMark,
+    HandleStyle as HandleStyle,
+    mark_anchor as mark_anchor,
+    mark_handles as mark_handles,
+)
+from app.render.ramp import heat_ramp as heat_ramp
+from app.render.renderer import Renderer as Renderer
+from app.render.scene import (
+    TRANSPARENT as TRANSPARENT,
+    Backdrop as Backdrop,
+    Colour as Colour,
+    Disc as Disc,
+    Ghost as Ghost,
+    Heat as Heat,
+    Line as Line,
+    Scene as Scene,
+    Wireframe as Wireframe,
+)
+from app.render.thumbnails import (
+    LayerPictures as LayerPictures,
+    Thumbnail as Thumbnail,
+    Thumbnails as Thumbnails,
+)
+from app.render.view import (
+    View as View,
+    canvas_view as canvas_view,
+    fit_view as fit_view,
+)

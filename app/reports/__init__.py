@@ -5,30 +5,19 @@ Out: certificates, curves over time, and pictures of them.
 Imports: `app.motion`, `app.storage`.
 """
 
-from app.reports.certification import IntervalReport, Report, certify_clip
-from app.reports.curve_picture import draw_curves
-from app.reports.curves import (
-    TIMES,
-    Curves,
-    broken_lines,
-    measure_curves,
-    relative_to_keys,
-    worst_points,
-    write_curves,
+from app.reports.certification import (
+    IntervalReport as IntervalReport,
+    Report as Report,
+    certify_clip as certify_clip,
 )
-from app.reports.domain_preview import draw_preview
-
-__all__ = [
-    "TIMES",
-    "Curves",
-    "IntervalReport",
-    "Report",
-    "broken_lines",
-    "certify_clip",
-    "draw_curves",
-    "draw_preview",
-    "measure_curves",
-    "relative_to_keys",
-    "worst_points",
-    "write_curves",
-]
+from app.reports.curve_picture import draw_curves as draw_curves
+from app.reports.curves import (
+    TIMES as TIMES,
+    Curves as Curves,
+    broken_lines as broken_lines,
+    measure_curves as measure_curves,
+    relative_to_keys as relative_to_keys,
+    worst_points as worst_points,
+    write_curves as write_curves,
+)
+from app.reports.domain_preview import draw_preview as draw_preview

@@ -1,7 +1,6 @@
 """Messages in the lower right corner, which go by themselves unless they are looked at."""
 
-from imgui_bundle import ImVec2, imgui
-from imgui_bundle import icons_fontawesome_6 as icons
+from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui
 
 from app.editor import Action, Session, Toast, do
 from app.editor.actions import dismiss

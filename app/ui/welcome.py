@@ -3,8 +3,7 @@
 from collections.abc import Callable
 from pathlib import Path
 
-from imgui_bundle import ImVec2, imgui
-from imgui_bundle import icons_fontawesome_6 as icons
+from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui
 
 from app.editor import Action, Session, do
 from app.editor.actions import files

@@ -14,19 +14,17 @@ Keyframe i is at time i. `prepared.domain` has the mesh, its triangles counter-c
 in-between of the same mesh.
 """
 
-from engine.baselines.boundary_keyframes import discrete_harmonic, harmonic_coordinate_maps
-from engine.baselines.frames import MeshFrame, MeshInbetweens
-from engine.baselines.preparation import PreparedBaseline, prepare_baseline
-from engine.baselines.triangulated_domain import TriangulatedDomain
-from engine.variant import Baseline
-
-__all__ = [
-    "Baseline",
-    "MeshFrame",
-    "MeshInbetweens",
-    "PreparedBaseline",
-    "TriangulatedDomain",
-    "discrete_harmonic",
-    "harmonic_coordinate_maps",
-    "prepare_baseline",
-]
+from engine.baselines.boundary_keyframes import (
+    discrete_harmonic as discrete_harmonic,
+    harmonic_coordinate_maps as harmonic_coordinate_maps,
+)
+from engine.baselines.frames import (
+    MeshFrame as MeshFrame,
+    MeshInbetweens as MeshInbetweens,
+)
+from engine.baselines.preparation import (
+    PreparedBaseline as PreparedBaseline,
+    prepare_baseline as prepare_baseline,
+)
+from engine.baselines.triangulated_domain import TriangulatedDomain as TriangulatedDomain
+from engine.variant import Baseline as Baseline

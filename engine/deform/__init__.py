@@ -5,22 +5,19 @@ Out: certified maps whose handles are nearer, with status and statistics.
 Imports: `engine.maps`, `engine.geometry`.
 """
 
-from engine.deform.deformer import Deformer
-from engine.deform.handles import Handles, Wish
-from engine.deform.newton import line_search, newton_direction
-from engine.deform.objective import Objective
-from engine.deform.rest import ActiveBound
-from engine.deform.state import State, Statistics, Status
-
-__all__ = [
-    "ActiveBound",
-    "Deformer",
-    "Handles",
-    "Objective",
-    "State",
-    "Statistics",
-    "Status",
-    "Wish",
-    "line_search",
-    "newton_direction",
-]
+from engine.deform.deformer import Deformer as Deformer
+from engine.deform.handles import (
+    Handles as Handles,
+    Wish as Wish,
+)
+from engine.deform.newton import (
+    line_search as line_search,
+    newton_direction as newton_direction,
+)
+from engine.deform.objective import Objective as Objective
+from engine.deform.rest import ActiveBound as ActiveBound
+from engine.deform.state import (
+    State as State,
+    Statistics as Statistics,
+    Status as Status,
+)

@@ -5,7 +5,8 @@ Out: holomorphic functions with these real parts, at any points inside.
 Imports: `engine.maps`, `engine.geometry`.
 """
 
-from engine.dirichlet.hilbert import Extension, HilbertTransform
-from engine.dirichlet.refinement import Refinement
-
-__all__ = ["Extension", "HilbertTransform", "Refinement"]
+from engine.dirichlet.hilbert import (
+    Extension as Extension,
+    HilbertTransform as HilbertTransform,
+)
+from engine.dirichlet.refinement import Refinement as Refinement

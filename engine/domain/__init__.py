@@ -7,36 +7,28 @@ Imports: `engine.geometry`.
 """
 
 from engine.domain.build import (
-    MOST_TRIANGLES,
-    Domain,
-    build_domain,
-    mesh_inside,
-    rectangle_domain,
-    texture,
-    texture_coordinates,
+    MOST_TRIANGLES as MOST_TRIANGLES,
+    Domain as Domain,
+    build_domain as build_domain,
+    mesh_inside as mesh_inside,
+    rectangle_domain as rectangle_domain,
+    texture as texture,
+    texture_coordinates as texture_coordinates,
 )
-from engine.domain.medial_axis import suggest_handles
-from engine.domain.outline import HoleMap, find_holes
-from engine.domain.picture import MOST_STROKE_POINTS, CutOut, Mask, Stroke, Subject, subject_mask
-from engine.domain.validity import MOST_MESH_TRIANGLES, require_domain
-
-__all__ = [
-    "MOST_MESH_TRIANGLES",
-    "MOST_STROKE_POINTS",
-    "MOST_TRIANGLES",
-    "CutOut",
-    "Domain",
-    "HoleMap",
-    "Mask",
-    "Stroke",
-    "Subject",
-    "build_domain",
-    "find_holes",
-    "mesh_inside",
-    "rectangle_domain",
-    "require_domain",
-    "subject_mask",
-    "suggest_handles",
-    "texture",
-    "texture_coordinates",
-]
+from engine.domain.medial_axis import suggest_handles as suggest_handles
+from engine.domain.outline import (
+    HoleMap as HoleMap,
+    find_holes as find_holes,
+)
+from engine.domain.picture import (
+    MOST_STROKE_POINTS as MOST_STROKE_POINTS,
+    CutOut as CutOut,
+    Mask as Mask,
+    Stroke as Stroke,
+    Subject as Subject,
+    subject_mask as subject_mask,
+)
+from engine.domain.validity import (
+    MOST_MESH_TRIANGLES as MOST_MESH_TRIANGLES,
+    require_domain as require_domain,
+)

@@ -5,53 +5,33 @@ Out: samples, pieces, triangles, distances, areas, and whether something is insi
 Imports: `engine.arrays`, `engine.errors`.
 """
 
-from engine.geometry.hole import Hole, require_cages_in_holes
-from engine.geometry.polygon import (
-    as_xy,
-    box_diagonal,
-    constrained_delaunay,
-    contains,
-    deepest_point,
-    diameter,
-    distance_to_boundary,
-    edges,
-    lies_within,
-    loop_ends,
-    next_on_loop,
-    region,
-    require_around,
-    require_holes,
-    require_inside,
-    require_simple,
-    sample_graded,
-    signed_area,
-    winding,
+from engine.geometry.hole import (
+    Hole as Hole,
+    require_cages_in_holes as require_cages_in_holes,
 )
-from engine.geometry.segments import Pieces, bisect, distance_to_segments
-
-__all__ = [
-    "Hole",
-    "Pieces",
-    "as_xy",
-    "bisect",
-    "box_diagonal",
-    "constrained_delaunay",
-    "contains",
-    "deepest_point",
-    "diameter",
-    "distance_to_boundary",
-    "distance_to_segments",
-    "edges",
-    "lies_within",
-    "loop_ends",
-    "next_on_loop",
-    "region",
-    "require_around",
-    "require_cages_in_holes",
-    "require_holes",
-    "require_inside",
-    "require_simple",
-    "sample_graded",
-    "signed_area",
-    "winding",
-]
+from engine.geometry.polygon import (
+    as_xy as as_xy,
+    box_diagonal as box_diagonal,
+    constrained_delaunay as constrained_delaunay,
+    contains as contains,
+    deepest_point as deepest_point,
+    diameter as diameter,
+    distance_to_boundary as distance_to_boundary,
+    edges as edges,
+    lies_within as lies_within,
+    loop_ends as loop_ends,
+    next_on_loop as next_on_loop,
+    region as region,
+    require_around as require_around,
+    require_holes as require_holes,
+    require_inside as require_inside,
+    require_simple as require_simple,
+    sample_graded as sample_graded,
+    signed_area as signed_area,
+    winding as winding,
+)
+from engine.geometry.segments import (
+    Pieces as Pieces,
+    bisect as bisect,
+    distance_to_segments as distance_to_segments,
+)

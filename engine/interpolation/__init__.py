@@ -6,48 +6,43 @@ proof that they keep their bounds.
 Imports: `engine.paths`, `engine.dirichlet`, `engine.maps`.
 """
 
-from engine.interpolation import chebyshev
-from engine.interpolation.inbetweens import Frame, Inbetweens, IntegratedInbetweens
-from engine.interpolation.keyframe_samples import KeyframeSamples, sample_keyframes
-from engine.interpolation.passing import Course, End, Joint, Tangent, shortened
-from engine.interpolation.preparation import (
-    Prepared,
-    frame_at,
-    interval_at,
-    prepare,
-    prepare_inbetweens,
-    require_keyframes,
+from engine.interpolation import chebyshev as chebyshev
+from engine.interpolation.inbetweens import (
+    Frame as Frame,
+    Inbetweens as Inbetweens,
+    IntegratedInbetweens as IntegratedInbetweens,
 )
-from engine.interpolation.proof import Proof, prove
-from engine.interpolation.scaling import PointSamples, Scaling, Worst, looseness
-from engine.interpolation.sites import Sites, prepare_sites
-from engine.variant import Variant
-
-__all__ = [
-    "Course",
-    "End",
-    "Frame",
-    "Inbetweens",
-    "IntegratedInbetweens",
-    "Joint",
-    "KeyframeSamples",
-    "PointSamples",
-    "Prepared",
-    "Proof",
-    "Scaling",
-    "Sites",
-    "Tangent",
-    "Variant",
-    "Worst",
-    "chebyshev",
-    "frame_at",
-    "interval_at",
-    "looseness",
-    "prepare",
-    "prepare_inbetweens",
-    "prepare_sites",
-    "prove",
-    "require_keyframes",
-    "sample_keyframes",
-    "shortened",
-]
+from engine.interpolation.keyframe_samples import (
+    KeyframeSamples as KeyframeSamples,
+    sample_keyframes as sample_keyframes,
+)
+from engine.interpolation.passing import (
+    Course as Course,
+    End as End,
+    Joint as Joint,
+    Tangent as Tangent,
+    shortened as shortened,
+)
+from engine.interpolation.preparation import (
+    Prepared as Prepared,
+    frame_at as frame_at,
+    interval_at as interval_at,
+    prepare as prepare,
+    prepare_inbetweens as prepare_inbetweens,
+    require_keyframes as require_keyframes,
+)
+from engine.interpolation.proof import (
+    Proof as Proof,
+    prove as prove,
+)
+from engine.interpolation.scaling import (
+    PointSamples as PointSamples,
+    Scaling as Scaling,
+    Worst as Worst,
+    looseness as looseness,
+)
+from engine.interpolation.sites import (
+    Sites as Sites,
+    prepare_sites as prepare_sites,
+)
+from engine.variant import Variant as Variant

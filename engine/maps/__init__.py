@@ -5,34 +5,26 @@ Out: values and derivatives, k, σ_a, σ_b, τ, and certificates.
 Imports: `engine.geometry`.
 """
 
-from engine.maps import distortion
-from engine.maps.boundary import Boundary
-from engine.maps.bounds import Bounds, Limits
-from engine.maps.cauchy import cauchy_coordinates, cauchy_derivatives, evaluate
-from engine.maps.certificate import (
-    Certificate,
-    Enclosures,
-    certify,
-    certify_segments,
-    segment_enclosures,
+from engine.maps import distortion as distortion
+from engine.maps.boundary import Boundary as Boundary
+from engine.maps.bounds import (
+    Bounds as Bounds,
+    Limits as Limits,
 )
-from engine.maps.harmonic_map import HarmonicMap, derivatives_of
-from engine.maps.span import Span
-
-__all__ = [
-    "Boundary",
-    "Bounds",
-    "Certificate",
-    "Enclosures",
-    "HarmonicMap",
-    "Limits",
-    "Span",
-    "cauchy_coordinates",
-    "cauchy_derivatives",
-    "certify",
-    "certify_segments",
-    "derivatives_of",
-    "distortion",
-    "evaluate",
-    "segment_enclosures",
-]
+from engine.maps.cauchy import (
+    cauchy_coordinates as cauchy_coordinates,
+    cauchy_derivatives as cauchy_derivatives,
+    evaluate as evaluate,
+)
+from engine.maps.certificate import (
+    Certificate as Certificate,
+    Enclosures as Enclosures,
+    certify as certify,
+    certify_segments as certify_segments,
+    segment_enclosures as segment_enclosures,
+)
+from engine.maps.harmonic_map import (
+    HarmonicMap as HarmonicMap,
+    derivatives_of as derivatives_of,
+)
+from engine.maps.span import Span as Span

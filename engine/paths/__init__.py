@@ -5,27 +5,23 @@ Out: antiderivatives and continuous logarithms at the points.
 Imports: `engine.domain.meshing`, `engine.geometry`.
 """
 
-from engine.paths.complex_log import continue_logarithm, root_sheets
-from engine.paths.integration_paths import IntegrationPaths, lay_paths
-from engine.paths.loops import Loops
-from engine.paths.path_network import ON_OUTLINE, mesh_network, scattered_network, with_loops
-from engine.paths.spanning_tree import (
-    SpanningTree,
-    breadth_first_parents,
-    depth_first_numbering,
+from engine.paths.complex_log import (
+    continue_logarithm as continue_logarithm,
+    root_sheets as root_sheets,
 )
-
-__all__ = [
-    "ON_OUTLINE",
-    "IntegrationPaths",
-    "Loops",
-    "SpanningTree",
-    "breadth_first_parents",
-    "continue_logarithm",
-    "depth_first_numbering",
-    "lay_paths",
-    "mesh_network",
-    "root_sheets",
-    "scattered_network",
-    "with_loops",
-]
+from engine.paths.integration_paths import (
+    IntegrationPaths as IntegrationPaths,
+    lay_paths as lay_paths,
+)
+from engine.paths.loops import Loops as Loops
+from engine.paths.path_network import (
+    ON_OUTLINE as ON_OUTLINE,
+    mesh_network as mesh_network,
+    scattered_network as scattered_network,
+    with_loops as with_loops,
+)
+from engine.paths.spanning_tree import (
+    SpanningTree as SpanningTree,
+    breadth_first_parents as breadth_first_parents,
+    depth_first_numbering as depth_first_numbering,
+)

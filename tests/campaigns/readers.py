@@ -11,8 +11,7 @@ from pathlib import Path
 
 import hypothesis
 from hostile_files import READERS, STEPS, Watch, read_changed
-from hypothesis import HealthCheck, Phase, given, settings
-from hypothesis import strategies as st
+from hypothesis import HealthCheck, Phase, given, settings, strategies as st
 
 MEMORY = 6 * 1024**3  # bytes of addresses, libraries and their threads among them
 MOST_SECONDS = 20.0  # of the processor, for one file

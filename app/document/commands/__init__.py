@@ -6,24 +6,15 @@ Imports: the values of `app.document`.
 """
 
 from app.document.commands import (
-    figure_commands,
-    handle_commands,
-    key_commands,
-    layer_commands,
-    pose_commands,
-    scene_commands,
+    figure_commands as figure_commands,
+    handle_commands as handle_commands,
+    key_commands as key_commands,
+    layer_commands as layer_commands,
+    pose_commands as pose_commands,
+    scene_commands as scene_commands,
 )
-from app.document.commands.command import Command
-from app.document.commands.pose_commands import Settled, exchanged
-
-__all__ = [
-    "Command",
-    "Settled",
-    "exchanged",
-    "figure_commands",
-    "handle_commands",
-    "key_commands",
-    "layer_commands",
-    "pose_commands",
-    "scene_commands",
-]
+from app.document.commands.command import Command as Command
+from app.document.commands.pose_commands import (
+    Settled as Settled,
+    exchanged as exchanged,
+)

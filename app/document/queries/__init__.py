@@ -5,40 +5,34 @@ Out: answers; nothing is changed.
 Imports: the values of `app.document`.
 """
 
-from app.document.queries.clips import Clip, clip_of, closes, intervals
-from app.document.queries.fronts import USUAL_EXTENT, Front, fronts_at, is_visible
-from app.document.queries.shortfall import Extremes, Shortfall, falls_short, find_shortfall
-from app.document.queries.timeline import (
-    Moment,
-    changed_stretches,
-    exported_frames,
-    frame_times,
-    framed_frames,
-    resting_pose,
-    time_of,
+from app.document.queries.clips import (
+    Clip as Clip,
+    clip_of as clip_of,
+    closes as closes,
+    intervals as intervals,
 )
-from app.document.queries.transits import Transit, transits
-
-__all__ = [
-    "USUAL_EXTENT",
-    "Clip",
-    "Extremes",
-    "Front",
-    "Moment",
-    "Shortfall",
-    "Transit",
-    "changed_stretches",
-    "clip_of",
-    "closes",
-    "exported_frames",
-    "falls_short",
-    "find_shortfall",
-    "frame_times",
-    "framed_frames",
-    "fronts_at",
-    "intervals",
-    "is_visible",
-    "resting_pose",
-    "time_of",
-    "transits",
-]
+from app.document.queries.fronts import (
+    USUAL_EXTENT as USUAL_EXTENT,
+    Front as Front,
+    fronts_at as fronts_at,
+    is_visible as is_visible,
+)
+from app.document.queries.shortfall import (
+    Extremes as Extremes,
+    Shortfall as Shortfall,
+    falls_short as falls_short,
+    find_shortfall as find_shortfall,
+)
+from app.document.queries.timeline import (
+    Moment as Moment,
+    changed_stretches as changed_stretches,
+    exported_frames as exported_frames,
+    frame_times as frame_times,
+    framed_frames as framed_frames,
+    resting_pose as resting_pose,
+    time_of as time_of,
+)
+from app.document.queries.transits import (
+    Transit as Transit,
+    transits as transits,
+)

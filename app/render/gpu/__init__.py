@@ -6,43 +6,29 @@ Imports: `app.motion`, `app.storage`, ModernGL.
 """
 
 from app.render.gpu.context import (
-    AUTOMATIC,
-    Backend,
-    Context,
-    GlError,
-    create_context,
-    finish_drawing,
-    is_software,
-    largest_size,
-    probe,
-    window_context,
+    AUTOMATIC as AUTOMATIC,
+    Backend as Backend,
+    Context as Context,
+    GlError as GlError,
+    create_context as create_context,
+    finish_drawing as finish_drawing,
+    is_software as is_software,
+    largest_size as largest_size,
+    probe as probe,
+    window_context as window_context,
 )
-from app.render.gpu.mesh import GpuMesh, PosedMesh, PositionBuffer, border_edges, singles
-from app.render.gpu.picture import GpuPicture
-from app.render.gpu.programs import Programs, ShaderFiles, set_uniforms
-from app.render.gpu.series_buffer import SeriesBuffer
-from app.render.gpu.target import RenderTarget
-
-__all__ = [
-    "AUTOMATIC",
-    "Backend",
-    "Context",
-    "GlError",
-    "GpuMesh",
-    "GpuPicture",
-    "PosedMesh",
-    "PositionBuffer",
-    "Programs",
-    "RenderTarget",
-    "SeriesBuffer",
-    "ShaderFiles",
-    "border_edges",
-    "create_context",
-    "finish_drawing",
-    "is_software",
-    "largest_size",
-    "probe",
-    "set_uniforms",
-    "singles",
-    "window_context",
-]
+from app.render.gpu.mesh import (
+    GpuMesh as GpuMesh,
+    PosedMesh as PosedMesh,
+    PositionBuffer as PositionBuffer,
+    border_edges as border_edges,
+    singles as singles,
+)
+from app.render.gpu.picture import GpuPicture as GpuPicture
+from app.render.gpu.programs import (
+    Programs as Programs,
+    ShaderFiles as ShaderFiles,
+    set_uniforms as set_uniforms,
+)
+from app.render.gpu.series_buffer import SeriesBuffer as SeriesBuffer
+from app.render.gpu.target import RenderTarget as RenderTarget

@@ -5,36 +5,30 @@ Out: bytes and arrays; files that are whole or absent; locks that end with their
 Imports: nothing of the project but `app.errors`.
 """
 
-from app.storage.files.arrays import read_arrays, write_arrays
-from app.storage.files.atomic import (
-    atomic_file,
-    check_writable,
-    clear_abandoned,
-    passing_picture,
-    sync_folder,
-    write_atomically,
+from app.storage.files.arrays import (
+    read_arrays as read_arrays,
+    write_arrays as write_arrays,
 )
-from app.storage.files.cancellation import Cancellation
-from app.storage.files.hold import Hold, HoldError
-from app.storage.files.locks import is_locked, lock
-from app.storage.files.reading import DAMAGED_ZIP, read_file, require_file, tail_digest
-
-__all__ = [
-    "DAMAGED_ZIP",
-    "Cancellation",
-    "Hold",
-    "HoldError",
-    "atomic_file",
-    "check_writable",
-    "clear_abandoned",
-    "is_locked",
-    "lock",
-    "passing_picture",
-    "read_arrays",
-    "read_file",
-    "require_file",
-    "sync_folder",
-    "tail_digest",
-    "write_arrays",
-    "write_atomically",
-]
+from app.storage.files.atomic import (
+    atomic_file as atomic_file,
+    check_writable as check_writable,
+    clear_abandoned as clear_abandoned,
+    passing_picture as passing_picture,
+    sync_folder as sync_folder,
+    write_atomically as write_atomically,
+)
+from app.storage.files.cancellation import Cancellation as Cancellation
+from app.storage.files.hold import (
+    Hold as Hold,
+    HoldError as HoldError,
+)
+from app.storage.files.locks import (
+    is_locked as is_locked,
+    lock as lock,
+)
+from app.storage.files.reading import (
+    DAMAGED_ZIP as DAMAGED_ZIP,
+    read_file as read_file,
+    require_file as require_file,
+    tail_digest as tail_digest,
+)

@@ -5,33 +5,20 @@ Out: decoded pictures, and in words what was done to them.
 Imports: `app.document`, `engine.arrays`.
 """
 
-from app.storage.pictures.cores import side_by_side
-from app.storage.pictures.layered import Layer, LayeredPicture
-from app.storage.pictures.openraster import read_openraster
-from app.storage.pictures.photoshop import read_photoshop
-from app.storage.pictures.picture import (
-    DECODER_ERRORS,
-    FORMATS,
-    Picture,
-    decode_mask,
-    decode_picture,
-    decode_pictures,
-    encode_mask,
-    stored_size,
+from app.storage.pictures.cores import side_by_side as side_by_side
+from app.storage.pictures.layered import (
+    Layer as Layer,
+    LayeredPicture as LayeredPicture,
 )
-
-__all__ = [
-    "DECODER_ERRORS",
-    "FORMATS",
-    "Layer",
-    "LayeredPicture",
-    "Picture",
-    "decode_mask",
-    "decode_picture",
-    "decode_pictures",
-    "encode_mask",
-    "read_openraster",
-    "read_photoshop",
-    "side_by_side",
-    "stored_size",
-]
+from app.storage.pictures.openraster import read_openraster as read_openraster
+from app.storage.pictures.photoshop import read_photoshop as read_photoshop
+from app.storage.pictures.picture import (
+    DECODER_ERRORS as DECODER_ERRORS,
+    FORMATS as FORMATS,
+    Picture as Picture,
+    decode_mask as decode_mask,
+    decode_picture as decode_picture,
+    decode_pictures as decode_pictures,
+    encode_mask as encode_mask,
+    stored_size as stored_size,
+)

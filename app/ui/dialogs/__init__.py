@@ -5,7 +5,5 @@ Out: the actions of its answers.
 Imports: `app.ui.style`, `app.ui.shortcuts`.
 """
 
-from app.ui.dialogs.dialogs import Dialogs
-from app.ui.dialogs.system_dialogs import find_system_dialogs
-
-__all__ = ["Dialogs", "find_system_dialogs"]
+from app.ui.dialogs.dialogs import Dialogs as Dialogs
+from app.ui.dialogs.system_dialogs import find_system_dialogs as find_system_dialogs

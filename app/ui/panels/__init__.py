@@ -5,6 +5,13 @@ Out: actions.
 Imports: `app.ui.style`, `app.ui.shortcuts`, `app.ui.viewport`.
 """
 
-from app.ui.panels import cut_out, deform, distortion, domain, export, handle, layers, poses
-
-__all__ = ["cut_out", "deform", "distortion", "domain", "export", "handle", "layers", "poses"]
+from app.ui.panels import (
+    cut_out as cut_out,
+    deform as deform,
+    distortion as distortion,
+    domain as domain,
+    export as export,
+    handle as handle,
+    layers as layers,
+    poses as poses,
+)

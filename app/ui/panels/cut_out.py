@@ -1,7 +1,6 @@
 """Cutting the subject out of its picture: by colour, by brush, by a mask; and its holes."""
 
-from imgui_bundle import ImVec2, imgui
-from imgui_bundle import icons_fontawesome_6 as icons
+from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui
 
 from app.editor import Action, CutTool, Project, Session, do
 from app.editor.actions import cutting, rebuilding

@@ -4,8 +4,7 @@ from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
-from imgui_bundle import ImVec2, ImVec4, imgui, implot
-from imgui_bundle import icons_fontawesome_6 as icons
+from imgui_bundle import ImVec2, ImVec4, icons_fontawesome_6 as icons, imgui, implot
 
 from app.editor import Action, CurveKind, HeatMap, Project, Session, Twin, do
 from app.editor.actions import playback, saving, viewing

@@ -3,8 +3,7 @@
 from dataclasses import replace
 from functools import lru_cache
 
-from imgui_bundle import ImVec2, imgui
-from imgui_bundle import icons_fontawesome_6 as icons
+from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui
 
 from app.document import Meshing
 from app.editor import Action, Overlays, Project, Session, do

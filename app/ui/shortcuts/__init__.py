@@ -5,24 +5,23 @@ Out: actions.
 Imports: `app.editor`, `app.ui.style`.
 """
 
-from app.ui.shortcuts.binding import Binding
-from app.ui.shortcuts.gestures import GESTURES
-from app.ui.shortcuts.keys import MODIFIERS, in_words, with_key
-from app.ui.shortcuts.pressed import ARROWS, pressed
-from app.ui.shortcuts.table import BINDINGS, MENUS
-from app.ui.shortcuts.widgets import bound_button, bound_item, bound_text_button
-
-__all__ = [
-    "ARROWS",
-    "BINDINGS",
-    "GESTURES",
-    "MENUS",
-    "MODIFIERS",
-    "Binding",
-    "bound_button",
-    "bound_item",
-    "bound_text_button",
-    "in_words",
-    "pressed",
-    "with_key",
-]
+from app.ui.shortcuts.binding import Binding as Binding
+from app.ui.shortcuts.gestures import GESTURES as GESTURES
+from app.ui.shortcuts.keys import (
+    MODIFIERS as MODIFIERS,
+    in_words as in_words,
+    with_key as with_key,
+)
+from app.ui.shortcuts.pressed import (
+    ARROWS as ARROWS,
+    pressed as pressed,
+)
+from app.ui.shortcuts.table import (
+    BINDINGS as BINDINGS,
+    MENUS as MENUS,
+)
+from app.ui.shortcuts.widgets import (
+    bound_button as bound_button,
+    bound_item as bound_item,
+    bound_text_button as bound_text_button,
+)

@@ -1,7 +1,6 @@
 """All actions that have a name, in the order of the menus: adding one is adding it here."""
 
-from imgui_bundle import hello_imgui, imgui
-from imgui_bundle import icons_fontawesome_6 as icons
+from imgui_bundle import hello_imgui, icons_fontawesome_6 as icons, imgui
 
 from app.document import LINEAR, PRESETS
 from app.editor import Project, Session, do, layering, with_project

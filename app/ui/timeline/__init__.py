@@ -5,6 +5,4 @@ Out: actions on keys and time.
 Imports: `app.ui.style`, `app.ui.shortcuts`, `app.ui.bars`.
 """
 
-from app.ui.timeline import timeline
-
-__all__ = ["timeline"]
+from app.ui.timeline import timeline as timeline

@@ -2,8 +2,7 @@
 
 from collections.abc import Callable
 
-from imgui_bundle import ImVec2, imgui
-from imgui_bundle import icons_fontawesome_6 as icons
+from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui
 
 from app.document import LAST_FRAME
 from app.editor import Action, Project, Session, do

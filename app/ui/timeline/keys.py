@@ -3,8 +3,7 @@
 from collections.abc import Mapping
 from itertools import pairwise
 
-from imgui_bundle import ImVec2, ImVec4, imgui
-from imgui_bundle import icons_fontawesome_6 as icons
+from imgui_bundle import ImVec2, ImVec4, icons_fontawesome_6 as icons, imgui
 
 from app.document import LAST_FRAME, Figure, Keyframe, Passing
 from app.editor import Action, KeyBox, KeyDrag, Project, TimeGesture, do, layering

@@ -2,8 +2,7 @@
 
 from itertools import pairwise
 
-from imgui_bundle import ImVec2, imgui
-from imgui_bundle import icons_fontawesome_6 as icons
+from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui
 
 from app.document import Figure, is_visible, layer_commands
 from app.editor import Action, SwitchDrag, TimeGesture, do, layering

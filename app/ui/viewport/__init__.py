@@ -5,8 +5,10 @@ Out: a picture of the drawing, and gestures.
 Imports: `app.ui.style`, `app.ui.shortcuts`, `app.render`.
 """
 
-from app.ui.viewport import viewport
-from app.ui.viewport.canvas import Canvas, heat_limits, measure
-from app.ui.viewport.split_view import SplitTextures
-
-__all__ = ["Canvas", "SplitTextures", "heat_limits", "measure", "viewport"]
+from app.ui.viewport import viewport as viewport
+from app.ui.viewport.canvas import (
+    Canvas as Canvas,
+    heat_limits as heat_limits,
+    measure as measure,
+)
+from app.ui.viewport.split_view import SplitTextures as SplitTextures

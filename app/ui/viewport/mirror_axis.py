@@ -1,7 +1,6 @@
 """The upright axis at which poses are flipped, and the grip by which it is moved."""
 
-from imgui_bundle import ImVec2, imgui
-from imgui_bundle import icons_fontawesome_6 as icons
+from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui
 
 from app.ui.style import Look, ink, tip
 

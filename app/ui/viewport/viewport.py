@@ -5,8 +5,7 @@ from functools import partial
 from typing import NamedTuple
 
 import numpy as np
-from imgui_bundle import ImVec2, imgui
-from imgui_bundle import icons_fontawesome_6 as icons
+from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui
 
 from app.document import handle_commands
 from app.editor import (

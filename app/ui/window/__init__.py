@@ -5,7 +5,8 @@ Out: a running window.
 Imports: every other room of `app.ui`.
 """
 
-from app.ui.window.memory import share_heap
-from app.ui.window.window import Window, has_display
-
-__all__ = ["Window", "has_display", "share_heap"]
+from app.ui.window.memory import share_heap as share_heap
+from app.ui.window.window import (
+    Window as Window,
+    has_display as has_display,
+)

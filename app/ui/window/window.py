@@ -9,8 +9,11 @@ from functools import partial
 from pathlib import Path
 
 import numpy as np
-from imgui_bundle import glfw_utils, hello_imgui  # before glfw: it brings the library itself
-from imgui_bundle import icons_fontawesome_6 as icons
+from imgui_bundle import (  # before glfw: it brings the library itself
+    glfw_utils,
+    hello_imgui,
+    icons_fontawesome_6 as icons,
+)
 from PIL import Image
 
 import glfw  # isort: skip

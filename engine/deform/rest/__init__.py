@@ -5,19 +5,16 @@ Out: a search that is advanced step by step, how far it is from a minimum, and t
 Imports: `engine.maps`, and the energy, barrier, handles and Newton models of `engine.deform`.
 """
 
-from engine.deform.rest.continuation import advance, begin_search
-from engine.deform.rest.opening import opens
-from engine.deform.rest.optimality import ActiveBound
-from engine.deform.rest.search import MOST_STEPS, OPTIMAL, WORTH_A_JUMP, Search, Way
-
-__all__ = [
-    "MOST_STEPS",
-    "OPTIMAL",
-    "WORTH_A_JUMP",
-    "ActiveBound",
-    "Search",
-    "Way",
-    "advance",
-    "begin_search",
-    "opens",
-]
+from engine.deform.rest.continuation import (
+    advance as advance,
+    begin_search as begin_search,
+)
+from engine.deform.rest.opening import opens as opens
+from engine.deform.rest.optimality import ActiveBound as ActiveBound
+from engine.deform.rest.search import (
+    MOST_STEPS as MOST_STEPS,
+    OPTIMAL as OPTIMAL,
+    WORTH_A_JUMP as WORTH_A_JUMP,
+    Search as Search,
+    Way as Way,
+)

@@ -5,16 +5,13 @@ Out: a `Mesh`.
 Imports: `engine.geometry`.
 """
 
-from engine.domain.meshing.depth import in_depth_order, spread_depth
-from engine.domain.meshing.draw_order import in_order_of, with_limbs_on_top
-from engine.domain.meshing.mesh import Mesh
-from engine.domain.meshing.triangulation import triangulate
-
-__all__ = [
-    "Mesh",
-    "in_depth_order",
-    "in_order_of",
-    "spread_depth",
-    "triangulate",
-    "with_limbs_on_top",
-]
+from engine.domain.meshing.depth import (
+    in_depth_order as in_depth_order,
+    spread_depth as spread_depth,
+)
+from engine.domain.meshing.draw_order import (
+    in_order_of as in_order_of,
+    with_limbs_on_top as with_limbs_on_top,
+)
+from engine.domain.meshing.mesh import Mesh as Mesh
+from engine.domain.meshing.triangulation import triangulate as triangulate

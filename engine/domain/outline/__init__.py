@@ -5,7 +5,13 @@ Out: an `Enclosure`: an outline and a cage of as many vertices, strictly apart.
 Imports: `engine.domain.picture`, `engine.geometry`.
 """
 
-from engine.domain.outline.enclosure import LARGEST_OUTLINE, Detail, Enclosure, enclose
-from engine.domain.outline.holes import HoleMap, find_holes
-
-__all__ = ["LARGEST_OUTLINE", "Detail", "Enclosure", "HoleMap", "enclose", "find_holes"]
+from engine.domain.outline.enclosure import (
+    LARGEST_OUTLINE as LARGEST_OUTLINE,
+    Detail as Detail,
+    Enclosure as Enclosure,
+    enclose as enclose,
+)
+from engine.domain.outline.holes import (
+    HoleMap as HoleMap,
+    find_holes as find_holes,
+)

@@ -7,32 +7,24 @@ Imports: nothing above `engine.arrays`.
 """
 
 from engine.domain.picture.cut_out import (
-    MOST_STROKE_POINTS,
-    BackgroundColour,
-    CutOut,
-    Enclosed,
-    Holes,
-    Mask,
-    Stroke,
+    MOST_STROKE_POINTS as MOST_STROKE_POINTS,
+    BackgroundColour as BackgroundColour,
+    CutOut as CutOut,
+    Enclosed as Enclosed,
+    Holes as Holes,
+    Mask as Mask,
+    Stroke as Stroke,
 )
-from engine.domain.picture.grid import WorkingGrid, working_grid
-from engine.domain.picture.mask import Subject, subject_mask
-from engine.domain.picture.matte import matted
-from engine.domain.picture.parts import WholePiece, join_parts
-
-__all__ = [
-    "MOST_STROKE_POINTS",
-    "BackgroundColour",
-    "CutOut",
-    "Enclosed",
-    "Holes",
-    "Mask",
-    "Stroke",
-    "Subject",
-    "WholePiece",
-    "WorkingGrid",
-    "join_parts",
-    "matted",
-    "subject_mask",
-    "working_grid",
-]
+from engine.domain.picture.grid import (
+    WorkingGrid as WorkingGrid,
+    working_grid as working_grid,
+)
+from engine.domain.picture.mask import (
+    Subject as Subject,
+    subject_mask as subject_mask,
+)
+from engine.domain.picture.matte import matted as matted
+from engine.domain.picture.parts import (
+    WholePiece as WholePiece,
+    join_parts as join_parts,
+)

@@ -5,8 +5,9 @@ Out: f_z, conj(f_z̄) and their derivatives at any time.
 Imports: `engine.dirichlet`, `engine.interpolation.derivatives`, `engine.interpolation.periods`.
 """
 
-from engine.interpolation.blends.eta import EtaBlend
-from engine.interpolation.blends.metric import MetricResidual, OutlineMetric
-from engine.interpolation.blends.nu import NuBlend
-
-__all__ = ["EtaBlend", "MetricResidual", "NuBlend", "OutlineMetric"]
+from engine.interpolation.blends.eta import EtaBlend as EtaBlend
+from engine.interpolation.blends.metric import (
+    MetricResidual as MetricResidual,
+    OutlineMetric as OutlineMetric,
+)
+from engine.interpolation.blends.nu import NuBlend as NuBlend

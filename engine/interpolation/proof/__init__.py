@@ -6,6 +6,7 @@ Imports: `engine.maps`, `engine.interpolation.passing`, `engine.interpolation.sc
 `engine.interpolation.inbetweens`.
 """
 
-from engine.interpolation.proof.bisection import Proof, prove
-
-__all__ = ["Proof", "prove"]
+from engine.interpolation.proof.bisection import (
+    Proof as Proof,
+    prove as prove,
+)

@@ -6,23 +6,15 @@ Imports: `engine.maps`, `engine.interpolation.blends`, `engine.interpolation.pas
     `engine.interpolation.periods`.
 """
 
-from engine.interpolation.scaling.metric import MetricRatios
+from engine.interpolation.scaling.metric import MetricRatios as MetricRatios
 from engine.interpolation.scaling.sharp import (
-    BESIDE_KEY,
-    PointSamples,
-    SharpScaling,
-    Worst,
-    looseness,
+    BESIDE_KEY as BESIDE_KEY,
+    PointSamples as PointSamples,
+    SharpScaling as SharpScaling,
+    Worst as Worst,
+    looseness as looseness,
 )
-from engine.interpolation.scaling.smooth import Scaling, ScalingEnclosures
-
-__all__ = [
-    "BESIDE_KEY",
-    "MetricRatios",
-    "PointSamples",
-    "Scaling",
-    "ScalingEnclosures",
-    "SharpScaling",
-    "Worst",
-    "looseness",
-]
+from engine.interpolation.scaling.smooth import (
+    Scaling as Scaling,
+    ScalingEnclosures as ScalingEnclosures,
+)

@@ -15,11 +15,13 @@ from documents import (
 )
 from numpy.testing import assert_allclose
 
-from app.document import figure_commands as figures
-from app.document import handle_commands as handles
-from app.document import key_commands as keys
-from app.document import pose_commands as poses
-from app.document import scene_commands as settings
+from app.document import (
+    figure_commands as figures,
+    handle_commands as handles,
+    key_commands as keys,
+    pose_commands as poses,
+    scene_commands as settings,
+)
 from app.document.easing import HOLD, LINEAR, PRESETS
 from app.document.figure import PictureFile
 from app.document.keyframe import MOST_TURNS, Handle, Keyframe, Target

@@ -3,8 +3,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from documents import CENTRE, differences, disc_document, full_document, random_command
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 
 from app.document.commands import (
     Command,

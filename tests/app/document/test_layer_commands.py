@@ -5,9 +5,11 @@ import pytest
 from documents import CENTRE, disc_document, inside
 from numpy.testing import assert_allclose
 
-from app.document import handle_commands as handles
-from app.document import layer_commands as layers
-from app.document import scene_commands as scenes
+from app.document import (
+    handle_commands as handles,
+    layer_commands as layers,
+    scene_commands as scenes,
+)
 from app.document.layering import Attachment, Switch
 from app.document.queries.clips import clip_of
 from app.document.queries.fronts import fronts_at, is_visible

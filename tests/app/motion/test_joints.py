@@ -6,8 +6,7 @@ import pytest
 from documents import CENTRE, disc_document, inside
 from numpy.testing import assert_allclose
 
-from app.document import History, clip_of, key_commands, scene_commands
-from app.document import layer_commands as layers
+from app.document import History, clip_of, key_commands, layer_commands as layers, scene_commands
 from app.document.keyframe import Keyframe, Passing
 from app.document.layering import Attachment
 from app.document.settings import FrameRange

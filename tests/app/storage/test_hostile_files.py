@@ -6,8 +6,7 @@
 import hypothesis
 import pytest
 from hostile_files import READERS, STEPS, Watch, read_changed
-from hypothesis import HealthCheck, given, settings
-from hypothesis import strategies as st
+from hypothesis import HealthCheck, given, settings, strategies as st
 
 INPUTS = 4
 # What was found once: decoders that raise what nobody expected.

@@ -17,8 +17,7 @@ from documents import (
     full_document,
     random_command,
 )
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 
 from app.document.commands import handle_commands, key_commands, layer_commands
 from app.document.keyframe import Passing

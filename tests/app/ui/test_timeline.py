@@ -3,8 +3,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from documents import CENTRE, RADIUS, altered, disc_document
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 from imgui_bundle import ImVec2, imgui
 from projects import project_of
 

@@ -2,8 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 from interpolation_shapes import bar, letter_l, random_map
 from meshed_shapes import k_of, meshed_bar, s_to_u, stretched_pair
 from numpy.testing import assert_allclose

@@ -1,8 +1,7 @@
 """Free-form motion processing: facts of Kircher and Garland (2008)."""
 
 import numpy as np
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 from meshed_shapes import meshed_bar, stretched_pair
 from numpy.testing import assert_allclose
 

@@ -15,8 +15,7 @@ from deform_shapes import (
     star,
     star_boundary,
 )
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 from numpy.testing import assert_allclose, assert_array_equal
 from pictures import stick_figure
 

@@ -1,9 +1,7 @@
 import numpy as np
 import pytest
-from holed_shapes import Holed, plate, ring
-from holed_shapes import inner_points as points_of
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from holed_shapes import Holed, inner_points as points_of, plate, ring
+from hypothesis import given, settings, strategies as st
 from interpolation_shapes import around, bar, inner_points, letter_l, narrow_u, random_map, spiral
 from numpy.testing import assert_allclose, assert_array_equal
 from shapes import star_polygons

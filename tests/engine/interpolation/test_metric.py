@@ -1,8 +1,7 @@
 """The metric on the outline: Equations (9) to (13) and Lemma 7."""
 
 import numpy as np
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 from numpy.testing import assert_allclose
 
 from engine.interpolation.blends import OutlineMetric

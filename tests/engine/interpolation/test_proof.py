@@ -2,10 +2,8 @@
 
 import numpy as np
 import pytest
-from holed_shapes import plate
-from holed_shapes import random_map as holed_map
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from holed_shapes import plate, random_map as holed_map
+from hypothesis import given, settings, strategies as st
 from interpolation_shapes import bar, inner_points, letter_l, random_map, scattered_on
 
 from engine.interpolation import Course, Variant, prepare

@@ -2,8 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 from interpolation_shapes import bar, bent, letter_l, random_map
 from numpy.testing import assert_allclose
 

@@ -5,8 +5,7 @@ from functools import cache
 import numpy as np
 import pytest
 from deform_shapes import STAR_POINTS, star
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 from interpolation_shapes import (
     bar,
     bent,

@@ -1,8 +1,7 @@
 import numpy as np
 import pytest
 from deform_shapes import STAR_POINTS, dense_outline, extremes, star, star_boundary
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 from numpy.testing import assert_allclose, assert_array_equal
 from scipy.linalg import eigh
 
@@ -11,11 +10,11 @@ from engine.maps import (
     Boundary,
     Bounds,
     Limits,
+    certificate as certificate_module,
     certify,
     certify_segments,
     segment_enclosures,
 )
-from engine.maps import certificate as certificate_module
 from engine.maps.cauchy import cauchy_derivatives
 from engine.maps.harmonic_map import HarmonicMap
 

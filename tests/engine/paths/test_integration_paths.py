@@ -1,8 +1,7 @@
 import numpy as np
 import pytest
 import shapely
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 from interpolation_shapes import bar, inner_points, letter_l, narrow_u, random_map, spiral
 from numpy.testing import assert_allclose, assert_array_equal
 from shapes import regular_polygon, star_polygons

@@ -5,10 +5,8 @@ from functools import cache
 
 import numpy as np
 import pytest
-from holed_shapes import inner_points as holed_points
-from holed_shapes import ring
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from holed_shapes import inner_points as holed_points, ring
+from hypothesis import given, settings, strategies as st
 from interpolation_shapes import bar, bent, inner_points, letter_l, narrow_u, random_map
 from numpy.testing import assert_allclose, assert_array_equal
 

@@ -15,7 +15,10 @@ from app.cli.figures.plates import (
     figure_10,
     figure_11,
 )
-from app.cli.figures.plates.plate import Plate, Studio
+from app.cli.figures.plates.plate import (
+    Plate as Plate,
+    Studio as Studio,
+)
 
 MAKERS = {
     1: figure_1.make,
@@ -29,5 +32,3 @@ MAKERS = {
     10: figure_10.make,
     11: figure_11.make,
 }
-
-__all__ = ["MAKERS", "Plate", "Studio"]

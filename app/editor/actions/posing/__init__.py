@@ -6,56 +6,41 @@ Imports: `app.editor`, `app.document`, `app.motion`, `app.solving`.
 """
 
 from app.editor.actions.posing.handles import (
-    add_handle,
-    anchor_at,
-    mirror_handles,
-    put_anchor,
-    remove_handles,
-    suggest_handles,
+    add_handle as add_handle,
+    anchor_at as anchor_at,
+    mirror_handles as mirror_handles,
+    put_anchor as put_anchor,
+    remove_handles as remove_handles,
+    suggest_handles as suggest_handles,
 )
-from app.editor.actions.posing.inserting import INSERTING, fit_pose, insert_key, insert_key_at
-from app.editor.actions.posing.keeping import holding, retargeted
+from app.editor.actions.posing.inserting import (
+    INSERTING as INSERTING,
+    fit_pose as fit_pose,
+    insert_key as insert_key,
+    insert_key_at as insert_key_at,
+)
+from app.editor.actions.posing.keeping import (
+    holding as holding,
+    retargeted as retargeted,
+)
 from app.editor.actions.posing.pulling import (
-    end_at,
-    free_turn,
-    give_up,
-    let_go,
-    nudge,
-    pin_here,
-    pull,
-    pull_again,
-    take_back,
-    wish,
+    end_at as end_at,
+    free_turn as free_turn,
+    give_up as give_up,
+    let_go as let_go,
+    nudge as nudge,
+    pin_here as pin_here,
+    pull as pull,
+    pull_again as pull_again,
+    take_back as take_back,
+    wish as wish,
 )
-from app.editor.actions.posing.settling import bring_all, keep_up, tried_clips
-from app.editor.actions.posing.solving import POSING, STEPS
-
-__all__ = [
-    "INSERTING",
-    "POSING",
-    "STEPS",
-    "add_handle",
-    "anchor_at",
-    "bring_all",
-    "end_at",
-    "fit_pose",
-    "free_turn",
-    "give_up",
-    "holding",
-    "insert_key",
-    "insert_key_at",
-    "keep_up",
-    "let_go",
-    "mirror_handles",
-    "nudge",
-    "pin_here",
-    "pull",
-    "pull_again",
-    "put_anchor",
-    "remove_handles",
-    "retargeted",
-    "suggest_handles",
-    "take_back",
-    "tried_clips",
-    "wish",
-]
+from app.editor.actions.posing.settling import (
+    bring_all as bring_all,
+    keep_up as keep_up,
+    tried_clips as tried_clips,
+)
+from app.editor.actions.posing.solving import (
+    POSING as POSING,
+    STEPS as STEPS,
+)

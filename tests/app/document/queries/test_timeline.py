@@ -5,8 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from documents import altered, disc_document
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 from numpy.testing import assert_allclose
 
 from app.document.commands.handle_commands import add_handle

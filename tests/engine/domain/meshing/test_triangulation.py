@@ -1,8 +1,7 @@
 import numpy as np
 import pytest
 import shapely
-from hypothesis import assume, given, settings
-from hypothesis import strategies as st
+from hypothesis import assume, given, settings, strategies as st
 from shapes import regular_polygon, star_polygons
 
 from engine.arrays import Complexes, Floats

@@ -1,8 +1,7 @@
 import numpy as np
 import pictures
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 from numpy.testing import assert_allclose
 from outlines import check_outline, diagonal, interior_angles
 from scipy import ndimage

@@ -3,8 +3,7 @@
 import numpy as np
 import pictures
 import pytest
-from hypothesis import assume, given, settings
-from hypothesis import strategies as st
+from hypothesis import assume, given, settings, strategies as st
 from numpy.testing import assert_allclose, assert_array_equal
 from outlines import check_hole, check_outline, corners_of, diagonal
 from scipy import ndimage

@@ -1,8 +1,7 @@
 import numpy as np
 import pictures
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 from numpy.testing import assert_allclose, assert_array_equal
 
 from engine.arrays import Booleans
