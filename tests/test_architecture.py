@@ -136,14 +136,11 @@ def test_the_engine_computes_nothing_when_it_is_loaded(name):
 
 @cache
 def public_names(package: str) -> set[str]:
-    """Return what a face shows: what it imports by its own name."""
-    return {
-        alias.asname
-        for node in parsed(package).body
-        if isinstance(node, ast.ImportFrom)
-        for alias in node.names
-        if alias.asname is not None
-    }
+    """Return what a face shows: what it imports by its own name, and its tables."""
+    body = parsed(package).body
+    imports = (alias for node in body if isinstance(node, ast.ImportFrom) for alias in node.names)
+    tables = (ast.unparse(node.targets[0]) for node in body if isinstance(node, ast.Assign))
+    return {alias.asname for alias in imports if alias.asname is not None} | set(tables)
 
 
 def defined_names(name: str) -> tuple[set[str], set[str]]:

@@ -17,25 +17,14 @@ from app.document.commands import (
     pose_commands as pose_commands,
     scene_commands as scene_commands,
 )
-from app.document.easing import (
-    HOLD as HOLD,
-    LINEAR as LINEAR,
-    PRESETS as PRESETS,
-    Easing as Easing,
-)
+from app.document.easing import HOLD as HOLD, LINEAR as LINEAR, PRESETS as PRESETS, Easing as Easing
 from app.document.figure import (
     Figure as Figure,
     PictureFile as PictureFile,
     new_figure as new_figure,
 )
-from app.document.handle_pairs import (
-    mirrored_name as mirrored_name,
-    pairs_by_name as pairs_by_name,
-)
-from app.document.history import (
-    History as History,
-    UnkeyedPose as UnkeyedPose,
-)
+from app.document.handle_pairs import mirrored_name as mirrored_name, pairs_by_name as pairs_by_name
+from app.document.history import History as History, UnkeyedPose as UnkeyedPose
 from app.document.keyframe import (
     MOST_TURNS as MOST_TURNS,
     Handle as Handle,
@@ -45,10 +34,7 @@ from app.document.keyframe import (
     Pose as Pose,
     Target as Target,
 )
-from app.document.layering import (
-    Attachment as Attachment,
-    Switch as Switch,
-)
+from app.document.layering import Attachment as Attachment, Switch as Switch
 from app.document.model import Document as Document
 from app.document.playhead import Playhead as Playhead
 from app.document.queries import (
@@ -91,7 +77,4 @@ from app.document.settings import (
     loosened as loosened,
     stretch_of as stretch_of,
 )
-from engine.variant import (
-    Baseline as Baseline,
-    Variant as Variant,
-)
+from engine.variant import Baseline as Baseline, Variant as Variant

@@ -16,10 +16,7 @@ from app.export.destination import (
     folder_within as folder_within,
     suited as suited,
 )
-from app.export.framing import (
-    frame_view as frame_view,
-    shown_box as shown_box,
-)
+from app.export.framing import frame_view as frame_view, shown_box as shown_box
 from app.export.moving_shape import with_light_meshes as with_light_meshes
 from app.export.painting import Painter as Painter
 from app.export.plan import (
@@ -30,10 +27,7 @@ from app.export.plan import (
     plan_export as plan_export,
     replaced_files as replaced_files,
 )
-from app.export.poses import (
-    KeptPoses as KeptPoses,
-    Poses as Poses,
-)
+from app.export.poses import KeptPoses as KeptPoses, Poses as Poses
 from app.export.run import export as export
 from app.export.run_shapes import ShapeExport as ShapeExport
 from app.export.writers import sheet_grid as sheet_grid

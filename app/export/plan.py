@@ -18,13 +18,7 @@ from app.document import (
     framed_frames,
 )
 from app.errors import LissomError
-from app.export.destination import (
-    FrameNames,
-    check_destination,
-    check_room,
-    left_frames,
-    replaced,
-)
+from app.export.destination import FrameNames, check_destination, check_room, left_frames, replaced
 from app.export.framing import frame_view
 from app.export.poses import KeptPoses
 from app.export_formats import EXPORT_FORMATS, FormatSettings

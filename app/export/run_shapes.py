@@ -5,12 +5,7 @@ from concurrent.futures import ThreadPoolExecutor
 from typing import Final
 
 from app.document import Document
-from app.export.moving_shape import (
-    DEFAULT_TOLERANCE,
-    MOST_TARGETS,
-    MovingShape,
-    moving_shapes,
-)
+from app.export.moving_shape import DEFAULT_TOLERANCE, MOST_TARGETS, MovingShape, moving_shapes
 from app.export.plan import ExportPlan
 from app.export.poses import Poses
 from app.export.run import come

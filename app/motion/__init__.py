@@ -12,14 +12,8 @@ from app.motion.extent import (
     measure_extent as measure_extent,
     motion_box as motion_box,
 )
-from app.motion.inbetweens import (
-    Animation as Animation,
-    PoseSampler as PoseSampler,
-)
-from app.motion.interval_store import (
-    IntervalPart as IntervalPart,
-    IntervalStore as IntervalStore,
-)
+from app.motion.inbetweens import Animation as Animation, PoseSampler as PoseSampler
+from app.motion.interval_store import IntervalPart as IntervalPart, IntervalStore as IntervalStore
 from app.motion.intervals import (
     AnyInbetweens as AnyInbetweens,
     Build as Build,
@@ -34,22 +28,8 @@ from app.motion.joints import (
     hung_animations as hung_animations,
     joints_source as joints_source,
 )
-from app.motion.motion_paths import (
-    MotionPaths as MotionPaths,
-    trace_paths as trace_paths,
-)
+from app.motion.motion_paths import MotionPaths as MotionPaths, trace_paths as trace_paths
 from app.motion.paint_order import PaintOrder as PaintOrder
-from app.motion.posable_mesh import (
-    AttachedPoints as AttachedPoints,
-    PosableMesh as PosableMesh,
-)
-from app.motion.shown_frame import (
-    Shown as Shown,
-    hang_shown as hang_shown,
-    show as show,
-)
-from app.motion.vertices import (
-    Placed as Placed,
-    Streamed as Streamed,
-    Vertices as Vertices,
-)
+from app.motion.posable_mesh import AttachedPoints as AttachedPoints, PosableMesh as PosableMesh
+from app.motion.shown_frame import Shown as Shown, hang_shown as hang_shown, show as show
+from app.motion.vertices import Placed as Placed, Streamed as Streamed, Vertices as Vertices

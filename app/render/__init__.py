@@ -5,14 +5,8 @@ Out: pixels in a target.
 Imports: `app.motion`, `app.storage`; with `app.render.gpu` it alone sees OpenGL.
 """
 
-from app.render.draw_lists import (
-    DrawLists as DrawLists,
-    Textures as Textures,
-)
-from app.render.drawn_mesh import (
-    DrawnMesh as DrawnMesh,
-    shader_is_faster as shader_is_faster,
-)
+from app.render.draw_lists import DrawLists as DrawLists, Textures as Textures
+from app.render.drawn_mesh import DrawnMesh as DrawnMesh, shader_is_faster as shader_is_faster
 from app.render.handles import (
     HandleMark as HandleMark,
     HandleStyle as HandleStyle,
@@ -37,8 +31,4 @@ from app.render.thumbnails import (
     Thumbnail as Thumbnail,
     Thumbnails as Thumbnails,
 )
-from app.render.view import (
-    View as View,
-    canvas_view as canvas_view,
-    fit_view as fit_view,
-)
+from app.render.view import View as View, canvas_view as canvas_view, fit_view as fit_view

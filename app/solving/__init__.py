@@ -5,19 +5,9 @@ Out: certified poses.
 Imports: `app.motion`, `app.storage`.
 """
 
-from app.solving.drag import (
-    Drag as Drag,
-    Rig as Rig,
-    pose_at as pose_at,
-)
-from app.solving.flipping import (
-    flip_poses as flip_poses,
-    flipped_targets as flipped_targets,
-)
-from app.solving.renewal import (
-    Renewal as Renewal,
-    go_on as go_on,
-)
+from app.solving.drag import Drag as Drag, Rig as Rig, pose_at as pose_at
+from app.solving.flipping import flip_poses as flip_poses, flipped_targets as flipped_targets
+from app.solving.renewal import Renewal as Renewal, go_on as go_on
 from app.solving.replacing import begin_replacing as begin_replacing
 from app.solving.script import load_pose_script as load_pose_script
 from app.solving.script_solver import pose_document as pose_document

@@ -18,10 +18,7 @@ from engine.baselines.boundary_keyframes import (
     discrete_harmonic as discrete_harmonic,
     harmonic_coordinate_maps as harmonic_coordinate_maps,
 )
-from engine.baselines.frames import (
-    MeshFrame as MeshFrame,
-    MeshInbetweens as MeshInbetweens,
-)
+from engine.baselines.frames import MeshFrame as MeshFrame, MeshInbetweens as MeshInbetweens
 from engine.baselines.preparation import (
     PreparedBaseline as PreparedBaseline,
     prepare_baseline as prepare_baseline,

@@ -5,8 +5,5 @@ Out: holomorphic functions with these real parts, at any points inside.
 Imports: `engine.maps`, `engine.geometry`.
 """
 
-from engine.dirichlet.hilbert import (
-    Extension as Extension,
-    HilbertTransform as HilbertTransform,
-)
+from engine.dirichlet.hilbert import Extension as Extension, HilbertTransform as HilbertTransform
 from engine.dirichlet.refinement import Refinement as Refinement

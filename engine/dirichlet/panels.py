@@ -8,14 +8,7 @@ from typing import Self
 import numpy as np
 
 from engine.arrays import Booleans, Complexes, Floats, Indices, freeze, ragged
-from engine.geometry import (
-    Hole,
-    Pieces,
-    bisect,
-    distance_to_segments,
-    loop_ends,
-    next_on_loop,
-)
+from engine.geometry import Hole, Pieces, bisect, distance_to_segments, loop_ends, next_on_loop
 
 NODES = 12  # Gauss-Legendre nodes of a panel
 POWER = 3  # grading at corners: arc length is the third power of the parameter

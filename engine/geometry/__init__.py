@@ -5,10 +5,7 @@ Out: samples, pieces, triangles, distances, areas, and whether something is insi
 Imports: `engine.arrays`, `engine.errors`.
 """
 
-from engine.geometry.hole import (
-    Hole as Hole,
-    require_cages_in_holes as require_cages_in_holes,
-)
+from engine.geometry.hole import Hole as Hole, require_cages_in_holes as require_cages_in_holes
 from engine.geometry.polygon import (
     as_xy as as_xy,
     box_diagonal as box_diagonal,

@@ -31,18 +31,12 @@ from engine.interpolation.preparation import (
     prepare_inbetweens as prepare_inbetweens,
     require_keyframes as require_keyframes,
 )
-from engine.interpolation.proof import (
-    Proof as Proof,
-    prove as prove,
-)
+from engine.interpolation.proof import Proof as Proof, prove as prove
 from engine.interpolation.scaling import (
     PointSamples as PointSamples,
     Scaling as Scaling,
     Worst as Worst,
     looseness as looseness,
 )
-from engine.interpolation.sites import (
-    Sites as Sites,
-    prepare_sites as prepare_sites,
-)
+from engine.interpolation.sites import Sites as Sites, prepare_sites as prepare_sites
 from engine.variant import Variant as Variant

@@ -7,10 +7,7 @@ Imports: `engine.geometry`.
 
 from engine.maps import distortion as distortion
 from engine.maps.boundary import Boundary as Boundary
-from engine.maps.bounds import (
-    Bounds as Bounds,
-    Limits as Limits,
-)
+from engine.maps.bounds import Bounds as Bounds, Limits as Limits
 from engine.maps.cauchy import (
     cauchy_coordinates as cauchy_coordinates,
     cauchy_derivatives as cauchy_derivatives,
@@ -23,8 +20,5 @@ from engine.maps.certificate import (
     certify_segments as certify_segments,
     segment_enclosures as segment_enclosures,
 )
-from engine.maps.harmonic_map import (
-    HarmonicMap as HarmonicMap,
-    derivatives_of as derivatives_of,
-)
+from engine.maps.harmonic_map import HarmonicMap as HarmonicMap, derivatives_of as derivatives_of
 from engine.maps.span import Span as Span

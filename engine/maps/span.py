@@ -18,12 +18,7 @@ from scipy.linalg import solve_triangular
 
 from engine.arrays import Complexes, Floats
 from engine.geometry import Hole, distance_to_segments
-from engine.maps.cauchy import (
-    cauchy_coordinates,
-    cauchy_derivatives,
-    difference_jumps,
-    evaluate,
-)
+from engine.maps.cauchy import cauchy_coordinates, cauchy_derivatives, difference_jumps, evaluate
 
 # What is this small, of the mean square of the derivatives, cannot be told from nothing.
 DEGENERATE = 1e-10

@@ -6,21 +6,12 @@ programs, of a whole motion within a tolerance.
 Imports: `engine.interpolation`.
 """
 
-from engine.streaming.build import (
-    build_series as build_series,
-    finish as finish,
-)
+from engine.streaming.build import build_series as build_series, finish as finish
 from engine.streaming.channels import (
     Channels as Channels,
     Distortions as Distortions,
     Positions as Positions,
 )
 from engine.streaming.cutting import MOST_ROWS as MOST_ROWS
-from engine.streaming.series import (
-    Series as Series,
-    SeriesPiece as SeriesPiece,
-)
-from engine.streaming.targets import (
-    ShapeTargets as ShapeTargets,
-    build_targets as build_targets,
-)
+from engine.streaming.series import Series as Series, SeriesPiece as SeriesPiece
+from engine.streaming.targets import ShapeTargets as ShapeTargets, build_targets as build_targets

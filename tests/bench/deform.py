@@ -7,15 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from engine.arrays import Complexes
-from engine.deform import (
-    Deformer,
-    Handles,
-    Objective,
-    State,
-    Wish,
-    line_search,
-    newton_direction,
-)
+from engine.deform import Deformer, Handles, Objective, State, Wish, line_search, newton_direction
 from engine.maps import Boundary, Bounds, certify
 from tests.bench.table import Row, Table, measure
 

@@ -24,14 +24,7 @@ from app.document import (
     clip_of,
     new_figure,
 )
-from app.export import (
-    ExportRequest,
-    KeptPoses,
-    Painter,
-    export,
-    missing,
-    plan_export,
-)
+from app.export import ExportRequest, KeptPoses, Painter, export, missing, plan_export
 from app.export.writers.png import encode_png
 from app.export_formats import EXPORT_FORMATS
 from app.motion import Animation, box_around

@@ -7,9 +7,5 @@ Imports: `app.render`, `app.reports`, `app.storage`, `engine`.
 
 from app.cli.figures.easel import Easel as Easel
 from app.cli.figures.page import lay_out as lay_out
-from app.cli.figures.plates import (
-    MAKERS as MAKERS,
-    Plate as Plate,
-    Studio as Studio,
-)
+from app.cli.figures.plates import MAKERS as MAKERS, Plate as Plate, Studio as Studio
 from app.cli.figures.sheet import require_matplotlib as require_matplotlib

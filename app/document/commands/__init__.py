@@ -14,7 +14,4 @@ from app.document.commands import (
     scene_commands as scene_commands,
 )
 from app.document.commands.command import Command as Command
-from app.document.commands.pose_commands import (
-    Settled as Settled,
-    exchanged as exchanged,
-)
+from app.document.commands.pose_commands import Settled as Settled, exchanged as exchanged

@@ -32,7 +32,4 @@ from app.document.queries.timeline import (
     resting_pose as resting_pose,
     time_of as time_of,
 )
-from app.document.queries.transits import (
-    Transit as Transit,
-    transits as transits,
-)
+from app.document.queries.transits import Transit as Transit, transits as transits

@@ -7,13 +7,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from app.document import (
-    Clip,
-    ExportSettings,
-    FrameRange,
-    clip_of,
-    scene_commands,
-)
+from app.document import Clip, ExportSettings, FrameRange, clip_of, scene_commands
 from app.editor import promises
 from app.editor.action import Action, do
 from app.editor.actions import editing, posing
@@ -37,13 +31,7 @@ from app.export import (
     with_light_meshes,
 )
 from app.export_formats import EXPORT_FORMATS, STILL
-from app.motion import (
-    Animation,
-    Box,
-    PoseSampler,
-    extent_source,
-    hung_animations,
-)
+from app.motion import Animation, Box, PoseSampler, extent_source, hung_animations
 from app.storage import Cancellation, make_settings_folder, passing_picture
 
 PREPARING, COPYING = "Preparing the export", "Copying the picture"

@@ -5,8 +5,4 @@ Out: keys that hold those poses, and what was copied or kept.
 Imports: `app.editor.actions`, `app.solving`.
 """
 
-from app.editor.poses import (
-    copying as copying,
-    flipping as flipping,
-    library as library,
-)
+from app.editor.poses import copying as copying, flipping as flipping, library as library

@@ -5,10 +5,7 @@ Out: bytes and arrays; files that are whole or absent; locks that end with their
 Imports: nothing of the project but `app.errors`.
 """
 
-from app.storage.files.arrays import (
-    read_arrays as read_arrays,
-    write_arrays as write_arrays,
-)
+from app.storage.files.arrays import read_arrays as read_arrays, write_arrays as write_arrays
 from app.storage.files.atomic import (
     atomic_file as atomic_file,
     check_writable as check_writable,
@@ -18,14 +15,8 @@ from app.storage.files.atomic import (
     write_atomically as write_atomically,
 )
 from app.storage.files.cancellation import Cancellation as Cancellation
-from app.storage.files.hold import (
-    Hold as Hold,
-    HoldError as HoldError,
-)
-from app.storage.files.locks import (
-    is_locked as is_locked,
-    lock as lock,
-)
+from app.storage.files.hold import Hold as Hold, HoldError as HoldError
+from app.storage.files.locks import is_locked as is_locked, lock as lock
 from app.storage.files.reading import (
     DAMAGED_ZIP as DAMAGED_ZIP,
     read_file as read_file,

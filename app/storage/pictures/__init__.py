@@ -6,10 +6,7 @@ Imports: `app.document`, `engine.arrays`.
 """
 
 from app.storage.pictures.cores import side_by_side as side_by_side
-from app.storage.pictures.layered import (
-    Layer as Layer,
-    LayeredPicture as LayeredPicture,
-)
+from app.storage.pictures.layered import Layer as Layer, LayeredPicture as LayeredPicture
 from app.storage.pictures.openraster import read_openraster as read_openraster
 from app.storage.pictures.photoshop import read_photoshop as read_photoshop
 from app.storage.pictures.picture import (

@@ -5,16 +5,7 @@ from itertools import combinations_with_replacement
 
 from imgui_bundle import ImVec2, imgui
 
-from app.editor import (
-    Action,
-    Dialog,
-    FileDialog,
-    Question,
-    Recovery,
-    Session,
-    ShortcutSheet,
-    do,
-)
+from app.editor import Action, Dialog, FileDialog, Question, Recovery, Session, ShortcutSheet, do
 from app.editor.actions import answer, browse, close_dialog, use_own_dialogs
 from app.errors import shown_name
 from app.ui.dialogs.file_browser import FileBrowser, LookUp

@@ -4,14 +4,7 @@ from dataclasses import dataclass, replace
 
 from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui
 
-from app.document import (
-    STRETCHES,
-    Shortfall,
-    find_shortfall,
-    intervals,
-    stretch_of,
-    time_of,
-)
+from app.document import STRETCHES, Shortfall, find_shortfall, intervals, stretch_of, time_of
 from app.editor import Action, Project, Session, do
 from app.editor.actions import playback, rebuilding
 from app.ui.style import (

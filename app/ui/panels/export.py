@@ -4,11 +4,7 @@ from dataclasses import replace
 
 from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui
 
-from app.document import (
-    ExportSettings,
-    FrameRange,
-    exported_frames,
-)
+from app.document import ExportSettings, FrameRange, exported_frames
 from app.editor import Action, Project, Session, do
 from app.editor.actions import exporting
 from app.errors import shown_name

@@ -6,14 +6,7 @@ from dataclasses import replace
 
 from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui
 
-from app.document import (
-    Handle,
-    Shortfall,
-    Target,
-    figure_commands,
-    find_shortfall,
-    handle_commands,
-)
+from app.document import Handle, Shortfall, Target, figure_commands, find_shortfall, handle_commands
 from app.editor import Action, Project, Session, do, layering
 from app.editor.actions import editing, posing
 from app.ui.panels import depth

@@ -9,15 +9,7 @@ import numpy as np
 from app.document import is_visible, time_of
 from app.editor import HeatMap, Project, Puppet, Session
 from app.motion import PosableMesh, Shown, Vertices
-from app.render import (
-    DrawnMesh,
-    Ghost,
-    Heat,
-    Renderer,
-    Scene,
-    Wireframe,
-    shader_is_faster,
-)
+from app.render import DrawnMesh, Ghost, Heat, Renderer, Scene, Wireframe, shader_is_faster
 from app.render.gpu import GpuMesh, GpuPicture, PosedMesh, RenderTarget
 from app.storage import Picture
 from app.ui.style import PALETTES

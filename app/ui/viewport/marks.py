@@ -8,15 +8,7 @@ from imgui_bundle import ImVec4, imgui
 from app.document import falls_short
 from app.editor import Project, Session
 from app.motion import AttachedPoints, Box, PosableMesh, Shown
-from app.render import (
-    Colour,
-    Disc,
-    HandleMark,
-    HandleStyle,
-    Line,
-    mark_anchor,
-    mark_handles,
-)
+from app.render import Colour, Disc, HandleMark, HandleStyle, Line, mark_anchor, mark_handles
 from app.ui.style import Palette, interface_scale
 from engine.arrays import Complexes
 from engine.domain import Domain

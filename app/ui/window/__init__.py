@@ -6,7 +6,4 @@ Imports: every other room of `app.ui`.
 """
 
 from app.ui.window.memory import share_heap as share_heap
-from app.ui.window.window import (
-    Window as Window,
-    has_display as has_display,
-)
+from app.ui.window.window import Window as Window, has_display as has_display

@@ -5,10 +5,7 @@ Out: a search that is advanced step by step, how far it is from a minimum, and t
 Imports: `engine.maps`, and the energy, barrier, handles and Newton models of `engine.deform`.
 """
 
-from engine.deform.rest.continuation import (
-    advance as advance,
-    begin_search as begin_search,
-)
+from engine.deform.rest.continuation import advance as advance, begin_search as begin_search
 from engine.deform.rest.opening import opens as opens
 from engine.deform.rest.optimality import ActiveBound as ActiveBound
 from engine.deform.rest.search import (

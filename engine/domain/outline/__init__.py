@@ -11,7 +11,4 @@ from engine.domain.outline.enclosure import (
     Enclosure as Enclosure,
     enclose as enclose,
 )
-from engine.domain.outline.holes import (
-    HoleMap as HoleMap,
-    find_holes as find_holes,
-)
+from engine.domain.outline.holes import HoleMap as HoleMap, find_holes as find_holes

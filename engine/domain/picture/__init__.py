@@ -15,16 +15,7 @@ from engine.domain.picture.cut_out import (
     Mask as Mask,
     Stroke as Stroke,
 )
-from engine.domain.picture.grid import (
-    WorkingGrid as WorkingGrid,
-    working_grid as working_grid,
-)
-from engine.domain.picture.mask import (
-    Subject as Subject,
-    subject_mask as subject_mask,
-)
+from engine.domain.picture.grid import WorkingGrid as WorkingGrid, working_grid as working_grid
+from engine.domain.picture.mask import Subject as Subject, subject_mask as subject_mask
 from engine.domain.picture.matte import matted as matted
-from engine.domain.picture.parts import (
-    WholePiece as WholePiece,
-    join_parts as join_parts,
-)
+from engine.domain.picture.parts import WholePiece as WholePiece, join_parts as join_parts

@@ -6,7 +6,4 @@ Imports: `engine.maps`, `engine.interpolation.passing`, `engine.interpolation.sc
 `engine.interpolation.inbetweens`.
 """
 
-from engine.interpolation.proof.bisection import (
-    Proof as Proof,
-    prove as prove,
-)
+from engine.interpolation.proof.bisection import Proof as Proof, prove as prove

@@ -13,12 +13,7 @@ from invariants import check_invariants
 from layered import openraster
 from PIL import Image, ImageDraw
 
-from app.document.commands import (
-    figure_commands,
-    handle_commands,
-    key_commands,
-    layer_commands,
-)
+from app.document.commands import figure_commands, handle_commands, key_commands, layer_commands
 from app.document.easing import PRESETS, Easing
 from app.document.keyframe import Target
 from app.document.settings import VARIANTS, ExportSettings, FrameRange, Meshing

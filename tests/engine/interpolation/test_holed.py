@@ -6,16 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 import pytest
-from holed_shapes import (
-    DRAGS,
-    PLATE_DRAGS,
-    Holed,
-    inner_points,
-    plate,
-    pulled,
-    random_map,
-    ring,
-)
+from holed_shapes import DRAGS, PLATE_DRAGS, Holed, inner_points, plate, pulled, random_map, ring
 from numpy.testing import assert_allclose
 
 from engine.deform import Status

@@ -5,12 +5,7 @@ from numpy.testing import assert_allclose
 from shapes import points_inside_disc, regular_polygon, star_polygons
 
 from engine.errors import EngineError
-from engine.maps.cauchy import (
-    cauchy_coordinates,
-    cauchy_derivatives,
-    edge_logarithms,
-    evaluate,
-)
+from engine.maps.cauchy import cauchy_coordinates, cauchy_derivatives, edge_logarithms, evaluate
 
 CAGE = regular_polygon(12, 1.3) * (1 + 0.2j) + 4 - 3j
 INSIDE = points_inside_disc(0.9, 60, seed=1) + 4 - 3j

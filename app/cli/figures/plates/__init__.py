@@ -15,10 +15,7 @@ from app.cli.figures.plates import (
     figure_10,
     figure_11,
 )
-from app.cli.figures.plates.plate import (
-    Plate as Plate,
-    Studio as Studio,
-)
+from app.cli.figures.plates.plate import Plate as Plate, Studio as Studio
 
 MAKERS = {
     1: figure_1.make,

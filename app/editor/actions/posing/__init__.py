@@ -19,10 +19,7 @@ from app.editor.actions.posing.inserting import (
     insert_key as insert_key,
     insert_key_at as insert_key_at,
 )
-from app.editor.actions.posing.keeping import (
-    holding as holding,
-    retargeted as retargeted,
-)
+from app.editor.actions.posing.keeping import holding as holding, retargeted as retargeted
 from app.editor.actions.posing.pulling import (
     end_at as end_at,
     free_turn as free_turn,
@@ -40,7 +37,4 @@ from app.editor.actions.posing.settling import (
     keep_up as keep_up,
     tried_clips as tried_clips,
 )
-from app.editor.actions.posing.solving import (
-    POSING as POSING,
-    STEPS as STEPS,
-)
+from app.editor.actions.posing.solving import POSING as POSING, STEPS as STEPS

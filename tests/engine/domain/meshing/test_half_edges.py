@@ -4,13 +4,7 @@ from hypothesis import given, settings, strategies as st
 from scipy.spatial import Delaunay
 from shapes import points_inside_disc
 
-from engine.domain.meshing.half_edges import (
-    OUTLINE,
-    HalfEdgeMesh,
-    disjoint,
-    following,
-    preceding,
-)
+from engine.domain.meshing.half_edges import OUTLINE, HalfEdgeMesh, disjoint, following, preceding
 from engine.domain.meshing.mesh import signed_areas, smallest_angles
 from engine.domain.meshing.refinement import refine
 from engine.domain.meshing.smoothing import smooth_mesh
