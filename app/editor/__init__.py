@@ -16,7 +16,6 @@ from app.editor.dialogs import (
     ShortcutSheet as ShortcutSheet,
 )
 from app.editor.failures import sentence as sentence
-from app.editor.jobs import Jobs as Jobs
 from app.editor.project import (
     Flip as Flip,
     PoseBlend as PoseBlend,
@@ -24,7 +23,6 @@ from app.editor.project import (
     Puppet as Puppet,
     Twin as Twin,
 )
-from app.editor.pull import Pull as Pull
 from app.editor.session import (
     BoxMark as BoxMark,
     CurveKind as CurveKind,
@@ -54,3 +52,4 @@ from app.editor.timeline_view import (
     SwitchDrag as SwitchDrag,
     TimeGesture as TimeGesture,
 )
+from app.editor.work import Jobs as Jobs, Pull as Pull

@@ -1,9 +1,15 @@
-"""How a failed job is told."""
+"""Jobs whose failure is told, and how."""
 
 import traceback
+from collections.abc import Callable
+from functools import partial
+from typing import TypeVar
 
 from app.editor.session import Session
+from app.editor.work import Job, Kind
 from app.errors import EXPECTED_ERRORS
+
+Result = TypeVar("Result")
 
 
 def sentence(text: str) -> str:
@@ -11,6 +17,18 @@ def sentence(text: str) -> str:
     begins_with_name = not text.partition(" ")[0].isalpha()
     text = text if begins_with_name else text[:1].upper() + text[1:]
     return text if text.endswith((".", "?", "…")) else f"{text}."
+
+
+def ask_worker(
+    session: Session,
+    kind: Kind,
+    work: Callable[[], Result],
+    done: Callable[[Result], None],
+    failed: Callable[[Exception], None] | None = None,
+) -> None:
+    """Let a worker do something in place of an unfinished job of its kind; tell where it fails."""
+    complain = partial(report, session, kind.complaint)
+    session.jobs.put(Job(kind=kind, work=work, done=done, failed=failed or complain))
 
 
 def report_once(session: Session, what: str, error: Exception) -> None:

@@ -21,10 +21,8 @@ from app.document import (
     Variant,
     clip_of,
 )
-from app.editor.derived import Derived
-from app.editor.promise import Afterwards, Promise
-from app.editor.pull import Pull
 from app.editor.timeline_view import Timing
+from app.editor.work import Afterwards, Derived, Promise, Pull
 from app.motion import Box, IntervalStore, Joints, MotionPaths, PosableMesh, PoseSampler, Shown
 from app.render import View, fit_view
 from app.reports import Curves

@@ -6,16 +6,15 @@ document as the person sees it coming asks `once_settled`.
 """
 
 from collections.abc import Callable
+from functools import partial
 from math import inf
 from typing import TypeVar
 
 from app.editor.action import Action
 from app.editor.failures import report
-from app.editor.jobs import Job, LaneName
 from app.editor.project import Project
-from app.editor.promise import Afterwards, Promise
-from app.editor.pull import Pull
 from app.editor.session import Session, with_project
+from app.editor.work import Afterwards, Job, Kind, Promise, Pull
 
 Result = TypeVar("Result")
 
@@ -23,12 +22,11 @@ Result = TypeVar("Result")
 def begin(
     session: Session,
     project: Project,
-    kind: str,
+    kind: Kind,
     work: Callable[[], Result],
     done: Callable[[Result], None],
-    failed: str | Callable[[Exception], None],
+    failed: Callable[[Exception], None] | None = None,
     *,
-    lane: LaneName = "display",
     promise: Promise | None = None,
 ) -> Promise:
     """Let the worker bring something into the document, which is promised until it is there.
@@ -37,20 +35,18 @@ def begin(
     ----------
     session : Session
     project : Project
-    kind : str
-        Of the job, in words that the status bar can show.
+    kind : Kind
+        Of the job.
     work : callable
         Runs on the worker's thread.
     done : callable
         Takes the result, unless it was given up or the project was closed.
-    failed : str or callable
-        What is said where that fails, or what takes the error.
-    lane : str
-        On which thread it runs.
+    failed : callable, optional
+        Takes the error where that fails; by default it is told.
     promise : Promise, optional
         By default a new one.
     """
-    promised = promise or Promise(label=kind)
+    promised = promise or Promise(label=kind.label)
     project.pending.append(promised)
 
     def kept(result: Result) -> None:
@@ -58,14 +54,10 @@ def begin(
             done(result)
 
     def broken(error: Exception) -> None:
-        if not _keep(session, project, promised):
-            return
-        if isinstance(failed, str):
-            report(session, failed, error)
-        else:
-            failed(error)
+        if _keep(session, project, promised):
+            (failed or partial(report, session, kind.complaint))(error)
 
-    session.jobs.add(Job(kind=kind, work=work, done=kept, failed=broken, lane=lane))
+    session.jobs.add(Job(kind=kind, work=work, done=kept, failed=broken))
     return promised
 
 

@@ -10,8 +10,8 @@ from typing import Concatenate, Literal, ParamSpec, Protocol
 from app.document import Baseline, Document, Figure, Keyframe, Meshing, Variant
 from app.editor.action import Action
 from app.editor.dialogs import Dialog
-from app.editor.jobs import Jobs
 from app.editor.project import Project
+from app.editor.work import Jobs
 from app.errors import shown_name
 from app.export import ExportPlan, Poses
 from app.motion import Box

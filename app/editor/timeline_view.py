@@ -5,7 +5,7 @@ from dataclasses import dataclass, field, replace
 from typing import Literal, Self
 
 from app.document import Document, Figure, FrameRange, Pose, find_shortfall
-from app.editor.derived import Derived
+from app.editor.work import Derived
 
 SMALLEST, LARGEST = 0.002, 4.0  # em that a frame takes
 MARGIN = 1.4  # em left and right of frames that are fitted

@@ -67,7 +67,7 @@ def _greeting(session: Session, look: Look) -> list[Action]:
     imgui.same_line(0, look.em)
     imgui.align_text_to_frame_padding()
     busy = next((kind for kind in session.jobs.kinds), None)
-    imgui.text_colored(look.palette.dim, f"{busy}…" if busy else "or drop a picture here")
+    imgui.text_colored(look.palette.dim, f"{busy.label}…" if busy else "or drop a picture here")
     imgui.dummy(ImVec2(0, 1.0 * look.em))
     return actions
 

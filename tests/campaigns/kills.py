@@ -25,9 +25,9 @@ from app.document import Document, History, Variant
 from app.document.commands import scene_commands
 from app.document.settings import Marker
 from app.editor.actions import saving
-from app.editor.jobs import Jobs
 from app.editor.project import Project
 from app.editor.session import Session
+from app.editor.work.jobs import Jobs
 from app.storage.assets import sample_images
 from app.storage.autosave import find_leftovers, load_leftover
 from app.storage.files.atomic import PART, atomic_file, clear_abandoned

@@ -18,9 +18,9 @@ from app.document import History
 from app.document.settings import Meshing
 from app.editor.action import do
 from app.editor.actions import files, saving
-from app.editor.jobs import Jobs
 from app.editor.project import Project
 from app.editor.session import Session
+from app.editor.work.jobs import Jobs
 from app.render.gpu.context import create_context
 from app.render.renderer import Renderer
 from app.storage.preferences import Preferences

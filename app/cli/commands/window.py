@@ -96,7 +96,7 @@ def _make(folder: Path, session: Session) -> None:
         session.tell(
             f"Unsaved work and settings cannot be kept: {error}. Save often.", tone="error"
         )
-        session.failing |= {saving.NOT_KEPT, saving.NOT_NOTED}
+        session.failing |= {saving.AUTOSAVING.complaint, saving.WRITING.complaint}
 
 
 def _keep(session: Session) -> None:

@@ -10,14 +10,14 @@ from app.document import figure_commands
 from app.editor.action import do
 from app.editor.actions import editing
 from app.editor.dialogs import FileDialog
-from app.editor.failures import report
-from app.editor.jobs import Job
+from app.editor.failures import ask_worker
 from app.editor.project import Project
 from app.editor.session import CutTool, Session, with_project
+from app.editor.work import Kind
 from app.storage import cut_picture, decode_mask, encode_mask, read_file, write_atomically
 from engine.domain import Mask, Stroke
 
-READING, WRITING = "Loading the mask", "Saving the mask"
+WRITING = Kind("Saving the mask", "The mask was not saved")
 MASKS = (".png",)
 SMALLEST_BRUSH, LARGEST_BRUSH = 1.0, 1000.0  # pixels of the picture
 BRUSH_STEP = 1.25
@@ -142,14 +142,8 @@ def load_mask(session: Session, project: Project, path: Path) -> None:
         if session.project is project and project.active == identity:
             change(session, mask=mask, strokes=())
 
-    session.jobs.put(
-        Job(
-            kind=READING,
-            work=lambda: decode_mask(read_file(path), path.name),
-            done=take,
-            failed=lambda error: report(session, f"{path.name} cannot be loaded", error),
-        )
-    )
+    kind = Kind("Loading the mask", f"{path.name} cannot be loaded")
+    ask_worker(session, kind, lambda: decode_mask(read_file(path), path.name), take)
 
 
 @with_project
@@ -174,11 +168,4 @@ def save_mask(session: Session, project: Project, path: Path) -> None:
         content = encode_mask(Mask.of(cut_picture(picture, cut_out).kept))
         write_atomically(path, lambda file: file.write(content))
 
-    session.jobs.put(
-        Job(
-            kind=WRITING,
-            work=work,
-            done=lambda _: session.tell(f"Saved {path.name}.", tone="good"),
-            failed=lambda error: report(session, "The mask was not saved", error),
-        )
-    )
+    ask_worker(session, WRITING, work, lambda _: session.tell(f"Saved {path.name}.", tone="good"))

@@ -12,10 +12,10 @@ from app.editor import promises
 from app.editor.action import Action, do
 from app.editor.actions import editing, posing
 from app.editor.dialogs import FileDialog, Question
-from app.editor.failures import report, sentence
-from app.editor.jobs import Job
+from app.editor.failures import ask_worker, report, sentence
 from app.editor.project import Project
 from app.editor.session import ExportRun, Session, with_project
+from app.editor.work import Kind
 from app.errors import LissomError, shown_name
 from app.export import (
     ExportRequest,
@@ -34,7 +34,8 @@ from app.export_formats import EXPORT_FORMATS, STILL
 from app.motion import Animation, Box, PoseSampler, extent_source, hung_animations
 from app.storage import Cancellation, make_settings_folder, passing_picture
 
-PREPARING, COPYING = "Preparing the export", "Copying the picture"
+PREPARING = Kind("Preparing the export", "The export could not begin", "export")
+COPYING = Kind("Copying the picture", "The picture was not copied", "export")
 
 
 def ask(session: Session) -> None:
@@ -201,15 +202,7 @@ def _prepare(
         plan = plan_export(exported, request, poses, box)
         return ExportRun(document=exported, pictures=pictures, poses=poses, plan=plan)
 
-    session.jobs.put(
-        Job(
-            kind=PREPARING,
-            lane="export",
-            work=work,
-            done=begun,
-            failed=lambda error: report(session, "The export could not begin", error),
-        )
-    )
+    ask_worker(session, PREPARING, work, begun)
 
 
 def _animation(clip: Clip, sibling: PoseSampler | None) -> Animation:
@@ -294,15 +287,10 @@ def _copy(session: Session, picture: Path) -> None:
         finally:
             picture.unlink(missing_ok=True)
 
-    session.jobs.put(
-        Job(
-            kind=COPYING,
-            lane="export",
-            work=work,
-            done=lambda _: session.tell("The picture is on the clipboard.", tone="good"),
-            failed=lambda error: report(session, "The picture was not copied", error),
-        )
-    )
+    def done(_: None) -> None:
+        session.tell("The picture is on the clipboard.", tone="good")
+
+    ask_worker(session, COPYING, work, done)
 
 
 def fail(session: Session, error: Exception) -> None:

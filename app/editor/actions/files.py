@@ -12,10 +12,10 @@ from app.editor.action import Action, do
 from app.editor.actions import cutting, playback, saving
 from app.editor.actions.saving import PROJECT
 from app.editor.dialogs import FileDialog, Leftover, Question, Recovery
-from app.editor.failures import report, sentence
-from app.editor.jobs import Job
+from app.editor.failures import ask_worker, sentence
 from app.editor.project import Project, Puppet
 from app.editor.session import Session
+from app.editor.work import Kind
 from app.errors import shown_name
 from app.storage import (
     Hold,
@@ -44,7 +44,6 @@ PICTURES = (
 )
 LAYERED = (".ora", ".psd")
 OPENABLE = (PROJECT, *PICTURES, *LAYERED)
-OPENING = "Opening"
 LOOK = 2.0  # seconds between two looks at whether files are still there
 
 
@@ -137,27 +136,23 @@ def open_file(session: Session, path: Path) -> None:
     If there are changes to be lost by then, a question comes first.
     """
     meshing = session.meshing
-    session.jobs.put(
-        Job(
-            kind=shown_name(f"{OPENING} {path.name}"),
-            work=lambda: _read(path, meshing),
-            done=lambda opened: saving.unless_unsaved(session, do(show, path, opened)),
-            failed=lambda error: report(session, f"{path.name} cannot be opened", error),
-        )
-    )
+    kind = Kind(shown_name(f"Opening {path.name}"), f"{path.name} cannot be opened")
+
+    def done(opened: Opened) -> None:
+        saving.unless_unsaved(session, do(show, path, opened))
+
+    ask_worker(session, kind, lambda: _read(path, meshing), done)
 
 
 def open_together(session: Session, paths: Sequence[Path]) -> None:
     """Read several pictures on the worker, and open them as the layers of one scene."""
     meshing = session.meshing
-    session.jobs.put(
-        Job(
-            kind=f"{OPENING} {len(paths)} pictures",
-            work=lambda: with_puppets(open_pictures(paths, meshing)),
-            done=lambda opened: saving.unless_unsaved(session, do(show, paths[0], opened)),
-            failed=lambda error: report(session, "The pictures cannot be opened", error),
-        )
-    )
+    kind = Kind(f"Opening {len(paths)} pictures", "The pictures cannot be opened")
+
+    def done(opened: Opened) -> None:
+        saving.unless_unsaved(session, do(show, paths[0], opened))
+
+    ask_worker(session, kind, lambda: with_puppets(open_pictures(paths, meshing)), done)
 
 
 def open_dropped(session: Session, paths: Sequence[Path]) -> None:
@@ -331,14 +326,12 @@ def leftovers(session: Session) -> tuple[Leftover, ...]:
 
 def recover(session: Session, path: Path) -> None:
     """Open unsaved work; it stays unsaved, and is kept until it is saved."""
-    session.jobs.put(
-        Job(
-            kind=f"{OPENING} unsaved work",
-            work=lambda: _read_leftover(path),
-            done=lambda read: saving.unless_unsaved(session, do(show_recovered, path, *read)),
-            failed=lambda error: report(session, "The unsaved work cannot be opened", error),
-        )
-    )
+    kind = Kind("Opening unsaved work", "The unsaved work cannot be opened")
+
+    def done(read: tuple[Opened, Origin]) -> None:
+        saving.unless_unsaved(session, do(show_recovered, path, *read))
+
+    ask_worker(session, kind, lambda: _read_leftover(path), done)
 
 
 def _read_leftover(path: Path) -> tuple[Opened, Origin]:

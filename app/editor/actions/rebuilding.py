@@ -9,12 +9,12 @@ from app.editor.action import do
 from app.editor.actions import editing, posing
 from app.editor.failures import report, sentence
 from app.editor.project import Project
-from app.editor.promise import Promise
 from app.editor.session import Session, with_project
+from app.editor.work import Kind, Promise
 from app.solving import Renewal, go_on
 from engine.maps import Bounds
 
-RENEWING = "Solving the keys"
+RENEWING = Kind("Solving the keys")
 REST = 0.5  # seconds after which a brush is taken to rest
 
 
@@ -159,7 +159,7 @@ def _go_on(session: Session, project: Project, renewal: Renewal) -> None:
         lambda: go_on(renewal, picture),
         partial(_go_on, session, project),
         failed,
-        promise=Promise(label=RENEWING, renewal=renewal),
+        promise=Promise(label=RENEWING.label, renewal=renewal),
     )
 
 

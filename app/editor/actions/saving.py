@@ -1,5 +1,6 @@
 """Saving, and what must not be lost: questions before, autosave, recovery."""
 
+from functools import partial
 from pathlib import Path
 
 from app.document import Document
@@ -7,11 +8,10 @@ from app.editor import promises
 from app.editor.action import Action, do
 from app.editor.actions import exporting, posing
 from app.editor.dialogs import FileDialog, Question
-from app.editor.failures import mended, report, report_once
-from app.editor.jobs import Job
+from app.editor.failures import ask_worker, mended, report, report_once
 from app.editor.project import Project
-from app.editor.promise import Promise
 from app.editor.session import Session, with_project
+from app.editor.work import Job, Kind, Promise
 from app.errors import shown_name
 from app.reports import draw_curves, write_curves
 from app.storage import (
@@ -29,10 +29,10 @@ from app.storage import (
 
 PROJECT = ".lissom"
 PATIENCE = 10.0  # seconds that saving and closing wait for what is on its way
-SAVING, AUTOSAVING, WRITING = "Saving", "Autosaving", "Saving preferences"
-CLEARING = "Clearing up"
-NOT_KEPT = "Unsaved work cannot be kept"
-NOT_NOTED = "The preferences cannot be kept"
+SAVING = Kind("Saving", "The project was not saved", "keep")
+AUTOSAVING = Kind("Autosaving", "Unsaved work cannot be kept", "keep")
+WRITING = Kind("Saving preferences", "The preferences cannot be kept", "keep")
+CLEARING = Kind("Clearing up", "What was left half written stays", "keep")
 
 
 def save(session: Session) -> None:
@@ -98,7 +98,7 @@ def write_now(session: Session, project: Project, path: Path, then: Action | Non
     def failed(error: Exception) -> None:
         project.pending.remove(saving)
         if not isinstance(error, _ChangedError):
-            report(session, "The project was not saved", error)
+            report(session, SAVING.complaint, error)
         elif session.project is project:
             session.dialog = Question(
                 title="Changed by somebody else",
@@ -110,9 +110,9 @@ def write_now(session: Session, project: Project, path: Path, then: Action | Non
                 ),
             )
 
-    saving = Promise(label=SAVING, changes=False)
+    saving = Promise(label=SAVING.label, changes=False)
     project.pending.append(saving)
-    session.jobs.add(Job(kind=SAVING, work=work, done=done, failed=failed, lane="keep"))
+    session.jobs.add(Job(kind=SAVING, work=work, done=done, failed=failed))
 
 
 class _ChangedError(Exception):
@@ -294,16 +294,8 @@ def clear_up(session: Session) -> None:
         for folder in folders:
             clear_abandoned(folder)
 
-    session.jobs.put(
-        Job(
-            kind=CLEARING,
-            # They may lie on a slow disk.
-            work=work,
-            done=lambda _: None,
-            failed=lambda error: report(session, "What was left half written stays", error),
-            lane="keep",
-        )
-    )
+    # They may lie on a slow disk.
+    ask_worker(session, CLEARING, work, lambda _: None)
 
 
 def write_preferences(session: Session) -> None:
@@ -312,14 +304,12 @@ def write_preferences(session: Session) -> None:
     if preferences == session.saved_preferences:
         return
     session.saved_preferences = preferences
-    session.jobs.put(
-        Job(
-            kind=WRITING,
-            work=lambda: save_preferences(folder, preferences),
-            done=lambda _: mended(session, NOT_NOTED),
-            failed=lambda error: report_once(session, NOT_NOTED, error),
-            lane="keep",
-        )
+    ask_worker(
+        session,
+        WRITING,
+        lambda: save_preferences(folder, preferences),
+        lambda _: mended(session, WRITING.complaint),
+        partial(report_once, session, WRITING.complaint),
     )
 
 
@@ -385,7 +375,7 @@ def _autosave_now(session: Session, project: Project, now: float) -> None:
     project.autosaved, project.autosaved_at = kept, now
 
     def done(_: None) -> None:
-        mended(session, NOT_KEPT)
+        mended(session, AUTOSAVING.complaint)
         # In the meantime it may have been saved, or closed.
         if session.project is not project or project.autosaved != kept:
             session.autosave.forget()
@@ -394,17 +384,10 @@ def _autosave_now(session: Session, project: Project, now: float) -> None:
         # There may be room again next time.
         if project.autosaved == kept:
             project.autosaved = earlier
-        report_once(session, NOT_KEPT, error)
+        report_once(session, AUTOSAVING.complaint, error)
 
-    session.jobs.put(
-        Job(
-            kind=AUTOSAVING,
-            work=lambda: session.autosave.write(document, origin),
-            done=done,
-            failed=failed,
-            lane="keep",
-        )
-    )
+    work = partial(session.autosave.write, document, origin)
+    ask_worker(session, AUTOSAVING, work, done, failed)
 
 
 @with_project

@@ -1,17 +1,16 @@
 """What follows the document by itself: in-betweens, what is measured of them, what is drawn."""
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator
 from functools import partial
-from typing import Final, TypeVar
+from typing import TypeVar
 
 from app.document import Clip, clip_of, time_of
 from app.editor.actions import playback, posing, rebuilding, viewing
-from app.editor.derived import Derived
 from app.editor.failures import report
-from app.editor.jobs import Job, LaneName
 from app.editor.project import Project, Puppet
 from app.editor.session import Session, with_project
 from app.editor.timeline_view import measure_shortfalls
+from app.editor.work import Derived, Job, Kind
 from app.motion import (
     IntervalPart,
     IntervalStore,
@@ -30,27 +29,19 @@ from app.storage import cut_picture, shrink
 STILL = 0.15  # seconds after which the playhead is taken to stay where it is
 MOST_UNASKED = 1000  # frames whose extent is measured before anybody asks
 SMALL_SIDE = 96  # pixels of a picture in the list of layers
-GLIMPSING, SKETCHING, COMPARING = "In-between", "In-betweens", "Other in-betweens"
-REFINING, STREAMING = "Finer in-betweens", "Smooth playback"
-CUTTING, SHRINKING = "Cutting out", "Small pictures"
-HANGING, TRACING = "Joints", "Motion paths"
-MEASURING, SPANNING = "Measuring", "Measuring the motion"
-# What is said where a job fails.
-COMPLAINTS: Final[Mapping[str, str]] = {
-    GLIMPSING: "The in-betweens of these keys cannot be made",
-    SKETCHING: "The in-betweens of these keys cannot be made",
-    COMPARING: "The in-betweens to compare with cannot be made",
-    REFINING: "The in-betweens cannot be made in full detail",
-    STREAMING: "Playback cannot be made smooth",
-    CUTTING: "The picture cannot be cut out so",
-    SHRINKING: "The picture of a layer cannot be made small",
-    HANGING: "The joints cannot be followed between the keys",
-    TRACING: "The paths of the handles cannot be traced",
-    MEASURING: "The distortion could not be measured",
-    SPANNING: "The extent of the motion could not be measured",
-}
-# What is awaited, or takes a few milliseconds: it is not to wait until all in-betweens are there.
-QUICK = {GLIMPSING, SHRINKING}
+UNMADE = "The in-betweens of these keys cannot be made"
+# What is awaited, or takes a few milliseconds, is not to wait until all in-betweens are there.
+GLIMPSING = Kind("In-between", UNMADE, "hand")
+SKETCHING = Kind("In-betweens", UNMADE)
+COMPARING = Kind("Other in-betweens", "The in-betweens to compare with cannot be made")
+REFINING = Kind("Finer in-betweens", "The in-betweens cannot be made in full detail")
+STREAMING = Kind("Smooth playback", "Playback cannot be made smooth")
+CUTTING = Kind("Cutting out", "The picture cannot be cut out so")
+SHRINKING = Kind("Small pictures", "The picture of a layer cannot be made small", "hand")
+HANGING = Kind("Joints", "The joints cannot be followed between the keys")
+TRACING = Kind("Motion paths", "The paths of the handles cannot be traced")
+MEASURING = Kind("Measuring", "The distortion could not be measured")
+SPANNING = Kind("Measuring the motion", "The extent of the motion could not be measured")
 
 Source = TypeVar("Source")
 Value = TypeVar("Value")
@@ -76,7 +67,7 @@ def maintain(session: Session, project: Project) -> None:
         _fit_motion(session, project)
 
 
-def give_up(session: Session, kind: str) -> None:
+def give_up(session: Session, kind: Kind) -> None:
     """End a job that takes too long, or never ends; what it was for is told to have failed."""
     session.jobs.leave(kind)
 
@@ -152,7 +143,7 @@ def _awaits_frame(session: Session, project: Project) -> bool:
     )
 
 
-def _wanted(session: Session, project: Project) -> Iterator[tuple[str, Puppet, Clip]]:
+def _wanted(session: Session, project: Project) -> Iterator[tuple[Kind, Puppet, Clip]]:
     """Yield the clips that are to have their in-betweens, what is missed most first."""
     frame, clips = playback.current_frame(session, project), _clips(project)
     clips = [(clip, puppet) for clip, puppet in clips if not puppet.store.has_failed(clip)]
@@ -175,7 +166,7 @@ def _wanted(session: Session, project: Project) -> Iterator[tuple[str, Puppet, C
 
 
 def _prepare(
-    session: Session, project: Project, kind: str, puppet: Puppet, clip: Clip
+    session: Session, project: Project, kind: Kind, puppet: Puppet, clip: Clip
 ) -> Job | None:
     """Return what prepares the nearest in-betweens that a clip lacks, or its mesh."""
     domain, among = clip.figure.domain, len(project.puppets)
@@ -212,15 +203,15 @@ def _stream(session: Session, project: Project) -> Iterator[Job]:
                 yield _interval_job(session, STREAMING, puppet, clip, work=work, done=done)
 
 
-def _part(kind: str) -> IntervalPart:
+def _part(kind: Kind) -> IntervalPart:
     """Return which part of a clip's in-betweens a job makes."""
-    parts: dict[str, IntervalPart] = {GLIMPSING: "frame", REFINING: "fine", STREAMING: "series"}
+    parts: dict[Kind, IntervalPart] = {GLIMPSING: "frame", REFINING: "fine", STREAMING: "series"}
     return parts.get(kind, "in-betweens")
 
 
 def _interval_job(
     session: Session,
-    kind: str,
+    kind: Kind,
     puppet: Puppet,
     clip: Clip,
     *,
@@ -233,22 +224,21 @@ def _interval_job(
 
 def _job(
     session: Session,
-    kind: str,
+    kind: Kind,
     work: Callable[[], Value],
     done: Callable[[Value], None],
     fail: Callable[[], None],
 ) -> Job:
     def failed(error: Exception) -> None:
         fail()
-        report(session, COMPLAINTS[kind], error)
+        report(session, kind.complaint, error)
 
-    lane: LaneName = "hand" if kind in QUICK else "display"
-    return Job(kind=kind, work=work, done=done, failed=failed, lane=lane)
+    return Job(kind=kind, work=work, done=done, failed=failed)
 
 
 def _derive(
     session: Session,
-    kind: str,
+    kind: Kind,
     into: Derived[Source, Value],
     source: Source,
     work: Callable[[], Value],

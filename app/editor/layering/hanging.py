@@ -8,9 +8,10 @@ from app.editor.action import do
 from app.editor.actions import editing, playback
 from app.editor.project import Project
 from app.editor.session import Session, with_project
+from app.editor.work import Kind
 from app.motion import Joints
 
-HANGING = "Hanging a layer"
+HANGING = Kind("Hanging a layer", "The layers cannot be joined")
 
 
 def hangs_on(project: Project, identity: int, carrier: int) -> bool:
@@ -84,7 +85,6 @@ def _join(
         HANGING,
         lambda: find(Joints(document, siblings)),
         done,
-        "The layers cannot be joined",
     )
 
 

@@ -14,6 +14,7 @@ from app.editor.failures import sentence
 from app.editor.layering.arranging import choose
 from app.editor.project import Project, Puppet
 from app.editor.session import Session, with_project
+from app.editor.work import Kind
 from app.errors import LissomError, shown_name
 from app.solving import Renewal, begin_replacing
 from app.storage import (
@@ -29,7 +30,7 @@ from app.storage import (
     still_picture,
 )
 
-RISING, ADDING, REPLACING = "Finding a shape", "Adding a layer", "Replacing a picture"
+ADDING = Kind("Adding a layer", "The layer cannot be added")
 LONGEST = 28  # characters of a name on a button
 
 
@@ -75,7 +76,8 @@ def stand_up(session: Session, project: Project, identity: int) -> None:
         editing.edit(session, replace(command, label="Let be posed"))
         choose(session, identity)
 
-    promises.begin(session, project, RISING, work, done, f"{figure.name} cannot be posed")
+    kind = Kind("Finding a shape", f"{figure.name} cannot be posed")
+    promises.begin(session, project, kind, work, done)
 
 
 def _shape(layer: Layer, identity: int, meshing: Meshing) -> _Made:
@@ -118,9 +120,8 @@ def _replace_picture(session: Session, project: Project, identity: int, path: Pa
             for notice in made.notices:
                 session.tell(sentence(notice))
 
-    promises.begin(
-        session, project, REPLACING, work, done, f"The picture of {before.name} was not replaced"
-    )
+    kind = Kind("Replacing a picture", f"The picture of {before.name} was not replaced")
+    promises.begin(session, project, kind, work, done)
 
 
 @with_project
@@ -165,7 +166,7 @@ def add(session: Session, project: Project, paths: Sequence[Path]) -> None:
         for notice in (*told, *(notice for each in made for notice in each.notices)):
             session.tell(sentence(notice))
 
-    promises.begin(session, project, ADDING, work, done, "The layer cannot be added")
+    promises.begin(session, project, ADDING, work, done)
 
 
 def _drawing(path: Path) -> LayeredPicture:

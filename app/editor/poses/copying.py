@@ -10,8 +10,9 @@ from app.editor.actions import posing
 from app.editor.poses import putting
 from app.editor.project import Project
 from app.editor.session import CopiedKeys, Session, with_project
+from app.editor.work import Kind
 
-COPYING = "Copying a pose"
+COPYING = Kind("Copying a pose", "The pose could not be copied", "hand")
 
 
 @with_project
@@ -26,8 +27,7 @@ def copy(session: Session, project: Project) -> None:
     elif keys:
         _take(session, project.figure, keys)
     else:
-        complaint = "The pose could not be copied"
-        putting.find_pose(session, project, COPYING, complaint, partial(_take, session))
+        putting.find_pose(session, project, COPYING, partial(_take, session))
 
 
 def _take(session: Session, figure: Figure, keys: tuple[Keyframe, ...]) -> None:

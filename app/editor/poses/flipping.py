@@ -10,9 +10,10 @@ from app.editor.actions import playback
 from app.editor.poses import copying, putting
 from app.editor.project import Flip, Project
 from app.editor.session import Session, with_project
+from app.editor.work import Kind
 from app.solving import Rig, flip_poses, flipped_targets
 
-FLIPPING = "Flipping"
+FLIPPING = Kind("Flipping", "The pose could not be flipped", "hand")
 
 
 @with_project
@@ -115,6 +116,4 @@ def _flip(
         FLIPPING,
         lambda: flip_poses(rig, [key.pose for key in keys], axis),
         done,
-        "The pose could not be flipped",
-        lane="hand",
     )

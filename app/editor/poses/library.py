@@ -8,10 +8,10 @@ from app.document import Figure, Keyframe, Target, pose_commands
 from app.editor.actions import editing, playback, posing
 from app.editor.poses import putting
 from app.editor.project import PoseBlend, Project
-from app.editor.pull import Start
 from app.editor.session import Session, with_project
+from app.editor.work import Kind, Start
 
-KEEPING = "Keeping a pose"
+KEEPING = Kind("Keeping a pose", "The pose could not be kept", "hand")
 
 
 @with_project
@@ -21,9 +21,7 @@ def keep(session: Session, project: Project) -> None:
     if keys:
         _keep(session, project, project.figure, keys)
     else:
-        complaint = "The pose could not be kept"
-        take = partial(_keep, session, project)
-        putting.find_pose(session, project, KEEPING, complaint, take)
+        putting.find_pose(session, project, KEEPING, partial(_keep, session, project))
 
 
 def _keep(session: Session, project: Project, figure: Figure, keys: tuple[Keyframe, ...]) -> None:

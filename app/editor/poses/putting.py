@@ -7,6 +7,7 @@ from app.document import Figure, Keyframe, Pose, key_commands
 from app.editor.actions import playback, posing
 from app.editor.project import Project
 from app.editor.session import Session
+from app.editor.work import Kind
 from app.solving import Rig
 from engine.maps import Bounds, certify
 
@@ -114,14 +115,14 @@ def shown_keys(project: Project) -> tuple[Keyframe, ...]:
     return () if pose is None else (_as_key(pose),)
 
 
-def find_pose(session: Session, project: Project, kind: str, complaint: str, take: Take) -> None:
+def find_pose(session: Session, project: Project, kind: Kind, take: Take) -> None:
     """Let the worker find the pose that is nearest to the in-between that is shown."""
     clip, frame = project.clip, playback.current_frame(session, project)
 
     def fitted(pose: Pose) -> None:
         take(clip.figure, (_as_key(pose),))
 
-    posing.fit_pose(session, project, clip, frame, fitted, kind=kind, complaint=complaint)
+    posing.fit_pose(session, project, clip, frame, fitted, kind=kind)
 
 
 def _as_key(pose: Pose) -> Keyframe:

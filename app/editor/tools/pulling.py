@@ -7,10 +7,10 @@ from typing import Self
 from app.document import Target
 from app.editor.actions import editing, posing
 from app.editor.project import Project
-from app.editor.pull import Start
 from app.editor.session import EntryMark, Hint, Mark, Session
 from app.editor.tools.entry import TypedWay
 from app.editor.tools.tool import Spot, Tool
+from app.editor.work import Start
 
 
 @dataclass(slots=True, kw_only=True, eq=False)

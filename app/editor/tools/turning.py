@@ -9,10 +9,10 @@ from typing import Self
 from app.document import Target
 from app.editor.actions import editing, posing
 from app.editor.project import Project
-from app.editor.pull import Start
 from app.editor.session import EntryMark, Hint, Mark, Session, SweepMark
 from app.editor.tools.entry import TypedWay
 from app.editor.tools.tool import Spot, Tool
+from app.editor.work import Start
 
 STEP = math.radians(15.0)  # of turning in steps
 LEAST_ARM = 12.0  # pixels of the screen from a handle, within which a press has no direction

@@ -62,7 +62,7 @@ def draw_status(session: Session, look: Look) -> list[Action]:
     waiting = promises.waits_for(session.project) if session.project else ""
     if slow or waiting:
         _spinner(look)
-        imgui.text_unformatted(f"{waiting or slow[0]}…")
+        imgui.text_unformatted(f"{waiting or slow[0].label}…")
         actions += _cancel(session, look)
     elif room > LEAST_ROOM * look.em:
         imgui.text_disabled(shortened(hint, room))
@@ -117,7 +117,7 @@ def _cancel(session: Session, look: Look) -> list[Action]:
         return []
     imgui.same_line(0, 0.8 * look.em)
     is_pressed = imgui.small_button("Cancel")
-    tip(f"Give this up: {endless[0]}")
+    tip(f"Give this up: {endless[0].label}")
     return [do(upkeep.give_up, endless[0])] if is_pressed else []
 
 

@@ -13,7 +13,7 @@ from app.cli.commands import window
 from app.cli.main import COMMANDS, main
 from app.document import FRAMINGS, VARIANTS, Meshing
 from app.editor.actions import saving
-from app.editor.jobs import Job
+from app.editor.work.jobs import Job
 from app.storage import Origin
 from app.storage.assets import sample_images
 from engine.domain.outline import Detail

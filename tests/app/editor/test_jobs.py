@@ -4,17 +4,23 @@ import threading
 
 import pytest
 
-from app.editor.jobs import Job, Jobs
+from app.editor.work.jobs import Job, Jobs, Kind
 
 
 def job(kind, work, results, *, lane="display"):
     return Job(
-        kind=kind,
+        kind=Kind(kind, lane=lane),
         work=work,
         done=lambda result: results.append((kind, result)),
         failed=lambda error: results.append((kind, error)),
-        lane=lane,
     )
+
+
+HAND = {name: Kind(name, lane="hand") for name in ("stuck", "pose")}
+
+
+def labels(kinds):
+    return tuple(kind.label for kind in kinds)
 
 
 @pytest.fixture
@@ -69,7 +75,7 @@ def test_a_thread_that_the_system_refuses_is_asked_for_again(monkeypatch):
         patch.setattr(threading.Thread, "start", refuse)
         with pytest.raises(RuntimeError, match="new thread"):
             jobs.put(job("sum", lambda: 1 + 1, results))
-    assert jobs.kinds == ()
+    assert labels(jobs.kinds) == ()
     jobs.put(job("sum", lambda: 1 + 1, results))
     assert jobs.settle()
     jobs.deliver()
@@ -81,7 +87,7 @@ def test_newest_of_a_kind_wins(busy):
     results = []
     for number in range(5):
         jobs.put(job("frame", lambda number=number: number, results))
-    assert jobs.kinds == ("gate", "frame")
+    assert labels(jobs.kinds) == ("gate", "frame")
     gate.set()
     assert jobs.settle()
     jobs.deliver()
@@ -110,7 +116,7 @@ def test_dropped_job_never_delivers(busy):
     jobs, gate = busy
     results = []
     jobs.put(job("pose", lambda: 1, results))
-    jobs.drop("pose")
+    jobs.drop(Kind("pose"))
     gate.set()
     assert jobs.settle()
     jobs.deliver()
@@ -121,15 +127,22 @@ def test_job_is_unfinished_until_it_is_delivered():
     jobs, results = Jobs(), []
     jobs.put(job("pose", lambda: 1, results))
     assert jobs.settle()
-    assert jobs.kinds == ("pose",)
-    jobs.drop("pose")
+    assert labels(jobs.kinds) == ("pose",)
+    jobs.drop(Kind("pose"))
     jobs.deliver()
     assert results == []
 
 
 def test_result_may_make_the_next_one_stale():
     jobs, results = Jobs(), []
-    jobs.put(Job(kind="undo", work=int, done=lambda _: jobs.drop("pose"), failed=results.append))
+    jobs.put(
+        Job(
+            kind=Kind("undo"),
+            work=int,
+            done=lambda _: jobs.drop(Kind("pose")),
+            failed=results.append,
+        )
+    )
     jobs.put(job("pose", lambda: 1, results))
     assert jobs.settle()
     jobs.deliver()
@@ -143,10 +156,10 @@ def test_urgent_jobs_do_not_wait_for_others(busy, lane):
     jobs.put(job("in-betweens", lambda: 1, results))
     jobs.put(job("pose", ready.set, results, lane=lane))
     assert ready.wait(10)
-    while "pose" in jobs.kinds:
+    while "pose" in labels(jobs.kinds):
         jobs.deliver()
     assert results == [("pose", None)]
-    assert jobs.kinds == ("gate", "in-betweens")
+    assert labels(jobs.kinds) == ("gate", "in-betweens")
 
 
 def test_urgent_jobs_come_one_after_the_other():
@@ -160,7 +173,7 @@ def test_urgent_jobs_come_one_after_the_other():
     jobs.put(job("pose", wait, results, lane="hand"))
     assert begun.wait(10)
     jobs.put(job("save", lambda: 1, results, lane="hand"))
-    assert jobs.kinds == ("pose", "save")
+    assert labels(jobs.kinds) == ("pose", "save")
     gate.set()
     assert jobs.settle()
     jobs.deliver()
@@ -178,13 +191,13 @@ def test_jobs_tell_how_long_they_run():
     jobs.put(job("factors", wait, []))
     assert begun.wait(10)
     jobs.put(job("in-betweens", int, []))
-    assert jobs.running_for(0.3) == ()
+    assert labels(jobs.running_for(0.3)) == ()
     now[0] = 10.4
-    assert jobs.running_for(0.3) == ("factors",)
-    jobs.drop("factors")
-    assert jobs.running_for(0.3) == ("factors",), "in-betweens wait for it"
-    jobs.drop("in-betweens")
-    assert jobs.running_for(0.3) == ()
+    assert labels(jobs.running_for(0.3)) == ("factors",)
+    jobs.drop(Kind("factors"))
+    assert labels(jobs.running_for(0.3)) == ("factors",), "in-betweens wait for it"
+    jobs.drop(Kind("in-betweens"))
+    assert labels(jobs.running_for(0.3)) == ()
     gate.set()
     assert jobs.settle()
 
@@ -206,12 +219,12 @@ def test_a_job_that_never_ends_can_be_left_and_the_others_go_on(stuck):
     work, has_begun = stuck
     jobs, results = Jobs(), []
     failures = []
-    jobs.put(Job(kind="stuck", work=work, done=results.append, failed=failures.append, lane="hand"))
+    jobs.put(Job(kind=HAND["stuck"], work=work, done=results.append, failed=failures.append))
     has_begun()
     jobs.put(job("next", lambda: 2, results, lane="hand"))
-    jobs.leave("nothing of that kind")
+    jobs.leave(Kind("nothing of that kind"))
     assert results == failures == []
-    jobs.leave("stuck")
+    jobs.leave(HAND["stuck"])
     assert jobs.settle()
     jobs.deliver()
     assert results == [("next", 2)]
@@ -227,17 +240,17 @@ def test_what_is_stale_and_never_ends_can_be_left_by_what_waits_for_it(stuck):
     work, has_begun = stuck
     now = [10.0]
     jobs, results, failures = Jobs(lambda: now[0]), [], []
-    jobs.put(Job(kind="pose", work=work, done=results.append, failed=failures.append, lane="hand"))
+    jobs.put(Job(kind=HAND["pose"], work=work, done=results.append, failed=failures.append))
     has_begun()
     now[0] = 20.0
     jobs.put(job("pose", lambda: 2, results, lane="hand"))
-    assert jobs.running_for(5.0) == ("pose",)
-    jobs.leave("pose")
+    assert labels(jobs.running_for(5.0)) == ("pose",)
+    jobs.leave(HAND["pose"])
     assert jobs.settle()
     jobs.deliver()
     assert results == [("pose", 2)]
     assert failures == []
-    assert jobs.running_for(0.0) == ()
+    assert labels(jobs.running_for(0.0)) == ()
 
 
 def test_what_was_left_delivers_nothing_when_it_ends_after_all():
@@ -249,9 +262,9 @@ def test_what_was_left_delivers_nothing_when_it_ends_after_all():
         end.wait()
         over.set()
 
-    jobs.put(Job(kind="slow", work=work, done=results.append, failed=results.append))
+    jobs.put(Job(kind=Kind("slow"), work=work, done=results.append, failed=results.append))
     begun.wait()
-    jobs.leave("slow")
+    jobs.leave(Kind("slow"))
     jobs.deliver()
     results.clear()
     end.set()
@@ -266,7 +279,7 @@ def test_closing_does_not_wait_for_ever(stuck):
     jobs = Jobs()
     jobs.put(job("stuck", work, []))
     has_begun()
-    jobs.leave("stuck")
+    jobs.leave(Kind("stuck"))
     assert not jobs.close(patience=0.05)
 
 
@@ -275,7 +288,7 @@ def test_closing_does_not_wait_for_what_was_left(stuck):
     jobs = Jobs()
     jobs.put(job("stuck", work, []))
     has_begun()
-    jobs.leave("stuck")
+    jobs.leave(Kind("stuck"))
     closing = threading.Thread(target=jobs.close, args=(60.0,), daemon=True)
     closing.start()
     closing.join(20)
@@ -303,7 +316,7 @@ def test_closing_waits_for_what_runs_and_drops_what_waits():
     gate.set()
     closing.join(10)
     assert results == ["ran"]
-    assert jobs.kinds in {("factors",), ("pose", "factors"), ("factors", "pose")}
+    assert labels(jobs.kinds) in {("factors",), ("pose", "factors"), ("factors", "pose")}
 
 
 PROGRAM = """
@@ -312,7 +325,7 @@ use_one_thread()
 import threading
 import numpy as np
 import scipy.linalg
-from app.editor.jobs import Job, Jobs
+from app.editor.work.jobs import Job, Jobs, Kind
 
 begun = threading.Event()
 matrix = np.random.default_rng(0).random((3000, 3000))
@@ -323,7 +336,7 @@ def factorise():
     scipy.linalg.lu_factor(matrix)
 
 jobs = Jobs()
-jobs.put(Job(kind="factors", work=factorise, done=print, failed=print))
+jobs.put(Job(kind=Kind("factors"), work=factorise, done=print, failed=print))
 begun.wait(10)
 # So that the end comes when the other thread is deep in its work.
 for _ in range(8):

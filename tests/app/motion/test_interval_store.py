@@ -17,9 +17,9 @@ from app.document.queries.clips import clip_of
 from app.document.settings import FrameRange
 from app.editor.actions import editing, keys, viewing
 from app.editor.actions.upkeep import STREAMING, maintain, missing
-from app.editor.jobs import Jobs
-from app.editor.pull import Pull
 from app.editor.session import Session
+from app.editor.work.jobs import Jobs
+from app.editor.work.pull import Pull
 from app.motion import (
     FoundIntervals,
     IntervalStore,

@@ -22,8 +22,8 @@ from app.editor.actions import (
     timeline_pointing,
     viewing,
 )
-from app.editor.promise import Promise
 from app.editor.timeline_view import Strip
+from app.editor.work.promise import Promise
 from app.solving import Renewal
 from app.storage.assets import sample_images
 from app.ui.style import PALETTES

@@ -4,7 +4,7 @@ from imgui_bundle import ImVec2, hello_imgui, imgui
 from PIL import Image
 
 from app.editor.actions import editing, playback, posing, saving, viewing
-from app.editor.jobs import Job
+from app.editor.work.jobs import Job, Kind
 from app.storage.assets import sample_images
 from app.ui.style import PALETTES
 from app.ui.style.widgets import shortened
@@ -210,7 +210,7 @@ def test_what_a_job_leads_to_is_drawn_at_once(window, refreshes):
     window.open(sample_images() / "bar.png")
     window.frames(120)
     done = []
-    job = Job(kind="A job", work=lambda: 0, done=done.append, failed=done.append)
+    job = Job(kind=Kind("A job"), work=lambda: 0, done=done.append, failed=done.append)
     window.session.jobs.put(job)
     window.session.jobs.settle()
     window.frames(1)

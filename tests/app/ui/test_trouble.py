@@ -12,7 +12,7 @@ from harness import Harness
 from app.document.keyframe import Target
 from app.editor.actions import exporting, files, posing, saving, upkeep
 from app.editor.dialogs import FileDialog, Question, Recovery
-from app.editor.jobs import Job
+from app.editor.work.jobs import Job, Kind
 from app.storage.assets import sample_images
 from app.storage.autosave import (
     SECONDS,
@@ -372,7 +372,7 @@ def test_older_work_that_waits_to_be_kept_does_not_replace_what_was_kept_at_once
     window.settle()
     window.session.autosave.forget()
     project.autosaved = None
-    busy = Job(kind="Busy", work=end.wait, done=lambda _: None, failed=print, lane="keep")
+    busy = Job(kind=Kind("Busy", lane="keep"), work=end.wait, done=lambda _: None, failed=print)
     window.session.jobs.put(busy)
     window.clock.now += SECONDS
     window.frames(2)
@@ -428,7 +428,7 @@ def test_a_worker_that_never_ends_can_be_cancelled_and_nothing_waits_for_it(
     window.until(lambda: saving.WRITING not in window.session.jobs.kinds)
     window.clock.now += ENDLESS
     window.frames(3)
-    assert window.session.jobs.running_for(ENDLESS) == ("Opening bar.png",)
+    assert [kind.label for kind in window.session.jobs.running_for(ENDLESS)] == ["Opening bar.png"]
     window.run(lambda robot: robot.item_click("//**/Cancel"))
     window.settle()
     assert any("bar.png cannot be opened: it was cancelled" in text for text in texts(window))
@@ -449,7 +449,7 @@ def test_a_save_does_not_wait_for_ever_for_a_pose_that_never_settles(
     window.clock.now += saving.PATIENCE
     window.until(lambda: project.path is not None)
     assert (tmp_path / "a.lissom").exists()
-    window.act(upkeep.give_up, "Posing")
+    window.act(upkeep.give_up, posing.POSING)
     end.set()
     window.settle()
     assert any("cancelled" in text for text in texts(window))

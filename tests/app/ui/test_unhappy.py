@@ -24,8 +24,8 @@ from app.editor.actions import (
     upkeep,
     viewing,
 )
-from app.editor.derived import Derived
 from app.editor.timeline_view import KeyBox
+from app.editor.work.derived import Derived
 from app.motion.extent import Box, extent_source
 from app.storage.assets import sample_images
 from app.storage.autosave import SECONDS
@@ -540,7 +540,7 @@ def test_a_new_key_stands_in_for_in_betweens_that_are_not_prepared(window, bent,
     with held_up(monkeypatch, *INBETWEENS):
         width, height = bent.document.canvas
         posing.wish(window.session, {1: Target(position=complex(0.85 * width, 0.1 * height))})
-        window.until(lambda: "Posing" not in window.session.jobs.kinds)
+        window.until(lambda: posing.POSING not in window.session.jobs.kinds)
         mesh, (first, last) = bent.puppet.shown.mesh, bent.figure.keys
         for frame, key in ((18, last), (6, first)):
             playback.seek(window.session, frame)
@@ -566,7 +566,7 @@ def test_results_for_a_closed_project_go_nowhere(window, bent, monkeypatch, kind
     with held_up(monkeypatch, where):
         begin(window.session)
         window.frames(2)
-        assert kind in window.session.jobs.kinds
+        assert kind in [each.label for each in window.session.jobs.kinds]
         closed = bent.document
         saving.give_up(window.session)
         files.open_file(window.session, sample_images() / "s.png")

@@ -81,7 +81,7 @@ def test_window_gives_an_export_a_share_of_each_frame_and_never_idles_meanwhile(
         if session.export is None:
             break
         if steps:
-            assert set(session.jobs.kinds) <= {"Saving preferences"}
+            assert set(session.jobs.kinds) <= {saving.WRITING}
             assert awake
         steps.append(session.export.done)
     assert steps[-1] == FRAMES

@@ -10,9 +10,10 @@ from app.editor.actions import playback
 from app.editor.actions.posing.keeping import holding
 from app.editor.project import Project
 from app.editor.session import Session, with_project
+from app.editor.work import Kind
 from app.solving import Rig, pose_at
 
-INSERTING = "Inserting a key"
+INSERTING = Kind("Inserting a key", "The key could not be inserted", "hand")
 
 
 @with_project
@@ -38,10 +39,9 @@ def insert_key_at(session: Session, project: Project, figure: int, frame: int) -
         project.history.do(holding(session, project, unkeyed), gesture=gesture)
         project.history.pose(None, gesture=gesture)
     elif frame not in project.document.figure(figure).key_frames:
-        complaint = "The key could not be inserted"
         clip = clip_of(project.document, figure)
         take = partial(_insert, session, project, clip, frame)
-        fit_pose(session, project, clip, frame, take, kind=INSERTING, complaint=complaint)
+        fit_pose(session, project, clip, frame, take, kind=INSERTING)
     else:
         session.tell(f"Frame {frame} has a key already. Drag a handle to change it.")
 
@@ -53,8 +53,7 @@ def fit_pose(
     frame: int,
     take: Callable[[Pose], None],
     *,
-    kind: str,
-    complaint: str,
+    kind: Kind,
 ) -> None:
     """Let the worker find the pose that is nearest to what a clip shows at a frame."""
     puppet = project.puppets[clip.figure.id]
@@ -63,7 +62,7 @@ def fit_pose(
     def work() -> Pose:
         return pose_at(rig, clip, frame, sibling)
 
-    promises.begin(session, project, kind, work, take, complaint, lane="hand")
+    promises.begin(session, project, kind, work, take)
 
 
 def _insert(session: Session, project: Project, clip: Clip, frame: int, pose: Pose) -> None:

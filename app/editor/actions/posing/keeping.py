@@ -6,8 +6,8 @@ import numpy as np
 
 from app.document import Command, Figure, Pose, Target, UnkeyedPose, key_commands
 from app.editor.project import Project
-from app.editor.pull import Pull
 from app.editor.session import Session
+from app.editor.work import Pull
 
 
 def keep(session: Session, project: Project, pull: Pull, pose: Pose) -> None:

@@ -9,8 +9,8 @@ from app.editor.actions import playback
 from app.editor.actions.posing.keeping import keep
 from app.editor.actions.posing.solving import POSING, go_on
 from app.editor.project import Project
-from app.editor.pull import Pull, Start, WishFrom
 from app.editor.session import Session, with_project
+from app.editor.work import Pull, Start, WishFrom
 
 
 @with_project

@@ -6,8 +6,8 @@ from app.document import Clip, clip_of, exchanged
 from app.editor.actions.posing.keeping import keep
 from app.editor.actions.posing.solving import go_on, is_here
 from app.editor.project import Project
-from app.editor.pull import Pull
 from app.editor.session import Session
+from app.editor.work import Pull
 
 MOST_UNSEEN = 8  # pulls that go on for the case that they are done again
 

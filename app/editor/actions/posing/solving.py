@@ -7,15 +7,14 @@ from typing import NamedTuple
 from app.document import Clip, Pose, Target, resting_pose, time_of
 from app.editor.actions import playback
 from app.editor.actions.posing.keeping import keep
-from app.editor.failures import report
-from app.editor.jobs import Job
+from app.editor.failures import ask_worker, report
 from app.editor.project import Project
-from app.editor.pull import MOST_STEPS, Pull, Start, WishFrom, targets_of
 from app.editor.session import Session
+from app.editor.work import MOST_STEPS, Kind, Pull, Start, WishFrom, targets_of
 from app.motion import PoseSampler
 from app.solving import Drag, Rig, pose_at
 
-POSING = "Posing"
+POSING = Kind("Posing", "This pose could not be found", "hand")
 # While the hand moves: Newton steps of one job at most, and the seconds after which it begins no
 # other: what it has found by then is in the next picture.
 STEPS, HASTE = 2, 0.004
@@ -42,7 +41,7 @@ def go_on(session: Session, project: Project) -> None:
     def failed(error: Exception) -> None:
         if pull in project.pending:
             project.pending.remove(pull)
-            report(session, "This pose could not be found", error)
+            report(session, POSING.complaint, error)
 
     puppet = project.puppets.get(pull.figure)
     begin = partial(
@@ -54,15 +53,8 @@ def go_on(session: Session, project: Project) -> None:
         None if puppet is None else puppet.store.sampler,
     )
     aim = pull.targets if pull.targets is not None else tuple(pull.wishes.values())
-    session.jobs.put(
-        Job(
-            kind=POSING,
-            work=partial(_take_steps, pull.drag, begin, aim, _pace(pull), session.clock),
-            done=partial(_take, session, project, pull),
-            failed=failed,
-            lane="hand",
-        )
-    )
+    work = partial(_take_steps, pull.drag, begin, aim, _pace(pull), session.clock)
+    ask_worker(session, POSING, work, partial(_take, session, project, pull), failed)
 
 
 def is_here(session: Session, project: Project, pull: Pull) -> bool:

@@ -21,30 +21,45 @@ PATIENCE = 10.0  # seconds that the end of the program waits for what runs
 MOMENT = 0.5  # seconds that it waits for what was given up
 
 
+@dataclass(frozen=True, slots=True)
+class Kind:
+    """What a job is for.
+
+    Parameters
+    ----------
+    label : str
+        In words that the status bar can show.
+    complaint : str
+        What is said where it fails.
+    lane : str
+        On which thread it runs: that for what is under the "hand", for an "export", for what is to
+        be on "display", or for what the disk is to "keep".
+    """
+
+    label: str
+    complaint: str = ""
+    lane: LaneName = "display"
+
+
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Job:
     """A pure computation on frozen input, and what is done with its result.
 
     Parameters
     ----------
-    kind : str
-        What it is for, in words that the status bar can show.
+    kind : Kind
     work : callable
         Runs on a worker thread; touches nothing mutable and no GL.
     done : callable
         Takes the result, on the main thread.
     failed : callable
         Takes the exception that ended `work`, on the main thread.
-    lane : str
-        On which thread it runs: that for what is under the "hand", for an "export", for what is to
-        be on "display", or for what the disk is to "keep".
     """
 
-    kind: str
+    kind: Kind
     work: Callable[[], Any]
     done: Callable[[Any], None]
     failed: Callable[[Exception], None]
-    lane: LaneName = "display"
 
 
 @dataclass(slots=True, eq=False)
@@ -76,7 +91,7 @@ class Jobs:
         self._clock = clock
         self._condition = threading.Condition()
         self._waiting: list[Job] = []
-        self._finished: list[tuple[str, Callable[[], None]]] = []
+        self._finished: list[tuple[Kind, Callable[[], None]]] = []
         self._is_closed = False
         # The end of the program takes BLAS away, and a thread that is in it crashes.
         atexit.register(self.close)
@@ -91,16 +106,16 @@ class Jobs:
     def add(self, job: Job) -> None:
         """Queue a job, be there others of its kind or not."""
         with self._condition:
-            self._staff(job.lane)
+            self._staff(job.kind.lane)
             self._waiting.append(job)
             self._condition.notify_all()
 
-    def drop(self, kind: str) -> None:
+    def drop(self, kind: Kind) -> None:
         """Make an unfinished job of this kind stale."""
         with self._condition:
             self._forget(kind)
 
-    def leave(self, kind: str) -> None:
+    def leave(self, kind: Kind) -> None:
         """Give up a job of this kind that may never end; what waits behind it goes on elsewhere.
 
         Its result is thrown away, and it has failed as far as anybody is told. Where a newer one of
@@ -124,7 +139,7 @@ class Jobs:
                     self._staff(name)
 
     @property
-    def kinds(self) -> tuple[str, ...]:
+    def kinds(self) -> tuple[Kind, ...]:
         """The kinds that are unfinished: first what is finished already, last what still waits."""
         with self._condition:
             running = [
@@ -135,7 +150,7 @@ class Jobs:
             finished = [kind for kind, _ in self._finished]
             return (*finished, *running, *(job.kind for job in self._waiting))
 
-    def running_for(self, seconds: float) -> tuple[str, ...]:
+    def running_for(self, seconds: float) -> tuple[Kind, ...]:
         """Return the kinds of jobs that run since so many seconds or more.
 
         Stale ones are among them where others wait for them to end.
@@ -215,9 +230,9 @@ class Jobs:
 
     def _is_waiting(self, name: LaneName) -> bool:
         """Tell whether a job waits for a lane."""
-        return any(job.lane == name for job in self._waiting)
+        return any(job.kind.lane == name for job in self._waiting)
 
-    def _forget(self, kind: str) -> None:
+    def _forget(self, kind: Kind) -> None:
         self._waiting = [job for job in self._waiting if job.kind != kind]
         self._finished = [done for done in self._finished if done[0] != kind]
         for lane in self._lanes.values():
@@ -244,7 +259,7 @@ class Jobs:
             del job, hand_over
 
     def _next(self, lane: LaneName) -> Job | None:
-        return next((job for job in self._waiting if job.lane == lane), None)
+        return next((job for job in self._waiting if job.kind.lane == lane), None)
 
 
 def _attempt(job: Job) -> Callable[[], None]:

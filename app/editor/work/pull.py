@@ -6,7 +6,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from app.document import Clip, Figure, History, Pose, Settled, Target
-from app.editor.promise import Promise
+from app.editor.work.promise import Promise
 from app.solving import Drag
 
 # Newton steps towards one wish; a drag comes to rest in far fewer.

@@ -1,0 +1,17 @@
+"""What goes on behind the scenes: jobs of the workers, and what they are to bring.
+
+In: pure computations on frozen input.
+Out: their results, on the main thread; promises of what will change the document.
+Imports: `app.document`, `app.solving`, `app.editor.action`.
+"""
+
+from app.editor.work.derived import Derived as Derived
+from app.editor.work.jobs import Job as Job, Jobs as Jobs, Kind as Kind
+from app.editor.work.promise import Afterwards as Afterwards, Promise as Promise
+from app.editor.work.pull import (
+    MOST_STEPS as MOST_STEPS,
+    Pull as Pull,
+    Start as Start,
+    WishFrom as WishFrom,
+    targets_of as targets_of,
+)
