@@ -5,7 +5,6 @@ Out: frozen documents, each of them valid, and where time stands in them.
 Imports: `engine`, `app.errors`, `app.export_formats`; no pictures, graphics, window or clock.
 """
 
-from app.document.checks import Unknown as Unknown
 from app.document.commands import (
     Command as Command,
     Settled as Settled,

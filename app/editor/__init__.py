@@ -16,13 +16,7 @@ from app.editor.dialogs import (
     ShortcutSheet as ShortcutSheet,
 )
 from app.editor.failures import sentence as sentence
-from app.editor.project import (
-    Flip as Flip,
-    PoseBlend as PoseBlend,
-    Project as Project,
-    Puppet as Puppet,
-    Twin as Twin,
-)
+from app.editor.project import Project as Project, Puppet as Puppet, Twin as Twin
 from app.editor.session import (
     BoxMark as BoxMark,
     CurveKind as CurveKind,
@@ -34,11 +28,9 @@ from app.editor.session import (
     JointMark as JointMark,
     Overlays as Overlays,
     Session as Session,
-    Split as Split,
     StrokeMark as StrokeMark,
     SweepMark as SweepMark,
     Toast as Toast,
-    ToolInHand as ToolInHand,
     with_project as with_project,
 )
 from app.editor.timeline_view import (
@@ -52,4 +44,4 @@ from app.editor.timeline_view import (
     SwitchDrag as SwitchDrag,
     TimeGesture as TimeGesture,
 )
-from app.editor.work import Jobs as Jobs, Pull as Pull
+from app.editor.work import Jobs as Jobs

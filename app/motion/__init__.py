@@ -16,10 +16,8 @@ from app.motion.inbetweens import Animation as Animation, PoseSampler as PoseSam
 from app.motion.interval_store import IntervalPart as IntervalPart, IntervalStore as IntervalStore
 from app.motion.intervals import (
     AnyInbetweens as AnyInbetweens,
-    Build as Build,
     FoundIntervals as FoundIntervals,
     KnownInterval as KnownInterval,
-    OneFrame as OneFrame,
 )
 from app.motion.joints import (
     HERE as HERE,

@@ -8,4 +8,4 @@ Imports: `app.editor.actions`.
 from app.editor.tools import pointing as pointing
 from app.editor.tools.entry import ERASE as ERASE
 from app.editor.tools.table import TOOLS as TOOLS, tools_of as tools_of
-from app.editor.tools.tool import Spot as Spot, Tool as Tool
+from app.editor.tools.tool import Spot as Spot

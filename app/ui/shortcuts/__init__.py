@@ -5,7 +5,6 @@ Out: actions.
 Imports: `app.editor`, `app.ui.style`.
 """
 
-from app.ui.shortcuts.binding import Binding as Binding
 from app.ui.shortcuts.gestures import GESTURES as GESTURES
 from app.ui.shortcuts.keys import MODIFIERS as MODIFIERS, in_words as in_words, with_key as with_key
 from app.ui.shortcuts.pressed import ARROWS as ARROWS, pressed as pressed

@@ -14,7 +14,6 @@ from app.editor.actions.posing.handles import (
     suggest_handles as suggest_handles,
 )
 from app.editor.actions.posing.inserting import (
-    INSERTING as INSERTING,
     fit_pose as fit_pose,
     insert_key as insert_key,
     insert_key_at as insert_key_at,
