@@ -71,7 +71,6 @@ class Figure:
     id : int
         Never given twice in one document.
     picture : PictureFile
-    domain : Domain
     meshing : Meshing
         What the domain was built with.
     cut_out : CutOut

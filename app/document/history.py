@@ -102,7 +102,6 @@ class History:
 
         Parameters
         ----------
-        command : Command
         gesture : object, optional
             Commands of one gesture, that is with one and the same object here and nothing in
             between, make up one step together; none if they end with the document before it.

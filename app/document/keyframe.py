@@ -178,7 +178,6 @@ class KeptPose:
     ----------
     name : str
         Unique in the library.
-    pose : Pose
     """
 
     name: str
@@ -196,7 +195,6 @@ class Keyframe:
     Parameters
     ----------
     frame : int
-    pose : Pose
     easing : Easing
         How time runs until the next key.
     passing : Passing

@@ -33,8 +33,6 @@ def begin(
 
     Parameters
     ----------
-    session : Session
-    project : Project
     kind : Kind
         Of the job.
     work : callable
@@ -74,7 +72,6 @@ def is_settled(project: Project, *, after_saves: bool = False) -> bool:
 
     Parameters
     ----------
-    project : Project
     after_saves : bool
         Whether a save counts that is under way.
     """
@@ -104,8 +101,6 @@ def once_settled(
 
     Parameters
     ----------
-    session : Session
-    project : Project
     then : Action
     what : str
         The same in words, for the status bar.

@@ -60,7 +60,6 @@ class Painter:
     ----------
     context : Context
         Current on the thread that draws.
-    document : Document
     pictures : mapping of int to uint8, shape (h, w, 4)
         The figures' pictures, decoded, by their ids.
     poses : mapping of int to Poses

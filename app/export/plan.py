@@ -194,7 +194,6 @@ def plan_export(
 
     Parameters
     ----------
-    document : Document
     request : ExportRequest
     poses : mapping of int to KeptPoses
         One for each figure, by its id; looked at only where the framing depends on the motion.

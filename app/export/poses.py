@@ -26,7 +26,6 @@ class KeptPoses:
 
     Parameters
     ----------
-    poses : Poses
     cancellation : Cancellation, optional
         Of the export: once it was cancelled, no more of them are worked out.
     budget : int

@@ -62,7 +62,6 @@ class Thinning:
 
     Parameters
     ----------
-    domain : Domain
     scale : float
         Pixels of the frame per unit of the plane.
     """

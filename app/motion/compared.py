@@ -44,8 +44,6 @@ def prepare_compared(
 
     Parameters
     ----------
-    clip : Clip
-    baseline : Baseline
     interval : int
     domain : Domain
         With the mesh that is shown.

@@ -59,7 +59,6 @@ def measure_extent(
 
     Parameters
     ----------
-    document : Document
     stores : mapping of int to IntervalStore
         One for each figure, by its id, that has its in-betweens.
     joints : Joints, optional
@@ -87,7 +86,6 @@ def motion_box(
 
     Parameters
     ----------
-    document : Document
     frames : FrameRange
     place : callable
         Returns where the vertices of a figure, by its id, are in a frame; None ends the search.

@@ -36,7 +36,6 @@ class PoseSampler:
 
     Parameters
     ----------
-    domain : Domain
     anchor : complex, optional
         None lets the engine choose it.
     points : complex128, shape (m,), optional
@@ -130,10 +129,8 @@ class PoseSampler:
 
         Parameters
         ----------
-        transit : Transit
         bounds : Bounds
             That the motion through keys obeys.
-        variant : Variant
         """
         poses = tuple(key.pose for key in transit.keys)
         course = self._course(transit, bounds, variant)
@@ -230,7 +227,6 @@ class Animation:
 
     Parameters
     ----------
-    clip : Clip
     variant : str, optional
         The figure's own by default.
     points : complex128, shape (m,), optional

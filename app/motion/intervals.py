@@ -97,7 +97,6 @@ def prepare_intervals(
 
     Parameters
     ----------
-    clip : Clip
     wanted : sequence of int
         Numbers of the intervals.
     mesh : PosableMesh
@@ -165,7 +164,6 @@ class Build:
 
     Parameters
     ----------
-    pair : Pair
     interval : KnownInterval
         Prepared.
     distortions : bool

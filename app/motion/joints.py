@@ -80,7 +80,6 @@ class Joints:
 
     Parameters
     ----------
-    document : Document
     siblings : mapping of int to PoseSampler
         By the ids of figures; what they know of outlines is used again.
     earlier : Joints, optional

@@ -18,7 +18,6 @@ class MotionPaths:
 
     Parameters
     ----------
-    clip : Clip
     frames : intp, shape (f,)
     places : complex128, shape (f, h)
         Of each handle, on the figure by itself.
@@ -39,7 +38,6 @@ def trace_paths(
 
     Parameters
     ----------
-    clip : Clip
     earlier : MotionPaths, optional
         What is known of the same handles and poses is used again.
     sibling : PoseSampler, optional

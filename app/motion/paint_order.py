@@ -13,12 +13,7 @@ _KEPT: Final = 8  # of a mesh, of the points that are in front: as many as an an
 
 
 class PaintOrder:
-    """The order in which the triangles of a mesh are painted; what was worked out last is kept.
-
-    Parameters
-    ----------
-    mesh : Mesh
-    """
+    """The order in which the triangles of a mesh are painted; what was worked out last is kept."""
 
     def __init__(self, mesh: Mesh) -> None:
         self._mesh = mesh

@@ -21,7 +21,6 @@ class Shown:
 
     Parameters
     ----------
-    clip : Clip
     frame : int
     pose : Pose, optional
         The pose that is shown; None for an in-between.
@@ -100,7 +99,6 @@ def show(
 
     Parameters
     ----------
-    clip : Clip
     frame : int
     pose : Pose, optional
         Shown instead of what the figure has at the frame.
@@ -153,7 +151,6 @@ def hang_shown(
 
     Parameters
     ----------
-    document : Document
     shown : mapping of int to Shown
         By the ids of figures.
     joints : Joints or None

@@ -25,7 +25,6 @@ class TrackedPoints:
 
     Parameters
     ----------
-    clip : Clip
     points : complex128, shape (p,)
         Of the figure at rest; at least one.
     sibling : PoseSampler, optional

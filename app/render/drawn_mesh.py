@@ -35,7 +35,6 @@ class DrawnMesh:
 
         Parameters
         ----------
-        vertices : Vertices
         placement : Placement
             Where the figure hangs.
         opacity : float

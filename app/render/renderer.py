@@ -43,7 +43,6 @@ class Renderer:
         target : RenderTarget
         view : View
             Of the target's size.
-        scene : Scene
         """
         if view.size != target.size:
             raise ValueError(f"a view of {view.size} pixels cannot fill a frame of {target.size}")

@@ -18,7 +18,6 @@ class Backdrop:
 
     Parameters
     ----------
-    colour : Colour
     checks : Colour, optional
         The second colour of a checkerboard.
     square : float
@@ -84,7 +83,6 @@ class Line:
     ----------
     points : complex128, shape (n,)
         At least two, in the plane.
-    colour : Colour
     width : float
         In pixels.
     dash : float

@@ -85,7 +85,6 @@ def certify_clip(clip: Clip, variant: Variant | None = None) -> Report:
 
     Parameters
     ----------
-    clip : Clip
     variant : str, optional
         The figure's own by default.
 

@@ -22,7 +22,6 @@ class Curves:
 
     Parameters
     ----------
-    clip : Clip
     frames : float64, shape (t,)
     k, tau : float64, shape (t, p)
         At the points where each is the largest over all time.

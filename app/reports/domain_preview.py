@@ -20,7 +20,6 @@ def draw_preview(picture: Picture, domain: Domain) -> bytes:
 
     Parameters
     ----------
-    picture : Picture
     domain : Domain
         Its points are in the pixels of `picture`, y up.
     """

@@ -26,7 +26,6 @@ class Rig:
 
     Parameters
     ----------
-    figure : Figure
     deformer : Deformer
         For all of the figure's handles, in their order, and for its anchor where it hangs by that:
         a joint holds like a pin.
@@ -93,10 +92,8 @@ class Drag:
 
     Parameters
     ----------
-    rig : Rig
     deformer : Deformer
         Its bounds are the figure's, or as much wider as the pose at the start asked for.
-    state : State
     pins : tuple of Target
         What is held still.
     """
@@ -167,7 +164,6 @@ def pose_at(rig: Rig, clip: Clip, frame: float, sibling: PoseSampler | None = No
     ----------
     rig : Rig
         Of the clip's figure.
-    clip : Clip
     frame : float
     sibling : PoseSampler, optional
         Of the figure's domain, for what it knows of the outline.
@@ -215,7 +211,6 @@ def fit_map(
 
     Parameters
     ----------
-    boundary : Boundary
     fz, fzbar, positions : complex128, shape (s,)
         f_z, f_z̄ and f of the other map at the boundary's samples.
     inside : bool, shape (m,), optional

@@ -177,7 +177,6 @@ class Field:
     Parameters
     ----------
     name : str
-    codec : Codec
     of : callable, optional
         Returns what it is of an object; by default, that is the attribute of its name.
     usual : object, optional

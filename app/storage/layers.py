@@ -92,7 +92,6 @@ def flattened(document: Document, textures: Mapping[int, Bytes]) -> Bytes:
 
     Parameters
     ----------
-    document : Document
     textures : mapping of int to uint8, shape (h, w, 4)
         What is cut out of the figures' pictures, by their ids.
 
@@ -124,10 +123,8 @@ def layer_figure(
 
     Parameters
     ----------
-    layer : Layer
     identity : int
         The figure's id.
-    meshing : Meshing
     is_cut_out : bool
         Whether its transparency alone tells what is drawn. Then a layer that is opaque all over
         becomes a still picture; else a plain background is taken off first.

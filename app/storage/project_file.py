@@ -49,7 +49,6 @@ def save_project(path: Path, document: Document, *, thumbnail: bytes | None = No
     ----------
     path : Path
         Used exactly as given.
-    document : Document
     thumbnail : bytes, optional
         A small PNG picture of the animation.
 

@@ -42,10 +42,8 @@ class Easel:
 
         Parameters
         ----------
-        shape : Shape
         positions : complex128, shape (v,)
             Of the vertices of the shape's mesh.
-        box : Box
         pixels : int
             Of the longer side.
         """

@@ -40,7 +40,6 @@ class Shape:
     ----------
     picture : uint8, shape (h, w, 4)
         Straight alpha; its lower left corner is the origin of the plane.
-    domain : Domain
     """
 
     picture: Bytes

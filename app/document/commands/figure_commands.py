@@ -30,8 +30,6 @@ def set_bounds(figure: Figure, bounds: Bounds, poses: Sequence[Pose] | None = No
 
     Parameters
     ----------
-    figure : Figure
-    bounds : Bounds
     poses : sequence of Pose, optional
         One for each of the figure's, solved within the new bounds; without them all poses stay as
         they are.
@@ -64,7 +62,6 @@ def replace_domain(
 
     Parameters
     ----------
-    figure : Figure
     domain : Domain
         That of the figure's cut-out; it must contain every handle and the anchor.
     meshing : Meshing

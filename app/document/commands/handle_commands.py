@@ -20,7 +20,6 @@ def add_handle(
 
     Parameters
     ----------
-    figure : Figure
     position : complex
         In pixels of the picture at rest, y up, on the shape.
     name : str, optional

@@ -77,7 +77,6 @@ def reverse_keys(
 
     Parameters
     ----------
-    figure : Figure
     frames : collection of int
     span : tuple of int, optional
         The first and the last frame of what runs backwards, where other figures do so together with
@@ -106,7 +105,6 @@ def scale_keys(
 
     Parameters
     ----------
-    figure : Figure
     frames : collection of int
     factor : float
     first : int, optional

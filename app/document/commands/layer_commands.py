@@ -166,7 +166,6 @@ def detach(document: Document, identity: int, factor: complex, shift: complex) -
 
     Parameters
     ----------
-    document : Document
     identity : int
     factor : complex
         Of modulus 1: by which all poses are turned.

@@ -17,7 +17,6 @@ class Clip:
 
     Parameters
     ----------
-    figure : Figure
     frames : FrameRange
         Of the scene.
     loop : bool

@@ -145,7 +145,6 @@ def frame_times(document: Document, frames: FrameRange, fps: float | None = None
 
     Parameters
     ----------
-    document : Document
     frames : FrameRange
         Both ends included; the last one only if the export's rate falls on it.
     fps : float, optional

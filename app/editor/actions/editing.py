@@ -50,7 +50,6 @@ def hold(_: Session, project: Project, held: int) -> None:
 
     Parameters
     ----------
-    session : Session
     held : int
         A number of the widget, 0 for nothing; another one begins another step of undo.
     """

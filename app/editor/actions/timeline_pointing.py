@@ -121,7 +121,6 @@ def shift_of(
 
     Parameters
     ----------
-    document : Document
     keys : mapping of int to frozenset of int
         Their frames, by the ids of their figures.
     wanted : int

@@ -30,7 +30,6 @@ def figure_at(
 
     Parameters
     ----------
-    project : Project
     place : complex
     below : int, optional
         Where that figure is there, too, the next one behind it is returned, or at last the first.

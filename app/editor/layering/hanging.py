@@ -32,8 +32,6 @@ def hang(
 
     Parameters
     ----------
-    session : Session
-    project : Project
     child, parent : int
         Ids of layers.
     turns : bool

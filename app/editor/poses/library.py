@@ -60,8 +60,6 @@ def blend(session: Session, project: Project, name: str, share: float) -> None:
 
     Parameters
     ----------
-    session : Session
-    project : Project
     name : str
     share : float
         Of the pose in the library: 0 changes nothing, 1 is that pose itself. Between them the

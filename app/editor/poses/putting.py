@@ -29,8 +29,6 @@ def put(
 
     Parameters
     ----------
-    session : Session
-    project : Project
     frame : int
         Where the first of them comes.
     keys_of : mapping of int to sequence of Keyframe
@@ -72,7 +70,6 @@ def fitted(
 
     Parameters
     ----------
-    project : Project
     identity : int
         Of the figure.
     keys : sequence of Keyframe

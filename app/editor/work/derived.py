@@ -13,7 +13,6 @@ class Derived(Generic[Source, Value]):
 
     Parameters
     ----------
-    value : Value
     source : Source, optional
         What it was derived from; None before the first one.
     failure : Source, optional

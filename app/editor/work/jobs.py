@@ -47,7 +47,6 @@ class Job:
 
     Parameters
     ----------
-    kind : Kind
     work : callable
         Runs on a worker thread; touches nothing mutable and no GL.
     done : callable

@@ -37,7 +37,6 @@ class BackendReport:
 
     Parameters
     ----------
-    backend : Backend
     problem : str
         Why it does not work and what to install; empty where it works, as are the fields below
         where it does not.

@@ -101,7 +101,6 @@ class GpuMesh:
 
     Parameters
     ----------
-    programs : Programs
     picture : GpuPicture
         What is painted on the triangles; released by its owner, after the mesh.
     rest : complex128, shape (v,)

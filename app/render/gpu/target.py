@@ -16,7 +16,6 @@ class RenderTarget:
 
     Parameters
     ----------
-    programs : Programs
     size : tuple of int
         Width and height in pixels.
     oversampling : int

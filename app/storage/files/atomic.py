@@ -35,7 +35,6 @@ class NoRoomError(LissomError):
 
     Parameters
     ----------
-    path : Path
     cause : OSError
         What the system says.
     needed : int

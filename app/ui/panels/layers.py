@@ -17,8 +17,6 @@ def draw(session: Session, look: Look, project: Project, pictures: SmallPictures
 
     Parameters
     ----------
-    session : Session
-    look : Look
     pictures : callable
         Returns the texture of a layer's small picture, by the layer's id.
     """

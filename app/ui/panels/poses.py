@@ -35,8 +35,6 @@ def draw(session: Session, look: Look, project: Project, pictures: Pictures) -> 
 
     Parameters
     ----------
-    session : Session
-    look : Look
     pictures : callable
         Returns the texture of a pose, of a number of pixels each way.
     """

@@ -17,7 +17,6 @@ class Binding:
     ----------
     label : str
         In menus and in the sheet of keys.
-    action : Action
     parted : bool
         Whether a line parts it from the entry above in its menu.
     keys : tuple of int

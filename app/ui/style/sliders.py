@@ -69,11 +69,9 @@ def slider(
 
     Parameters
     ----------
-    look : Look
     name : str
         Id of the field; the track's is `name track`.
     value : float
-    scale : Scale
     text : str
         How the number is written, as C formats it.
     hint : str
@@ -113,12 +111,10 @@ def track(
 
     Parameters
     ----------
-    look : Look
     name : str
         Its id.
     value : float
         Where the knob is.
-    scale : Scale
     width : float
         Pixels.
     colour : ImVec4

@@ -97,7 +97,6 @@ def icon_button(
 
     Parameters
     ----------
-    look : Look
     icon, name : str
         What it shows, and its id.
     hint, keys : str
@@ -154,7 +153,6 @@ def segments(
 
     Parameters
     ----------
-    look : Look
     name : str
         Its id.
     options : sequence of (value, text)

@@ -33,13 +33,7 @@ class FigureRow:
 
 
 class Track:
-    """The bands of the timeline, and the way between frames and pixels.
-
-    Parameters
-    ----------
-    look : Look
-    project : Project
-    """
+    """The bands of the timeline, and the way between frames and pixels."""
 
     def __init__(self, look: Look, project: Project) -> None:
         self.look = look

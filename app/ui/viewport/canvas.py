@@ -27,12 +27,7 @@ SMALL_PICTURE = -1  # number of the poses that are drawn for the library; ghosts
 
 
 class Canvas:
-    """Owner of everything that the viewport's picture is drawn from.
-
-    Parameters
-    ----------
-    renderer : Renderer
-    """
+    """Owner of everything that the viewport's picture is drawn from."""
 
     def __init__(self, renderer: Renderer) -> None:
         self._renderer = renderer

@@ -46,8 +46,6 @@ class CutView:
 
     Parameters
     ----------
-    renderer : Renderer
-    project : Project
     figure : int
         Its id.
 
@@ -106,8 +104,6 @@ def draw_brush(session: Session, look: Look, at: ImVec2, scale: float) -> None:
 
     Parameters
     ----------
-    session : Session
-    look : Look
     at : ImVec2
         Where the pointer is.
     scale : float

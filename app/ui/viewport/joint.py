@@ -16,7 +16,6 @@ def is_on_anchor(project: Project, handle: int | None, place: complex, reach: fl
 
     Parameters
     ----------
-    project : Project
     handle : int, optional
         The one under the pointer.
     place : complex
@@ -45,7 +44,6 @@ def draw_joint(
 
     Parameters
     ----------
-    look : Look
     mark : JointMark
     point : callable
         Where a place of the layer by itself is on the screen.

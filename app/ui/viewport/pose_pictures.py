@@ -14,12 +14,7 @@ MARGIN = 0.06  # of the side, left free around the shape
 
 
 class PosePictures:
-    """Owner of one small texture for each pose that was asked for.
-
-    Parameters
-    ----------
-    renderer : Renderer
-    """
+    """Owner of one small texture for each pose that was asked for."""
 
     def __init__(self, renderer: Renderer) -> None:
         self._renderer = renderer
@@ -48,8 +43,6 @@ class PosePictures:
 
         Parameters
         ----------
-        session : Session
-        project : Project
         posable : callable
             Returns a mesh on the graphics card that can be posed.
         """

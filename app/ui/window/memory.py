@@ -14,12 +14,7 @@ ARENA_MAX = -8  # the C library's number for it
 
 
 class FreeMemory:
-    """What a closed project and finished work have left free, given back to the system.
-
-    Parameters
-    ----------
-    session : Session
-    """
+    """What a closed project and finished work have left free, given back to the system."""
 
     def __init__(self, session: Session) -> None:
         self._session = session

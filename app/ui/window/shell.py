@@ -33,7 +33,6 @@ class Shell:
 
     Parameters
     ----------
-    session : Session
     panels : sequence of Panel
     thumbnail : callable
         Returns the thumbnail of a picture file.

@@ -75,7 +75,6 @@ class Window:
 
     Parameters
     ----------
-    session : Session
     connect : callable
         Returns a renderer for the window's OpenGL context, once ImGui has made it.
     """

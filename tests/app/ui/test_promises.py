@@ -307,3 +307,17 @@ def test_within_a_job_the_clock_goes_on(window):
     thread.join()
     assert seen[0] < seen[1] < seen[2]
     assert window.clock() == window.clock()
+
+
+def test_mirroring_handles_is_one_step_also_while_a_pose_is_on_its_way(window, bent):
+    # Beside the axis, so that the partner is on the drawing.
+    posing.add_handle(window.session, complex(bent.puppet.shown.handle_places.mean()) + 60)
+    window.settle()
+    (added,) = bent.selected
+    drag(window, bent)
+    before = bent.document
+    bent.selected = frozenset({added})
+    posing.mirror_handles(window.session)
+    assert len(bent.figure.handles) == 4, [toast.text for toast in window.session.toasts]
+    editing.undo(window.session)
+    assert bent.figure.handles == before.figure(0).handles

@@ -17,7 +17,7 @@ from app.document.commands import figure_commands, handle_commands, key_commands
 from app.document.easing import PRESETS, Easing
 from app.document.keyframe import Target
 from app.document.settings import VARIANTS, ExportSettings, FrameRange, Meshing
-from app.editor import jobs, layering
+from app.editor import layering
 from app.editor.actions import (
     cutting,
     editing,
@@ -31,6 +31,7 @@ from app.editor.actions import (
 )
 from app.editor.poses import copying, flipping, library
 from app.editor.timeline_view import Strip
+from app.editor.work import jobs
 from app.export_formats import EXPORT_FORMATS
 from app.storage.project_file import load_project, save_project
 from app.ui.shortcuts import ARROWS, BINDINGS, MODIFIERS
