@@ -117,14 +117,15 @@ def once_settled(
 
 @with_project
 def go_on(session: Session, project: Project) -> None:
-    """Do the next of what has waited for the document, if that has settled."""
-    while project.afterwards and session.project is project:
-        first = project.afterwards[0]
-        is_due = session.clock() >= first.until
-        if not (is_due or is_settled(project, after_saves=first.after_saves)):
-            return
-        del project.afterwards[0]
-        first.then.apply(session)
+    """Do what has waited for the document, in order, as far as that has settled or time is up."""
+    for waiting in tuple(project.afterwards):
+        is_due = session.clock() >= waiting.until
+        if not (is_due or is_settled(project, after_saves=waiting.after_saves)):
+            continue
+        # What was done just now may have done this, too, or closed the project.
+        if waiting in project.afterwards and session.project is project:
+            project.afterwards.remove(waiting)
+            waiting.then.apply(session)
 
 
 def waits_for(project: Project) -> str:

@@ -119,7 +119,7 @@ class Pull(Promise):
     is_left: bool = False
 
     def wish(self, gesture: object, wish: WishFrom) -> None:
-        """WishFrom something else of a gesture, in place of what it wished before."""
+        """Wish something else of a gesture, in place of what it wished before."""
         self.wishes[gesture] = wish
         self.aim()
 

@@ -21,7 +21,7 @@ def pull(
     *,
     gesture: object | None = None,
 ) -> None:
-    """WishFrom handles elsewhere in the pose of the present frame; the others keep their wishes.
+    """Wish handles elsewhere in the pose of the present frame; the others keep their wishes.
 
     Pulls of one gesture are one step of undo, in which the later wish takes the place of the
     earlier; without one, each is a step until it is let go. An in-between that is not there yet is
@@ -46,7 +46,7 @@ def let_go(session: Session, project: Project) -> None:  # noqa: ARG001 - of an 
 
 
 def wish(session: Session, wishes: Mapping[int, Target]) -> None:
-    """WishFrom handles elsewhere, as a field of the panel says."""
+    """Wish handles elsewhere, as a field of the panel says."""
     _once(session, wishes)
 
 
