@@ -243,7 +243,7 @@ def test_the_metric_variant_folds_nowhere_between_hard_keys(monkeypatch):
         fz, fzbar = frame.fz[-len(edge) :], frame.fzbar[-len(edge) :]
         # The keys come out a little otherwise on each processor: 1.00202 at most was seen.
         assert distortion.k(fz, fzbar).max() <= 1.0025 * max(distortion.k(*e).max() for e in ends)
-        assert distortion.k(fz, fzbar).max() <= 1.0025 * proof.k
+        assert distortion.k(fz, fzbar).max() <= 1.002 * proof.k
         assert distortion.sigma_b(fz, fzbar).min() >= 0.998 * proof.sigma_b
         least = min(distortion.sigma_b(*end).min() for end in ends)
         assert distortion.sigma_b(fz, fzbar).min() >= 0.998 * least
