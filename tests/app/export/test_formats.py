@@ -19,9 +19,10 @@ from app.export.run import MOST_QUEUED, export
 from app.export.writers import DATA_WRITERS, FILE_WRITERS, FOLDER_WRITERS, SHAPE_WRITERS, png, table
 from app.export.writers.png import PngSequence
 from app.export.writers.spritesheet import SpritesheetWriter, sheet_grid
-from app.export_formats import EXPORT_FORMATS
+from app.export_formats import EXPORT_FORMATS, FormatSettings, ShapeDetail, SheetLayout
 from app.render.view import canvas_view
 from engine.arrays import Bytes
+from engine.domain import MOST_TRIANGLES
 
 DRAWN = [name for name, format_ in EXPORT_FORMATS.items() if format_.is_drawn]
 
@@ -36,6 +37,22 @@ def test_every_format_of_the_table_has_a_writer():
     assert SHAPE_WRITERS.keys() == EXPORT_FORMATS.keys() - DRAWN
     assert FILE_WRITERS.keys() | DATA_WRITERS.keys() == files - SHAPE_WRITERS.keys()
     assert FOLDER_WRITERS.keys() == EXPORT_FORMATS.keys() - files
+
+
+def test_what_formats_ask_is_told_once_and_has_room_for_what_is_usual():
+    groups = FormatSettings().options()
+    assert {format_.options for format_ in EXPORT_FORMATS.values()} == {"", *groups}
+    options = [(name, each) for group in groups.values() for name, each in group.asked().items()]
+    assert len(dict(options)) == len({each.flag for _, each in options}) == len(options)
+    # It stands there once more, so that nothing heavy is loaded for it.
+    assert ShapeDetail.asked()["triangles"].most == MOST_TRIANGLES
+    for wrong in ({"padding": -1}, {"padding": 257}):
+        with pytest.raises(LissomError, match="Padding must be 0 to 256, not"):
+            SheetLayout(**wrong)
+    with pytest.raises(LissomError, match="Triangles must be 100 to 2,000,000, not 99"):
+        ShapeDetail(triangles=99)
+    with pytest.raises(LissomError, match="to 100, not nan"):
+        ShapeDetail(tolerance=float("nan"))
 
 
 def test_video_is_loaded_only_when_it_is_asked_for():

@@ -12,6 +12,7 @@ from app.document.commands.scene_commands import set_export
 from app.document.keyframe import Handle, Keyframe, Pose, Target
 from app.document.settings import NATURAL, RUBBERY, STIFF, Meshing
 from app.editor.actions import editing, exporting, playback, posing, upkeep
+from app.export_formats import ShapeDetail, SheetLayout
 from app.motion.extent import extent_source
 from engine.maps.boundary import Boundary
 from engine.maps.certificate import certify
@@ -349,6 +350,31 @@ def test_export_settings_are_entered_and_undone(window, project, tab):
     while project.history.undo_label == "Set export":
         editing.undo(window.session)
     assert project.document is before
+
+
+def test_what_single_formats_ask_is_entered(window, project, tab):
+    def lay_out(robot):
+        assert robot.item_exists("**/framing/###fit")
+        robot.item_click("**/trimmed/###All alike")
+        robot.item_input_value("**/##padding", 999)
+        robot.item_click("**/power_of_two/###Powers of two")
+
+    def detail(robot):
+        assert not robot.item_exists("**/framing/###fit")
+        robot.item_input_value("**/##triangles", 900)
+        robot.item_click("**/tolerance/###Own")
+        robot.item_input_value("**/##tolerance", 0.25)
+
+    exporting.set_export(window.session, replace(project.document.export, format="spritesheet"))
+    tab("Export", lay_out)
+    wanted = SheetLayout(trimmed=False, padding=256, power_of_two=True)
+    assert project.document.export.sheet == wanted
+    exporting.set_export(window.session, replace(project.document.export, format="glb"))
+    tab("Export", detail)
+    assert project.document.export.shapes == ShapeDetail(triangles=900, tolerance=0.25)
+    tab("Export", lambda robot: robot.item_click("**/tolerance/###½ px, 8 shapes"))
+    assert project.document.export.shapes == ShapeDetail(triangles=900)
+    assert project.document.export.sheet == wanted
 
 
 def test_frame_of_the_export_shows_only_with_its_tab(window, project, tab):
