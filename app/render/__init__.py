@@ -5,7 +5,6 @@ Out: pixels in a target.
 Imports: `app.motion`, `app.storage`; with `app.render.gpu` it alone sees OpenGL.
 """
 
-from app.render.draw_lists import DrawLists as DrawLists, Textures as Textures
 from app.render.drawn_mesh import DrawnMesh as DrawnMesh, shader_is_faster as shader_is_faster
 from app.render.handles import (
     HandleMark as HandleMark,

@@ -44,10 +44,6 @@ class Thumbnails:
         texture = self._textures.get(path)
         return None if texture is None else Thumbnail(texture.glo, texture.size)
 
-    def textures(self) -> list[moderngl.Texture]:
-        """Return all that are ready."""
-        return [texture for texture in self._textures.values() if texture is not None]
-
     def release(self, but: Path | None = None) -> None:
         """Let the textures go, but those of files in one folder, if it is named.
 
@@ -91,10 +87,6 @@ class LayerPictures:
             known = self._textures[identity] = small, _texture(self._context, small)
         self._wanted.add(identity)
         return Thumbnail(known[1].glo, known[1].size)
-
-    def textures(self) -> list[moderngl.Texture]:
-        """Return all that are ready."""
-        return [texture for _, texture in self._textures.values()]
 
     def release(self) -> None:
         """Let all textures go."""

@@ -4,9 +4,9 @@ import numpy as np
 from imgui_bundle import ImVec2, hello_imgui, imgui
 from PIL import Image
 
-from app.render import DrawLists
-from app.render.gpu import Context, Programs, finish_drawing
+from app.render.gpu import Context, finish_drawing
 from app.ui.window.window import SIZE, Window
+from tests.support.draw_lists import DrawLists
 
 
 class Offscreen:
@@ -57,7 +57,7 @@ class Offscreen:
         data = imgui.get_draw_data()
         self._target.clear(*self._params.imgui_window_params.background_color)
         if self._lists is not None and data is not None and data.valid:
-            self._lists.draw(self._target, self._window.textures())
+            self._lists.draw(self._target)
         finish_drawing(self._gl)
 
     def picture(self) -> Image.Image:
@@ -135,4 +135,4 @@ class Offscreen:
         return params
 
     def _attach(self) -> None:
-        self._lists = DrawLists(Programs(self._gl))
+        self._lists = DrawLists(self._gl)

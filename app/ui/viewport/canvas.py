@@ -47,11 +47,6 @@ class Canvas:
         """The same of the picture by another method; None where the viewport is not split."""
         return self._targets[1].texture.glo if len(self._targets) > 1 else None
 
-    @property
-    def targets(self) -> tuple[RenderTarget, ...]:
-        """Where the pictures are."""
-        return tuple(self._targets)
-
     def keep_only(self, project: Project | None) -> bool:
         """Let go of any other project than this; return whether there was one."""
         if self._drawing is None or self._drawing.project is project:

@@ -24,11 +24,6 @@ class PosePictures:
         self._kind: tuple[object, ...] = ()
         self._side = 1
 
-    @property
-    def targets(self) -> list[RenderTarget]:
-        """All that are drawn."""
-        return list(self._targets.values())
-
     def get(self, pose: Pose, side: int) -> int | None:
         """Return the texture of a pose, so many pixels wide and high; None before it is drawn."""
         self._wanted.add(pose)

@@ -22,7 +22,7 @@ from app.document import Pose
 from app.editor import Action, FileDialog, Session, do, layering
 from app.editor.actions import exporting, saving
 from app.errors import EXPECTED_ERRORS, LissomError, shown_name
-from app.render import LayerPictures, Renderer, Textures, Thumbnail, Thumbnails
+from app.render import LayerPictures, Renderer, Thumbnail, Thumbnails
 from app.render.gpu import is_software
 from app.storage import app_icon, sample_images
 from app.ui.panel import Panel
@@ -177,16 +177,6 @@ class Window:
     def ask(self, action: Action) -> None:
         """Do something in the next frame, as if a panel had asked for it."""
         self._shell.ask(action)
-
-    def textures(self) -> Textures:
-        """Return the textures that the panels show, by their OpenGL names."""
-        textures = [] if self._thumbnails is None else self._thumbnails.textures()
-        if self._layer_pictures is not None:
-            textures += self._layer_pictures.textures()
-        if self._canvas is not None:
-            textures += [target.texture for target in self._canvas.targets]
-            textures += [target.texture for target in self._canvas.pose_pictures.targets]
-        return {texture.glo: texture for texture in textures}
 
     def draw_canvas(self) -> None:
         """Draw the viewport's picture, and go on with an export; once a frame."""

@@ -317,7 +317,7 @@ def test_a_saved_project_is_known_by_its_picture_in_the_welcome_view(window, pro
     window.open(BAR)
     assert path not in textures._textures
     # Samples stay: nobody writes to them.
-    assert textures.textures()
+    assert textures._textures
 
 
 def test_a_drag_keeps_what_a_later_version_wrote_about_its_target(window, project, tmp_path):

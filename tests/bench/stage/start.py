@@ -50,7 +50,9 @@ class Start:
         self._frames += 1
         if self._frames == 2:
             print(MARKS[0], flush=True)
-        if self._frames > 2 and len(self._window.textures()) == len(files.samples()):
+        thumbnails = self._window._thumbnails
+        read = 0 if thumbnails is None else len(thumbnails._textures)
+        if self._frames > 2 and read == len(files.samples()):
             print(MARKS[1], flush=True)
             saving.quit_lissom(session)
         else:

@@ -1,20 +1,13 @@
 """Draws Dear ImGui's draw lists with moderngl, so that the whole window works without a display."""
 
 import ctypes
-from typing import Final
+from pathlib import Path
 
 import moderngl
 import numpy as np
 from imgui_bundle import imgui
 
-from app.render.gpu import Programs, ShaderFiles
-
-_INTERFACE: Final = ShaderFiles(vertex=("interface.vert",), fragment=("interface.frag",))
 CHUNK = 1 << 16  # bytes that the buffers start with
-
-
-Textures = dict[int, moderngl.Texture]
-"""Textures by their OpenGL names."""
 
 
 class DrawLists:
@@ -22,39 +15,33 @@ class DrawLists:
 
     Parameters
     ----------
-    programs : Programs
-        Its context is current whenever a method is called. ImGui's context exists already.
+    gl : moderngl.Context
+        It is current whenever a method is called. ImGui's context exists already.
     """
 
-    def __init__(self, programs: Programs) -> None:
-        self._gl = gl = programs.context
-        self._program = programs.get(_INTERFACE)
+    def __init__(self, gl: moderngl.Context) -> None:
+        self._gl = gl
+        self._program = gl.program(
+            vertex_shader=_source("interface.vert"), fragment_shader=_source("interface.frag")
+        )
         self._vertices = gl.buffer(reserve=CHUNK, dynamic=True)
         self._indices = gl.buffer(reserve=CHUNK, dynamic=True)
         self._array = self._make_array()
-        self._textures: Textures = {}
+        self._textures: dict[int, moderngl.Texture] = {}
         imgui.get_io().backend_flags |= imgui.BackendFlags_.renderer_has_textures
         limit = int(gl.info["GL_MAX_TEXTURE_SIZE"])
         platform = imgui.get_platform_io()
         platform.renderer_texture_max_width = limit
         platform.renderer_texture_max_height = limit
 
-    def draw(self, target: moderngl.Framebuffer, textures: Textures) -> None:
-        """Draw what ImGui rendered last.
-
-        Parameters
-        ----------
-        target : moderngl.Framebuffer
-        textures : dict
-            Those that the panels show as images.
-        """
+    def draw(self, target: moderngl.Framebuffer) -> None:
+        """Draw what ImGui rendered last."""
         data = imgui.get_draw_data()
         self._update_textures()
         left, top = data.display_pos
         width, height = data.display_size
         if width <= 0 or height <= 0:
             return
-        known = self._textures | textures
         target.use()
         self._gl.enable_only(moderngl.BLEND)
         # Alpha is kept apart, so that the picture stays opaque where panels are translucent.
@@ -76,11 +63,12 @@ class DrawLists:
                 high = round((x1 - left) * scale.x), round(target.height - (y0 - top) * scale.y)
                 corner = max(low[0], 0), max(low[1], 0)
                 extent = high[0] - corner[0], high[1] - corner[1]
-                texture = known.get(command.tex_ref.get_tex_id())
-                if min(extent) <= 0 or texture is None:
+                if min(extent) <= 0:
                     continue
                 target.scissor = (corner[0], corner[1], extent[0], extent[1])
-                texture.use(0)
+                # Also those of panels, which are known by their names alone.
+                name = command.tex_ref.get_tex_id()
+                self._gl.external_texture(name, (1, 1), 4, 0, "f1").use(0)
                 self._array.render(
                     moderngl.TRIANGLES, vertices=command.elem_count, first=command.idx_offset
                 )
@@ -136,3 +124,7 @@ class DrawLists:
                 self._textures.pop(image.tex_id).release()
                 image.set_tex_id(0)
                 image.set_status(status.destroyed)
+
+
+def _source(name: str) -> str:
+    return "#version 330 core\n" + Path(__file__).with_name(name).read_text(encoding="utf-8")
