@@ -23,7 +23,7 @@ QUEUED_BYTES, MOST_QUEUED = 2**26, 8
 class _Due(NamedTuple):
     """A frame that is to be written, and what is done when it is."""
 
-    encoded: Future[bytes]
+    encoded: Future[Any]
     written: Future[None]
 
 
@@ -91,7 +91,7 @@ def export(
                 written.popleft()
             yield from come(posed[0], end, count=index, waits=waits)
             frame = draw(posed.popleft().result())
-            encoded = encoders.submit(opened.result().encode, index, frame)
+            encoded = encoders.submit(opened.result().encode, frame)
             written.append(Future())
             due.put(_Due(encoded, written[-1]))
             yield index + 1

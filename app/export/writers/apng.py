@@ -9,9 +9,7 @@ from fractions import Fraction
 from typing import IO, Final
 
 from app.export.plan import ExportPlan
-from app.export.writers.frame_writer import FrameWriter
-from app.export.writers.png import SIGNATURE, chunk, encode_png
-from engine.arrays import Bytes
+from app.export.writers.png import SIGNATURE, PngFrames, chunk
 
 # A frame lasts a fraction of two numbers of 16 bits, in seconds; with some room for rounding.
 _LARGEST: Final = 65_000
@@ -19,24 +17,13 @@ _LARGEST: Final = 65_000
 _DISPOSE_NONE, _BLEND_SOURCE = 0, 0
 
 
-class ApngWriter(FrameWriter):
-    """Writes an animated PNG file frame by frame.
-
-    Parameters
-    ----------
-    file : binary file
-    plan : ExportPlan
-    """
+class ApngWriter(PngFrames):
+    """Writes an animated PNG file frame by frame."""
 
     def __init__(self, file: IO[bytes], plan: ExportPlan) -> None:
-        self._file = file
-        self._plan = plan
+        super().__init__(file, plan)
         self._chunks = 0  # of those that are numbered
         self._started = False
-
-    def encode(self, index: int, frame: Bytes) -> bytes:  # noqa: ARG002 - all frames are alike
-        """Return a PNG file of the frame."""
-        return encode_png(frame)
 
     def add(self, encoded: bytes) -> None:
         """Take the picture data out of a PNG file and into the animation."""

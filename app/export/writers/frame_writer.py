@@ -1,21 +1,34 @@
 """What turns the frames of an export into files."""
 
+from typing import IO, Any
+
+from app.export.plan import ExportPlan
 from engine.arrays import Bytes
 
 
 class FrameWriter:
-    """One format's way to files; the base of all of them.
+    """One format's way to a file; the base of all of them.
 
     `encode` is called once for each frame, on several threads and out of order; all else on one
     thread, in the order of the frames. Nothing is called on the thread that draws.
+
+    Parameters
+    ----------
+    file : binary file
+        It can be written to anywhere.
     """
 
-    def encode(self, index: int, frame: Bytes) -> bytes:
+    def __init__(self, file: IO[bytes], plan: ExportPlan) -> None:
+        self._file = file
+        self._plan = plan
+
+    def encode(self, frame: Bytes) -> Any:
         """Do the long part of the work for a frame, uint8 (h, w, 4) with straight alpha."""
         raise NotImplementedError
 
-    def add(self, encoded: bytes) -> None:
+    def add(self, encoded: Any) -> None:
         """Put the next frame, as `encode` returned it, where it belongs."""
+        raise NotImplementedError
 
     def finish(self) -> None:
         """Write what comes after the last frame."""

@@ -28,21 +28,10 @@ class GifWriter(FrameWriter):
     GIF knows no soft edges: a pixel is opaque, in its own colour, where its alpha is at least
     `OPAQUE_FROM`, and transparent elsewhere. Each frame has the 255 colours that suit it best,
     without dithering, whose grain would crawl.
-
-    Parameters
-    ----------
-    file : binary file
-    plan : ExportPlan
-
-    Raises
-    ------
-    LissomError
-        If the rate is above what GIF can show.
     """
 
     def __init__(self, file: IO[bytes], plan: ExportPlan) -> None:
-        self._file = file
-        self._plan = plan
+        super().__init__(file, plan)
         self._count = 0
         self._file.write(b"GIF89a" + struct.pack("<HHBBB", *plan.view.size, 0, 0, 0))
         if plan.loop:
@@ -51,7 +40,7 @@ class GifWriter(FrameWriter):
                 struct.pack("<BBB11sBBHB", _EXTENSION, 0xFF, 11, b"NETSCAPE2.0", 3, 1, for_ever, 0)
             )
 
-    def encode(self, index: int, frame: Bytes) -> bytes:  # noqa: ARG002 - all frames are alike
+    def encode(self, frame: Bytes) -> bytes:
         """Return the palette and the compressed pixels of the frame, as a GIF holds them."""
         stream = io.BytesIO()
         _indexed(frame).save(stream, "GIF", optimize=False, interlace=False)

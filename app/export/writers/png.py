@@ -65,7 +65,15 @@ def encode_png(frame: Bytes) -> bytes:
     return stream.getvalue()
 
 
-class PngSequence(FrameWriter):
+class PngFrames(FrameWriter):
+    """The base of those whose frames are PNG files."""
+
+    def encode(self, frame: Bytes) -> bytes:
+        """Return the frame's file."""
+        return encode_png(frame)
+
+
+class PngSequence(PngFrames):
     """Writes each frame to a file of its own, as soon as it is drawn.
 
     Parameters
@@ -80,30 +88,13 @@ class PngSequence(FrameWriter):
         self._paths = iter([plan.out / name for name in plan.names])
         self._cancellation = cancellation
 
-    def encode(self, index: int, frame: Bytes) -> bytes:  # noqa: ARG002 - all frames are alike
-        """Return the frame's file."""
-        return encode_png(frame)
-
     def add(self, encoded: bytes) -> None:
-        """Write it."""
+        """Write a frame's file."""
         write_atomically(next(self._paths), lambda file: file.write(encoded), self._cancellation)
 
 
-class PngPicture(FrameWriter):
-    """Writes the one frame to a file.
-
-    Parameters
-    ----------
-    file : binary file
-    plan : ExportPlan
-    """
-
-    def __init__(self, file: IO[bytes], plan: ExportPlan) -> None:  # noqa: ARG002 - as all writers
-        self._file = file
-
-    def encode(self, index: int, frame: Bytes) -> bytes:  # noqa: ARG002 - there is one
-        """Return the frame's file."""
-        return encode_png(frame)
+class PngPicture(PngFrames):
+    """Writes the one frame to a file."""
 
     def add(self, encoded: bytes) -> None:
         """Write it."""

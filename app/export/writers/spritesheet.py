@@ -48,7 +48,6 @@ class SpritesheetWriter(FrameWriter):
     ----------
     file, data : binary file
         For the PNG and for the JSON.
-    plan : ExportPlan
 
     Raises
     ------
@@ -59,21 +58,23 @@ class SpritesheetWriter(FrameWriter):
     def __init__(self, file: IO[bytes], data: IO[bytes], plan: ExportPlan) -> None:
         if not plan.sheet.trimmed:
             sheet_grid(plan)
-        self._file, self._data = file, data
-        self._plan = plan
-        self._cells: dict[int, _Cell] = {}
+        super().__init__(file, plan)
+        self._data = data
+        self._cells: list[_Cell] = []
 
-    def encode(self, index: int, frame: Bytes) -> bytes:
-        """Keep what is seen of the frame."""
-        self._cells[index] = _trimmed(frame) if self._plan.sheet.trimmed else _Cell(frame, 0, 0)
-        if sum(cell.pixels.size for cell in list(self._cells.values())) > 4 * LARGEST**2:
+    def encode(self, frame: Bytes) -> _Cell:
+        """Return what is seen of the frame."""
+        return _trimmed(frame) if self._plan.sheet.trimmed else _Cell(frame, 0, 0)
+
+    def add(self, encoded: _Cell) -> None:
+        """Keep it."""
+        self._cells.append(encoded)
+        if sum(cell.pixels.size for cell in self._cells) > 4 * LARGEST**2:
             raise _too_large(self._plan)
-        return b""
 
     def finish(self) -> None:
         """Write the sheet and its data."""
-        plan, layout = self._plan, self._plan.sheet
-        cells = [self._cells[index] for index in range(len(plan.times))]
+        plan, layout, cells = self._plan, self._plan.sheet, self._cells
         if layout.trimmed:
             kept, places = _different(cells)
             sheet = _packed([cell.size for cell in kept], plan)

@@ -110,13 +110,6 @@ class VideoWriter(FrameWriter):
     A side that is odd gets one more row or column of the background in MP4, since H.264 keeps
     colours in blocks of 2 × 2 pixels.
 
-    Parameters
-    ----------
-    file : binary file
-        It can be written to anywhere.
-    plan : ExportPlan
-        With a background colour where the format has no alpha.
-
     Raises
     ------
     LissomError
@@ -124,9 +117,9 @@ class VideoWriter(FrameWriter):
     """
 
     def __init__(self, file: IO[bytes], plan: ExportPlan) -> None:
+        super().__init__(file, plan)
         codec = _CODECS[plan.format]
         self._size = EXPORT_FORMATS[plan.format].whole_blocks(plan.view.size)
-        self._background = plan.background
         self._pixels = codec.transparent if plan.background is None else codec.opaque
         self._count = 0
         self._sink = _Sink(file)
@@ -149,23 +142,21 @@ class VideoWriter(FrameWriter):
                 f"cannot write {self._size[0]} × {self._size[1]} pixels as {plan.format}: {error}"
             ) from error
 
-    def encode(self, index: int, frame: Bytes) -> bytes:  # noqa: ARG002 - all frames are alike
+    def encode(self, frame: Bytes) -> Bytes:
         """Return the frame's pixels, of four bytes where they are transparent, else of three."""
-        if self._background is None:
-            return bled(frame).tobytes()
+        if self._plan.background is None:
+            return bled(frame)
         height, width, _ = frame.shape
-        even = np.full((self._size[1], self._size[0], 3), self._background, dtype=np.uint8)
+        even = np.full((self._size[1], self._size[0], 3), self._plan.background, dtype=np.uint8)
         even[:height, :width] = frame[..., :3]
-        return even.tobytes()
+        return even
 
-    def add(self, encoded: bytes) -> None:
+    def add(self, encoded: Bytes) -> None:
         """Compress a frame."""
-        width, height = self._size
-        pixels = np.frombuffer(encoded, dtype=np.uint8).reshape(height, width, -1)
-        kind = "rgba" if self._background is None else "rgb24"
+        kind = "rgba" if self._plan.background is None else "rgb24"
         # With one thread: of two, the upper one overwrites the beginning of the lower one's first
         # row where the width is odd, and now and then does so last.
-        frame = av.VideoFrame.from_ndarray(pixels, format=kind).reformat(
+        frame = av.VideoFrame.from_ndarray(encoded, format=kind).reformat(
             format=self._pixels, dst_colorspace="ITU709", dst_color_range="MPEG", threads=1
         )
         frame.pts = self._count

@@ -23,24 +23,11 @@ _METHOD, _EFFORT = 1, 20
 
 
 class WebpWriter(FrameWriter):
-    """Writes an animated WebP file frame by frame.
-
-    Parameters
-    ----------
-    file : binary file
-        It can be written to anywhere.
-    plan : ExportPlan
-
-    Raises
-    ------
-    LissomError
-        If the frames are larger than WebP can hold.
-    """
+    """Writes an animated WebP file frame by frame."""
 
     def __init__(self, file: IO[bytes], plan: ExportPlan) -> None:
+        super().__init__(file, plan)
         self._size = plan.view.size
-        self._file = file
-        self._fps = plan.fps
         self._count = 0
         file.write(b"RIFF\0\0\0\0WEBP")  # the length is written in the end
         extended = struct.pack("<B3x", _ANIMATED | _ALPHA)
@@ -48,7 +35,7 @@ class WebpWriter(FrameWriter):
         transparent, plays = 0, 0 if plan.loop else 1  # 0 goes on for ever
         self._write(b"ANIM", struct.pack("<IH", transparent, plays))
 
-    def encode(self, index: int, frame: Bytes) -> bytes:  # noqa: ARG002 - all frames are alike
+    def encode(self, frame: Bytes) -> bytes:
         """Return a WebP file of the frame."""
         stream = io.BytesIO()
         Image.fromarray(frame).save(stream, "WEBP", lossless=True, quality=_EFFORT, method=_METHOD)
@@ -56,7 +43,7 @@ class WebpWriter(FrameWriter):
 
     def add(self, encoded: bytes) -> None:
         """Take the picture data out of a WebP file and into the animation."""
-        lasts = min(duration(self._count, self._fps, per_second=1000), _LONGEST)
+        lasts = min(duration(self._count, self._plan.fps, per_second=1000), _LONGEST)
         self._count += 1
         numbers = (0, 0, *(side - 1 for side in self._size), lasts)
         pictures = b"".join(

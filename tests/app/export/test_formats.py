@@ -87,11 +87,11 @@ def test_the_thread_that_draws_never_waits_for_others_unless_it_may(tmp_path, mo
         return time
 
     class Held(SpritesheetWriter):
-        def encode(self, index: int, _frame: Bytes) -> bytes:
-            return str(held(index)).encode()
+        def encode(self, _frame: Bytes) -> float:
+            return held(0)
 
-        def add(self, encoded: bytes) -> None:
-            held(float(encoded))
+        def add(self, encoded: float) -> None:
+            held(encoded)
 
         def finish(self) -> None:
             held(0)
@@ -345,7 +345,10 @@ def test_drawing_waits_for_the_encoders(tmp_path, monkeypatch, frames_in_the_byt
     others_are_done = threading.Event()
     drawn_meanwhile = []
 
-    def encode(_self: PngSequence, index: int, _frame: Bytes) -> bytes:
+    indices = itertools.count()
+
+    def encode(_self: PngSequence, _frame: Bytes) -> bytes:
+        index = next(indices)
         if index == queued - 1:
             others_are_done.set()
         if index == 0:
