@@ -28,6 +28,5 @@ from app.export.plan import (
     replaced_files as replaced_files,
 )
 from app.export.poses import KeptPoses as KeptPoses, Poses as Poses
-from app.export.run import export as export
 from app.export.run_shapes import ShapeExport as ShapeExport
 from app.export.writers import sheet_grid as sheet_grid

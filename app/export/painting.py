@@ -1,7 +1,7 @@
 """The pictures of an export, drawn by the renderer that the window draws with."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Generator, Mapping
 from contextlib import ExitStack, suppress
 from dataclasses import replace
 from typing import Final, NamedTuple
@@ -13,6 +13,7 @@ from app.errors import EXPECTED_ERRORS, LissomError
 from app.export.framing import shown_box
 from app.export.plan import ExportPlan
 from app.export.poses import Poses
+from app.export.run import export
 from app.export.thinning import Thinning
 from app.motion import PaintOrder, Placed, box_around
 from app.render import TRANSPARENT, Backdrop, Colour, DrawnMesh, Renderer, Scene, View
@@ -25,6 +26,7 @@ from app.render.gpu import (
     is_software,
     largest_size,
 )
+from app.storage import Cancellation
 from engine.arrays import Bytes
 from engine.domain.meshing import Mesh
 
@@ -80,11 +82,10 @@ class Painter:
         poses: Mapping[int, Poses],
         plan: ExportPlan,
     ) -> None:
-        self._context = context
+        self._context, self._plan = context, plan
         figures = document.exported
         self._clips = [clip_of(document, figure.id) for figure in figures]
         self._poses = [poses[figure.id] for figure in figures]
-        self._view = plan.view
         self._background = Backdrop(colour=_colour(plan))
         meshes = [figure.domain.mesh for figure in figures]
         self._orders = [PaintOrder(mesh) for mesh in meshes]
@@ -174,7 +175,7 @@ class Painter:
                 if is_visible(clip.figure, posed.frame)
             )
             scene = Scene(background=self._background, meshes=meshes)
-            pixels = _filled(self._view.size, self._background.colour)
+            pixels = _filled(self._plan.view.size, self._background.colour)
             for tile in self._tiles:
                 self._renderer.draw(self._target, tile.view, scene)
                 self._read(posed, tile.view, pixels[tile.top :, tile.left :])
@@ -202,6 +203,12 @@ class Painter:
         if left < right and top < bottom:
             part = (left, top, right - left, bottom - top)
             pixels[top:bottom, left:right] = self._target.read_straight_rgba(part)
+
+    def run(
+        self, *, waits: bool = True, cancellation: Cancellation | None = None
+    ) -> Generator[int]:
+        """Make what was planned, one frame at each step, as `export` does."""
+        return export(self._plan, self.pose, self.draw, waits=waits, cancellation=cancellation)
 
     @property
     def notices(self) -> tuple[str, ...]:

@@ -24,7 +24,7 @@ from app.document import (
     clip_of,
     new_figure,
 )
-from app.export import ExportRequest, KeptPoses, Painter, export, missing, plan_export
+from app.export import ExportRequest, KeptPoses, Painter, missing, plan_export
 from app.export.writers.png import encode_png
 from app.export_formats import EXPORT_FORMATS
 from app.motion import Animation, box_around
@@ -78,7 +78,7 @@ def _speed(extent: Extent) -> Table:
         begun = time.process_time() - start
 
         def make_all() -> None:
-            deque(export(plan, painter.pose, painter.draw), maxlen=0)
+            deque(painter.run(), maxlen=0)
 
         each = measure(make_all, repeats=3, clock=time.perf_counter) / len(plan.times)
         worked = measure(make_all, repeats=3) / len(plan.times)

@@ -19,7 +19,6 @@ from app.export import (
     ShapeExport,
     check_request,
     data_file,
-    export,
     plan_export,
     sheet_grid,
     with_light_meshes,
@@ -51,12 +50,7 @@ def run(arguments: argparse.Namespace) -> int:
         figure.id: cut_picture(decode_picture(figure.picture.data, source), figure.cut_out).texture
         for figure in document.figures
     }
-    if EXPORT_FORMATS[request.settings.format].is_drawn:
-        summary = _draw(document, pictures, request, arguments)
-    else:
-        light = with_light_meshes(document, request.settings.shapes.triangles)
-        summary = _film(light, pictures, request, arguments)
-    say(summary)
+    say(_make(document, pictures, request, arguments))
     return 0
 
 
@@ -71,45 +65,35 @@ def _alone(document: Document, name: str) -> Document:
     return replace(document, figures=figures, size=document.canvas)
 
 
-def _draw(
+def _make(
     document: Document,
     pictures: Mapping[int, Bytes],
     request: ExportRequest,
     arguments: argparse.Namespace,
 ) -> str:
+    """Make what was asked for; return what it came to."""
+    maker: Painter | ShapeExport
     with ExitStack() as ending:
-        context = create_context()
-        ending.callback(context.release)
+        context = None
+        if EXPORT_FORMATS[request.settings.format].is_drawn:
+            context = create_context()
+            ending.callback(context.release)
+        else:
+            document = with_light_meshes(document, request.settings.shapes.triangles)
         status = ending.enter_context(StatusLine())
         status.show("preparing the in-betweens")
         poses = _poses(document, arguments)
         plan = plan_export(document, request, poses)
-        painter = Painter(context, document, pictures, poses, plan)
-        with closing(export(plan, painter.pose, painter.draw)) as steps:
-            for done in steps:
-                status.show(f"{done} of {len(plan.times)} frames")
-    for message in (*painter.notices, *plan.notices):
-        notice(message)
-    return _summary_of_frames(plan)
-
-
-def _film(
-    document: Document,
-    pictures: Mapping[int, Bytes],
-    request: ExportRequest,
-    arguments: argparse.Namespace,
-) -> str:
-    with StatusLine() as status:
-        status.show("preparing the in-betweens")
-        poses = _poses(document, arguments)
-        plan = plan_export(document, request, poses)
-        maker = ShapeExport(document, pictures, poses, plan)
+        given = document, pictures, poses, plan
+        maker = ShapeExport(*given) if context is None else Painter(context, *given)
         with closing(maker.run()) as steps:
             for done in steps:
                 status.show(f"{done} of {len(plan.times)} frames")
-    for message in maker.notices:
+    for message in (*maker.notices, *plan.notices):
         notice(message)
-    return _summary_of_shapes(maker, plan)
+    if isinstance(maker, ShapeExport):
+        return _summary_of_shapes(maker, plan)
+    return _summary_of_frames(plan)
 
 
 def _poses(document: Document, arguments: argparse.Namespace) -> dict[int, KeptPoses]:

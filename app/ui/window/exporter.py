@@ -4,7 +4,7 @@ from collections.abc import Generator
 
 from app.editor import ExportRun, Session
 from app.editor.actions import exporting
-from app.export import Painter, ShapeExport, export
+from app.export import Painter, ShapeExport
 from app.export_formats import EXPORT_FORMATS
 from app.render import Renderer
 
@@ -50,19 +50,10 @@ class Exporter:
     def _draw(self, session: Session, run: ExportRun) -> None:
         if self._steps is None or self._maker is None:
             self._plan = run.plan
-            if EXPORT_FORMATS[run.plan.format].is_drawn:
-                painter = Painter(self._context, run.document, run.pictures, run.poses, run.plan)
-                self._maker = painter
-                self._steps = export(
-                    run.plan,
-                    painter.pose,
-                    painter.draw,
-                    waits=False,
-                    cancellation=session.cancellation,
-                )
-            else:
-                self._maker = ShapeExport(run.document, run.pictures, run.poses, run.plan)
-                self._steps = self._maker.run(waits=False, cancellation=session.cancellation)
+            given = run.document, run.pictures, run.poses, run.plan
+            is_drawn = EXPORT_FORMATS[run.plan.format].is_drawn
+            self._maker = Painter(self._context, *given) if is_drawn else ShapeExport(*given)
+            self._steps = self._maker.run(waits=False, cancellation=session.cancellation)
         begun = session.clock()
         drawn = run.done
         for done in self._steps:
