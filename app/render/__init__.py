@@ -8,7 +8,6 @@ Imports: `app.motion`, `app.storage`; with `app.render.gpu` it alone sees OpenGL
 from app.render.drawn_mesh import DrawnMesh as DrawnMesh, shader_is_faster as shader_is_faster
 from app.render.handles import (
     HandleMark as HandleMark,
-    HandleStyle as HandleStyle,
     mark_anchor as mark_anchor,
     mark_handles as mark_handles,
 )

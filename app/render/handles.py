@@ -2,10 +2,22 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Final
 
 import numpy as np
 
-from app.render.scene import Colour, Disc, Line
+from app.render.scene import TRANSPARENT, Colour, Disc, Line
+
+NORMAL: Final[Colour] = (0.16, 0.42, 0.95, 1.0)
+SELECTED: Final[Colour] = (1.00, 0.66, 0.10, 1.0)
+ANCHOR: Final[Colour] = (0.05, 0.80, 0.90, 1.0)
+LOCKED: Final[Colour] = (0.33, 0.36, 0.42, 1.0)
+WISH: Final[Colour] = (1.00, 0.33, 0.18, 1.0)
+RIM: Final[Colour] = (1.00, 1.00, 1.00, 1.0)
+HALO: Final[Colour] = (1.00, 1.00, 1.00, 0.55)
+SHADOW: Final[Colour] = (0.00, 0.00, 0.00, 0.45)
+# Pixels at the interface's scale of 1.
+RADIUS, RIM_WIDTH, BLUR = 7.0, 2.0, 5.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -29,101 +41,71 @@ class HandleMark:
     locked: bool = False
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class HandleStyle:
-    """Colours of handles, and their size in pixels at the interface's scale of 1."""
-
-    normal: Colour = (0.16, 0.42, 0.95, 1.0)
-    selected: Colour = (1.00, 0.66, 0.10, 1.0)
-    anchor: Colour = (0.05, 0.80, 0.90, 1.0)
-    locked: Colour = (0.33, 0.36, 0.42, 1.0)
-    wish: Colour = (1.00, 0.33, 0.18, 1.0)
-    rim: Colour = (1.00, 1.00, 1.00, 1.0)
-    halo: Colour = (1.00, 1.00, 1.00, 0.55)
-    shadow: Colour = (0.00, 0.00, 0.00, 0.45)
-    radius: float = 7.0
-    rim_width: float = 2.0
-
-
 def mark_handles(
-    marks: Sequence[HandleMark], *, scale: float = 1.0, style: HandleStyle | None = None
+    marks: Sequence[HandleMark], *, scale: float = 1.0
 ) -> tuple[tuple[Line, ...], tuple[Disc, ...]]:
     """Return the lines and discs that show the handles; the later ones lie on top.
 
     Parameters
     ----------
-    marks : sequence of HandleMark
     scale : float
         The interface's scale.
-    style : HandleStyle, optional
     """
-    style = style or HandleStyle()
     lines: list[Line] = []
     discs: list[Disc] = []
     for mark in marks:
         if mark.wish is not None:
-            lines += _leash(mark.place, mark.wish, scale, style)
-            discs += _wish(mark.wish, scale, style)
-        discs += _pin(mark, scale, style)
+            way = np.array([mark.wish, mark.place])
+            lines += [
+                # On white, so that the dashes are seen on a drawing of their own colour.
+                Line(points=way, colour=SHADOW, width=4.5 * scale),
+                Line(points=way, colour=RIM, width=2.5 * scale),
+                Line(points=way, colour=WISH, width=2.5 * scale, dash=5.0 * scale),
+            ]
+            discs.append(_shadow(mark.wish, 0.75 * RADIUS, scale))
+            discs.append(_disc(mark.wish, 0.75 * RADIUS, scale, fill=RIM, rim=WISH))
+        discs += _pin(mark, scale)
     return tuple(lines), tuple(discs)
 
 
-def mark_anchor(
-    place: complex, *, scale: float = 1.0, style: HandleStyle | None = None
-) -> tuple[Disc, ...]:
+def mark_anchor(place: complex, *, scale: float = 1.0) -> tuple[Disc, ...]:
     """Return the discs that show an anchor where no handle is; smaller, since it is no handle."""
-    style = style or HandleStyle()
-    radius, rim_width = 0.6 * style.radius * scale, 0.75 * style.rim_width * scale
-    return (
-        _shadow(place, radius, scale, style),
-        Disc(centre=place, radius=radius, fill=style.anchor, rim=style.rim, rim_width=rim_width),
-    )
+    dot = _disc(place, 0.6 * RADIUS, scale, fill=ANCHOR, rim=RIM, rim_width=0.75 * RIM_WIDTH)
+    return _shadow(place, 0.6 * RADIUS, scale), dot
 
 
-def _leash(place: complex, wish: complex, scale: float, style: HandleStyle) -> list[Line]:
-    way = np.array([wish, place])
-    return [
-        # On white, so that the dashes are seen on a drawing of their own colour.
-        Line(points=way, colour=style.shadow, width=4.5 * scale),
-        Line(points=way, colour=style.rim, width=2.5 * scale),
-        Line(points=way, colour=style.wish, width=2.5 * scale, dash=5.0 * scale),
-    ]
-
-
-def _wish(wish: complex, scale: float, style: HandleStyle) -> list[Disc]:
-    radius = 0.75 * style.radius * scale
-    rim_width = style.rim_width * scale
-    return [
-        _shadow(wish, radius, scale, style),
-        Disc(centre=wish, radius=radius, fill=style.rim, rim=style.wish, rim_width=rim_width),
-    ]
-
-
-def _pin(mark: HandleMark, scale: float, style: HandleStyle) -> list[Disc]:
-    radius = style.radius * scale * (1.25 if mark.hovered else 1.0)
-    rim_width = style.rim_width * scale
-    usual = style.locked if mark.locked else style.normal
-    body = style.anchor if mark.anchor else style.selected if mark.selected else usual
-    discs = []
+def _pin(mark: HandleMark, scale: float) -> list[Disc]:
+    place, radius = mark.place, RADIUS * (1.25 if mark.hovered else 1.0)
+    usual = LOCKED if mark.locked else NORMAL
+    body = ANCHOR if mark.anchor else SELECTED if mark.selected else usual
+    ring = radius + 1.75 * RIM_WIDTH if mark.selected else radius
+    discs = [_shadow(place, ring, scale)]
     if mark.hovered:
-        halo = radius + (4.0 if mark.selected else 2.5) * rim_width
-        discs.append(Disc(centre=mark.place, radius=halo, fill=style.halo))
+        halo = radius + (4.0 if mark.selected else 2.5) * RIM_WIDTH
+        discs.insert(0, _disc(place, halo, scale, fill=HALO))
     if mark.selected:
-        ring = radius + 1.75 * rim_width
-        discs.append(_shadow(mark.place, ring, scale, style))
-        discs.append(Disc(centre=mark.place, radius=ring, fill=style.selected))
-    else:
-        discs.append(_shadow(mark.place, radius, scale, style))
-    discs.append(
-        Disc(centre=mark.place, radius=radius, fill=body, rim=style.rim, rim_width=rim_width)
-    )
+        discs.append(_disc(place, ring, scale, fill=SELECTED))
+    discs.append(_disc(place, radius, scale, fill=body, rim=RIM))
     if mark.anchor:
-        discs.append(Disc(centre=mark.place, radius=0.35 * radius, fill=style.rim))
+        discs.append(_disc(place, 0.35 * radius, scale, fill=RIM))
     elif mark.locked and mark.selected:
-        discs.append(Disc(centre=mark.place, radius=0.45 * radius, fill=style.locked))
+        discs.append(_disc(place, 0.45 * radius, scale, fill=LOCKED))
     return discs
 
 
-def _shadow(centre: complex, radius: float, scale: float, style: HandleStyle) -> Disc:
-    blur = 5.0 * scale
-    return Disc(centre=centre, radius=radius + 0.5 * scale, fill=style.shadow, softness=blur)
+def _disc(
+    centre: complex,
+    radius: float,
+    scale: float,
+    *,
+    fill: Colour,
+    rim: Colour = TRANSPARENT,
+    rim_width: float = RIM_WIDTH,
+) -> Disc:
+    width = 0.0 if rim is TRANSPARENT else rim_width * scale
+    return Disc(centre=centre, radius=radius * scale, fill=fill, rim=rim, rim_width=width)
+
+
+def _shadow(centre: complex, radius: float, scale: float) -> Disc:
+    size = (radius + 0.5) * scale
+    return Disc(centre=centre, radius=size, fill=SHADOW, softness=BLUR * scale)

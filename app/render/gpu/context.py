@@ -44,8 +44,6 @@ class BackendReport:
         GL_RENDERER and GL_VERSION.
     largest_size : int
         Longest side of a picture or frame, in pixels.
-    most_samples : int
-        Largest number of samples a pixel.
     """
 
     backend: Backend
@@ -53,7 +51,6 @@ class BackendReport:
     renderer: str = ""
     version: str = ""
     largest_size: int = 0
-    most_samples: int = 0
 
 
 def create_context(backend: Backend | None = None) -> moderngl.Context:
@@ -124,7 +121,6 @@ def probe(backend: Backend) -> BackendReport:
             renderer=context.info["GL_RENDERER"],
             version=context.info["GL_VERSION"],
             largest_size=largest_size(context),
-            most_samples=context.max_samples,
         )
     finally:
         context.release()

@@ -2,8 +2,6 @@
 
 from collections.abc import Mapping
 from dataclasses import replace
-from types import MappingProxyType
-from typing import Final, Protocol
 
 import moderngl
 import numpy as np
@@ -31,29 +29,38 @@ def border_edges(triangles: Integers) -> Integers:
     return border
 
 
-class VertexSource(Protocol):
-    """Where the vertices of a frame come from: a shader that places them and its buffers."""
+class VertexSource:
+    """Owner of the buffer that vertices come from; the base of both kinds.
 
-    @property
-    def shader(self) -> str:
-        """The file in shaders/ that defines `vec2 vertex_position()`."""
+    Parameters
+    ----------
+    shader : str
+        The file in shaders/ that defines `vec2 vertex_position()`.
+    attribute : Attribute
+        What feeds it, one entry a vertex.
+    constants : tuple of (name, value)
+        What it is compiled with.
+    """
 
-    @property
-    def constants(self) -> tuple[tuple[str, int], ...]:
-        """What the shader is compiled with."""
+    def __init__(
+        self, shader: str, attribute: Attribute, constants: tuple[tuple[str, int], ...] = ()
+    ) -> None:
+        self.shader = shader
+        self.attribute = attribute
+        self.constants = constants
+        self._buffer = attribute[0]
 
     @property
     def uniforms(self) -> Mapping[str, object]:
         """What the shader is drawn with in this frame."""
-
-    def attributes(self) -> tuple[Attribute, ...]:
-        """Return what feeds the shader, one entry of each buffer a vertex."""
+        return {}
 
     def release(self) -> None:
-        """Let the buffers go."""
+        """Let the buffer go."""
+        self._buffer.release()
 
 
-class PositionBuffer:
+class PositionBuffer(VertexSource):
     """Owner of positions that the program writes anew for every frame.
 
     Parameters
@@ -63,13 +70,10 @@ class PositionBuffer:
         Number of vertices, v.
     """
 
-    shader: Final = "positions.glsl"
-    constants: Final = ()
-    uniforms: Final[Mapping[str, object]] = MappingProxyType({})
-
     def __init__(self, context: moderngl.Context, count: int) -> None:
+        buffer = context.buffer(reserve=8 * count, dynamic=True)
+        super().__init__("positions.glsl", (buffer, "2f", "position"))
         self._shape = (count, 2)
-        self._buffer = context.buffer(reserve=8 * count, dynamic=True)
 
     def write(self, positions: Singles) -> None:
         """Upload the positions, float32 (v, 2), of a frame.
@@ -86,14 +90,6 @@ class PositionBuffer:
         if not np.isfinite(positions.sum()):
             raise LissomError("the frame has vertices that are not finite; it cannot be drawn")
         self._buffer.write(np.ascontiguousarray(positions, dtype=np.float32).data)
-
-    def attributes(self) -> tuple[Attribute, ...]:
-        """Return what feeds the shader."""
-        return ((self._buffer, "2f", "position"),)
-
-    def release(self) -> None:
-        """Let the buffer go."""
-        self._buffer.release()
 
 
 class GpuMesh:
@@ -194,31 +190,30 @@ class PosedMesh:
 
     def draw(self, files: ShaderFiles, uniforms: Mapping[str, object]) -> None:
         """Draw the triangles with a mesh program: its files, and the source's shader."""
-        binding = self._bound(files, self._order)
-        set_uniforms(binding.program, {**uniforms, **self._own_uniforms()})
+        binding = self._bound(files, self._order, uniforms)
         binding.render(moderngl.TRIANGLES, vertices=self._triangles.size)
 
     def draw_border(self, files: ShaderFiles, uniforms: Mapping[str, object]) -> None:
         """Draw the edges of the border with a program of their own."""
-        binding = self._bound(files, self._mesh.border)
-        set_uniforms(binding.program, {**uniforms, **self._own_uniforms()})
-        binding.render(moderngl.LINES)
+        self._bound(files, self._mesh.border, uniforms).render(moderngl.LINES)
 
-    def _own_uniforms(self) -> Mapping[str, object]:
-        return {"placement": self._placement, **self._source.uniforms}
-
-    def _bound(self, files: ShaderFiles, indices: moderngl.Buffer) -> moderngl.VertexArray:
+    def _bound(
+        self, files: ShaderFiles, indices: moderngl.Buffer, uniforms: Mapping[str, object]
+    ) -> moderngl.VertexArray:
+        source = self._source
         if files not in self._bindings:
-            source = self._source
             vertex = (*files.vertex, source.shader)
             linked = replace(files, vertex=vertex, constants=source.constants)
             self._bindings[files] = self._bind(self._mesh.programs.get(linked), indices)
-        return self._bindings[files]
+        bound = self._bindings[files]
+        own = {"placement": self._placement, **source.uniforms}
+        set_uniforms(bound.program, {**uniforms, **own})
+        return bound
 
     def _bind(self, program: moderngl.Program, indices: moderngl.Buffer) -> moderngl.VertexArray:
         if "heat" in program and self._heat is None:
             raise ValueError("a heat map is to be drawn of a pose that was given no values")
-        available = [*self._source.attributes(), (self._mesh.uv, "2f", "uv")]
+        available = [self._source.attribute, (self._mesh.uv, "2f", "uv")]
         if self._heat is not None:
             available.append((self._heat, "1f", "heat"))
         # A compiler drops the attributes that come to nothing in a program.

@@ -7,13 +7,13 @@ import moderngl
 import numpy as np
 
 from app.errors import LissomError
-from app.render.gpu.mesh import Attribute
+from app.render.gpu.mesh import VertexSource
 from engine.streaming import Series, SeriesPiece
 
 _RESERVED: Final = 2  # attributes of a mesh that are not the series'
 
 
-class SeriesBuffer:
+class SeriesBuffer(VertexSource):
     """Owner of a series' rows on the graphics card.
 
     Between two frames of one piece of a series, only the weights change: a few numbers.
@@ -32,23 +32,18 @@ class SeriesBuffer:
         If the context has not that many attributes.
     """
 
-    shader: Final = "series.glsl"
-
     def __init__(self, context: moderngl.Context, count: int, rows: int) -> None:
         if rows > most_rows(context):
             raise LissomError(
                 f"this machine's graphics take {most_rows(context)} rows of a series, not {rows}"
             )
-        self._count = count
-        self._pairs = (rows + 1) // 2
-        self._weights = np.zeros((self._pairs, 2), dtype=np.float32)
-        self._buffer = context.buffer(reserve=16 * self._pairs * count, dynamic=True)
+        pairs = (rows + 1) // 2
+        buffer = context.buffer(reserve=16 * pairs * count, dynamic=True)
+        attribute = (buffer, f"{4 * pairs}f", "rows")
+        super().__init__("series.glsl", attribute, (("ROW_PAIRS", pairs),))
+        self._count, self._pairs = count, pairs
+        self._weights = np.zeros((pairs, 2), dtype=np.float32)
         self._piece: SeriesPiece | None = None
-
-    @property
-    def constants(self) -> tuple[tuple[str, int], ...]:
-        """What the shader is compiled with."""
-        return (("ROW_PAIRS", self._pairs),)
 
     @property
     def uniforms(self) -> Mapping[str, object]:
@@ -63,14 +58,6 @@ class SeriesBuffer:
             self._upload(piece)
         # The rows beyond are 0, whatever weights are left there.
         self._weights.ravel()[: len(weights)] = weights
-
-    def attributes(self) -> tuple[Attribute, ...]:
-        """Return what feeds the shader."""
-        return ((self._buffer, f"{4 * self._pairs}f", "rows"),)
-
-    def release(self) -> None:
-        """Let the buffer go."""
-        self._buffer.release()
 
     def _upload(self, piece: SeriesPiece) -> None:
         count, rows = self._count, len(piece.rows)

@@ -8,7 +8,7 @@ from imgui_bundle import ImVec4, imgui
 from app.document import falls_short
 from app.editor import Project, Session
 from app.motion import AttachedPoints, Box, PosableMesh, Shown
-from app.render import Colour, Disc, HandleMark, HandleStyle, Line, mark_anchor, mark_handles
+from app.render import Colour, Disc, HandleMark, Line, mark_anchor, mark_handles
 from app.ui.style import Palette, interface_scale
 from engine.arrays import Complexes
 from engine.domain import Domain
@@ -50,7 +50,6 @@ def mark_all(
     on = partial(_on, shown)
     if not session.overlays.handles or project.playhead.since is not None:
         return tuple(lines), dots
-    style = HandleStyle()
     wishes = project.pull.targets if project.pull else None
     if wishes is None and shown.pose is not None:
         wishes = shown.pose.targets
@@ -68,10 +67,10 @@ def mark_all(
                 locked=handle.locked,
             )
         )
-    handle_lines, discs = mark_handles(marks, scale=scale, style=style)
+    handle_lines, discs = mark_handles(marks, scale=scale)
     anchor = find_anchor(project, shown)
     faint = _others(project, scale)
-    below = () if anchor is None else mark_anchor(on(anchor), scale=scale, style=style)
+    below = () if anchor is None else mark_anchor(on(anchor), scale=scale)
     return (*lines, *handle_lines), (*dots, *faint, *below, *discs)
 
 

@@ -17,7 +17,6 @@ def test_a_probe_tells_what_a_backend_offers(backend):
     assert report.renderer
     assert report.version[0] in "34"
     assert report.largest_size >= 2048
-    assert report.most_samples >= 1
 
 
 def test_the_first_backend_is_egl_and_the_next_takes_over(monkeypatch):

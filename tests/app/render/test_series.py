@@ -71,7 +71,7 @@ def test_the_shader_places_vertices_as_the_processor_does(easel, rows):
         "out vec2 place; void main() { place = vertex_position(); gl_Position = vec4(0); }",
         varyings=["place"],
     )
-    binding = easel.gl.vertex_array(program, list(source.attributes()))
+    binding = easel.gl.vertex_array(program, [source.attribute])
     feedback = easel.gl.buffer(reserve=8 * len(rest))
     target = RenderTarget(easel.renderer.programs, (4, 4))  # feedback fails without one
     target.framebuffer.use()
