@@ -62,7 +62,7 @@ class PictureFile:
         object.__setattr__(self, "sha256", hashlib.sha256(self.data).hexdigest())
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+@dataclass(frozen=True, slots=True, weakref_slot=True, kw_only=True, eq=False)
 class Figure:
     """A picture that is deformed, with all that is its own; time and export are the scene's.
 

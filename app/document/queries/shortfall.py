@@ -2,12 +2,12 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import lru_cache
 from math import log
 from typing import NamedTuple
 
 from app.document.figure import Figure
 from app.document.keyframe import Pose
+from app.document.queries.remembered import remembered
 from engine.arrays import Complexes
 from engine.geometry import box_diagonal
 from engine.maps import Bounds, distortion
@@ -102,7 +102,7 @@ def falls_short(figure: Figure, lag: float) -> bool:
     return lag > LAG * box_diagonal(figure.domain.outline)
 
 
-@lru_cache(maxsize=16)
+@remembered
 def find_shortfall(figure: Figure, pose: Pose) -> Shortfall:
     """Return which handles of a figure fall short in a pose, and why."""
     lags = {i: lag for i, lag in figure.lags(pose).items() if falls_short(figure, lag)}

@@ -1,16 +1,19 @@
 """How the motion of a clip leaves its keys and reaches them, by their passings and easings."""
 
 from dataclasses import dataclass
-from functools import lru_cache
 from math import isfinite
 from typing import NamedTuple
 
 import numpy as np
 
 from app.document.easing import HOLD
+from app.document.figure import Figure
 from app.document.keyframe import Keyframe, Passing, Pose
 from app.document.queries.clips import Clip, closes, intervals
+from app.document.queries.remembered import remembered
+from app.document.settings import FrameRange
 from engine.interpolation import Joint
+from engine.variant import Baseline
 
 # Pixels by which the coefficients of two maps may differ that are the same to the eye: the solver
 # comes back to a pose only so closely.
@@ -62,9 +65,19 @@ class _Step(NamedTuple):
     frames: int
 
 
-@lru_cache(maxsize=16)
 def transits(clip: Clip) -> tuple[Transit, ...]:
     """Return the transits of a clip's intervals, in their order."""
+    return _transits(clip.figure, clip.frames, clip.loop, clip.baseline)
+
+
+@remembered
+def _transits(
+    figure: Figure,
+    frames: FrameRange,
+    loop: bool,  # noqa: FBT001 - a field of the clip
+    baseline: Baseline | None,
+) -> tuple[Transit, ...]:
+    clip = Clip(figure=figure, frames=frames, loop=loop, baseline=baseline)
     passed = [_passed(clip, index) for index in range(len(clip.keys))]
     found = []
     for first, last in intervals(clip):

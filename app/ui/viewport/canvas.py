@@ -15,7 +15,7 @@ from app.storage import Picture
 from app.ui.style import PALETTES
 from app.ui.viewport.backdrop import background, measure_brightness
 from app.ui.viewport.cut_view import CutView, mark_holes
-from app.ui.viewport.marks import mark_all, pixel_scale, plain
+from app.ui.viewport.marks import forget_places, mark_all, pixel_scale, plain
 from app.ui.viewport.pose_pictures import PosePictures
 from engine.arrays import Floats
 from engine.maps import distortion
@@ -101,6 +101,7 @@ class Canvas:
             self._drawing.release()
             self._drawing = None
             self._drawn = ()
+            forget_places()
 
 
 class _Drawing:

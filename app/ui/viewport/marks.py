@@ -88,6 +88,12 @@ def find_anchor(project: Project, shown: Shown) -> complex | None:
     return complex(_located(shown.mesh, rest).on(shown.positions)[0])
 
 
+def forget_places() -> None:
+    """Forget what was found out about a project that was closed."""
+    _deepest_point.cache_clear()
+    _located.cache_clear()
+
+
 @lru_cache(maxsize=64)
 def _deepest_point(domain: Domain) -> complex:
     return deepest_point(domain.outline, domain.loops[1:])

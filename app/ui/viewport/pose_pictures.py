@@ -68,3 +68,4 @@ class PosePictures:
         for target in self._targets.values():
             target.release()
         self._targets.clear()
+        self._kind = ()

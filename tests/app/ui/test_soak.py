@@ -1,5 +1,6 @@
 """Minutes of `python -m tests.campaigns --only soak`, by the window's clock: all is given back."""
 
+import gc
 import weakref
 
 import harness
@@ -7,7 +8,8 @@ import numpy as np
 import pytest
 from held import held, in_use
 
-from app.editor.actions import keys, playback, posing, saving
+from app.document.commands import layer_commands
+from app.editor.actions import editing, keys, playback, posing, saving
 from app.storage.assets import sample_images
 from app.ui.window import memory
 from tests.campaigns import soak
@@ -57,6 +59,23 @@ def test_a_project_that_was_closed_is_let_go(slow_window, tmp_path):
     slow_window.frames(2)
     assert history() is None
     assert held(slow_window.gl).opengl < opengl
+
+
+def test_the_mesh_of_a_project_that_was_closed_is_let_go(window):
+    """Also where something of it is in front, and the anchor and the status bar were shown."""
+    project = window.open(sample_images() / "bar.png")
+    window.act(posing.add_handle, project.figure.domain.mesh.vertices.mean())
+    window.act(editing.edit, layer_commands.set_front(project.active, 0, 1.0, None))
+    window.settle()
+    shown = project.puppet.shown
+    mesh = shown.mesh.domain.mesh
+    assert shown.vertices.triangles is not mesh.triangles
+    vertices = weakref.ref(mesh.vertices)
+    del project, shown, mesh
+    saving.put_project(window.session, None)
+    window.frames(2)
+    gc.collect()
+    assert vertices() is None
 
 
 def test_messages_that_are_gone_leave_nothing(window):

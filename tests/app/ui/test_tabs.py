@@ -442,10 +442,7 @@ def test_export_is_started_repeated_and_told(window, project, tab, tmp_path):
     assert project.export_to == tmp_path / "frames"
     assert not (tmp_path / "frames").exists()
     tab("Export", lambda robot: robot.item_click("**/###start"))
-    for _ in range(200):
-        window.frames()
-        if session.export is None:
-            break
+    window.until(lambda: session.export is None)
     names = sorted(path.name for path in (tmp_path / "frames").iterdir())
     assert names == [f"frame_{number:04d}.png" for number in range(3)]
     told = next(toast for toast in session.toasts if toast.tone == "good")

@@ -1,0 +1,37 @@
+import gc
+import weakref
+from dataclasses import replace
+
+from documents import disc_document, random_pose
+from numpy import random
+
+from app.document import clip_of, find_shortfall, transits
+from app.document.commands import key_commands
+
+
+def clips_of_figures(count):
+    """Return clips of as many figures with two keys each."""
+    document = disc_document()
+    pose = random_pose(random.default_rng(0), document)
+    document = key_commands.insert_key(0, 24, pose)(document)
+    named = [replace(document.figures[0], name=f"figure {number}") for number in range(count)]
+    return [clip_of(document.with_figure(figure), 0) for figure in named]
+
+
+def test_what_is_known_of_twenty_figures_is_not_found_out_again_in_each_frame():
+    clips = clips_of_figures(20)
+    first = [(transits(clip), find_shortfall(clip.figure, clip.keys[-1].pose)) for clip in clips]
+    for clip, (ways, shortfall) in zip(clips, first, strict=True):
+        assert transits(clip) is ways
+        assert transits(replace(clip)) is ways
+        assert find_shortfall(clip.figure, clip.keys[-1].pose) is shortfall
+
+
+def test_what_is_known_of_a_figure_goes_with_it():
+    (clip,) = clips_of_figures(1)
+    transits(clip)
+    find_shortfall(clip.figure, clip.keys[0].pose)
+    figure = weakref.ref(clip.figure)
+    del clip
+    gc.collect()
+    assert figure() is None
