@@ -22,11 +22,14 @@ def remembered(query: Callable[[Figure, *Given], T]) -> Callable[[Figure, *Given
 
     @wraps(query)
     def answer(figure: Figure, *given: *Given) -> T:
+        # Workers ask, too: another thread may clear the answers at any moment.
         answers = known.setdefault(figure, {})
-        if given not in answers:
+        found = answers.get(given)
+        if found is None:
+            found = query(figure, *given)
             if len(answers) >= MOST:
                 answers.clear()
-            answers[given] = query(figure, *given)
-        return answers[given]
+            answers[given] = found
+        return found
 
     return answer

@@ -1,4 +1,6 @@
 import gc
+import sys
+import threading
 import weakref
 from dataclasses import replace
 
@@ -7,6 +9,8 @@ from numpy import random
 
 from app.document import clip_of, find_shortfall, transits
 from app.document.commands import key_commands
+from app.document.queries.remembered import MOST, remembered
+from app.document.settings import FrameRange
 
 
 def clips_of_figures(count):
@@ -35,3 +39,29 @@ def test_what_is_known_of_a_figure_goes_with_it():
     del clip
     gc.collect()
     assert figure() is None
+
+
+def test_threads_that_ask_at_once_are_all_answered():
+    """Also while others make room for new answers; with so many of them that they do."""
+    figure, failures = disc_document().figures[0], []
+    ask = remembered(lambda _, frames: frames.last + 1)
+
+    def go(step):
+        try:
+            for number in range(10_000):
+                last = number * step % (4 * MOST + 1)
+                assert ask(figure, FrameRange(0, last)) == last + 1
+        except (AssertionError, KeyError) as error:
+            failures.append(error)
+
+    threads = [threading.Thread(target=go, args=(step,)) for step in (3, 5, 7, 11)]
+    usual = sys.getswitchinterval()
+    sys.setswitchinterval(1e-6)
+    try:
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+    finally:
+        sys.setswitchinterval(usual)
+    assert not failures
