@@ -1,18 +1,25 @@
 """Chebyshev series: what an analytic function of time is on a piece of it."""
 
 import math
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections import deque
+from collections.abc import Callable, Generator, Sequence
+from dataclasses import dataclass, replace
 from functools import cache
 from itertools import pairwise
+from math import inf
+from operator import attrgetter
+from typing import NamedTuple, TypeVar
 
 import numpy as np
 from numpy.polynomial import chebyshev
 
 from engine.arrays import Floats, freeze
 
-DEGREE = 24  # of the series of a piece of time
+Result = TypeVar("Result")
+
+DEGREES = (12, 24)  # of the series of a piece of time; half the degree mostly does
 LAST_TERMS = 3
+HOPE = 10.0  # times the tolerance: what the next degree may be expected to leave
 SURELY = 0.1  # of what may be left out
 SHORTEST = 2.0**-30  # pieces of time are not halved below this
 
@@ -89,6 +96,98 @@ def one() -> PiecewiseSeries:
     )
 
 
+class Resolved(NamedTuple):
+    """Functions of time on a piece of it.
+
+    Parameters
+    ----------
+    start, end : float
+    coefficients : float64, shape (N, n)
+        Of T_0 … T_(n − 1).
+    missing : float
+        The largest of the last terms: about what the series leaves out.
+    """
+
+    start: float
+    end: float
+    coefficients: Floats
+    missing: float
+
+
+def resolve(
+    values: Callable[[Floats], Floats],
+    *,
+    tolerance: float,
+    degrees: tuple[int, ...] = DEGREES,
+    breaks: Sequence[float] = (0.0, 1.0),
+    shortest: float = SHORTEST,
+    most: float = inf,
+) -> Generator[None, None, list[Resolved]]:
+    """Write functions of time as series on pieces, which are halved until their last terms are few.
+
+    It may be left after each evaluation.
+
+    Parameters
+    ----------
+    values : callable
+        Returns the functions at times (t,) in [0, 1], float64 (N, t).
+    tolerance : float
+        Of the last terms.
+    degrees : tuple of int
+        That are tried, each twice the one before, whose nodes serve it.
+    breaks : sequence of float
+        From 0 to 1: where the functions may have kinks.
+    shortest : float
+        Piece of time that is not halved any more.
+    most : float
+        Pieces that are tried.
+
+    Returns
+    -------
+    list of Resolved
+        In the order of time; `missing` is above the tolerance where they cannot be resolved.
+    """
+    # The longest first: easy stretches are covered before the hard ones take all attempts.
+    pending, found, tried = deque(pairwise(breaks)), [], 0
+    while pending and tried < most:
+        tried += 1
+        piece = yield from _tried(values, *pending.popleft(), tolerance, degrees)
+        if piece.missing <= tolerance or piece.end - piece.start <= shortest:
+            found.append(piece)
+        else:
+            middle = (piece.start + piece.end) / 2
+            pending += [(piece.start, middle), (middle, piece.end)]
+    found += [Resolved(*gap, np.zeros_like(found[0].coefficients[:, :1]), inf) for gap in pending]
+    return sorted(found, key=attrgetter("start"))
+
+
+def _tried(
+    values: Callable[[Floats], Floats],
+    start: float,
+    end: float,
+    tolerance: float,
+    degrees: tuple[int, ...],
+) -> Generator[None, None, Resolved]:
+    """Write functions of time as series on one piece, of the first degree that does."""
+    at_nodes, before = None, inf
+    for degree in degrees:
+        times = start + (end - start) * (1.0 + nodes(degree)) / 2
+        if at_nodes is None:
+            at_nodes = values(times)
+        else:
+            between = values(times[1::2])
+            known, at_nodes = at_nodes, np.empty((len(between), degree + 1))
+            at_nodes[:, ::2], at_nodes[:, 1::2] = known, between
+        yield
+        coefficients = at_nodes @ to_coefficients(degree).T
+        missing = float(np.abs(coefficients[:, -LAST_TERMS:]).max(initial=0.0))
+        # At the rate at which the terms came down, the next degree brings their ratio squared.
+        if missing <= tolerance or not missing * (missing / before) ** 2 <= HOPE * tolerance:
+            break
+        before = missing
+    return Resolved(start, end, coefficients, missing)
+
+
 def separate(
     values: Callable[[Floats], Floats],
     *,
@@ -102,16 +201,10 @@ def separate(
 
     Parameters
     ----------
-    values : callable
-        Returns the functions at times (t,) in [0, 1], float64 (N, t).
-    tolerance : float
-        Of the last terms of the series.
+    values, tolerance, shortest, breaks
+        As in `resolve`.
     left_out : float
         The most that the forms which are left out add to the functions.
-    shortest : float
-        Piece of time that is not halved any more.
-    breaks : sequence of float
-        From 0 to 1: where the functions may have kinks.
     vanishing : bool
         Whether they are 0 at times 0 and 1, and the series made exactly so.
 
@@ -121,56 +214,63 @@ def separate(
     series : PiecewiseSeries
         Of the j coefficients; the functions are `forms @ series(t)`.
     """
-    x, every_other = nodes(DEGREE), to_coefficients(DEGREE // 2)
-    pending = list(pairwise(breaks))[::-1]
-    found, pieces = [0.0], []
-    while pending:
-        start, end = pending.pop()
-        times = start + (end - start) * (1 + x) / 2
-        # Half the degree mostly does, and its nodes serve the whole.
-        found_at = values(times[::2])
-        coefficients = np.zeros((len(found_at), DEGREE + 1))
-        coefficients[:, : DEGREE // 2 + 1] = found_at @ every_other.T
-        rest = np.abs(coefficients[:, DEGREE // 2 + 1 - LAST_TERMS : DEGREE // 2 + 1]).max()
-        if rest > tolerance:
-            both = np.empty_like(coefficients)
-            both[:, ::2], both[:, 1::2] = found_at, values(times[1::2])
-            coefficients = both @ to_coefficients(DEGREE).T
-            rest = np.abs(coefficients[:, -LAST_TERMS:]).max()
-        if rest <= tolerance or end - start <= shortest:
-            found.append(end)
-            pieces.append(coefficients)
-        else:
-            middle = (start + end) / 2
-            pending += [(middle, end), (start, middle)]
-    columns = np.hstack(pieces)
-    # Where half the degree did, the other columns are 0.
-    used = np.asarray(columns.any(axis=0))
+    pieces = finish(resolve(values, tolerance=tolerance, shortest=shortest, breaks=breaks))
+    forms, series = in_few_forms(pieces, left_out)
+    if vanishing:
+        coefficients = freeze(_vanishing_at_ends(series.breaks, series.coefficients))
+        series = replace(series, coefficients=coefficients)
+    return forms, series
+
+
+def in_few_forms(
+    pieces: Sequence[Resolved], left_out: float, *, least: int = 1
+) -> tuple[Floats, PiecewiseSeries]:
+    """Write resolved functions as sums of forms (N, j) times series, but for a small rest.
+
+    There are `least` forms or more.
+    """
+    count = max(piece.coefficients.shape[1] for piece in pieces)
+    padded = np.zeros((len(pieces), count, len(pieces[0].coefficients)))
+    for room, piece in zip(padded, pieces, strict=True):
+        room[: piece.coefficients.shape[1]] = piece.coefficients.T
+    rows = padded.reshape(-1, padded.shape[2])
+    # Where a lower degree did, the other rows are 0.
+    used = np.asarray(rows.any(axis=1))
     used[0] = True
-    columns = columns[:, used]
-    # The singular vectors of the triangle are those of the columns, and it is far smaller.
+    columns = rows[used].T
+    # The singular vectors of the triangle are those of the columns, and it is far smaller. (Those
+    # of a Gram matrix would have half the digits.)
     _, sizes, functions = np.linalg.svd(np.linalg.qr(columns, mode="r"), full_matrices=False)
-    rows = np.zeros((len(sizes), len(used)))
-    rows[:, used] = sizes[:, None] * functions
-    series = rows.reshape(len(sizes), len(pieces), DEGREE + 1)
+    spread = np.zeros((len(sizes), len(used)))
+    spread[:, used] = sizes[:, None] * functions
+    series = spread.reshape(len(sizes), len(pieces), count)
     # Forms have the length 1, and no entry above: those that are surely left out are not formed.
     most = np.abs(series).sum(axis=2).max(axis=1)
     formed = max(1, int(np.count_nonzero(most[::-1].cumsum() > SURELY * left_out)))
     forms = columns @ functions[:formed].T
     forms /= np.maximum(sizes[:formed], np.finfo(np.float64).tiny)
     most[:formed] *= np.abs(forms).max(axis=0)
-    kept = max(1, int(np.count_nonzero(most[::-1].cumsum() > left_out)))
-    times, coefficients = np.array(found), series[:kept].transpose(1, 2, 0)
-    if vanishing:
-        coefficients = _vanishing_at_ends(times, coefficients)
+    kept = max(least, int(np.count_nonzero(most[::-1].cumsum() > left_out)))
+    coefficients = np.ascontiguousarray(series[:kept].transpose(1, 2, 0))
+    breaks = np.array([0.0, *(piece.end for piece in pieces)])
     return forms[:, :kept], PiecewiseSeries(
-        breaks=freeze(times), coefficients=freeze(np.ascontiguousarray(coefficients))
+        breaks=freeze(breaks), coefficients=freeze(coefficients)
     )
+
+
+def finish(steps: Generator[None, None, Result]) -> Result:
+    """Take all steps that are left, and return what comes of them."""
+    while True:
+        try:
+            next(steps)
+        except StopIteration as stop:
+            result: Result = stop.value
+            return result
 
 
 def _vanishing_at_ends(breaks: Floats, coefficients: Floats) -> Floats:
     """Take off the rounding that is left at the keyframes, so that they come out exactly."""
-    signs = (-1.0) ** np.arange(DEGREE + 1)
+    signs = (-1.0) ** np.arange(coefficients.shape[1])
     first, last = signs @ coefficients[0], coefficients[-1].sum(axis=0)
     at_breaks = first + np.multiply.outer(breaks, last - first)
     corrected = coefficients.copy()

@@ -2,7 +2,6 @@
 
 from collections.abc import Generator
 from math import inf
-from typing import TypeVar
 
 import numpy as np
 
@@ -11,8 +10,6 @@ from engine.streaming.channels import Channels
 from engine.streaming.cutting import OF_PIECES, SampledMotion, cut
 from engine.streaming.functions import TimeFunctions
 from engine.streaming.series import Series
-
-Result = TypeVar("Result")
 
 # Shares of the tolerance; the rest is for rounding to float32. What is found at some points may be
 # exceeded at others: then it is tried again with less.
@@ -68,16 +65,6 @@ def build_series(channels: Channels) -> Generator[None, None, Series]:
             least = (OF_FUNCTIONS + OF_PIECES) * channels.tolerance
             return Series(pieces=pieces, error=max(MARGIN * error, least))
     return Series(pieces=(), error=inf)
-
-
-def finish(steps: Generator[None, None, Result]) -> Result:
-    """Take all steps that are left, and return what comes of them."""
-    while True:
-        try:
-            next(steps)
-        except StopIteration as stop:
-            result: Result = stop.value
-            return result
 
 
 def _between(times: Floats) -> list[float]:

@@ -10,7 +10,7 @@ import numpy as np
 from engine.arrays import Floats, Singles, freeze
 from engine.interpolation import chebyshev
 from engine.streaming.channels import ROUNDING
-from engine.streaming.functions import SHORTEST, Gap, TimeFunctions
+from engine.streaming.functions import Gap, TimeFunctions
 from engine.streaming.series import SeriesPiece
 
 # Rows of a piece: both ends and two functions. A frame costs as many multiply-adds, a linear blend
@@ -113,7 +113,7 @@ def cut(motion: SampledMotion, tolerance: float) -> Generator[None, None, tuple[
         while place < end and attempts < MOST_ATTEMPTS:
             attempts += 1
             room = end - place
-            length = min(max(length, SHORTEST), room)
+            length = min(max(length, chebyshev.SHORTEST), room)
             if room / 2 < length < room:
                 length = room / 2  # no sliver is left at the end
             goal = end if length == room else place + length
@@ -126,7 +126,7 @@ def cut(motion: SampledMotion, tolerance: float) -> Generator[None, None, tuple[
                 is_over = error >= ENOUGH * allowed or length >= room / 2
             else:
                 known = known._replace(failed=length)
-                is_over = length <= SHORTEST
+                is_over = length <= chebyshev.SHORTEST
             if is_over or known.longest > CLOSE * known.failed:
                 if known.best is not None:
                     cuts.append(known.best)
