@@ -7,28 +7,28 @@ Imports: `engine.paths`, `engine.dirichlet`, `engine.maps`.
 """
 
 from engine.interpolation import chebyshev as chebyshev
-from engine.interpolation.inbetweens import (
-    Frame as Frame,
-    Inbetweens as Inbetweens,
-    IntegratedInbetweens as IntegratedInbetweens,
-)
-from engine.interpolation.keyframe_samples import (
-    KeyframeSamples as KeyframeSamples,
-    sample_keyframes as sample_keyframes,
-)
-from engine.interpolation.passing import (
+from engine.interpolation.blends import BLENDS as BLENDS
+from engine.interpolation.course import (
     Course as Course,
     End as End,
     Joint as Joint,
     Tangent as Tangent,
-    shortened as shortened,
+)
+from engine.interpolation.derivatives import Passage as Passage
+from engine.interpolation.inbetweens import Frame as Frame, Inbetweens as Inbetweens
+from engine.interpolation.interval import Interval as Interval
+from engine.interpolation.keyframe_samples import (
+    KeyframeSamples as KeyframeSamples,
+    sample_keyframes as sample_keyframes,
+)
+from engine.interpolation.one_interval import (
+    frame_at as frame_at,
+    prepare_inbetweens as prepare_inbetweens,
 )
 from engine.interpolation.preparation import (
     Prepared as Prepared,
-    frame_at as frame_at,
     interval_at as interval_at,
     prepare as prepare,
-    prepare_inbetweens as prepare_inbetweens,
     require_keyframes as require_keyframes,
 )
 from engine.interpolation.proof import Proof as Proof, prove as prove

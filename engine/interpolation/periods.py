@@ -19,7 +19,7 @@ keyframes are. h is sought among those, which are worked out once: it closes the
 all the same, and is as small as can be to some 1e-4 of itself.
 
 The metric variant wants ln |f_z^t| on the boundary, Equation (13), and gets it but for a constant
-around each hole (`engine.dirichlet`). There h has the least ∫ (Re h − what is lacking)² ds under
+around each hole (`engine.dirichlet`). There h has the least ∫ (Re h − what is lost)² ds under
 closed periods, and turns nothing at the anchor.
 
 Not in the paper, whose domains are simply connected.
@@ -34,8 +34,9 @@ import numpy as np
 import numpy.typing as npt
 import scipy.linalg
 
-from engine.arrays import Complexes, Floats, Indices, freeze
+from engine.arrays import Complexes, Floats, freeze
 from engine.interpolation.chebyshev import PiecewiseSeries, separate
+from engine.interpolation.residual import Residual
 from engine.maps import Boundary
 from engine.paths import Loops
 
@@ -56,73 +57,21 @@ LEFT_OUT = 2e-11  # of the modes: the periods are closed as far
 Numbers = TypeVar("Numbers", Floats, Complexes)
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Residual:
-    """Σ c_j(t) H_j; what is added to a blend vanishes at both keyframes.
-
-    Parameters
-    ----------
-    series : PiecewiseSeries
-        c_j.
-    modes : complex128, shape (j, s)
-        H_j at the nodes of the paths.
-    modes_z : complex64, shape (j, s)
-        H_j' there: the square of a step multiplies it, and single precision is plenty.
-    """
-
-    series: PiecewiseSeries
-    modes: Complexes
-    modes_z: npt.NDArray[np.complex64]
-
-    @classmethod
-    def of(cls, series: PiecewiseSeries, values: Complexes, slopes: Complexes) -> Self:
-        """Pack functions given with their derivatives, each (s, j)."""
-        return cls(
-            series=series,
-            modes=freeze(np.ascontiguousarray(values.T)),
-            modes_z=freeze(slopes.T.astype(np.complex64, order="C")),
-        )
-
-    def at(self, which: Indices) -> "Residual":
-        """Return the same at some of the nodes (c,)."""
-        return Residual(
-            series=self.series,
-            modes=freeze(np.ascontiguousarray(self.modes[:, which])),
-            modes_z=freeze(np.ascontiguousarray(self.modes_z[:, which])),
-        )
-
-    @property
-    def nbytes(self) -> int:
-        """Memory that the arrays take, in bytes."""
-        return self.modes.nbytes + self.modes_z.nbytes + self.series.coefficients.nbytes
-
-    def add_to(self, logarithm: Complexes, logarithm_z: Complexes, time: float) -> None:
-        """Add it to log f_z and its derivative, each (s,), in place."""
-        coefficients = self.series(time)
-        logarithm += combined(coefficients, self.modes)
-        single = coefficients.astype(np.float32)
-        logarithm_z.view(np.float64)[:] += single @ self.modes_z.view(np.float32)
-
-    def at_times(self, times: Floats) -> Complexes:
-        """Return what is added to log f_z at times (t,), (t, s)."""
-        return combined(self.series.at(times).T, self.modes)
-
-
-class Open(NamedTuple):
+class Unclosed(NamedTuple):
     """In-betweens before their correction, at times (t,) and the nodes of the loops around holes.
 
     Parameters
     ----------
     fz, g : complex128, shape (t, c)
         f_z and conj(f_z̄).
-    lacking : float64, shape (t, holes), or None
+    constants : float64, shape (t, holes), or None
         Constants that the real part of h is to make good on the boundary of each hole; None for
         the smallest h.
     """
 
     fz: Complexes
     g: Complexes
-    lacking: Floats | None = None
+    constants: Floats | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -246,7 +195,7 @@ class PeriodClosing:
 
     def close(
         self,
-        opened: Callable[[Floats], Open],
+        unclosed: Callable[[Floats], Unclosed],
         *,
         sign: int,
         breaks: Sequence[float] = (0.0, 1.0),
@@ -255,7 +204,7 @@ class PeriodClosing:
 
         Parameters
         ----------
-        opened : callable
+        unclosed : callable
             Returns the in-betweens at times (t,) in [0, 1] before their correction.
         sign : {1, -1}
             1 keeps ν, −1 keeps η.
@@ -263,12 +212,12 @@ class PeriodClosing:
             From 0 to 1: where the in-betweens may have kinks in time.
         """
         return self._in_series(
-            lambda times: self.correction(opened(times), sign)[0], breaks=breaks, vanishing=True
+            lambda times: self.correction(unclosed(times), sign)[0], breaks=breaks, vanishing=True
         )
 
     def to_conformal(
         self,
-        opened: Callable[[Floats], Open],
+        unclosed: Callable[[Floats], Unclosed],
         *,
         sign: int,
         breaks: Sequence[float] = (0.0, 1.0),
@@ -276,7 +225,7 @@ class PeriodClosing:
         """Return what leads on from there to the correction of f_z alone, without f_z̄."""
 
         def further(times: Floats) -> Floats:
-            here = opened(times)
+            here = unclosed(times)
             alone = here._replace(g=np.zeros_like(here.g))
             return self.correction(alone, sign)[0] - self.correction(here, sign)[0]
 
@@ -318,26 +267,26 @@ class PeriodClosing:
             largest=largest,
         )
 
-    def correction(self, opened: Open, sign: int) -> tuple[Floats, Floats]:
+    def correction(self, unclosed: Unclosed, sign: int) -> tuple[Floats, Floats]:
         """Return h by its parts (t, 2b) in the basis, and the largest period left at each time.
 
         The latter, (t,), is over the diagonal.
 
         Parameters
         ----------
-        opened : Open
+        unclosed : Unclosed
         sign : {1, -1}
             1 keeps ν, −1 keeps η.
         """
-        fz, g, lacking = opened
+        fz, g, constants = unclosed
         goal = np.zeros((len(fz), len(self.inverse)))
-        if lacking is not None:
-            goal = lacking @ self.shares @ self.inverse
+        if constants is not None:
+            goal = constants @ self.shares @ self.inverse
         parts, size = goal, self.size
         periods, rows = self._linearised(fz, g, parts, sign)
         anchor = np.concatenate([self.at_anchor, 1j * self.at_anchor])
-        # With something lacking h may stretch the anchor, but not turn it.
-        fixed = np.array([anchor.imag] if lacking is not None else [anchor.imag, anchor.real])
+        # With constants to make good h may stretch the anchor, but not turn it.
+        fixed = np.array([anchor.imag] if constants is not None else [anchor.imag, anchor.real])
         fixed = np.broadcast_to(fixed, (len(fz), *fixed.shape))
         moving = np.ones(len(fz), np.bool_)
         for _ in range(MOST_STEPS):
@@ -349,7 +298,7 @@ class PeriodClosing:
             moving &= np.abs(_applied(constraints, parts) - wanted).max(axis=1) > CLOSED * size
             if not moving.any():
                 break
-            spread = constraints if lacking is None else constraints @ self.inverse
+            spread = constraints if constants is None else constraints @ self.inverse
             across = np.linalg.pinv(
                 spread @ constraints.swapaxes(1, 2), rcond=INDEPENDENT, hermitian=True
             )
@@ -416,13 +365,6 @@ def _applied(matrices: Numbers, vectors: Floats) -> Numbers:
     """Return the product of each matrix (t, r, n) with its vector (t, n), (t, r)."""
     product: Numbers = (matrices @ vectors[:, :, None])[:, :, 0]
     return product
-
-
-def combined(weights: Floats, values: Complexes) -> Complexes:
-    """Return the products of real weights (..., q) with arrays (q, s), (..., s)."""
-    # As reals: a complex product with real weights would do half its work on zeros.
-    sums: Complexes = (weights @ values.view(np.float64)).view(np.complex128)
-    return sums
 
 
 def as_complex(parts: Floats) -> Complexes:

@@ -70,6 +70,21 @@ class Sites:
         """The point whose pose is given."""
         return complex(self.paths.nodes[0])
 
+    def require_boundary(self, loops: Sequence[Complexes]) -> None:
+        """Refuse a Hilbert transform of another boundary.
+
+        Raises
+        ------
+        EngineError
+            If its loops are not the domain's own.
+        """
+        own = self.boundary.loops
+        if len(loops) != len(own) or not all(map(np.array_equal, loops, own)):
+            raise EngineError(
+                f"The Hilbert transform is of another outline, of {sum(map(len, loops))} vertices, "
+                f"than the points', of {sum(map(len, own))}; build it anew for this one."
+            )
+
     @property
     def nbytes(self) -> int:
         """Memory that the arrays take, in bytes."""

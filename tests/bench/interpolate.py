@@ -14,7 +14,9 @@ from engine.domain import CutOut, Domain, build_domain
 from engine.domain.meshing import Mesh, triangulate
 from engine.interpolation import (
     Inbetweens,
+    Interval,
     KeyframeSamples,
+    Passage,
     Sites,
     Variant,
     prepare_inbetweens,
@@ -78,9 +80,9 @@ class KeyframePair:
 
     def inbetweens(self, variant: Variant) -> Inbetweens:
         """Prepare the interval."""
-        return prepare_inbetweens(
-            variant, self.sites, self.keyframes, self.sheets, transform=self.extension
-        )
+        passage = Passage.of(self.keyframes, self.sheets)
+        interval = Interval(self.sites, passage, transform=self.extension)
+        return prepare_inbetweens(variant, interval)
 
 
 def bent(cage: Complexes) -> HarmonicMap:
@@ -246,9 +248,8 @@ class _HoledPair:
 
         def prepared() -> Series:
             sheets = root_sheets(np.array([key.anchor_fz for key in keyframes]))
-            inbetweens = prepare_inbetweens(
-                variant, self.sites, keyframes, sheets, transform=self.extension
-            )
+            interval = Interval(self.sites, Passage.of(keyframes, sheets), transform=self.extension)
+            inbetweens = prepare_inbetweens(variant, interval)
             return finish(build_series(Positions.of(inbetweens, self.sites)))
 
         series = prepared()

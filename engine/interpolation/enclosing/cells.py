@@ -17,7 +17,7 @@ import numpy as np
 import numpy.typing as npt
 
 from engine.arrays import Complexes, Floats, ratio
-from engine.interpolation.proof.pieces import number
+from engine.interpolation.enclosing.pieces import number
 from engine.maps import Enclosures
 
 LARGEST_LOGARITHM = 300.0  # what is beyond overflows: nothing is proven there
@@ -44,7 +44,9 @@ class Patch(NamedTuple, Generic[number]):
         return sizes
 
     def elevated(self) -> "Patch[number]":
-        """Return the same, linear along the place, as a quadratic."""
+        """Return the same, linear or quadratic along the place, as a quadratic."""
+        if self.controls.shape[2] > 2:
+            return self
         first, last = self.controls[..., :1], self.controls[..., -1:]
         return Patch(np.concatenate([first, (first + last) / 2, last], axis=2), self.error)
 
@@ -59,21 +61,41 @@ class Patch(NamedTuple, Generic[number]):
         first, last = self.controls[:, :1], self.controls[:, -1:]
         return Patch((1.0 - share) * first + share * last, self.error)
 
+    def times(self, factor: float) -> "Patch[number]":
+        """Return a multiple."""
+        return Patch(factor * self.controls, abs(factor) * self.error)
+
     def corners(self) -> "Patch[number]":
         """Return the values at the cells' corners, which are attained, as cells (4c,)."""
         at_corners = self.controls[:, [0, -1]][:, :, [0, -1]]
         return Patch(at_corners.reshape(-1, 1, 1), np.zeros(at_corners.size))
 
 
-def real_part(patch: Patch[np.complex128]) -> Patch[np.float64]:
-    """Return the real part."""
-    return Patch(patch.controls.real, patch.error)
+class Changes(NamedTuple):
+    """What becomes of f_z and conj(f_z̄) after they were blended, as logarithms on cells.
+
+    Parameters
+    ----------
+    correction : Patch
+        Re h (`engine.interpolation.periods`).
+    rho : Patch
+        ln ρ, by which conj(f_z̄) is scaled.
+    factor : Patch
+        ln |ρ + (1 − ρ) e^d|, by which f_z is multiplied where there is a d.
+    """
+
+    correction: Patch[np.float64]
+    rho: Patch[np.float64]
+    factor: Patch[np.float64]
+
+    def corners(self) -> "Changes":
+        """Return the values at the cells' corners, which are attained, as cells (4c,)."""
+        return Changes(*(patch.corners() for patch in self))
 
 
-def real_range(patch: Patch[number]) -> Floats:
-    """Return between which the real part is, float64 (2, c)."""
-    values = patch.controls.real
-    return np.stack([_least(values) - patch.error, _largest(values) + patch.error])
+def _range(patch: Patch[np.float64]) -> Floats:
+    """Return between which a quantity is, float64 (2, c)."""
+    return np.stack([_least(patch.controls) - patch.error, _largest(patch.controls) + patch.error])
 
 
 def linear(conformal: Patch[np.complex128], anticonformal: Patch[np.complex128]) -> Enclosures:
@@ -87,39 +109,38 @@ def linear(conformal: Patch[np.complex128], anticonformal: Patch[np.complex128])
     )
 
 
-def from_nu(log_modulus: Patch[np.float64], nu: Patch[np.complex128]) -> Enclosures:
-    """Enclose of ln |f_z| and ν."""
-    log_a, error = _bounded(log_modulus)
-    y = nu.highest
-    most = _largest(y)[:, None, None]
-    a = np.exp(log_a + error)
-    least = np.exp(_least(log_a - error))[:, None, None]
-    bent = most * a + least * y - most * least  # at least |f_z| |ν|
-    below = _tangent(log_a, error)
-    smaller = (1.0 - most) * below - least * y + most * least
-    return Enclosures(
-        k=_largest(y),
-        sigma_a=_largest(a + bent),
-        sigma_b=np.where(most[:, 0, 0] < 1, _least(smaller), _least(-bent)),
-    )
+def exponential(
+    log_fz: Patch[np.float64],
+    log_factor: Patch[np.float64],
+    log_ratio: Patch[np.float64],
+    second: Patch[np.complex128],
+) -> Enclosures:
+    """Enclose of ln |f_z|, with |f_z̄| as the absolute value of something times an exponential.
 
+    Parameters
+    ----------
+    log_fz : Patch
+    log_factor : Patch
+        |f_z̄| is the exponential of it times |second|.
+    log_ratio : Patch
+        The same, less ln |f_z|: given by itself, since errors cancel.
+    second : Patch
+    """
+    size = second.elevated().highest
+    most = _largest(size)[:, None, None]
 
-def from_eta(log_modulus: Patch[np.float64], eta: Patch[np.complex128], rho: Floats) -> Enclosures:
-    """Enclose of ln |f_z| and η, scaled by at most ρ (c,)."""
-    log_a, error = _bounded(log_modulus.elevated())
-    y = rho[:, None, None] * eta.highest
-    most = _largest(y)[:, None, None]
-    highest = _largest(log_a + error)[:, None, None]
-
-    def over(power: int) -> Floats:
-        # At least |η| / |f_z|^power.
-        inverse, least = np.exp(-power * (log_a - error)), np.exp(-power * highest)
-        bent: Floats = most * inverse + least * y - most * least
+    def product(logarithm: Patch[np.float64]) -> Floats:
+        # At most |second| exp(logarithm).
+        values, error = _bounded(logarithm.elevated())
+        grown = np.exp(values + error)
+        lowest = np.exp(_least(values - error))[:, None, None]
+        bent: Floats = most * grown + lowest * (size - most)
         return bent
 
-    b = over(1)
+    b = product(log_factor)
+    log_a, error = _bounded(log_fz.elevated())
     return Enclosures(
-        k=_largest(over(2)),
+        k=_largest(product(log_ratio)),
         sigma_a=_largest(np.exp(log_a + error) + b),
         sigma_b=_least(_tangent(log_a, error) - b),
     )
@@ -136,27 +157,10 @@ def from_metric(trace: Patch[np.float64], eta: Patch[np.complex128]) -> Enclosur
     )
 
 
-def corrected(
-    trace: Patch[np.float64],
-    eta: Patch[np.complex128],
-    log: Floats,
-    rho: Floats | float = 1.0,
-    log_w: Floats | float = 0.0,
+def changed_metric(
+    trace: Patch[np.float64], eta: Patch[np.complex128], changes: Changes
 ) -> Enclosures:
-    """Enclose of 𝒜 and η, where |f_z| is then multiplied, and |f_z̄| divided, by exp of `log`.
-
-    Then |f_z̄| is multiplied by ρ, and |f_z| by |w|.
-
-    Parameters
-    ----------
-    trace, eta : Patch
-    log : float64, shape (2, c)
-        Between which the logarithm is.
-    rho : float64, shape (c,)
-        The largest that it is.
-    log_w : float64, shape (2, c)
-        Between which ln |w| is.
-    """
+    """Enclose of 𝒜 and η, where f_z and conj(f_z̄) are changed further."""
     error = trace.error[:, None, None]
     least, most = _least(trace.controls - error), _largest(trace.controls + error)
     size_most, size_least = _largest(eta.highest), _size_least(eta)
@@ -166,37 +170,13 @@ def corrected(
         for t, y in ((least, size_most), (most, size_least))
     )
     b = ratio(size_most, np.where(least >= 2 * size_most, a_least, 0.0))
-    grown, shrunk = np.exp(log), rho * np.exp(-log)
-    w_least, w_most = np.exp(np.broadcast_to(log_w, log.shape))
+    log, log_rho, log_factor = map(_range, changes)
+    grown, shrunk = np.exp(log), np.exp(log_rho[1] - log)
+    least_factor, most_factor = np.exp(log_factor)
     return Enclosures(
-        k=ratio(b, a_least) * shrunk[0] / (grown[0] * w_least),
-        sigma_a=(a_most * grown * w_most + b * shrunk).max(axis=0),
-        sigma_b=a_least * grown[0] * w_least - b * shrunk[0],
-    )
-
-
-def widened(enclosed: Enclosures, log: Floats) -> Enclosures:
-    """Enclose what is enclosed already, corrected by the exp of `log` (2, c) as above."""
-    k, sigma_a, sigma_b = enclosed
-    most = np.abs(log).max(axis=0)
-    b = np.maximum((sigma_a - sigma_b) / 2, 0.0)
-    return Enclosures(
-        k=k * np.exp(-2 * log[0]),
-        sigma_a=sigma_a * np.exp(most),
-        sigma_b=sigma_b * np.exp(np.minimum(log[0], 0.0)) - 2 * b * np.sinh(most),
-    )
-
-
-def scaled(enclosed: Enclosures, rho: Floats, log_w: Floats) -> Enclosures:
-    """Enclose what is enclosed already, with |f_z̄| times ρ (c,) at most and |f_z| times |w|."""
-    k, sigma_a, sigma_b = enclosed
-    w_least, w_most = np.exp(log_w)
-    b = np.maximum((sigma_a - sigma_b) / 2, 0.0)
-    return Enclosures(
-        k=k * rho / w_least,
-        sigma_a=sigma_a * np.maximum(w_most, rho),
-        sigma_b=np.minimum(sigma_b * w_least, sigma_b * w_most)
-        - b * np.maximum(rho - w_least, 0.0),
+        k=ratio(b, a_least) * shrunk[0] / (grown[0] * least_factor),
+        sigma_a=(a_most * grown * most_factor + b * shrunk).max(axis=0),
+        sigma_b=a_least * grown[0] * least_factor - b * shrunk[0],
     )
 
 
