@@ -10,6 +10,7 @@ control values c_ab. With x ≤ Σ B x_ab and g ≤ Σ B g_ab, and x ≤ x⁺, g
 since (x⁺ − x) (g − g⁻) ≥ 0. What an enclosure is too large by falls with the square of the cell.
 """
 
+from collections.abc import Callable
 from math import inf
 from typing import Generic, NamedTuple
 
@@ -93,11 +94,6 @@ class Changes(NamedTuple):
         return Changes(*(patch.corners() for patch in self))
 
 
-def _range(patch: Patch[np.float64]) -> Floats:
-    """Return between which a quantity is, float64 (2, c)."""
-    return np.stack([_least(patch.controls) - patch.error, _largest(patch.controls) + patch.error])
-
-
 def linear(conformal: Patch[np.complex128], anticonformal: Patch[np.complex128]) -> Enclosures:
     """Enclose of f_z and conj(f_z̄)."""
     a = along_mean(conformal.controls, (1, 2)) - conformal.error[:, None, None]  # at least |f_z|
@@ -160,24 +156,78 @@ def from_metric(trace: Patch[np.float64], eta: Patch[np.complex128]) -> Enclosur
 def changed_metric(
     trace: Patch[np.float64], eta: Patch[np.complex128], changes: Changes
 ) -> Enclosures:
-    """Enclose of 𝒜 and η, where f_z and conj(f_z̄) are changed further."""
+    """Enclose of 𝒜 and η, where f_z and conj(f_z̄) are changed further.
+
+    Notes
+    -----
+    With u = ln (|η| / 𝒜) before the changes, and k of it from k / (1 + k²) = e^u,
+
+        ln |f_z| = ½ ln 𝒜 − ½ ln (1 + k²),    ln |f_z̄| = ln k + ln |f_z|,
+
+    where ln k, ½ ln (1 + k²) and their difference are convex in u and rise with it. All of these
+    are thus held between chords and tangents, which are linear in 𝒜 and |η|, and so are at most,
+    or at least, Σ B of what they are at the control values.
+    """
+    h, log_rho, factor = (each.elevated() for each in changes)
     error = trace.error[:, None, None]
-    least, most = _least(trace.controls - error), _largest(trace.controls + error)
-    size_most, size_least = _largest(eta.highest), _size_least(eta)
-    # The larger root of Equation (13), and |η| over it.
-    a_least, a_most = (
-        np.sqrt((t + np.sqrt(np.maximum(t * t - 4 * y * y, 0.0))) / 2)
-        for t, y in ((least, size_most), (most, size_least))
-    )
-    b = ratio(size_most, np.where(least >= 2 * size_most, a_least, 0.0))
-    log, log_rho, log_factor = map(_range, changes)
-    grown, shrunk = np.exp(log), np.exp(log_rho[1] - log)
-    least_factor, most_factor = np.exp(log_factor)
+    least, most = trace.controls - error, trace.controls + error
+    size, size_least = eta.highest, along_mean(eta.controls, (1, 2)) - eta.error[:, None, None]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        log_least, log_most = _chord(np.log, least, most), _tangent_of_log(most)
+        highest = _tangent_of_log(size) - log_least
+        ends = _extremes(highest)
+        k = k_of(np.exp(ends))
+        log_k, half = np.log(k), 0.5 * np.log1p(k * k)
+        # Below: of ln k, of ½ ln (1 + k²), and of their difference.
+        bounds = [_between(ends, at, highest) for at in (log_k, half, log_k - half)]
+        lowest = _chord(np.log, size_least, size) - log_most
+        place = lowest.mean(axis=(1, 2), keepdims=True)
+        there = k_of(np.exp(place))
+        known = 0.5 * np.log1p(there * there) + there**2 / (1 - there**2) * (lowest - place)
+        known = np.where(size_least.min(axis=(1, 2), keepdims=True) > 0, known, 0.0)
+    grown, shrunk = h.plus(factor), log_rho.plus(h.times(-1.0))
+    ratio_of = shrunk.plus(grown.times(-1.0))
+
+    def changed(values: Floats, change: Patch[np.float64], sign: int) -> Floats:
+        raised = change.in_time(values.shape[1])
+        total: Floats = values + raised.controls + sign * raised.error[:, None, None]
+        return total
+
+    b = np.exp(changed(bounds[2] + log_most / 2, shrunk, 1))
+    a_most = np.exp(changed(log_most / 2 - known, grown, 1))
+    a_least = changed(log_least / 2 - bounds[1], grown, -1)
+    clear = (_least(least) > 0) & (k[1, :, 0, 0] < inf)
     return Enclosures(
-        k=ratio(b, a_least) * shrunk[0] / (grown[0] * least_factor),
-        sigma_a=(a_most * grown * most_factor + b * shrunk).max(axis=0),
-        sigma_b=a_least * grown[0] * least_factor - b * shrunk[0],
+        k=np.where(clear, np.exp(_largest(changed(bounds[0], ratio_of, 1))), inf),
+        sigma_a=np.where(clear, _largest(a_most + b), inf),
+        sigma_b=np.where(clear, _least(_tangent(a_least, error * 0.0) - b), -inf),
     )
+
+
+def _extremes(values: Floats) -> Floats:
+    """Return the least and the largest control value, float64 (2, c, 1, 1)."""
+    return np.stack([each(values, axis=(1, 2), keepdims=True) for each in (np.min, np.max)])
+
+
+def _between(ends: Floats, at_ends: Floats, places: Floats) -> Floats:
+    """Return the chord from one end (2, c, 1, 1) to the other at places (c, d, b)."""
+    length = ends[1] - ends[0]
+    share = np.where(length > 0, (places - ends[0]) / np.where(length > 0, length, 1.0), 0.0)
+    chord: Floats = at_ends[0] + share * (at_ends[1] - at_ends[0])
+    return np.where(length > 0, chord, at_ends.max(axis=0))
+
+
+def _chord(function: Callable[[Floats], Floats], least: Floats, most: Floats) -> Floats:
+    """Return the chord of a function over all of a range, at what is least there."""
+    ends = np.stack([_extremes(least)[0], _extremes(most)[1]])
+    return _between(ends, function(ends), least)
+
+
+def _tangent_of_log(values: Floats) -> Floats:
+    """Return something that is at least the logarithm, linear in what it is of."""
+    place = np.maximum(values.mean(axis=(1, 2), keepdims=True), np.finfo(np.float64).tiny)
+    tangent: Floats = np.log(place) + (values - place) / place
+    return tangent
 
 
 def k_of(share: Floats) -> Floats:
@@ -220,8 +270,3 @@ def _largest(values: Floats) -> Floats:
 def _least(values: Floats) -> Floats:
     found: Floats = values.min(axis=(1, 2))
     return found
-
-
-def _size_least(eta: Patch[np.complex128]) -> Floats:
-    """Return what the absolute value is at least."""
-    return np.maximum(_least(along_mean(eta.controls, (1, 2))) - eta.error, 0.0)

@@ -92,20 +92,25 @@ class Correction:
         own = self._series.series.breaks
         return own if self._lost is None else np.union1d(own, self._lost.series.breaks)
 
-    def on(self, piece: Indices, starts: Floats, ends: Floats) -> Patch[np.complex128]:
-        """Return it on cells, linear in time and along the piece."""
+    def on(
+        self, piece: Indices, starts: Floats, ends: Floats
+    ) -> tuple[Patch[np.complex128], Floats]:
+        """Return it on cells, linear in time and along the piece, and what of its error is time's.
+
+        The latter, float64 (c,), is due to the pieces of time, the rest to those of the boundary.
+        """
         self._catch_up()
         modes, errors = self._ends[piece], self._errors[piece]
         chords = self._series.chords(starts, ends)
         controls = np.einsum("caj,cbj->cab", chords.ends, modes)
-        error = (np.abs(chords.ends).max(axis=1) * errors).sum(axis=1) + LEFT_OUT
-        error += (chords.errors * (np.abs(modes).max(axis=1) + errors)).sum(axis=1)
+        in_place = (np.abs(chords.ends).max(axis=1) * errors).sum(axis=1) + LEFT_OUT
+        in_time = (chords.errors * (np.abs(modes).max(axis=1) + errors)).sum(axis=1)
         if self._lost is not None:
             constants = self._by_loop[self._pieces.loops[piece]]
             lost = self._lost.chords(starts, ends)
             controls = controls - np.einsum("caj,cj->ca", lost.ends, constants)[:, :, None]
-            error += (lost.errors * np.abs(constants)).sum(axis=1)
-        return Patch(controls, error)
+            in_time += (lost.errors * np.abs(constants)).sum(axis=1)
+        return Patch(controls, in_place + in_time), in_time
 
     def _catch_up(self) -> None:
         """Learn the pieces that were added since."""

@@ -73,28 +73,36 @@ class CellEnclosures:
             _patch(curves.at(chosen.piece), course.controls_on(chosen.start, chosen.end))
             for curves, course in zip(self._curves, self._blend.courses, strict=True)
         )
-        changes = self._changes(chosen)
+        changes, off_in_time = self._changes(chosen)
         enclose = self._blend.enclose
         return Enclosed(
             enclose(first, second, changes),
             enclose(
                 first.corners(), second.corners(), None if changes is None else changes.corners()
             ),
-            _varies_more_in_time(first, second, changes),
+            _varies_more_in_time(off_in_time, first, second, *(changes or ())),
         )
 
-    def _changes(self, chosen: Cells) -> Changes | None:
-        """Return what the corrections around holes and the scaling of Ψ do to cells."""
+    def _changes(self, chosen: Cells) -> tuple[Changes | None, Floats]:
+        """Return what the corrections around holes and the scaling of Ψ do to cells.
+
+        Beside it, (c,), how far they are off because the cells are long in time.
+        """
+        nothing = np.zeros(len(chosen.piece))
         if self._h is None and self._rho is None:
-            return None
-        none = Patch(np.zeros((len(chosen.piece), 2, 2)), np.zeros(len(chosen.piece)))
-        h = none if self._h is None else self._h.on(*chosen)
-        rho = none
+            return None, nothing
+        none = Patch(np.zeros((len(nothing), 2, 2)), nothing)
+        h, rho, factor, off = none, none, none, nothing
+        if self._h is not None:
+            known, off = self._h.on(*chosen)
+            h = Patch(known.controls.real, known.error)
         if self._rho is not None:
             values, errors = self._rho.chords(chosen.start, chosen.end)
-            rho = Patch(np.repeat(values[:, :, None], 2, axis=2), errors)
-        factor = none if self._d is None else _factor(self._d.on(*chosen), rho)
-        return Changes(Patch(h.controls.real, h.error), rho, factor)
+            rho, off = Patch(np.repeat(values[:, :, None], 2, axis=2), errors), off + errors
+        if self._d is not None:
+            d, _ = self._d.on(*chosen)
+            factor = _factor(d, rho)
+        return Changes(h, rho, factor), off
 
     def _catch_up(self) -> None:
         """Learn the pieces that were added since."""
@@ -105,18 +113,27 @@ class CellEnclosures:
 
 
 def _factor(d: Patch[np.complex128], log_rho: Patch[np.float64]) -> Patch[np.float64]:
-    """Return ln |w|, w = ρ + (1 − ρ) e^d, of which f_z is that for ρ = 1 times w."""
-    controls = np.exp(log_rho.controls)
+    """Return ln |w|, w = ρ + (1 − ρ) e^d, of which f_z is that for ρ = 1 times w.
+
+    Between its values at the corners it is off by an eighth of its second derivatives along both
+    sides of the cell, and by its first ones times what d and ln ρ are off themselves.
+    """
+    rho = np.exp(log_rho.controls)
     least = np.exp(log_rho.controls.min(axis=(1, 2)) - log_rho.error)
     most = np.minimum(np.exp(log_rho.controls.max(axis=(1, 2)) + log_rho.error), 1.0)
     size = d.highest.max(axis=(1, 2))
     clear = 1.0 - (1.0 - least) * np.expm1(size)  # |w| at least
     clear = np.where(clear > 0, clear, np.nan)
-    across = np.hypot(*(np.ptp(part, axis=(1, 2)) for part in (d.controls.real, d.controls.imag)))
-    error = (1.0 - least) * np.exp(size) * (across + 2 * d.error) / clear
-    error += np.expm1(size) * (most - least) / clear
-    factor = controls + (1.0 - controls) * np.exp(d.controls)
-    return Patch(np.log(np.abs(factor)), error)
+    by_d, by_rho = (1.0 - least) * np.exp(size) / clear, most * np.expm1(size) / clear
+    by_both = most * np.exp(size) / clear**2
+    along, over, over_rho = (
+        np.abs(np.diff(patch.controls, axis=axis)).max(axis=(1, 2))
+        for patch, axis in ((d, 2), (d, 1), (log_rho, 1))
+    )
+    bend = by_d * (1 + by_d) * (along**2 + over**2) + by_rho * (1 + by_rho) * over_rho**2
+    bend += 2 * by_both * over * over_rho
+    error = bend / 8 + by_d * d.error + by_rho * log_rho.error
+    return Patch(np.log(np.abs(rho + (1.0 - rho) * np.exp(d.controls))), error)
 
 
 def _patch(curves: EdgeCurves[Any], weights: Floats) -> Patch[Any]:
@@ -127,20 +144,14 @@ def _patch(curves: EdgeCurves[Any], weights: Floats) -> Patch[Any]:
     )
 
 
-def _varies_more_in_time(
-    first: Patch[Any], second: Patch[Any], changes: Changes | None
-) -> Booleans:
+def _varies_more_in_time(off_in_time: Floats, *patches: Patch[Any]) -> Booleans:
     """Tell along which side cells are to be cut."""
-    in_time, in_place = np.zeros((2, len(first.error)))
-    for patch in (first, second, *(() if changes is None else changes)):
+    in_time, in_place = off_in_time.copy(), -off_in_time
+    for patch in patches:
         size = np.maximum(np.abs(patch.controls).max(axis=(1, 2)), LEAST)
         in_time += np.abs(np.diff(patch.controls, axis=1)).max(axis=(1, 2), initial=0.0) / size
         along = np.abs(np.diff(patch.controls, axis=2)).max(axis=(1, 2), initial=0.0)
         in_place += (along + patch.error) / size
-    if changes is not None:
-        # What is off the chord of ρ is so in time.
-        in_time += changes.rho.error
-        in_place -= changes.rho.error
     more: Booleans = in_time > in_place
     return more
 

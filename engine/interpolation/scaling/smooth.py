@@ -26,7 +26,7 @@ MIDDLE = (3, -25, 150, 150, -25, 3)  # over 256, of six samples: the polynomial 
 # What the difference from the sharp ρ is enlarged by, since it is seen at the samples only.
 CAUTION = 1.25
 ROUNDING = 2e-7
-STRIPS = 32  # of each sample's surroundings, on which ρ is bounded from above
+STRIPS = 128  # of each sample's surroundings, on which ρ is bounded from above
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
