@@ -1,5 +1,7 @@
 """Harmonic shape interpolation: pure numerics, free of files, windows and global state.
 
+But for one thing: it keeps BLAS to one thread (`engine.arrays`), in a script as in the program.
+
 In: pictures, handles, harmonic maps, as arrays.
 Out: domains, certified maps, in-betweens, series in time, as arrays.
 Imports: NumPy, SciPy, contourpy, Shapely; never `app`.

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from importlib.metadata import version
 
 from app.cli.console import Parser, fail
-from app.cli.process import Endings, has_threads_left, use_one_thread
+from app.cli.process import Endings, has_threads_left
 from app.errors import EXPECTED_ERRORS
 
 EXIT_PIPE_CLOSED = 141
@@ -32,7 +32,6 @@ COMMANDS = {
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Run one command of the program and return its exit status."""
-    use_one_thread()
     words = list(sys.argv[1:] if argv is None else argv)
     if not words or (words[0] not in COMMANDS and not words[0].startswith("-")):
         words = ["window", *words]

@@ -1,4 +1,4 @@
-"""The process that a command runs in: its threads of linear algebra, and the signals that end it.
+"""The process that a command runs in, and the signals that end it.
 
 Python runs handlers of signals only between two of its own steps. A second thread hears of them at
 once, so that a window that waits for events can be woken, and what hangs does not keep the process
@@ -20,16 +20,6 @@ ENDINGS: Final = ("SIGINT", "SIGTERM", "SIGHUP")
 SWITCH: Final = 0.0005
 PATIENCE: Final = 10.0  # seconds that a process has to end by itself
 _INTERRUPTED: Final = 128  # and the signal's number: the exit status that shells know
-
-
-def use_one_thread() -> None:
-    """Keep BLAS to one thread; call it before NumPy is imported.
-
-    The matrices are small, and a second thread on a busy core can make a solver step fifty times
-    slower. With one thread, results repeat bit for bit.
-    """
-    for variable in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
-        os.environ.setdefault(variable, "1")
 
 
 def share_interpreter() -> None:

@@ -144,7 +144,7 @@ class PoseSampler:
 
     def makes_single_frames(self, variant: Variant) -> bool:
         """Tell whether one in-between alone takes less time than all of its interval."""
-        return variant.needs_transform and self.sites.closing is None
+        return variant.needs_transform and self.sites.period_basis is None
 
     def frame_of(self, transit: Transit, bounds: Bounds, variant: Variant, weight: float) -> Frame:
         """Return one of these in-betweens; a variant that `makes_single_frames` says so.

@@ -27,29 +27,20 @@ Not in the paper, whose domains are simply connected.
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from itertools import pairwise
-from typing import NamedTuple, Self, TypeVar
+from typing import NamedTuple, TypeVar
 
 import numpy as np
-import numpy.typing as npt
-import scipy.linalg
 
 from engine.arrays import Complexes, Floats, freeze
 from engine.interpolation.chebyshev import PiecewiseSeries, separate
+from engine.interpolation.period_basis import PeriodBasis, as_complex
 from engine.interpolation.residual import Residual
-from engine.maps import Boundary
-from engine.paths import Loops
 
-# Directions of the span that are smaller than this, over the largest, are rounding: the coordinates
-# of cages near the boundary are nearly dependent.
-RANK = 1e-6
-RIDGE = 1e-12  # of the mean: what makes the real parts' least squares definite
 CLOSED = 1e-14  # of the diagonal: where the iteration may end
 MOST_STEPS = 15
 HALVINGS = 8
 ROUNDING = 1e-13  # of the diagonal: periods below are rounding
 INDEPENDENT = 1e-13  # of the largest: constraints below depend on the others
-MOMENTS = 3  # powers of z − c_j on either side, −3 to 2
 SHORTEST = 2.0**-5  # pieces of time are not halved below this
 TOLERANCE = 1e-11  # of the series in time
 LEFT_OUT = 2e-11  # of the modes: the periods are closed as far
@@ -110,264 +101,156 @@ class Closing:
         return self.functions[:, kept], series
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class PeriodClosing:
-    """What the corrections of all in-betweens of a domain share.
-
-    Build it with `PeriodClosing.of`.
+def close(
+    basis: PeriodBasis,
+    unclosed: Callable[[Floats], Unclosed],
+    *,
+    sign: int,
+    breaks: Sequence[float] = (0.0, 1.0),
+) -> Closing:
+    """Close the periods of in-betweens at all times.
 
     Parameters
     ----------
-    loops : Loops
-    size : float
-        Diagonal of the domain.
-    basis : complex128, shape (c, b)
-        Functions of the span at the nodes of the loops, orthonormal on the boundary.
-    on_boundary : complex128, shape (m, b)
-        The same at the samples of the boundary.
-    at_anchor : complex128, shape (b,)
-        The same at the anchor.
-    coefficients : complex128, shape (n, b)
-        The same in the span.
-    at_nodes : complex128, shape (b, s)
-        The same at the nodes of the paths.
-    slopes : complex64, shape (b, s)
-        Their derivatives there.
-    inverse : float64, shape (2b, 2b)
-        Of the Gram matrix of the real parts on the boundary, and the imaginary one at the anchor.
-    shares : float64, shape (holes, 2b)
-        Integral of the real part over the boundary of a hole, over the length of the whole.
+    unclosed : callable
+        Returns the in-betweens at times (t,) in [0, 1] before their correction.
+    sign : {1, -1}
+        1 keeps ν, −1 keeps η.
+    breaks : sequence of float
+        From 0 to 1: where the in-betweens may have kinks in time.
     """
+    return _in_series(
+        basis,
+        lambda times: correction(basis, unclosed(times), sign)[0],
+        breaks=breaks,
+        vanishing=True,
+    )
 
-    loops: Loops
-    size: float
-    basis: Complexes
-    on_boundary: Complexes
-    at_anchor: Complexes
-    coefficients: Complexes
-    at_nodes: Complexes
-    slopes: npt.NDArray[np.complex64]
-    inverse: Floats
-    shares: Floats
 
-    @classmethod
-    def of(cls, boundary: Boundary, loops: Loops, nodes: Complexes) -> Self:
-        """Prepare the boundary of a domain with holes, and paths through nodes (s,).
+def to_conformal(
+    basis: PeriodBasis,
+    unclosed: Callable[[Floats], Unclosed],
+    *,
+    sign: int,
+    breaks: Sequence[float] = (0.0, 1.0),
+) -> Closing:
+    """Return what leads on from there to the correction of f_z alone, without f_z̄."""
 
-        The first node is the anchor.
-        """
-        span = boundary.span
-        count = len(span.vertices)  # logarithms are not single-valued functions
-        samples = span.coordinates(boundary.points)[:, :count]
-        root = np.sqrt(boundary.weights)[:, None]
-        _, lengths, directions = scipy.linalg.svd(root * samples, full_matrices=False)
-        kept = lengths > RANK * lengths[0]
-        own = directions[kept].conj().T / lengths[kept]
-        on_boundary, at_anchor = samples @ own, (span.coordinates(nodes[:1])[:, :count] @ own)[0]
-        at_loops = span.coordinates(loops.nodes)[:, :count] @ own
-        gram, shares = _real_parts(on_boundary, at_anchor, boundary)
-        constants = as_complex(scipy.linalg.solve(gram, shares.T, assume_a="pos"))
-        moments = np.vstack([_moments(at_loops, loops, span.centres), at_anchor])
-        few, _ = np.linalg.qr(_unit(np.hstack([moments.conj().T, constants])))
-        on_boundary, at_anchor = on_boundary @ few, at_anchor @ few
-        gram, shares = _real_parts(on_boundary, at_anchor, boundary)
-        logs = np.zeros((len(span) - count, few.shape[1]))
-        coefficients = np.vstack([own @ few, logs])
-        values, slopes = span.evaluate(coefficients, nodes, orders=(0, 1))
-        return cls(
-            loops=loops,
-            size=boundary.size,
-            basis=freeze(at_loops @ few),
-            on_boundary=freeze(on_boundary),
-            at_anchor=freeze(at_anchor),
-            coefficients=freeze(coefficients),
-            at_nodes=freeze(np.ascontiguousarray(values.T)),
-            slopes=freeze(slopes.T.astype(np.complex64, order="C")),
-            inverse=freeze(scipy.linalg.inv(gram)),
-            shares=freeze(shares),
-        )
+    def further(times: Floats) -> Floats:
+        here = unclosed(times)
+        alone = here._replace(g=np.zeros_like(here.g))
+        return correction(basis, alone, sign)[0] - correction(basis, here, sign)[0]
 
-    @property
-    def nbytes(self) -> int:
-        """Memory that the arrays take, in bytes."""
-        arrays = (self.basis, self.on_boundary, self.coefficients, self.inverse, self.at_nodes)
-        return sum(array.nbytes for array in arrays) + self.slopes.nbytes
+    return _in_series(basis, further, breaks=breaks, vanishing=False)
 
-    def close(
-        self,
-        unclosed: Callable[[Floats], Unclosed],
-        *,
-        sign: int,
-        breaks: Sequence[float] = (0.0, 1.0),
-    ) -> Closing:
-        """Close the periods of in-betweens at all times.
 
-        Parameters
-        ----------
-        unclosed : callable
-            Returns the in-betweens at times (t,) in [0, 1] before their correction.
-        sign : {1, -1}
-            1 keeps ν, −1 keeps η.
-        breaks : sequence of float
-            From 0 to 1: where the in-betweens may have kinks in time.
-        """
-        return self._in_series(
-            lambda times: self.correction(unclosed(times), sign)[0], breaks=breaks, vanishing=True
-        )
+def _in_series(
+    basis: PeriodBasis,
+    corrections: Callable[[Floats], Floats],
+    *,
+    breaks: Sequence[float],
+    vanishing: bool,
+) -> Closing:
+    """Write corrections (t, 2b) in few functions."""
+    largest = 0.0
 
-    def to_conformal(
-        self,
-        unclosed: Callable[[Floats], Unclosed],
-        *,
-        sign: int,
-        breaks: Sequence[float] = (0.0, 1.0),
-    ) -> Closing:
-        """Return what leads on from there to the correction of f_z alone, without f_z̄."""
+    def found(times: Floats) -> Floats:
+        nonlocal largest
+        parts = corrections(times).T
+        largest = max(largest, float(np.abs(basis.on_boundary @ as_complex(parts)).max()))
+        return parts
 
-        def further(times: Floats) -> Floats:
-            here = unclosed(times)
-            alone = here._replace(g=np.zeros_like(here.g))
-            return self.correction(alone, sign)[0] - self.correction(here, sign)[0]
-
-        return self._in_series(further, breaks=breaks, vanishing=False)
-
-    def _in_series(
-        self,
-        corrections: Callable[[Floats], Floats],
-        *,
-        breaks: Sequence[float],
-        vanishing: bool,
-    ) -> Closing:
-        """Write corrections (t, 2b) in few functions."""
-        largest = 0.0
-
-        def found(times: Floats) -> Floats:
-            nonlocal largest
-            parts = corrections(times).T
-            largest = max(largest, float(np.abs(self.on_boundary @ as_complex(parts)).max()))
-            return parts
-
-        forms, series = separate(
-            found,
-            tolerance=TOLERANCE,
-            left_out=LEFT_OUT,
-            shortest=SHORTEST,
-            breaks=breaks,
-            vanishing=vanishing,
-        )
-        parts = as_complex(forms)
-        return Closing(
+    forms, series = separate(
+        found,
+        tolerance=TOLERANCE,
+        left_out=LEFT_OUT,
+        shortest=SHORTEST,
+        breaks=breaks,
+        vanishing=vanishing,
+    )
+    parts = as_complex(forms)
+    return Closing(
+        series=series,
+        functions=freeze(basis.coefficients @ parts),
+        residual=Residual(
             series=series,
-            functions=freeze(self.coefficients @ parts),
-            residual=Residual(
-                series=series,
-                modes=freeze(parts.T @ self.at_nodes),
-                modes_z=freeze(parts.T.astype(np.complex64) @ self.slopes),
-            ),
-            largest=largest,
+            modes=freeze(parts.T @ basis.at_nodes),
+            modes_z=freeze(parts.T.astype(np.complex64) @ basis.slopes),
+        ),
+        largest=largest,
+    )
+
+
+def correction(basis: PeriodBasis, unclosed: Unclosed, sign: int) -> tuple[Floats, Floats]:
+    """Return h by its parts (t, 2b) in the basis, and the largest period left at each time.
+
+    The latter, (t,), is over the diagonal.
+
+    Parameters
+    ----------
+    unclosed : Unclosed
+    sign : {1, -1}
+        1 keeps ν, −1 keeps η.
+    """
+    fz, g, constants = unclosed
+    goal = np.zeros((len(fz), len(basis.inverse)))
+    if constants is not None:
+        goal = constants @ basis.shares @ basis.inverse
+    parts, size = goal, basis.size
+    periods, rows = _linearised(basis, fz, g, parts, sign)
+    anchor = np.concatenate([basis.at_anchor, 1j * basis.at_anchor])
+    # With constants to make good h may stretch the anchor, but not turn it.
+    fixed = np.array([anchor.imag] if constants is not None else [anchor.imag, anchor.real])
+    fixed = np.broadcast_to(fixed, (len(fz), *fixed.shape))
+    moving = np.ones(len(fz), np.bool_)
+    for _ in range(MOST_STEPS):
+        gap = np.abs(periods).max(axis=1)
+        constraints = np.concatenate([rows.real, rows.imag, fixed], axis=1)
+        linear = _applied(rows, parts) - periods
+        wanted = np.zeros(constraints.shape[:2])
+        wanted[:, : 2 * periods.shape[1]] = np.hstack([linear.real, linear.imag])
+        moving &= np.abs(_applied(constraints, parts) - wanted).max(axis=1) > CLOSED * size
+        if not moving.any():
+            break
+        spread = constraints if constants is None else constraints @ basis.inverse
+        across = np.linalg.pinv(
+            spread @ constraints.swapaxes(1, 2), rcond=INDEPENDENT, hermitian=True
         )
-
-    def correction(self, unclosed: Unclosed, sign: int) -> tuple[Floats, Floats]:
-        """Return h by its parts (t, 2b) in the basis, and the largest period left at each time.
-
-        The latter, (t,), is over the diagonal.
-
-        Parameters
-        ----------
-        unclosed : Unclosed
-        sign : {1, -1}
-            1 keeps ν, −1 keeps η.
-        """
-        fz, g, constants = unclosed
-        goal = np.zeros((len(fz), len(self.inverse)))
-        if constants is not None:
-            goal = constants @ self.shares @ self.inverse
-        parts, size = goal, self.size
-        periods, rows = self._linearised(fz, g, parts, sign)
-        anchor = np.concatenate([self.at_anchor, 1j * self.at_anchor])
-        # With constants to make good h may stretch the anchor, but not turn it.
-        fixed = np.array([anchor.imag] if constants is not None else [anchor.imag, anchor.real])
-        fixed = np.broadcast_to(fixed, (len(fz), *fixed.shape))
-        moving = np.ones(len(fz), np.bool_)
-        for _ in range(MOST_STEPS):
-            gap = np.abs(periods).max(axis=1)
-            constraints = np.concatenate([rows.real, rows.imag, fixed], axis=1)
-            linear = _applied(rows, parts) - periods
-            wanted = np.zeros(constraints.shape[:2])
-            wanted[:, : 2 * periods.shape[1]] = np.hstack([linear.real, linear.imag])
-            moving &= np.abs(_applied(constraints, parts) - wanted).max(axis=1) > CLOSED * size
-            if not moving.any():
+        multipliers = _applied(across, wanted - _applied(constraints, goal))
+        step = goal + _applied(spread.swapaxes(1, 2), multipliers) - parts
+        step[~moving] = 0.0
+        for _ in range(HALVINGS):
+            tried = _linearised(basis, fz, g, parts + step, sign)
+            is_nearer = np.abs(tried[0]).max(axis=1) <= np.maximum(gap, ROUNDING * size)
+            if is_nearer.all():
                 break
-            spread = constraints if constants is None else constraints @ self.inverse
-            across = np.linalg.pinv(
-                spread @ constraints.swapaxes(1, 2), rcond=INDEPENDENT, hermitian=True
-            )
-            multipliers = _applied(across, wanted - _applied(constraints, goal))
-            step = goal + _applied(spread.swapaxes(1, 2), multipliers) - parts
-            step[~moving] = 0.0
-            for _ in range(HALVINGS):
-                tried = self._linearised(fz, g, parts + step, sign)
-                is_nearer = np.abs(tried[0]).max(axis=1) <= np.maximum(gap, ROUNDING * size)
-                if is_nearer.all():
-                    break
-                step[~is_nearer] /= 2
-            else:
-                moving &= is_nearer
-                step[~is_nearer] = 0.0
-                tried = self._linearised(fz, g, parts + step, sign)
-            parts, (periods, rows) = parts + step, tried
-            moving &= np.abs(step).max(axis=1) > CLOSED
-        return parts, np.abs(periods).max(axis=1) / size
-
-    def _linearised(
-        self, fz: Complexes, g: Complexes, parts: Floats, sign: int
-    ) -> tuple[Complexes, Complexes]:
-        """Return the periods (t, holes) with h, and what its parts change of them.
-
-        The latter is (t, holes, 2b).
-        """
-        growth = np.exp(as_complex(parts.T).T @ self.basis.T)
-        f_now = fz * growth
-        g_now = g * growth if sign > 0 else g / growth
-        of_f, of_g = self.loops.integrals(f_now), self.loops.integrals(g_now)
-        by_f = self.loops.products(f_now, self.basis)
-        by_g = sign * self.loops.products(g_now, self.basis).conj()
-        return of_f + of_g.conj(), np.concatenate([by_f + by_g, 1j * (by_f - by_g)], axis=2)
+            step[~is_nearer] /= 2
+        else:
+            moving &= is_nearer
+            step[~is_nearer] = 0.0
+            tried = _linearised(basis, fz, g, parts + step, sign)
+        parts, (periods, rows) = parts + step, tried
+        moving &= np.abs(step).max(axis=1) > CLOSED
+    return parts, np.abs(periods).max(axis=1) / size
 
 
-def _moments(values: Complexes, loops: Loops, centres: Complexes) -> Complexes:
-    """Integrate functions (c, b) times low powers of z − c_j over each loop, (moments, b)."""
-    away = loops.nodes - np.repeat(centres, loops.counts)
-    powers = np.array([away**power for power in range(-MOMENTS, MOMENTS)])
-    return loops.products(powers, values).reshape(-1, values.shape[1])
+def _linearised(
+    basis: PeriodBasis, fz: Complexes, g: Complexes, parts: Floats, sign: int
+) -> tuple[Complexes, Complexes]:
+    """Return the periods (t, holes) with h, and what its parts change of them.
 
-
-def _unit(columns: Complexes) -> Complexes:
-    scaled: Complexes = columns / np.linalg.norm(columns, axis=0)
-    return scaled
-
-
-def _real_parts(
-    on_boundary: Complexes, at_anchor: Complexes, boundary: Boundary
-) -> tuple[Floats, Floats]:
-    """Return the Gram matrix (2b, 2b) of the functions' real parts, and `PeriodClosing.shares`."""
-    root = np.sqrt(boundary.weights)[:, None]
-    reals = root * np.hstack([on_boundary.real, -on_boundary.imag])
-    turn = np.concatenate([at_anchor.imag, at_anchor.real])
-    # Im h is 0 at the anchor; without that an imaginary constant would be free.
-    gram = reals.T @ reals + np.outer(turn, turn)
-    gram[np.diag_indices_from(gram)] += RIDGE * np.trace(gram) / len(gram)
-    ends = pairwise([*boundary.starts[1:], len(boundary.points)])
-    return gram, np.array([(root * reals)[a:b].sum(axis=0) for a, b in ends])
+    The latter is (t, holes, 2b).
+    """
+    growth = np.exp(as_complex(parts.T).T @ basis.basis.T)
+    f_now = fz * growth
+    g_now = g * growth if sign > 0 else g / growth
+    of_f, of_g = basis.loops.integrals(f_now), basis.loops.integrals(g_now)
+    by_f = basis.loops.products(f_now, basis.basis)
+    by_g = sign * basis.loops.products(g_now, basis.basis).conj()
+    return of_f + of_g.conj(), np.concatenate([by_f + by_g, 1j * (by_f - by_g)], axis=2)
 
 
 def _applied(matrices: Numbers, vectors: Floats) -> Numbers:
     """Return the product of each matrix (t, r, n) with its vector (t, n), (t, r)."""
     product: Numbers = (matrices @ vectors[:, :, None])[:, :, 0]
     return product
-
-
-def as_complex(parts: Floats) -> Complexes:
-    """Return complex numbers (b, ...) from their real parts and, below, the imaginary ones."""
-    real, imaginary = np.split(parts, 2)
-    return np.asarray(real + 1j * imaginary)

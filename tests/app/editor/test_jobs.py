@@ -320,8 +320,7 @@ def test_closing_waits_for_what_runs_and_drops_what_waits():
 
 
 PROGRAM = """
-from app.cli.process import use_one_thread
-use_one_thread()
+import engine.arrays
 import threading
 import numpy as np
 import scipy.linalg

@@ -22,7 +22,8 @@ from engine.interpolation import (
     prepare_sites,
     sample_keyframes,
 )
-from engine.interpolation.periods import Unclosed, as_complex
+from engine.interpolation.period_basis import as_complex
+from engine.interpolation.periods import Unclosed, correction
 from engine.interpolation.proof import bisection, prove
 from engine.maps import Boundary, HarmonicMap, distortion
 from engine.paths import root_sheets
@@ -262,13 +263,13 @@ def test_the_correction_is_the_smallest():
     """Any other holomorphic function that closes the period is larger on the boundary."""
     shape = ring()
     motion = between(shape, keys(shape), "nu")
-    closing, loops = motion.sites.closing, motion.sites.loops
+    basis, loops = motion.sites.period_basis, motion.sites.loops
     plain = replace(motion.intervals[0].passage, residuals=())
     blend = replace(motion.intervals[0].blend, passage=plain.at(motion.sites.paths.around))
     here = blend.derivatives(0.5)
-    (parts,), gap = closing.correction(Unclosed(here.fz[None], here.g[None]), 1)
+    (parts,), gap = correction(basis, Unclosed(here.fz[None], here.g[None]), 1)
     assert gap < 1e-13
-    h = closing.on_boundary @ as_complex(parts)
+    h = basis.on_boundary @ as_complex(parts)
     weights = motion.sites.boundary.weights
     smallest = np.sqrt(weights @ np.abs(h) ** 2)
     assert smallest > 1e-4
