@@ -137,6 +137,28 @@ def test_a_picture_is_exported_as_it_comes_to_rest(window, bent, tmp_path):
     np.testing.assert_array_equal(np.asarray(Image.open(out)), np.asarray(Image.open(again)))
 
 
+def test_an_export_that_waits_for_a_pose_is_asked_about_and_cancelled(window, bent, tmp_path):
+    session = window.session
+    export = replace(bent.document.export, format="picture", framing="canvas")
+    editing.edit(session, scene_commands.set_export(export))
+    # The one before, which has its file, is no part of it.
+    exporting.start(session, tmp_path / "before.png")
+    window.until(lambda: (tmp_path / "before.png").exists() and session.export is None)
+    goal = drag_bar(window, bent)
+    exporting.start(session, tmp_path / "a.png")
+    assert bent.afterwards
+    exporting.start(session, tmp_path / "b.png")
+    assert "An export is under way" in session.toasts[-1].text
+    saving.quit_lissom(session)
+    assert question(window).title == "An export is running"
+    session.dialog = None
+    exporting.cancel(session)
+    assert session.toasts[-1].text == "The export was cancelled. Nothing was written."
+    window.settle()
+    assert [path.name for path in tmp_path.iterdir()] == ["before.png"]
+    check_at_rest(bent.document, goal)
+
+
 def test_copying_the_picture_leaves_an_export_alone_that_is_prepared(
     window, bent, tmp_path, monkeypatch
 ):
