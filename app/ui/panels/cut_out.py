@@ -1,6 +1,6 @@
 """Cutting the subject out of its picture: by colour, by brush, by a mask; and its holes."""
 
-from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui
+from imgui_bundle import icons_fontawesome_6 as icons, imgui
 
 from app.editor import Action, CutTool, Project, Session, do
 from app.editor.actions import cutting, rebuilding
@@ -117,11 +117,11 @@ def _mask(look: Look, cut_out: CutOut) -> list[Action]:
     actions: list[Action] = []
     gap = imgui.get_style().item_spacing.x
     width = (imgui.get_content_region_avail().x - gap) / 2
-    if imgui.button(f"{icons.ICON_FA_FOLDER_OPEN}  Load mask…", ImVec2(width, 0)):
+    if imgui.button(f"{icons.ICON_FA_FOLDER_OPEN}  Load mask…", (width, 0)):
         actions.append(do(cutting.ask_mask))
     tip("A black and white picture of the same size: white is kept, black is removed")
     imgui.same_line()
-    if imgui.button(f"{icons.ICON_FA_FLOPPY_DISK}  Save mask…", ImVec2(width, 0)):
+    if imgui.button(f"{icons.ICON_FA_FLOPPY_DISK}  Save mask…", (width, 0)):
         actions.append(do(cutting.ask_mask_path))
     tip("Save what is kept as a black and white picture")
     count = len(cut_out.strokes)
@@ -148,7 +148,7 @@ def _tool(
     in_hand = session.cutting == tool
     imgui.push_style_color(imgui.Col_.button, palette.accent if in_hand else palette.raised)
     imgui.push_style_color(imgui.Col_.text, palette.on_accent if in_hand else palette.text)
-    pressed = imgui.button(f"{text}###{tool} tool", ImVec2(width, 0))
+    pressed = imgui.button(f"{text}###{tool} tool", (width, 0))
     imgui.pop_style_color(2)
     tip(hint)
     return [do(cutting.take_up, tool)] if pressed else []
@@ -156,14 +156,14 @@ def _tool(
 
 def _state(session: Session, look: Look, project: Project) -> list[Action]:
     actions: list[Action] = []
-    imgui.dummy(ImVec2(0, 0.2 * look.em))
+    imgui.dummy((0, 0.2 * look.em))
     renewal = project.renewal
     if renewal is not None and renewal.meshing is not None:
-        imgui.progress_bar(renewal.progress, ImVec2(FILL, 0), renewal.now)
-        if imgui.button("Cancel###stop", ImVec2(FILL, 0)):
+        imgui.progress_bar(renewal.progress, (FILL, 0), renewal.now)
+        if imgui.button("Cancel###stop", (FILL, 0)):
             actions.append(do(rebuilding.cancel))
     elif session.cutting is not None:
-        if imgui.button("Back to posing###done", ImVec2(FILL, 0)):
+        if imgui.button("Back to posing###done", (FILL, 0)):
             actions.append(do(cutting.take_up, None))
         tip("Show the drawing as it is posed", BINDINGS["stop cutting"].keys_in_words)
     if project.figure.is_stale and project.figure is project.unbuildable:

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, replace
 
-from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui
+from imgui_bundle import icons_fontawesome_6 as icons, imgui
 
 from app.document import STRETCHES, Shortfall, find_shortfall, intervals, stretch_of, time_of
 from app.editor import Action, Project, Session, do
@@ -236,11 +236,11 @@ def _keys(session: Session, look: Look, project: Project) -> list[Action]:
 
 def _solving(project: Project) -> list[Action]:
     if project.renewal is not None and project.renewal.into is None:
-        imgui.progress_bar(project.renewal.progress, ImVec2(FILL, 0), project.renewal.now)
-        return [do(rebuilding.cancel)] if imgui.button("Cancel###stop", ImVec2(FILL, 0)) else []
+        imgui.progress_bar(project.renewal.progress, (FILL, 0), project.renewal.now)
+        return [do(rebuilding.cancel)] if imgui.button("Cancel###stop", (FILL, 0)) else []
     is_possible = project.renewal is None and bool(project.figure.handles)
     imgui.begin_disabled(not is_possible)
-    is_pressed = imgui.button("Pose all keys again", ImVec2(FILL, 0))
+    is_pressed = imgui.button("Pose all keys again", (FILL, 0))
     imgui.end_disabled()
     if is_pressed:
         return [do(rebuilding.solve_again)]

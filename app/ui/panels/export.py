@@ -249,19 +249,19 @@ def _output(session: Session, look: Look, project: Project) -> list[Action]:
     run = session.export
     if run is not None or exporting.PREPARING in session.jobs.kinds:
         if run is None:
-            imgui.progress_bar(-0.5 * imgui.get_time(), ImVec2(FILL, 0), "Preparing…")
+            imgui.progress_bar(-0.5 * imgui.get_time(), (FILL, 0), "Preparing…")
         else:
             total = len(run.plan.times)
             text = f"{run.done} of {total}" if run.done < total else "Finishing…"
-            imgui.progress_bar(run.done / total, ImVec2(FILL, 0), text)
-        if imgui.button("Cancel###stop", ImVec2(FILL, 0)):
+            imgui.progress_bar(run.done / total, (FILL, 0), text)
+        if imgui.button("Cancel###stop", (FILL, 0)):
             actions.append(do(exporting.cancel))
         return actions
     if main_button(look, f"{icons.ICON_FA_FILE_EXPORT}  Export###start", FILL):
         actions.append(do(exporting.repeat))
     tip("Export now", BINDINGS["export again"].keys_in_words)
     if EXPORT_FORMATS[project.document.export.format].is_still:
-        if imgui.button(f"{icons.ICON_FA_COPY}  Copy###copy", ImVec2(FILL, 0)):
+        if imgui.button(f"{icons.ICON_FA_COPY}  Copy###copy", (FILL, 0)):
             actions.append(do(exporting.copy_picture))
         tip("Put the picture on the clipboard", BINDINGS["copy picture"].keys_in_words)
     return actions
@@ -313,7 +313,7 @@ def _preview(
     draw_list.add_rect(*ends(canvas), ink(palette.dim, 0.6))
     draw_list.add_rect(*ends(motion), ink(palette.warning, 0.8))
     draw_list.add_rect(*ends(frame), ink(palette.accent), 0.0, 1.6)
-    imgui.dummy(ImVec2(width, height))
+    imgui.dummy((width, height))
     tip(
         "Blue: what the export shows, as in the viewport. Grey: the picture's canvas.\n"
         "Orange: where the motion reaches."
@@ -335,4 +335,4 @@ def _note(look: Look, text: str) -> None:
     top = imgui.get_cursor_pos_y()
     small(look, text)
     imgui.set_cursor_pos_y(top + room + imgui.get_style().item_spacing.y)
-    imgui.dummy(ImVec2(0, 0))
+    imgui.dummy((0, 0))

@@ -1,6 +1,6 @@
 """The layers of the scene: which there are, what is in front, what hangs on what."""
 
-from imgui_bundle import ImVec2, imgui
+from imgui_bundle import imgui
 
 from app.document import Figure, is_visible
 from app.editor import Action, Project, Session, do, layering
@@ -25,8 +25,8 @@ def draw(session: Session, look: Look, project: Project, pictures: SmallPictures
         small(look, "Drop another picture here, or open an .ora or .psd file, for more layers.")
     renewal = project.renewal
     if renewal is not None and renewal.replaces:
-        imgui.progress_bar(renewal.progress, ImVec2(FILL, 0), renewal.now)
-        if imgui.button("Cancel###stop", ImVec2(FILL, 0)):
+        imgui.progress_bar(renewal.progress, (FILL, 0), renewal.now)
+        if imgui.button("Cancel###stop", (FILL, 0)):
             actions.append(do(rebuilding.cancel))
     heading(look, shortened(project.figure.name, imgui.get_content_region_avail().x))
     frame = playback.current_frame(session, project)
@@ -55,9 +55,9 @@ def _settings(project: Project, look: Look, figure: Figure, frame: int) -> list[
     actions += _joint(project, look, figure)
     if figure.still:
         small(look, "A still picture: it is shown as it was drawn.")
-        if imgui.button("Let it be posed", ImVec2(FILL, 0)):
+        if imgui.button("Let it be posed", (FILL, 0)):
             actions.append(do(layering.stand_up, identity))
-    elif imgui.button("Make it a still picture", ImVec2(FILL, 0)):
+    elif imgui.button("Make it a still picture", (FILL, 0)):
         actions.append(do(layering.stand_still, identity))
     return actions
 
@@ -67,12 +67,12 @@ def _switch(look: Look, figure: Figure, frame: int) -> list[Action]:
     actions = []
     is_seen = is_visible(figure, frame)
     imgui.begin_disabled(figure.hidden)
-    if imgui.button(f"{'Hide' if is_seen else 'Show'} from frame {frame} on", ImVec2(FILL, 0)):
+    if imgui.button(f"{'Hide' if is_seen else 'Show'} from frame {frame} on", (FILL, 0)):
         actions.append(do(layering.switch_here, figure.id))
     imgui.end_disabled()
     tip("For mouths, blinks and props: layers that take turns")
     is_switched = any(switch.frame == frame for switch in figure.switches)
-    if is_switched and imgui.button(f"No change at frame {frame}", ImVec2(FILL, 0)):
+    if is_switched and imgui.button(f"No change at frame {frame}", (FILL, 0)):
         actions.append(do(layering.unswitch_here, figure.id))
     if figure.switches:
         told = (f"{'shown' if s.visible else 'hidden'} from {s.frame}" for s in figure.switches)

@@ -99,12 +99,12 @@ def _tile(
     text = shortened(kept.name, TILE * em)
     x = (low.x + high.x - imgui.calc_text_size(text).x) / 2
     colour = palette.text if hot or is_picked else palette.dim
-    draw_list.add_text(ImVec2(x, high.y + 0.15 * em), ink(colour), text)
+    draw_list.add_text((x, high.y + 0.15 * em), ink(colour), text)
     imgui.pop_font()
     if imgui.begin_drag_drop_source():
         imgui.set_drag_drop_payload_py_id(POSE_PAYLOAD, index)
         corner = imgui.get_cursor_screen_pos()
-        imgui.dummy(ImVec2(TILE * em / 2, TILE * em / 2))
+        imgui.dummy((TILE * em / 2, TILE * em / 2))
         if texture is not None:
             _show(texture, corner, imgui.get_item_rect_max(), 0.2 * em)
         imgui.end_drag_drop_source()
@@ -117,8 +117,8 @@ def _show(texture: int, low: ImVec2, high: ImVec2, rounding: float) -> None:
         imgui.ImTextureRef(texture),
         low,
         high,
-        ImVec2(0, 1),
-        ImVec2(1, 0),
+        (0, 1),
+        (1, 0),
         imgui.IM_COL32(255, 255, 255, 255),
         rounding,
     )
@@ -179,7 +179,7 @@ def _flip(session: Session, look: Look, project: Project) -> list[Action]:
     figure, binding = project.figure, BINDINGS["paste flipped"]
     width = imgui.get_content_region_avail().x
     imgui.begin_disabled(not binding.is_possible(session))
-    if imgui.button(f"{icons.ICON_FA_PASTE}  {binding.label}###flip", ImVec2(width, 0)):
+    if imgui.button(f"{icons.ICON_FA_PASTE}  {binding.label}###flip", (width, 0)):
         actions.append(binding.action)
     imgui.end_disabled()
     tip(binding.hint, binding.keys_in_words)
@@ -197,7 +197,7 @@ def _flip(session: Session, look: Look, project: Project) -> list[Action]:
         actions.append(do(flipping.place_axis, placed))
     imgui.same_line(0, gap)
     imgui.begin_disabled(figure.mirror is None)
-    if imgui.button("Middle", ImVec2(button, 0)):
+    if imgui.button("Middle", (button, 0)):
         actions.append(do(flipping.place_axis, None))
     imgui.end_disabled()
     tip("Put the axis in the middle of the pairs of handles, or of the shape")

@@ -16,7 +16,7 @@ TIP_ROOM = (28.0, 8.0)  # em: width and height that hardly any tooltip exceeds
 def heading(look: Look, text: str, *, framed: bool = False) -> None:
     """Begin a group of settings; `framed` where a button follows on the line."""
     if imgui.get_cursor_pos_y() > imgui.get_cursor_start_pos().y:
-        imgui.dummy(ImVec2(0, 0.3 * look.em))
+        imgui.dummy((0, 0.3 * look.em))
     if framed:
         imgui.align_text_to_frame_padding()
     imgui.push_font(look.bold, 0)
@@ -69,7 +69,7 @@ def begin_tip() -> bool:
         if mouse.x + room[0] > window.pos.x and mouse.y + room[1] > window.pos.y:
             # Messages are in the lower right corner: up and to the left there is none.
             corner = ImVec2(mouse.x - 0.4 * em, mouse.y - 0.4 * em)
-            imgui.set_next_window_pos(corner, imgui.Cond_.always, ImVec2(1, 1))
+            imgui.set_next_window_pos(corner, imgui.Cond_.always, (1, 1))
     return imgui.begin_tooltip()
 
 
@@ -110,7 +110,7 @@ def icon_button(
     imgui.push_style_color(imgui.Col_.button, (0, 0, 0, 0))
     imgui.push_style_color(imgui.Col_.text, palette.accent if active else palette.text)
     size = imgui.get_frame_height()
-    pressed = imgui.button(f"{icon}###{name}", ImVec2(size * 1.15, size))
+    pressed = imgui.button(f"{icon}###{name}", (size * 1.15, size))
     imgui.pop_style_color(2)
     imgui.end_disabled()
     tip(hint, keys)
@@ -124,7 +124,7 @@ def main_button(look: Look, text: str, width: float = 0.0, *, enabled: bool = Tr
     for slot in (imgui.Col_.button, imgui.Col_.button_hovered, imgui.Col_.button_active):
         imgui.push_style_color(slot, palette.accent)
     imgui.push_style_color(imgui.Col_.text, palette.on_accent)
-    pressed = imgui.button(text, ImVec2(width, 0))
+    pressed = imgui.button(text, (width, 0))
     imgui.pop_style_color(4)
     imgui.end_disabled()
     return pressed
@@ -166,7 +166,7 @@ def segments(
     spacing = imgui.get_style().item_spacing.y
     width = imgui.get_content_region_avail().x - room
     imgui.push_id(name)
-    imgui.push_style_var(imgui.StyleVar_.item_spacing, ImVec2(0.12 * look.em, spacing))
+    imgui.push_style_var(imgui.StyleVar_.item_spacing, (0.12 * look.em, spacing))
     each = (width - 0.12 * look.em * (len(options) - 1)) / len(options)
     for index, (value, text) in enumerate(options):
         if index:
@@ -174,7 +174,7 @@ def segments(
         is_current = value == current
         imgui.push_style_color(imgui.Col_.button, palette.pressed if is_current else palette.raised)
         imgui.push_style_color(imgui.Col_.text, palette.text if is_current else palette.dim)
-        if imgui.button(f"{text}###{value}", ImVec2(each, 0)) and not is_current:
+        if imgui.button(f"{text}###{value}", (each, 0)) and not is_current:
             chosen = value
         imgui.pop_style_color(2)
     imgui.pop_style_var()
@@ -192,8 +192,8 @@ def show_picture(
     y = corner.y + (room.y - height) / 2
     imgui.get_window_draw_list().add_image(
         imgui.ImTextureRef(texture),
-        ImVec2(x, y),
-        ImVec2(x + width, y + height),
+        (x, y),
+        (x + width, y + height),
         col=imgui.IM_COL32(255, 255, 255, round(255 * opacity)),
     )
 

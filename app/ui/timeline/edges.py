@@ -24,15 +24,13 @@ def _preview_range(track: Track) -> list[Action]:
     low, high = track.top + 0.05 * em, track.top + (PREVIEW - 0.15) * em
     bounds = ImVec2(track.left, track.top), ImVec2(track.right, track.bottom)
     draw_list.push_clip_rect(*bounds, intersect_with_current_clip_rect=True)
-    draw_list.add_rect_filled(
-        ImVec2(track.left, low), ImVec2(track.right, high), ink(palette.desk), 0.2 * em
-    )
+    draw_list.add_rect_filled((track.left, low), (track.right, high), ink(palette.desk), 0.2 * em)
     actions = _edge(track, "preview range", left, right, resizes=False) if is_part else []
     hot = is_part and in_hand()
     colour = palette.accent if is_part else palette.dim
     draw_list.add_rect_filled(
-        ImVec2(left, low),
-        ImVec2(right, high),
+        (left, low),
+        (right, high),
         ink(colour, 0.2 if not is_part else 0.6 if hot else 0.4),
         0.2 * em,
     )
@@ -44,8 +42,8 @@ def _preview_range(track: Track) -> list[Action]:
     for edge, x, side in ends:
         actions += _edge(track, edge, x - grip, x + grip, resizes=True)
         draw_list.add_rect_filled(
-            ImVec2(min(x, x + side * 0.32 * em), low),
-            ImVec2(max(x, x + side * 0.32 * em), high),
+            (min(x, x + side * 0.32 * em), low),
+            (max(x, x + side * 0.32 * em), high),
             ink(palette.accent if in_hand() else colour, 1.0 if is_part or in_hand() else 0.7),
             0.1 * em,
         )
@@ -113,12 +111,10 @@ def _animation_end(track: Track) -> list[Action]:
     colour = ink(palette.accent if hot else palette.dim, 1.0 if hot else 0.8)
     bounds = ImVec2(track.left, track.top), ImVec2(track.right, track.bottom)
     draw_list.push_clip_rect(*bounds, intersect_with_current_clip_rect=True)
-    draw_list.add_line(low, ImVec2(x, track.track_bottom), colour, 1.5)
+    draw_list.add_line(low, (x, track.track_bottom), colour, 1.5)
     draw_list.add_rect_filled(low, high, colour, 0.25 * em, imgui.ImDrawFlags_.round_right)
     for part in (0.28, 0.5):
         line = x + part * em
-        draw_list.add_line(
-            ImVec2(line, low.y + 0.4 * em), ImVec2(line, high.y - 0.4 * em), ink(palette.desk)
-        )
+        draw_list.add_line((line, low.y + 0.4 * em), (line, high.y - 0.4 * em), ink(palette.desk))
     draw_list.pop_clip_rect()
     return actions

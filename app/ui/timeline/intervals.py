@@ -86,7 +86,7 @@ def _draw_still(track: Track) -> None:
         colour = ink(track.look.palette.dim, 0.35)
         for low, high in ends:
             imgui.get_window_draw_list().add_line(
-                ImVec2(track.x(low), track.middle), ImVec2(track.x(high), track.middle), colour, 1.5
+                (track.x(low), track.middle), (track.x(high), track.middle), colour, 1.5
             )
 
 
@@ -143,6 +143,6 @@ def _label(track: Track, name: str, turns: int, low: ImVec2, high: ImVec2) -> No
     left = max(low.x, track.left) + 0.6 * em
     if left + 2.2 * imgui.calc_text_size(text).x + em < min(high.x, track.right):
         imgui.get_window_draw_list().add_text(
-            ImVec2(left, low.y + 0.25 * em), ink(track.look.palette.dim), text
+            (left, low.y + 0.25 * em), ink(track.look.palette.dim), text
         )
     imgui.pop_font()

@@ -78,10 +78,10 @@ def _pill(
     if label:
         slim = imgui.get_frame_height() - 0.1 * look.em
         left = high.x - extra - 0.2 * look.em
-        imgui.set_cursor_screen_pos(ImVec2(left, low.y + (height - slim) / 2))
+        imgui.set_cursor_screen_pos((left, low.y + (height - slim) / 2))
         imgui.push_style_var(imgui.StyleVar_.frame_rounding, slim / 2)
-        imgui.push_style_var(imgui.StyleVar_.frame_padding, ImVec2(0, 0))
-        if imgui.button(label, ImVec2(extra, slim)):
+        imgui.push_style_var(imgui.StyleVar_.frame_padding, (0, 0))
+        if imgui.button(label, (extra, slim)):
             actions.append(do(posing.insert_key))
         imgui.pop_style_var(2)
         tip("Keep this pose in a key", BINDINGS["insert key"].keys_in_words)

@@ -120,9 +120,9 @@ def draw_brush(session: Session, look: Look, at: ImVec2, scale: float) -> None:
     draw_list.add_circle(at, radius, ink(palette.good if keeps else palette.danger), 64, 0.1 * em)
     sign = 0.35 * em
     colour = ink(palette.good if keeps else palette.danger)
-    draw_list.add_line(ImVec2(at.x - sign, at.y), ImVec2(at.x + sign, at.y), colour, 0.12 * em)
+    draw_list.add_line((at.x - sign, at.y), (at.x + sign, at.y), colour, 0.12 * em)
     if keeps:
-        draw_list.add_line(ImVec2(at.x, at.y - sign), ImVec2(at.x, at.y + sign), colour, 0.12 * em)
+        draw_list.add_line((at.x, at.y - sign), (at.x, at.y + sign), colour, 0.12 * em)
 
 
 def draw_stroke(look: Look, mark: StrokeMark, points: Sequence[ImVec2], scale: float) -> None:

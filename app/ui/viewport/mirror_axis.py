@@ -12,8 +12,8 @@ def axis_grip(look: Look, x: float) -> tuple[bool, bool]:
     """Lay a button over the grip at a place of the screen; tell whether it is hot, and pressed."""
     centre = _grip(look, x)
     radius = RADIUS * look.em
-    imgui.set_cursor_screen_pos(ImVec2(centre.x - radius, centre.y - radius))
-    imgui.invisible_button("mirror axis", ImVec2(2 * radius, 2 * radius))
+    imgui.set_cursor_screen_pos((centre.x - radius, centre.y - radius))
+    imgui.invisible_button("mirror axis", (2 * radius, 2 * radius))
     hot = imgui.is_item_hovered() or imgui.is_item_active()
     if hot:
         imgui.set_mouse_cursor(imgui.MouseCursor_.resize_ew)

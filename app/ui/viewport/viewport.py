@@ -259,10 +259,10 @@ def _handles(
     # The one that is drawn last lies on top.
     for handle, place in reversed(list(handles)):
         centre = canvas.point(complex(place))
-        imgui.set_cursor_screen_pos(ImVec2(centre.x - radius, centre.y - radius))
+        imgui.set_cursor_screen_pos((centre.x - radius, centre.y - radius))
         imgui.invisible_button(
             f"handle {handle.id}",
-            ImVec2(2 * radius, 2 * radius),
+            (2 * radius, 2 * radius),
             imgui.ButtonFlags_.mouse_button_left | imgui.ButtonFlags_.mouse_button_right,
         )
         if imgui.is_item_hovered() or imgui.is_item_active():
