@@ -14,7 +14,7 @@ from app.render import Thumbnail
 from app.storage import home_folder
 from app.ui.dialogs.folder_listing import Entry, Listing, read_folder
 from app.ui.dialogs.places import Place, recent_places, usual_places
-from app.ui.shortcuts import in_words
+from app.ui.shortcuts import ALT, in_words
 from app.ui.style import Look, icon_button, ink, main_button, shortened, show_picture, small, tip
 
 LookUp = Callable[[Path], Thumbnail | None]
@@ -24,7 +24,7 @@ ROW = 1.9  # em
 LARGEST_SHOWN = 20_000_000  # bytes: what takes longer to read is shown by an icon
 PLACE_FLAGS = imgui.SelectableFlags_.no_auto_close_popups
 SEPARATOR = "/"
-UP = int(imgui.Key.mod_alt) | int(imgui.Key.up_arrow)
+UP = ALT | int(imgui.Key.up_arrow)
 NAME_FIELD = "##file name"
 ROW_FLAGS = (
     imgui.SelectableFlags_.span_all_columns

@@ -16,8 +16,10 @@ from app.ui.style import (
     at_end,
     heading,
     number,
+    progress,
     segments,
     small,
+    text_button,
     tip,
     track,
 )
@@ -235,14 +237,10 @@ def _keys(session: Session, look: Look, project: Project) -> list[Action]:
 
 
 def _solving(project: Project) -> list[Action]:
-    if project.renewal is not None and project.renewal.into is None:
-        imgui.progress_bar(project.renewal.progress, (FILL, 0), project.renewal.now)
-        return [do(rebuilding.cancel)] if imgui.button("Cancel###stop", (FILL, 0)) else []
-    is_possible = project.renewal is None and bool(project.figure.handles)
-    imgui.begin_disabled(not is_possible)
-    is_pressed = imgui.button("Pose all keys again", (FILL, 0))
-    imgui.end_disabled()
-    if is_pressed:
-        return [do(rebuilding.solve_again)]
-    tip("Pull the handles of every key to their targets again, within the limits")
-    return []
+    renewal = project.renewal
+    if renewal is not None and renewal.into is None:
+        return [do(rebuilding.cancel)] if progress(renewal.progress, renewal.now) else []
+    is_possible = renewal is None and bool(project.figure.handles)
+    hint = "Pull the handles of every key to their targets again, within the limits"
+    is_pressed = text_button("Pose all keys again", FILL, hint, enabled=is_possible)
+    return [do(rebuilding.solve_again)] if is_pressed else []

@@ -15,6 +15,7 @@ from app.ui.style import (
     heading,
     label,
     main_button,
+    progress,
     segments,
     slider,
     small,
@@ -46,8 +47,7 @@ def draw(session: Session, look: Look, project: Project) -> list[Action]:
     imgui.dummy((0, 0.2 * look.em))
     renewal = project.renewal
     if renewal is not None and renewal.meshing is not None:
-        imgui.progress_bar(renewal.progress, (FILL, 0), renewal.now)
-        if imgui.button("Cancel###stop", (FILL, 0)):
+        if progress(renewal.progress, renewal.now):
             actions.append(do(rebuilding.cancel))
     else:
         is_new = chosen != figure.meshing and renewal is None

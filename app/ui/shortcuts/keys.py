@@ -8,9 +8,11 @@ from imgui_bundle import imgui
 Key = imgui.Key
 # On macOS Dear ImGui takes the command key for Ctrl.
 IS_MAC = sys.platform == "darwin"
-MODIFIERS = {int(Key.mod_ctrl): "Ctrl", int(Key.mod_shift): "Shift", int(Key.mod_alt): "Alt"}
+# Whole numbers: combined as members, these keys fail to form a flag in Python 3.11.2.
+CTRL, SHIFT, ALT = int(Key.mod_ctrl), int(Key.mod_shift), int(Key.mod_alt)
+MODIFIERS = {CTRL: "Ctrl", SHIFT: "Shift", ALT: "Alt"}
 # In the order in which Apple writes them.
-MAC_MODIFIERS = {int(Key.mod_alt): "⌥", int(Key.mod_shift): "⇧", int(Key.mod_ctrl): "⌘"}
+MAC_MODIFIERS = {ALT: "⌥", SHIFT: "⇧", CTRL: "⌘"}
 KEY_NAMES = {
     "UpArrow": "Up",
     "DownArrow": "Down",

@@ -18,6 +18,7 @@ from app.editor.actions import (
 )
 from app.editor.poses import copying, flipping, library
 from app.ui.shortcuts.binding import Binding
+from app.ui.shortcuts.keys import ALT, CTRL, SHIFT
 
 Key = imgui.Key
 
@@ -64,8 +65,6 @@ def _reset_layout(_: Session) -> None:
     hello_imgui.get_runner_params().docking_params.layout_reset = True
 
 
-# Whole numbers: combined as members, these keys fail to form a flag in Python 3.11.2.
-CTRL, SHIFT, ALT = int(Key.mod_ctrl), int(Key.mod_shift), int(Key.mod_alt)
 MENUS: dict[str, dict[str, Binding]] = {
     "File": {
         "open": Binding(
@@ -198,7 +197,12 @@ MENUS: dict[str, dict[str, Binding]] = {
         ),
     },
     "Handles": {
-        "suggest handles": Binding(label="Suggest handles", action=do(posing.suggest_handles)),
+        "suggest handles": Binding(
+            label="Suggest handles",
+            action=do(posing.suggest_handles),
+            icon=icons.ICON_FA_WAND_MAGIC_SPARKLES,
+            hint="Put handles at the tips of limbs and in the middle of the body",
+        ),
         "pin here": Binding(
             label="Pin here",
             action=do(posing.pin_here),

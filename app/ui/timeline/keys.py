@@ -8,7 +8,7 @@ from imgui_bundle import ImVec2, ImVec4, icons_fontawesome_6 as icons, imgui
 from app.document import LAST_FRAME, Figure, Keyframe, Passing
 from app.editor import Action, KeyBox, KeyDrag, Project, TimeGesture, do, layering
 from app.editor.actions import editing, keys, timeline_pointing
-from app.ui.shortcuts import with_key
+from app.ui.shortcuts import CTRL, with_key
 from app.ui.style import begin_tip, ink
 from app.ui.timeline.menus import PASSINGS, key_menu, track_menu
 from app.ui.timeline.track import (
@@ -22,7 +22,6 @@ from app.ui.timeline.track import (
     write_tag,
 )
 
-CTRL = int(imgui.Key.mod_ctrl)
 REACH, SMALLEST = 0.55, 0.26  # em: half a key's diagonal, with room and among many
 SMALLER = 0.7  # keys of figures that are not the active one, as a part of what theirs would be
 GRIP = 1.45  # half the side of the box in which the pointer takes a key, as a part of that

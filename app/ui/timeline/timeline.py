@@ -17,7 +17,7 @@ from app.editor import (
 )
 from app.editor.actions import editing, playback, timeline_pointing
 from app.editor.tools import pointing
-from app.ui.shortcuts import with_key
+from app.ui.shortcuts import CTRL, with_key
 from app.ui.style import Look
 from app.ui.timeline.bar import draw_bar
 from app.ui.timeline.dropping import draw_dropped
@@ -29,7 +29,6 @@ from app.ui.timeline.rows import draw_rows
 from app.ui.timeline.ruler import draw_overview, draw_playhead, draw_ruler
 from app.ui.timeline.track import THIN, Track, in_seconds, was_dragged
 
-CTRL = int(imgui.Key.mod_ctrl)
 ZOOM_STEP = 1.2  # a notch of the wheel
 SCROLL_STEP = 4.0  # em
 # Parts of the way beyond the edge by which the view follows the pointer in each frame.

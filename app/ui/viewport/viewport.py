@@ -26,7 +26,7 @@ from app.editor.poses import flipping
 from app.editor.tools import Spot, pointing, tools_of
 from app.motion import Shown
 from app.render import View
-from app.ui.shortcuts import with_key
+from app.ui.shortcuts import ALT, CTRL, SHIFT, with_key
 from app.ui.style import Look, ink
 from app.ui.viewport.badges import draw_badges, draw_cutting
 from app.ui.viewport.cut_view import draw_brush, draw_stroke
@@ -39,8 +39,7 @@ from app.ui.viewport.split_view import SplitTextures, divide, draw_divider, draw
 from engine.arrays import Complexes
 from engine.geometry import contains
 
-CTRL, ALT = int(imgui.Key.mod_ctrl), int(imgui.Key.mod_alt)
-KEYS = {"ctrl": CTRL, "shift": int(imgui.Key.mod_shift), "alt": ALT}
+KEYS = {"ctrl": CTRL, "shift": SHIFT, "alt": ALT}
 ZOOM_STEP = 1.15  # a notch of the wheel
 GRIP = 0.75  # em: radius within which a handle is grabbed
 SMALLEST_ZOOM, LARGEST_ZOOM = 0.02, 64.0

@@ -48,7 +48,7 @@ class Shell:
         self._thumbnail = thumbnail
         self._panels = panels
         self._docking = Docking(panels)
-        self._fonts: tuple[imgui.ImFont, imgui.ImFont] | None = None
+        self._bold: imgui.ImFont | None = None
         self._themed: tuple[str, float] | None = None
         self._dialogs = Dialogs()
         self._actions: list[Action] = []
@@ -110,14 +110,12 @@ class Shell:
     @property
     def look(self) -> Look:
         """What panels draw with at present."""
-        if self._fonts is None:
+        if self._bold is None:
             raise RuntimeError("the window has no fonts before its first frame")
-        bold, mono = self._fonts
         preferences = self.session.preferences
         return Look(
             palette=PALETTES[preferences.theme],
-            bold=bold,
-            mono=mono,
+            bold=self._bold,
             em=imgui.get_font_size() or FONT_SIZE * interface_scale(preferences.scale),
         )
 
@@ -150,7 +148,7 @@ class Shell:
         self.session.tell(text, tone="error", details=details)
 
     def _load_fonts(self) -> None:
-        self._fonts = load_fonts()
+        self._bold = load_fonts()
 
     def _configure(self) -> None:
         io = imgui.get_io()
