@@ -131,6 +131,7 @@ MENUS: dict[str, dict[str, Binding]] = {
             label="Paste flipped",
             action=do(flipping.paste),
             keys=(CTRL | SHIFT | int(Key.v),),
+            icon=icons.ICON_FA_PASTE,
             hint="Put the copied pose in a key at this frame, left and right exchanged",
             possible=copying.copied_here,
         ),

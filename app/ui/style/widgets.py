@@ -1,6 +1,6 @@
 """The few widgets that every panel is made of."""
 
-from collections.abc import Container, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import AbstractContextManager
 
 from imgui_bundle import ImVec2, imgui, imgui_ctx
@@ -170,13 +170,13 @@ def progress(share: float, text: str) -> bool:
 
 
 def name_popup(
-    look: Look, popup: str, name: str, taken: Container[str] = (), kind: str = ""
+    look: Look, popup: str, name: str, taken: Iterable[str] = (), kind: str = ""
 ) -> str | None:
     """Draw the field for another name in a popup, if that is open; return what was entered.
 
     Parameters
     ----------
-    taken : container of str
+    taken : iterable of str
         Names that others have.
     kind : str
         What they are, in words.
