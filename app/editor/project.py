@@ -1,6 +1,6 @@
 """The project that is open: its document, what the window has of it, and what is under way."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from math import inf
 from pathlib import Path
@@ -23,7 +23,18 @@ from app.document import (
 )
 from app.editor.timeline_view import Timing
 from app.editor.work import Afterwards, Derived, Promise, Pull
-from app.motion import Box, IntervalStore, Joints, MotionPaths, PosableMesh, PoseSampler, Shown
+from app.motion import (
+    HERE,
+    Box,
+    IntervalStore,
+    Joints,
+    MotionPaths,
+    Placement,
+    PosableMesh,
+    PoseSampler,
+    Shown,
+    joints_source,
+)
 from app.render import View, fit_view
 from app.reports import Curves
 from app.solving import Renewal, Rig
@@ -348,6 +359,19 @@ class Project:
         figures = self.document.figures
         stale = next((each for each in figures if each.is_stale and not each.still), None)
         return None if stale is self.unbuildable else stale
+
+    @property
+    def hung(self) -> Joints | None:
+        """The joints of the document as it is now; None where there are none, or not yet."""
+        follows = self.joints.follows(joints_source(self.document))
+        return self.joints.value if follows else None
+
+    def placements(self, frames: Iterable[int], unknown: Placement) -> list[Placement]:
+        """Return where the figure that is posed is at some frames: `unknown` till that is known."""
+        if len(self.document.carriers(self.active)) == 1:
+            return [HERE for _ in frames]
+        joints = self.hung
+        return [unknown if joints is None else joints.placement(self.active, f) for f in frames]
 
     def pair_up(self, method: Variant | Baseline | None) -> None:
         """Let each figure have a twin by a method, or none."""

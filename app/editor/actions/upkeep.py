@@ -332,9 +332,7 @@ def _show(session: Session, project: Project) -> None:
             earlier, other = twin.shown or shown[figure], twin.clip(document)
             # What a pose shows is the same in both.
             twins[figure] = show(other, frame, pose, [puppet.store], earlier)
-    follows = project.joints.follows(joints_source(document))
-    joints = project.joints.value if follows else None
-    for figure, hung in hang_shown(document, shown, joints, poses).items():
+    for figure, hung in hang_shown(document, shown, project.hung, poses).items():
         project.puppets[figure].shown = hung
     # By the meshes alone: the joints that are followed exactly are of the figures' own methods.
     for figure, hung in hang_shown(document, twins, None, {}).items():

@@ -18,6 +18,7 @@ from app.ui.style import (
     number,
     progress,
     segments,
+    sized,
     small,
     text_button,
     tip,
@@ -207,31 +208,30 @@ def _keys(session: Session, look: Look, project: Project) -> list[Action]:
     flags = imgui.TableFlags_.sizing_stretch_prop | imgui.TableFlags_.pad_outer_x
     if not imgui.begin_table("keys", 1 + len(LIMITS), flags):
         return actions
-    imgui.push_font(None, SMALL * imgui.get_style().font_size_base)
-    imgui.table_next_row()
-    for title in ("Frame", *(limit.symbol for limit in LIMITS)):
-        imgui.table_next_column()
-        imgui.text_colored(palette.dim, title)
-    now = playback.current_frame(session, project)
-    for key in figure.keys:
-        certificate = key.pose.certificate
+    with sized(SMALL):
         imgui.table_next_row()
-        imgui.table_next_column()
-        clicked, _ = imgui.selectable(
-            f"{key.frame}###key {key.frame}",
-            key.frame == now,
-            imgui.SelectableFlags_.span_all_columns,
-        )
-        if clicked:
-            actions.append(do(playback.seek, key.frame))
-        for limit in LIMITS:
+        for title in ("Frame", *(limit.symbol for limit in LIMITS)):
             imgui.table_next_column()
-            value = float(getattr(certificate, limit.field))
-            beyond = limit.scale.share(value) > limit.scale.share(
-                getattr(figure.bounds, limit.field)
+            imgui.text_colored(palette.dim, title)
+        now = playback.current_frame(session, project)
+        for key in figure.keys:
+            certificate = key.pose.certificate
+            imgui.table_next_row()
+            imgui.table_next_column()
+            clicked, _ = imgui.selectable(
+                f"{key.frame}###key {key.frame}",
+                key.frame == now,
+                imgui.SelectableFlags_.span_all_columns,
             )
-            imgui.text_colored(palette.danger if beyond else palette.text, f"{value:.2f}")
-    imgui.pop_font()
+            if clicked:
+                actions.append(do(playback.seek, key.frame))
+            for limit in LIMITS:
+                imgui.table_next_column()
+                value = float(getattr(certificate, limit.field))
+                beyond = limit.scale.share(value) > limit.scale.share(
+                    getattr(figure.bounds, limit.field)
+                )
+                imgui.text_colored(palette.danger if beyond else palette.text, f"{value:.2f}")
     imgui.end_table()
     return actions
 

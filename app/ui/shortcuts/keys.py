@@ -26,6 +26,19 @@ KEY_NAMES = {
     "LeftBracket": "[",
     "RightBracket": "]",
 }
+# As they are written in the table of bindings: "PageUp", "1", "F9".
+KEYS = {
+    "".join(part.capitalize() for part in name.split("_")): int(key)
+    for name, key in Key.__members__.items()
+}
+
+
+@cache
+def chords_of(text: str) -> tuple[int, ...]:
+    """Return ImGui's key chords of a text such as "Ctrl+Shift+Z, Ctrl+Y"."""
+    by_name = {name: modifier for modifier, name in MODIFIERS.items()} | KEYS
+    chords = text.split(", ") if text else []
+    return tuple(sum(by_name[name] for name in chord.split("+")) for chord in chords)
 
 
 @cache

@@ -7,7 +7,7 @@ from imgui_bundle import ImVec2, imgui
 from app.document import MOST_TURNS, PRESETS, Easing, Keyframe
 from app.editor import Action, Project, do
 from app.editor.actions import keys
-from app.ui.style import SMALL, Look, ink, label, small, tip
+from app.ui.style import SMALL, Look, bold, in_hand, ink, label, sized, small, tip
 
 SIDE = 12.0  # em: of the editor's square
 TILE = 4.4  # em: width of a preset
@@ -63,9 +63,7 @@ def easing_popup(name: str, look: Look, project: Project, key: Keyframe) -> list
         return []
     taken = project.keys_with(project.active, key.frame)
     count = sum(map(len, taken.values()))
-    imgui.push_font(look.bold, 0)
-    imgui.text("Easing")
-    imgui.pop_font()
+    bold(look, "Easing")
     imgui.same_line()
     imgui.text_disabled(f"after {count} keys" if count > 1 else f"after frame {key.frame}")
     actions: list[Action] = []
@@ -107,11 +105,10 @@ def _tile(look: Look, name: str, preset: Easing, *, current: bool) -> bool:
     colour = palette.accent if current else palette.text
     corner, size = ImVec2(low.x + 0.9 * em, low.y + 0.6 * em), ImVec2((TILE - 1.8) * em, 1.6 * em)
     draw_curve(preset, corner, size, ink(colour), 0.12 * em)
-    imgui.push_font(None, SMALL * imgui.get_style().font_size_base)
-    width = imgui.calc_text_size(LABELS[name]).x
-    place = ImVec2((low.x + high.x - width) / 2, high.y - 1.25 * em)
-    draw_list.add_text(place, ink(palette.text if current else palette.dim), LABELS[name])
-    imgui.pop_font()
+    with sized(SMALL):
+        width = imgui.calc_text_size(LABELS[name]).x
+        place = ((low.x + high.x - width) / 2, high.y - 1.25 * em)
+        draw_list.add_text(place, ink(palette.text if current else palette.dim), LABELS[name])
     return clicked
 
 
@@ -120,7 +117,7 @@ def _editor(look: Look, easing: Easing) -> Easing | None:
     palette, draw_list, em = look.palette, imgui.get_window_draw_list(), look.em
     low = imgui.get_cursor_screen_pos()
     room = ImVec2(SIDE * 1.9 * em, SIDE * em)
-    high = ImVec2(low.x + room.x, low.y + room.y)
+    high = low + room
     draw_list.add_rect_filled(low, high, ink(palette.desk), 0.4 * em)
     # As wide as high, so that linear is at 45 degrees.
     pad = 1.0 * em
@@ -154,7 +151,7 @@ def _control_points(
         imgui.set_cursor_screen_pos((centre.x - radius, centre.y - radius))
         imgui.set_next_item_allow_overlap()
         imgui.invisible_button(f"control {index + 1}", (2 * radius, 2 * radius))
-        hot = imgui.is_item_hovered() or imgui.is_item_active()
+        hot = in_hand()
         tip("Drag: both points stay inside the square, so that in-betweens keep their limits")
         draw_list.add_circle_filled(centre, 0.5 * em if hot else 0.42 * em, ink(palette.desk))
         draw_list.add_circle_filled(

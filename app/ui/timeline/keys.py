@@ -9,18 +9,9 @@ from app.document import LAST_FRAME, Figure, Keyframe, Passing
 from app.editor import Action, KeyBox, KeyDrag, Project, TimeGesture, do, layering
 from app.editor.actions import editing, keys, timeline_pointing
 from app.ui.shortcuts import CTRL, with_key
-from app.ui.style import begin_tip, ink
+from app.ui.style import begin_tip, in_hand, ink, is_pressed
 from app.ui.timeline.menus import PASSINGS, key_menu, track_menu
-from app.ui.timeline.track import (
-    ROUNDING,
-    FigureRow,
-    Track,
-    in_hand,
-    in_seconds,
-    is_pressed,
-    was_dragged,
-    write_tag,
-)
+from app.ui.timeline.track import ROUNDING, FigureRow, Track, in_seconds, tag, was_dragged
 
 REACH, SMALLEST = 0.55, 0.26  # em: half a key's diagonal, with room and among many
 SMALLER = 0.7  # keys of figures that are not the active one, as a part of what theirs would be
@@ -198,7 +189,7 @@ def _draw_key(track: Track, row: FigureRow, key: Keyframe, radius: float) -> Non
         and gesture.by
         and _is_held(gesture, key.frame)
     ):
-        write_tag(track, x, f"{key.frame}  ({gesture.by:+d})")
+        tag(track, x, f"{key.frame}  ({gesture.by:+d})")
     if warns and chosen:
         _mark(passing, centre, 0.45 * radius, ink(warns))
     if warns and row.is_active:

@@ -9,7 +9,7 @@ from app.editor import Action, MarkerDrag, TimeGesture, do
 from app.editor.actions import keys, playback, timeline_pointing
 from app.ui.shortcuts import BINDINGS
 from app.ui.style import SMALL, begin_tip, in_hand, ink, is_pressed, name_popup, shortened, sized
-from app.ui.timeline.track import Track, in_seconds, write_tag
+from app.ui.timeline.track import Track, in_seconds, tag
 
 HALF, GRIP = 0.42, 0.6  # em: half the width of a flag, and of where the pointer takes it
 LEAST_NAME = 3.0  # em: with less room names are left out
@@ -76,7 +76,7 @@ def _draw(track: Track, marker: Marker, x: float, text: str) -> None:
             draw_list.add_text(place, ink(palette.text if hot else palette.dim), text)
     gesture = track.project.timing.gesture
     if isinstance(gesture, MarkerDrag) and gesture.at == marker.frame != gesture.marker:
-        write_tag(track, x, f"{marker.frame}")
+        tag(track, x, f"{marker.frame}")
 
 
 def _point(track: Track, marker: Marker) -> list[Action]:

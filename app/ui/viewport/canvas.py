@@ -206,6 +206,7 @@ def _inputs(session: Session, project: Project) -> tuple[object, ...]:
         project.puppet.store.whole if session.overlays.onion else None,
         project.puppet.store.sampler,
         project.paths.value if session.overlays.paths else None,
+        project.joints.value,
         project.pull.targets if project.pull else None,
         project.active,
         project.selected,
@@ -348,8 +349,8 @@ def _ghosts(
             if vertices is None or time_of(known, frame) == time_of(known, shown.frame):
                 continue
             placement = shown.placement
-            if project.joints.value is not None and known == project.clip:
-                placement = project.joints.value.placement(project.active, frame)
+            if known == project.clip:
+                (placement,) = project.placements([frame], placement)
             drawn = drawing.drawn_mesh(project.active, store.mesh, number)
             pose = drawn.pose(vertices, placement=placement)
             ghosts.append(Ghost(meshes=(pose,), tint=tint, opacity=GHOST_OPACITY / step**0.5))

@@ -6,7 +6,7 @@ from imgui_bundle import ImVec2, imgui
 
 from app.editor import JointMark, Project
 from app.motion import Shown
-from app.ui.style import Look, ink
+from app.ui.style import Look, ink, outlined
 from app.ui.viewport.marks import find_anchor, moved_loops
 from engine.arrays import Complexes
 
@@ -14,14 +14,7 @@ from engine.arrays import Complexes
 def is_on_anchor(project: Project, handle: int | None, place: complex, reach: float) -> bool:
     """Tell whether the pointer is on the anchor of the layer that is posed, in a scene of several.
 
-    Parameters
-    ----------
-    handle : int, optional
-        The one under the pointer.
-    place : complex
-        Where it is, as the figure is by itself.
-    reach : float
-        How near that must be.
+    It is over a `handle`, or none, at a `place` of the layer by itself, and points `reach` far.
     """
     shown = project.puppet.shown
     if shown is None or len(project.document.figures) == 1 or project.playhead.since is not None:
@@ -42,22 +35,15 @@ def draw_joint(
 ) -> None:
     """Draw the way from the anchor to the pointer, and the outline of the layer there.
 
-    Parameters
-    ----------
-    mark : JointMark
-    point : callable
-        Where a place of the layer by itself is on the screen.
-    points : callable
-        Where places of the scene are.
-    parent : Shown, optional
+    Where a place of the layer by itself is on the screen, `point` tells; `points`, where those of
+    the scene are.
     """
-    draw_list, em = imgui.get_window_draw_list(), look.em
+    draw_list = imgui.get_window_draw_list()
     colour = look.palette.danger if mark.is_refused else look.palette.accent
     start, end = point(mark.start), point(mark.end)
     loops = [] if parent is None else [points(parent.placement.on(p)) for p in moved_loops(parent)]
-    # Dark below light, so that it shows on any drawing.
-    for tone, width in ((ink(look.palette.desk, 0.5), 0.3 * em), (ink(colour), 0.16 * em)):
+    for tone, width in outlined(look, ink(colour), 0.16):
         for loop in loops:
             draw_list.add_polyline(list(loop), tone, width, imgui.ImDrawFlags_.closed)
         draw_list.add_line(start, end, tone, width)
-        draw_list.add_circle(end, 0.45 * em, tone, thickness=width)
+        draw_list.add_circle(end, 0.45 * look.em, tone, thickness=width)

@@ -130,13 +130,12 @@ def _paths(
     project: Project, shown: Shown, palette: Palette, scale: float
 ) -> tuple[list[Line], tuple[Disc, ...]]:
     """Return the paths of the selected handles: a dot for each frame, and a larger one for keys."""
-    paths, joints = project.paths.value, project.joints.value
+    paths = project.paths.value
     if paths is None or len(paths.frames) < 2 or paths.clip.figure.id != project.active:
         return [], ()
-    places = shown.placement.on(paths.places)
-    if joints is not None:
-        rows = zip(paths.frames.tolist(), paths.places, strict=True)
-        places = np.array([joints.placement(project.active, frame).on(row) for frame, row in rows])
+    placements = project.placements(paths.frames.tolist(), shown.placement)
+    rows = zip(placements, paths.places, strict=True)
+    places = np.array([placement.on(row) for placement, row in rows])
     keys = np.isin(paths.frames, [key.frame for key in project.figure.keys])
     lines, discs = [], []
     for handle, path in zip(paths.clip.figure.handles, places.T, strict=True):

@@ -2,10 +2,10 @@
 
 from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui
 
-from app.ui.style import Look, ink, tip
+from app.ui.style import Look, draw_knob, in_hand, ink, is_pressed, outlined, tip, write_in
 
 TOP, RADIUS = 3.2, 0.85  # em: of the grip, below the edge; its size
-DASH, GAP = 0.6, 0.45  # em
+DASH, GAP, LINE = 0.6, 0.45, 0.1  # em
 
 
 def axis_grip(look: Look, x: float) -> tuple[bool, bool]:
@@ -14,33 +14,25 @@ def axis_grip(look: Look, x: float) -> tuple[bool, bool]:
     radius = RADIUS * look.em
     imgui.set_cursor_screen_pos((centre.x - radius, centre.y - radius))
     imgui.invisible_button("mirror axis", (2 * radius, 2 * radius))
-    hot = imgui.is_item_hovered() or imgui.is_item_active()
-    if hot:
+    if in_hand():
         imgui.set_mouse_cursor(imgui.MouseCursor_.resize_ew)
     tip("Poses are flipped here: drag it where the drawing has its middle")
-    pressed = imgui.is_item_activated() and imgui.is_mouse_clicked(imgui.MouseButton_.left)
-    return hot, pressed
+    return in_hand(), is_pressed()
 
 
 def draw_axis(look: Look, x: float, *, hot: bool) -> None:
     """Draw the axis from top to bottom, with its grip."""
-    draw_list, palette, em = imgui.get_window_draw_list(), look.palette, look.em
-    top = imgui.get_window_pos().y
-    bottom = top + imgui.get_window_size().y
-    colour = palette.accent if hot else palette.text
-    y = top
+    palette, y = look.palette, imgui.get_window_pos().y
+    bottom = y + imgui.get_window_size().y
+    colour = ink(palette.accent if hot else palette.text, 0.8)
     while y < bottom:
-        begin, end = ImVec2(x, y), ImVec2(x, min(y + DASH * em, bottom))
-        # Dark below light, so that it shows on any drawing.
-        draw_list.add_line(begin, end, ink(palette.desk, 0.5), 0.22 * em)
-        draw_list.add_line(begin, end, ink(colour, 0.8), 0.1 * em)
-        y += (DASH + GAP) * em
+        end = min(y + DASH * look.em, bottom)
+        for tone, width in outlined(look, colour, LINE):
+            imgui.get_window_draw_list().add_line((x, y), (x, end), tone, width)
+        y += (DASH + GAP) * look.em
     centre = _grip(look, x)
-    draw_list.add_circle_filled(centre, (RADIUS + 0.1) * em, ink(palette.desk, 0.7))
-    draw_list.add_circle_filled(centre, RADIUS * em, ink(palette.accent))
-    size = imgui.calc_text_size(icons.ICON_FA_ARROWS_LEFT_RIGHT)
-    place = ImVec2(centre.x - size.x / 2, centre.y - size.y / 2)
-    draw_list.add_text(place, ink(palette.on_accent), icons.ICON_FA_ARROWS_LEFT_RIGHT)
+    draw_knob(look, centre, RADIUS, palette.accent)
+    write_in(centre, centre, icons.ICON_FA_ARROWS_LEFT_RIGHT, ink(palette.on_accent))
 
 
 def _grip(look: Look, x: float) -> ImVec2:

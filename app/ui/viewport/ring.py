@@ -5,9 +5,10 @@ from typing import NamedTuple
 
 from imgui_bundle import ImVec2, imgui
 
-from app.ui.style import Look, ink
+from app.ui.style import Look, draw_knob, ink, outlined, tag_size, write_tag
 
 RADIUS, BAND, KNOB = 2.2, 0.5, 0.3  # em: of the ring, of where the pointer takes it, of its knob
+LINE = 0.12  # em
 
 
 class Ring(NamedTuple):
@@ -39,23 +40,16 @@ class Ring(NamedTuple):
 
 def draw_ring(look: Look, ring: Ring, *, is_pointed: bool) -> None:
     """Draw the ring with a knob where the turned shape's up is; while it is held, the angle."""
-    draw_list, palette, em = imgui.get_window_draw_list(), look.palette, look.em
+    draw_list, radius = imgui.get_window_draw_list(), RADIUS * look.em
     is_hot = is_pointed or ring.is_held
-    colour = palette.accent if is_hot else palette.text
-    # Dark below light, so that it shows on any drawing.
-    for ink_, width in (
-        (ink(palette.desk, 0.5), 0.26),
-        (ink(colour, 1.0 if is_hot else 0.55), 0.12),
-    ):
-        draw_list.add_circle(ring.centre, RADIUS * em, ink_, 64, width * em)
+    colour = look.palette.accent if is_hot else look.palette.text
+    for tone, width in outlined(look, ink(colour, 1.0 if is_hot else 0.55), LINE):
+        draw_list.add_circle(ring.centre, radius, tone, 64, width)
     up = ring.turn + math.pi / 2
-    knob = ImVec2(
-        ring.centre.x + RADIUS * em * math.cos(up), ring.centre.y - RADIUS * em * math.sin(up)
-    )
+    knob = ring.centre + ImVec2(radius * math.cos(up), -radius * math.sin(up))
     if ring.is_held:
-        draw_list.add_line(ring.centre, knob, ink(colour), 0.12 * em)
-    draw_list.add_circle_filled(knob, (KNOB + 0.1) * em, ink(palette.desk, 0.7))
-    draw_list.add_circle_filled(knob, KNOB * em, ink(colour))
+        draw_list.add_line(ring.centre, knob, ink(colour), LINE * look.em)
+    draw_knob(look, knob, KNOB, colour)
     if is_hot:
         imgui.set_mouse_cursor(imgui.MouseCursor_.hand)
     if ring.is_held:
@@ -65,10 +59,5 @@ def draw_ring(look: Look, ring: Ring, *, is_pointed: bool) -> None:
 def _write_angle(look: Look, ring: Ring) -> None:
     degrees = round(math.degrees(ring.swept))
     text = f"{degrees:+d}°".replace("-", "−") if degrees else "0°"
-    size, em = imgui.calc_text_size(text), look.em
-    low = ImVec2(ring.centre.x - size.x / 2 - 0.5 * em, ring.centre.y - (RADIUS + 2.2) * em)
-    high = ImVec2(low.x + size.x + em, low.y + 1.4 * em)
-    draw_list = imgui.get_window_draw_list()
-    draw_list.add_rect_filled(low, high, ink(look.palette.accent), 0.3 * em)
-    place = ImVec2(low.x + 0.5 * em, low.y + (1.4 * em - size.y) / 2)
-    draw_list.add_text(place, ink(look.palette.on_accent), text)
+    above = ImVec2(tag_size(look, text).x / 2, (RADIUS + 2.2) * look.em)
+    write_tag(look, ring.centre - above, text)

@@ -27,7 +27,7 @@ from app.editor.tools import Spot, pointing, tools_of
 from app.motion import Shown
 from app.render import View
 from app.ui.shortcuts import ALT, CTRL, SHIFT, with_key
-from app.ui.style import Look, ink
+from app.ui.style import Look, in_hand, ink, is_pressed
 from app.ui.viewport.badges import draw_badges, draw_cutting
 from app.ui.viewport.cut_view import draw_brush, draw_stroke
 from app.ui.viewport.entry import draw_entry, typed
@@ -221,8 +221,7 @@ def _ring(session: Session, canvas: _Canvas) -> Ring | None:
 
 def _is_canvas_pressed() -> bool:
     """Tell whether the canvas, the last item, was pressed, and not to move the view."""
-    is_pressed = imgui.is_item_activated() and imgui.is_mouse_clicked(imgui.MouseButton_.left)
-    return is_pressed and not imgui.is_key_down(imgui.Key.space)
+    return is_pressed() and not imgui.is_key_down(imgui.Key.space)
 
 
 def _navigate(canvas: _Canvas, *, over: bool) -> list[Action]:
@@ -264,10 +263,8 @@ def _handles(
             (2 * radius, 2 * radius),
             imgui.ButtonFlags_.mouse_button_left | imgui.ButtonFlags_.mouse_button_right,
         )
-        if imgui.is_item_hovered() or imgui.is_item_active():
-            hovered = handle.id
-        if imgui.is_item_activated() and imgui.is_mouse_clicked(imgui.MouseButton_.left):
-            pressed = True
+        hovered = handle.id if in_hand() else hovered
+        pressed = pressed or is_pressed()
         if session.pointer is None and imgui.is_item_clicked(imgui.MouseButton_.right):
             imgui.open_popup(f"menu of handle {handle.id}")
         actions += _menu(canvas, handle.id)

@@ -404,7 +404,7 @@ def test_every_unsaved_work_is_offered_whenever_it_was_kept(window, project):
     assert len(window.session.dialog.candidates) == 2
     answer(window, "Later")
     assert window.session.dialog is None
-    window.act(files.show_recovery)
+    window.run(lambda robot: robot.menu_click("//##MainMenuBar/File/Unsaved work…"))
     assert len(window.session.dialog.candidates) == 2
     answer(window, "Open")
     assert window.session.project is not None
