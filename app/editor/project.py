@@ -49,16 +49,9 @@ FIT_MARGIN = 0.08  # of the viewport, left free around what is fitted into it
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Flip:
-    """What was flipped last: keys as they were copied, and the poses that took their place.
+    """What was flipped last.
 
-    Parameters
-    ----------
-    figure : int
-        The id of their figure.
-    keys : tuple of Keyframe
-    frames : frozenset of int
-        Where the flipped ones are.
-    poses : tuple of Pose
+    The `keys` are as they were copied; `poses` took their place in a figure, at its `frames`.
     """
 
     figure: int
@@ -69,14 +62,9 @@ class Flip:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class PoseBlend:
-    """A pose of the library that is mixed into the one at a frame, as one step of undo.
+    """A pose of the library, by its name, that is mixed into the one at a frame.
 
-    Parameters
-    ----------
-    name : str
-    gesture : object
-    share : float
-        Of the pose in the library.
+    Its `share` goes from 0 to 1; all that is mixed in one gesture is one step of undo.
     """
 
     name: str

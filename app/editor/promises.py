@@ -70,10 +70,7 @@ def _keep(session: Session, project: Project, promise: Promise) -> bool:
 def is_settled(project: Project, *, after_saves: bool = False) -> bool:
     """Tell whether nothing is on its way to the document any more.
 
-    Parameters
-    ----------
-    after_saves : bool
-        Whether a save counts that is under way.
+    With `after_saves`, a save that is under way counts, too.
     """
     if project.stale_figure is not None:
         return False

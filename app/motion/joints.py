@@ -276,15 +276,7 @@ class Joints:
 
 
 class HungAnimation:
-    """A figure's motion where its scene has it.
-
-    Parameters
-    ----------
-    animation : Animation
-        Of the figure by itself.
-    joints : Joints
-        Of the scene.
-    """
+    """The motion of a figure by itself, brought to where the joints of its scene have it."""
 
     def __init__(self, animation: Animation, joints: Joints) -> None:
         self._animation = animation

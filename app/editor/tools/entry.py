@@ -12,14 +12,7 @@ LONGEST = 12  # digits
 
 @dataclass(slots=True)
 class TypedWay:
-    """A number that is being typed, and the axis that is kept to.
-
-    Parameters
-    ----------
-    text : str
-    axis : str
-        "x", "y", or empty for none.
-    """
+    """A number that is being typed, and the axis that is kept to: "x", "y", or empty for none."""
 
     text: str = ""
     axis: str = ""

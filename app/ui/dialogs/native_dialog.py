@@ -28,15 +28,7 @@ def find_system_dialogs() -> str | None:
 
 
 class NativeDialog:
-    """One dialog of the system, from its opening to its answer.
-
-    Parameters
-    ----------
-    dialog : FileDialog
-        What it asks.
-    now : float
-        The clock's seconds.
-    """
+    """One dialog of the system, from its opening, by the clock's seconds, to its answer."""
 
     def __init__(self, dialog: FileDialog, now: float) -> None:
         self.dialog = dialog

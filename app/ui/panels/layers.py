@@ -25,13 +25,7 @@ NOTHING = "nothing"
 
 
 def draw(session: Session, look: Look, project: Project, pictures: SmallPictures) -> list[Action]:
-    """Draw the list of layers, and the settings of the chosen one.
-
-    Parameters
-    ----------
-    pictures : callable
-        Returns the texture of a layer's small picture, by the layer's id.
-    """
+    """Draw the list of layers with their small pictures, and the settings of the chosen one."""
     actions = draw_list(session, look, project, pictures)
     if len(project.document.figures) == 1:
         small(look, "Drop another picture here, or open an .ora or .psd file, for more layers.")

@@ -16,6 +16,7 @@ from app.ui.style import (
     Look,
     Scale,
     at_end,
+    density,
     heading,
     ink,
     label,
@@ -35,13 +36,7 @@ Pictures = Callable[[Pose, int], int | None]
 
 
 def draw(session: Session, look: Look, project: Project, pictures: Pictures) -> list[Action]:
-    """Draw the poses that are kept, and where poses are flipped.
-
-    Parameters
-    ----------
-    pictures : callable
-        Returns the texture of a pose, of a number of pixels each way.
-    """
+    """Draw the poses that are kept, each as a picture of some pixels a side, and flipping them."""
     if project.puppet.shown is None:
         return []
     heading(look, "Poses", framed=True)
@@ -95,8 +90,7 @@ def _tile(
     hot = imgui.is_item_hovered()
     high = low + ImVec2(TILE * em, TILE * em)
     draw_list.add_rect_filled(low, high, ink(palette.desk), 0.4 * em)
-    density = imgui.get_io().display_framebuffer_scale.x or 1.0
-    texture = pictures(kept.pose, round(TILE * em * density))
+    texture = pictures(kept.pose, round(TILE * em * density()))
     if texture is not None:
         _show(texture, low, high, 0.4 * em)
     is_picked = kept.name == project.kept

@@ -29,6 +29,7 @@ from app.ui.style.theme import (
     Look as Look,
     Palette as Palette,
     apply_theme as apply_theme,
+    density as density,
     faint as faint,
     ink as ink,
     interface_scale as interface_scale,

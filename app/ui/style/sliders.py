@@ -24,11 +24,7 @@ class Edit(NamedTuple):
 class Scale:
     """What a slider's track spans, from its left end to its right one, which may be the smaller.
 
-    Parameters
-    ----------
-    left, right : float
-    logarithmic : bool
-        Whether equal ways are equal ratios.
+    Where it is logarithmic, equal ways are equal ratios.
     """
 
     left: float

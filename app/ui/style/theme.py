@@ -112,6 +112,11 @@ def interface_scale(scale: float) -> float:
     return scale * imgui.get_style().font_scale_dpi
 
 
+def density() -> float:
+    """Return how many pixels of a picture there are to a pixel of the window."""
+    return imgui.get_io().display_framebuffer_scale.x or 1.0
+
+
 def load_fonts() -> imgui.ImFont:
     """Load the text font (with icons) as the default; return the bold one."""
     _load_with_icons("Roboto/Roboto-Regular.ttf")

@@ -174,12 +174,7 @@ def name_popup(
 ) -> str | None:
     """Draw the field for another name in a popup, if that is open; return what was entered.
 
-    Parameters
-    ----------
-    taken : iterable of str
-        Names that others have.
-    kind : str
-        What they are, in words.
+    No name is entered that is `taken` by another one of its kind, which is given in words.
     """
     if not imgui.begin_popup(popup):
         return None

@@ -19,11 +19,7 @@ STEP = 4  # pixels: every so manieth is looked at
 
 
 def measure_brightness(picture: Bytes) -> Floats:
-    """Return which share of a picture's opaque area has which brightness.
-
-    Parameters
-    ----------
-    picture : (h, w, 4) uint8
+    """Return which share of a picture's (h, w, 4) opaque area has which brightness.
 
     Returns
     -------

@@ -1,12 +1,11 @@
 """The picture at rest while it is cut out: what is removed lies under a veil."""
 
 import math
-from collections.abc import Sequence
 
 import numpy as np
 from imgui_bundle import ImVec2, imgui
 
-from app.editor import Project, Session, StrokeMark
+from app.editor import Project, Session
 from app.editor.actions import cutting
 from app.render import Disc, Renderer
 from app.render.gpu import GpuMesh, GpuPicture, PosedMesh, PositionBuffer, singles
@@ -16,7 +15,6 @@ from engine.arrays import Booleans, Bytes, Complexes, Integers
 
 VEIL = (214, 48, 72, 150)
 FINEST = 1024  # pixels of the veil's longer side
-STROKE = 0.45  # opacity of one that is not done yet
 HOLE = 7.0  # pixels: radius of the mark in a hole
 SQUARE: Integers = np.array([[0, 1, 2], [0, 2, 3]], dtype=np.int32)
 
@@ -113,17 +111,6 @@ def draw_brush(session: Session, look: Look, at: ImVec2, scale: float) -> None:
     draw_list.add_line((at.x - sign, at.y), (at.x + sign, at.y), colour, width)
     if keeps:
         draw_list.add_line((at.x, at.y - sign), (at.x, at.y + sign), colour, width)
-
-
-def draw_stroke(look: Look, mark: StrokeMark, points: Sequence[ImVec2], scale: float) -> None:
-    """Draw a stroke that is not done yet; `points` are its places on the screen."""
-    colour = look.palette.good if mark.keeps else look.palette.danger
-    draw_list = imgui.get_window_draw_list()
-    radius = mark.radius * scale
-    if len(points) > 1:
-        draw_list.add_polyline(list(points), ink(colour, STROKE), 2 * radius, 0)
-    else:
-        draw_list.add_circle_filled(points[0], radius, ink(colour, STROKE))
 
 
 def _corners(width: float, height: float) -> Complexes:

@@ -29,14 +29,7 @@ LEFT = imgui.MouseButton_.left
 
 
 class Shell:
-    """Draws the window's contents from a session, once a frame, and applies what was asked for.
-
-    Parameters
-    ----------
-    panels : sequence of Panel
-    thumbnail : callable
-        Returns the thumbnail of a picture file.
-    """
+    """Draws the window's contents from a session, once a frame, and applies what was asked for."""
 
     def __init__(
         self,
