@@ -9,7 +9,7 @@ from typing import Concatenate, Literal, ParamSpec, Protocol
 
 from app.document import Baseline, Document, Figure, Keyframe, Meshing, Variant
 from app.editor.action import Action
-from app.editor.dialogs import Dialog
+from app.editor.dialogs import Dialog, FileDialog
 from app.editor.project import Project
 from app.editor.work import Jobs
 from app.errors import shown_name
@@ -241,6 +241,24 @@ class Session:
         """Where the person's files were last."""
         folder = self.preferences.folder
         return folder if folder is not None and folder.is_dir() else home_folder()
+
+    def ask_file(
+        self,
+        title: str,
+        suffixes: tuple[str, ...],
+        chosen: Callable[[Path], Action],
+        *,
+        name: str = "",
+    ) -> None:
+        """Ask for a file to read, or for one to write if there is a `name` that it has at first."""
+        self.dialog = FileDialog(
+            title=title,
+            folder=self.usual_folder,
+            name=name,
+            suffixes=suffixes,
+            writes=bool(name),
+            chosen=chosen,
+        )
 
     def tell(
         self,

@@ -190,14 +190,8 @@ def save_curves(session: Session, project: Project, path: Path) -> None:
 
 @with_project
 def _ask_curves(session: Session, project: Project, suffix: str) -> None:
-    session.dialog = FileDialog(
-        title="Save the curves",
-        folder=session.usual_folder,
-        name=f"{project.name} distortion{suffix}",
-        suffixes=(suffix,),
-        writes=True,
-        chosen=lambda path: do(save_curves, path),
-    )
+    name = f"{project.name} distortion{suffix}"
+    session.ask_file("Save the curves", (suffix,), lambda path: do(save_curves, path), name=name)
 
 
 def unless_unsaved(session: Session, then: Action) -> None:
