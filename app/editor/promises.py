@@ -47,19 +47,19 @@ def begin(
     promised = promise or Promise(label=kind.label)
     project.pending.append(promised)
 
-    def kept(result: Result) -> None:
-        if _keep(session, project, promised):
+    def arrived(result: Result) -> None:
+        if _end(session, project, promised):
             done(result)
 
-    def broken(error: Exception) -> None:
-        if _keep(session, project, promised):
+    def lost(error: Exception) -> None:
+        if _end(session, project, promised):
             (failed or partial(report, session, kind.complaint))(error)
 
-    session.jobs.add(Job(kind=kind, work=work, done=kept, failed=broken))
+    session.jobs.add(Job(kind=kind, work=work, done=arrived, failed=lost))
     return promised
 
 
-def _keep(session: Session, project: Project, promise: Promise) -> bool:
+def _end(session: Session, project: Project, promise: Promise) -> bool:
     """End a promise; tell whether anybody still waits for what it was about."""
     if promise not in project.pending:
         return False

@@ -17,7 +17,7 @@ class TypedWay:
     text: str = ""
     axis: str = ""
 
-    def take(self, characters: str) -> None:
+    def type(self, characters: str) -> None:
         """Take what was typed; what makes no number is left out."""
         for character in characters.lower().replace(",", "."):
             if character in AXES:

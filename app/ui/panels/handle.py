@@ -56,7 +56,7 @@ def draw(session: Session, look: Look, project: Project) -> list[Action]:
     elif chosen:
         heading(look, f"{len(chosen)} handles")
         small(look, "Dragging one of them moves them all; arrows nudge them.")
-        actions += _hold(session, look, chosen)
+        actions += _firmness(session, look, chosen)
     else:
         small(look, "Select a handle to see its settings.")
     if len(chosen) != 1 and session.tints_depth:
@@ -135,7 +135,7 @@ def _details(session: Session, look: Look, project: Project, handle: Handle) -> 
         actions.append(
             do(editing.edit_figure, handle_commands.rename_handle, handle.id, name.strip())
         )
-    actions += _hold(session, look, [handle])
+    actions += _firmness(session, look, [handle])
     hint = "Where it sits on the drawing at rest, in pixels from the upper left corner"
     placed = _point(look, project, "At rest", handle.position, hint)
     if placed is not None:
@@ -144,7 +144,7 @@ def _details(session: Session, look: Look, project: Project, handle: Handle) -> 
     return actions + depth.draw(session, look, project, handle)
 
 
-def _hold(session: Session, look: Look, chosen: Sequence[Handle]) -> list[Action]:
+def _firmness(session: Session, look: Look, chosen: Sequence[Handle]) -> list[Action]:
     """Draw how firmly the selected handles hold, and what is done with all of them at once."""
     actions: list[Action] = []
     identities = frozenset(handle.id for handle in chosen)

@@ -93,7 +93,7 @@ def _tile(
     texture = pictures(kept.pose, round(TILE * em * density()))
     if texture is not None:
         _show(texture, low, high, 0.4 * em)
-    is_picked = kept.name == project.kept
+    is_picked = kept.name == project.picked_pose
     if hot or is_picked:
         draw_list.add_rect(low, high, ink(palette.accent, 1.0 if hot else 0.6), 0.4 * em, 1.5)
     with sized(SMALL):

@@ -5,6 +5,7 @@ Out: actions.
 Imports: `app.editor`, `app.ui.style`.
 """
 
+from app.ui.shortcuts.binding import Binding as Binding
 from app.ui.shortcuts.gestures import GESTURES as GESTURES
 from app.ui.shortcuts.keys import (
     ALT as ALT,

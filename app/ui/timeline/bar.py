@@ -85,7 +85,7 @@ def _key_buttons(session: Session, look: Look, project: Project) -> list[Action]
     imgui.same_line(0, TIGHT * look.em)
     if icon_button(look, icons.ICON_FA_ELLIPSIS, "more", "Reverse, scale time, preview range"):
         imgui.open_popup("menu of time")
-    return actions + time_menu(look, project)
+    return actions + time_menu(session, look, project)
 
 
 def _to_key(look: Look, name: str, icon: str) -> list[Action]:

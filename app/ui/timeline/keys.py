@@ -112,8 +112,8 @@ def _draw_row(track: Track, row: FigureRow) -> list[Action]:
         box = ImVec2(x - grip, row.middle - grip), ImVec2(x + grip, row.middle + grip)
         origin = _origin(gesture, row.figure, key.frame)
         track.button(f"key {origin}", *box, right=True)
-        is_held = row.is_active and _is_held(gesture, key.frame)
-        _draw_key(track, row, key, 1.15 * radius if in_hand() or is_held else radius)
+        is_dragged = row.is_active and _is_dragged(gesture, key.frame)
+        _draw_key(track, row, key, 1.15 * radius if in_hand() or is_dragged else radius)
         if is_pressed():
             actions += _press(track, identity, key.frame)
         if imgui.is_item_clicked(imgui.MouseButton_.right):
@@ -136,7 +136,7 @@ def _radius(track: Track, row: FigureRow) -> float:
     return part * min(max(0.48 * gap * track.strip.scale, SMALLEST), REACH) * track.look.em
 
 
-def _is_held(gesture: TimeGesture | None, frame: int) -> bool:
+def _is_dragged(gesture: TimeGesture | None, frame: int) -> bool:
     """Tell whether a key of the active figure is the one that is dragged."""
     return isinstance(gesture, KeyDrag) and frame == gesture.pressed + gesture.by
 
@@ -187,7 +187,7 @@ def _draw_key(track: Track, row: FigureRow, key: Keyframe, radius: float) -> Non
         row.is_active
         and isinstance(gesture, KeyDrag)
         and gesture.by
-        and _is_held(gesture, key.frame)
+        and _is_dragged(gesture, key.frame)
     ):
         tag(track, x, f"{key.frame}  ({gesture.by:+d})")
     if warns and chosen:

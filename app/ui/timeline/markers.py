@@ -7,7 +7,7 @@ from imgui_bundle import ImVec2, imgui
 from app.document import Marker
 from app.editor import Action, MarkerDrag, TimeGesture, do
 from app.editor.actions import keys, playback, timeline_pointing
-from app.ui.shortcuts import BINDINGS
+from app.ui.shortcuts import bound_item
 from app.ui.style import SMALL, begin_tip, in_hand, ink, is_pressed, name_popup, shortened, sized
 from app.ui.timeline.track import Track, in_seconds, tag
 
@@ -39,7 +39,7 @@ def draw_markers(track: Track) -> list[Action]:
         )
         _draw(track, marker, x, text)
         actions += _point(track, marker)
-        actions += _menu(marker)
+        actions += _menu(track, marker)
         entered = name_popup(track.look, f"name of marker {marker.frame}", marker.name)
         if entered is not None:
             actions.append(do(keys.rename_marker, marker.frame, entered))
@@ -104,7 +104,7 @@ def _point(track: Track, marker: Marker) -> list[Action]:
     return []
 
 
-def _menu(marker: Marker) -> list[Action]:
+def _menu(track: Track, marker: Marker) -> list[Action]:
     """Draw the menu of a marker, if it is open."""
     asks = False
     actions: list[Action] = []
@@ -115,12 +115,8 @@ def _menu(marker: Marker) -> list[Action]:
         if imgui.menu_item_simple("Delete"):
             actions.append(do(keys.delete_marker, marker.frame))
         imgui.separator()
-        others = (BINDINGS["previous marker"], BINDINGS["next marker"])
-        actions += [
-            binding.action
-            for binding in others
-            if imgui.menu_item_simple(binding.label, binding.keys_in_words)
-        ]
+        for name in ("previous marker", "next marker"):
+            actions += bound_item(track.session, name)
         imgui.end_popup()
     if asks:
         imgui.open_popup(f"name of marker {marker.frame}")

@@ -40,7 +40,7 @@ def draw(session: Session, look: Look, project: Project) -> list[Action]:
     """Draw the timeline of the open project."""
     actions = draw_bar(session, look, project)
     imgui.begin_child("track", imgui.get_content_region_avail(), 0, FLAGS)
-    track = Track(look, project)
+    track = Track(session, look, project)
     if track.is_usable:
         actions += _draw_track(track, playback.current_frame(session, project))
     imgui.end_child()

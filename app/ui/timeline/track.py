@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from imgui_bundle import ImVec2, imgui
 
 from app.document import Figure
-from app.editor import Project, Strip
+from app.editor import Project, Session, Strip
 from app.ui.style import Look, tag_size, write_tag
 
 PREVIEW, RULER, OVERVIEW = 0.7, 1.55, 0.75  # em: heights of the bands above and below the track
@@ -35,7 +35,8 @@ class FigureRow:
 class Track:
     """The bands of the timeline, and the way between frames and pixels."""
 
-    def __init__(self, look: Look, project: Project) -> None:
+    def __init__(self, session: Session, look: Look, project: Project) -> None:
+        self.session = session
         self.look = look
         self.project = project
         self.corner = imgui.get_cursor_screen_pos()
@@ -61,7 +62,7 @@ class Track:
         self.bar_top, self.bar_bottom = self.middle - height / 2, self.middle + height / 2
         timing = project.timing
         fitting = Strip.fitting(project.document.frames, self.width)
-        self.strip = timing.held or timing.strip or fitting
+        self.strip = timing.gesture_strip or timing.strip or fitting
 
     def _lay_rows(self, figures: tuple[Figure, ...]) -> tuple[list[FigureRow], float]:
         """Return a row for each figure, the one in front on top, and for how much there is no room.

@@ -34,7 +34,7 @@ class Ring(NamedTuple):
     ----------
     turn : float
         How far the shape is turned there, in radians.
-    is_held : bool
+    is_dragged : bool
         Whether the pointer turns it.
     swept : float
         How far it has turned it, in radians.
@@ -42,7 +42,7 @@ class Ring(NamedTuple):
 
     centre: ImVec2
     turn: float
-    is_held: bool
+    is_dragged: bool
     swept: float
 
     def is_pointed(self, look: Look) -> bool:
@@ -67,26 +67,26 @@ def find_ring(session: Session, screen: Screen) -> Ring | None:
         if handle.id in project.selected:
             centre = screen.point(complex(place))
             if held is not None:
-                return Ring(centre, held.turn, is_held=True, swept=held.swept)
-            return Ring(centre, turn, is_held=False, swept=0.0)
+                return Ring(centre, held.turn, is_dragged=True, swept=held.swept)
+            return Ring(centre, turn, is_dragged=False, swept=0.0)
     return None
 
 
 def draw_ring(look: Look, ring: Ring, *, is_pointed: bool) -> None:
     """Draw the ring with a knob where the turned shape's up is; while it is held, the angle."""
     draw_list, radius = imgui.get_window_draw_list(), RADIUS * look.em
-    is_hot = is_pointed or ring.is_held
+    is_hot = is_pointed or ring.is_dragged
     colour = look.palette.accent if is_hot else look.palette.text
     for tone, width in outlined(look, ink(colour, 1.0 if is_hot else 0.55), LINE):
         draw_list.add_circle(ring.centre, radius, tone, 64, width)
     up = ring.turn + math.pi / 2
     knob = ring.centre + ImVec2(radius * math.cos(up), -radius * math.sin(up))
-    if ring.is_held:
+    if ring.is_dragged:
         draw_list.add_line(ring.centre, knob, ink(colour), LINE * look.em)
     draw_knob(look, knob, KNOB, colour)
     if is_hot:
         imgui.set_mouse_cursor(imgui.MouseCursor_.hand)
-    if ring.is_held:
+    if ring.is_dragged:
         degrees = round(math.degrees(ring.swept))
         text = f"{degrees:+d}°".replace("-", "−") if degrees else "0°"
         above = ImVec2(tag_size(look, text).x / 2, (RADIUS + 2.2) * look.em)

@@ -11,11 +11,10 @@ from app.editor.actions import editing, posing, viewing
 from app.editor.tools import pointing
 from app.ui.shortcuts import ALT, CTRL, with_key
 from app.ui.style import Look, density, in_hand, is_pressed
-from app.ui.viewport.badges import draw_badges, draw_cutting
 from app.ui.viewport.cut_view import draw_brush
 from app.ui.viewport.gesture import draw_coming_strokes, go_on
 from app.ui.viewport.grips import draw_axis, draw_ring, find_ring, lay_axis
-from app.ui.viewport.hints import hint_at
+from app.ui.viewport.hints import draw_badges, draw_cutting, hint_at
 from app.ui.viewport.screen import GRIP, Screen
 from app.ui.viewport.split_view import SplitTextures, divide, draw_divider, draw_pictures
 

@@ -24,7 +24,7 @@ LAYOUT = 1
 # Input wakes the window at once, and so does all that goes on by itself.
 IDLE_FPS = 0.2
 AWAKE = 0.5  # seconds for which it goes on after that, for what it leads to
-SETTLED = 2  # frames in which panels have shown what they are to show
+REPEATS = 2  # frames after which the next ones would show nothing new
 LEFT = imgui.MouseButton_.left
 
 
@@ -85,7 +85,7 @@ class Shell:
     @property
     def awaits_worker(self) -> bool:
         """Whether frames would only repeat what is shown, and take time from the worker."""
-        return self._idle_frames >= SETTLED
+        return self._idle_frames >= REPEATS
 
     def release(self) -> None:
         """Close what is open beside the window."""
@@ -188,8 +188,9 @@ class Shell:
             self._part("The welcome view", partial(welcome.draw, thumbnail=self._thumbnail))()
         self._part("The dialog", partial(self._dialogs.draw, thumbnail=self._thumbnail))()
         self._part("The messages", toasts.draw)()
-        held = imgui.internal.get_active_id()
-        self._actions.append(do(editing.hold, held or int(imgui.is_mouse_down(LEFT))))
+        # Where the pointer is down on no widget, that counts as one.
+        widget = imgui.internal.get_active_id() or int(imgui.is_mouse_down(LEFT))
+        self._actions.append(do(editing.use_widget, widget))
 
     def _apply_actions(self) -> None:
         # What panels saw of the pointer comes first: what was dropped there depends on it.
