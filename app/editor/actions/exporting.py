@@ -190,7 +190,7 @@ def _prepare(
     if format_.is_still and unkeyed is not None and unkeyed.figure == project.active:
         frames = request.settings.frames
         if frames is not None and unkeyed.frame in frames:
-            document = posing.holding(session, project, unkeyed)(document)
+            document = posing.as_key(session, project, unkeyed)(document)
     pictures = {figure: puppet.cut.value.texture for figure, puppet in project.puppets.items()}
     samplers = {
         figure: (puppet.fine or puppet.store).sampler or puppet.store.sampler

@@ -11,7 +11,7 @@ from app.document import Document, History, Meshing, clip_of
 from app.editor.action import Action, do
 from app.editor.actions import cutting, playback, saving
 from app.editor.actions.saving import PROJECT
-from app.editor.dialogs import FileDialog, Leftover, Question, Recovery
+from app.editor.dialogs import Leftover, Question, Recovery
 from app.editor.failures import ask_worker, sentence
 from app.editor.project import Project, Puppet
 from app.editor.session import Session
@@ -121,13 +121,7 @@ class Opened(NamedTuple):
 
 def ask_open(session: Session) -> None:
     """Ask for a picture or a project."""
-    session.dialog = FileDialog(
-        title="Open image or project",
-        folder=session.usual_folder,
-        suffixes=OPENABLE,
-        writes=False,
-        chosen=lambda path: do(open_file, path),
-    )
+    session.ask_file("Open image or project", OPENABLE, lambda path: do(open_file, path))
 
 
 def open_file(session: Session, path: Path) -> None:
