@@ -196,6 +196,8 @@ class Project:
         Of the figures that hang on others; None where nothing does.
     extent : Derived
         Of the motion; where the settings of an export are shown it is measured first, else last.
+    drawings : set of Path
+        The files that its pictures were read from, which nothing is written over.
     hold : Hold, optional
         By which other windows see that its file is open here.
     read_as : str, optional
@@ -240,6 +242,7 @@ class Project:
     extent: Derived[tuple[object, ...], Box | None] = field(
         default_factory=lambda: Derived(None, remembers=EXTENTS)
     )
+    drawings: set[Path] = field(default_factory=set)
     hold: Hold | None = None
     read_as: str | None = None
     moved_at: float = -inf
@@ -287,6 +290,11 @@ class Project:
     def count_chosen(self) -> int:
         """How many keys are chosen, of all figures."""
         return sum(map(len, self.chosen_of.values()))
+
+    @property
+    def sources(self) -> tuple[Path, ...]:
+        """The files that it was read from."""
+        return (*self.drawings, *([] if self.path is None else [self.path]))
 
     def keys_with(self, figure: int, frame: int) -> Mapping[int, frozenset[int]]:
         """Return the chosen keys of all figures, if a key is one of them, or else that key."""

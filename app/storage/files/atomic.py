@@ -21,6 +21,7 @@ from typing import IO, TypeVar
 from app.errors import LissomError
 from app.storage.files.cancellation import Cancellation
 from app.storage.files.locks import lock, open_to_lock
+from app.storage.files.outputs import check_writable
 
 T = TypeVar("T")
 NEW_FILE = os.O_RDWR | os.O_CREAT | os.O_EXCL | getattr(os, "O_BINARY", 0)
@@ -220,27 +221,3 @@ def _refusal(path: Path, error: OSError, temporary: Path | None) -> LissomError:
     if error.errno in NOT_ALLOWED:
         reason += f": its folder {path.parent} may not be written to; choose another one"
     return LissomError(f"cannot write {path}: {reason}")
-
-
-def check_writable(path: Path) -> None:
-    """Refuse an output path that cannot work, before any long computation.
-
-    Raises
-    ------
-    LissomError
-        If it is a folder, or a link that leads in a circle, or a file that may only be read, or its
-        folder is missing.
-    """
-    if path.is_dir():
-        raise LissomError(f"cannot write {path}: it is a folder; name a file")
-    target = Path(os.path.realpath(path))
-    if target.is_symlink():
-        raise LissomError(f"cannot write {path}: it is a link that leads in a circle")
-    if not target.parent.is_dir():
-        folder = target.parent if path.is_symlink() else path.parent
-        raise LissomError(f"cannot write {path}: the folder {folder} does not exist")
-    if target.exists() and not os.access(target, os.W_OK):
-        # To put another file in its place would be possible where the folder may be written to.
-        raise LissomError(
-            f"cannot write {path}: it may only be read; choose another name, or allow to write it"
-        )
