@@ -4,11 +4,11 @@ import io
 from pathlib import Path
 
 import numpy as np
-from PIL import Image, ImageOps
+from PIL import Image
 
 from app.errors import LissomError
 from app.storage.files import require_file
-from app.storage.pictures import DECODER_ERRORS, FORMATS
+from app.storage.pictures import DECODER_ERRORS, FORMATS, upright
 from app.storage.project_file import load_thumbnail
 from engine.arrays import Bytes, readonly
 
@@ -54,7 +54,7 @@ def read_thumbnail(path: Path) -> Bytes | None:
             if image.width * image.height > MOST_PIXELS:
                 return None
             small = image.convert("RGBA")
-    except (LissomError, *DECODER_ERRORS, *BOMBS):
+            small.thumbnail((SIDE, SIDE))
+            return np.asarray(upright(small)[0])
+    except (LissomError, MemoryError, *DECODER_ERRORS, *BOMBS):
         return None
-    small.thumbnail((SIDE, SIDE))
-    return np.asarray(ImageOps.exif_transpose(small))
