@@ -8,6 +8,7 @@ Imports: nothing of the project but `app.errors`.
 from app.storage.files.arrays import read_arrays as read_arrays, write_arrays as write_arrays
 from app.storage.files.atomic import (
     atomic_file as atomic_file,
+    atomic_files as atomic_files,
     clear_abandoned as clear_abandoned,
     passing_picture as passing_picture,
     sync_folder as sync_folder,

@@ -12,8 +12,8 @@ import secrets
 import shutil
 import stat
 import sys
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager, suppress
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import ExitStack, contextmanager, suppress
 from functools import cache
 from pathlib import Path
 from typing import IO, TypeVar
@@ -111,36 +111,55 @@ def atomic_file(path: Path, cancellation: Cancellation | None = None) -> Iterato
     LissomError
         As `write_atomically`; an `OSError` of the block counts as the disk's refusal.
     """
-    check_writable(path)
-    target = Path(os.path.realpath(path))
-    _clear_once(target.parent)
-    temporary = None
+    with atomic_files(path, cancellation=cancellation) as (file,):
+        yield file
+
+
+@contextmanager
+def atomic_files(
+    *paths: Path, cancellation: Cancellation | None = None
+) -> Iterator[list[IO[bytes]]]:
+    """Open files that take their places together, as `atomic_file`: all of them or none.
+
+    Whoever ends the process between leaves all but the first out, so that what is there is of one
+    time.
+    """
+    check_writable(*paths)
+    parts, modes, files = list[Path](), list[int | None](), list[IO[bytes]]()
+    targets = [Path(os.path.realpath(path)) for path in paths]
     try:
-        # The file that is replaced hands on its permissions. Those of a new one are the system's
-        # affair: to ask for the umask would change it for all threads.
-        mode = stat.S_IMODE(target.stat().st_mode) if target.exists() else None
-        temporary, descriptor = _new_part(target.parent, 0o666 if mode is None else 0o600)
-        with os.fdopen(descriptor, "w+b") as file:
-            if cancellation is not None:
-                cancellation.begin(temporary)
-            yield file
-            file.flush()
-            os.fsync(file.fileno())
+        with ExitStack() as opened:
+            for target in targets:
+                _clear_once(target.parent)
+                # The file that is replaced hands on its permissions. Those of a new one are the
+                # system's affair: to ask for the umask would change it for all threads.
+                mode = stat.S_IMODE(target.stat().st_mode) if target.exists() else None
+                part, descriptor = _new_part(target.parent, 0o666 if mode is None else 0o600)
+                parts.append(part)
+                modes.append(mode)
+                files.append(opened.enter_context(os.fdopen(descriptor, "w+b")))
+                if cancellation is not None:
+                    cancellation.begin(part)
+            yield files
+            for file in files:
+                file.flush()
+                os.fsync(file.fileno())
             if cancellation is not None:
                 cancellation.settle()
-            if mode is not None:
-                temporary.chmod(mode)
+            for part, mode in zip(parts, modes, strict=True):
+                if mode is not None:
+                    part.chmod(mode)
             if sys.platform != "win32":
-                # As long as it is locked: else another process may take it for abandoned.
-                temporary.replace(target)
+                # As long as they are locked: else another process may take them for abandoned.
+                _take_places(parts, targets)
         if sys.platform == "win32":
             # What is open cannot be moved there.
-            temporary.replace(target)
+            _take_places(parts, targets)
     except OSError as error:
-        raise _refusal(path, error, temporary) from error
+        raise _refusal(paths[0], error, parts) from error
     finally:
-        if temporary is not None:
-            temporary.unlink(missing_ok=True)
+        for part in parts:
+            part.unlink(missing_ok=True)
 
 
 def clear_abandoned(folder: Path) -> None:
@@ -212,11 +231,31 @@ def _part_name() -> str:
     return f".lissom-{secrets.token_hex(8)}.part"
 
 
-def _refusal(path: Path, error: OSError, temporary: Path | None) -> LissomError:
+def _take_places(parts: Sequence[Path], targets: Sequence[Path]) -> None:
+    """Move files to their places; what is there of all but the first gives way before it."""
+    aside = {}
+    try:
+        for target in targets[1:]:
+            if target.exists():
+                hidden = target.with_name(_part_name())
+                target.replace(hidden)
+                aside[target] = hidden
+        parts[0].replace(targets[0])
+    except OSError:
+        for target, hidden in aside.items():
+            hidden.replace(target)
+        raise
+    for part, target in zip(parts[1:], targets[1:], strict=True):
+        part.replace(target)
+    for hidden in aside.values():
+        hidden.unlink()
+
+
+def _refusal(path: Path, error: OSError, parts: Sequence[Path]) -> LissomError:
     """Say in words that the system refuses to write a file, and what to do."""
     reason = error.strerror or str(error)
     if error.errno in NO_ROOM:
-        written = temporary.stat().st_size if temporary is not None else 0
+        written = sum(part.stat().st_size for part in parts)
         return NoRoomError(path, error, written)
     if error.errno in NOT_ALLOWED:
         reason += f": its folder {path.parent} may not be written to; choose another one"
