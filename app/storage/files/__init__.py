@@ -20,7 +20,9 @@ from app.storage.files.locks import is_locked as is_locked, lock as lock
 from app.storage.files.outputs import check_writable as check_writable
 from app.storage.files.reading import (
     DAMAGED_ZIP as DAMAGED_ZIP,
+    MOST_UNPACKED as MOST_UNPACKED,
+    opened_file as opened_file,
+    opened_zip as opened_zip,
     read_file as read_file,
-    require_file as require_file,
     tail_digest as tail_digest,
 )
