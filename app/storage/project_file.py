@@ -48,7 +48,9 @@ THUMBNAIL = "thumbnail.png"
 DEEPEST = 40
 
 
-def save_project(path: Path, document: Document, *, thumbnail: bytes | None = None) -> str:
+def save_project(
+    path: Path, document: Document, *, thumbnail: bytes | None = None, is_private: bool = False
+) -> str:
     """Write a project file; at any moment the old or the new one is whole.
 
     Parameters
@@ -57,6 +59,8 @@ def save_project(path: Path, document: Document, *, thumbnail: bytes | None = No
         Used exactly as given.
     thumbnail : bytes, optional
         A small PNG picture of the animation.
+    is_private : bool
+        Whether nobody else may read it.
 
     Returns
     -------
@@ -78,7 +82,7 @@ def save_project(path: Path, document: Document, *, thumbnail: bytes | None = No
         write_archive(file, members)
         return tail_digest(file)
 
-    digest = write_atomically(path, write)
+    digest = write_atomically(path, write, is_private=is_private)
     sync_folder(path.parent)
     return digest
 

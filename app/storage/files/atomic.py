@@ -25,6 +25,7 @@ from app.storage.files.outputs import check_writable
 
 T = TypeVar("T")
 NEW_FILE = os.O_RDWR | os.O_CREAT | os.O_EXCL | getattr(os, "O_BINARY", 0)
+PRIVATE = 0o600
 PART = re.compile(r"\.lissom-[0-9a-f]{16}\.part(\.png)?")
 # What the system says where there is no room: on the disk, for this person, in one file.
 NO_ROOM = {errno.ENOSPC, errno.EFBIG, getattr(errno, "EDQUOT", errno.ENOSPC)}
@@ -62,7 +63,11 @@ def _size(count: int) -> str:
 
 
 def write_atomically(
-    path: Path, write: Callable[[IO[bytes]], T], cancellation: Cancellation | None = None
+    path: Path,
+    write: Callable[[IO[bytes]], T],
+    cancellation: Cancellation | None = None,
+    *,
+    is_private: bool = False,
 ) -> T:
     """Write a file so that at any moment the old or the new one is whole.
 
@@ -74,6 +79,8 @@ def write_atomically(
         Writes the contents to the open binary file that it is handed, which can be read as well.
     cancellation : Cancellation, optional
         By which it can be cancelled before the file takes its place; that is a `LissomError`.
+    is_private : bool
+        Whether nobody else may read it.
 
     Returns
     -------
@@ -86,7 +93,7 @@ def write_atomically(
         As `check_writable`, or if the disk refuses.
     """
     try:
-        with atomic_file(path, cancellation) as file:
+        with atomic_files(path, cancellation=cancellation, is_private=is_private) as (file,):
             return write(file)
     except NoRoomError as error:
         with suppress(OSError):
@@ -117,7 +124,7 @@ def atomic_file(path: Path, cancellation: Cancellation | None = None) -> Iterato
 
 @contextmanager
 def atomic_files(
-    *paths: Path, cancellation: Cancellation | None = None
+    *paths: Path, cancellation: Cancellation | None = None, is_private: bool = False
 ) -> Iterator[list[IO[bytes]]]:
     """Open files that take their places together, as `atomic_file`: all of them or none.
 
@@ -134,7 +141,8 @@ def atomic_files(
                 # The file that is replaced hands on its permissions. Those of a new one are the
                 # system's affair: to ask for the umask would change it for all threads.
                 mode = stat.S_IMODE(target.stat().st_mode) if target.exists() else None
-                part, descriptor = _new_part(target.parent, 0o666 if mode is None else 0o600)
+                mode = PRIVATE if is_private else mode
+                part, descriptor = _new_part(target.parent, 0o666 if mode is None else PRIVATE)
                 parts.append(part)
                 modes.append(mode)
                 files.append(opened.enter_context(os.fdopen(descriptor, "w+b")))

@@ -124,8 +124,8 @@ def photoshop(build):
 def test_layers_of_a_photoshop_file():
     def build(drawing):
         drawing.create_pixel_layer(blob(50, 60), name="body", top=40, left=5)
-        group = drawing.create_group(name="face", opacity=128)
-        head = group.create_pixel_layer(blob(30, 20), name="head", top=20, left=10)
+        head = drawing.create_pixel_layer(blob(30, 20), name="head", top=20, left=10)
+        drawing.create_group([head], name="face", opacity=128)
         head.visible = False
         head.blend_mode = BlendMode.MULTIPLY
 
