@@ -117,6 +117,7 @@ class Opened(NamedTuple):
     notices: tuple[str, ...]
     offer: Offer | None = None
     read_as: str | None = None
+    drawings: tuple[Path, ...] = ()
 
 
 def ask_open(session: Session) -> None:
@@ -143,10 +144,13 @@ def open_together(session: Session, paths: Sequence[Path]) -> None:
     meshing = session.meshing
     kind = Kind(f"Opening {len(paths)} pictures", "The pictures cannot be opened")
 
+    def work() -> Opened:
+        return with_puppets(open_pictures(paths, meshing))._replace(drawings=tuple(paths))
+
     def done(opened: Opened) -> None:
         saving.unless_unsaved(session, do(show, paths[0], opened))
 
-    ask_worker(session, kind, lambda: with_puppets(open_pictures(paths, meshing)), done)
+    ask_worker(session, kind, work, done)
 
 
 def open_dropped(session: Session, paths: Sequence[Path]) -> None:
@@ -211,6 +215,7 @@ def _show(
             active=_foremost(opened.document),
             path=own,
             read_as=opened.read_as,
+            drawings=set(opened.drawings),
             hold=hold,
         ),
     )
@@ -249,7 +254,7 @@ def _puppets(document: Document, pictures: Mapping[int, Picture]) -> dict[int, P
 
 def _read(path: Path, meshing: Meshing) -> Opened:
     if is_layered(path):
-        return with_puppets(open_layered(path, meshing))
+        return with_puppets(open_layered(path, meshing))._replace(drawings=(path,))
     is_project = path.suffix.lower() == PROJECT
     return _read_project(path) if is_project else _read_picture(path, meshing)
 
@@ -272,7 +277,7 @@ def _decoded(document: Document, name: str) -> Opened:
 def _read_picture(path: Path, meshing: Meshing) -> Opened:
     opened = with_puppets(open_picture(path, meshing))
     (puppet,) = opened.puppets.values()
-    return opened._replace(offer=_offer(puppet))
+    return opened._replace(offer=_offer(puppet), drawings=(path,))
 
 
 def _offer(puppet: Puppet) -> Offer | None:
