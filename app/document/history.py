@@ -50,6 +50,7 @@ class History:
         # _bytes[i]: bytes that only steps up to i keep alive, freed by forgetting step i.
         self._bytes = [0]
         self._now = 0
+        self._forgotten = 0  # steps before them
         self._gesture: object = None
         # What the gesture's first command took the place of.
         self._undone: list[Step] = []
@@ -75,6 +76,11 @@ class History:
     def redo_label(self) -> str | None:
         """What redo would do again; None where there is nothing."""
         return self._steps[self._now + 1].label if self._now + 1 < len(self._steps) else None
+
+    @property
+    def position(self) -> int:
+        """How many steps have led to the document as it is now."""
+        return self._forgotten + self._now
 
     @property
     def nearby(self) -> tuple[Document, ...]:
@@ -218,6 +224,7 @@ class History:
             count += 1
         del self._steps[:count], self._bytes[:count]
         self._now -= count
+        self._forgotten += count
 
 
 def _is_same(step: Step, other: Step) -> bool:

@@ -59,7 +59,9 @@ def use_widget(_: Session, project: Project, widget: int) -> None:
 def undo(session: Session, project: Project) -> None:
     """Take the last step back; a pull that is under way goes on in it, should it be done again."""
     before, unkeyed, label = project.document, project.history.unkeyed, project.history.undo_label
-    unseen = [pull for pull in project.pulls if pull.kept is None]
+    position = project.history.position
+    # What was done since they were wished is taken back before them.
+    unseen = [pull for pull in project.pulls if pull.kept is None and pull.position >= position]
     for pull in unseen or [pull for pull in project.pulls if pull.is_held]:
         posing.give_up(session, project, pull)
     if unseen:

@@ -247,7 +247,7 @@ def _output(session: Session, look: Look, project: Project) -> list[Action]:
     if icon_button(look, icons.ICON_FA_FOLDER_OPEN, "choose output", "Choose where to…"):
         actions.append(do(exporting.choose))
     run = session.export
-    if run is not None or exporting.PREPARING in session.jobs.kinds:
+    if exporting.is_under_way(session):
         # Below zero, a bar only shows that something goes on.
         share, text = -0.5 * imgui.get_time(), "Preparing…"
         if run is not None:

@@ -35,6 +35,7 @@ def pull(
         held = _begin(session, project, gesture or object())
     wanted = wish if callable(wish) else partial(_wherever, wish)
     held.wish(gesture or object(), wanted)
+    held.position = project.history.position
     go_on(session, project)
 
 
