@@ -21,7 +21,7 @@ Equation map of *Bounded Distortion Harmonic Shape Interpolation* (Chien, Chen, 
     (2), (15)       continuous logarithm           engine.paths.complex_log.continue_logarithm
     Section 7.2     branch at the anchor           engine.paths.complex_log.root_sheets
     Section 4.1     harmonic in-betweens           engine.interpolation.Inbetweens
-    (3)             logarithmic blend of f_z       engine.interpolation.derivatives.Passage
+    (3)             logarithmic blend of f_z       engine.interpolation.passage.derivatives.Passage
     (4), (5)        ν variant                      engine.interpolation.blends.nu.NuBlend
     (6), (7)        η variant                      engine.interpolation.blends.eta.EtaBlend
     (8), (16)-(18)  scaled η, largest ρ(t)         engine.interpolation.scaling.sharp.SharpScaling

@@ -1,6 +1,11 @@
 import hypothesis
 import pytest
 
+from app.cli.process import use_one_thread
+
+# As in the program, and before anything imports NumPy.
+use_one_thread()
+
 # Runs are repeatable, and no test depends on the machine's speed.
 hypothesis.settings.register_profile("lissom", deadline=None, derandomize=True, database=None)
 hypothesis.settings.load_profile("lissom")

@@ -7,10 +7,10 @@ import numpy as np
 
 from engine.arrays import Complexes, Floats, Indices
 from engine.interpolation.blends import Blend
-from engine.interpolation.derivatives import Derivatives, Passage, weighted
+from engine.interpolation.passage import Derivatives, Passage, weighted
 from engine.interpolation.periods import Closing
-from engine.interpolation.residual import Residual
 from engine.interpolation.scaling import Scaling
+from engine.interpolation.series import Residual
 from engine.interpolation.sites import Sites
 from engine.maps import Boundary, Bounds
 

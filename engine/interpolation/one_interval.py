@@ -4,10 +4,10 @@ import numpy as np
 
 from engine.arrays import Floats
 from engine.errors import EngineError
-from engine.interpolation import periods
 from engine.interpolation.blends import BLENDS, Blend
 from engine.interpolation.inbetweens import Frame, Inbetweens
-from engine.interpolation.interval import Interval
+from engine.interpolation.passage import Interval
+from engine.interpolation.periods import closing as periods
 from engine.interpolation.scaling import Scaling
 from engine.interpolation.sites import Sites
 from engine.variant import Variant

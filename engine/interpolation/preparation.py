@@ -9,12 +9,10 @@ import numpy.typing as npt
 from engine.dirichlet import Extension, HilbertTransform
 from engine.errors import EngineError
 from engine.interpolation.blends import BLENDS
-from engine.interpolation.course import Course, Joint, Tangent
-from engine.interpolation.derivatives import Passage
+from engine.interpolation.courses import Course, Joint, Tangent
 from engine.interpolation.inbetweens import Frame, Inbetweens
-from engine.interpolation.interval import Interval
-from engine.interpolation.keyframe_samples import KeyframeSamples, sample_keyframes
 from engine.interpolation.one_interval import prepare_inbetweens
+from engine.interpolation.passage import Interval, KeyframeSamples, Passage, sample_keyframes
 from engine.interpolation.sites import Sites, prepare_sites
 from engine.maps import Bounds, HarmonicMap
 from engine.paths import root_sheets

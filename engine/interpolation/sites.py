@@ -10,7 +10,7 @@ import numpy.typing as npt
 from engine.arrays import Complexes, Floats, as_points, freeze
 from engine.errors import EngineError
 from engine.geometry import Hole, deepest_point, diameter, require_inside
-from engine.interpolation.period_basis import PeriodBasis
+from engine.interpolation.periods import PeriodBasis
 from engine.maps import Boundary
 from engine.paths import (
     ON_OUTLINE,

@@ -3,9 +3,12 @@
 import importlib
 import sys
 
+from app.cli.process import use_one_thread
+
 
 def main() -> None:
     """Print the tables of a part as they are measured."""
+    use_one_thread()
     part, *words = sys.argv[1:]
     module = importlib.import_module(f"tests.bench.{part}")
     for table in module.tables(module.BRIEF if words else module.Extent()):

@@ -13,6 +13,7 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "support"))
 
+from app.cli.process import use_one_thread
 
 # Of each campaign, what its amount counts, and how much of it is asked for.
 CAMPAIGNS = {
@@ -26,6 +27,7 @@ CAMPAIGNS = {
 
 def run() -> None:
     """Run the campaigns that are asked for."""
+    use_one_thread()
     # Shells let what they start in the background ignore it, and what that starts as well.
     signal.signal(signal.SIGINT, signal.default_int_handler)
     parser = argparse.ArgumentParser(prog="python -m tests.campaigns", description=__doc__)

@@ -6,7 +6,8 @@ import sys
 SCRIPT = """
 import numpy, scipy.linalg, threadpoolctl
 from engine.interpolation import prepare
-print({pool["num_threads"] for pool in threadpoolctl.threadpool_info() if pool["user_api"] == "blas"})
+pools = threadpoolctl.threadpool_info()
+print({pool["num_threads"] for pool in pools if pool["user_api"] == "blas"})
 """
 
 

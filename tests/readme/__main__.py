@@ -13,12 +13,14 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "support"))
 
+from app.cli.process import use_one_thread
 
 SHOWN = Path(__file__).parents[2] / "sample_images" / "shown"
 
 
 def run() -> None:
     """Draw the pictures that the command line names, or all."""
+    use_one_thread()
     modules = [importlib.import_module(f"tests.readme.{name}") for name in ("motion", "window")]
     known = [name for module in modules for name in module.PICTURES]
     parser = argparse.ArgumentParser(prog="python -m tests.readme", description=__doc__)

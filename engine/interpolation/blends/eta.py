@@ -8,12 +8,11 @@ import numpy as np
 
 from engine.arrays import Complexes, Floats, Indices, freeze
 from engine.interpolation.blends.blend import Blend, Curves
-from engine.interpolation.derivatives import Derivatives, weighted
 from engine.interpolation.enclosing import Changes, EndValues, Patch, exponential
-from engine.interpolation.interval import Interval
+from engine.interpolation.passage import Derivatives, Interval, weighted
 from engine.interpolation.periods import Closing
-from engine.interpolation.residual import combined
 from engine.interpolation.scaling import SharpScaling
+from engine.interpolation.series import combined
 from engine.interpolation.sites import Sites
 from engine.maps import Enclosures
 

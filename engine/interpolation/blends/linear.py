@@ -7,10 +7,9 @@ import numpy as np
 
 from engine.arrays import Complexes, Floats, Indices, freeze
 from engine.interpolation.blends.blend import Blend, Curves
-from engine.interpolation.derivatives import Derivatives, weighted
 from engine.interpolation.enclosing import Changes, EndValues, Patch, linear
-from engine.interpolation.interval import Interval
-from engine.interpolation.residual import combined
+from engine.interpolation.passage import Derivatives, Interval, weighted
+from engine.interpolation.series import combined
 from engine.maps import Enclosures
 
 

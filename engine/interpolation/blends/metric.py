@@ -29,8 +29,7 @@ from engine.interpolation.blends.outline import (
     control_curves,
     course_of_trace,
 )
-from engine.interpolation.chebyshev import PiecewiseSeries, one, separate
-from engine.interpolation.course import Course, Joint, Tangent
+from engine.interpolation.courses import Course, Joint, Tangent, shortened_metric
 from engine.interpolation.enclosing import (
     Changes,
     EndValues,
@@ -38,12 +37,11 @@ from engine.interpolation.enclosing import (
     changed_metric,
     from_metric,
 )
-from engine.interpolation.interval import Interval
+from engine.interpolation.passage import Interval
 from engine.interpolation.periods import Closing
-from engine.interpolation.residual import HoleConstants, Residual
 from engine.interpolation.scaling import Worst, allowed
+from engine.interpolation.series import HoleConstants, PiecewiseSeries, Residual, one, separate
 from engine.interpolation.sites import Sites
-from engine.interpolation.tangents import shortened_metric
 from engine.maps import Boundary, Bounds, Enclosures, derivatives_of
 
 TOLERANCE = 1e-9  # of the series' last terms, in ln |f_z|

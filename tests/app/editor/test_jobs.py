@@ -320,7 +320,8 @@ def test_closing_waits_for_what_runs_and_drops_what_waits():
 
 
 PROGRAM = """
-import engine.arrays
+from app.cli.process import use_one_thread
+use_one_thread()
 import threading
 import numpy as np
 import scipy.linalg

@@ -32,9 +32,8 @@ from typing import NamedTuple, TypeVar
 import numpy as np
 
 from engine.arrays import Complexes, Floats, freeze
-from engine.interpolation.chebyshev import PiecewiseSeries, separate
-from engine.interpolation.period_basis import PeriodBasis, as_complex
-from engine.interpolation.residual import Residual
+from engine.interpolation.periods.basis import PeriodBasis, as_complex
+from engine.interpolation.series import PiecewiseSeries, Residual, separate
 
 CLOSED = 1e-14  # of the diagonal: where the iteration may end
 MOST_STEPS = 15
