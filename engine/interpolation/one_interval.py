@@ -7,7 +7,7 @@ from engine.errors import EngineError
 from engine.interpolation.blends import BLENDS, Blend
 from engine.interpolation.inbetweens import Frame, Inbetweens
 from engine.interpolation.passage import Interval
-from engine.interpolation.periods import closing as periods
+from engine.interpolation.periods import Unclosed, close, to_conformal
 from engine.interpolation.scaling import Scaling
 from engine.interpolation.sites import Sites
 from engine.variant import Variant
@@ -55,19 +55,19 @@ def _closed(blend: Blend, sites: Sites) -> Inbetweens:
         constants = blend.constants
         at_loops = unclosed.at(sites.paths.around)
 
-        def at(times: Floats) -> periods.Unclosed:
-            return periods.Unclosed(
+        def at(times: Floats) -> Unclosed:
+            return Unclosed(
                 *at_loops.values(times), None if constants is None else constants.at(times)
             )
 
         breaks = (0.0, 1.0) if constants is None else tuple(constants.series.breaks)
-        closing = periods.close(basis, at, sign=blend.sign, breaks=breaks)
+        closing = close(basis, at, sign=blend.sign, breaks=breaks)
         blend = blend.with_residual(closing.residual)
         if blend.is_scaled_around_holes:
             times = np.linspace(0.0, 1.0, TIMES + 2)[1:-1]
             is_scaled = bool(unclosed.sharp_scaling(sites, closing, None)(times).min() < 1.0)
         if is_scaled:
-            conformal = periods.to_conformal(basis, at, sign=blend.sign, breaks=breaks)
+            conformal = to_conformal(basis, at, sign=blend.sign, breaks=breaks)
     if is_scaled:
         scale = Scaling.of(unclosed.sharp_scaling(sites, closing, conformal))
     return Inbetweens(

@@ -208,9 +208,7 @@ def test_handles_pulled_hard_keep_bounds_and_are_closed(name):
     sheets = root_sheets(np.array([key.anchor_fz for key in keyframes]))
     for variant in (Variant.NU, Variant.SCALED_ETA, Variant.METRIC):
         passage = Passage.of(keyframes, sheets)
-        motion = prepare_inbetweens(
-            variant, Interval(sites, passage, Bounds(), transform=transform)
-        )
+        motion = prepare_inbetweens(variant, Interval(sites, passage, Bounds(), transform))
         assert 1e-4 < motion.correction < 0.3
         for time in (0.2, 0.5, 0.8):
             frame = motion.frame(time)

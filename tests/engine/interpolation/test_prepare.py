@@ -57,9 +57,7 @@ def test_intervals_are_prepared_one_at_a_time_and_keyframes_shared(variant):
     transform = HilbertTransform.on(OUTLINE, CAGE).at(sites.paths.nodes)
     for i, pair in enumerate((keys[:2], keys[1:])):
         passage = Passage.of(pair, sheets[i : i + 2])
-        interval = prepare_inbetweens(
-            variant, Interval(sites, passage, Bounds(), transform=transform)
-        )
+        interval = prepare_inbetweens(variant, Interval(sites, passage, Bounds(), transform))
         frame = interval.frame(0.4)
         expected = whole.frame(i + 0.4)
         assert_allclose(frame.positions, expected.positions, rtol=0, atol=1e-12)
