@@ -23,7 +23,7 @@ from engine.interpolation.series import HoleConstants, Residual
 from engine.interpolation.sites import Sites
 from engine.maps import Boundary, Bounds, Enclosures, HarmonicMap
 
-Curves = tuple[EdgeCurves[Any], EdgeCurves[Any]]
+PairCurves = tuple[EdgeCurves[Any], EdgeCurves[Any]]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -145,7 +145,7 @@ class Blend(ABC):
         return self.passage.course, self.passage.eta_course
 
     @abstractmethod
-    def curves(self, values: EndValues) -> Curves:
+    def curves(self, values: EndValues) -> PairCurves:
         """Return what is known of the two quantities along pieces of the boundary."""
 
     @staticmethod

@@ -7,7 +7,7 @@ from typing import Any, Self
 import numpy as np
 
 from engine.arrays import Complexes, Floats, Indices, freeze
-from engine.interpolation.blends.blend import Blend, Curves
+from engine.interpolation.blends.blend import Blend, PairCurves
 from engine.interpolation.enclosing import Changes, EndValues, Patch, exponential
 from engine.interpolation.passage import Derivatives, Interval, weighted
 from engine.interpolation.periods import Closing
@@ -99,7 +99,7 @@ class EtaBlend(Blend):
         b = np.abs(second) / a
         return a + b, a - b
 
-    def curves(self, values: EndValues) -> Curves:
+    def curves(self, values: EndValues) -> PairCurves:
         """Return ln |f_z| and conj(η) along pieces of the boundary."""
         return values.log_modulus(), values.conj_eta()
 

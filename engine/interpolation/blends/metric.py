@@ -22,7 +22,7 @@ import numpy as np
 from engine.arrays import Complexes, Floats, Indices
 from engine.dirichlet import Extension, Refinement
 from engine.errors import EngineError
-from engine.interpolation.blends.blend import Curves
+from engine.interpolation.blends.blend import PairCurves
 from engine.interpolation.blends.eta import EtaBlend
 from engine.interpolation.blends.outline import (
     OutlineMetric,
@@ -177,7 +177,7 @@ class MetricBlend(EtaBlend):
         """The weights in time of the `curves` of both quantities."""
         return course_of_trace(self.passage.eta_course), self.passage.eta_course
 
-    def curves(self, values: EndValues) -> Curves:
+    def curves(self, values: EndValues) -> PairCurves:
         """Return 𝒜, or its control values in time, and conj(η) along pieces of the boundary."""
         eta = values.conj_eta()
         return control_curves(values.trace(), eta, self.passage.eta_course, self.bounds), eta
