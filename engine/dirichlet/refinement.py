@@ -151,7 +151,7 @@ class _Local:
         parts, columns = self.parts, self.densities.shape[2]
         nodes, densities = parts.nodes.ravel(), self.densities.reshape(-1, columns)
         around = (0.5 + near_distance(parts.power)) * np.abs(parts.span)
-        near = np.abs(points[:, None] - (parts.origin + parts.span / 2)) < around
+        near = np.abs(points[:, None] - parts.middles) < around
         plain = ~near
         if omitted is not None:
             near &= ~omitted

@@ -3,17 +3,15 @@ import pytest
 from holed_shapes import Holed, inner_points as points_of, plate, ring
 from hypothesis import given, settings, strategies as st
 from interpolation_shapes import around, bar, inner_points, letter_l, narrow_u, random_map, spiral
-from numpy.testing import assert_allclose, assert_array_equal
+from numpy.testing import assert_allclose
 from shapes import star_polygons
 
-from engine.dirichlet.boundary_operator import BoundaryOperator
 from engine.dirichlet.cauchy_integral import CauchyIntegral
 from engine.dirichlet.expansions import TERMS
 from engine.dirichlet.hilbert import HilbertTransform
 from engine.dirichlet.panels import NODES, Panels
 from engine.dirichlet.product_integration import is_near, panel_weights
 from engine.dirichlet.refinement import Refinement
-from engine.dirichlet.skeleton_solver import SkeletonSolver
 from engine.geometry import contains
 from engine.geometry.polygon import box_diagonal, edges
 from engine.interpolation.blends import OutlineMetric
@@ -142,29 +140,6 @@ def test_any_number_of_nodes_is_taken_and_memory_grows_with_it():
     values, _, _ = fine.at(points).extend(entire(fine.nodes)[0].real)
     expected, _ = entire(points)
     assert_allclose(without_constant(values), without_constant(expected), rtol=0, atol=1e-7)
-
-
-@pytest.mark.parametrize("shape", [bar(), letter_l(), narrow_u(), spiral()])
-def test_the_fast_solver_solves_the_whole_matrix(shape):
-    operator = BoundaryOperator.of(Panels.on(*shape, coarseness=2.0))
-    everything = np.arange(len(operator.nodes))
-    rng = np.random.default_rng(0)
-    smooth = np.column_stack([np.sin(operator.nodes.real), operator.nodes.imag**2])
-    right = np.column_stack([smooth, rng.normal(size=len(everything))])
-    expected = np.linalg.solve(operator.entries(everything, everything), right)
-    found = SkeletonSolver.of(operator)(right)
-    assert_allclose(found, expected, rtol=0, atol=1e-7 * np.abs(expected).max())
-
-
-def test_a_part_of_the_matrix_is_what_it_is_in_the_whole():
-    operator = BoundaryOperator.of(Panels.on(*letter_l(), coarseness=4.0))
-    everything = np.arange(len(operator.nodes))
-    whole = operator.entries(everything, everything)
-    rng = np.random.default_rng(1)
-    rows, columns = rng.permutation(everything)[:50], rng.permutation(everything)[:70]
-    assert_array_equal(operator.entries(rows, columns), whole[np.ix_(rows, columns)])
-    # ∮ Im dζ / (ζ − z) of a constant is half a turn at a node, so that each row sums to 1.
-    assert_allclose(whole.sum(axis=1), 1.0, rtol=0, atol=1e-9)
 
 
 def test_panels_tile_the_outline():
@@ -356,16 +331,3 @@ def test_around_holes_functions_are_found_from_real_parts_but_for_a_constant_eac
     inner = points_of(shape, 150)
     wanted = (function(inner + h) - function(inner - h)) / (2 * h)
     assert_allclose(slopes[: len(inner)], wanted, rtol=0, atol=5e-3)
-
-
-def test_the_fast_solver_solves_the_whole_matrix_around_holes():
-    shape = ring()
-    operator = BoundaryOperator.of(
-        Panels.on(shape.outline, shape.cage, shape.holes, coarseness=8.0)
-    )
-    everything = np.arange(len(operator.nodes))
-    right = np.column_stack([np.sin(operator.nodes.real), operator.nodes.imag**2])
-    matrix = operator.entries(everything, everything)
-    found = SkeletonSolver.of(operator)(right)
-    expected = np.linalg.solve(matrix, right)
-    assert_allclose(found, expected, rtol=0, atol=1e-7 * np.abs(expected).max())
