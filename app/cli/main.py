@@ -7,9 +7,9 @@ import sys
 from collections.abc import Sequence
 from importlib.metadata import version
 
-from app.cli.console import Parser, fail
+from app.cli.console import Parser, StatusLine, fail
 from app.cli.process import Endings, has_threads_left, use_one_thread
-from app.errors import EXPECTED_ERRORS
+from app.errors import EXPECTED_ERRORS, told_to
 
 EXIT_PIPE_CLOSED = 141
 
@@ -38,7 +38,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         words = ["window", *words]
     endings = Endings()
     try:
-        with endings:
+        with endings, StatusLine() as status_line, told_to(status_line.tell):
             arguments = build_parser(words).parse_args(words)
             status = int(
                 importlib.import_module(f"app.cli.commands.{arguments.command}").run(arguments)

@@ -15,7 +15,7 @@ cage's own n-dimensional space. That is wrong by up to a percent of the diameter
 the keyframes, and loses the bounds that Theorem 6 proves.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple, Self
 
@@ -79,19 +79,40 @@ class HilbertTransform:
     means: Floats
 
     @classmethod
-    def on(cls, outline: Complexes, cage: Complexes, holes: Sequence[Hole] = ()) -> Self:
+    def on(
+        cls,
+        outline: Complexes,
+        cage: Complexes,
+        holes: Sequence[Hole] = (),
+        *,
+        progress: Callable[[float], None] | None = None,
+    ) -> Self:
         """Discretise and factorise the integral equation of an outline inside a cage, and holes.
 
         The number of nodes follows from the shape: it grows with the number of corners, and where
         the outline comes near itself or near the cage. Time and memory grow with it.
+
+        Parameters
+        ----------
+        outline, cage : complex128, shapes (p,) and (n,)
+        holes : sequence of Hole
+        progress : callable
+            Called again and again with the share of the work that is done, from 0 to 1. What it
+            raises ends the work, and nothing of it is left.
         """
-        return cls.of((outline, *(hole.outline for hole in holes)), Panels.on(outline, cage, holes))
+        loops = (outline, *(hole.outline for hole in holes))
+        return cls.of(loops, Panels.on(outline, cage, holes), progress)
 
     @classmethod
-    def of(cls, loops: Sequence[Complexes], panels: Panels) -> Self:
+    def of(
+        cls,
+        loops: Sequence[Complexes],
+        panels: Panels,
+        progress: Callable[[float], None] | None = None,
+    ) -> Self:
         """Factorise the integral equation on given panels of some loops."""
         operator = BoundaryOperator.of(panels)
-        solver = SkeletonSolver.of(operator)
+        solver = SkeletonSolver.of(operator, progress)
         return cls(loops=tuple(loops), panels=panels, solver=solver, means=operator.means)
 
     @property

@@ -9,7 +9,7 @@ Time and memory grow with the number of nodes; where an outline fills an area, s
 crosses more of its arms the larger the box is, time grows with the power 3/2 of it at most.
 """
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Self
 
@@ -84,8 +84,16 @@ class SkeletonSolver:
     roots: Floats
 
     @classmethod
-    def of(cls, operator: BoundaryOperator) -> Self:
-        """Compress and eliminate level by level."""
+    def of(
+        cls, operator: BoundaryOperator, progress: Callable[[float], None] | None = None
+    ) -> Self:
+        """Compress and eliminate level by level.
+
+        Parameters
+        ----------
+        progress : callable
+            Called before each box with the share of the work that is done; what it raises ends it.
+        """
         count = len(operator.panels)
         depth = max(0, round(np.log2(count * NODES / LEAF)))
         panels = np.arange(count * NODES).reshape(count, NODES)
@@ -96,13 +104,17 @@ class SkeletonSolver:
         boxes = []
         while len(active) > 1 and sum(len(each.nodes) for each in active) > SMALL:
             level = _Level.of(operator, active)
-            skeletons = []
-            for each in active:
+            skeletons, left = [], np.log2(len(active))
+            for number, each in enumerate(active):
+                if progress is not None:  # each level takes about as long
+                    progress(1 - (left - number / len(active)) / depth)
                 box, skeleton = each.eliminated(level.sketch(each.nodes))
                 boxes.append(box)
                 skeletons.append(skeleton)
             pairs = zip(skeletons[::2], skeletons[1::2], strict=True)
             active = [_Active.merged(operator, *pair) for pair in pairs]
+        if progress is not None:
+            progress(1.0)
         while len(active) > 1:
             pairs = zip(active[::2], active[1::2], strict=True)
             active = [_Active.merged(operator, *pair) for pair in pairs]

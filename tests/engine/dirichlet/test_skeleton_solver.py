@@ -5,6 +5,7 @@ from interpolation_shapes import bar, letter_l, narrow_u, spiral
 from numpy.testing import assert_allclose, assert_array_equal
 
 from engine.dirichlet.boundary_operator import BoundaryOperator
+from engine.dirichlet.hilbert import HilbertTransform
 from engine.dirichlet.panels import Panels
 from engine.dirichlet.partition import partition
 from engine.dirichlet.skeleton_solver import SkeletonSolver
@@ -67,3 +68,20 @@ def test_boxes_share_all_panels_out(panels, depth):
     assert len(boxes) == 2**depth
     assert min(len(box) for box in boxes) > 0
     assert_array_equal(np.sort(np.concatenate(boxes)), np.arange(len(panels)))
+
+
+def test_a_factorisation_tells_how_far_it_is_and_can_be_ended():
+    shares = []
+    HilbertTransform.on(*narrow_u(), progress=shares.append)
+    assert shares[0] == 0
+    assert shares[-1] == 1
+    assert (np.diff(shares) > 0).all()
+    # Each is soon over: there are as many as boxes.
+    assert len(shares) > 60
+
+    def cancel(share):
+        if share > 0.1:
+            raise TimeoutError
+
+    with pytest.raises(TimeoutError):
+        HilbertTransform.on(*narrow_u(), progress=cancel)
