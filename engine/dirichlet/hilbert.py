@@ -16,7 +16,7 @@ the keyframes, and loses the bounds that Theorem 6 proves.
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple, Self
 
 import numpy as np
@@ -66,6 +66,9 @@ class HilbertTransform:
     ----------
     loops : tuple of complex128
         The outline, and those of holes.
+    centre : complex
+        From which the panels' places are told: far from the origin a hair's breadth beside an
+        outline would be lost in the rounding of coordinates.
     panels : Panels
     solver : SkeletonSolver
         From real parts at the nodes to densities.
@@ -74,6 +77,7 @@ class HilbertTransform:
     """
 
     loops: tuple[Complexes, ...]
+    centre: complex
     panels: Panels
     solver: SkeletonSolver
     means: Floats
@@ -101,19 +105,27 @@ class HilbertTransform:
             raises ends the work, and nothing of it is left.
         """
         loops = (outline, *(hole.outline for hole in holes))
-        return cls.of(loops, Panels.on(outline, cage, holes), progress)
+        centre = complex(outline.mean())
+        local = [
+            replace(hole, outline=hole.outline - centre, cage=hole.cage - centre) for hole in holes
+        ]
+        panels = Panels.on(outline - centre, cage - centre, local)
+        return cls.of(loops, panels, centre, progress)
 
     @classmethod
     def of(
         cls,
         loops: Sequence[Complexes],
         panels: Panels,
+        centre: complex = 0j,
         progress: Callable[[float], None] | None = None,
     ) -> Self:
-        """Factorise the integral equation on given panels of some loops."""
+        """Factorise the integral equation on given panels of some loops, told from a centre."""
         operator = BoundaryOperator.of(panels)
         solver = SkeletonSolver.of(operator, progress)
-        return cls(loops=tuple(loops), panels=panels, solver=solver, means=operator.means)
+        return cls(
+            loops=tuple(loops), centre=centre, panels=panels, solver=solver, means=operator.means
+        )
 
     @property
     def nbytes(self) -> int:
@@ -123,7 +135,7 @@ class HilbertTransform:
     @property
     def nodes(self) -> Complexes:
         """Points of the boundary (N,) at which real parts are given."""
-        return self.panels.nodes.ravel()
+        return self.centre + self.panels.nodes.ravel()
 
     def at(self, points: Complexes, *, single: bool = False) -> "Extension":
         """Prepare the evaluation at points (t,) of the closed domain.
@@ -131,7 +143,7 @@ class HilbertTransform:
         Time and memory grow with the number of points and nodes, and not with their product. In
         single precision, what is far from a point errs by 2e-7 of the largest density.
         """
-        inside = _strictly_inside(self.loops, points)
+        inside = _strictly_inside([loop - self.centre for loop in self.loops], points - self.centre)
         integral = CauchyIntegral.of(self.panels, inside, single=single)
         return Extension(transform=self, points=points, inside=inside, integral=integral)
 
@@ -146,7 +158,8 @@ class Extension:
     ----------
     transform : HilbertTransform
     points, inside : complex128, shape (t,)
-        And the same but for those on the boundary, which are a hair's breadth from there.
+        And the same from the transform's centre, but that those on the boundary are a hair's
+        breadth from there.
     integral : CauchyIntegral
         At the latter.
     """
@@ -219,8 +232,6 @@ def _strictly_inside(loops: Sequence[Complexes], points: Complexes) -> Complexes
     to_vertex = np.abs(z - corners)
     vertex = to_vertex.argmin(axis=1)
     at_corner = to_vertex[rows, vertex] < 4 * EDGE_DEPTH * size
-    # Far from the origin, no less than the rounding of the coordinates.
-    depth = max(CORNER_DEPTH * size, 8 * float(np.spacing(np.abs(corners).max())))
-    corner = corners[vertex] + depth * bisector[vertex]
+    corner = corners[vertex] + CORNER_DEPTH * size * bisector[vertex]
     moved[close] = np.where(at_corner, corner, inside)
     return moved

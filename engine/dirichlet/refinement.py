@@ -57,7 +57,7 @@ class Refinement:
     @property
     def nodes(self) -> Complexes:
         """Points of the boundary (N,) at which real parts are given."""
-        return self.panels.nodes.ravel()
+        return self.extension.transform.centre + self.panels.nodes.ravel()
 
     def extend(self, real_parts: Floats) -> Extended:
         """Return holomorphic functions with given real parts on the boundary.
@@ -87,7 +87,9 @@ class Refinement:
             )
         local = _Local(parts=parts, whole=whole, densities=2 * lacking)
         right = smooth.reshape(-1, columns)
-        right -= local.at(transform.nodes, np.repeat(np.arange(len(smooth)), NODES))[0].real
+        right -= local.at(transform.panels.nodes.ravel(), np.repeat(np.arange(len(smooth)), NODES))[
+            0
+        ].real
         means = local.means(transform.panels)
         right -= (transform.means > 0).T @ means
         densities = transform.solver(right)

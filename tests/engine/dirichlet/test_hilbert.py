@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from holed_shapes import Holed, inner_points as points_of, plate, ring
@@ -190,7 +192,9 @@ def test_panels_that_are_cut_resolve_what_varies_fast_there(shape):
     cut = [group[length[group].argmax()] for group in groups if len(group)]
     # A pole outside, nearer to each than it is long.
     poles = [
-        panels.origin[i] + (0.4 - 0.3j * (1 if panels.forward[i] else -1)) * panels.span[i]
+        transform.centre
+        + panels.origin[i]
+        + (0.4 - 0.3j * (1 if panels.forward[i] else -1)) * panels.span[i]
         for i in cut
     ]
     assert not contains(shape.outline, np.array(poles), holes=shape.loops[1:]).any()
@@ -216,12 +220,21 @@ def test_panels_that_are_cut_resolve_what_varies_fast_there(shape):
     assert np.abs(off).max() > 5e-4
 
 
-def test_far_from_the_origin_corners_are_kept_apart_from_their_rounding():
-    outline, cage = spiral()
-    far, around_it = outline + 2000 + 3000j, cage + 2000 + 3000j
-    transform = HilbertTransform.on(far, around_it)
-    found = transform.at(far).extend(np.cos(transform.nodes.real - 2000)[:, None])
-    assert np.isfinite(found.values).all()
+@pytest.mark.parametrize("shape", [Holed(*spiral(), holes=(), anchor=0j), ring()])
+def test_far_from_the_origin_nothing_is_lost_but_the_rounding_of_coordinates(shape):
+    far = 1e8 * (1 + 0.3j)
+    holes = [
+        replace(hole, outline=hole.outline + far, cage=hole.cage + far, centre=hole.centre + far)
+        for hole in shape.holes
+    ]
+    transform = HilbertTransform.on(shape.outline + far, shape.cage + far, holes)
+    middles = [loop + 0.5 * edges(loop) for loop in shape.loops]
+    points = far + np.concatenate([*shape.loops, *middles, points_of(shape, 60)])
+    values, slopes, _ = transform.at(points).extend(entire(transform.nodes - far)[0].real)
+    expected, expected_slopes = entire(points - far)
+    assert_allclose(without_constant(values), without_constant(expected), rtol=0, atol=1e-5)
+    corners = sum(map(len, shape.loops))
+    assert_allclose(slopes[corners:], expected_slopes[corners:], rtol=0, atol=2e-3)
 
 
 @pytest.mark.parametrize("power", [1, 3])
