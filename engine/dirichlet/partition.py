@@ -12,8 +12,8 @@ from engine.arrays import Floats, Indices
 from engine.dirichlet.panels import Panels
 from engine.geometry import as_xy
 
-DIRECTIONS = 4  # of the lines
-SMALLEST = 0.4  # part of the panels in either half
+DIRECTIONS = 8  # of the lines
+SMALLEST = 0.35  # part of the panels in either half
 
 
 def partition(panels: Panels, depth: int) -> list[Indices]:

@@ -11,7 +11,7 @@ crosses more of its arms the larger the box is, time grows with the power 3/2 of
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from typing import Self
+from typing import NamedTuple, Self
 
 import numpy as np
 import scipy.linalg
@@ -32,8 +32,7 @@ BLOCK = 2**18  # entries that are worked out at a time, so that they stay in cac
 SUMMED = 6  # random sums into which a row goes
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class SkeletonBox:
+class SkeletonBox(NamedTuple):
     """Nodes of which m are eliminated and r, their skeleton, are left.
 
     Parameters
@@ -54,12 +53,6 @@ class SkeletonBox:
     weights: Floats
     spread: Floats
     follow: Floats
-
-    @property
-    def nbytes(self) -> int:
-        """Memory that the arrays take, in bytes."""
-        arrays = (self.kept, self.others, self.weights, self.spread, self.follow)
-        return sum(array.nbytes for array in arrays)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -103,7 +96,7 @@ class SkeletonSolver:
         ]
         boxes = []
         while len(active) > 1 and sum(len(each.nodes) for each in active) > SMALL:
-            level = _Level.of(operator, active)
+            level = _Level(operator, active)
             skeletons, left = [], np.log2(len(active))
             for number, each in enumerate(active):
                 if progress is not None:  # each level takes about as long
@@ -124,8 +117,8 @@ class SkeletonSolver:
     @property
     def nbytes(self) -> int:
         """Memory that the arrays take, in bytes."""
-        own = self.rest.nbytes + self.top.nbytes + self.roots.nbytes
-        return own + sum(box.nbytes for box in self.boxes)
+        every = ((self.rest, self.top, self.roots), *self.boxes)
+        return sum(array.nbytes for arrays in every for array in arrays)
 
     def __call__(self, right: Floats) -> Floats:
         """Return the solutions for right-hand sides (N, j)."""
@@ -143,8 +136,7 @@ class SkeletonSolver:
         return values / self.roots[:, None]
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class _Active:
+class _Active(NamedTuple):
     """A box under work: its nodes, and the matrix between them."""
 
     nodes: Indices
@@ -152,15 +144,13 @@ class _Active:
 
     @classmethod
     def leaf(cls, operator: BoundaryOperator, nodes: Indices) -> Self:
-        return cls(nodes=nodes, block=operator.entries(nodes, nodes)[0])
+        return cls(nodes, operator.entries(nodes, nodes)[0])
 
     @classmethod
     def merged(cls, operator: BoundaryOperator, first: "_Active", second: "_Active") -> Self:
         forward, backward = operator.entries(first.nodes, second.nodes)
-        return cls(
-            nodes=np.concatenate([first.nodes, second.nodes]),
-            block=np.block([[first.block, forward], [backward.T, second.block]]),
-        )
+        block = np.block([[first.block, forward], [backward.T, second.block]])
+        return cls(np.concatenate([first.nodes, second.nodes]), block)
 
     def eliminated(self, sketch: Floats) -> tuple[SkeletonBox, "_Active"]:
         """Find the skeleton, and eliminate the other nodes.
@@ -168,28 +158,20 @@ class _Active:
         Pivots of an elimination of random sums are as good a skeleton as those of a QR
         decomposition, and found several times as fast (Dong and Martinsson 2023).
         """
-        places, lower, upper = scipy.linalg.lu(
-            sketch.T, p_indices=True, overwrite_a=True, check_finite=False
-        )
+        places, lower, upper = scipy.linalg.lu(sketch.T, p_indices=True, check_finite=False)
         order = np.argsort(places)
         # What is left before each step: the diagonal alone may be small by chance.
         sizes = np.linalg.norm(upper, axis=1) / np.sqrt(np.arange(len(upper), 0, -1))
         rank = 1 + int(np.flatnonzero(sizes >= TOLERANCE * sizes.max())[-1])
         # What acts on the others, and what they act on, is that of the skeleton times these.
         weights = scipy.linalg.solve_triangular(
-            lower[:rank, :rank],
-            lower[rank:, :rank].T,
-            trans="T",
-            lower=True,
-            unit_diagonal=True,
-            check_finite=False,
+            lower[:rank, :rank], lower[rank:, :rank].T, trans="T", lower=True, check_finite=False
         )
         block = self.block[order[:, None], order]
-        inner, to_kept = block[:rank, :rank], block[:rank, rank:]
-        from_kept = block[rank:, :rank]
+        inner, from_kept = block[:rank, :rank], block[rank:, :rank]
         # With x_kept = y_kept − weights y_others, and the same combinations of equations, nothing
         # outside acts on the others, nor they on it.
-        to_kept = to_kept - inner @ weights
+        to_kept = block[:rank, rank:] - inner @ weights
         rest = block[rank:, rank:] - from_kept @ weights - weights.T @ to_kept
         from_kept = from_kept - weights.T @ inner
         inverse = np.linalg.inv(rest)
@@ -202,23 +184,18 @@ class _Active:
             spread=freeze(np.concatenate([-onto, inverse])),
             follow=freeze(-inverse @ from_kept),
         )
-        return box, _Active(nodes=kept, block=inner - onto @ from_kept)
+        return box, _Active(kept, inner - onto @ from_kept)
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class _Level:
-    """All boxes of one level, as those around each see it."""
+    """All boxes of one level, as each sees those around it."""
 
-    operator: BoundaryOperator
-    box: Indices  # of each node, -1 where it is eliminated
-    random: np.random.Generator
-
-    @classmethod
-    def of(cls, operator: BoundaryOperator, active: list[_Active]) -> Self:
-        box = np.full(len(operator.nodes), -1)
+    def __init__(self, operator: BoundaryOperator, active: list[_Active]) -> None:
+        self._operator = operator
+        self._random = np.random.default_rng(0)
+        self._box = np.full(len(operator.nodes), -1)  # of each node that is not eliminated
         for number, each in enumerate(active):
-            box[each.nodes] = number
-        return cls(operator=operator, box=box, random=np.random.default_rng(0))
+            self._box[each.nodes] = number
 
     def sketch(self, nodes: Indices) -> Floats:
         """Return as many random sums as columns of what acts on a box and what it acts on."""
@@ -227,8 +204,8 @@ class _Level:
             # Each row goes with a random sign into a few sums (a sparse sign embedding; Martinsson
             # and Tropp 2020, Section 9.2).
             count = SUMMED * len(rows)
-            into = self.random.integers(len(sums), size=count)
-            signs = 1.0 - 2.0 * self.random.integers(2, size=count)
+            into = self._random.integers(len(sums), size=count)
+            signs = 1.0 - 2.0 * self._random.integers(2, size=count)
             starts = np.arange(0, count + 1, SUMMED)
             mixing = csc_array((signs, into, starts), (len(sums), len(rows)))
             sums += np.asarray(mixing @ rows)
@@ -236,7 +213,7 @@ class _Level:
 
     def _surroundings(self, nodes: Indices) -> Iterator[Floats]:
         """Yield what acts on a box from outside and what it acts on, in parts (a, n)."""
-        operator, panels = self.operator, self.operator.panels
+        operator, panels = self._operator, self._operator.panels
         middles, halves = panels.middles, np.abs(panels.span) / 2
         own = nodes // NODES
         low, high = middles[own].real.min(), middles[own].real.max()
@@ -244,8 +221,8 @@ class _Level:
         radius = CIRCLE * float((np.abs(middles[own] - centre) + halves[own]).max())
         near = np.flatnonzero(np.abs(middles - centre) < radius + halves)
         around = (NODES * near[:, None] + np.arange(NODES)).ravel()
-        box = self.box[around]
-        around = around[(box >= 0) & (box != self.box[nodes[0]])]
+        box = self._box[around]
+        around = around[(box >= 0) & (box != self._box[nodes[0]])]
         for start in range(0, len(around), max(1, BLOCK // len(nodes))):
             yield from operator.entries(around[start : start + max(1, BLOCK // len(nodes))], nodes)
         # A harmonic function inside the circle is one of charges on it, and outside it one of its

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 from holed_shapes import ring
-from interpolation_shapes import bar, letter_l, narrow_u, spiral
+from interpolation_shapes import around, bar, letter_l, narrow_u, spiral
 from numpy.testing import assert_allclose, assert_array_equal
 
 from engine.dirichlet.boundary_operator import BoundaryOperator
@@ -85,3 +85,33 @@ def test_a_factorisation_tells_how_far_it_is_and_can_be_ended():
 
     with pytest.raises(TimeoutError):
         HilbertTransform.on(*narrow_u(), progress=cancel)
+
+
+def wound(turns):
+    """Return a band of unit pitch, half as wide, that winds around itself so many times."""
+    angle = 2 * np.pi * np.linspace(1, 1 + turns, 14 * turns)
+    turn = np.exp(1j * angle)
+    sides = [(angle / (2 * np.pi) + offset) * turn for offset in (0.25, -0.25)]
+    outline = np.concatenate([sides[0], sides[1][::-1]])
+    return outline, around(outline, 0.06)
+
+
+def size_of(shape):
+    """Return the nodes of a solver, its bytes, and the largest rank."""
+    solver = SkeletonSolver.of(operator_on(shape, coarseness=1.0))
+    return len(solver.roots), solver.nbytes, max(len(box.kept) for box in solver.boxes)
+
+
+def test_sides_that_face_each_other_closely_take_little_more_a_node():
+    # Boxes along the outline took 16 times as much a node, and ranks of 3,000.
+    (nodes, wide, _), (more, narrow, rank) = size_of(narrow_u(1e-2)), size_of(narrow_u(1e-3))
+    assert narrow / more < 1.5 * wide / nodes
+    assert rank < 200
+
+
+def test_windings_take_little_more_a_node():
+    # Boxes along the outline took 5.4 times as much for the longer band, with ranks of 1,421.
+    (nodes, few, _), (more, many, rank) = size_of(wound(2)), size_of(wound(4))
+    assert 2 * nodes < more
+    assert many < 4 * few
+    assert rank < 500
