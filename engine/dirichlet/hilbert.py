@@ -94,15 +94,9 @@ class HilbertTransform:
         """Discretise and factorise the integral equation of an outline inside a cage, and holes.
 
         The number of nodes follows from the shape: it grows with the number of corners, and where
-        the outline comes near itself or near the cage. Time and memory grow with it.
-
-        Parameters
-        ----------
-        outline, cage : complex128, shapes (p,) and (n,)
-        holes : sequence of Hole
-        progress : callable
-            Called again and again with the share of the work that is done, from 0 to 1. What it
-            raises ends the work, and nothing of it is left.
+        the outline comes near itself or near the cage. Time and memory grow with it, and somewhat
+        faster where the outline fills an area. `progress` is called again and again with the share
+        of the work that is done, from 0 to 1; what it raises ends the work.
         """
         loops = (outline, *(hole.outline for hole in holes))
         centre = complex(outline.mean())

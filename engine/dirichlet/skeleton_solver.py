@@ -5,8 +5,8 @@ is acted upon, through few functions, so that some of its nodes (the skeleton) s
 A(box, outside) = U A(rows of the skeleton, outside), and likewise for columns. With the other nodes
 eliminated, the skeletons of two halves form a box of the next level, and so on, until the rest is
 small (Martinsson and Rokhlin 2005). What is far outside is represented by a circle around the box.
-Time and memory grow with the number of nodes; where an outline fills an area, so that each cut
-crosses more of its arms the larger the box is, time grows with the power 3/2 of it at most.
+Time and memory grow with the number of nodes, and faster where an outline fills an area, so that a
+cut crosses the more of its arms the larger a box is.
 """
 
 from collections.abc import Callable, Iterator
@@ -80,37 +80,25 @@ class SkeletonSolver:
     def of(
         cls, operator: BoundaryOperator, progress: Callable[[float], None] | None = None
     ) -> Self:
-        """Compress and eliminate level by level.
-
-        Parameters
-        ----------
-        progress : callable
-            Called before each box with the share of the work that is done; what it raises ends it.
-        """
+        """Compress and eliminate level by level; tell the share that is done before each box."""
         count = len(operator.panels)
         depth = max(0, round(np.log2(count * NODES / LEAF)))
         panels = np.arange(count * NODES).reshape(count, NODES)
-        active = [
-            _Active.leaf(operator, panels[part].ravel())
-            for part in partition(operator.panels, depth)
-        ]
+        leaves = [panels[part].ravel() for part in partition(operator.panels, depth)]
+        active = [_Active(nodes, operator.entries(nodes, nodes)[0]) for nodes in leaves]
         boxes = []
-        while len(active) > 1 and sum(len(each.nodes) for each in active) > SMALL:
-            level = _Level(operator, active)
-            skeletons, left = [], np.log2(len(active))
-            for number, each in enumerate(active):
-                if progress is not None:  # each level takes about as long
-                    progress(1 - (left - number / len(active)) / depth)
-                box, skeleton = each.eliminated(level.sketch(each.nodes))
-                boxes.append(box)
-                skeletons.append(skeleton)
-            pairs = zip(skeletons[::2], skeletons[1::2], strict=True)
+        while len(active) > 1:
+            if sum(len(each.nodes) for each in active) > SMALL:
+                level, left = _Level(operator, active), np.log2(len(active))
+                for number, each in enumerate(active):
+                    if progress is not None:  # each level takes about as long
+                        progress(1 - (left - number / len(active)) / depth)
+                    box, active[number] = each.eliminated(level.sketch(each.nodes))
+                    boxes.append(box)
+            pairs = zip(active[::2], active[1::2], strict=True)
             active = [_Active.merged(operator, *pair) for pair in pairs]
         if progress is not None:
             progress(1.0)
-        while len(active) > 1:
-            pairs = zip(active[::2], active[1::2], strict=True)
-            active = [_Active.merged(operator, *pair) for pair in pairs]
         top: Floats = np.asarray(np.linalg.inv(active[0].block), dtype=np.float64)
         return cls(boxes=tuple(boxes), rest=active[0].nodes, top=freeze(top), roots=operator.roots)
 
@@ -141,10 +129,6 @@ class _Active(NamedTuple):
 
     nodes: Indices
     block: Floats
-
-    @classmethod
-    def leaf(cls, operator: BoundaryOperator, nodes: Indices) -> Self:
-        return cls(nodes, operator.entries(nodes, nodes)[0])
 
     @classmethod
     def merged(cls, operator: BoundaryOperator, first: "_Active", second: "_Active") -> Self:
