@@ -6,6 +6,7 @@ from collections.abc import Sequence, Set as AbstractSet
 import numpy as np
 
 from app.document import Clip, Pose, Transit, Variant, resting_pose, time_of, transits
+from app.errors import tell
 from engine.arrays import Complexes
 from engine.dirichlet import Extension, HilbertTransform
 from engine.domain import Domain
@@ -85,7 +86,9 @@ class PoseSampler:
         with self._transform_lock:
             if self._transform is None:
                 self._transform = (
-                    HilbertTransform.on(self.domain.outline, self.domain.cage, self.domain.holes)
+                    HilbertTransform.on(
+                        self.domain.outline, self.domain.cage, self.domain.holes, progress=tell
+                    )
                     if self._sibling is None
                     else self._sibling.transform
                 )
