@@ -5,9 +5,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from engine.arrays import Floats, Indices, readonly
-from engine.deform.barrier import with_samples_between
-from engine.deform.newton import Direction, Sketch, line_search, sketched_direction
-from engine.deform.objective import Jet, Objective
+from engine.deform.model import (
+    Direction,
+    Jet,
+    Objective,
+    Sketch,
+    line_search,
+    sketched_direction,
+    with_samples_between,
+)
 from engine.maps import Boundary, Certificate, HarmonicMap, Limits, certify_segments
 
 # No point of the shape moves farther (of L) in one step: removed handles make no jump.

@@ -21,10 +21,9 @@ from typing import NamedTuple
 import numpy as np
 
 from engine.arrays import Complexes, Floats
-from engine.deform.barrier import Barrier, Walls
 from engine.deform.certified_step import CertifiedStep, add_samples, take_certified_step
 from engine.deform.handles import Handles, Wish
-from engine.deform.objective import Jet, Objective
+from engine.deform.model import Barrier, Jet, Objective, Walls
 from engine.deform.rest import MOST_STEPS, WORTH_A_JUMP, Search, Way, advance, begin_search, opens
 from engine.deform.state import State, Statistics, Status
 from engine.deform.steering import (

@@ -5,7 +5,7 @@ from enum import Enum
 
 from engine.arrays import Floats
 from engine.deform.handles import Handles, Wish
-from engine.deform.newton import Sketch
+from engine.deform.model import Sketch
 from engine.deform.rest import ActiveBound, Search, Way
 from engine.deform.steering import Schedule
 from engine.maps import Boundary, Certificate, HarmonicMap, Limits

@@ -8,7 +8,7 @@ import numpy as np
 
 from engine.arrays import Complexes, Floats
 from engine.deform.handles import Handles, Wish
-from engine.deform.objective import Jet
+from engine.deform.model import Jet
 from engine.maps import Certificate, HarmonicMap, Limits
 
 # The leash: a handle is pulled towards a point at most this far (of L) ahead of it, and turned by

@@ -16,9 +16,7 @@ from typing import NamedTuple
 import numpy as np
 
 from engine.arrays import Indices, readonly
-from engine.deform.barrier import Barrier, Walls
-from engine.deform.newton import SHORTEST
-from engine.deform.objective import Jet, Objective
+from engine.deform.model import SHORTEST, Barrier, Jet, Objective, Walls
 from engine.deform.rest.curved_step import CAUGHT, CurvedStep, curved_step, radial_changes
 from engine.deform.rest.opening import FIRST_REACH, next_reach, room
 from engine.deform.rest.optimality import Optimality

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from engine.arrays import Floats
-from engine.deform.barrier import Barrier
+from engine.deform.model import Barrier
 from engine.maps import Boundary, Limits
 
 # A bound is active when moving it all the way to the identity would, to first order, cost more than

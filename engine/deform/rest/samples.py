@@ -11,8 +11,7 @@ from dataclasses import replace
 import numpy as np
 
 from engine.arrays import Floats, Indices
-from engine.deform.barrier import Walls, with_samples_between
-from engine.deform.objective import Jet
+from engine.deform.model import Jet, Walls, with_samples_between
 from engine.deform.rest.search import Search
 from engine.deform.steering import MARGIN
 from engine.maps import Enclosures, Limits

@@ -6,8 +6,8 @@ from enum import Enum
 import numpy as np
 
 from engine.arrays import Floats
-from engine.deform.barrier import Walls
 from engine.deform.handles import Handles, Wish
+from engine.deform.model import Walls
 from engine.deform.rest.opening import room
 from engine.deform.rest.optimality import Optimality
 from engine.maps import Boundary, Certificate, HarmonicMap, Limits

@@ -5,8 +5,8 @@ from deform_shapes import STAR_POINTS, star_boundary
 from numpy.testing import assert_allclose
 
 from engine.deform import Handles
-from engine.deform.barrier import Barrier, Walls
-from engine.deform.objective import Objective
+from engine.deform.model.barrier import Barrier, Walls
+from engine.deform.model.objective import Objective
 from engine.deform.steering import (
     IDLE_AT_REST,
     LEASH,

@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 from engine.arrays import Floats, Indices, freeze
-from engine.deform.energy import Radial
+from engine.deform.model.energy import Radial
 from engine.maps import Limits
 
 # A dual variable stays within this factor of weight / c. Measured: with much more, samples whose
