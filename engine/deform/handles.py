@@ -33,6 +33,12 @@ class Wish(NamedTuple):
     positions: Complexes
     rotations: Floats
 
+    def is_same(self, other: "Wish | None") -> bool:
+        """Tell whether another wish asks for the same."""
+        return other is not None and all(
+            np.array_equal(one, two, equal_nan=True) for one, two in zip(self, other, strict=True)
+        )
+
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Handles:

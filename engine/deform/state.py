@@ -111,6 +111,10 @@ class State:
         Of this search and of those that are still to come.
     outcome : Search or None
         The best of the searches that are over.
+    steps : int
+        Newton steps of the search that found the map; 0 on the way of a drag.
+    tried : int
+        Those of the searches that are over.
     """
 
     map: HarmonicMap
@@ -127,3 +131,5 @@ class State:
     search: Search | None = None
     ways: tuple[Way, ...] = ()
     outcome: Search | None = None
+    steps: int = 0
+    tried: int = 0

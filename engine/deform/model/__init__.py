@@ -6,6 +6,7 @@ Imports: `engine.maps`, and the handles of `engine.deform`.
 """
 
 from engine.deform.model.barrier import (
+    MARGIN as MARGIN,
     Barrier as Barrier,
     Walls as Walls,
     with_samples_between as with_samples_between,

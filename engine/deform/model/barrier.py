@@ -21,6 +21,8 @@ from engine.maps import Limits
 # A dual variable stays within this factor of weight / c. Measured: with much more, samples whose
 # dual variable has all but vanished stop every step by curvature that the Hessian does not see.
 DUAL_RANGE = 100.0
+# Walls stand inside the limits by this part of the way to the identity.
+MARGIN = 3e-4
 
 
 class Walls(NamedTuple):

@@ -105,6 +105,11 @@ class Objective:
                 value += self.turning_stiffness @ self.turning_angles(jet) ** 2
         return np.inf if np.isnan(value) else float(value)
 
+    def handle_error(self, jet: Jet) -> float:
+        """Return the root mean square distance of the handles from their targets, over L."""
+        errors = np.abs(jet.positions - self.wish.positions)
+        return float(np.sqrt(np.mean(errors**2))) / self.boundary.size if len(errors) else 0.0
+
     def within(self, jet: Jet) -> bool:
         """Tell whether the samples are strictly within the walls."""
         if self.barrier is None:

@@ -18,8 +18,8 @@ import numpy as np
 from engine.arrays import Indices, readonly
 from engine.deform.model import SHORTEST, Barrier, Jet, Objective, Walls
 from engine.deform.rest.curved_step import CAUGHT, CurvedStep, curved_step, radial_changes
-from engine.deform.rest.opening import FIRST_REACH, next_reach, room
 from engine.deform.rest.optimality import Optimality
+from engine.deform.rest.rungs import FIRST_REACH, next_reach, rung
 from engine.deform.rest.samples import resolved, walls_around
 from engine.deform.rest.search import Search, Way
 from engine.maps import (
@@ -34,9 +34,9 @@ from engine.maps import (
 # Weight of the barrier at the start: over the energy where that is large, and at least.
 FIRST_PER_ENERGY = 0.1
 FIRST_LEAST = 10.0
-# The same from the present map, which stays in its valley, and at least where walls have opened.
+# The same from the present map, which stays in its valley, and at least where walls have widened.
 HERE_PER_ENERGY = 1e-2
-OPENED_PER_ENERGY = 0.03
+WIDENED_PER_ENERGY = 0.03
 # The weight falls by this factor when the model expects less than a part of it as a gain: a small
 # part while the weight is above this part of the energy. There the valley is chosen; later, and
 # from the present map, the way is a matter of digits.
@@ -59,7 +59,7 @@ SKETCHED = 1e-3
 STRIDE = 4
 # Less slack than this cannot be told from none: the wall is moved this far away.
 ROUNDING_SLACK = 1e-11
-REOPENED = 1e-9
+MOVED_OUT = 1e-9
 # A step whose map is not certified is halved this many times.
 HALVINGS = 6
 
@@ -89,7 +89,7 @@ def begin_search(
     """
     jet = objective.jet(*harmonic_map.columns)
     energy = objective.energy(jet)
-    reach = FIRST_REACH if way is Way.OPENING else inf
+    reach = FIRST_REACH if way is Way.WIDENING else inf
     return Search(
         handles=objective.handles,
         wish=objective.wish,
@@ -100,7 +100,7 @@ def begin_search(
         limits=limits,
         inside=inside,
         reach=reach,
-        walls=walls_around(room(inside, reach), limits, jet.a, jet.b),
+        walls=walls_around(rung(inside, reach), limits, jet.a, jet.b),
         weight=HERE_PER_ENERGY * energy if way is Way.HERE else _first_weight(energy),
         energy=energy,
     )
@@ -133,7 +133,7 @@ def advance(search: Search) -> Search:
     )
     search = replace(search, optimality=_optimality(search, reached, step.barrier))
     if is_centred(search, convex=step.convex):
-        search = lowered(search) if search.is_open else opened(search, reached)
+        search = lowered(search) if search.is_widest else widened(search, reached)
     return resolved(search, reached, taken.enclosures, broken)
 
 
@@ -153,9 +153,9 @@ def _objective(search: Search) -> tuple[Objective, Barrier, Jet]:
         # What the last step left of it is less than the rounding of this measurement.
         k, sigma_b, sigma_a = search.walls.k, search.walls.sigma_b, search.walls.sigma_a
         walls = Walls(
-            k=np.where(too_near[0], np.maximum(k, b / a + REOPENED), k),
-            sigma_a=np.where(too_near[2], np.maximum(sigma_a, a + b + REOPENED), sigma_a),
-            sigma_b=np.where(too_near[1], np.minimum(sigma_b, a - b - REOPENED), sigma_b),
+            k=np.where(too_near[0], np.maximum(k, b / a + MOVED_OUT), k),
+            sigma_a=np.where(too_near[2], np.maximum(sigma_a, a + b + MOVED_OUT), sigma_a),
+            sigma_b=np.where(too_near[1], np.minimum(sigma_b, a - b - MOVED_OUT), sigma_b),
         )
         barrier = replace(barrier, walls=walls)
     return replace(objective, barrier=barrier), barrier, jet
@@ -196,7 +196,7 @@ def _optimality(search: Search, jet: Jet, barrier: Barrier) -> Optimality:
         energy=search.energy,
         boundary=search.boundary,
         barrier=barrier,
-        bounds=search.room,
+        bounds=search.rung,
     )
 
 
@@ -217,11 +217,11 @@ def lowered(search: Search) -> Search:
     return replace(search, weight=max(LOWER * search.weight, least))
 
 
-def opened(search: Search, jet: Jet) -> Search:
+def widened(search: Search, jet: Jet) -> Search:
     """Return the search with its walls on the next rung."""
-    weight = max(LOWER * search.weight, OPENED_PER_ENERGY * search.energy)
+    weight = max(LOWER * search.weight, WIDENED_PER_ENERGY * search.energy)
     wider = replace(search, reach=next_reach(search.inside, search.reach), weight=weight)
-    walls = walls_around(wider.room, wider.limits, jet.a, jet.b)
+    walls = walls_around(wider.rung, wider.limits, jet.a, jet.b)
     return replace(wider, walls=walls)
 
 

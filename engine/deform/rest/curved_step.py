@@ -226,8 +226,8 @@ def _brought_back(start: _Start, change: Direction) -> tuple[Direction | None, B
         if count == CORRECTIONS or not missing < HALVED * before:
             break
         low = share < 2 * KEPT
-        lacking = np.where(low, (start.duals / start.margins) * (left - slacks * sums), 0.0)
-        by_a, b_per_b = barrier.margin_gradient(a, -objective.boundary.shares * lacking)
+        restored = np.where(low, (start.duals / start.margins) * (left - slacks * sums), 0.0)
+        by_a, b_per_b = barrier.margin_gradient(a, -objective.boundary.shares * restored)
         samples = np.flatnonzero(low.any(axis=0))
         gradient = objective.sampled_gradient(start.jet, by_a, b_per_b, samples)
         change = change.plus(start.model.direction(gradient))

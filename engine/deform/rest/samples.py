@@ -11,9 +11,8 @@ from dataclasses import replace
 import numpy as np
 
 from engine.arrays import Floats, Indices
-from engine.deform.model import Jet, Walls, with_samples_between
+from engine.deform.model import MARGIN, Jet, Walls, with_samples_between
 from engine.deform.rest.search import Search
-from engine.deform.steering import MARGIN
 from engine.maps import Enclosures, Limits
 
 # The wall of a sample that is beyond them stands this part of its way to the bound farther out.
@@ -61,8 +60,8 @@ def resolved(search: Search, jet: Jet, enclosures: Enclosures, broken: Indices) 
     excess = ((proven - ends) / allowed).max(axis=0)
     excess[broken] = np.inf
     most = int(MOST_SAMPLES * np.count_nonzero(boundary.weights))
-    room = max(most - len(a), len(broken))
-    worst = np.argsort(-excess, kind="stable")[:room]
+    free = max(most - len(a), len(broken))
+    worst = np.argsort(-excess, kind="stable")[:free]
     segments = np.sort(worst[excess[worst] > 1.0])
     if len(segments) == 0:
         return search
@@ -70,7 +69,7 @@ def resolved(search: Search, jet: Jet, enclosures: Enclosures, broken: Indices) 
     new = segments + np.arange(len(segments)) + 1
     alone = boundary.span.without_constant(search.map.coefficients)
     f, g = (finer.derivatives[new] @ alone).T
-    walls = walls_around(search.room, limits, np.abs(f), np.abs(g))
+    walls = walls_around(search.rung, limits, np.abs(f), np.abs(g))
     duals = search.duals
     if duals is not None:
         duals = with_samples_between(duals, segments, boundary.following[segments])

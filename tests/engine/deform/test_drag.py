@@ -19,9 +19,9 @@ from hypothesis import given, settings, strategies as st
 from numpy.testing import assert_allclose, assert_array_equal
 from pictures import stick_figure
 
-from engine.deform import Deformer, Handles, Status
+from engine.deform import Deformer, Handles, Status, following
 from engine.deform.certified_step import FARTHEST, add_samples
-from engine.deform.deformer import STRIDE
+from engine.deform.following import STRIDE
 from engine.domain.build import build_domain
 from engine.domain.outline.cage import offset_cage
 from engine.errors import EngineError
@@ -179,7 +179,7 @@ def test_a_sketched_hessian_follows_the_hand_like_the_whole_one(monkeypatch):
     jitter = np.random.default_rng(101).normal(size=(25, 6, 2)) @ [1, 1j]
     means = []
     for stride in (STRIDE, 1):
-        monkeypatch.setattr("engine.deform.deformer.STRIDE", stride)
+        monkeypatch.setattr("engine.deform.following.STRIDE", stride)
         state, energies = deformer.start(), []
         for moved in np.cumsum(0.025 * jitter, axis=0):
             state = deformer.step(state, deformer.handles.wish(points + moved))
@@ -196,7 +196,7 @@ def test_dual_variables_follow_the_steps_of_a_drag():
     for _ in range(6):
         state = deformer.step(state, wish)
     # Nothing is in the way: dual · c = weight of the barrier is all but reached.
-    step = deformer._prepare(state, wish)
+    step = following._prepare(deformer, state, wish)
     products = step.barrier.duals * step.barrier.margins(step.jet.a, step.jet.b)
     assert_allclose(products, step.barrier.weight, rtol=0.05)
 

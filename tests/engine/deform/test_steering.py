@@ -11,10 +11,10 @@ from engine.deform.steering import (
     IDLE_AT_REST,
     LEASH,
     Schedule,
-    closing_limits,
     cut_to_leash,
     limits_for,
     place_walls,
+    tightening_limits,
 )
 from engine.maps import Bounds, Certificate, Limits
 
@@ -68,12 +68,12 @@ def test_limits_close_in_and_never_open():
     assert wide.k > 0.7
     assert wide.sigma_a > 2.5
     assert wide.sigma_b < 0.3
-    nearer = closing_limits(BOUNDS, wide, np.array([1.5]), np.array([0.9]))
+    nearer = tightening_limits(BOUNDS, wide, np.array([1.5]), np.array([0.9]))
     assert 0.6 < nearer.k < 0.7
     assert nearer.sigma_a < wide.sigma_a
     assert nearer.sigma_b == BOUNDS.sigma_b
-    assert closing_limits(BOUNDS, nearer, np.array([1.6]), np.array([1.1])).k == nearer.k
-    assert closing_limits(BOUNDS, nearer, A, B) == BOUNDS
+    assert tightening_limits(BOUNDS, nearer, np.array([1.6]), np.array([1.1])).k == nearer.k
+    assert tightening_limits(BOUNDS, nearer, A, B) == BOUNDS
 
 
 def test_limits_may_be_far_from_the_identity():

@@ -8,9 +8,9 @@ from deform_shapes import search_from_rest
 from numpy.testing import assert_allclose, assert_array_equal
 
 from engine.deform import Objective
-from engine.deform.rest import Way, advance, opens
+from engine.deform.rest import Way, advance, exceeds_first_rung
 from engine.deform.rest.continuation import AT_A_SADDLE, CENTRED, LOWER, is_centred, lowered
-from engine.deform.rest.opening import FIRST_REACH
+from engine.deform.rest.rungs import FIRST_REACH
 from engine.deform.rest.samples import resolved
 from engine.maps import Bounds, segment_enclosures
 
@@ -82,17 +82,17 @@ def test_the_weight_falls_where_little_is_left_to_gain_but_not_at_a_saddle():
 
 def test_walls_open_from_rungs_that_do_not_depend_on_the_bounds():
     wide, wider = (
-        search_from_rest(0, Way.OPENING, Bounds(k=k, sigma_a=4.0, sigma_b=0.2)) for k in (0.7, 0.8)
+        search_from_rest(0, Way.WIDENING, Bounds(k=k, sigma_a=4.0, sigma_b=0.2)) for k in (0.7, 0.8)
     )
-    rungs = [wide.room]
-    while not wide.is_open and wide.steps < 60:
+    rungs = [wide.rung]
+    while not wide.is_widest and wide.steps < 60:
         # As long as walls stand on the same rungs, both go the same way, bit for bit.
         wide, wider = advance(wide), advance(wider)
         assert not wide.has_arrived
         assert wide.certificate.certified
-        if wide.room != rungs[-1]:
-            rungs.append(wide.room)
-        elif wide.room == wider.room:
+        if wide.rung != rungs[-1]:
+            rungs.append(wide.rung)
+        elif wide.rung == wider.rung:
             assert_array_equal(wide.map.phi, wider.map.phi)
     assert len(rungs) >= 3
     assert_allclose([rungs[0].sigma_a, 1 / rungs[0].sigma_b], np.exp(FIRST_REACH), rtol=1e-12)
@@ -100,5 +100,5 @@ def test_walls_open_from_rungs_that_do_not_depend_on_the_bounds():
         assert looser.allow(k=tight.k, sigma_a=tight.sigma_a, sigma_b=tight.sigma_b)
     assert rungs[-1] == wide.inside
     # Within bounds as tight as the first rung there is nothing to open.
-    assert not opens(Bounds(k=0.2, sigma_a=1.3, sigma_b=0.8))
-    assert opens(Bounds(k=0.2, sigma_a=1.6, sigma_b=0.8))
+    assert not exceeds_first_rung(Bounds(k=0.2, sigma_a=1.3, sigma_b=0.8))
+    assert exceeds_first_rung(Bounds(k=0.2, sigma_a=1.6, sigma_b=0.8))

@@ -14,13 +14,13 @@ FIRST_REACH = 0.35
 WIDER = 1.4
 
 
-def opens(limits: Limits) -> bool:
+def exceeds_first_rung(limits: Limits) -> bool:
     """Tell whether limits are wider than the first rung."""
-    first = room(limits, FIRST_REACH)
+    first = rung(limits, FIRST_REACH)
     return not first.allow(k=limits.k, sigma_a=limits.sigma_a, sigma_b=limits.sigma_b)
 
 
-def room(inside: Limits, reach: float) -> Limits:
+def rung(inside: Limits, reach: float) -> Limits:
     """Return limits, at most as wide as a rung.
 
     Parameters
@@ -40,4 +40,4 @@ def room(inside: Limits, reach: float) -> Limits:
 def next_reach(inside: Limits, reach: float) -> float:
     """Return the reach of the rung after this one, infinite where it is wide enough."""
     wider = WIDER * reach
-    return wider if room(inside, wider) != inside else inf
+    return wider if rung(inside, wider) != inside else inf
