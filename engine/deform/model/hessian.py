@@ -125,15 +125,15 @@ def _add(
     single: bool = False,
 ) -> None:
     """Add samples, and further rows of φ, to a Hessian; on request in single precision."""
-    n, u = len(objective.boundary.span), len(hessian)
+    r, u = objective.boundary.basis.shape[1], len(hessian)
     by_phi, by_psi, cross = _roots(objective, jet, quadrature, more, single=single)
     of_phi, of_psi = by_phi.T @ by_phi, by_psi.T @ by_psi
     across = by_psi[: len(cross)]
     across *= cross[:, None]
     mixed = by_phi[: len(cross)].T @ across
-    hessian[: 2 * n, : 2 * n] += of_phi
-    hessian[2 * n :, 2 * n :] += of_psi[: u - 2 * n, : u - 2 * n]
-    hessian[: 2 * n, 2 * n :] += mixed[:, : u - 2 * n]
+    hessian[: 2 * r, : 2 * r] += of_phi
+    hessian[2 * r :, 2 * r :] += of_psi[: u - 2 * r, : u - 2 * r]
+    hessian[: 2 * r, 2 * r :] += mixed[:, : u - 2 * r]
     if objective.boundary.holes:
         _fold_logarithms(objective, hessian, mixed, of_psi)
 
@@ -145,9 +145,9 @@ def _fold_logarithms(objective: Objective, hessian: Reals, mixed: Reals, of_psi:
     ----------
     hessian : float64, shape (u, u)
         Its upper triangle is changed.
-    mixed : float32 or float64, shape (2n, 2n − 2)
+    mixed : float32 or float64, shape (2r, 2r − 2)
         Between the parts of φ and those of ψ_1, ψ_2, …
-    of_psi : float32 or float64, shape (2n − 2, 2n − 2)
+    of_psi : float32 or float64, shape (2r − 2, 2r − 2)
     """
     count = 2 * len(objective.boundary.holes)
     sign = np.tile([1.0, -1.0], count // 2)  # a conjugate has the other imaginary part
@@ -159,7 +159,7 @@ def _fold_logarithms(objective: Objective, hessian: Reals, mixed: Reals, of_psi:
 
 
 def negative_part(objective: Objective, jet: Jet, radial: Radial) -> Floats:
-    """Return what the projection removed from the Hessian of φ, (2n, 2n).
+    """Return what the projection removed from the Hessian of φ, (2r, 2r).
 
     `projected_hessian` minus this is the exact Hessian; it need not be positive.
     """
@@ -219,7 +219,7 @@ def _quadrature(objective: Objective, radial: Radial) -> "_Quadrature":
     Calm ones stand for their neighbours that were added, and in a sketch for more.
     """
     entries = _entries(radial)
-    m, n = len(objective.boundary.points), len(objective.boundary.span)
+    m, n = len(objective.boundary.points), objective.boundary.basis.shape[1]
     own, loops = objective.boundary.own_samples
     first, middles, sketched = [], [], False
     for (start, end), cage in zip(pairwise(loops), objective.boundary.span.cages, strict=True):

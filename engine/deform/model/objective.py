@@ -10,7 +10,7 @@ matrices need no rearrangement.
 Around q holes the last q entries of φ are the logarithms' a_j, scaled, and those of ψ their
 conjugates: ψ's are no unknowns, and what they contribute is folded onto φ's. Constants on the cage
 of a hole, which change no map, have a stiffness of their own (`Handles`), and steps never change
-them. In all there are u = 4 n − 2 − 2 q real unknowns for the n functions of the span.
+them. In all there are u = 4 r − 2 − 2 q real unknowns for the r functions of the basis.
 """
 
 from dataclasses import dataclass
@@ -70,11 +70,11 @@ class Objective:
         )
 
     def _in_basis(self, unknowns: Floats) -> tuple[Complexes, Complexes]:
-        """Return φ and ψ (n,) in the basis."""
-        n, count = len(self.boundary.span), len(self.boundary.holes)
+        """Return φ and ψ (r,) in the basis."""
+        r, count = self.boundary.basis.shape[1], len(self.boundary.holes)
         conjugates = np.ascontiguousarray(unknowns).view(np.complex128).conj()
-        of_phi = conjugates[:n]
-        of_psi = np.concatenate([[0.0], conjugates[n:], of_phi[n - count :].conj()])
+        of_phi = conjugates[:r]
+        of_psi = np.concatenate([[0.0], conjugates[r:], of_phi[r - count :].conj()])
         return of_phi, of_psi
 
     def jet(self, phi: Complexes, psi: Complexes) -> Jet:
@@ -156,7 +156,7 @@ class Objective:
         return self.by_unknowns(by_phi, by_psi)
 
     def by_unknowns(self, by_phi: Complexes, by_psi: Complexes) -> Floats:
-        """Return a gradient (u,) from what multiplies φ and ψ (n,), logarithms included."""
+        """Return a gradient (u,) from what multiplies φ and ψ (r,), logarithms included."""
         count = len(self.boundary.holes)
         if count:
             by_phi[-count:] += by_psi[-count:].conj()
@@ -169,7 +169,7 @@ class Objective:
 
     @cached_property
     def turning_rows(self) -> Complexes:
-        """The derivatives of the basis at these handles, complex128 (t, n)."""
+        """The derivatives of the basis at these handles, complex128 (t, r)."""
         return self.handles.basis_derivatives[self.turning]
 
     def turning_angles(self, jet: Jet) -> Floats:

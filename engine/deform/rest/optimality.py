@@ -12,9 +12,12 @@ from engine.arrays import Floats
 from engine.deform.model import Barrier
 from engine.maps import Boundary, Limits
 
-# A bound is active when moving it all the way to the identity would, to first order, cost more than
-# this part of the energy.
+# A bound is active when moving it all the way to the identity, or at least by a tenth, would, to
+# first order, cost more than this part of the energy; and when what it holds back is so many times
+# what the barrier itself does: next to the identity it is twice that where nothing is held back.
 ACTIVE = 1e-4
+LEAST_MOVED = 0.1
+PRESSING = 3.0
 
 
 class ActiveBound(NamedTuple):
@@ -65,7 +68,8 @@ class Optimality(NamedTuple):
         bounds: Limits,
     ) -> "Optimality":
         """Measure a map by a = |f_z| and b = |f_z̄| (m,) at the samples, and by its last step."""
-        complementarity = 3.0 * barrier.weight * float(boundary.shares.sum())
+        weight = barrier.weight * float(boundary.shares.sum())
+        complementarity = 3.0 * weight
         multipliers = boundary.shares * (barrier.weight / barrier.margins(a, b))
         walls = barrier.walls
         # The derivatives of c = u² − b² by the bound, away from the identity.
@@ -79,6 +83,7 @@ class Optimality(NamedTuple):
             active=tuple(
                 ActiveBound(name, float(price.sum()), complex(boundary.points[price.argmax()]))
                 for (name, way), price in zip(ways.items(), prices, strict=True)
-                if price.sum() * way > ACTIVE * energy
+                if price.sum() * max(way, LEAST_MOVED) > ACTIVE * energy
+                and price.sum() * way > PRESSING * weight
             ),
         )

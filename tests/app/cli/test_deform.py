@@ -3,6 +3,7 @@ import re
 import numpy as np
 import pytest
 from deform_shapes import STAR_POINTS, star_boundary
+from interpolation_shapes import subdivided
 from numpy.testing import assert_allclose
 
 from app.cli.main import main
@@ -112,6 +113,8 @@ DOUBLE = np.array([0.0, 0.0])
     [
         ({"handles": None}, "lacks the array 'handles'"),
         ({"handles": STAR_POINTS + 5}, "outside the outline"),
+        ({"handles": STAR_POINTS + 1e-3 + 5, "cage": CAGE[::-1]}, "outside the outline"),
+        ({"cage": subdivided(CAGE, 0.01)}, "vertices, and more than 400 .* coarser cage"),
         ({"targets": np.full(6, np.nan)}, "finite"),
         ({"targets": STAR_POINTS[:3]}, "as many targets"),
         ({"handles": DOUBLE, "targets": np.array([0, 1.0])}, "same point"),

@@ -16,6 +16,7 @@ from deform_shapes import (
     star_boundary,
 )
 from hypothesis import given, settings, strategies as st
+from interpolation_shapes import subdivided
 from numpy.testing import assert_allclose, assert_array_equal
 from pictures import stick_figure
 
@@ -27,6 +28,7 @@ from engine.domain.outline.cage import offset_cage
 from engine.errors import EngineError
 from engine.maps import Boundary, Bounds
 from engine.maps.harmonic_map import HarmonicMap
+from engine.maps.span import Span
 
 BOUNDS = Bounds()
 BENT = BAR_POINTS + np.array([0, 0.3j, 0])
@@ -419,7 +421,8 @@ def test_bad_handles_are_refused(points, weights, message):
     [
         ([0.0], None, "as many targets"),
         ([0.0, np.inf], None, "finite"),
-        ([0.0, 1.0], None, "same point"),
+        ([0.0, 1.0], None, "same point .* different targets"),
+        ([0.0, 0.0], [0.5, -0.5], "same point .* different rotations"),
         ([0.0, 0.0], [0.0], "angles"),
         ([0.0, 0.0], [np.inf, 0.0], "angles"),
     ],
@@ -428,6 +431,25 @@ def test_bad_wishes_are_refused(targets, rotations, message):
     handles = Handles.place(star_boundary(), [0.1, 0.1])
     with pytest.raises(EngineError, match=message):
         handles.wish(targets, rotations)
+
+
+def test_handles_that_nobody_can_tell_apart_are_at_one_point():
+    handles = Handles.place(star_boundary(), [0.1, 0.1 + 1e-7])
+    with pytest.raises(EngineError, match="same point"):
+        handles.wish([0.1, 0.2])
+    # As far from each other as bounds allow, and turned by a whole turn, they ask for the same.
+    handles.wish([0.1, 0.1 + 1e-6], [0.5, 0.5 + 2 * np.pi])
+    handles.wish([0.1, 0.1], [0.5, np.nan])
+
+
+def test_a_cage_of_too_many_vertices_is_refused_in_words():
+    outline = star_boundary().outline
+    boundary = replace(star_boundary(), span=Span(cage=subdivided(star_boundary().cage, 0.01)))
+    with pytest.raises(EngineError, match="790 vertices, and more than 400"):
+        Handles.place(boundary, [0.0])
+    with pytest.raises(EngineError, match="is outside the outline"):
+        # Before the cage, which is upside down, is so much as looked at.
+        Deformer.on(outline, boundary.cage[:3], [5.0], BOUNDS)
 
 
 def test_handles_at_one_point_with_one_target_work():

@@ -308,6 +308,18 @@ def test_a_search_that_is_given_up_says_so(monkeypatch):
     assert_sound(state, TIGHT)
 
 
+@pytest.mark.parametrize("play", [1e-2, 1e-4, 1e-6])
+def test_bounds_next_to_the_identity_hold_back(play):
+    rigid = Bounds(k=play, sigma_a=1 + play, sigma_b=1 - play)
+    state = settled(star(rigid), TWISTED)
+    assert state.status is Status.AT_LIMITS
+    assert state.statistics.active
+    # And nothing where the wish is rigid.
+    state = settled(star(rigid), np.exp(0.5j) * STAR_POINTS + 1)
+    assert state.status is Status.CONVERGED
+    assert state.statistics.active == ()
+
+
 def test_bounds_that_hold_nothing_back_are_not_active():
     state = settled(star(), STAR_POINTS + np.array([0, 0.2j, 0.1, 0, 0, -0.1]))
     assert state.status is Status.CONVERGED
