@@ -6,7 +6,11 @@ Imports: `engine.maps`, `engine.geometry`.
 """
 
 from engine.deform.deformer import Deformer as Deformer
-from engine.deform.handles import Handles as Handles, Wish as Wish
+from engine.deform.handles import (
+    Handles as Handles,
+    Wish as Wish,
+    require_held as require_held,
+)
 from engine.deform.model import (
     Objective as Objective,
     line_search as line_search,

@@ -39,8 +39,6 @@ class CertifiedStep:
     direction : Direction
     length : float
         Part of the direction that was taken; 0 where no map along it could be certified.
-    refusals : int
-        Maps that were tried and not certified.
     broken : Indices
         The segments where the first of them broke a bound.
     sketch : Sketch or None
@@ -52,7 +50,6 @@ class CertifiedStep:
     jet: Jet
     direction: Direction
     length: float
-    refusals: int
     broken: Indices
     sketch: Sketch | None
 
@@ -100,7 +97,6 @@ def take_certified_step(
         jet=jet,
         direction=direction,
         length=length if refusals < HALVINGS else 0.0,
-        refusals=refusals,
         broken=broken,
         sketch=sketch if refusals == 0 and length > FAR_FROM_WALLS else None,
     )

@@ -5,24 +5,18 @@ The objective is the symmetric Dirichlet energy with stiff handles and a barrier
 the minimum is searched for along several ways (`settling`), and the pose of least energy is kept.
 """
 
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Self
 
-import numpy as np
-import numpy.typing as npt
-
-from engine.arrays import Complexes, Floats, as_points
+from engine.arrays import Complexes
 from engine.deform.following import follow_hand
-from engine.deform.handles import Handles, Wish, require_held
+from engine.deform.handles import Wish
 from engine.deform.held_shape import HeldShape
 from engine.deform.rest import Way
 from engine.deform.settling import begin_searches, search_on
 from engine.deform.state import State, Status
 from engine.deform.steering import FULL, LEASH, limits_for
 from engine.errors import EngineError
-from engine.geometry import Hole
-from engine.maps import Boundary, Bounds, HarmonicMap, certify
+from engine.maps import HarmonicMap, certify
 
 # One row of a recorded path: so many steps, or until the expected gain is below this.
 PATH_STEPS = 10
@@ -46,29 +40,6 @@ class Deformer(HeldShape):
     handles : Handles
     bounds : Bounds
     """
-
-    @classmethod
-    def on(
-        cls,
-        outline: npt.ArrayLike,
-        cage: npt.ArrayLike,
-        points: npt.ArrayLike,
-        bounds: Bounds,
-        *,
-        holes: Sequence[Hole] = (),
-    ) -> Self:
-        """Return the deformer of a shape with handles at some points.
-
-        Raises
-        ------
-        EngineError
-            As `Handles.place`, before the outline is sampled, and `Boundary.sample`.
-        """
-        outline, cage = as_points(outline, "outline", at_least=3), as_points(cage, "cage")
-        points = as_points(points, "handles")
-        require_held(points, outline, cage, holes)
-        boundary = Boundary.sample(outline, cage, holes)
-        return cls(boundary=boundary, handles=Handles.place(boundary, points), bounds=bounds)
 
     def start(self, harmonic_map: HarmonicMap | None = None) -> State:
         """Return the state of a drag that starts from a map, by default the identity.
@@ -120,13 +91,6 @@ class Deformer(HeldShape):
         coordinates = self.handles.coordinates
         phi, psi = state.map.columns
         return coordinates @ phi + (coordinates @ psi).conj()
-
-    def rotations(self, state: State) -> Floats:
-        """Return the closest rotation arg f_z at each handle now, float64 (h,), in radians."""
-        phi, _ = state.map.columns
-        alone = self.boundary.span.without_constant(phi)
-        angles: Floats = np.angle(self.handles.derivatives @ alone)
-        return angles
 
     def step(self, state: State, wish: Wish) -> State:
         """Take one Newton step towards a wish; the new state's map is certified like the old.

@@ -100,8 +100,7 @@ class Handles:
             If a point is outside the outline or not finite, a weight is not positive, or the cages
             have too many vertices.
         """
-        points = as_points(points, "handles")
-        require_held(points, boundary.outline, boundary.cage, boundary.holes)
+        points = require_held(points, boundary.outline, boundary.cage, boundary.holes)
         stiffness = _weights(weights, len(points)) * STIFFNESS / boundary.size**2
         coordinates = boundary.span.coordinates(points)
         derivatives = boundary.span.derivatives(points)
@@ -167,9 +166,14 @@ def _told_twice(i: int, j: int, what: str) -> EngineError:
 
 
 def require_held(
-    points: Complexes, outline: Complexes, cage: Complexes, holes: Sequence[Hole]
-) -> None:
-    """Raise `EngineError` unless points can hold a shape, before anything is sampled."""
+    points: npt.ArrayLike, outline: npt.ArrayLike, cage: npt.ArrayLike, holes: Sequence[Hole]
+) -> Complexes:
+    """Return the points of handles, or raise `EngineError` unless they can hold a shape.
+
+    Nothing needs to be sampled before.
+    """
+    points, cage = as_points(points, "handles"), as_points(cage, "cage", at_least=3)
+    outline = as_points(outline, "outline", at_least=3)
     count = len(cage) + sum(len(hole.cage) for hole in holes)
     if count > MOST_VERTICES:
         raise EngineError(
@@ -179,6 +183,7 @@ def require_held(
     inner = [hole.outline for hole in holes]
     near = OUTSIDE * box_diagonal(outline)
     require_inside(outline, points, "handle", holes=inner, tolerance=near)
+    return points
 
 
 def _weights(weights: npt.ArrayLike | None, count: int) -> Floats:

@@ -183,11 +183,7 @@ def _statistics(objective: Objective, jet: Jet, search: Search, outcome: Search)
         handle_error=objective.handle_error(jet),
         decrement=search.gain,
         length=search.length,
-        barrier_weight=search.weight,
-        leash=1.0,
         leashed=False,
-        refusals=search.refusals,
-        samples=len(search.boundary.points),
         optimality=outcome.optimality.measure,
         active=outcome.optimality.active,
     )

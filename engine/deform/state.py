@@ -49,14 +49,8 @@ class Statistics:
         Gain that Newton's model expected of the whole step.
     length : float
         Part of the step that was taken.
-    barrier_weight : float
-    leash : float
-        Part of it that was paid out.
     leashed : bool
         Whether the leash held handles back.
-    refusals : int
-        Maps that were tried and not certified.
-    samples : int
     optimality : float
         Expected gain and complementarity of the bounds over the objective: 0 at a minimum, infinite
         where it is not known.
@@ -69,11 +63,7 @@ class Statistics:
     handle_error: float
     decrement: float
     length: float
-    barrier_weight: float
-    leash: float
     leashed: bool
-    refusals: int
-    samples: int
     optimality: float
     active: tuple[ActiveBound, ...]
 

@@ -10,7 +10,7 @@ import numpy.typing as npt
 from app.cli.hole_arrays import HOLE_ARRAYS, hole_arrays, read_holes
 from app.errors import LissomError
 from app.storage import check_writable, read_arrays, write_arrays
-from engine.deform import Deformer
+from engine.deform import Deformer, Handles, require_held
 from engine.maps import Boundary, Bounds, HarmonicMap
 
 LIMITS = ("k_max", "sigma_a_max", "sigma_b_min")
@@ -26,11 +26,12 @@ def run(arguments: argparse.Namespace) -> int:
     )
     k, sigma_a, sigma_b = (_scalar(case, name) for name in LIMITS)
     bounds = Bounds(k=k, sigma_a=sigma_a, sigma_b=sigma_b)
-    deformer = Deformer.on(
-        case["outline"], case["cage"], case["handles"], bounds, holes=read_holes(case)
-    )
-    boundary, handles = deformer.boundary, deformer.handles
+    outline, cage, holes = case["outline"], case["cage"], read_holes(case)
+    points = require_held(case["handles"], outline, cage, holes)
+    boundary = Boundary.sample(outline, cage, holes)
+    handles = Handles.place(boundary, points)
     wishes = [handles.wish(row) for row in _rows(case, len(handles.points))]
+    deformer = Deformer(boundary=boundary, handles=handles, bounds=bounds)
     state, tried = deformer.start(_start(case, boundary)), 0
     for wish in wishes[:-1]:
         state, count = deformer.follow(state, wish)

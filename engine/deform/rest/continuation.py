@@ -115,7 +115,7 @@ def advance(search: Search) -> Search:
     with the whole Hessian, 24 m n² for m samples.
     """
     objective, barrier, jet = _objective(search)
-    step, taken, refusals, broken = _certified(search, curved_step(objective, barrier, jet))
+    step, taken, broken = _certified(search, curved_step(objective, barrier, jet))
     changes = radial_changes(jet, step.direction)
     reached = jet.advanced(1.0, step.change.jet)
     search = replace(
@@ -129,7 +129,6 @@ def advance(search: Search) -> Search:
         length=step.length,
         caught=search.caught + 1 if step.length < CAUGHT else 0,
         gain=step.gain,
-        refusals=refusals,
     )
     search = replace(search, optimality=_optimality(search, reached, step.barrier))
     if is_centred(search, convex=step.convex):
@@ -169,20 +168,20 @@ class _Proven(NamedTuple):
     enclosures: Enclosures
 
 
-def _certified(search: Search, step: CurvedStep) -> tuple[CurvedStep, _Proven, int, Indices]:
-    """Shorten a step until its map is certified; return refusals and broken segments, too."""
+def _certified(search: Search, step: CurvedStep) -> tuple[CurvedStep, _Proven, Indices]:
+    """Shorten a step until its map is certified; return broken segments, too."""
     broken = np.empty(0, np.intp)
     refusals = 0
     while step.length > SHORTEST and refusals <= HALVINGS:
         tried = search.map.changed(step.change.phi, step.change.psi)
         proof, segments, enclosures = certify_segments(tried, search.boundary, search.limits)
         if proof.certified:
-            return step, _Proven(tried, proof, enclosures), refusals, broken
+            return step, _Proven(tried, proof, enclosures), broken
         broken = np.union1d(broken, segments)
         refusals += 1
         step = step.shorter()
     enclosures = segment_enclosures(search.map, search.boundary)
-    return step.given_up(), _Proven(search.map, search.certificate, enclosures), refusals, broken
+    return step.given_up(), _Proven(search.map, search.certificate, enclosures), broken
 
 
 def _optimality(search: Search, jet: Jet, barrier: Barrier) -> Optimality:

@@ -81,8 +81,6 @@ class Search:
         Part of the last step that was taken.
     gain : float
         What the model expected of it.
-    refusals : int
-        Maps of the last step that were not certified.
     caught : int
         Steps in a row that were hardly taken.
     optimality : Optimality
@@ -110,7 +108,6 @@ class Search:
     steps: int = 0
     length: float = 1.0
     gain: float = np.inf
-    refusals: int = 0
     caught: int = 0
     optimality: Optimality = field(default_factory=Optimality)
     turn: float = 0.0

@@ -6,13 +6,14 @@ from itertools import pairwise
 import numpy as np
 from deform_shapes import search_from_rest
 from numpy.testing import assert_allclose, assert_array_equal
+from shapes import regular_polygon
 
-from engine.deform import Objective
+from engine.deform import Deformer, Handles, Objective, Status
 from engine.deform.rest import Way, advance, exceeds_first_rung
 from engine.deform.rest.continuation import AT_A_SADDLE, CENTRED, LOWER, is_centred, lowered
 from engine.deform.rest.rungs import FIRST_REACH
 from engine.deform.rest.samples import resolved
-from engine.maps import Bounds, segment_enclosures
+from engine.maps import Boundary, Bounds, segment_enclosures
 
 
 def measured(search):
@@ -102,3 +103,16 @@ def test_walls_open_from_rungs_that_do_not_depend_on_the_bounds():
     # Within bounds as tight as the first rung there is nothing to open.
     assert not exceeds_first_rung(Bounds(k=0.2, sigma_a=1.3, sigma_b=0.8))
     assert exceeds_first_rung(Bounds(k=0.2, sigma_a=1.6, sigma_b=0.8))
+
+
+def test_a_cage_that_is_denser_than_it_is_far_comes_to_rest():
+    # Its functions nearly depend on each other: steps along what they hardly show at the samples
+    # bent so much between these that every search doubled its samples and got nowhere.
+    boundary = Boundary.sample(regular_polygon(40), regular_polygon(160, 1.4))
+    assert boundary.basis.shape[1] < 80
+    handles = Handles.place(boundary, [-0.7, 0.0, 0.7])
+    deformer = Deformer(boundary=boundary, handles=handles, bounds=Bounds())
+    wish = handles.wish([-0.7, 0.2j, 0.7])
+    state, _ = deformer.settle(deformer.start(), wish, at_most=60)
+    assert state.status is Status.CONVERGED
+    assert len(state.outcome.boundary.points) <= 4 * len(boundary.points)
