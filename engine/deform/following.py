@@ -17,7 +17,7 @@ from engine.arrays import Floats
 from engine.deform.certified_step import CertifiedStep, add_samples, take_certified_step
 from engine.deform.handles import Wish
 from engine.deform.held_shape import HeldShape
-from engine.deform.model import Barrier, Jet, Objective, Walls
+from engine.deform.model import Barrier, Jet, Objective
 from engine.deform.state import State, Statistics, Status
 from engine.deform.steering import Schedule, cut_to_leash, place_walls, tightening_limits
 from engine.maps import Bounds, Certificate, Limits
@@ -105,7 +105,7 @@ def _prepare(shape: HeldShape, state: State, wish: Wish) -> _Step:
     jet = free.jet(*state.map.columns)
     a, b = jet.a, jet.b
     limits = tightening_limits(shape.bounds, state.limits, a, b)
-    limits_of_walls, required = place_walls(limits, a, b, state.certificate)
+    walls, required = place_walls(limits, a, b, state.certificate)
     same = wish.is_same(state.wish)
     schedule = state.schedule if same else state.schedule.for_new_wish()
     tightening = limits is not shape.bounds
@@ -118,7 +118,6 @@ def _prepare(shape: HeldShape, state: State, wish: Wish) -> _Step:
         handles = shape.handles
         wish, leashed = cut_to_leash(handles, shape.boundary.size, schedule.leash, jet, wish)
     # On the way into the bounds the walls move with the map, and dual variables would lag.
-    walls = Walls.around(limits_of_walls, len(a))
     barrier = Barrier(
         walls=walls, weight=schedule.weight, duals=None if tightening else state.duals
     )

@@ -8,7 +8,7 @@ import numpy as np
 
 from engine.arrays import Complexes, Floats
 from engine.deform.handles import Handles, Wish
-from engine.deform.model import MARGIN, Jet
+from engine.deform.model import MARGIN, Jet, Walls
 from engine.maps import Certificate, HarmonicMap, Limits
 
 # The leash: a handle is pulled towards a point at most this far (of L) ahead of it, and turned by
@@ -218,24 +218,31 @@ def tightening_limits(bounds: Limits, before: Limits, a: Floats, b: Floats) -> L
 
 def place_walls(
     limits: Limits, a: Floats, b: Floats, certificate: Certificate
-) -> tuple[Limits, Limits]:
-    """Return the walls of the barrier, and the bounds that the next map must keep everywhere."""
+) -> tuple[Walls, Limits]:
+    """Return the walls of the samples, and the bounds that the next map must keep everywhere."""
     inner = limits.towards_identity(MARGIN)
-    k, sigma_a, sigma_b = _extremes(a, b)
+    k, sigma_a, sigma_b = b / a, a + b, a - b
     rounding = LEAST_SLACK * sigma_a
     # A map may start between the walls and the limits.
-    walls = Limits(
-        k=max(inner.k, k + max((limits.k - k) / 4, LEAST_SLACK)),
-        sigma_a=max(inner.sigma_a, sigma_a + max((limits.sigma_a - sigma_a) / 4, rounding)),
-        sigma_b=min(inner.sigma_b, sigma_b - max((sigma_b - limits.sigma_b) / 4, rounding)),
+    walls = Walls(
+        k=np.maximum(inner.k, k + np.maximum((limits.k - k) / 4, LEAST_SLACK)),
+        sigma_a=np.maximum(
+            inner.sigma_a, sigma_a + np.maximum((limits.sigma_a - sigma_a) / 4, rounding)
+        ),
+        sigma_b=np.minimum(
+            inner.sigma_b, sigma_b - np.maximum((sigma_b - limits.sigma_b) / 4, rounding)
+        ),
     )
-    required = Limits(
-        k=walls.k - KEPT * (walls.k - k),
-        sigma_a=walls.sigma_a - KEPT * (walls.sigma_a - sigma_a),
-        sigma_b=walls.sigma_b - KEPT * (walls.sigma_b - sigma_b),
+    outermost, required = (
+        Limits(
+            k=float((walls.k - kept * (walls.k - k)).max()),
+            sigma_a=float((walls.sigma_a - kept * (walls.sigma_a - sigma_a)).max()),
+            sigma_b=float((walls.sigma_b - kept * (walls.sigma_b - sigma_b)).min()),
+        )
+        for kept in (0.0, KEPT)
     )
     # Between its samples the present map may have less slack than that.
-    for asked in (required, walls, limits.towards_identity(ROUNDING)):
+    for asked in (required, outermost, limits.towards_identity(ROUNDING)):
         within = limits.allow(k=asked.k, sigma_a=asked.sigma_a, sigma_b=asked.sigma_b)
         if within and asked.allow(
             k=certificate.k, sigma_a=certificate.sigma_a, sigma_b=certificate.sigma_b

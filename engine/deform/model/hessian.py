@@ -43,14 +43,6 @@ class _Quadrature(NamedTuple):
     entries: Floats
     hard: int = 0
 
-    def split(self) -> tuple["_Quadrature", "_Quadrature"]:
-        """Return those that are not hard, and those that are."""
-        calm = len(self.samples) - self.hard
-        return (
-            _Quadrature(self.samples[:calm], self.entries[:, :calm]),
-            _Quadrature(self.samples[calm:], self.entries[:, calm:]),
-        )
-
 
 def projected_hessian(objective: Objective, jet: Jet, radial: Radial) -> Floats:
     """Return the positive semidefinite part of the Hessian (u, u), upper triangle.
@@ -63,11 +55,20 @@ def projected_hessian(objective: Objective, jet: Jet, radial: Radial) -> Floats:
     is a quadrature, coarser than that of energy and gradient, and in single precision but for
     the hard ones. Cost: 24 s n² for s samples.
     """
-    calm, hard = _quadrature(objective, radial).split()
+    samples, entries, hard = _quadrature(objective, radial)
+    last = len(samples) - hard
+    calm = _Quadrature(samples[:last], entries[:, :last])
     hessian = objective.handles.hessian.copy()
-    _add(objective, hessian, jet, calm, _further_rows(objective, jet, calm), single=True)
-    if len(hard.samples):
-        _add(objective, hessian, jet, hard)
+    _add(
+        objective,
+        hessian,
+        jet,
+        calm,
+        [*_turning_roots(objective, jet), _damping_root(objective, jet, calm)],
+        single=True,
+    )
+    if hard:
+        _add(objective, hessian, jet, _Quadrature(samples[last:], entries[:, last:]))
     return hessian
 
 
@@ -81,7 +82,7 @@ def single_hessian(objective: Objective, jet: Jet, radial: Radial) -> Singles | 
     if quadrature.hard or objective.boundary.holes or len(objective.wish.positions) < 2:
         return None
     hessian = objective.handles.hessian.astype(np.float32)
-    further = _further_rows(objective, jet, quadrature)
+    further = [*_turning_roots(objective, jet), _damping_root(objective, jet, quadrature)]
     _add(objective, hessian, jet, quadrature, further, single=True)
     return hessian
 
@@ -101,7 +102,7 @@ def hessian_product(objective: Objective, jet: Jet, radial: Radial, change: Jet)
     rows, coordinates = objective.boundary.basis_derivatives, objective.handles.basis_coordinates
     by_phi = (by_f * frame_f) @ rows + pull.conj() @ coordinates
     by_psi = (by_g * frame_g) @ rows + pull @ coordinates
-    for frame in _turning_frames(objective, jet):
+    for frame in objective.turning_frames(jet):
         along = (frame * change.fz[objective.turning]).real
         by_phi += (along * frame) @ objective.turning_rows
     return objective.by_unknowns(by_phi, by_psi)
@@ -249,11 +250,6 @@ def _quadrature(objective: Objective, radial: Radial) -> "_Quadrature":
     )
 
 
-def _further_rows(objective: Objective, jet: Jet, calm: "_Quadrature") -> list[Complexes]:
-    """Return rows of φ that are no samples', and enter the Hessian with the calm ones."""
-    return [*_turning_roots(objective, jet), _damping_root(objective, jet, calm)]
-
-
 def _damping_root(objective: Objective, jet: Jet, calm: "_Quadrature") -> Complexes:
     """Return the row of a tiny stiffness against turning as a whole.
 
@@ -266,27 +262,9 @@ def _damping_root(objective: Objective, jet: Jet, calm: "_Quadrature") -> Comple
 
 
 def _turning_roots(objective: Objective, jet: Jet, *, removed: bool = False) -> list[Complexes]:
-    """Return the rows of φ of `_turning_frames`."""
-    frames = _turning_frames(objective, jet, removed=removed)
+    """Return the rows of φ of `Objective.turning_frames`."""
+    frames = objective.turning_frames(jet, removed=removed)
     return [frame[:, None] * objective.turning_rows for frame in frames]
-
-
-def _turning_frames(objective: Objective, jet: Jet, *, removed: bool = False) -> list[Complexes]:
-    """Return what multiplies dF of handles in rows: the projected Hessian of their rotations.
-
-    With dF / F = x + iy the term c δ² has the Hessian 2c [[0, −δ], [−δ, 1]]; its eigenvalues
-    are c (1 ± root) with root² = 1 + 4 δ², for the vectors (−2δ, 1 ± root). The negative one is
-    what the projection removed.
-    """
-    if not objective.turning.any():
-        return []
-    delta = objective.turning_angles(jet)
-    root = np.sqrt(1.0 + 4.0 * delta**2)
-    eigenvalue = 1.0 - root if removed else 1.0 + root
-    # x vx + y vy = Re((vx − i vy) dF / F).
-    length = np.maximum(np.hypot(2.0 * delta, eigenvalue), np.finfo(np.float64).tiny)
-    scale = np.sqrt(objective.turning_stiffness * np.abs(eigenvalue)) / length
-    return [scale * (-2.0 * delta - 1j * eigenvalue) / jet.fz[objective.turning]]
 
 
 def _frames(f: Complexes, g: Complexes) -> tuple[Complexes, Complexes]:

@@ -177,3 +177,20 @@ class Objective:
         wished = np.exp(-1j * self.wish.rotations[self.turning])
         angles: Floats = np.angle(jet.fz[self.turning] * wished)
         return angles
+
+    def turning_frames(self, jet: Jet, *, removed: bool = False) -> list[Complexes]:
+        """Return what multiplies dF of handles in rows: the projected Hessian of their rotations.
+
+        With dF / F = x + iy the term c δ² has the Hessian 2c [[0, −δ], [−δ, 1]]; its eigenvalues
+        are c (1 ± root) with root² = 1 + 4 δ², for the vectors (−2δ, 1 ± root). The negative one is
+        what the projection removed.
+        """
+        if not self.turning.any():
+            return []
+        delta = self.turning_angles(jet)
+        root = np.sqrt(1.0 + 4.0 * delta**2)
+        eigenvalue = 1.0 - root if removed else 1.0 + root
+        # x vx + y vy = Re((vx − i vy) dF / F).
+        length = np.maximum(np.hypot(2.0 * delta, eigenvalue), np.finfo(np.float64).tiny)
+        scale = np.sqrt(self.turning_stiffness * np.abs(eigenvalue)) / length
+        return [scale * (-2.0 * delta - 1j * eigenvalue) / jet.fz[self.turning]]

@@ -82,7 +82,7 @@ def begin_search(
     harmonic_map, certificate
         Where it begins; the shape at rest, unless the way is from the present map.
     inside : Limits
-        Where the walls of the shape's own samples stand.
+        Where the walls of all samples stand.
     limits : Limits
         That the certificates are for, the one at the start included.
     way : Way
@@ -90,6 +90,7 @@ def begin_search(
     jet = objective.jet(*harmonic_map.columns)
     energy = objective.energy(jet)
     reach = FIRST_REACH if way is Way.WIDENING else inf
+    own = Walls.around(inside, len(jet.a))
     return Search(
         handles=objective.handles,
         wish=objective.wish,
@@ -98,9 +99,9 @@ def begin_search(
         certificate=certificate,
         boundary=objective.boundary,
         limits=limits,
-        inside=inside,
+        inside=own,
         reach=reach,
-        walls=walls_around(rung(inside, reach), limits, jet.a, jet.b),
+        walls=walls_around(rung(own, reach), limits, jet.a, jet.b),
         weight=HERE_PER_ENERGY * energy if way is Way.HERE else _first_weight(energy),
         energy=energy,
     )

@@ -10,7 +10,7 @@ from engine.arrays import Floats
 from engine.deform.handles import Handles, Wish
 from engine.deform.model import Walls
 from engine.deform.rest.optimality import Optimality
-from engine.deform.rest.rungs import rung
+from engine.deform.rest.rungs import is_same, rung
 from engine.maps import Boundary, Certificate, HarmonicMap, Limits
 
 # Expected gain and complementarity, over the energy: a minimum.
@@ -66,8 +66,8 @@ class Search:
         With the samples that were added.
     limits : Limits
         What the certificates are for.
-    inside : Limits
-        Where the walls of the shape's own samples stand in the end.
+    inside : Walls
+        Where the walls of the samples stand in the end, but for those that are beyond.
     reach : float
         Of the rung that the walls stand on (`rungs.rung`).
     walls : Walls
@@ -99,7 +99,7 @@ class Search:
     certificate: Certificate
     boundary: Boundary
     limits: Limits
-    inside: Limits
+    inside: Walls
     reach: float
     walls: Walls
     weight: float
@@ -115,14 +115,14 @@ class Search:
     best: "Search | None" = None
 
     @property
-    def rung(self) -> Limits:
-        """Where the walls of the shape's own samples stand now."""
+    def rung(self) -> Walls:
+        """Where they stand now."""
         return rung(self.inside, self.reach)
 
     @property
     def is_widest(self) -> bool:
         """Whether the walls stand where they will in the end."""
-        return self.rung == self.inside
+        return is_same(self.rung, self.inside)
 
     @property
     def has_arrived(self) -> bool:

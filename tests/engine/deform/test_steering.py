@@ -5,7 +5,7 @@ from deform_shapes import STAR_POINTS, star_boundary
 from numpy.testing import assert_allclose
 
 from engine.deform import Handles
-from engine.deform.model.barrier import Barrier, Walls
+from engine.deform.model.barrier import MARGIN, Barrier
 from engine.deform.model.objective import Objective
 from engine.deform.steering import (
     IDLE_AT_REST,
@@ -52,15 +52,16 @@ def test_a_drag_without_progress_is_at_rest():
 
 def test_a_step_keeps_some_slack_of_the_map():
     walls, required = place_walls(BOUNDS, A, B, certificate())
-    assert 0.25 < required.k < walls.k < BOUNDS.k
-    assert 1.5 < required.sigma_a < walls.sigma_a < BOUNDS.sigma_a
-    assert 0.9 > required.sigma_b > walls.sigma_b > BOUNDS.sigma_b
+    assert 0.25 < required.k < walls.k[1] < BOUNDS.k
+    assert 1.5 < required.sigma_a < walls.sigma_a[1] < BOUNDS.sigma_a
+    assert 0.9 > required.sigma_b > walls.sigma_b[1] > BOUNDS.sigma_b
     # A map that has less slack between its samples may keep it.
     walls, required = place_walls(BOUNDS, A, B, certificate(k=0.4999))
     assert required.k >= 0.4999
-    # One between walls and bounds at a sample gets walls around it.
-    walls, _ = place_walls(BOUNDS, np.array([1.0]), np.array([0.49999]), certificate())
-    assert 0.49999 < walls.k < 0.5
+    # A sample between walls and bounds gets walls around it, and another one keeps its own.
+    walls, _ = place_walls(BOUNDS, np.ones(2), np.array([0.49999, 0.1]), certificate())
+    assert 0.49999 < walls.k[0] < 0.5
+    assert walls.k[1] == BOUNDS.towards_identity(MARGIN).k
 
 
 def test_limits_close_in_and_never_open():
@@ -127,7 +128,7 @@ def test_the_barrier_is_convex_for_a_map_at_its_limits_to_the_last_digit():
         at_limits = Limits(k=k, sigma_a=sigma_a, sigma_b=sigma_b)
         held = certificate(k=k, sigma_a=sigma_a, sigma_b=sigma_b)
         walls, required = place_walls(at_limits, a, b, held)
-        barrier = Barrier(walls=Walls.around(walls, 1), weight=1e-2)
+        barrier = Barrier(walls=walls, weight=1e-2)
         assert np.all(barrier.slacks(a, b) > 0)
         bent = barrier.derivatives(a, b)
         assert bent.aa > 0
