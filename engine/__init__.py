@@ -42,6 +42,6 @@ The deformer follows Chen and Weber, *Bounded Distortion Harmonic Mappings in th
 
     2015            bounds k, σ_a, σ_b               engine.maps.bounds.Bounds
     2015, Th. 4     certificate in the whole domain  engine.maps.certificate.certify
-    2017            symmetric Dirichlet energy       engine.deform.energy.symmetric_dirichlet
-    2017            Newton step, projected Hessian   engine.deform.newton.newton_direction
+    2017            symmetric Dirichlet energy       engine.deform.model.energy.symmetric_dirichlet
+    2017            Newton step, projected Hessian   engine.deform.model.newton.newton_direction
 """

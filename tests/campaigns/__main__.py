@@ -20,6 +20,7 @@ CAMPAIGNS = {
     "kills": ("processes killed", 1200),
     "faults": ("full disks and ended windows", 200),
     "shapes": ("shapes", 500),
+    "minima": ("requests", 96),
     "soak": ("minutes in the window", 30),
     "readers": ("files tampered with", 11_000),
 }
