@@ -6,7 +6,11 @@ Imports: `engine.maps`, `engine.geometry`.
 """
 
 from engine.deform.deformer import Deformer as Deformer
-from engine.deform.handles import Handles as Handles, Wish as Wish
+from engine.deform.handles import (
+    MOST_HANDLES as MOST_HANDLES,
+    Handles as Handles,
+    Wish as Wish,
+)
 from engine.deform.newton import line_search as line_search, newton_direction as newton_direction
 from engine.deform.objective import Objective as Objective
 from engine.deform.rest import ActiveBound as ActiveBound

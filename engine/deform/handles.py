@@ -17,6 +17,7 @@ STIFFNESS = 1e4
 ARM = 0.02
 # Handles nearer than this (of L) are one point, and cannot be in two places.
 COINCIDENT = 1e-9
+MOST_HANDLES = 1_000
 
 
 class Wish(NamedTuple):
@@ -88,6 +89,11 @@ class Handles:
             If a point is outside the outline or not finite, or a weight is not positive.
         """
         points = as_points(points, "handles")
+        if len(points) > MOST_HANDLES:
+            raise EngineError(
+                f"{len(points):,} handles are too many, as their memory grows with their square; "
+                f"give at most {MOST_HANDLES:,}."
+            )
         require_inside(
             boundary.outline,
             points,
