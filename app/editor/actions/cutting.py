@@ -9,7 +9,6 @@ import numpy as np
 from app.document import figure_commands
 from app.editor.action import do
 from app.editor.actions import editing
-from app.editor.dialogs import FileDialog
 from app.editor.failures import ask_worker
 from app.editor.project import Project
 from app.editor.session import CutTool, Session, with_project
@@ -131,13 +130,7 @@ def forget_strokes(session: Session) -> None:
 
 def ask_mask(session: Session) -> None:
     """Ask which mask to load."""
-    session.dialog = FileDialog(
-        title="Load a mask",
-        folder=session.usual_folder,
-        suffixes=MASKS,
-        writes=False,
-        chosen=lambda path: do(load_mask, path),
-    )
+    session.ask_file("Load a mask", MASKS, lambda path: do(load_mask, path))
 
 
 @with_project
@@ -156,14 +149,8 @@ def load_mask(session: Session, project: Project, path: Path) -> None:
 @with_project
 def ask_mask_path(session: Session, project: Project) -> None:
     """Ask where to save the mask."""
-    session.dialog = FileDialog(
-        title="Save the mask",
-        folder=session.usual_folder,
-        name=f"{project.name} mask.png",
-        suffixes=MASKS,
-        writes=True,
-        chosen=lambda path: do(save_mask, path),
-    )
+    name = f"{project.name} mask.png"
+    session.ask_file("Save the mask", MASKS, lambda path: do(save_mask, path), name=name)
 
 
 @with_project

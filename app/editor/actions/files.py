@@ -1,7 +1,7 @@
 """Opening pictures and projects."""
 
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from functools import cache, lru_cache
 from pathlib import Path
@@ -11,7 +11,7 @@ from app.document import Document, History, Meshing, clip_of
 from app.editor.action import Action, do
 from app.editor.actions import cutting, playback, saving
 from app.editor.actions.saving import PROJECT
-from app.editor.dialogs import FileDialog, Leftover, Question, Recovery
+from app.editor.dialogs import Leftover, Question, Recovery
 from app.editor.failures import ask_worker, sentence
 from app.editor.project import Project, Puppet
 from app.editor.session import Session
@@ -122,13 +122,7 @@ class Opened(NamedTuple):
 
 def ask_open(session: Session) -> None:
     """Ask for a picture or a project."""
-    session.dialog = FileDialog(
-        title="Open image or project",
-        folder=session.usual_folder,
-        suffixes=OPENABLE,
-        writes=False,
-        chosen=lambda path: do(open_file, path),
-    )
+    session.ask_file("Open image or project", OPENABLE, lambda path: do(open_file, path))
 
 
 def open_file(session: Session, path: Path) -> None:
@@ -138,11 +132,7 @@ def open_file(session: Session, path: Path) -> None:
     """
     meshing = session.meshing
     kind = Kind(shown_name(f"Opening {path.name}"), f"{path.name} cannot be opened")
-
-    def done(opened: Opened) -> None:
-        saving.unless_unsaved(session, do(show, path, opened))
-
-    ask_worker(session, kind, lambda: _read(path, meshing), done)
+    _open(session, path, kind, lambda: _read(path, meshing))
 
 
 def open_together(session: Session, paths: Sequence[Path]) -> None:
@@ -150,13 +140,17 @@ def open_together(session: Session, paths: Sequence[Path]) -> None:
     meshing = session.meshing
     kind = Kind(f"Opening {len(paths)} pictures", "The pictures cannot be opened")
 
-    def work() -> Opened:
+    def read() -> Opened:
         return with_puppets(open_pictures(paths, meshing))._replace(drawings=tuple(paths))
 
-    def done(opened: Opened) -> None:
-        saving.unless_unsaved(session, do(show, paths[0], opened))
+    _open(session, paths[0], kind, read)
 
-    ask_worker(session, kind, work, done)
+
+def _open(session: Session, path: Path, kind: Kind, read: Callable[[], Opened]) -> None:
+    def done(opened: Opened) -> None:
+        saving.unless_unsaved(session, do(show, path, opened))
+
+    ask_worker(session, kind, read, done)
 
 
 def open_dropped(session: Session, paths: Sequence[Path]) -> None:

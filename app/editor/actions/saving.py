@@ -48,7 +48,7 @@ def save_as(session: Session) -> None:
 
 @with_project
 def save_then(session: Session, project: Project, then: Action | None) -> None:
-    """Save the project, and do something that gives it up once that has worked."""
+    """Save the project; once that has worked, do what gives it up, such as to quit."""
     if project.path is None or project.is_recovered:
         _ask_where(session, then)
     else:
@@ -194,14 +194,8 @@ def save_curves(session: Session, project: Project, path: Path) -> None:
 
 @with_project
 def _ask_curves(session: Session, project: Project, suffix: str) -> None:
-    session.dialog = FileDialog(
-        title="Save the curves",
-        folder=session.usual_folder,
-        name=f"{project.name} distortion{suffix}",
-        suffixes=(suffix,),
-        writes=True,
-        chosen=lambda path: do(save_curves, path),
-    )
+    name = f"{project.name} distortion{suffix}"
+    session.ask_file("Save the curves", (suffix,), lambda path: do(save_curves, path), name=name)
 
 
 def unless_unsaved(session: Session, then: Action) -> None:
@@ -225,7 +219,7 @@ def unless_unsaved(session: Session, then: Action) -> None:
 
 
 def _asks_about(waiting: Action, then: Action) -> bool:
-    """Tell whether an action asks before the same is done as now."""
+    """Tell whether an action is the question that comes before another one."""
     return waiting.verb is ask_unsaved and waiting.arguments[0].verb is then.verb
 
 
@@ -337,11 +331,11 @@ def autosave(session: Session, project: Project) -> None:
     may_write = promises.is_settled(project) or now - project.changed_at >= SECONDS
     is_due = now - project.autosaved_at >= SECONDS
     if is_due and may_write and AUTOSAVING not in session.jobs.kinds:
-        _autosave_now(session, project, now)
+        _begin_autosave(session, project, now)
 
 
 @with_project
-def keep_now(session: Session, project: Project) -> None:
+def autosave_now(session: Session, project: Project) -> None:
     """Keep changes that are not saved at once, on this thread: it may be the last thing done.
 
     Raises
@@ -370,10 +364,10 @@ def _all_keyed(session: Session, project: Project) -> Document:
     unkeyed = project.history.unkeyed
     if unkeyed is None:
         return project.document
-    return posing.holding(session, project, unkeyed)(project.document)
+    return posing.as_key(session, project, unkeyed)(project.document)
 
 
-def _autosave_now(session: Session, project: Project, now: float) -> None:
+def _begin_autosave(session: Session, project: Project, now: float) -> None:
     document, origin, earlier = _all_keyed(session, project), project.origin, project.autosaved
     kept = project.document, project.history.unkeyed
     project.autosaved, project.autosaved_at = kept, now
