@@ -7,6 +7,7 @@ Imports: `engine.maps`, `engine.geometry`.
 
 from engine.deform.deformer import Deformer as Deformer
 from engine.deform.handles import (
+    MOST_HANDLES as MOST_HANDLES,
     Handles as Handles,
     Wish as Wish,
     require_held as require_held,

@@ -23,6 +23,7 @@ APART = 1e-4
 MOST_VERTICES = 400
 # How far outside the outline, of L, a point may be by rounding.
 OUTSIDE = 1e-9
+MOST_HANDLES = 1_000
 
 
 class Wish(NamedTuple):
@@ -174,6 +175,11 @@ def require_held(
     """
     points, cage = as_points(points, "handles"), as_points(cage, "cage", at_least=3)
     outline = as_points(outline, "outline", at_least=3)
+    if len(points) > MOST_HANDLES:
+        raise EngineError(
+            f"{len(points):,} handles are too many, as their memory grows with their square; "
+            f"give at most {MOST_HANDLES:,}."
+        )
     count = len(cage) + sum(len(hole.cage) for hole in holes)
     if count > MOST_VERTICES:
         raise EngineError(
