@@ -125,13 +125,7 @@ class PoseSampler:
         return self._prepared((first, second), (turns,), Course.straight(), variant)
 
     def inbetweens_of(self, transit: Transit, bounds: Bounds, variant: Variant) -> Inbetweens:
-        """Return the in-betweens of a clip's interval.
-
-        Parameters
-        ----------
-        bounds : Bounds
-            That the motion through keys obeys.
-        """
+        """Return the in-betweens of a clip's interval; the motion through keys obeys the bounds."""
         poses = tuple(key.pose for key in transit.keys)
         course = self._course(transit, bounds, variant)
         obeyed = bounds if transit.is_joined else None

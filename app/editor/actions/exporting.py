@@ -175,7 +175,7 @@ def _request(
     if EXPORT_FORMATS[settings.format].is_still:
         now = project.playhead.frame_at(project.document, session.clock())
         settings = replace(settings, frames=FrameRange(now, now))
-    return ExportRequest(out=out, settings=settings, project=project.name)
+    return ExportRequest(out=out, settings=settings, project=project.name, sources=project.sources)
 
 
 def _prepare(
@@ -190,7 +190,7 @@ def _prepare(
     if format_.is_still and unkeyed is not None and unkeyed.figure == project.active:
         frames = request.settings.frames
         if frames is not None and unkeyed.frame in frames:
-            document = posing.holding(session, project, unkeyed)(document)
+            document = posing.as_key(session, project, unkeyed)(document)
     pictures = {figure: puppet.cut.value.texture for figure, puppet in project.puppets.items()}
     samplers = {
         figure: (puppet.fine or puppet.store).sampler or puppet.store.sampler

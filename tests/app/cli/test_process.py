@@ -141,7 +141,7 @@ def test_what_could_not_be_kept_is_not_said_to_be(monkeypatch, capfd):
     def refuse(_):
         raise LissomError("the disk is full")
 
-    monkeypatch.setattr(saving, "keep_now", refuse)
+    monkeypatch.setattr(saving, "autosave_now", refuse)
     window._keep(None)
     assert capfd.readouterr().err.endswith("unsaved work could not be kept: the disk is full\n")
 
