@@ -126,6 +126,8 @@ class Project:
     history: History
     name: str  # of the picture or the project, without its suffix
     path: Path | None  # of the project file; None for a new one
+    # The files that its pictures were read from, which nothing is written over.
+    drawings: set[Path] = field(default_factory=set)
     hold: Hold | None = None  # by which other windows see that the file is open here
     # What the file held when it was opened or saved here last; None for a new one.
     read_as: str | None = None
@@ -213,6 +215,11 @@ class Project:
     def count_chosen(self) -> int:
         """How many keys are chosen, of all figures."""
         return sum(map(len, self.chosen_of.values()))
+
+    @property
+    def sources(self) -> tuple[Path, ...]:
+        """The files that it was read from."""
+        return (*self.drawings, *([] if self.path is None else [self.path]))
 
     def keys_with(self, figure: int, frame: int) -> Mapping[int, frozenset[int]]:
         """Return the chosen keys of all figures, if a key is one of them, or else that key."""

@@ -13,7 +13,14 @@ from app.editor.failures import ask_worker
 from app.editor.project import Project
 from app.editor.session import CutTool, Session, with_project
 from app.editor.work import Kind
-from app.storage import cut_picture, decode_mask, encode_mask, read_file, write_atomically
+from app.storage import (
+    check_writable,
+    cut_picture,
+    decode_mask,
+    encode_mask,
+    read_file,
+    write_atomically,
+)
 from engine.domain import Mask, Stroke
 
 WRITING = Kind("Saving the mask", "The mask was not saved")
@@ -150,6 +157,7 @@ def ask_mask_path(session: Session, project: Project) -> None:
 def save_mask(session: Session, project: Project, path: Path) -> None:
     """Write what is kept as a black and white picture."""
     picture, cut_out = project.puppet.picture, project.figure.cut_out
+    check_writable(path, sources=project.sources)
 
     def work() -> None:
         content = encode_mask(Mask.of(cut_picture(picture, cut_out).kept))

@@ -175,7 +175,7 @@ def _request(
     if EXPORT_FORMATS[settings.format].is_still:
         now = project.playhead.frame_at(project.document, session.clock())
         settings = replace(settings, frames=FrameRange(now, now))
-    return ExportRequest(out=out, settings=settings, project=project.name)
+    return ExportRequest(out=out, settings=settings, project=project.name, sources=project.sources)
 
 
 def _prepare(

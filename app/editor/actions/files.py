@@ -117,6 +117,7 @@ class Opened(NamedTuple):
     notices: tuple[str, ...]
     offer: Offer | None = None
     read_as: str | None = None
+    drawings: tuple[Path, ...] = ()
 
 
 def ask_open(session: Session) -> None:
@@ -138,7 +139,11 @@ def open_together(session: Session, paths: Sequence[Path]) -> None:
     """Read several pictures on the worker, and open them as the layers of one scene."""
     meshing = session.meshing
     kind = Kind(f"Opening {len(paths)} pictures", "The pictures cannot be opened")
-    _open(session, paths[0], kind, lambda: with_puppets(open_pictures(paths, meshing)))
+
+    def read() -> Opened:
+        return with_puppets(open_pictures(paths, meshing))._replace(drawings=tuple(paths))
+
+    _open(session, paths[0], kind, read)
 
 
 def _open(session: Session, path: Path, kind: Kind, read: Callable[[], Opened]) -> None:
@@ -210,6 +215,7 @@ def _show(
             active=_foremost(opened.document),
             path=own,
             read_as=opened.read_as,
+            drawings=set(opened.drawings),
             hold=hold,
         ),
     )
@@ -248,7 +254,7 @@ def _puppets(document: Document, pictures: Mapping[int, Picture]) -> dict[int, P
 
 def _read(path: Path, meshing: Meshing) -> Opened:
     if is_layered(path):
-        return with_puppets(open_layered(path, meshing))
+        return with_puppets(open_layered(path, meshing))._replace(drawings=(path,))
     is_project = path.suffix.lower() == PROJECT
     return _read_project(path) if is_project else _read_picture(path, meshing)
 
@@ -271,7 +277,7 @@ def _decoded(document: Document, name: str) -> Opened:
 def _read_picture(path: Path, meshing: Meshing) -> Opened:
     opened = with_puppets(open_picture(path, meshing))
     (puppet,) = opened.puppets.values()
-    return opened._replace(offer=_offer(puppet))
+    return opened._replace(offer=_offer(puppet), drawings=(path,))
 
 
 def _offer(puppet: Puppet) -> Offer | None:

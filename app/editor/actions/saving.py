@@ -18,6 +18,7 @@ from app.storage import (
     SECONDS,
     Hold,
     HoldError,
+    check_writable,
     clear_abandoned,
     draw_thumbnail,
     flattened,
@@ -76,10 +77,12 @@ def write_now(session: Session, project: Project, path: Path, then: Action | Non
     """Save the project in a file as it is."""
     document, known = project.document, project.read_as if path == project.path else None
     textures = {figure: puppet.cut.value.texture for figure, puppet in project.puppets.items()}
+    drawings = tuple(project.drawings)
 
     def work() -> str:
         if known is not None and project_digest(path) not in (None, known):
             raise _ChangedError
+        check_writable(path, sources=drawings)
         picture = flattened(document, textures)
         return save_project(path, document, thumbnail=draw_thumbnail(picture))
 
@@ -180,6 +183,7 @@ def save_curves(session: Session, project: Project, path: Path) -> None:
     curves = project.curves.value
     if curves is None:
         return
+    check_writable(path, sources=project.sources)
     if path.suffix.lower() == ".png":
         picture = draw_curves(curves)
         write_atomically(path, lambda file: file.write(picture))

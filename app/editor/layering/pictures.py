@@ -113,6 +113,7 @@ def _replace_picture(session: Session, project: Project, identity: int, path: Pa
 
     def done(begun: tuple[Renewal, _Made]) -> None:
         renewal, made = begun
+        project.drawings.add(path)
         project.pictures[made.figure.picture] = made.picture
         rebuilding.begin(session, renewal)
         if renewal.before in project.document.figures:
@@ -153,6 +154,7 @@ def add(session: Session, project: Project, paths: Sequence[Path]) -> None:
 
     def done(read: tuple[list[_Made], list[str]]) -> None:
         made, told = read
+        project.drawings.update(paths)
         gesture = object()
         for figure, picture, _, puppet in made:
             identity = layer_commands.free_identity(project.document)
