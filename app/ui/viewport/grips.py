@@ -28,22 +28,12 @@ DASH, GAP, THIN = 0.6, 0.45, 0.1  # em: of the axis
 
 
 class Ring(NamedTuple):
-    """The ring around the one selected handle, on the screen.
-
-    Parameters
-    ----------
-    turn : float
-        How far the shape is turned there, in radians.
-    is_dragged : bool
-        Whether the pointer turns it.
-    swept : float
-        How far it has turned it, in radians.
-    """
+    """The ring around the one selected handle, on the screen."""
 
     centre: ImVec2
-    turn: float
-    is_dragged: bool
-    swept: float
+    turn: float  # how far the shape is turned there, in radians
+    is_dragged: bool  # whether the pointer turns it
+    swept: float  # how far it has turned it, in radians
 
     def is_pointed(self, look: Look) -> bool:
         """Tell whether the pointer is on it."""
