@@ -23,42 +23,23 @@ MOMENT = 0.5  # seconds that it waits for what was given up
 
 @dataclass(frozen=True, slots=True)
 class Kind:
-    """What a job is for.
+    """What a job is for."""
 
-    Parameters
-    ----------
-    label : str
-        In words that the status bar can show.
-    complaint : str
-        What is said where it fails.
-    lane : str
-        On which thread it runs: that for what is under the "hand", for an "export", for what is to
-        be on "display", or for what the disk is to "keep".
-    """
-
-    label: str
-    complaint: str = ""
+    label: str  # in words that the status bar can show
+    complaint: str = ""  # what is said where it fails
+    # On which thread it runs: that for what is under the "hand", for an "export", for what is to be
+    # on "display", or for what the disk is to "keep".
     lane: LaneName = "display"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Job:
-    """A pure computation on frozen input, and what is done with its result.
-
-    Parameters
-    ----------
-    work : callable
-        Runs on a worker thread; touches nothing mutable and no GL.
-    done : callable
-        Takes the result, on the main thread.
-    failed : callable
-        Takes the exception that ended `work`, on the main thread.
-    """
+    """A pure computation on frozen input, and what is done with its result."""
 
     kind: Kind
-    work: Callable[[], Any]
-    done: Callable[[Any], None]
-    failed: Callable[[Exception], None]
+    work: Callable[[], Any]  # runs on a worker thread; touches nothing mutable and no GL
+    done: Callable[[Any], None]  # takes the result, on the main thread
+    failed: Callable[[Exception], None]  # takes the exception that ended `work`, on the main thread
 
 
 @dataclass(slots=True, eq=False)
