@@ -11,6 +11,7 @@ from scipy import ndimage
 from engine.arrays import Booleans, Bytes, readonly
 from engine.domain.picture.background import Background, flood_background
 from engine.domain.picture.cut_out import BackgroundColour, CutOut, Mask, Stroke, paint
+from engine.domain.picture.parts import touching
 from engine.errors import EngineError
 
 VISIBLE_ALPHA = 8  # of 255: what is fainter may be left out, what is not must be kept
@@ -205,10 +206,7 @@ def _without_transparency(present: Booleans, visible: Booleans) -> tuple[Boolean
 
     So are nearly invisible islands: what scaling by a sharp filter leaves around edges.
     """
-    labels, count = ndimage.label(present, np.ones((3, 3)))
-    seen = np.zeros(count + 1, dtype=np.bool_)
-    seen[labels[visible]] = True
-    present = seen[labels]
+    present = touching(present, visible, corners=True)
     faint = int(np.count_nonzero(present) - np.count_nonzero(visible))
     if np.count_nonzero(present) <= FAINT_GROWTH * np.count_nonzero(visible):
         return present, ()
