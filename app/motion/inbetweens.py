@@ -129,13 +129,7 @@ class PoseSampler:
         return prepare_inbetweens(variant, interval)
 
     def inbetweens_of(self, transit: Transit, bounds: Bounds, variant: Variant) -> Inbetweens:
-        """Return the in-betweens of a clip's interval.
-
-        Parameters
-        ----------
-        bounds : Bounds
-            That the motion through keys obeys.
-        """
+        """Return the in-betweens of a clip's interval; the motion through keys obeys the bounds."""
         poses = tuple(key.pose for key in transit.keys)
         course = self._course(transit, bounds, variant)
         obeyed = bounds if transit.is_joined else Bounds()
