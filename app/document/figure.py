@@ -25,13 +25,11 @@ from app.errors import LissomError
 from engine.arrays import Booleans, Complexes
 from engine.deform import MOST_HANDLES
 from engine.domain import CutOut, Domain
-from engine.geometry import box_diagonal, contains
+from engine.geometry import ON_OUTLINE, box_diagonal, contains
 from engine.maps import Bounds, Certificate, HarmonicMap
 from engine.variant import Variant
 
 Posed = TypeVar("Posed", Keyframe, KeptPose)
-# Handles may sit on the outline itself, where rounding decides on which side they are.
-ON_OUTLINE = 1e-9
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

@@ -9,11 +9,10 @@ import numpy.typing as npt
 
 from engine.arrays import Complexes, Floats, as_points, freeze
 from engine.errors import EngineError
-from engine.geometry import Hole, deepest_point, diameter, require_inside
+from engine.geometry import ON_OUTLINE, Hole, deepest_point, diameter, require_inside
 from engine.interpolation.periods import PeriodBasis
 from engine.maps import Boundary
 from engine.paths import (
-    ON_OUTLINE,
     IntegrationPaths,
     Loops,
     continue_logarithm,

@@ -97,21 +97,17 @@ class Boundary:
             If the outline is not simple, or not strictly inside the cage, or a hole is not inside
             the outline, or its cage not in the hole.
         """
-        outline, cage = (
-            as_points(outline, "outline", at_least=3),
-            as_points(cage, "cage", at_least=3),
-        )
+        outline = as_points(outline, "outline", at_least=3)
+        cage = as_points(cage, "cage", at_least=3)
         require_simple(outline, "outline")
         require_around(cage, outline)
         require_cages_in_holes(holes, outline)
         span = Span(cage=cage, holes=tuple(holes))
         loops = [outline, *(hole.outline for hole in holes)]
         size = box_diagonal(outline)
-        singular = np.concatenate([span.vertices, span.centres])
+        singular, longest = np.concatenate([span.vertices, span.centres]), SEGMENT_PER_SIZE * size
         samples = [
-            sample_graded(
-                loop, singular, ratio=SEGMENT_PER_DISTANCE, longest=SEGMENT_PER_SIZE * size
-            )
+            sample_graded(loop, singular, ratio=SEGMENT_PER_DISTANCE, longest=longest)
             for loop in loops
         ]
         points = np.concatenate(samples)
@@ -177,13 +173,7 @@ class Boundary:
         return sum(array.nbytes for array in arrays)
 
     def refined(self, segments: Indices) -> Self:
-        """Return the same boundary with one more sample in the middle of each given segment.
-
-        Parameters
-        ----------
-        segments : int, shape (s,)
-            In any order.
-        """
+        """Return the boundary with one more sample in the middle of each given segment (s,)."""
         segments = np.unique(segments)
         starts = self.points[segments]
         ends = self.points[self.following[segments]]
@@ -197,6 +187,7 @@ class Boundary:
         kernel[first] = self.span.bending_kernel(starts, middles)
         kernel[first + 1] = self.span.bending_kernel(middles, ends)
         rows = self.span.derivatives(middles)
+        of_basis = np.insert(self.basis_derivatives, segments + 1, rows @ self.basis, axis=0)
         share = 1.0 / np.count_nonzero(self.weights)
         return replace(
             self,
@@ -207,9 +198,7 @@ class Boundary:
             half_lengths=freeze(half),
             derivatives=freeze(np.insert(self.derivatives, segments + 1, rows, axis=0)),
             bending_kernel=freeze(kernel),
-            basis_derivatives=freeze(
-                np.insert(self.basis_derivatives, segments + 1, rows @ self.basis, axis=0)
-            ),
+            basis_derivatives=freeze(of_basis),
         )
 
 

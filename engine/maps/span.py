@@ -100,20 +100,9 @@ class Span:
     def evaluate(
         self, coefficients: Complexes, points: Complexes, *, orders: tuple[int, ...]
     ) -> list[Complexes]:
-        """Evaluate combinations of the functions, without forming the coordinates.
+        """Evaluate combinations (n, q) of the functions, without forming the coordinates.
 
-        Parameters
-        ----------
-        coefficients : complex128, shape (n, q)
-        points : complex128, shape (p,)
-            In the domain.
-        orders : tuple of int
-            Which derivatives are wanted, each 0, 1 or 2.
-
-        Returns
-        -------
-        list of complex128, shape (p, q)
-            One array for each entry of `orders`.
+        Returns an array (p, q) for each entry of `orders`, as `engine.maps.cauchy.evaluate` does.
         """
         by_cage = [
             evaluate(cage, coefficients[part], points, orders=orders)
@@ -137,9 +126,8 @@ class Span:
 
         Parameters
         ----------
-        derivatives : complex128, shape (m, n)
-            Of the functions, at the samples.
-        weights : float64, shape (m,)
+        derivatives, weights : complex128, shape (m, n), and float64, shape (m,)
+            Of the functions at the samples, and of the samples.
         size : float
             The constants.
 
@@ -189,8 +177,7 @@ class Span:
         return np.hstack([kernel, 2.0 / distance_to_segments(self.centres, starts, ends).T ** 3])
 
     def _logarithms(self, points: Complexes) -> Floats:
-        logarithms: Floats = np.log(np.abs(points[:, None] - self.centres))
-        return logarithms
+        return np.asarray(np.log(np.abs(points[:, None] - self.centres)))
 
 
 def _joined(columns: list[Complexes]) -> Complexes:

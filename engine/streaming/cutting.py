@@ -69,8 +69,7 @@ class SampledMotion:
             block = slice(start, start + BLOCK)
             rows[:, block] = weights @ self.values[:, block]
             yield
-        rows.setflags(write=False)
-        return rows
+        return freeze(rows)
 
 
 class _Cut(NamedTuple):
