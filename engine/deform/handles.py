@@ -19,6 +19,7 @@ ARM = 0.02
 # Handles nearer than this (of L) are at one place, and cannot be wanted so much farther apart.
 COINCIDENT = 1e-6
 APART = 1e-4
+FARTHEST = 1e12  # of L: squares of targets beyond it overflow sooner or later
 # Vertices of all cages: the time of a step grows with their cube.
 MOST_VERTICES = 400
 # How far outside the outline, of L, a point may be by rounding.
@@ -134,16 +135,23 @@ class Handles:
         Raises
         ------
         EngineError
-            If there are not as many targets as handles, one is not finite, or two handles at one
-            point are to be at different places.
+            If there are not as many targets as handles, one is not finite or absurdly far away, or
+            two handles at one point are to be at different places.
         """
         targets = as_points(positions, "targets")
         if len(targets) != len(self.points):
             raise EngineError(
                 f"{len(self.points)} handles need as many targets, not {len(targets)}."
             )
+        size = self.arm / ARM
+        far = np.flatnonzero(np.abs(targets - self.points) > FARTHEST * size)
+        if len(far):
+            raise EngineError(
+                f"Handle {far[0]} is wanted at {targets[far[0]]:.3g}, more than {FARTHEST:.0e} times "
+                "the size of the shape away; give it a target near the shape."
+            )
         for i, j in self.coincident:
-            if abs(targets[i] - targets[j]) > APART * self.arm / ARM:
+            if abs(targets[i] - targets[j]) > APART * size:
                 raise _told_twice(i, j, "targets")
         if rotations is None:
             return Wish(targets, np.full(len(targets), np.nan))
