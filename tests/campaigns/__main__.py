@@ -22,6 +22,7 @@ CAMPAIGNS = {
     "faults": ("full disks and ended windows", 200),
     "shapes": ("shapes", 500),
     "minima": ("requests", 96),
+    "series": ("pairs of poses", 200),
     "soak": ("minutes in the window", 30),
     "readers": ("files tampered with", 11_000),
 }
