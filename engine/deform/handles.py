@@ -147,8 +147,8 @@ class Handles:
         far = np.flatnonzero(np.abs(targets - self.points) > FARTHEST * size)
         if len(far):
             raise EngineError(
-                f"Handle {far[0]} is wanted at {targets[far[0]]:.3g}, over {FARTHEST:.0e} times the "
-                "size of the shape away; give it a target near the shape."
+                f"Handle {far[0]} is wanted at {targets[far[0]]:.3g}, more than {FARTHEST:.0e} "
+                "times the size of the shape away; give it a target near the shape."
             )
         for i, j in self.coincident:
             if abs(targets[i] - targets[j]) > APART * size:

@@ -60,7 +60,7 @@ def build_series(channels: Channels) -> Generator[None, None, Series]:
                 values[time] = channels.sample(time)
                 error = max(error, float(np.abs(found.values(time) - values[time]).max()))
                 yield
-        if error <= CHECKED * channels.tolerance:
+        if pieces and error <= CHECKED * channels.tolerance:
             # Where nothing was looked at the error is what functions and pieces were allowed.
             least = (OF_FUNCTIONS + OF_PIECES) * channels.tolerance
             return Series(pieces=pieces, error=max(MARGIN * error, least))

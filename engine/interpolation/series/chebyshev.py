@@ -157,7 +157,7 @@ def resolve(
         else:
             middle = (piece.start + piece.end) / 2
             pending += [(piece.start, middle), (middle, piece.end)]
-    found += [Resolved(*gap, np.zeros_like(found[0].coefficients[:, :1]), inf) for gap in pending]
+    found += [Resolved(*gap, 0.0 * piece.coefficients, inf) for gap in pending]
     return sorted(found, key=attrgetter("start"))
 
 

@@ -133,6 +133,16 @@ def test_what_folds_between_its_keyframes_is_not_proven():
     assert (by_nu.sigma_a, by_nu.sigma_b) == pytest.approx((1, 1), abs=2 * TIGHTNESS)
 
 
+def test_where_nothing_is_proven_sigma_b_is_0(monkeypatch):
+    monkeypatch.setattr(bisection, "MOST_CELLS", 1)
+    maps = [random_map(SHAPE, seed, k=0.95, bend=1.0) for seed in range(2)]
+    (interval,) = prepare(maps, POINTS[:2], outline=OUTLINE, variant="nu").intervals
+    proof = prove(interval)
+    assert proof.k < 1
+    assert proof.sigma_b == 0
+    assert not proof.never_folds
+
+
 def test_times_that_cannot_be_settled_are_named(monkeypatch):
     monkeypatch.setattr(bisection, "MOST_CELLS", 1)
     maps = [HarmonicMap.identity(CAGE), random_map(SHAPE, 3, k=0.5, bend=0.8)]

@@ -235,6 +235,15 @@ def test_what_float32_cannot_hold_is_left_to_the_direct_path():
         series.values(0.3)
 
 
+def test_a_series_without_pieces_promises_nothing():
+    rng = np.random.default_rng(0)
+    series = finish(build_series(Curves(lambda _: rng.normal(size=5))))
+    assert series.pieces == ()
+    assert series.error == np.inf
+    assert series.size == series.nbytes == 0
+    assert not series.covers(0.5)
+
+
 def test_a_hard_moment_costs_no_more_than_itself():
     places = np.linspace(0, 1, 40)
 
