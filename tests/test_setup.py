@@ -108,6 +108,7 @@ def test_a_machine_whose_mesa_has_no_osmesa_gets_the_rest(machine):
 def test_where_all_is_there_nothing_is_asked_of_the_package_manager(machine, tmp_path):
     _, said = machine(known=NEEDED, installed=NEEDED | {"libosmesa6"})
     assert not (tmp_path / "calls").exists()
+    assert said.startswith("Into .venv go, from PyPI: Lissom and the libraries")
     assert "To be installed" not in said
     assert (tmp_path / "pip").read_text().split()[-1] == "."
 

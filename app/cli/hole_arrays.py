@@ -68,7 +68,7 @@ def _cut(
             f"{count} hole_centres; they are of shape {vertices.shape} and {sizes.shape}"
         )
     whole = sizes.dtype.kind in "iu" or not count
-    if not whole or (sizes < 0).any() or sizes.sum() != len(vertices):
+    if not whole or (sizes < 0).any() or sum(sizes.tolist()) != len(vertices):
         raise LissomError(
             f"{sizes_name} must be whole numbers that add up to the {len(vertices)} vertices of "
             f"{name}"

@@ -112,7 +112,7 @@ def _from_boundary(path: Path) -> Keyframes:
             "keyframes by where the boundary goes are for domains without holes; give phi and psi"
         )
     boundary = data["boundary"]
-    if boundary.ndim != 2:
+    if boundary.ndim != 2 or not len(boundary):
         raise LissomError(
             f"boundary must be of shape (keyframes, vertices of the outline), not {boundary.shape}"
         )

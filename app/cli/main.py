@@ -8,7 +8,14 @@ from collections.abc import Sequence
 from importlib.metadata import version
 
 from app.cli.console import Parser, StatusLine, fail
-from app.cli.process import Endings, has_threads_left, use_one_thread
+from app.cli.process import (
+    Endings,
+    drop_output,
+    has_threads_left,
+    mend_streams,
+    require_memory,
+    use_one_thread,
+)
 from app.errors import EXPECTED_ERRORS, told_to
 
 EXIT_PIPE_CLOSED = 141
@@ -33,22 +40,30 @@ COMMANDS = {
 def main(argv: Sequence[str] | None = None) -> int:
     """Run one command of the program and return its exit status."""
     use_one_thread()
+    mend_streams()
     words = list(sys.argv[1:] if argv is None else argv)
     if not words or (words[0] not in COMMANDS and not words[0].startswith("-")):
         words = ["window", *words]
     endings = Endings()
     try:
+        require_memory()
         with endings, StatusLine() as status_line, told_to(status_line.tell):
-            arguments = build_parser(words).parse_args(words)
-            status = int(
-                importlib.import_module(f"app.cli.commands.{arguments.command}").run(arguments)
-            )
-            # Here, and not when Python ends, where nobody could answer for a closed pipe.
-            sys.stdout.flush()
+            try:
+                arguments = build_parser(words).parse_args(words)
+                command = importlib.import_module(f"app.cli.commands.{arguments.command}")
+                status = int(command.run(arguments))
+            finally:
+                # Here, and not when Python ends, where nobody could answer for a closed pipe.
+                sys.stdout.flush()
     except EXPECTED_ERRORS as error:
         fail(str(error))
+    except ImportError as error:
+        fail(f"a library cannot be loaded ({error}); give it more memory, or install Lissom again")
     except MemoryError:
-        fail("not enough memory for this; ask for fewer triangles or a smaller picture")
+        fail(
+            "not enough memory for this; ask for fewer triangles or a smaller picture, or allow "
+            "Lissom more of it"
+        )
     except KeyboardInterrupt:
         print(f"lissom: interrupted by {endings.name}", file=sys.stderr, flush=True)
         if has_threads_left():
@@ -56,9 +71,12 @@ def main(argv: Sequence[str] | None = None) -> int:
             os._exit(endings.status)
         return endings.status
     except BrokenPipeError:
-        # Whoever read the output has seen enough; Python must not try to write the rest at its end.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        # Whoever read the output has seen enough.
+        drop_output()
         return EXIT_PIPE_CLOSED
+    except OSError as error:
+        drop_output()
+        fail(f"cannot use {error.filename or 'standard output'}: {error.strerror or error}")
     return status
 
 

@@ -1,5 +1,6 @@
 """Plane meshes from files: Wavefront OBJ, and NPZ as `lissom domain` writes it."""
 
+from array import array
 from itertools import pairwise
 from pathlib import Path
 from typing import NamedTuple
@@ -8,9 +9,10 @@ import numpy as np
 import numpy.typing as npt
 
 from app.errors import LissomError
-from app.storage import read_arrays
+from app.storage import read_arrays, read_file
 from engine.arrays import Complexes, Integers
 
+LARGEST = 64 * 1024 * 1024  # bytes; a mesh of a million triangles has as many
 FLAT = 1e-9  # spread of z, over that of x and y, up to which a mesh is plane
 
 
@@ -32,11 +34,7 @@ def read_mesh(path: Path) -> PlaneMesh:
     if path.suffix.lower() != ".obj":
         arrays = read_arrays(path, required=("vertices", "triangles"))
         return PlaneMesh(arrays["vertices"], arrays["triangles"])
-    try:
-        text = path.read_text(encoding="utf-8", errors="replace")
-    except OSError as error:
-        raise LissomError(f"cannot read {path}: {error.strerror}") from error
-    return _parsed(text, path)
+    return _parsed(read_file(path, largest=LARGEST).decode("utf-8", "replace"), path)
 
 
 def read_mesh_keyframes(
@@ -63,32 +61,39 @@ def read_mesh_keyframes(
 
 def _parsed(text: str, path: Path) -> PlaneMesh:
     """Read the vertices and faces of an OBJ file; faces of more corners become fans."""
-    vertices: list[list[float]] = []
-    triangles: list[tuple[int, int, int]] = []
+    # Packed, as lists of Python's numbers take ten times as much memory as the file.
+    places, corners = array("d"), array("q")
     # A line that ends in a backslash goes on in the next.
     for number, line in enumerate(text.replace("\\\n", " ").splitlines(), 1):
         words = line.split("#", 1)[0].split()
         try:
             if words[:1] == ["v"]:
                 x, y, *rest = map(float, words[1:4])
-                vertices.append([x, y, *(rest or [0.0])])
+                places.extend([x, y, *(rest or [0.0])])
             elif words[:1] == ["f"]:
-                corners = [_index(word, len(vertices)) for word in words[1:]]
-                fan = pairwise(corners[1:])
-                triangles += [(corners[0], second, third) for second, third in fan]
-        except ValueError as error:
+                first, *others = [_index(word, len(places) // 3) for word in words[1:]]
+                for second, third in pairwise(others):
+                    corners.extend((first, second, third))
+        except (ValueError, OverflowError) as error:
             raise LissomError(
                 f"{path} is not an OBJ file that Lissom can read: line {number} is {line[:60]!r}"
             ) from error
-    if not vertices or not triangles:
-        raise LissomError(f"{path} has no {'faces' if vertices else 'vertices'}")
-    x, y, z = np.array(vertices).T
-    if np.ptp(z) > FLAT * max(np.ptp(x), np.ptp(y)):
+    if not places or not corners:
+        raise LissomError(f"{path} has no {'faces' if places else 'vertices'}")
+    across, up, deep = np.frombuffer(places, dtype=np.float64).reshape(-1, 3).T
+    triangles = np.frombuffer(corners, dtype=np.int64).reshape(-1, 3)
+    if triangles.max() >= len(up):
         raise LissomError(
-            f"{path} is not plane: z goes from {z.min():g} to {z.max():g}; lay the mesh into x and "
-            "y"
+            f"a face of {path} names vertex {triangles.max() + 1}, and there are only {len(up)}"
         )
-    return PlaneMesh(x + 1j * y, np.array(triangles, dtype=np.int32))
+    if not np.isfinite(across + up + deep).all():
+        raise LissomError(f"{path} has a vertex that is not finite")
+    if np.ptp(deep) > FLAT * max(np.ptp(across), np.ptp(up)):
+        raise LissomError(
+            f"{path} is not plane: z goes from {deep.min():g} to {deep.max():g}; lay the mesh into "
+            "x and y"
+        )
+    return PlaneMesh(across + 1j * up, triangles.astype(np.int32))
 
 
 def _index(word: str, count: int) -> int:

@@ -40,6 +40,19 @@ def input_file(text: str) -> Path:
     return path
 
 
+def output(text: str) -> Path:
+    """Return the path of what is written; it may not be there yet.
+
+    Raises
+    ------
+    LissomError
+        If it is a dash, which stands for standard output elsewhere.
+    """
+    if text == "-":
+        raise LissomError("standard output is not offered; name a file instead of -")
+    return Path(text)
+
+
 def whole_number(least: int, most: int = sys.maxsize) -> Callable[[str], int]:
     """Return what reads a whole number in a range, both ends included."""
     wanted = f"at least {least:,}" if most == sys.maxsize else f"between {least:,} and {most:,}"
@@ -59,7 +72,7 @@ def add_project(parser: argparse.ArgumentParser) -> None:
 
 def add_out(parser: argparse.ArgumentParser, metavar: str, about: str = "where to write") -> None:
     """Declare where to write."""
-    parser.add_argument("--out", metavar=metavar, type=Path, required=True, help=about)
+    parser.add_argument("--out", metavar=metavar, type=output, required=True, help=about)
 
 
 def add_meshing_options(parser: argparse.ArgumentParser) -> None:

@@ -5,6 +5,7 @@ once, so that a window that waits for events can be woken, and what hangs does n
 alive.
 """
 
+import io
 import os
 import signal
 import sys
@@ -14,11 +15,16 @@ from collections.abc import Callable
 from types import FrameType, TracebackType
 from typing import Final, Self
 
+if sys.platform != "win32":
+    import resource
+
 ENDINGS: Final = ("SIGINT", "SIGTERM", "SIGHUP")
 # Seconds after which a worker hands Python's lock over. A frame takes it some twenty times; with
 # the usual 5 ms a job that seldom lets go would leave two frames a second.
 SWITCH: Final = 0.0005
 PATIENCE: Final = 10.0  # seconds that a process has to end by itself
+# Bytes of addresses. With 300 MB OpenBLAS asks for more again and again, and never ends.
+LEAST_MEMORY: Final = 400_000_000
 _INTERRUPTED: Final = 128  # and the signal's number: the exit status that shells know
 
 
@@ -30,6 +36,43 @@ def use_one_thread() -> None:
     """
     for variable in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
         os.environ.setdefault(variable, "1")
+
+
+def require_memory() -> None:
+    """Refuse to begin where libraries cannot be loaded, or would wait for memory for ever.
+
+    Raises
+    ------
+    MemoryError
+        If the system lets this process have too little of it, as by `ulimit -v`.
+    """
+    if sys.platform != "win32":
+        allowed, _ = resource.getrlimit(resource.RLIMIT_AS)
+        if allowed != resource.RLIM_INFINITY and allowed < LEAST_MEMORY:
+            raise MemoryError
+
+
+def mend_streams() -> None:
+    """Let what is said go nowhere where a standard stream is closed, and never fail at a letter.
+
+    A file that is opened later would take the place of the closed one, and what libraries say would
+    go into it.
+    """
+    for descriptor, name in enumerate(("stdin", "stdout", "stderr")):
+        try:
+            os.fstat(descriptor)
+        except OSError:
+            os.open(os.devnull, os.O_RDWR)  # gets the lowest number that is free
+        if getattr(sys, name) is None:
+            setattr(sys, name, open(descriptor, "w" if descriptor else "r", closefd=False))  # noqa: SIM115
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="replace")
+
+
+def drop_output() -> None:
+    """Let Python not try at its end to write what standard output has not taken."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def share_interpreter() -> None:
@@ -84,7 +127,10 @@ class Endings:
             if signal.getsignal(number) is not signal.SIG_IGN:
                 self._before[number] = signal.signal(number, self._note)
         arguments = self._pipe[0], threading.get_ident()
-        threading.Thread(target=self._listen, args=arguments, daemon=True).start()
+        try:
+            threading.Thread(target=self._listen, args=arguments, daemon=True).start()
+        except RuntimeError as error:  # that is how Python says so
+            raise MemoryError from error
         return self
 
     def __exit__(
@@ -113,7 +159,10 @@ class Endings:
         if told:
             if self._wake is not None:
                 self._wake()
-            end_within(PATIENCE, _INTERRUPTED + told[0])
+            try:
+                end_within(PATIENCE, _INTERRUPTED + told[0])
+            except RuntimeError:  # there is no memory for another thread
+                os._exit(_INTERRUPTED + told[0])
             # A signal that comes just before the main thread begins to wait does not end that wait.
             while not self.has_come and os.name != "nt":
                 signal.pthread_kill(main_thread, told[0])

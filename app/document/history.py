@@ -47,9 +47,10 @@ class History:
 
     def __init__(self, document: Document, *, saved: bool, memory: int = MEMORY) -> None:
         self._steps = [Step(document, None, "")]
-        # _held[i]: bytes that only steps up to i keep alive, freed by forgetting step i.
-        self._held = [0]
+        # _bytes[i]: bytes that only steps up to i keep alive, freed by forgetting step i.
+        self._bytes = [0]
         self._now = 0
+        self._forgotten = 0  # steps before them
         self._gesture: object = None
         # What the gesture's first command took the place of.
         self._undone: list[Step] = []
@@ -75,6 +76,11 @@ class History:
     def redo_label(self) -> str | None:
         """What redo would do again; None where there is nothing."""
         return self._steps[self._now + 1].label if self._now + 1 < len(self._steps) else None
+
+    @property
+    def position(self) -> int:
+        """How many steps have led to the document as it is now."""
+        return self._forgotten + self._now
 
     @property
     def nearby(self) -> tuple[Document, ...]:
@@ -114,10 +120,10 @@ class History:
         self._go_on(Step(command(self.document), self.unkeyed, command.label, gesture))
 
     def pose(self, unkeyed: UnkeyedPose | None, *, gesture: object = None) -> None:
-        """Hold a pose outside of all keys in place of the one that is held so, or none any more."""
+        """Hold a pose outside of all keys in place of the one before, or none any more."""
         self._go_on(Step(self.document, unkeyed, "Pose", gesture))
 
-    def complete(self, command: Command) -> None:
+    def extend_step(self, command: Command) -> None:
         """Run a command that belongs to the last step; what can be done again stays so.
 
         The pose that no key holds is let go.
@@ -164,9 +170,9 @@ class History:
         """Undo what a gesture did last, as if it had never begun; if it did nothing, stay."""
         if gesture is None or gesture is not self._gesture:
             return
-        del self._steps[-1], self._held[-1]
+        del self._steps[-1], self._bytes[-1]
         self._now -= 1
-        self._held[-1] = 0
+        self._bytes[-1] = 0
         for step in self._undone:
             self._append(step)
         self._gesture, self._undone = None, []
@@ -185,7 +191,7 @@ class History:
     def _put(self, index: int, step: Step) -> None:
         self._steps[index] = step
         for around in range(max(index - 1, 0), min(index + 1, len(self._steps) - 1)):
-            self._held[around] = _held_only_by(self._steps[around], self._steps[around + 1])
+            self._bytes[around] = _bytes_only_in(self._steps[around], self._steps[around + 1])
 
     def _go_on(self, step: Step) -> None:
         gesture = step.gesture
@@ -195,64 +201,65 @@ class History:
             if _is_same(step, self._steps[self._now - 1]):
                 self.take_back(gesture)
                 return
-            del self._steps[-1], self._held[-1]
+            del self._steps[-1], self._bytes[-1]
             self._now -= 1
         else:
             self._undone = [] if gesture is None else self._steps[self._now + 1 :]
-            del self._steps[self._now + 1 :], self._held[self._now + 1 :]
+            del self._steps[self._now + 1 :], self._bytes[self._now + 1 :]
             self._gesture = gesture
         self._append(step)
         self._now += 1
         self._forget()
 
     def _append(self, step: Step) -> None:
-        self._held[-1] = _held_only_by(self._steps[-1], step)
+        self._bytes[-1] = _bytes_only_in(self._steps[-1], step)
         self._steps.append(step)
-        self._held.append(0)
+        self._bytes.append(0)
 
     def _forget(self) -> None:
-        excess = sum(self._held) - self._memory
+        excess = sum(self._bytes) - self._memory
         count = 0
         while excess > 0 and count < self._now - 1:
-            excess -= self._held[count]
+            excess -= self._bytes[count]
             count += 1
-        del self._steps[:count], self._held[:count]
+        del self._steps[:count], self._bytes[:count]
         self._now -= count
+        self._forgotten += count
 
 
 def _is_same(step: Step, other: Step) -> bool:
     return step.document is other.document and step.unkeyed is other.unkeyed
 
 
-def _held_only_by(old: Step, new: Step) -> int:
+def _bytes_only_in(old: Step, new: Step) -> int:
     """Return the bytes of `old` that `new` does not share."""
     figures = {figure.id: figure for figure in new.document.figures}
-    held = SNAPSHOT_BYTES + sum(
-        _figure_held_only_by(figure, figures.get(figure.id)) for figure in old.document.figures
+    size = SNAPSHOT_BYTES + sum(
+        _figure_bytes_only_in(figure, figures.get(figure.id)) for figure in old.document.figures
     )
     if old.unkeyed is not None and old.unkeyed is not new.unkeyed:
-        held += POSE_BYTES + old.unkeyed.pose.nbytes
-    return held
+        size += POSE_BYTES + old.unkeyed.pose.nbytes
+    return size
 
 
-def _figure_held_only_by(old: Figure, new: Figure | None) -> int:
-    held = 0
+def _figure_bytes_only_in(old: Figure, new: Figure | None) -> int:
+    size = 0
     if new is None or old.picture is not new.picture:
-        held += len(old.picture.data)
+        size += len(old.picture.data)
     if new is None or old.cut_out.mask is not new.cut_out.mask:
-        held += old.cut_out.nbytes
+        size += old.cut_out.nbytes
     elif old.cut_out is not new.cut_out:
         kept = {id(stroke) for stroke in new.cut_out.strokes}
-        held += sum(s.points.nbytes for s in old.cut_out.strokes if id(s) not in kept)
+        size += sum(s.points.nbytes for s in old.cut_out.strokes if id(s) not in kept)
     if new is None or old.domain is not new.domain:
         mesh = old.domain.mesh
-        held += sum(loop.nbytes for loop in (*old.domain.loops, *old.domain.cages))
-        held += mesh.vertices.nbytes + mesh.triangles.nbytes
+        size += sum(loop.nbytes for loop in (*old.domain.loops, *old.domain.cages))
+        size += mesh.vertices.nbytes + mesh.triangles.nbytes
     later = () if new is None else new.poses
     poses, maps = {id(pose) for pose in later}, {id(pose.phi) for pose in later}
     for pose in old.poses:
         if id(pose) not in poses:
-            held += POSE_BYTES
+            size += POSE_BYTES
         if id(pose.phi) not in maps:
-            held += pose.nbytes
-    return held
+            size += pose.nbytes
+    return size

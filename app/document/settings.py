@@ -95,14 +95,7 @@ class FrameRange:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Marker:
-    """A name for a frame, such as the beat of a song.
-
-    Parameters
-    ----------
-    frame : int
-        It may lie beyond the end of the animation.
-    name : str
-    """
+    """A name for a frame, such as the beat of a song, maybe beyond the end of the animation."""
 
     frame: int
     name: str

@@ -15,34 +15,17 @@ def _no_file(_: str) -> bool:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class FileDialog:
-    """A question for a file: the system's own dialog, or our file browser where it has none.
-
-    Parameters
-    ----------
-    title : str
-    folder : Path
-        Where it begins; in our browser, whose contents it lists.
-    name : str
-        Of the file to write, or what was typed.
-    suffixes : tuple of str
-        Which files it lists, such as ".png"; none where a folder is to be written.
-    writes : bool
-        Whether it asks for a file to write (else for one to read).
-    chosen : callable
-        Returns the action for the chosen path.
-    marked : str
-        The entry of our browser's list that is marked.
-    is_frame : callable
-        Tells by its name whether a file that is there already may lie in the folder to write to.
-    """
+    """A question for a file: the system's own dialog, or our file browser where it has none."""
 
     title: str
-    folder: Path
-    name: str = ""
+    folder: Path  # where it begins; in our browser, whose contents it lists
+    name: str = ""  # of the file to write, or what was typed
+    # Of the files that it lists, such as ".png"; none where a folder is to be written.
     suffixes: tuple[str, ...]
-    writes: bool
-    chosen: Callable[[Path], Action]
-    marked: str = ""
+    writes: bool  # whether it asks for a file to write, and not for one to read
+    chosen: Callable[[Path], Action]  # returns the action for a path
+    marked: str = ""  # the entry of our browser's list that is marked
+    # Tells by its name whether a file that is there may lie in the folder to write to.
     is_frame: Callable[[str], bool] = _no_file
 
     @property

@@ -1,6 +1,6 @@
 """The project that is open: its document, what the window has of it, and what is under way."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from math import inf
 from pathlib import Path
@@ -23,7 +23,18 @@ from app.document import (
 )
 from app.editor.timeline_view import Timing
 from app.editor.work import Afterwards, Derived, Promise, Pull
-from app.motion import Box, IntervalStore, Joints, MotionPaths, PosableMesh, PoseSampler, Shown
+from app.motion import (
+    HERE,
+    Box,
+    IntervalStore,
+    Joints,
+    MotionPaths,
+    Placement,
+    PosableMesh,
+    PoseSampler,
+    Shown,
+    joints_source,
+)
 from app.render import View, fit_view
 from app.reports import Curves
 from app.solving import Renewal, Rig
@@ -38,16 +49,9 @@ FIT_MARGIN = 0.08  # of the viewport, left free around what is fitted into it
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Flip:
-    """What was flipped last: keys as they were copied, and the poses that took their place.
+    """What was flipped last.
 
-    Parameters
-    ----------
-    figure : int
-        The id of their figure.
-    keys : tuple of Keyframe
-    frames : frozenset of int
-        Where the flipped ones are.
-    poses : tuple of Pose
+    The `keys` are as they were copied; `poses` took their place in a figure, at its `frames`.
     """
 
     figure: int
@@ -58,14 +62,9 @@ class Flip:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class PoseBlend:
-    """A pose of the library that is mixed into the one at a frame, as one step of undo.
+    """A pose of the library, by its name, that is mixed into the one at a frame.
 
-    Parameters
-    ----------
-    name : str
-    gesture : object
-    share : float
-        Of the pose in the library.
+    Its `share` goes from 0 to 1; all that is mixed in one gesture is one step of undo.
     """
 
     name: str
@@ -75,18 +74,10 @@ class PoseBlend:
 
 @dataclass(slots=True, kw_only=True, eq=False)
 class Twin:
-    """A figure by another method, which its own is compared with.
+    """A figure by another method, which its own is compared with."""
 
-    Parameters
-    ----------
-    original, figure : Figure
-        The figure as it is, and the same by the other variant, where the method is one.
-    method : Variant or Baseline
-    shown : Shown, optional
-    """
-
-    original: Figure
-    figure: Figure
+    original: Figure  # the figure as it is
+    figure: Figure  # the same by the other variant, where the method is one
     method: Variant | Baseline
     shown: Shown | None = None
 
@@ -98,40 +89,20 @@ class Twin:
 
 @dataclass(slots=True, kw_only=True, eq=False)
 class Puppet:
-    """A figure as a window has it.
+    """A figure as a window has it."""
 
-    Parameters
-    ----------
-    picture : Picture
-        Decoded.
-    is_opaque : bool
-        Whether it has no transparency, so that its background was found by its colour.
-    file : PictureFile
-        That it was decoded from.
-    store, fine : IntervalStore
-        Its in-betweens on a coarse mesh, and on its own if that is another and is there.
-    shown : Shown, optional
-        None before the first frame of the window.
-    rig : Rig, optional
-        For the poses to come; None before the first of them.
-    cut : Derived
-        What is left of the picture, as the newest cut-out has it.
-    small : Derived
-        That made small, for the list of layers.
-    twin : Twin, optional
-        Beside it, while the viewport is split.
-    """
-
-    picture: Picture
-    is_opaque: bool
     file: PictureFile
+    picture: Picture  # decoded from that
+    is_opaque: bool  # whether it has no transparency: its background was found by its colour
+    # Its in-betweens on a coarse mesh, and on its own one if that is another and is there.
     store: IntervalStore
-    cut: Derived[CutOut, Cut]
     fine: IntervalStore | None = None
-    shown: Shown | None = None
-    rig: Rig | None = None
+    shown: Shown | None = None  # None before the first frame of the window
+    rig: Rig | None = None  # for the poses to come; None before the first of them
+    cut: Derived[CutOut, Cut]  # what is left of the picture, as the newest cut-out has it
+    # That made small, for the list of layers.
     small: Derived[Cut, Bytes | None] = field(default_factory=lambda: Derived(None))
-    twin: Twin | None = None
+    twin: Twin | None = None  # beside it, while the viewport is split
 
     @classmethod
     def of(cls, clip: Clip, picture: Picture, *, among: int = 1) -> Self:
@@ -150,114 +121,71 @@ class Puppet:
 
 @dataclass(slots=True, kw_only=True, eq=False)
 class Project:
-    """The document that is open, and how the person looks at it.
+    """The document that is open, and how the person looks at it."""
 
-    Parameters
-    ----------
-    name : str
-        Of the picture or the project, without its suffix.
-    path : Path, optional
-        Of the project file; None for a new one.
-    is_recovered : bool
-        Whether it is unsaved work of an earlier time, which is not saved before the person has seen
-        where.
-    puppets : dict of int to Puppet
-        One for each figure, by its id.
-    pictures : dict of PictureFile to Picture
-        Those that are decoded, of layers that come back by undo among them.
-    active : int
-        The id of the figure whose handles and keys are shown and changed.
-    pending : list of Promise
-        All that is on its way to the document.
-    afterwards : list of Afterwards
-        What is done once it is there, in this order.
-    camera : View, optional
-        None fits the picture into the viewport.
-    curves, twin_curves : Derived
-        Distortion over time, of the active figure and of its twin.
-    paths : Derived
-        Of the active figure's handles; they are traced while they are shown.
-    meshing : Meshing, optional
-        What the domain will be rebuilt with; None as long as that is what it has.
-    drafted_bounds : Bounds, optional
-        What the person drags them to.
-    stale : tuple, optional
-        The figure whose domain is older than its cut-out, and the clock's seconds when it was first
-        seen.
-    unbuildable : Figure, optional
-        One whose cut-out is known to give no domain that it can have.
-    brush : float, optional
-        Its radius in pixels of the picture; None as long as nobody has chosen it.
-    export_to : Path, optional
-        Where the next export goes: where the last one went, or was told to.
-    replaceable : Path, optional
-        Where exports may take the place of other files: the person agreed, or they are an export's.
-    joints : Derived
-        Of the figures that hang on others; None where nothing does.
-    extent : Derived
-        Of the motion; where the settings of an export are shown it is measured first, else last.
-    hold : Hold, optional
-        By which other windows see that its file is open here.
-    read_as : str, optional
-        What the file held when it was opened or saved here last; None for a new one.
-    moved_at : float
-        The clock's seconds when the playhead was last seen to move.
-    autosaved : tuple, optional
-        The document and the pose that no key holds, as the autosave has them, from the time
-        `autosaved_at` on.
-    changed_at : float, optional
-        The clock's seconds when it was first seen to differ from that.
-    chosen_of : mapping of int to frozenset of int
-        The frames of the chosen keys of figures, by their ids; figures without any are not in it.
-    gesture : object, optional
-        Commands given while it lasts make one step of undo together.
-    held : int
-        The widget whose gesture that is.
-    """
-
-    name: str
     history: History
-    path: Path | None
-    puppets: dict[int, Puppet]
-    active: int
-    pictures: dict[PictureFile, Picture] = field(default_factory=dict)
-    is_recovered: bool = False
-    pending: list[Promise] = field(default_factory=list)
-    afterwards: list[Afterwards] = field(default_factory=list)
-    curves: Derived[Clip, Curves | None] = field(default_factory=lambda: Derived(None))
-    twin_curves: Derived[Clip, Curves | None] = field(default_factory=lambda: Derived(None))
-    paths: Derived[Clip, MotionPaths | None] = field(default_factory=lambda: Derived(None))
-    meshing: Meshing | None = None
-    drafted_bounds: Bounds | None = None
-    stale: tuple[Figure, float] | None = None
-    unbuildable: Figure | None = None
-    brush: float | None = None
-    export_to: Path | None = None
-    replaceable: Path | None = None
-    joints: Derived[tuple[object, ...], Joints | None] = field(
-        default_factory=lambda: Derived(None)
-    )
-    extent: Derived[tuple[object, ...], Box | None] = field(
-        default_factory=lambda: Derived(None, remembers=EXTENTS)
-    )
-    hold: Hold | None = None
+    name: str  # of the picture or the project, without its suffix
+    path: Path | None  # of the project file; None for a new one
+    # The files that its pictures were read from, which nothing is written over.
+    drawings: set[Path] = field(default_factory=set)
+    hold: Hold | None = None  # by which other windows see that the file is open here
+    # What the file held when it was opened or saved here last; None for a new one.
     read_as: str | None = None
-    moved_at: float = -inf
+    # Whether it is unsaved work of an earlier time, not saved before the person has seen where.
+    is_recovered: bool = False
+    # The document and the pose that no key holds, as the autosave has them, and the clock's seconds
+    # when it got them, and when what is here was first seen to differ.
     autosaved: tuple[Document, UnkeyedPose | None] | None = None
     autosaved_at: float = 0.0
     changed_at: float | None = None
+
+    puppets: dict[int, Puppet]  # one for each figure, by its id
+    # Those that are decoded, of layers that come back by undo among them.
+    pictures: dict[PictureFile, Picture] = field(default_factory=dict)
+    active: int  # the id of the figure whose handles and keys are shown and changed
+    pending: list[Promise] = field(default_factory=list)  # all on its way to the document
+    afterwards: list[Afterwards] = field(default_factory=list)  # what is done once it is there
+    # Commands given during a gesture make one step of undo together; it is that of a widget.
+    gesture: object | None = None
+    used_widget: int = 0
+
+    # Distortion over time, of the active figure and of its twin.
+    curves: Derived[Clip, Curves | None] = field(default_factory=lambda: Derived(None))
+    twin_curves: Derived[Clip, Curves | None] = field(default_factory=lambda: Derived(None))
+    # Of the active figure's handles; they are traced while they are shown.
+    paths: Derived[Clip, MotionPaths | None] = field(default_factory=lambda: Derived(None))
+    # Of the figures that hang on others; `hung` has those of the document as it is now.
+    joints: Derived[tuple[object, ...], Joints | None] = field(
+        default_factory=lambda: Derived(None)
+    )
+    # Of the motion; where the settings of an export are shown it is measured first, else last.
+    extent: Derived[tuple[object, ...], Box | None] = field(
+        default_factory=lambda: Derived(None, remembers=EXTENTS)
+    )
+
+    # What the domain will be rebuilt with; None as long as that is what it has.
+    meshing: Meshing | None = None
+    drafted_bounds: Bounds | None = None  # what the person drags them to
+    # The figure whose domain is older than its cut-out, and the clock's seconds when it was seen.
+    stale: tuple[Figure, float] | None = None
+    unbuildable: Figure | None = None  # one whose cut-out is known to give no domain
+    brush: float | None = None  # radius in pixels of the picture; None until somebody chooses it
+    export_to: Path | None = None  # where the next export goes: as the last one, or as was told
+    # Where exports may take the place of other files: the person agreed, or they are an export's.
+    replaceable: Path | None = None
+
     playhead: Playhead = field(default_factory=Playhead)
+    moved_at: float = -inf  # the clock's seconds when the playhead was last seen to move
     timing: Timing = field(default_factory=Timing)
     selected: frozenset[int] = frozenset()  # ids of handles
-    chosen_of: Mapping[int, frozenset[int]] = field(default_factory=dict)  # frames of keys
-    camera: View | None = None
+    # The frames of the chosen keys of figures, by their ids; figures without any are not in it.
+    chosen_of: Mapping[int, frozenset[int]] = field(default_factory=dict)
+    camera: View | None = None  # None fits the picture into the viewport
+    awaits_extent: bool = False  # whether the camera fits the motion once that is measured
     flip: Flip | None = None
     blend: PoseBlend | None = None
-    kept: str | None = None  # the pose of the library that is picked
+    picked_pose: str | None = None  # of the library
     listed: int | None = None  # the figure that the list of layers was scrolled to
-    awaits_extent: bool = False  # whether the camera fits the motion once that is measured
-    gesture: object | None = None
-    held: int = 0
 
     @property
     def document(self) -> Document:
@@ -287,6 +215,11 @@ class Project:
     def count_chosen(self) -> int:
         """How many keys are chosen, of all figures."""
         return sum(map(len, self.chosen_of.values()))
+
+    @property
+    def sources(self) -> tuple[Path, ...]:
+        """The files that it was read from."""
+        return (*self.drawings, *([] if self.path is None else [self.path]))
 
     def keys_with(self, figure: int, frame: int) -> Mapping[int, frozenset[int]]:
         """Return the chosen keys of all figures, if a key is one of them, or else that key."""
@@ -348,6 +281,19 @@ class Project:
         figures = self.document.figures
         stale = next((each for each in figures if each.is_stale and not each.still), None)
         return None if stale is self.unbuildable else stale
+
+    @property
+    def hung(self) -> Joints | None:
+        """The joints of the document as it is now; None where there are none, or not yet."""
+        follows = self.joints.follows(joints_source(self.document))
+        return self.joints.value if follows else None
+
+    def placements(self, frames: Iterable[int], unknown: Placement) -> list[Placement]:
+        """Return where the figure that is posed is at some frames: `unknown` till that is known."""
+        if len(self.document.carriers(self.active)) == 1:
+            return [HERE for _ in frames]
+        joints = self.hung
+        return [unknown if joints is None else joints.placement(self.active, f) for f in frames]
 
     def pair_up(self, method: Variant | Baseline | None) -> None:
         """Let each figure have a twin by a method, or none."""

@@ -47,19 +47,19 @@ def begin(
     promised = promise or Promise(label=kind.label)
     project.pending.append(promised)
 
-    def kept(result: Result) -> None:
-        if _keep(session, project, promised):
+    def arrived(result: Result) -> None:
+        if _end(session, project, promised):
             done(result)
 
-    def broken(error: Exception) -> None:
-        if _keep(session, project, promised):
+    def lost(error: Exception) -> None:
+        if _end(session, project, promised):
             (failed or partial(report, session, kind.complaint))(error)
 
-    session.jobs.add(Job(kind=kind, work=work, done=kept, failed=broken))
+    session.jobs.add(Job(kind=kind, work=work, done=arrived, failed=lost))
     return promised
 
 
-def _keep(session: Session, project: Project, promise: Promise) -> bool:
+def _end(session: Session, project: Project, promise: Promise) -> bool:
     """End a promise; tell whether anybody still waits for what it was about."""
     if promise not in project.pending:
         return False
@@ -70,10 +70,7 @@ def _keep(session: Session, project: Project, promise: Promise) -> bool:
 def is_settled(project: Project, *, after_saves: bool = False) -> bool:
     """Tell whether nothing is on its way to the document any more.
 
-    Parameters
-    ----------
-    after_saves : bool
-        Whether a save counts that is under way.
+    With `after_saves`, a save that is under way counts, too.
     """
     if project.stale_figure is not None:
         return False

@@ -9,7 +9,7 @@ from typing import Concatenate, Literal, ParamSpec, Protocol
 
 from app.document import Baseline, Document, Figure, Keyframe, Meshing, Variant
 from app.editor.action import Action
-from app.editor.dialogs import Dialog
+from app.editor.dialogs import Dialog, FileDialog
 from app.editor.project import Project
 from app.editor.work import Jobs
 from app.errors import shown_name
@@ -41,50 +41,25 @@ class Overlays:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Split:
-    """Another method beside the drawing's own: how the viewport is divided.
+    """Another method beside the drawing's own: how the viewport is divided."""
 
-    Parameters
-    ----------
-    method : Variant or Baseline
-        By which all figures are shown in the right part.
-    place : float
-        Of the divider, as a share of the viewport's width.
-    beside : bool
-        Whether the two are side by side, each whole, and not under a divider over one place.
-    """
-
-    method: Variant | Baseline
-    place: float = 0.5
+    method: Variant | Baseline  # by which all figures are shown in the right part
+    place: float = 0.5  # of the divider, as a share of the viewport's width
+    # Whether the two are side by side, each whole, and not under a divider over one place.
     beside: bool = False
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Toast:
-    """A message that shows for a while.
-
-    Parameters
-    ----------
-    text : str
-    tone : str
-    born : float
-        The clock's seconds.
-    place : int
-        The first that no other message has: ImGui keeps a window for each for ever.
-    topic : str
-        What it is about: a later message about the same takes its place.
-    details : str
-        What the person may copy; empty where there is nothing to add.
-    label, action
-        A button, such as "Open folder".
-    """
+    """A message that shows for a while."""
 
     text: str
     tone: Tone
-    born: float
-    place: int
-    topic: str = ""
-    details: str = ""
-    label: str = ""
+    born: float  # the clock's seconds
+    place: int  # the first that no other one has: ImGui keeps a window for each for ever
+    topic: str = ""  # a later message about the same takes its place
+    details: str = ""  # what the person may copy, where there is anything to add
+    label: str = ""  # of a button that does the action, such as "Open folder"
     action: Action | None = None
 
 
@@ -241,6 +216,24 @@ class Session:
         """Where the person's files were last."""
         folder = self.preferences.folder
         return folder if folder is not None and folder.is_dir() else home_folder()
+
+    def ask_file(
+        self,
+        title: str,
+        suffixes: tuple[str, ...],
+        chosen: Callable[[Path], Action],
+        *,
+        name: str = "",
+    ) -> None:
+        """Ask for a file to read, or for one to write if there is a `name` that it has at first."""
+        self.dialog = FileDialog(
+            title=title,
+            folder=self.usual_folder,
+            name=name,
+            suffixes=suffixes,
+            writes=bool(name),
+            chosen=chosen,
+        )
 
     def tell(
         self,

@@ -15,18 +15,10 @@ Edge = Literal["preview start", "preview range", "preview end", "animation end"]
 
 @dataclass(frozen=True, slots=True)
 class Strip:
-    """The stretch of time that is on the screen.
+    """The stretch of time that is on the screen."""
 
-    Parameters
-    ----------
-    start : float
-        The frame at its left edge.
-    scale : float
-        How many em a frame takes.
-    """
-
-    start: float
-    scale: float
+    start: float  # the frame at its left edge
+    scale: float  # how many em a frame takes
 
     @classmethod
     def fitting(cls, frames: FrameRange, width: float) -> Self:
@@ -78,40 +70,21 @@ class Strip:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class TimeDrag:
-    """The pointer moves something in time.
+    """The pointer moves something in time."""
 
-    Parameters
-    ----------
-    start : float
-        The pointer's frame at the press.
-    before, after : Document
-        At the press, and with what is moved where it is now.
-    """
-
-    start: float
-    before: Document
-    after: Document
+    start: float  # the pointer's frame at the press
+    before: Document  # at the press
+    after: Document  # with what is moved where it is now
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class KeyDrag(TimeDrag):
-    """The pointer moves keys, or copies of them.
+    """The pointer moves keys, or copies of them."""
 
-    Parameters
-    ----------
-    keys : mapping of int to frozenset of int
-        Their frames in `before`, by the ids of their figures.
-    pressed : int
-        The frame of the one under the pointer, which is of the active figure.
-    copies : bool
-    by : int
-        How far they are, in frames.
-    """
-
-    keys: Mapping[int, frozenset[int]]
-    pressed: int
+    keys: Mapping[int, frozenset[int]]  # their frames in `before`, by the ids of their figures
+    pressed: int  # the frame of the one under the pointer, which is of the active figure
     copies: bool
-    by: int = 0
+    by: int = 0  # how far they are, in frames
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -140,21 +113,11 @@ class SwitchDrag(TimeDrag):
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class KeyBox:
-    """The pointer spans a stretch of time and rows to choose the keys there.
+    """The pointer spans a stretch of time and rows to choose the keys there."""
 
-    Parameters
-    ----------
-    start : float
-        The pointer's frame at the press.
-    row : int
-        The id of the figure whose row the pointer was on.
-    keeps : mapping of int to frozenset of int
-        The keys that are chosen besides.
-    """
-
-    start: float
-    row: int
-    keeps: Mapping[int, frozenset[int]]
+    start: float  # the pointer's frame at the press
+    row: int  # the id of the figure whose row the pointer was on
+    keeps: Mapping[int, frozenset[int]]  # the keys that are chosen besides
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -185,28 +148,16 @@ def measure_shortfalls(figure: Figure, earlier: Derived[Figure, Shortfalls]) -> 
 
 @dataclass(slots=True, kw_only=True, eq=False)
 class Timing:
-    """What may change of a project's timeline besides the document.
+    """What may change of a project's timeline besides the document."""
 
-    Parameters
-    ----------
-    strip : Strip, optional
-        What it shows; None fits all frames.
-    gesture : TimeGesture, optional
-    held : Strip, optional
-        What it shows while the gesture lasts: nothing may move under the pointer.
-    seen : int
-        The frame that was shown last, so that the strip follows the playhead only when it moves.
-    scrolled : float
-        By how many em the rows of figures are scrolled down, where there are more than have room.
-    seen_row : int, optional
-        The figure that was active last, so that the rows follow it only when another one is.
-    shortfalls : Derived
-    """
-
-    strip: Strip | None = None
+    strip: Strip | None = None  # what it shows; None fits all frames
     gesture: TimeGesture | None = None
-    held: Strip | None = None
+    # What it shows while the gesture lasts: nothing may move under the pointer.
+    gesture_strip: Strip | None = None
+    # The frame that was shown last, so that the strip follows the playhead only when it moves.
     seen: int = 0
+    # By how many em the rows of figures are scrolled down, where there are more than have room.
     scrolled: float = 0.0
+    # The figure that was active last, so that the rows follow it only when another one is.
     seen_row: int | None = None
     shortfalls: Derived[Figure, Shortfalls] = field(default_factory=lambda: Derived({}))

@@ -3,7 +3,7 @@
 import os
 import re
 import shutil
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
@@ -51,26 +51,36 @@ class FrameNames:
         return start, len(digits), f"{end}.png"
 
 
-def check_destination(out: Path, name: str) -> None:
+def check_destination(
+    out: Path, name: str, frames: Sequence[str] = (), sources: Iterable[Path] = ()
+) -> None:
     """Refuse a path that does not suit a format, before anything long begins.
+
+    Parameters
+    ----------
+    frames : sequence of str
+        The names of the pictures, where each is a file of its own.
+    sources : iterable of Path
+        The files that the export is made from.
 
     Raises
     ------
     LissomError
         If it is a folder instead of a file or the other way round, is named like another format,
-        or its folder is missing or may not be written to.
+        or its folder is missing or may not be written to; or as `check_writable`, of every file.
     """
     suffixes, label = EXPORT_FORMATS[name].suffixes, EXPORT_FORMATS[name].label
     if suffixes:
-        check_writable(out)
-        if (data := data_file(out, name)) is not None:
-            check_writable(data)
+        check_writable(*_files(out, name, frames), sources=sources)
         ending = out.suffix.lower()
         if ending not in suffixes and (ending in _all_suffixes() or _ENDING.fullmatch(ending)):
             raise LissomError(
                 f"{out} is not named like {name}; let the name end in {' or '.join(suffixes)}"
             )
-    elif not out.is_dir():
+    elif out.is_dir():
+        there = [file for file in _files(out, name, frames) if os.path.lexists(file)]
+        check_writable(*there, sources=sources)
+    else:
         if out.exists():
             raise LissomError(f"cannot write frames to {out}: it is a file; name a folder")
         if out.suffix.lower() in _all_suffixes():
@@ -150,12 +160,9 @@ def folder_within(chosen: Path, name: str, is_frame: Callable[[str], bool]) -> P
     return chosen / name if others and chosen.name != name else chosen
 
 
-def replaced(out: Path, name: str, frames: list[str]) -> list[str]:
+def replaced(out: Path, name: str, frames: Sequence[str]) -> list[str]:
     """Return the names of the files that an export would take the place of."""
-    if EXPORT_FORMATS[name].suffixes:
-        files = (out, data_file(out, name))
-        return [file.name for file in files if file is not None and file.exists()]
-    return [frame for frame in frames if (out / frame).exists()]
+    return [file.name for file in _files(out, name, frames) if file.exists()]
 
 
 def left_frames(out: Path, names: FrameNames, frames: list[str]) -> list[str]:
@@ -164,6 +171,13 @@ def left_frames(out: Path, names: FrameNames, frames: list[str]) -> list[str]:
         return []
     there = {path.name for path in out.iterdir() if names.fits(path.name)}
     return sorted(there.difference(frames))
+
+
+def _files(out: Path, name: str, frames: Sequence[str]) -> list[Path]:
+    """Return all files that an export writes."""
+    if not EXPORT_FORMATS[name].suffixes:
+        return [out / frame for frame in frames]
+    return [file for file in (out, data_file(out, name)) if file is not None]
 
 
 def _all_suffixes() -> set[str]:

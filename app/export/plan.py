@@ -43,12 +43,15 @@ class ExportRequest:
         The project's name.
     fps : float, optional
         Pictures per second; the document's rate by default.
+    sources : tuple of Path
+        The files that it is made from, which must not be written over.
     """
 
     out: Path
     settings: ExportSettings
     project: str
     fps: float | None = None
+    sources: tuple[Path, ...] = ()
 
     @property
     def names(self) -> FrameNames:
@@ -138,9 +141,8 @@ def check_request(document: Document, request: ExportRequest) -> None:
             f"frames {frames.first} to {frames.last} are not all in the animation, which has "
             f"frames {document.frames.first} to {document.frames.last}"
         )
-    frame_times(document, frames, request.fps)
     name, format_ = settings.format, EXPORT_FORMATS[settings.format]
-    check_destination(request.out, name)
+    check_destination(request.out, name, _names(document, request), request.sources)
     if settings.size is not None and format_.is_drawn:
         _check_size(name, settings.size)
         width, height = format_.whole_blocks(settings.size)
@@ -171,10 +173,7 @@ def check_request(document: Document, request: ExportRequest) -> None:
 
 def replaced_files(document: Document, request: ExportRequest) -> list[str]:
     """Return the names of the files that an export would take the place of."""
-    settings = request.settings
-    frames = _frames(document, settings)
-    count = len(frame_times(document, frames, request.fps))
-    return replaced(request.out, settings.format, request.names.of(frames.first, count))
+    return replaced(request.out, request.settings.format, _names(document, request))
 
 
 def missing(name: str) -> str:
@@ -245,6 +244,12 @@ def _check_size(name: str, size: tuple[int, int]) -> None:
             f"{name} holds at most {largest:,} pixels each way, not {size[0]} × {size[1]}; choose "
             "a smaller size"
         )
+
+
+def _names(document: Document, request: ExportRequest) -> list[str]:
+    """Return the names of the pictures, where each is a file of its own."""
+    frames = _frames(document, request.settings)
+    return request.names.of(frames.first, len(frame_times(document, frames, request.fps)))
 
 
 def _frames(document: Document, settings: ExportSettings) -> FrameRange:

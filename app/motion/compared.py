@@ -8,12 +8,7 @@ from engine.domain import Domain
 
 
 class RememberedFrames:
-    """In-betweens of two keys whose frames are worked out once: some methods take long for one.
-
-    Parameters
-    ----------
-    inbetweens : MeshInbetweens
-    """
+    """In-betweens of two keys whose frames are worked out once: some methods take long for one."""
 
     def __init__(self, inbetweens: MeshInbetweens) -> None:
         self._inbetweens = inbetweens
@@ -40,13 +35,8 @@ def prepare_compared(
 ) -> RememberedFrames:
     """Return a clip's in-betweens by a baseline, with those of all whole frames worked out.
 
-    Through keys the motion has corners: none of these methods passes them at one velocity.
-
-    Parameters
-    ----------
-    interval : int
-    domain : Domain
-        With the mesh that is shown.
+    The mesh of the domain is the one that is shown. Through keys the motion has corners: none of
+    these methods passes them at one velocity.
 
     Raises
     ------

@@ -135,7 +135,7 @@ class IntervalStore:
             return one
         return clip.keys[intervals(clip)[moment.interval][after]].pose
 
-    def kept(self, clip: Clip) -> Mapping[int, float]:
+    def velocity_shares(self, clip: Clip) -> Mapping[int, float]:
         """Return how much of its velocity the bounds leave to the motion at keys, by their frames.
 
         From 0, a stop, to 1; of those that it passes through, as far as that is known.
@@ -294,7 +294,7 @@ class IntervalStore:
         )
 
     def _pairs(self, clip: Clip) -> tuple[Pair, ...]:
-        """Return by what a clip's intervals are known."""
+        """Return the keys by which a clip's intervals are stored."""
         known = self._present.get(clip) or self._nearby.get(clip)
         return known or tuple(pair_of(clip, number) for number in range(len(intervals(clip))))
 

@@ -1,4 +1,4 @@
-"""In-betweens of one interval on a mesh: by what they are known, and how a worker makes them."""
+"""In-betweens of one interval on a mesh: their key in a store, and how a worker makes them."""
 
 from collections.abc import Generator, Mapping, Sequence
 from typing import NamedTuple
@@ -73,7 +73,7 @@ class FoundIntervals(NamedTuple):
 
 
 def pair_of(clip: Clip, interval: int) -> Pair:
-    """Return by what the in-betweens of one of a clip's intervals are known."""
+    """Return the key by which the in-betweens of one of a clip's intervals are stored."""
     transit, figure = transits(clip)[interval], clip.figure
     # As numbers, which are hashed far sooner than the dataclass.
     bounds = (figure.bounds.k, figure.bounds.sigma_a, figure.bounds.sigma_b)

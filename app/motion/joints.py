@@ -230,7 +230,7 @@ class Joints:
         return _joint(moved.positions[0], moved.fz[0])
 
     def _common_point(self, child: Figure, parent: Figure, frame: float) -> complex:
-        """Return the point of a figure at rest that is its anchor, or else in the parent, too."""
+        """Return the child's anchor if it is in the parent, else a point of it that is in both."""
         mesh = child.domain.mesh
         middles = mesh.vertices[mesh.triangles].mean(axis=1)
         middles = middles[:: max(1, len(middles) // MOST_STARTS)]
@@ -276,15 +276,7 @@ class Joints:
 
 
 class HungAnimation:
-    """A figure's motion where its scene has it.
-
-    Parameters
-    ----------
-    animation : Animation
-        Of the figure by itself.
-    joints : Joints
-        Of the scene.
-    """
+    """The motion of a figure by itself, brought to where the joints of its scene have it."""
 
     def __init__(self, animation: Animation, joints: Joints) -> None:
         self._animation = animation

@@ -91,11 +91,7 @@ class PosableMesh:
     def coarse(cls, source: Domain, *, among: int = 1) -> "PosableMesh":
         """Return a coarse mesh of the same domain, or the figure's own if that is as coarse.
 
-        Parameters
-        ----------
-        source : Domain
-        among : int
-            How many figures are drawn together.
+        The more figures are drawn (it is `among` them), the fewer triangles it has.
         """
         wanted = max(FEWEST_TRIANGLES, COARSE_TRIANGLES // among)
         if len(source.mesh.triangles) <= wanted:
@@ -105,13 +101,9 @@ class PosableMesh:
         return cls(domain=coarse, source=source, coordinates=_coordinates(coarse))
 
     def locate(self, points: Complexes, positions: Complexes) -> "AttachedPoints":
-        """Find points in the mesh whose vertices are at `positions`.
+        """Find points (p,) in the mesh whose vertices are at `positions` (v,).
 
-        Parameters
-        ----------
-        points : complex128, shape (p,)
-        positions : complex128, shape (v,)
-            The domain's own vertices, or a pose of them.
+        Those are the domain's own, or where a pose has them.
         """
         corners = positions[self.domain.mesh.triangles]
         origin, side, other = corners[:, 0], corners[:, 1] - corners[:, 0], corners[:, 2]

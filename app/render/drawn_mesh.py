@@ -31,14 +31,7 @@ class DrawnMesh:
     def pose(
         self, vertices: Vertices, *, placement: Placement = HERE, opacity: float = 1.0
     ) -> PosedMesh:
-        """Return the mesh with its vertices there and painted in their order; new ones go up.
-
-        Parameters
-        ----------
-        placement : Placement
-            Where the figure hangs.
-        opacity : float
-        """
+        """Return the mesh with its vertices there and painted in their order; new ones go up."""
         if self._current is None or self._current[0] is not vertices:
             self._current = vertices, self._placed(vertices)
         posed = self._current[1]

@@ -44,13 +44,7 @@ class HandleMark:
 def mark_handles(
     marks: Sequence[HandleMark], *, scale: float = 1.0
 ) -> tuple[tuple[Line, ...], tuple[Disc, ...]]:
-    """Return the lines and discs that show the handles; the later ones lie on top.
-
-    Parameters
-    ----------
-    scale : float
-        The interface's scale.
-    """
+    """Return the lines and discs that show handles, at the interface's scale; later ones on top."""
     lines: list[Line] = []
     discs: list[Disc] = []
     for mark in marks:

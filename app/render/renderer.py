@@ -38,11 +38,7 @@ class Renderer:
     def draw(self, target: RenderTarget, view: View, scene: Scene) -> None:
         """Draw a scene in place of whatever the target holds, and leave the target bound.
 
-        Parameters
-        ----------
-        target : RenderTarget
-        view : View
-            Of the target's size.
+        The view has the target's size.
         """
         if view.size != target.size:
             raise ValueError(f"a view of {view.size} pixels cannot fill a frame of {target.size}")

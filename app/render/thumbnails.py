@@ -17,12 +17,7 @@ class Thumbnail(NamedTuple):
 
 
 class Thumbnails:
-    """Owner of one small texture for each picture or project that was asked for.
-
-    Parameters
-    ----------
-    context : moderngl.Context
-    """
+    """Owner of one small texture for each picture or project that was asked for."""
 
     def __init__(self, context: moderngl.Context) -> None:
         self._context = context
@@ -60,12 +55,7 @@ class Thumbnails:
 
 
 class LayerPictures:
-    """Owner of one small texture for each layer whose picture was asked for.
-
-    Parameters
-    ----------
-    context : moderngl.Context
-    """
+    """Owner of one small texture for each layer whose picture was asked for."""
 
     def __init__(self, context: moderngl.Context) -> None:
         self._context = context

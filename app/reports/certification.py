@@ -60,14 +60,7 @@ class IntervalReport:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Report:
-    """Keys and intervals of a document.
-
-    Parameters
-    ----------
-    keys : tuple of (frame, Certificate)
-        Proven anew for each keyframe, against the document's bounds.
-    intervals : tuple of IntervalReport
-    """
+    """Intervals of a document, and its keyframes' certificates, proven anew against its bounds."""
 
     keys: tuple[tuple[int, Certificate], ...]
     intervals: tuple[IntervalReport, ...]
@@ -83,10 +76,7 @@ class Report:
 def certify_clip(clip: Clip, variant: Variant | None = None) -> Report:
     """Prove and measure the distortion of a figure over time and space.
 
-    Parameters
-    ----------
-    variant : str, optional
-        The figure's own by default.
+    It is that of its own variant, unless another one is given.
 
     Notes
     -----
@@ -120,7 +110,7 @@ def certify_clip(clip: Clip, variant: Variant | None = None) -> Report:
         for t in np.linspace(0.0, 1.0, TIMES)[1:-1]:
             frame = inbetweens.frame(float(t))
             reached = reached.joined(Extremes.measured(frame.fz, frame.fzbar))
-        proof = prove(inbetweens, animation.variant, boundary, clip.figure.bounds)
+        proof = prove(inbetweens)
         reports.append(
             IntervalReport(
                 first=clip.keys[first].frame,

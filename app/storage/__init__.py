@@ -25,6 +25,7 @@ from app.storage.files import (
     Hold as Hold,
     HoldError as HoldError,
     atomic_file as atomic_file,
+    atomic_files as atomic_files,
     check_writable as check_writable,
     clear_abandoned as clear_abandoned,
     lock as lock,

@@ -60,7 +60,7 @@ class Autosave:
         members = MappingProxyType({**document.attachments, ORIGIN: told})
         with self._writing:
             self._prepare()
-            save_project(self._path, replace(document, attachments=members))
+            save_project(self._path, replace(document, attachments=members), is_private=True)
 
     def forget(self) -> None:
         """Remove what was kept."""

@@ -4,6 +4,7 @@ import json
 import os
 import re
 import sys
+from contextlib import suppress
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any, Literal
@@ -99,9 +100,11 @@ def settings_folder() -> Path:
 
 
 def make_settings_folder(folder: Path) -> None:
-    """Make the folder for settings and unsaved work."""
+    """Make the folder for settings and unsaved work, which nobody else may look into."""
     try:
-        folder.mkdir(parents=True, exist_ok=True)
+        folder.mkdir(mode=0o700, parents=True, exist_ok=True)
+        with suppress(OSError):  # it may be somebody else's
+            folder.chmod(0o700)
     except OSError as error:
         raise LissomError(
             f"the folder {folder} cannot be made: {error.strerror or error}"
@@ -125,7 +128,7 @@ def save_preferences(folder: Path, preferences: Preferences) -> None:
     content = {**asdict(preferences), "easing": preferences.easing.written()}
     text = json.dumps(content, indent=1, default=str).encode()
     make_settings_folder(folder)
-    write_atomically(folder / "preferences.json", lambda file: file.write(text))
+    write_atomically(folder / "preferences.json", lambda file: file.write(text), is_private=True)
 
 
 def _understood(content: dict[str, Any]) -> Preferences:

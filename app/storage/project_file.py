@@ -12,7 +12,6 @@ times its size.
 """
 
 import json
-import zipfile
 from dataclasses import replace
 from math import isfinite
 from pathlib import Path
@@ -21,7 +20,14 @@ from typing import IO
 
 from app.document import Document
 from app.errors import EXPECTED_ERRORS, LissomError
-from app.storage.files import DAMAGED_ZIP, require_file, sync_folder, tail_digest, write_atomically
+from app.storage.files import (
+    DAMAGED_ZIP,
+    opened_file,
+    opened_zip,
+    sync_folder,
+    tail_digest,
+    write_atomically,
+)
 from app.storage.json_values import JsonObject, as_object, as_text, as_whole, without_repeats
 from app.storage.project import (
     MEBIBYTE,
@@ -42,7 +48,9 @@ THUMBNAIL = "thumbnail.png"
 DEEPEST = 40
 
 
-def save_project(path: Path, document: Document, *, thumbnail: bytes | None = None) -> str:
+def save_project(
+    path: Path, document: Document, *, thumbnail: bytes | None = None, is_private: bool = False
+) -> str:
     """Write a project file; at any moment the old or the new one is whole.
 
     Parameters
@@ -51,6 +59,8 @@ def save_project(path: Path, document: Document, *, thumbnail: bytes | None = No
         Used exactly as given.
     thumbnail : bytes, optional
         A small PNG picture of the animation.
+    is_private : bool
+        Whether nobody else may read it.
 
     Returns
     -------
@@ -72,7 +82,7 @@ def save_project(path: Path, document: Document, *, thumbnail: bytes | None = No
         write_archive(file, members)
         return tail_digest(file)
 
-    digest = write_atomically(path, write)
+    digest = write_atomically(path, write, is_private=is_private)
     sync_folder(path.parent)
     return digest
 
@@ -80,8 +90,7 @@ def save_project(path: Path, document: Document, *, thumbnail: bytes | None = No
 def project_digest(path: Path) -> str | None:
     """Return what tells the contents of a project file from others; None where there is none."""
     try:
-        require_file(path)
-        with path.open("rb") as file:
+        with opened_file(path) as (file, _):
             return tail_digest(file)
     except FileNotFoundError:
         return None
@@ -99,9 +108,8 @@ def load_project(path: Path) -> Document:
         message says which.
     """
     try:
-        size = require_file(path)
-        with zipfile.ZipFile(path) as file:
-            return _read(Archive(file, size))
+        with opened_file(path) as (file, size), opened_zip(file) as members:
+            return _read(Archive(members, size))
     except OSError as error:
         raise LissomError(f"cannot read {path}: {error.strerror or error}") from error
     except EXPECTED_ERRORS as error:
@@ -118,9 +126,8 @@ def load_thumbnail(path: Path) -> bytes | None:
 def load_member(path: Path, name: str, largest: int) -> bytes | None:
     """Read only one member of a project; None where it has none such, or is no project."""
     try:
-        size = require_file(path)
-        with zipfile.ZipFile(path) as file:
-            return Archive(file, size).read(name, largest=largest)
+        with opened_file(path) as (file, size), opened_zip(file) as members:
+            return Archive(members, size).read(name, largest=largest)
     except (OSError, *EXPECTED_ERRORS, *DAMAGED_ZIP):
         return None
 

@@ -2,13 +2,14 @@
 
 import io
 from pathlib import Path
+from typing import IO
 
 import numpy as np
-from PIL import Image, ImageOps
+from PIL import Image
 
 from app.errors import LissomError
-from app.storage.files import require_file
-from app.storage.pictures import DECODER_ERRORS, FORMATS
+from app.storage.files import opened_file
+from app.storage.pictures import DECODER_ERRORS, FORMATS, upright
 from app.storage.project_file import load_thumbnail
 from engine.arrays import Bytes, readonly
 
@@ -42,19 +43,21 @@ def read_thumbnail(path: Path) -> Bytes | None:
 
     None where it cannot be read or takes long to read, and where a project holds no small picture.
     """
-    is_project = path.suffix.lower() == PROJECT
-    content = load_thumbnail(path) if is_project else None
-    if is_project and content is None:
-        return None
-    formats = ("PNG",) if is_project else tuple(FORMATS)
     try:
-        require_file(path)
-        with Image.open(path if content is None else io.BytesIO(content), formats=formats) as image:
-            image.draft("RGB", (SIDE, SIDE))
-            if image.width * image.height > MOST_PIXELS:
-                return None
-            small = image.convert("RGBA")
-    except (LissomError, *DECODER_ERRORS, *BOMBS):
+        if path.suffix.lower() == PROJECT:
+            content = load_thumbnail(path)
+            return None if content is None else _small(io.BytesIO(content), ("PNG",))
+        with opened_file(path) as (file, _):
+            return _small(file, tuple(FORMATS))
+    except (LissomError, MemoryError, *DECODER_ERRORS, *BOMBS):
         return None
-    small.thumbnail((SIDE, SIDE))
-    return np.asarray(ImageOps.exif_transpose(small))
+
+
+def _small(file: IO[bytes], formats: tuple[str, ...]) -> Bytes | None:
+    with Image.open(file, formats=formats) as image:
+        image.draft("RGB", (SIDE, SIDE))
+        if image.width * image.height > MOST_PIXELS:
+            return None
+        small = image.convert("RGBA")
+        small.thumbnail((SIDE, SIDE))
+        return np.asarray(upright(small)[0])

@@ -8,26 +8,18 @@ from app.editor import Action, Project, Session
 from app.ui.style import Look
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+@dataclass(frozen=True, slots=True, eq=False)
 class Panel:
-    """A dockable part of the window.
+    """A dockable part of the window, with its icon in a tab, and the place where it is at first.
 
-    Parameters
-    ----------
-    title : str
-    icon : str
-        In its tab.
-    place : str
-        Where it is docked at first.
-    draw : callable
-        Reads the session and its project, and returns what the person asked for. Without a project
-        it is not called.
+    What draws it reads the session and its project, and returns what the person asked for. Without
+    a project it is not called.
     """
 
     title: str
     icon: str
-    place: Literal["MainDockSpace", "side", "bottom"]
     draw: Callable[[Session, Look, Project], list[Action]]
+    place: Literal["MainDockSpace", "side", "bottom"] = "side"
 
     @property
     def labels(self) -> tuple[str, str, str]:

@@ -3,14 +3,14 @@
 from collections.abc import Callable
 from pathlib import Path
 
-from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui
+from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui, imgui_ctx
 
 from app.editor import Action, Session, do
 from app.editor.actions import files
 from app.errors import shown_name
 from app.render import Thumbnail
 from app.ui.shortcuts import BINDINGS
-from app.ui.style import LARGE, SMALL, TITLE, Look, ink, main_button, show_picture
+from app.ui.style import LARGE, SMALL, TITLE, Look, bold, ink, main_button, show_picture, sized
 
 Look_up = Callable[[Path], Thumbnail | None]
 CARD, GAP, ROW = 11.5, 1.0, 2.5  # em
@@ -32,14 +32,14 @@ def draw(session: Session, look: Look, thumbnail: Look_up) -> list[Action]:
     viewport = imgui.get_main_viewport()
     imgui.set_next_window_pos(viewport.work_pos)
     status = imgui.get_frame_height() + look.em
-    imgui.set_next_window_size(ImVec2(viewport.work_size.x, viewport.work_size.y - status))
+    imgui.set_next_window_size((viewport.work_size.x, viewport.work_size.y - status))
     imgui.push_style_var(imgui.StyleVar_.window_rounding, 0.0)
     imgui.push_style_color(imgui.Col_.window_bg, look.palette.desk)
     imgui.begin("Welcome", flags=FLAGS)
     imgui.pop_style_color()
     imgui.pop_style_var()
     left = max(GAP * look.em, (viewport.work_size.x - WIDTH * look.em) / 2)
-    imgui.set_cursor_pos(ImVec2(left, max(1.5 * look.em, 0.07 * viewport.work_size.y)))
+    imgui.set_cursor_pos((left, max(1.5 * look.em, 0.07 * viewport.work_size.y)))
     imgui.begin_group()
     actions = _greeting(session, look)
     actions += _samples(look, thumbnail)
@@ -51,16 +51,12 @@ def draw(session: Session, look: Look, thumbnail: Look_up) -> list[Action]:
 
 def _greeting(session: Session, look: Look) -> list[Action]:
     actions: list[Action] = []
-    base = imgui.get_style().font_size_base
-    imgui.push_font(look.bold, TITLE * base)
-    imgui.text("Lissom")
-    imgui.pop_font()
-    imgui.push_font(None, LARGE * base)
-    imgui.text_colored(
-        look.palette.dim, "Pose a drawing with a few handles, and get in-betweens that never fold."
-    )
-    imgui.pop_font()
-    imgui.dummy(ImVec2(0, 0.8 * look.em))
+    with sized(TITLE, look.bold):
+        imgui.text("Lissom")
+    told = "Pose a drawing with a few handles, and get in-betweens that never fold."
+    with sized(LARGE):
+        imgui.text_colored(look.palette.dim, told)
+    imgui.dummy((0, 0.8 * look.em))
     binding = BINDINGS["open"]
     if main_button(look, f"{icons.ICON_FA_FOLDER_OPEN}  Open image or project…", 16 * look.em):
         actions.append(binding.action)
@@ -68,21 +64,19 @@ def _greeting(session: Session, look: Look) -> list[Action]:
     imgui.align_text_to_frame_padding()
     busy = next((kind for kind in session.jobs.kinds), None)
     imgui.text_colored(look.palette.dim, f"{busy.label}…" if busy else "or drop a picture here")
-    imgui.dummy(ImVec2(0, 1.0 * look.em))
+    imgui.dummy((0, 1.0 * look.em))
     return actions
 
 
 def _samples(look: Look, thumbnail: Look_up) -> list[Action]:
     actions: list[Action] = []
-    imgui.push_font(look.bold, 0)
-    imgui.text("Try one of these")
-    imgui.pop_font()
-    imgui.dummy(ImVec2(0, 0.2 * look.em))
+    bold(look, "Try one of these")
+    imgui.dummy((0, 0.2 * look.em))
     for index, sample in enumerate(files.samples()):
         if index % 4:
             imgui.same_line(0, GAP * look.em)
         elif index:
-            imgui.dummy(ImVec2(0, GAP * look.em - 2 * imgui.get_style().item_spacing.y))
+            imgui.dummy((0, GAP * look.em - 2 * imgui.get_style().item_spacing.y))
         if _card(look, sample, thumbnail(sample.picture)):
             actions.append(do(files.open_file, sample.file))
     return actions
@@ -94,28 +88,18 @@ def _card(look: Look, sample: files.SampleFile, image: Thumbnail | None) -> bool
     corner = imgui.get_cursor_screen_pos()
     pressed = imgui.invisible_button(f"sample {sample.name}", size)
     hovered = imgui.is_item_hovered()
-    opposite = ImVec2(corner.x + size.x, corner.y + size.y)
+    opposite = corner + size
     draw_list = imgui.get_window_draw_list()
-    rounding = 0.6 * look.em
-    draw_list.add_rect_filled(
-        corner, opposite, ink(palette.raised if hovered else palette.panel), rounding
-    )
-    draw_list.add_rect(
-        corner,
-        opposite,
-        ink(palette.accent if hovered else palette.line),
-        rounding,
-        1.5 if hovered else 1.0,
-    )
+    ground, edge, width = palette.panel, palette.line, 1.0
+    if hovered:
+        ground, edge, width = palette.raised, palette.accent, 1.5
+    draw_list.add_rect_filled(corner, opposite, ink(ground), 0.6 * look.em)
+    draw_list.add_rect(corner, opposite, ink(edge), 0.6 * look.em, width)
     foot = 2.3 * look.em
     if image is not None:
-        place = ImVec2(corner.x + 0.7 * look.em, corner.y + 0.7 * look.em)
-        show_picture(
-            image.texture,
-            image.size,
-            place,
-            ImVec2(size.x - 1.4 * look.em, size.y - foot - 0.8 * look.em),
-        )
+        place = corner + ImVec2(0.7 * look.em, 0.7 * look.em)
+        room = ImVec2(size.x - 1.4 * look.em, size.y - foot - 0.8 * look.em)
+        show_picture(image.texture, image.size, place, room)
     text = ImVec2(corner.x + 0.9 * look.em, opposite.y - foot + 0.45 * look.em)
     draw_list.add_text(text, ink(palette.text), sample.name)
     end = ImVec2(opposite.x - 0.9 * look.em - imgui.calc_text_size(sample.what).x, text.y)
@@ -128,10 +112,8 @@ def _recent(session: Session, look: Look, thumbnail: Look_up) -> list[Action]:
     recent = files.recent_files(session)[:MOST_RECENT]
     if not recent:
         return actions
-    imgui.dummy(ImVec2(0, 0.8 * look.em))
-    imgui.push_font(look.bold, 0)
-    imgui.text("Recent")
-    imgui.pop_font()
+    imgui.dummy((0, 0.8 * look.em))
+    bold(look, "Recent")
     for index, (path, is_there) in enumerate(recent):
         if index % 2:
             imgui.same_line(0, GAP * look.em)
@@ -148,7 +130,7 @@ def _row(look: Look, path: Path, index: int, image: Thumbnail | None, *, is_ther
     """Show a recent file: its picture, its name, and its folder below."""
     em, corner = look.em, imgui.get_cursor_screen_pos()
     size = ImVec2((WIDTH - GAP) / 2 * em, ROW * em)
-    end = ImVec2(corner.x + size.x, corner.y + size.y)
+    end = corner + size
     clicked, _ = imgui.selectable(f"###recent {index}", False, 0, size)  # noqa: FBT003
     imgui.push_clip_rect(corner, end, True)  # noqa: FBT003 - within the window's own
     if image is None:
@@ -156,12 +138,9 @@ def _row(look: Look, path: Path, index: int, image: Thumbnail | None, *, is_ther
     else:
         show_picture(image.texture, image.size, corner, ImVec2(3 * em, size.y))
     _write(shown_name(path.name), corner.x + 3.6 * em, corner.y + 0.3 * size.y)
-    imgui.push_font(None, SMALL * imgui.get_style().font_size_base)
-    imgui.push_style_color(imgui.Col_.text, look.palette.dim)
     where = str(path.parent) if is_there else f"not found in {path.parent}"
-    _write(shown_name(where), corner.x + 3.6 * em, corner.y + 0.72 * size.y)
-    imgui.pop_style_color()
-    imgui.pop_font()
+    with sized(SMALL), imgui_ctx.push_style_color(imgui.Col_.text, look.palette.dim):
+        _write(shown_name(where), corner.x + 3.6 * em, corner.y + 0.72 * size.y)
     imgui.pop_clip_rect()
     return clicked
 

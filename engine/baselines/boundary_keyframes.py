@@ -13,7 +13,7 @@ import numpy.typing as npt
 from engine.arrays import Complexes, as_points
 from engine.baselines.triangulated_domain import TriangulatedDomain, factorised, solved
 from engine.errors import EngineError
-from engine.geometry import diameter, edges, require_around, require_simple
+from engine.geometry import SIZES, diameter, edges, require_around, require_simple
 from engine.maps import HarmonicMap, cauchy_coordinates
 
 # Samples of each edge of the outline: for a fit, over its unknowns, and for the look at its error.
@@ -60,7 +60,11 @@ def harmonic_coordinate_maps(
     require_simple(outline, "outline")
     require_around(cage, outline)
     wanted = np.array([_checked_targets(each, i, outline) for i, each in enumerate(targets)])
+    if not wanted.size or np.abs(wanted).max() > SIZES[1]:
+        raise EngineError("There must be keyframes, and none may go infinitely far.")
     size = max(map(diameter, wanted))
+    if size < SIZES[0]:
+        raise EngineError("The boundary must go to more than one point in some keyframe.")
     best: tuple[float, Complexes, Complexes] | None = None
     pieces = 1
     while best is None or (best[0] > GOOD * size and pieces * len(cage) <= MOST_CAGE_VERTICES):

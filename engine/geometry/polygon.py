@@ -13,6 +13,10 @@ from engine.arrays import Booleans, Complexes, Floats, Indices
 from engine.errors import EngineError
 from engine.geometry.segments import Pieces, bisect, distance_to_segments
 
+SIZES = (1e-60, 1e60)  # of polygons; the fourth powers of smaller and larger ones are no numbers
+FARTHEST = 1e9  # from the origin, over a polygon's size: beyond, its shape is lost in rounding
+FARTHEST_CAGE = 1e6  # from the outline, over its size: beyond, the coordinates are all the same
+
 
 def edges(polygon: Complexes) -> Complexes:
     """Return the edge vectors (n,): entry j leads from vertex j to vertex j + 1."""
@@ -66,6 +70,12 @@ def require_simple(polygon: Complexes, name: str, *, clockwise: bool = False) ->
         raise EngineError(f"The {name} needs at least 3 vertices, not {len(polygon)}.")
     if np.any(edges(polygon) == 0):
         raise EngineError(f"The {name} repeats a vertex; give each vertex once.")
+    size = box_diagonal(polygon)
+    if not SIZES[0] < size < SIZES[1] or np.abs(polygon).max() > FARTHEST * size:
+        raise EngineError(
+            f"The {name} is {size:.3g} large and lies {np.abs(polygon).max():.3g} from the origin, "
+            "of which numbers keep too few digits; move or scale it."
+        )
     if not is_simple(polygon):
         raise EngineError(f"The {name} crosses or touches itself; it must be a simple polygon.")
     ways = ("counter-clockwise", "clockwise")
@@ -184,6 +194,8 @@ def require_around(cage: Complexes, outline: Complexes) -> None:
     ----------
     cage, outline : complex128, shapes (n,) and (p,)
     """
+    if np.abs(cage - outline[0]).max() > FARTHEST_CAGE * box_diagonal(outline):
+        raise EngineError("The cage lies too far from the outline; let it follow the outline.")
     if shapely.intersects(shapely.LinearRing(as_xy(cage)), shapely.Polygon(as_xy(outline))):
         raise EngineError(
             "The cage touches or crosses the outline; the outline must lie strictly inside it."

@@ -83,6 +83,8 @@ def mesh_network(
         If a triangle names no vertex, an edge leaves the outline, a vertex is in no triangle that
         is joined to the rest, or the anchor sees no vertex near it.
     """
+    if not len(triangles):
+        raise EngineError("There are no triangles; leave them out and the engine finds its paths.")
     if triangles.min(initial=0) < 0 or triangles.max(initial=0) >= len(vertices):
         raise EngineError(
             f"The triangles name points from {triangles.min()} to {triangles.max()}, but there are "

@@ -25,8 +25,8 @@ from app.render.gpu.context import create_context
 from app.render.renderer import Renderer
 from app.storage.preferences import Preferences
 from app.ui.style import FONT_SIZE
-from app.ui.viewport.ring import RADIUS
-from app.ui.viewport.viewport import GRIP
+from app.ui.viewport.grips import RADIUS
+from app.ui.viewport.screen import GRIP
 from app.ui.window.window import Window
 
 Value = TypeVar("Value")

@@ -209,8 +209,8 @@ def _openraster() -> dict[str, bytes]:
 def _photoshop() -> dict[str, bytes]:
     drawing = PSDImage.new("RGB", (60, 50))
     drawing.create_pixel_layer(blob(30, 20), name="a", top=4, left=5)
-    group = drawing.create_group(name="g", opacity=128)
-    group.create_pixel_layer(blob(20, 20), name="b", top=20, left=10)
+    inner = drawing.create_pixel_layer(blob(20, 20), name="b", top=20, left=10)
+    drawing.create_group([inner], name="g", opacity=128)
     file = io.BytesIO()
     drawing.save(file)
     return {"a.psd": file.getvalue()}

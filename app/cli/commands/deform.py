@@ -18,7 +18,7 @@ LIMITS = ("k_max", "sigma_a_max", "sigma_b_min")
 
 def run(arguments: argparse.Namespace) -> int:
     """Deform the shape of a case and write the map."""
-    check_writable(arguments.out)
+    check_writable(arguments.out, sources=[arguments.case])
     case = read_arrays(
         arguments.case,
         required=("outline", "cage", "handles", "targets", *LIMITS),

@@ -127,10 +127,10 @@ def _remove(home: Path) -> None:
 def _contents(program: str) -> dict[str, bytes]:
     """Return what is written, by its place."""
     icon = decode_picture(app_icon(), "the icon of Lissom").rgba
-    said = {"program": program.replace("\\", r"\\"), "quoted": _quoted(program)}
+    said = {"program": _escaped(program), "quoted": _quoted(program)}
     return {
-        ENTRY_AT: ENTRY.format_map(said).encode(),
-        THUMBNAILER_AT: THUMBNAILER.format_map(said).encode(),
+        ENTRY_AT: os.fsencode(ENTRY.format_map(said)),
+        THUMBNAILER_AT: os.fsencode(THUMBNAILER.format_map(said)),
         MIME_TYPE_AT: MIME_TYPE.encode(),
         **{place: draw_thumbnail(icon, side) for side, place in ICONS_AT.items()},
     }
@@ -148,7 +148,14 @@ def _program() -> str:
 def _quoted(program: str) -> str:
     """Return a program as an Exec line has it: quoted as an argument, then escaped as a text."""
     argument = re.sub(r'(["`$\\])', r"\\\1", program).replace("%", "%%")
-    return '"{}"'.format(argument.replace("\\", r"\\"))
+    return f'"{_escaped(argument)}"'
+
+
+def _escaped(text: str) -> str:
+    """Return a text as the values of entries have it: each on one line."""
+    for plain, escaped in (("\\", r"\\"), ("\n", r"\n"), ("\r", r"\r"), ("\t", r"\t")):
+        text = text.replace(plain, escaped)
+    return text
 
 
 def _refresh(home: Path) -> None:

@@ -26,9 +26,8 @@ from engine.domain import build_domain, texture_coordinates
 
 def run(arguments: argparse.Namespace) -> int:
     """Build the domain of a picture and write it."""
-    for path in (arguments.out, arguments.preview):
-        if path is not None:
-            check_writable(path)
+    written, read = (arguments.out, arguments.preview), (arguments.picture, arguments.mask)
+    check_writable(*filter(None, written), sources=filter(None, read))
     picture, corner = _read(arguments.picture, arguments.layer)
     cut_out = read_cut_out(arguments)
     if is_layered(arguments.picture) and cut_out.background == "auto":

@@ -42,6 +42,7 @@ def run(arguments: argparse.Namespace) -> int:
         settings=_settings(document.export, arguments, out),
         project=name,
         fps=arguments.fps,
+        sources=(arguments.project,),
     )
     check_request(document, request)
     _check_options(request.settings.format, arguments)

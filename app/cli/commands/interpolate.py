@@ -20,7 +20,7 @@ UNFINISHED = 1e-8  # angle defect, in radians, that is worth a word
 
 def run(arguments: argparse.Namespace) -> int:
     """Read keyframes, interpolate them and write the in-betweens."""
-    check_writable(arguments.out)
+    check_writable(arguments.out, sources=arguments.keyframes)
     given = read_keyframes(arguments.keyframes)
     _require_in_range(arguments.times, given.count, loop=arguments.loop)
     if arguments.variant in tuple(Baseline):

@@ -20,7 +20,8 @@ from app.storage import (
 
 def run(arguments: argparse.Namespace) -> int:
     """Solve the keys of a script and write the project."""
-    check_writable(arguments.out)
+    read = arguments.picture, arguments.script, arguments.mask
+    check_writable(arguments.out, sources=filter(None, read))
     script = load_pose_script(arguments.script)
     meshing = Meshing(triangles=arguments.triangles, detail=arguments.detail)
     cut_out = read_cut_out(arguments)

@@ -8,7 +8,7 @@ from app.storage import check_writable, draw_thumbnail, read_thumbnail, write_at
 
 def run(arguments: argparse.Namespace) -> int:
     """Write the small picture of a project."""
-    check_writable(arguments.out)
+    check_writable(arguments.out, sources=[arguments.project])
     rgba = read_thumbnail(arguments.project)
     if rgba is None:
         raise LissomError(

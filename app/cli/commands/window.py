@@ -102,7 +102,7 @@ def _make(folder: Path, session: Session) -> None:
 def _keep(session: Session) -> None:
     """Keep unsaved work when something else than the person has ended the window."""
     try:
-        saving.keep_now(session)
+        saving.autosave_now(session)
     except EXPECTED_ERRORS as error:
         notice(f"unsaved work could not be kept: {error}")
         return

@@ -1,9 +1,8 @@
 """What is said to `lissom domain`."""
 
 import argparse
-from pathlib import Path
 
-from app.cli.options import add_cut_out_options, add_meshing_options, add_out, input_file
+from app.cli.options import add_cut_out_options, add_meshing_options, add_out, input_file, output
 
 EPILOG = """\
 The picture may be a PNG, JPEG, GIF, WebP, AVIF, TIFF, BMP, TGA, PPM or ICO, or a layer of an
@@ -53,6 +52,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--preview",
         metavar="PREVIEW.png",
-        type=Path,
+        type=output,
         help="also draw picture, outline, cage and mesh",
     )

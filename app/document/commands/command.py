@@ -47,7 +47,7 @@ class Command:
 def command(
     label: str,
 ) -> Callable[[Callable[Concatenate[Document, Arguments], Document]], Callable[Arguments, Command]]:
-    """Make a function `(document, *arguments) → document` one `(*arguments) → Command`."""
+    """Turn a function `(document, *arguments) → document` into one `(*arguments) → Command`."""
 
     def make(
         change: Callable[Concatenate[Document, Arguments], Document],
@@ -67,7 +67,7 @@ def figure_command(
     [Callable[Concatenate[Figure, Arguments], Figure]],
     Callable[Concatenate[int, Arguments], Command],
 ]:
-    """Make a function `(figure, *arguments) → figure` one `(figure_id, *arguments) → Command`.
+    """Turn a function `(figure, *arguments) → figure` into one `(figure_id, *arguments) → Command`.
 
     The animation grows where keys of the figure would lie beyond its ends.
     """

@@ -88,13 +88,13 @@ def weigh_handles(figure: Figure, identities: Collection[int], weight: float) ->
 
 @figure_command("Lock or unlock handles")
 def lock_handles(figure: Figure, identities: Collection[int], *, locked: bool) -> Figure:
-    """Let handles hold their places, or not any more."""
+    """Lock handles in their places, or unlock them."""
     return with_handles(figure, identities, locked=locked)
 
 
 @figure_command("Group handles")
 def group_handles(figure: Figure, identities: Collection[int], group: str) -> Figure:
-    """Let handles be taken together under a name; "" parts them from others."""
+    """Group handles under a name, to be selected and dragged together; with "", ungroup them."""
     return with_handles(figure, identities, group=group.strip())
 
 

@@ -30,7 +30,7 @@ def insert_key(figure: Figure, frame: int, pose: Pose, *, easing: Easing = LINEA
 
 @figure_command("Paste pose")
 def put_pose(figure: Figure, frame: int, pose: Pose, easing: Easing) -> Figure:
-    """Let the key at a frame hold a pose, or a new one that is inserted."""
+    """Give the key at a frame a pose; where there is none, insert one."""
     if frame not in figure.key_frames:
         return _inserted(figure, frame, pose, easing)
     old = figure.key(frame)
@@ -39,7 +39,7 @@ def put_pose(figure: Figure, frame: int, pose: Pose, easing: Easing) -> Figure:
 
 @figure_command("Paste keys")
 def put_keys(figure: Figure, keys: Sequence[Keyframe]) -> Figure:
-    """Let keys be at their frames, in place of others that are there."""
+    """Put keys at their frames, where they replace those that are there."""
     others = {key.frame: key for key in figure.keys} | {key.frame: key for key in keys}
     return _with_keys(figure, others.values())
 

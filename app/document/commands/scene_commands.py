@@ -95,7 +95,7 @@ def rename_marker(document: Document, frame: int, name: str) -> Document:
 
 @command("Move marker")
 def move_marker(document: Document, frame: int, to: int) -> Document:
-    """Put the marker at a frame on another one."""
+    """Move the marker at a frame to another one."""
     return _with_marker(document, frame, replace(document.marker(frame), frame=to))
 
 

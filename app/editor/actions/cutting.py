@@ -9,12 +9,18 @@ import numpy as np
 from app.document import figure_commands
 from app.editor.action import do
 from app.editor.actions import editing
-from app.editor.dialogs import FileDialog
 from app.editor.failures import ask_worker
 from app.editor.project import Project
 from app.editor.session import CutTool, Session, with_project
 from app.editor.work import Kind
-from app.storage import cut_picture, decode_mask, encode_mask, read_file, write_atomically
+from app.storage import (
+    check_writable,
+    cut_picture,
+    decode_mask,
+    encode_mask,
+    read_file,
+    write_atomically,
+)
 from engine.domain import Mask, Stroke
 
 WRITING = Kind("Saving the mask", "The mask was not saved")
@@ -124,13 +130,7 @@ def forget_strokes(session: Session) -> None:
 
 def ask_mask(session: Session) -> None:
     """Ask which mask to load."""
-    session.dialog = FileDialog(
-        title="Load a mask",
-        folder=session.usual_folder,
-        suffixes=MASKS,
-        writes=False,
-        chosen=lambda path: do(load_mask, path),
-    )
+    session.ask_file("Load a mask", MASKS, lambda path: do(load_mask, path))
 
 
 @with_project
@@ -149,20 +149,15 @@ def load_mask(session: Session, project: Project, path: Path) -> None:
 @with_project
 def ask_mask_path(session: Session, project: Project) -> None:
     """Ask where to save the mask."""
-    session.dialog = FileDialog(
-        title="Save the mask",
-        folder=session.usual_folder,
-        name=f"{project.name} mask.png",
-        suffixes=MASKS,
-        writes=True,
-        chosen=lambda path: do(save_mask, path),
-    )
+    name = f"{project.name} mask.png"
+    session.ask_file("Save the mask", MASKS, lambda path: do(save_mask, path), name=name)
 
 
 @with_project
 def save_mask(session: Session, project: Project, path: Path) -> None:
     """Write what is kept as a black and white picture."""
     picture, cut_out = project.puppet.picture, project.figure.cut_out
+    check_writable(path, sources=project.sources)
 
     def work() -> None:
         content = encode_mask(Mask.of(cut_picture(picture, cut_out).kept))

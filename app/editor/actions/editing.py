@@ -26,7 +26,7 @@ Arguments = ParamSpec("Arguments")
 
 @with_project
 def edit(_: Session, project: Project, command: Command) -> None:
-    """Run a command; those given while the pointer holds on make one step of undo together."""
+    """Run a command; those given in one use of a widget make one step of undo together."""
     project.history.do(command, gesture=project.gesture)
     _forget_what_is_gone(project)
 
@@ -45,24 +45,23 @@ def edit_figure(
 
 
 @with_project
-def hold(_: Session, project: Project, held: int) -> None:
-    """Note what the pointer or the keyboard holds on to; called once a frame.
+def use_widget(_: Session, project: Project, widget: int) -> None:
+    """Note the number of the widget in use, 0 for none; once a frame.
 
-    Parameters
-    ----------
-    held : int
-        A number of the widget, 0 for nothing; another one begins another step of undo.
+    What is done in one use of a widget is one step of undo.
     """
-    if held != project.held:
-        project.held = held
-        project.gesture = object() if held else None
+    if widget != project.used_widget:
+        project.used_widget = widget
+        project.gesture = object() if widget else None
 
 
 @with_project
 def undo(session: Session, project: Project) -> None:
     """Take the last step back; a pull that is under way goes on in it, should it be done again."""
     before, unkeyed, label = project.document, project.history.unkeyed, project.history.undo_label
-    unseen = [pull for pull in project.pulls if pull.kept is None]
+    position = project.history.position
+    # What was done since they were wished is taken back before them.
+    unseen = [pull for pull in project.pulls if pull.kept is None and pull.position >= position]
     for pull in unseen or [pull for pull in project.pulls if pull.is_held]:
         posing.give_up(session, project, pull)
     if unseen:

@@ -15,7 +15,7 @@ from app.editor.dialogs import FileDialog, Question
 from app.editor.failures import ask_worker, report, sentence
 from app.editor.project import Project
 from app.editor.session import ExportRun, Session, with_project
-from app.editor.work import Kind
+from app.editor.work import Afterwards, Kind
 from app.errors import LissomError, shown_name
 from app.export import (
     ExportRequest,
@@ -108,6 +108,7 @@ def start(session: Session, project: Project, out: Path) -> None:
             answers=(("Replace", do(replace_files, out)),),
         )
         return
+    session.cancellation = Cancellation()
     promises.once_settled(session, do(_begin, request), "Export")
 
 
@@ -138,6 +139,7 @@ def copy_picture(session: Session, project: Project) -> None:
     settings = replace(project.document.export, format=STILL)
     request = _request(session, project, out, settings)
     check_request(project.document, request)
+    session.cancellation = Cancellation()
     promises.once_settled(session, do(_begin_copy, request), "Copy the picture")
 
 
@@ -149,9 +151,19 @@ def _begin_copy(session: Session, project: Project, request: ExportRequest) -> N
     _prepare(session, project, request, begun)
 
 
+def is_under_way(session: Session) -> bool:
+    """Tell whether an export runs, is being prepared, or waits for what is on its way."""
+    is_waiting = session.project is not None and any(map(_is_export, session.project.afterwards))
+    return is_waiting or session.export is not None or PREPARING in session.jobs.kinds
+
+
+def _is_export(waiting: Afterwards) -> bool:
+    return waiting.then.verb in {_begin, _begin_copy}
+
+
 def _is_free(session: Session) -> bool:
     """Tell whether no export is under way; if there is one, say so."""
-    if session.export is None and PREPARING not in session.jobs.kinds:
+    if not is_under_way(session):
         return True
     session.tell("An export is under way. The next one can begin when it is done.", topic="export")
     return False
@@ -163,7 +175,7 @@ def _request(
     if EXPORT_FORMATS[settings.format].is_still:
         now = project.playhead.frame_at(project.document, session.clock())
         settings = replace(settings, frames=FrameRange(now, now))
-    return ExportRequest(out=out, settings=settings, project=project.name)
+    return ExportRequest(out=out, settings=settings, project=project.name, sources=project.sources)
 
 
 def _prepare(
@@ -173,14 +185,12 @@ def _prepare(
     begun: Callable[[ExportRun], None],
 ) -> None:
     """Let a worker prepare an export that was checked, and then begin."""
-    if not _is_free(session):
-        return
     document, format_ = project.document, EXPORT_FORMATS[request.settings.format]
     unkeyed = project.history.unkeyed
     if format_.is_still and unkeyed is not None and unkeyed.figure == project.active:
         frames = request.settings.frames
         if frames is not None and unkeyed.frame in frames:
-            document = posing.holding(session, project, unkeyed)(document)
+            document = posing.as_key(session, project, unkeyed)(document)
     pictures = {figure: puppet.cut.value.texture for figure, puppet in project.puppets.items()}
     samplers = {
         figure: (puppet.fine or puppet.store).sampler or puppet.store.sampler
@@ -188,7 +198,7 @@ def _prepare(
     }
     extent = project.extent
     box = extent.value if extent.follows(extent_source(document)) else None
-    cancellation = session.cancellation = Cancellation()
+    cancellation = session.cancellation
 
     def work() -> ExportRun:
         detail = request.settings.shapes.triangles
@@ -217,9 +227,11 @@ def _animation(clip: Clip, sibling: PoseSampler | None) -> Animation:
 
 def cancel(session: Session) -> None:
     """Give the export up, unless its file is complete already; frames that are written stay."""
-    run, is_prepared = session.export, PREPARING in session.jobs.kinds
-    if run is None and not is_prepared:
+    run, project = session.export, session.project
+    if not is_under_way(session):
         return
+    if project is not None:
+        project.afterwards = [each for each in project.afterwards if not _is_export(each)]
     # Dropped first, so that nobody is told of a failure; then left, as it may take long.
     session.jobs.drop(PREPARING)
     session.jobs.leave(PREPARING)
@@ -234,7 +246,7 @@ def cancel(session: Session) -> None:
 def unless_running(session: Session, then: Action) -> None:
     """Do something that ends an export, but ask first if one is under way."""
     run = session.export
-    if run is None and PREPARING not in session.jobs.kinds:
+    if not is_under_way(session):
         then.apply(session)
         return
     done, total = (run.done, len(run.plan.times)) if run is not None else (0, 0)

@@ -1,7 +1,7 @@
 """Opening pictures and projects."""
 
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from functools import cache, lru_cache
 from pathlib import Path
@@ -11,7 +11,7 @@ from app.document import Document, History, Meshing, clip_of
 from app.editor.action import Action, do
 from app.editor.actions import cutting, playback, saving
 from app.editor.actions.saving import PROJECT
-from app.editor.dialogs import FileDialog, Leftover, Question, Recovery
+from app.editor.dialogs import Leftover, Question, Recovery
 from app.editor.failures import ask_worker, sentence
 from app.editor.project import Project, Puppet
 from app.editor.session import Session
@@ -117,17 +117,12 @@ class Opened(NamedTuple):
     notices: tuple[str, ...]
     offer: Offer | None = None
     read_as: str | None = None
+    drawings: tuple[Path, ...] = ()
 
 
 def ask_open(session: Session) -> None:
     """Ask for a picture or a project."""
-    session.dialog = FileDialog(
-        title="Open image or project",
-        folder=session.usual_folder,
-        suffixes=OPENABLE,
-        writes=False,
-        chosen=lambda path: do(open_file, path),
-    )
+    session.ask_file("Open image or project", OPENABLE, lambda path: do(open_file, path))
 
 
 def open_file(session: Session, path: Path) -> None:
@@ -137,11 +132,7 @@ def open_file(session: Session, path: Path) -> None:
     """
     meshing = session.meshing
     kind = Kind(shown_name(f"Opening {path.name}"), f"{path.name} cannot be opened")
-
-    def done(opened: Opened) -> None:
-        saving.unless_unsaved(session, do(show, path, opened))
-
-    ask_worker(session, kind, lambda: _read(path, meshing), done)
+    _open(session, path, kind, lambda: _read(path, meshing))
 
 
 def open_together(session: Session, paths: Sequence[Path]) -> None:
@@ -149,10 +140,17 @@ def open_together(session: Session, paths: Sequence[Path]) -> None:
     meshing = session.meshing
     kind = Kind(f"Opening {len(paths)} pictures", "The pictures cannot be opened")
 
-    def done(opened: Opened) -> None:
-        saving.unless_unsaved(session, do(show, paths[0], opened))
+    def read() -> Opened:
+        return with_puppets(open_pictures(paths, meshing))._replace(drawings=tuple(paths))
 
-    ask_worker(session, kind, lambda: with_puppets(open_pictures(paths, meshing)), done)
+    _open(session, paths[0], kind, read)
+
+
+def _open(session: Session, path: Path, kind: Kind, read: Callable[[], Opened]) -> None:
+    def done(opened: Opened) -> None:
+        saving.unless_unsaved(session, do(show, path, opened))
+
+    ask_worker(session, kind, read, done)
 
 
 def open_dropped(session: Session, paths: Sequence[Path]) -> None:
@@ -217,6 +215,7 @@ def _show(
             active=_foremost(opened.document),
             path=own,
             read_as=opened.read_as,
+            drawings=set(opened.drawings),
             hold=hold,
         ),
     )
@@ -255,7 +254,7 @@ def _puppets(document: Document, pictures: Mapping[int, Picture]) -> dict[int, P
 
 def _read(path: Path, meshing: Meshing) -> Opened:
     if is_layered(path):
-        return with_puppets(open_layered(path, meshing))
+        return with_puppets(open_layered(path, meshing))._replace(drawings=(path,))
     is_project = path.suffix.lower() == PROJECT
     return _read_project(path) if is_project else _read_picture(path, meshing)
 
@@ -278,7 +277,7 @@ def _decoded(document: Document, name: str) -> Opened:
 def _read_picture(path: Path, meshing: Meshing) -> Opened:
     opened = with_puppets(open_picture(path, meshing))
     (puppet,) = opened.puppets.values()
-    return opened._replace(offer=_offer(puppet))
+    return opened._replace(offer=_offer(puppet), drawings=(path,))
 
 
 def _offer(puppet: Puppet) -> Offer | None:

@@ -97,7 +97,7 @@ def _rebuild(session: Session, project: Project) -> None:
 
 
 @with_project
-def keep_up(session: Session, project: Project) -> None:
+def maintain(session: Session, project: Project) -> None:
     """Rebuild a domain whose cut-out has changed as soon as the brush rests; once a frame."""
     stale = project.stale_figure
     if stale is None:
@@ -111,7 +111,7 @@ def keep_up(session: Session, project: Project) -> None:
         _go_on(session, project, renewal)
 
 
-def _catches_up(renewal: Renewal) -> bool:
+def _follows_cut_out(renewal: Renewal) -> bool:
     """Tell whether a domain is rebuilt only because its cut-out has changed."""
     return renewal.before.is_stale and renewal.meshing == renewal.before.meshing
 
@@ -120,7 +120,7 @@ def _catches_up(renewal: Renewal) -> bool:
 def cancel(session: Session, project: Project) -> None:
     """Give up what is being solved or rebuilt."""
     session.jobs.drop(RENEWING)
-    if project.renewal is not None and _catches_up(project.renewal):
+    if project.renewal is not None and _follows_cut_out(project.renewal):
         project.unbuildable = project.renewal.before
     project.pending = [promise for promise in project.pending if not promise.renewal]
 
@@ -134,7 +134,7 @@ def begin(session: Session, project: Project, renewal: Renewal) -> None:
 
 def _go_on(session: Session, project: Project, renewal: Renewal) -> None:
     if renewal.before not in project.document.figures:
-        if _catches_up(renewal):
+        if _follows_cut_out(renewal):
             return  # and begins anew
         session.tell("The keys were not posed again: the project changed meanwhile. Start again.")
         return
@@ -164,8 +164,8 @@ def _go_on(session: Session, project: Project, renewal: Renewal) -> None:
 
 
 def _accept(session: Session, project: Project, renewal: Renewal) -> None:
-    if _catches_up(renewal):
-        project.history.complete(renewal.command)
+    if _follows_cut_out(renewal):
+        project.history.extend_step(renewal.command)
     else:
         gesture = object()
         project.history.do(renewal.command, gesture=gesture)

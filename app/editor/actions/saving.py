@@ -18,6 +18,7 @@ from app.storage import (
     SECONDS,
     Hold,
     HoldError,
+    check_writable,
     clear_abandoned,
     draw_thumbnail,
     flattened,
@@ -47,7 +48,7 @@ def save_as(session: Session) -> None:
 
 @with_project
 def save_then(session: Session, project: Project, then: Action | None) -> None:
-    """Save the project, and do something that gives it up once that has worked."""
+    """Save the project; once that has worked, do what gives it up, such as to quit."""
     if project.path is None or project.is_recovered:
         _ask_where(session, then)
     else:
@@ -76,10 +77,12 @@ def write_now(session: Session, project: Project, path: Path, then: Action | Non
     """Save the project in a file as it is."""
     document, known = project.document, project.read_as if path == project.path else None
     textures = {figure: puppet.cut.value.texture for figure, puppet in project.puppets.items()}
+    drawings = tuple(project.drawings)
 
     def work() -> str:
         if known is not None and project_digest(path) not in (None, known):
             raise _ChangedError
+        check_writable(path, sources=drawings)
         picture = flattened(document, textures)
         return save_project(path, document, thumbnail=draw_thumbnail(picture))
 
@@ -180,6 +183,7 @@ def save_curves(session: Session, project: Project, path: Path) -> None:
     curves = project.curves.value
     if curves is None:
         return
+    check_writable(path, sources=project.sources)
     if path.suffix.lower() == ".png":
         picture = draw_curves(curves)
         write_atomically(path, lambda file: file.write(picture))
@@ -190,14 +194,8 @@ def save_curves(session: Session, project: Project, path: Path) -> None:
 
 @with_project
 def _ask_curves(session: Session, project: Project, suffix: str) -> None:
-    session.dialog = FileDialog(
-        title="Save the curves",
-        folder=session.usual_folder,
-        name=f"{project.name} distortion{suffix}",
-        suffixes=(suffix,),
-        writes=True,
-        chosen=lambda path: do(save_curves, path),
-    )
+    name = f"{project.name} distortion{suffix}"
+    session.ask_file("Save the curves", (suffix,), lambda path: do(save_curves, path), name=name)
 
 
 def unless_unsaved(session: Session, then: Action) -> None:
@@ -221,7 +219,7 @@ def unless_unsaved(session: Session, then: Action) -> None:
 
 
 def _asks_about(waiting: Action, then: Action) -> bool:
-    """Tell whether an action asks before the same is done as now."""
+    """Tell whether an action is the question that comes before another one."""
     return waiting.verb is ask_unsaved and waiting.arguments[0].verb is then.verb
 
 
@@ -333,11 +331,11 @@ def autosave(session: Session, project: Project) -> None:
     may_write = promises.is_settled(project) or now - project.changed_at >= SECONDS
     is_due = now - project.autosaved_at >= SECONDS
     if is_due and may_write and AUTOSAVING not in session.jobs.kinds:
-        _autosave_now(session, project, now)
+        _begin_autosave(session, project, now)
 
 
 @with_project
-def keep_now(session: Session, project: Project) -> None:
+def autosave_now(session: Session, project: Project) -> None:
     """Keep changes that are not saved at once, on this thread: it may be the last thing done.
 
     Raises
@@ -366,10 +364,10 @@ def _all_keyed(session: Session, project: Project) -> Document:
     unkeyed = project.history.unkeyed
     if unkeyed is None:
         return project.document
-    return posing.holding(session, project, unkeyed)(project.document)
+    return posing.as_key(session, project, unkeyed)(project.document)
 
 
-def _autosave_now(session: Session, project: Project, now: float) -> None:
+def _begin_autosave(session: Session, project: Project, now: float) -> None:
     document, origin, earlier = _all_keyed(session, project), project.origin, project.autosaved
     kept = project.document, project.history.unkeyed
     project.autosaved, project.autosaved_at = kept, now

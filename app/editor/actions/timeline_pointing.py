@@ -36,7 +36,7 @@ def look_at(_: Session, project: Project, strip: Strip | None) -> None:
     if project.timing.gesture is None:
         project.timing.strip = strip
     else:
-        project.timing.held = strip
+        project.timing.gesture_strip = strip
 
 
 def fit(session: Session) -> None:
@@ -61,7 +61,7 @@ def scroll_rows(_: Session, project: Project, to: float) -> None:
 @with_project
 def begin(_: Session, project: Project, gesture: TimeGesture, strip: Strip) -> None:
     """Begin a gesture; what is shown stays until it ends."""
-    project.timing.gesture, project.timing.held = gesture, strip
+    project.timing.gesture, project.timing.gesture_strip = gesture, strip
 
 
 @with_project
@@ -81,8 +81,8 @@ def end(_: Session, project: Project) -> None:
     """End the gesture where it is."""
     timing = project.timing
     if timing.strip is not None:
-        timing.strip = timing.held
-    timing.gesture = timing.held = None
+        timing.strip = timing.gesture_strip
+    timing.gesture = timing.gesture_strip = None
 
 
 @with_project

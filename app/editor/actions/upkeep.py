@@ -50,9 +50,9 @@ Value = TypeVar("Value")
 @with_project
 def maintain(session: Session, project: Project) -> None:
     """Ask the worker for what is missing, and settle what is drawn; once a frame."""
-    posing.keep_up(session, project)
+    posing.maintain(session, project)
     project.extent.recall(extent_source(project.document))
-    rebuilding.keep_up(session)
+    rebuilding.maintain(session)
     project.pair_up(session.split.method if session.split else None)
     _pin(session, project)
     for job in missing(session, project):
@@ -61,7 +61,7 @@ def maintain(session: Session, project: Project) -> None:
     shortfalls, figure = project.timing.shortfalls, project.figure
     if not shortfalls.follows(figure):
         # Little work: of the poses that were not measured before, and there is one at a time.
-        shortfalls.take(figure, measure_shortfalls(figure, shortfalls))
+        shortfalls.set(figure, measure_shortfalls(figure, shortfalls))
     _show(session, project)
     if project.awaits_extent:
         _fit_motion(session, project)
@@ -245,7 +245,7 @@ def _derive(
 ) -> Iterator[Job]:
     """Yield the job that works out the value of a source, unless it is there or cannot be."""
     if not (into.follows(source) or into.has_failed(source)):
-        yield _job(session, kind, work, partial(into.take, source), partial(into.fail, source))
+        yield _job(session, kind, work, partial(into.set, source), partial(into.fail, source))
 
 
 def _cut(session: Session, project: Project) -> Iterator[Job]:
@@ -280,7 +280,7 @@ def _hang(session: Session, project: Project) -> Iterator[Job]:
     def done(advanced: Joints) -> None:
         joints.begun = source, advanced
         if advanced.is_whole:
-            joints.take(source, advanced)
+            joints.set(source, advanced)
 
     yield _job(session, HANGING, begun.advance, done, partial(joints.fail, source))
 
@@ -332,9 +332,7 @@ def _show(session: Session, project: Project) -> None:
             earlier, other = twin.shown or shown[figure], twin.clip(document)
             # What a pose shows is the same in both.
             twins[figure] = show(other, frame, pose, [puppet.store], earlier)
-    follows = project.joints.follows(joints_source(document))
-    joints = project.joints.value if follows else None
-    for figure, hung in hang_shown(document, shown, joints, poses).items():
+    for figure, hung in hang_shown(document, shown, project.hung, poses).items():
         project.puppets[figure].shown = hung
     # By the meshes alone: the joints that are followed exactly are of the figures' own methods.
     for figure, hung in hang_shown(document, twins, None, {}).items():

@@ -9,7 +9,7 @@ from app.document import Figure, Meshing, clip_of, layer_commands
 from app.editor import promises
 from app.editor.action import Action, do
 from app.editor.actions import editing, files, rebuilding
-from app.editor.dialogs import FileDialog, Question
+from app.editor.dialogs import Question
 from app.editor.failures import sentence
 from app.editor.layering.arranging import choose
 from app.editor.project import Project, Puppet
@@ -113,6 +113,7 @@ def _replace_picture(session: Session, project: Project, identity: int, path: Pa
 
     def done(begun: tuple[Renewal, _Made]) -> None:
         renewal, made = begun
+        project.drawings.add(path)
         project.pictures[made.figure.picture] = made.picture
         rebuilding.begin(session, renewal)
         if renewal.before in project.document.figures:
@@ -153,6 +154,7 @@ def add(session: Session, project: Project, paths: Sequence[Path]) -> None:
 
     def done(read: tuple[list[_Made], list[str]]) -> None:
         made, told = read
+        project.drawings.update(paths)
         gesture = object()
         for figure, picture, _, puppet in made:
             identity = layer_commands.free_identity(project.document)
@@ -181,25 +183,15 @@ def _drawing(path: Path) -> LayeredPicture:
 
 def ask(session: Session) -> None:
     """Ask for a picture that becomes another layer."""
-    session.dialog = FileDialog(
-        title="Add a picture as a layer",
-        folder=session.usual_folder,
-        suffixes=(*files.PICTURES, *files.LAYERED),
-        writes=False,
-        chosen=lambda path: do(add, [path]),
-    )
+    suffixes = (*files.PICTURES, *files.LAYERED)
+    session.ask_file("Add a picture as a layer", suffixes, lambda path: do(add, [path]))
 
 
 @with_project
 def ask_replace(session: Session, project: Project, identity: int) -> None:
     """Ask for a picture that takes the place of a layer's own."""
-    session.dialog = FileDialog(
-        title=f"Replace the picture of {project.document.figure(identity).name}",
-        folder=session.usual_folder,
-        suffixes=files.PICTURES,
-        writes=False,
-        chosen=lambda path: do(replace_picture, identity, path),
-    )
+    title = f"Replace the picture of {project.document.figure(identity).name}"
+    session.ask_file(title, files.PICTURES, lambda path: do(replace_picture, identity, path))
 
 
 def point_at(session: Session, identity: int) -> None:

@@ -25,12 +25,12 @@ def copy(session: Session, project: Project) -> None:
             CopiedKeys(figure, tuple(map(figure.key, sorted(at)))) for figure, at in figures
         )
     elif keys:
-        _take(session, project.figure, keys)
+        _copy(session, project.figure, keys)
     else:
-        putting.find_pose(session, project, COPYING, partial(_take, session))
+        putting.find_pose(session, project, COPYING, partial(_copy, session))
 
 
-def _take(session: Session, figure: Figure, keys: tuple[Keyframe, ...]) -> None:
+def _copy(session: Session, figure: Figure, keys: tuple[Keyframe, ...]) -> None:
     session.copied = (CopiedKeys(figure, keys),)
 
 

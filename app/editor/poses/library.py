@@ -30,7 +30,7 @@ def _keep(session: Session, project: Project, figure: Figure, keys: tuple[Keyfra
         return
     for key in putting.fitted(project, project.active, keys, figure.bounds):
         editing.edit(session, pose_commands.keep_pose(project.active, key.pose))
-    project.kept = project.figure.library[-1].name
+    project.picked_pose = project.figure.library[-1].name
 
 
 @with_project
@@ -49,7 +49,7 @@ def apply_at(session: Session, project: Project, name: str, frame: int) -> None:
 
 def _put(session: Session, project: Project, name: str, frame: int) -> None:
     pose = project.figure.kept_pose(name).pose
-    project.kept = name
+    project.picked_pose = name
     keys = {project.active: [Keyframe(frame=0, pose=pose)]}
     putting.put(session, project, frame, keys, label="Use pose")
 
@@ -104,7 +104,7 @@ def _between(one: Target, other: Target, share: float) -> Target:
 def rename(session: Session, project: Project, name: str, to: str) -> None:
     """Give a pose of the library another name."""
     editing.edit_figure(session, pose_commands.rename_pose, name, to)
-    project.kept = to
+    project.picked_pose = to
 
 
 def delete(session: Session, name: str) -> None:

@@ -11,13 +11,7 @@ from app.editor.tools.tool import Spot, Tool
 
 @dataclass(slots=True, kw_only=True, eq=False)
 class Choosing(Tool):
-    """The pointer has chosen a layer; it does nothing more until it is let go.
-
-    Parameters
-    ----------
-    last : int
-        The one that was posed.
-    """
+    """The pointer has chosen a layer (not the last one); it does no more until it is let go."""
 
     last: int
 

@@ -16,15 +16,7 @@ STEP = 0.12  # of the brush's radius: points of a stroke are no nearer together
 
 @dataclass(slots=True, kw_only=True, eq=False)
 class Brushing(Tool):
-    """The pointer draws a stroke; it is done when the button is let go.
-
-    Parameters
-    ----------
-    places : list of complex
-        Its way so far.
-    radius : float
-    keeps : bool
-    """
+    """The pointer draws a stroke through places; it is done when the button is let go."""
 
     places: list[complex]
     radius: float

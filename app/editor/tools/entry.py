@@ -12,19 +12,12 @@ LONGEST = 12  # digits
 
 @dataclass(slots=True)
 class TypedWay:
-    """A number that is being typed, and the axis that is kept to.
-
-    Parameters
-    ----------
-    text : str
-    axis : str
-        "x", "y", or empty for none.
-    """
+    """A number that is being typed, and the axis that is kept to: "x", "y", or empty for none."""
 
     text: str = ""
     axis: str = ""
 
-    def take(self, characters: str) -> None:
+    def type(self, characters: str) -> None:
         """Take what was typed; what makes no number is left out."""
         for character in characters.lower().replace(",", "."):
             if character in AXES:

@@ -18,37 +18,20 @@ FREE_HAND = (Choosing, Pulling, Anchoring)
 
 @dataclass(slots=True, kw_only=True, eq=False)
 class Joining(Tool):
-    """The pointer holds the anchor of a layer over the one that it is to hang on.
+    """The pointer holds the anchor of a layer over the one that it is to hang on."""
 
-    Parameters
-    ----------
-    spot : Spot
-        Where it was pressed.
-    child : int
-    names : mapping of int to str
-        Of the layers.
-    place : complex
-        Where it is.
-    parent : int, optional
-        The layer there.
-    is_circle : bool
-        Whether that one hangs on the child.
-    moved : bool
-        Whether it has gone farther than a click may.
-    """
-
-    spot: Spot
+    spot: Spot  # where it was pressed
     child: int
-    names: dict[int, str]
-    place: complex
-    parent: int | None = None
-    is_circle: bool = False
-    moved: bool = False
+    names: dict[int, str]  # of the layers
+    place: complex  # where the pointer is
+    parent: int | None = None  # the layer under it
+    is_circle: bool = False  # whether that layer hangs on the child
+    moved: bool = False  # whether it has gone farther than a click may
 
     @classmethod
     def hints(cls, session: Session, project: Project, spot: Spot) -> tuple[Hint, ...]:
         """Tell that the anchor is dragged."""
-        if not _is_held(session, project, spot):
+        if not _takes_anchor(session, project, spot):
             return ()
         what = "to hang it on another layer"
         return (Hint("drag", what) if spot.handle is None else Hint("drag", what, "ctrl"),)
@@ -56,7 +39,7 @@ class Joining(Tool):
     @classmethod
     def press(cls, session: Session, project: Project, spot: Spot) -> Self | None:
         """Take hold of the anchor; where a handle is the anchor, with Ctrl."""
-        if not _is_held(session, project, spot) or (spot.handle is not None and not spot.ctrl):
+        if not _takes_anchor(session, project, spot) or (spot.handle is not None and not spot.ctrl):
             return None
         names = {figure.id: figure.name for figure in project.document.figures}
         child = project.active
@@ -118,7 +101,7 @@ class Joining(Tool):
         return (Hint("let go", what),)
 
 
-def _is_held(session: Session, project: Project, spot: Spot) -> bool:
+def _takes_anchor(session: Session, project: Project, spot: Spot) -> bool:
     """Tell whether a press takes hold of the anchor of a layer, in a scene of several."""
     is_free = not (spot.shift or spot.alt or spot.on_ring) and session.overlays.handles
     return spot.on_anchor and is_free and len(project.document.figures) > 1

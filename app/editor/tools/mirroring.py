@@ -12,20 +12,11 @@ from app.editor.tools.tool import Spot, Tool
 
 @dataclass(slots=True, kw_only=True, eq=False)
 class Mirroring(Tool):
-    """The pointer moves the axis; what was flipped last is flipped again where it is let go.
+    """The pointer moves the axis; what was flipped last is flipped again where it is let go."""
 
-    Parameters
-    ----------
-    axis : float
-        Where it was.
-    start, place : complex
-        Where the pointer was pressed, and where it is.
-    typed : TypedWay
-    """
-
-    axis: float
-    start: complex
-    place: complex
+    axis: float  # where it was
+    start: complex  # where the pointer was pressed
+    place: complex  # where it is
     typed: TypedWay = field(default_factory=TypedWay)
 
     @classmethod
@@ -48,7 +39,7 @@ class Mirroring(Tool):
 
     def type(self, session: Session, characters: str) -> None:
         """Move it as far as is typed."""
-        self.typed.take(characters)
+        self.typed.type(characters)
         self._move(session)
 
     def _move(self, session: Session) -> None:

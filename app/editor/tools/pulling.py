@@ -15,27 +15,13 @@ from app.editor.work import Start
 
 @dataclass(slots=True, kw_only=True, eq=False)
 class Pulling(Tool):
-    """The pointer pulls handles.
+    """The pointer pulls handles."""
 
-    Parameters
-    ----------
-    start : complex
-        Where it was pressed.
-    handles : frozenset of int
-        Those that are pulled, by id.
-    entry : TypedWay
-        What is typed meanwhile.
-    place : complex, optional
-        Where it is; None before it has moved.
-    moved : bool
-        Whether it has gone farther than a click may, or a way was typed.
-    """
-
-    start: complex
-    handles: frozenset[int] = frozenset()
-    entry: TypedWay = field(default_factory=TypedWay)
-    place: complex | None = None
-    moved: bool = False
+    start: complex  # where it was pressed
+    handles: frozenset[int] = frozenset()  # those that are pulled, by id
+    entry: TypedWay = field(default_factory=TypedWay)  # what is typed meanwhile
+    place: complex | None = None  # where it is; None before it has moved
+    moved: bool = False  # whether it has gone farther than a click may, or a way was typed
 
     @classmethod
     def hints(cls, session: Session, project: Project, spot: Spot) -> tuple[Hint, ...]:
@@ -76,7 +62,7 @@ class Pulling(Tool):
 
     def type(self, session: Session, characters: str) -> None:
         """Pull them as far as is typed, or along an axis."""
-        self.entry.take(characters)
+        self.entry.type(characters)
         self.moved = self.moved or self.entry.value is not None
         self._pull(session)
 

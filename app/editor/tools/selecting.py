@@ -12,20 +12,11 @@ from app.motion import Box
 
 @dataclass(slots=True, kw_only=True, eq=False)
 class Selecting(Tool):
-    """The pointer spans a box to select what is in it, or has selected a handle by a click.
+    """The pointer spans a box to select what is in it, or has selected a handle by a click."""
 
-    Parameters
-    ----------
-    start, place : complex
-        Where it was pressed, and where it is.
-    adds : bool
-        Whether what was selected stays so.
-    has_box : bool
-    """
-
-    start: complex
-    place: complex
-    adds: bool
+    start: complex  # where it was pressed
+    place: complex  # where it is
+    adds: bool  # whether what was selected stays so
     has_box: bool
 
     @classmethod

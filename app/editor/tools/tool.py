@@ -14,36 +14,17 @@ CLICK = 3.0  # pixels of the screen that a click may wander
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Spot:
-    """Where the pointer is, and what is under it.
+    """Where the pointer is, and what is under it."""
 
-    Parameters
-    ----------
-    place : complex
-        In the plane.
-    handle : int, optional
-        The one under it.
-    on_axis : bool
-        Whether it is on the grip of the axis at which poses are flipped.
-    on_anchor : bool
-        Whether it is on the anchor of the figure that is posed.
-    on_ring : bool
-        Whether it is on the ring around the selected handle.
-    on_shape : bool
-        Whether it is on the figure that is posed.
-    figure : int, optional
-        The figure that is seen there; with Alt held the next one behind the one that is posed.
-    ctrl, shift, alt : bool
-        Which keys are held.
-    """
-
-    place: complex
-    handle: int | None = None
-    on_axis: bool = False
-    on_anchor: bool = False
-    on_ring: bool = False
-    on_shape: bool = False
+    place: complex  # in the plane
+    handle: int | None = None  # the one under it
+    on_axis: bool = False  # on the grip of the axis at which poses are flipped
+    on_anchor: bool = False  # on the anchor of the figure that is posed
+    on_ring: bool = False  # on the ring around the selected handle
+    on_shape: bool = False  # on the figure that is posed
+    # The one seen there; with Alt held the next one behind the one that is posed.
     figure: int | None = None
-    ctrl: bool = False
+    ctrl: bool = False  # which keys are held
     shift: bool = False
     alt: bool = False
 

@@ -20,33 +20,15 @@ LEAST_ARM = 12.0  # pixels of the screen from a handle, within which a press has
 
 @dataclass(slots=True, kw_only=True, eq=False)
 class Turning(Tool):
-    """The pointer turns the shape around a handle.
-
-    Parameters
-    ----------
-    handle : int
-    centre : complex
-        Where that is.
-    start : complex
-        Where the pointer was pressed.
-    turn : float
-        By how much the shape was turned there at the start, in radians.
-    deletes : bool
-        Whether a click, which turns nothing, deletes the handle.
-    swept : float
-        By how much the pointer has turned it, in radians.
-    entry : TypedWay
-        How many degrees are typed meanwhile.
-    moved : bool
-    """
+    """The pointer turns the shape around a handle."""
 
     handle: int
-    centre: complex
-    start: complex
-    turn: float
-    deletes: bool
-    swept: float = 0.0
-    entry: TypedWay = field(default_factory=TypedWay)
+    centre: complex  # where the handle is
+    start: complex  # where the pointer was pressed
+    turn: float  # by how much the shape was turned there at the start, in radians
+    deletes: bool  # whether a click, which turns nothing, deletes the handle
+    swept: float = 0.0  # by how much the pointer has turned it, in radians
+    entry: TypedWay = field(default_factory=TypedWay)  # how many degrees are typed meanwhile
     moved: bool = False
 
     @classmethod
@@ -101,7 +83,7 @@ class Turning(Tool):
 
     def type(self, session: Session, characters: str) -> None:
         """Turn the shape by as many degrees as are typed."""
-        self.entry.take(characters)
+        self.entry.type(characters)
         self.entry.axis = ""
         if self.entry.value is not None:
             self.moved = True

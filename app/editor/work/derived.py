@@ -44,7 +44,7 @@ class Derived(Generic[Source, Value]):
         """Take note that there is no value of a source."""
         self.failure = source
 
-    def take(self, source: Source, value: Value) -> None:
+    def set(self, source: Source, value: Value) -> None:
         """Hold the value of a source."""
         if self.remembers and self.source is not None:
             self.earlier = [*self.earlier, (self.source, self.value)][-self.remembers :]
@@ -56,5 +56,5 @@ class Derived(Generic[Source, Value]):
             return
         for known, value in self.earlier:
             if known == source:
-                self.take(source, value)
+                self.set(source, value)
                 return

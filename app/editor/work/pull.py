@@ -80,6 +80,8 @@ class Pull(Promise):
         By the gestures that they are of, in order; each knows what was wished before it.
     targets : mapping of int to Target, optional
         What all of that comes to; None as long as there is no start.
+    position : int
+        Of the history when something was wished last.
     is_held : bool
         Whether the hand still pulls.
     drag : Drag, optional
@@ -108,6 +110,7 @@ class Pull(Promise):
     before: Pose | None
     wishes: dict[object, WishFrom] = field(default_factory=dict)
     targets: Mapping[int, Target] | None = None
+    position: int = 0
     is_held: bool = True
     drag: Drag | None = None
     solved: Mapping[int, Target] | None = None

@@ -2,7 +2,6 @@
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import closing, contextmanager
-from pathlib import Path
 from types import MappingProxyType
 from typing import IO, Final
 
@@ -18,7 +17,7 @@ from app.export.writers.html import html_page
 from app.export.writers.png import PngPicture, PngSequence
 from app.export.writers.spritesheet import SpritesheetWriter
 from app.export.writers.webp import WebpWriter
-from app.storage import Cancellation, atomic_file
+from app.storage import Cancellation, atomic_file, atomic_files
 
 
 def _video(file: IO[bytes], plan: ExportPlan) -> FrameWriter:
@@ -74,9 +73,7 @@ def open_writer(plan: ExportPlan, cancellation: Cancellation) -> Iterator[FrameW
             yield writer
     elif (beside := data_file(plan.out, plan.format)) is not None:
         with (
-            atomic_file(beside, cancellation) as data,
-            atomic_file(plan.out, cancellation) as file,
-            _removed_at_end(beside, cancellation),
+            atomic_files(plan.out, beside, cancellation=cancellation) as (file, data),
             closing(DATA_WRITERS[plan.format](file, data, plan)) as writer,
         ):
             yield writer
@@ -86,15 +83,3 @@ def open_writer(plan: ExportPlan, cancellation: Cancellation) -> Iterator[FrameW
             closing(FILE_WRITERS[plan.format](file, plan)) as writer,
         ):
             yield writer
-
-
-@contextmanager
-def _removed_at_end(data: Path, cancellation: Cancellation) -> Iterator[None]:
-    """Remove earlier data before their picture is replaced: they are there only with their own."""
-    yield
-    # From here on there is no way back.
-    cancellation.settle()
-    try:
-        data.unlink(missing_ok=True)
-    except OSError as error:
-        raise LissomError(f"cannot replace {data}: {error.strerror or error}") from error

@@ -6,7 +6,7 @@ import sys
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import cache
-from typing import Any, Final, Literal, get_args
+from typing import Any, Final, Literal
 
 import moderngl
 
@@ -17,7 +17,6 @@ Context = moderngl.Context
 GlError = moderngl.Error
 
 Backend = Literal["egl", "osmesa", "native"]
-BACKENDS: Final[tuple[Backend, ...]] = get_args(Backend)
 # The system's own contexts (WGL, CGL) need no display on Windows and macOS; on Linux GLX does.
 AUTOMATIC: Final[tuple[Backend, ...]] = (
     ("native",) if sys.platform in {"win32", "darwin"} else ("egl", "osmesa")

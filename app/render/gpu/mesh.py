@@ -61,14 +61,7 @@ class VertexSource:
 
 
 class PositionBuffer(VertexSource):
-    """Owner of positions that the program writes anew for every frame.
-
-    Parameters
-    ----------
-    context : moderngl.Context
-    count : int
-        Number of vertices, v.
-    """
+    """Owner of positions, of `count` vertices, that the program writes anew for every frame."""
 
     def __init__(self, context: moderngl.Context, count: int) -> None:
         buffer = context.buffer(reserve=8 * count, dynamic=True)

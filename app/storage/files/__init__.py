@@ -8,7 +8,7 @@ Imports: nothing of the project but `app.errors`.
 from app.storage.files.arrays import read_arrays as read_arrays, write_arrays as write_arrays
 from app.storage.files.atomic import (
     atomic_file as atomic_file,
-    check_writable as check_writable,
+    atomic_files as atomic_files,
     clear_abandoned as clear_abandoned,
     passing_picture as passing_picture,
     sync_folder as sync_folder,
@@ -17,9 +17,12 @@ from app.storage.files.atomic import (
 from app.storage.files.cancellation import Cancellation as Cancellation
 from app.storage.files.hold import Hold as Hold, HoldError as HoldError
 from app.storage.files.locks import is_locked as is_locked, lock as lock
+from app.storage.files.outputs import check_writable as check_writable
 from app.storage.files.reading import (
     DAMAGED_ZIP as DAMAGED_ZIP,
+    MOST_UNPACKED as MOST_UNPACKED,
+    opened_file as opened_file,
+    opened_zip as opened_zip,
     read_file as read_file,
-    require_file as require_file,
     tail_digest as tail_digest,
 )

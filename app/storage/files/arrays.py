@@ -12,10 +12,8 @@ import numpy.typing as npt
 
 from app.errors import LissomError
 from app.storage.files.atomic import write_atomically
-from app.storage.files.reading import DAMAGED_ZIP, MEBIBYTE, require_file
+from app.storage.files.reading import DAMAGED_ZIP, MOST_UNPACKED, opened_file, opened_zip
 
-# By which the arrays that are read may outgrow the file.
-MOST_UNPACKED = 1024 * MEBIBYTE
 HEADERS = {(1, 0): np.lib.format.read_array_header_1_0, (2, 0): np.lib.format.read_array_header_2_0}
 TEXT = "US"  # as NumPy tells kinds of arrays by letters
 NUMERIC = "biufc"
@@ -46,25 +44,32 @@ def read_arrays(
         required array.
     """
     try:
-        size = require_file(path)
-        with zipfile.ZipFile(path) as archive:
-            members = {
-                member.filename.removesuffix(".npy"): member for member in archive.infolist()
-            }
-            missing = [name for name in required if name not in members]
-            if missing:
-                raise LissomError(
-                    f"{path} lacks the array {missing[0]!r}; it holds {sorted(members)[:50]}"
-                )
-            wanted = [name for name in (*required, *optional) if name in members]
-            unpacked = sum(members[name].file_size for name in wanted)
-            if unpacked > size + MOST_UNPACKED:
-                raise LissomError(f"{path} would unpack to {unpacked:,} bytes, more than any case")
-            return {name: _read_array(archive, members[name]) for name in wanted}
+        with opened_file(path) as (file, size), opened_zip(file) as archive:
+            members = _members(archive, path, size, required, optional)
+            return {name: _read_array(archive, member) for name, member in members.items()}
     except OSError as error:
         raise LissomError(f"cannot read {path}: {error.strerror or error}") from error
     except DAMAGE as error:
         raise LissomError(f"{path} is not an NPZ file of numeric arrays, or is damaged") from error
+
+
+def _members(
+    archive: zipfile.ZipFile,
+    path: Path,
+    size: int,
+    required: tuple[str, ...],
+    optional: tuple[str, ...],
+) -> dict[str, zipfile.ZipInfo]:
+    """Return the members that are asked for, by the names of their arrays."""
+    members = {member.filename.removesuffix(".npy"): member for member in archive.infolist()}
+    missing = [name for name in required if name not in members]
+    if missing:
+        raise LissomError(f"{path} lacks the array {missing[0]!r}; it holds {sorted(members)[:50]}")
+    wanted = {name: members[name] for name in (*required, *optional) if name in members}
+    unpacked = sum(member.file_size for member in wanted.values())
+    if unpacked > size + MOST_UNPACKED:
+        raise LissomError(f"{path} would unpack to {unpacked:,} bytes, more than any case")
+    return wanted
 
 
 def _read_array(archive: zipfile.ZipFile, member: zipfile.ZipInfo) -> npt.NDArray[Any]:

@@ -12,8 +12,8 @@ import secrets
 import shutil
 import stat
 import sys
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager, suppress
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import ExitStack, contextmanager, suppress
 from functools import cache
 from pathlib import Path
 from typing import IO, TypeVar
@@ -21,9 +21,11 @@ from typing import IO, TypeVar
 from app.errors import LissomError
 from app.storage.files.cancellation import Cancellation
 from app.storage.files.locks import lock, open_to_lock
+from app.storage.files.outputs import check_writable
 
 T = TypeVar("T")
 NEW_FILE = os.O_RDWR | os.O_CREAT | os.O_EXCL | getattr(os, "O_BINARY", 0)
+PRIVATE = 0o600
 PART = re.compile(r"\.lissom-[0-9a-f]{16}\.part(\.png)?")
 # What the system says where there is no room: on the disk, for this person, in one file.
 NO_ROOM = {errno.ENOSPC, errno.EFBIG, getattr(errno, "EDQUOT", errno.ENOSPC)}
@@ -61,7 +63,11 @@ def _size(count: int) -> str:
 
 
 def write_atomically(
-    path: Path, write: Callable[[IO[bytes]], T], cancellation: Cancellation | None = None
+    path: Path,
+    write: Callable[[IO[bytes]], T],
+    cancellation: Cancellation | None = None,
+    *,
+    is_private: bool = False,
 ) -> T:
     """Write a file so that at any moment the old or the new one is whole.
 
@@ -73,6 +79,8 @@ def write_atomically(
         Writes the contents to the open binary file that it is handed, which can be read as well.
     cancellation : Cancellation, optional
         By which it can be cancelled before the file takes its place; that is a `LissomError`.
+    is_private : bool
+        Whether nobody else may read it.
 
     Returns
     -------
@@ -85,7 +93,7 @@ def write_atomically(
         As `check_writable`, or if the disk refuses.
     """
     try:
-        with atomic_file(path, cancellation) as file:
+        with atomic_files(path, cancellation=cancellation, is_private=is_private) as (file,):
             return write(file)
     except NoRoomError as error:
         with suppress(OSError):
@@ -110,36 +118,56 @@ def atomic_file(path: Path, cancellation: Cancellation | None = None) -> Iterato
     LissomError
         As `write_atomically`; an `OSError` of the block counts as the disk's refusal.
     """
-    check_writable(path)
-    target = Path(os.path.realpath(path))
-    _clear_once(target.parent)
-    temporary = None
+    with atomic_files(path, cancellation=cancellation) as (file,):
+        yield file
+
+
+@contextmanager
+def atomic_files(
+    *paths: Path, cancellation: Cancellation | None = None, is_private: bool = False
+) -> Iterator[list[IO[bytes]]]:
+    """Open files that take their places together, as `atomic_file`: all of them or none.
+
+    Whoever ends the process between leaves all but the first out, so that what is there is of one
+    time.
+    """
+    check_writable(*paths)
+    parts, modes, files = list[Path](), list[int | None](), list[IO[bytes]]()
+    targets = [Path(os.path.realpath(path)) for path in paths]
     try:
-        # The file that is replaced hands on its permissions. Those of a new one are the system's
-        # affair: to ask for the umask would change it for all threads.
-        mode = stat.S_IMODE(target.stat().st_mode) if target.exists() else None
-        temporary, descriptor = _new_part(target.parent, 0o666 if mode is None else 0o600)
-        with os.fdopen(descriptor, "w+b") as file:
-            if cancellation is not None:
-                cancellation.begin(temporary)
-            yield file
-            file.flush()
-            os.fsync(file.fileno())
+        with ExitStack() as opened:
+            for target in targets:
+                _clear_once(target.parent)
+                # The file that is replaced hands on its permissions. Those of a new one are the
+                # system's affair: to ask for the umask would change it for all threads.
+                mode = stat.S_IMODE(target.stat().st_mode) if target.exists() else None
+                mode = PRIVATE if is_private else mode
+                part, descriptor = _new_part(target.parent, 0o666 if mode is None else PRIVATE)
+                parts.append(part)
+                modes.append(mode)
+                files.append(opened.enter_context(os.fdopen(descriptor, "w+b")))
+                if cancellation is not None:
+                    cancellation.begin(part)
+            yield files
+            for file in files:
+                file.flush()
+                os.fsync(file.fileno())
             if cancellation is not None:
                 cancellation.settle()
-            if mode is not None:
-                temporary.chmod(mode)
+            for part, mode in zip(parts, modes, strict=True):
+                if mode is not None:
+                    part.chmod(mode)
             if sys.platform != "win32":
-                # As long as it is locked: else another process may take it for abandoned.
-                temporary.replace(target)
+                # As long as they are locked: else another process may take them for abandoned.
+                _take_places(parts, targets)
         if sys.platform == "win32":
             # What is open cannot be moved there.
-            temporary.replace(target)
+            _take_places(parts, targets)
     except OSError as error:
-        raise _refusal(path, error, temporary) from error
+        raise _refusal(paths[0], error, parts) from error
     finally:
-        if temporary is not None:
-            temporary.unlink(missing_ok=True)
+        for part in parts:
+            part.unlink(missing_ok=True)
 
 
 def clear_abandoned(folder: Path) -> None:
@@ -211,36 +239,32 @@ def _part_name() -> str:
     return f".lissom-{secrets.token_hex(8)}.part"
 
 
-def _refusal(path: Path, error: OSError, temporary: Path | None) -> LissomError:
+def _take_places(parts: Sequence[Path], targets: Sequence[Path]) -> None:
+    """Move files to their places; what is there of all but the first gives way before it."""
+    aside = {}
+    try:
+        for target in targets[1:]:
+            if target.exists():
+                hidden = target.with_name(_part_name())
+                target.replace(hidden)
+                aside[target] = hidden
+        parts[0].replace(targets[0])
+    except OSError:
+        for target, hidden in aside.items():
+            hidden.replace(target)
+        raise
+    for part, target in zip(parts[1:], targets[1:], strict=True):
+        part.replace(target)
+    for hidden in aside.values():
+        hidden.unlink()
+
+
+def _refusal(path: Path, error: OSError, parts: Sequence[Path]) -> LissomError:
     """Say in words that the system refuses to write a file, and what to do."""
     reason = error.strerror or str(error)
     if error.errno in NO_ROOM:
-        written = temporary.stat().st_size if temporary is not None else 0
+        written = sum(part.stat().st_size for part in parts)
         return NoRoomError(path, error, written)
     if error.errno in NOT_ALLOWED:
         reason += f": its folder {path.parent} may not be written to; choose another one"
     return LissomError(f"cannot write {path}: {reason}")
-
-
-def check_writable(path: Path) -> None:
-    """Refuse an output path that cannot work, before any long computation.
-
-    Raises
-    ------
-    LissomError
-        If it is a folder, or a link that leads in a circle, or a file that may only be read, or its
-        folder is missing.
-    """
-    if path.is_dir():
-        raise LissomError(f"cannot write {path}: it is a folder; name a file")
-    target = Path(os.path.realpath(path))
-    if target.is_symlink():
-        raise LissomError(f"cannot write {path}: it is a link that leads in a circle")
-    if not target.parent.is_dir():
-        folder = target.parent if path.is_symlink() else path.parent
-        raise LissomError(f"cannot write {path}: the folder {folder} does not exist")
-    if target.exists() and not os.access(target, os.W_OK):
-        # To put another file in its place would be possible where the folder may be written to.
-        raise LissomError(
-            f"cannot write {path}: it may only be read; choose another name, or allow to write it"
-        )

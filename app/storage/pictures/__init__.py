@@ -18,4 +18,5 @@ from app.storage.pictures.picture import (
     decode_pictures as decode_pictures,
     encode_mask as encode_mask,
     stored_size as stored_size,
+    upright as upright,
 )

@@ -12,7 +12,7 @@ from math import isfinite
 from xml.etree import ElementTree as ET
 
 from app.errors import LissomError
-from app.storage.files import DAMAGED_ZIP
+from app.storage.files import DAMAGED_ZIP, opened_zip
 from app.storage.pictures.layered import (
     DEEPEST,
     Layer,
@@ -47,7 +47,7 @@ class _Place:
 def read_openraster(data: bytes) -> LayeredPicture:
     """Read the layers of an OpenRaster file."""
     try:
-        with zipfile.ZipFile(io.BytesIO(data)) as archive:
+        with opened_zip(io.BytesIO(data)) as archive:
             return _read(archive)
     except DAMAGE as error:
         raise LissomError("it is not an OpenRaster file, or it is damaged") from error

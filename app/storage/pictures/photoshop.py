@@ -2,11 +2,13 @@
 
 import io
 import struct
+import warnings
 import zlib
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any, Final
 
+import numpy as np
 from PIL import Image, ImageChops
 
 from app.errors import LissomError
@@ -25,6 +27,10 @@ SIGNATURE = b"8BPS"
 # What is drawn, and by which name psd-tools knows it. Shapes and placed pictures come with pixels.
 DRAWN: Final = {"pixel", "shape", "smartobject"}
 SKIPPED: Final = {"type": "text"}
+# Channels of a layer's colours, numbered from 0, and the one before them.
+COLOURS: Final = {"GRAYSCALE": 1, "RGB": 3, "CMYK": 4, "LAB": 3}
+TRANSPARENCY: Final = -1
+PADDING: Final = 3  # bytes that may follow the picture of all layers
 NORMAL: Final = {"NORMAL", "PASS_THROUGH"}
 DAMAGE = (
     OSError,
@@ -38,6 +44,7 @@ DAMAGE = (
     OverflowError,
     MemoryError,
     RecursionError,
+    UserWarning,
     struct.error,
     zlib.error,
 )
@@ -75,7 +82,10 @@ def read_photoshop(data: bytes) -> LayeredPicture:
             "save the drawing as OpenRaster (.ora)"
         ) from error
     try:
-        return _read(psd_tools.PSDImage.open(io.BytesIO(data), max_alloc_bytes=2048 * MEBIBYTE))
+        with warnings.catch_warnings():
+            # Where a channel cannot be unpacked, black would take its place.
+            warnings.simplefilter("error", psd_tools.PSDDecompressionWarning)
+            return _read(psd_tools.PSDImage.open(io.BytesIO(data), max_alloc_bytes=2048 * MEBIBYTE))
     except DAMAGE as error:
         raise LissomError(f"it is not a Photoshop file, or it is damaged ({error})") from error
 
@@ -86,6 +96,7 @@ def _read(drawing: Any) -> LayeredPicture:
     require_room([(layer.width, layer.height) for _, layer in found])
     layers = []
     for group, layer in found:
+        _require_channels(layer, drawing)
         image = _pixels(layer)
         if image is None:
             notices.append(f"left out the empty layer {layer.name!r}")
@@ -103,6 +114,9 @@ def _read(drawing: Any) -> LayeredPicture:
         layers.append((group.path, read))
     if not found and not notices:
         # Saved without layers: the picture that all programs see.
+        whole = drawing._record.image_data  # noqa: SLF001 - as of channels
+        rows = drawing.height * drawing.channels
+        _require_all_rows(whole, rows, drawing.version, padding=PADDING)
         file = _png(drawing.topil().convert("RGBA"))
         flat = decode_picture(file, "the picture")
         layers = [("", Layer(name="picture", data=file, picture=flat))]
@@ -131,6 +145,32 @@ def _drawn_layers(around: Any, group: _Group, notices: list[str]) -> Iterator[tu
         else:
             kind = SKIPPED.get(layer.kind, "adjustment")
             notices.append(f"left out the {kind} layer {name!r}: Lissom takes drawn layers only")
+
+
+def _require_channels(layer: Any, drawing: Any) -> None:
+    """Refuse a layer that lacks a channel, or rows of one, in whose place black would be seen.
+
+    Its file tells so by private names only.
+    """
+    found = {}
+    for told, channel in zip(layer._record.channel_info, layer._channels, strict=True):  # noqa: SLF001
+        found[int(told.id)] = channel
+    colours = COLOURS.get(drawing.color_mode.name, 0)
+    if layer.width and layer.height and not set(range(colours)) <= set(found):
+        raise LissomError(f"the layer {layer.name!r} lacks a channel of its colours")
+    for number, channel in found.items():
+        if number >= TRANSPARENCY:
+            _require_all_rows(channel, layer.height, drawing.version)
+
+
+def _require_all_rows(channel: Any, rows: int, version: int, *, padding: int = 0) -> None:
+    """Refuse packed rows that are not as long together as they say one by one."""
+    if channel.compression.name == "RLE":
+        size = 2 * version  # bytes of a length
+        lengths = np.frombuffer(channel.data[: size * rows], f">u{size}")
+        left = len(channel.data) - size * rows - int(lengths.sum())
+        if len(lengths) < rows or not 0 <= left <= padding:
+            raise LissomError("the rows of one of its channels are not as long as it says")
 
 
 def _png(image: Image.Image) -> bytes:

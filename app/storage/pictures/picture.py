@@ -38,11 +38,11 @@ DECODER_ERRORS = (
     ValueError,
     SyntaxError,
     EOFError,
-    IndexError,
-    KeyError,
+    LookupError,
     TypeError,
     AttributeError,
-    OverflowError,
+    ArithmeticError,
+    AssertionError,
     struct.error,
     zlib.error,
 )
@@ -173,10 +173,9 @@ def _decoded(data: bytes) -> Picture:
     file.load()
     image: Image.Image = file
     profile = image.info.get("icc_profile")
-    orientation = image.getexif().get(EXIF_ORIENTATION, 1)
-    if orientation in range(2, 9):
-        image = ImageOps.exif_transpose(image)
-        notices.append("turned upright as the camera noted")
+    image, notice = upright(image)
+    if notice:
+        notices.append(notice)
     if image.mode.startswith("I;16") or image.mode in {"I", "F"}:
         greys = np.nan_to_num(np.asarray(image, dtype=np.float64))
         image = Image.fromarray(_scale_deep_grey(greys, is_float=image.mode == "F"))
@@ -187,6 +186,16 @@ def _decoded(data: bytes) -> Picture:
     if notice:
         notices.append(notice)
     return Picture(rgba=_pixels(image), suffix=suffix, notices=tuple(notices))
+
+
+def upright(image: Image.Image) -> tuple[Image.Image, str]:
+    """Return a picture turned as its camera noted, and what happened, in words; none if nothing."""
+    try:
+        if image.getexif().get(EXIF_ORIENTATION, 1) not in range(2, 9):
+            return image, ""
+        return ImageOps.exif_transpose(image), "turned upright as the camera noted"
+    except DECODER_ERRORS:
+        return image, "ignored the camera's notes, which are damaged"
 
 
 def _pixels(image: Image.Image) -> Bytes:

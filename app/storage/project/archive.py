@@ -10,16 +10,12 @@ import numpy as np
 import numpy.typing as npt
 
 from app.errors import LissomError
+from app.storage.files import MOST_UNPACKED
 from engine.arrays import Bytes, Complexes, Integers, readonly
 
 MIMETYPE = b"application/x-lissom"
 MOST_MEMBERS = 65_535
 MEBIBYTE = 1024 * 1024
-# By which all members together may outgrow the file. Pictures are never packed, so that this is for
-# arrays and JSON; the largest meshes take 60.
-MOST_UNPACKED = 256 * MEBIBYTE
-# Others are not needed, and unpack more than they are asked for.
-METHODS = {zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED}
 # Members that deflating makes smaller; pictures are packed already, and the mimetype stays legible.
 PACKED = (".json", ".npy")
 # The same document gives the same bytes, whenever it is saved.
@@ -52,7 +48,7 @@ class Archive:
     Parameters
     ----------
     file : ZipFile
-        Open for reading.
+        As `opened_zip` lends it.
     size : int
         Of the file on the disk, in bytes. However much of it is read, no more is ever unpacked than
         this and `MOST_UNPACKED` together.
@@ -75,8 +71,6 @@ class Archive:
         self._members = {member.filename: member for member in members}
         if len(self._members) < len(members):
             raise LissomError("it has two members of one name")
-        if not {member.compress_type for member in members} <= METHODS:
-            raise LissomError("it is packed in a way that Lissom does not know")
         if sum(member.compress_size for member in members) > size:
             raise LissomError("it is damaged: its members overlap")
         unpacked = sum(member.file_size for member in members)

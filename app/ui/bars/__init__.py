@@ -7,4 +7,8 @@ Imports: `app.ui.style`, `app.ui.shortcuts`.
 
 from app.ui.bars.icons import draw_icons as draw_icons
 from app.ui.bars.menus import draw_menus as draw_menus
-from app.ui.bars.status import draw_status as draw_status, facts as facts, hold_back as hold_back
+from app.ui.bars.status import (
+    draw_status as draw_status,
+    facts as facts,
+    limit_of_pose as limit_of_pose,
+)

@@ -6,11 +6,13 @@ from imgui_bundle import imgui
 
 from app.document import PRESETS
 from app.editor import Action, Session, do
-from app.editor.actions import files, keys
+from app.editor.actions import files, keys, viewing
 from app.errors import shown_name
-from app.ui.bars import backdrop_menu
+from app.storage import CHECKER
 from app.ui.shortcuts import MENUS, bound_item
-from app.ui.style import Look, tip
+from app.ui.style import Look, colour_field, tip
+
+BACKDROPS = {"Checker": CHECKER, "White": "#ffffff", "Grey": "#808080", "Black": "#000000"}
 
 
 def draw_menus(session: Session, _: Look) -> list[Action]:
@@ -26,6 +28,23 @@ def draw_menus(session: Session, _: Look) -> list[Action]:
             if name in BELOW:
                 actions += BELOW[name](session)
         imgui.end_menu()
+    return actions
+
+
+def _backdrops(session: Session) -> list[Action]:
+    """Draw the menu of what lies behind the drawing."""
+    if not imgui.begin_menu("Backdrop"):
+        return []
+    current = session.preferences.backdrop
+    actions = [
+        do(viewing.set_backdrop, backdrop)
+        for name, backdrop in BACKDROPS.items()
+        if imgui.menu_item(name, "", backdrop == current)[0]
+    ]
+    colour = colour_field("own colour", BACKDROPS["Black"] if current == CHECKER else current)
+    if colour is not None:
+        actions.append(do(viewing.set_backdrop, colour))
+    imgui.end_menu()
     return actions
 
 
@@ -64,6 +83,6 @@ def _recent(session: Session) -> list[Action]:
 # What is more than an entry, by the name of the entry above it.
 BELOW: dict[str, Callable[[Session], list[Action]]] = {
     "open": _recent,
-    "smaller": backdrop_menu.draw,
+    "smaller": _backdrops,
     "ease not": _new_keys,
 }

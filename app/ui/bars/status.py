@@ -49,7 +49,7 @@ def draw_status(session: Session, look: Look) -> list[Action]:
     width = sum(imgui.calc_text_size(fact.text).x + gap for fact in told)
     end = imgui.get_window_width() - width + gap - look.em
     actions: list[Action] = []
-    held_back, slowed = hold_back(session), slow_down(session)
+    held_back, slowed = limit_of_pose(session), limit_of_motion(session)
     slow = session.jobs.running_for(SLOW)
     if held_back:
         actions += _warn(session, look, held_back, PULL_AGAIN)
@@ -77,7 +77,7 @@ def draw_status(session: Session, look: Look) -> list[Action]:
     return actions
 
 
-def hold_back(session: Session) -> str:
+def limit_of_pose(session: Session) -> str:
     """Return which handle the limits hold back in the pose that is shown, and how far; else ""."""
     project = session.project
     shown = project.puppet.shown if project else None
@@ -93,12 +93,12 @@ def hold_back(session: Session) -> str:
     return f"Stretch limit reached – {text}" + (f", {others} more too" if others else "")
 
 
-def slow_down(session: Session) -> str:
+def limit_of_motion(session: Session) -> str:
     """Return at which keys the limits slow the motion down that should pass through; else ""."""
     project = session.project
     if project is None or project.is_posing or project.playhead.since is not None:
         return ""
-    kept = project.puppet.store.kept(project.clip)
+    kept = project.puppet.store.velocity_shares(project.clip)
     slowed = sorted(frame for frame, share in kept.items() if share < SLOWED)
     stopped = [frame for frame in slowed if kept[frame] < STOPPED]
     if not slowed:

@@ -6,4 +6,4 @@ Imports: `app.ui.style`, `app.ui.shortcuts`.
 """
 
 from app.ui.dialogs.dialogs import Dialogs as Dialogs
-from app.ui.dialogs.system_dialogs import find_system_dialogs as find_system_dialogs
+from app.ui.dialogs.native_dialog import find_system_dialogs as find_system_dialogs

@@ -1,7 +1,9 @@
 """A file dialog of the system: it runs beside the window, which waits for it."""
 
+import shutil
 import sys
 from pathlib import Path
+from typing import Final
 
 from imgui_bundle import portable_file_dialogs
 
@@ -10,22 +12,23 @@ from app.editor.actions import choose, close_dialog, show_dialog, use_own_dialog
 from app.errors import shown_name
 from app.export import folder_within
 
+# Any of them shows the file dialogs of a Linux desktop.
+PROGRAMS: Final = ("zenity", "kdialog", "matedialog", "qarma")
 # Nobody finds and cancels a dialog so soon: one that is gone by then never came up. The system
 # tells no more of the two than that nothing was chosen.
 TOO_SOON = 0.5  # seconds
 MOST_NAMED = 4  # kinds of files in the name of a filter
 
 
-class NativeDialog:
-    """One dialog of the system, from its opening to its answer.
+def find_system_dialogs() -> str | None:
+    """Return what shows the system's own file dialogs, in words; None where nothing does."""
+    if sys.platform in {"win32", "darwin"}:
+        return "the system's own"
+    return next(filter(shutil.which, PROGRAMS), None)
 
-    Parameters
-    ----------
-    dialog : FileDialog
-        What it asks.
-    now : float
-        The clock's seconds.
-    """
+
+class NativeDialog:
+    """One dialog of the system, from its opening, by the clock's seconds, to its answer."""
 
     def __init__(self, dialog: FileDialog, now: float) -> None:
         self.dialog = dialog

@@ -1,6 +1,6 @@
 """Cutting the subject out of its picture: by colour, by brush, by a mask; and its holes."""
 
-from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui
+from imgui_bundle import icons_fontawesome_6 as icons, imgui
 
 from app.editor import Action, CutTool, Project, Session, do
 from app.editor.actions import cutting, rebuilding
@@ -10,12 +10,15 @@ from app.ui.style import (
     Look,
     Scale,
     at_end,
+    beside,
     heading,
     icon_button,
     label,
+    progress,
     segments,
     slider,
     small,
+    text_button,
     tip,
 )
 from engine.domain import CutOut
@@ -97,11 +100,8 @@ def _background(session: Session, look: Look, project: Project, cut_out: CutOut)
 
 def _brush(session: Session, look: Look, project: Project) -> list[Action]:
     actions: list[Action] = []
-    gap = imgui.get_style().item_spacing.x
-    width = (imgui.get_content_region_avail().x - gap) / len(BRUSH_TOOLS)
-    for index, (tool, icon, name, hint) in enumerate(BRUSH_TOOLS):
-        if index:
-            imgui.same_line()
+    widths = beside(len(BRUSH_TOOLS))
+    for (tool, icon, name, hint), width in zip(BRUSH_TOOLS, widths, strict=True):
         actions += _tool(session, look, tool, f"{icon}  {name}", hint, width=width)
     label(look, "Size")
     keys = " and ".join(BINDINGS[name].keys_in_words for name in ("smaller brush", "larger brush"))
@@ -115,15 +115,13 @@ def _brush(session: Session, look: Look, project: Project) -> list[Action]:
 
 def _mask(look: Look, cut_out: CutOut) -> list[Action]:
     actions: list[Action] = []
-    gap = imgui.get_style().item_spacing.x
-    width = (imgui.get_content_region_avail().x - gap) / 2
-    if imgui.button(f"{icons.ICON_FA_FOLDER_OPEN}  Load mask…", ImVec2(width, 0)):
+    widths = beside(2)
+    hint = "A black and white picture of the same size: white is kept, black is removed"
+    if text_button(f"{icons.ICON_FA_FOLDER_OPEN}  Load mask…", next(widths), hint):
         actions.append(do(cutting.ask_mask))
-    tip("A black and white picture of the same size: white is kept, black is removed")
-    imgui.same_line()
-    if imgui.button(f"{icons.ICON_FA_FLOPPY_DISK}  Save mask…", ImVec2(width, 0)):
+    hint = "Save what is kept as a black and white picture"
+    if text_button(f"{icons.ICON_FA_FLOPPY_DISK}  Save mask…", next(widths), hint):
         actions.append(do(cutting.ask_mask_path))
-    tip("Save what is kept as a black and white picture")
     count = len(cut_out.strokes)
     if count:
         small(look, "1 stroke" if count == 1 else f"{count:,} strokes")
@@ -145,10 +143,10 @@ def _tool(
 ) -> list[Action]:
     """Draw the button of a tool; the one in hand is highlighted, and given back by its button."""
     palette = look.palette
-    in_hand = session.cutting == tool
-    imgui.push_style_color(imgui.Col_.button, palette.accent if in_hand else palette.raised)
-    imgui.push_style_color(imgui.Col_.text, palette.on_accent if in_hand else palette.text)
-    pressed = imgui.button(f"{text}###{tool} tool", ImVec2(width, 0))
+    is_chosen = session.cutting == tool
+    imgui.push_style_color(imgui.Col_.button, palette.accent if is_chosen else palette.raised)
+    imgui.push_style_color(imgui.Col_.text, palette.on_accent if is_chosen else palette.text)
+    pressed = imgui.button(f"{text}###{tool} tool", (width, 0))
     imgui.pop_style_color(2)
     tip(hint)
     return [do(cutting.take_up, tool)] if pressed else []
@@ -156,16 +154,15 @@ def _tool(
 
 def _state(session: Session, look: Look, project: Project) -> list[Action]:
     actions: list[Action] = []
-    imgui.dummy(ImVec2(0, 0.2 * look.em))
+    imgui.dummy((0, 0.2 * look.em))
     renewal = project.renewal
     if renewal is not None and renewal.meshing is not None:
-        imgui.progress_bar(renewal.progress, ImVec2(FILL, 0), renewal.now)
-        if imgui.button("Cancel###stop", ImVec2(FILL, 0)):
+        if progress(renewal.progress, renewal.now):
             actions.append(do(rebuilding.cancel))
     elif session.cutting is not None:
-        if imgui.button("Back to posing###done", ImVec2(FILL, 0)):
+        hint, keys = "Show the drawing as it is posed", BINDINGS["stop cutting"].keys_in_words
+        if text_button("Back to posing###done", FILL, hint, keys):
             actions.append(do(cutting.take_up, None))
-        tip("Show the drawing as it is posed", BINDINGS["stop cutting"].keys_in_words)
     if project.figure.is_stale and project.figure is project.unbuildable:
         small(
             look, "The mesh is still that of before: this cut-out gives none. Change it, or undo."

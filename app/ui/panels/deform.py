@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, replace
 
-from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui
+from imgui_bundle import icons_fontawesome_6 as icons, imgui
 
 from app.document import STRETCHES, Shortfall, find_shortfall, intervals, stretch_of, time_of
 from app.editor import Action, Project, Session, do
@@ -16,8 +16,11 @@ from app.ui.style import (
     at_end,
     heading,
     number,
+    progress,
     segments,
+    sized,
     small,
+    text_button,
     tip,
     track,
 )
@@ -205,44 +208,39 @@ def _keys(session: Session, look: Look, project: Project) -> list[Action]:
     flags = imgui.TableFlags_.sizing_stretch_prop | imgui.TableFlags_.pad_outer_x
     if not imgui.begin_table("keys", 1 + len(LIMITS), flags):
         return actions
-    imgui.push_font(None, SMALL * imgui.get_style().font_size_base)
-    imgui.table_next_row()
-    for title in ("Frame", *(limit.symbol for limit in LIMITS)):
-        imgui.table_next_column()
-        imgui.text_colored(palette.dim, title)
-    now = playback.current_frame(session, project)
-    for key in figure.keys:
-        certificate = key.pose.certificate
+    with sized(SMALL):
         imgui.table_next_row()
-        imgui.table_next_column()
-        clicked, _ = imgui.selectable(
-            f"{key.frame}###key {key.frame}",
-            key.frame == now,
-            imgui.SelectableFlags_.span_all_columns,
-        )
-        if clicked:
-            actions.append(do(playback.seek, key.frame))
-        for limit in LIMITS:
+        for title in ("Frame", *(limit.symbol for limit in LIMITS)):
             imgui.table_next_column()
-            value = float(getattr(certificate, limit.field))
-            beyond = limit.scale.share(value) > limit.scale.share(
-                getattr(figure.bounds, limit.field)
+            imgui.text_colored(palette.dim, title)
+        now = playback.current_frame(session, project)
+        for key in figure.keys:
+            certificate = key.pose.certificate
+            imgui.table_next_row()
+            imgui.table_next_column()
+            clicked, _ = imgui.selectable(
+                f"{key.frame}###key {key.frame}",
+                key.frame == now,
+                imgui.SelectableFlags_.span_all_columns,
             )
-            imgui.text_colored(palette.danger if beyond else palette.text, f"{value:.2f}")
-    imgui.pop_font()
+            if clicked:
+                actions.append(do(playback.seek, key.frame))
+            for limit in LIMITS:
+                imgui.table_next_column()
+                value = float(getattr(certificate, limit.field))
+                beyond = limit.scale.share(value) > limit.scale.share(
+                    getattr(figure.bounds, limit.field)
+                )
+                imgui.text_colored(palette.danger if beyond else palette.text, f"{value:.2f}")
     imgui.end_table()
     return actions
 
 
 def _solving(project: Project) -> list[Action]:
-    if project.renewal is not None and project.renewal.into is None:
-        imgui.progress_bar(project.renewal.progress, ImVec2(FILL, 0), project.renewal.now)
-        return [do(rebuilding.cancel)] if imgui.button("Cancel###stop", ImVec2(FILL, 0)) else []
-    is_possible = project.renewal is None and bool(project.figure.handles)
-    imgui.begin_disabled(not is_possible)
-    is_pressed = imgui.button("Pose all keys again", ImVec2(FILL, 0))
-    imgui.end_disabled()
-    if is_pressed:
-        return [do(rebuilding.solve_again)]
-    tip("Pull the handles of every key to their targets again, within the limits")
-    return []
+    renewal = project.renewal
+    if renewal is not None and renewal.into is None:
+        return [do(rebuilding.cancel)] if progress(renewal.progress, renewal.now) else []
+    is_possible = renewal is None and bool(project.figure.handles)
+    hint = "Pull the handles of every key to their targets again, within the limits"
+    is_pressed = text_button("Pose all keys again", FILL, hint, enabled=is_possible)
+    return [do(rebuilding.solve_again)] if is_pressed else []

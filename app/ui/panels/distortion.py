@@ -1,5 +1,6 @@
 """How far the drawing is distorted: on the drawing, over its area, and over time."""
 
+from collections.abc import Sequence
 from functools import lru_cache
 from typing import NamedTuple
 
@@ -12,7 +13,7 @@ from app.motion import Shown
 from app.render import heat_ramp
 from app.reports import TIMES, Curves, broken_lines
 from app.ui.methods import METHODS
-from app.ui.style import SMALL, Look, heading, ink, segments, small, tip
+from app.ui.style import SMALL, Look, beside, faint, heading, ink, segments, small, text_button, tip
 from app.ui.viewport import heat_limits, measure
 from engine.arrays import Floats
 from engine.domain.meshing import Mesh
@@ -25,6 +26,7 @@ KINDS = (("relative", "Relative"), ("absolute", "Absolute"))
 BINS = 48
 HISTOGRAM, STRIP = 4.6, 0.45  # em
 PLOT, LARGEST_PLOT = 4.2, 10.0  # em: heights of a plot at least and at most
+LIMIT = 0.11  # em: width of the line at the limit
 FRAMES = 1.35  # em: what the frames take below the lower one
 SEGMENTS = 72  # of one point's line over all time at most, or a few in each interval
 MOST = 2.5  # of one method's own range, that both may take: another may go without bound
@@ -144,13 +146,13 @@ def _spread(look: Look, project: Project, shown: Shown, heat_map: HeatMap) -> No
     edges = histogram.edges
     axis = implot.AxisFlags_.no_highlight | implot.AxisFlags_.no_grid_lines
     inverted = implot.AxisFlags_.invert if heat_map == "sigma_b" else 0
-    if implot.begin_plot("##histogram", ImVec2(-1, HISTOGRAM * look.em), QUIET):
+    if implot.begin_plot("##histogram", (-1, HISTOGRAM * look.em), QUIET):
         implot.setup_axes("", "", axis | inverted, axis | implot.AxisFlags_.no_decorations)
         room = 0.02 * (edges[-1] - edges[0])
         top = max(histogram.shares) * 1.08
         implot.setup_axes_limits(edges[0] - room, edges[-1] + room, 0.0, top, implot.Cond_.always)
         _bars(look, histogram, _colours(edges[0], edges[-1], low, high))
-        _limit(look, high, vertical=True)
+        _rule("bound", [high], look.palette.danger, width=LIMIT * look.em)
         implot.end_plot()
     name = NAMES[heat_map]
     small(look, f"{name} over the area: {histogram.worst:.2f} at worst, limit {high:.2f}.")
@@ -168,10 +170,8 @@ def _bars(look: Look, histogram: _Histogram, colours: tuple[int, ...]) -> None:
     for number, (share, colour) in enumerate(zip(histogram.shares, colours, strict=True)):
         left, right = sorted((first.x + number * step, first.x + (number + 1) * step))
         top = last.y + share * (first.y - last.y) - strip
-        draw_list.add_rect_filled(
-            ImVec2(left + 0.5, top), ImVec2(right - 0.5, floor - strip - 1), colour
-        )
-        draw_list.add_rect_filled(ImVec2(left, floor - strip), ImVec2(right + 0.5, floor), colour)
+        draw_list.add_rect_filled((left + 0.5, top), (right - 0.5, floor - strip - 1), colour)
+        draw_list.add_rect_filled((left, floor - strip), (right + 0.5, floor), colour)
     implot.pop_plot_clip_rect()
 
 
@@ -184,7 +184,6 @@ def _over_time(session: Session, look: Look, project: Project) -> list[Action]:
     if curves is None:
         small(look, "Measuring…")
         return actions
-    is_stale = curves.clip != project.clip
     height = _plot_height(look)
     bounds = project.figure.bounds
     upper, lower = _plots(session.curves, curves, bounds)
@@ -200,15 +199,12 @@ def _over_time(session: Session, look: Look, project: Project) -> list[Action]:
         small(look, "Each point relative to its larger key. Red: theoretical limit.")
     else:
         small(look, "Red: the limits of poses.")
-    gap = imgui.get_style().item_spacing.x
-    half = ImVec2((imgui.get_content_region_avail().x - gap) / 2, 0)
-    imgui.begin_disabled(is_stale)
-    if imgui.button(f"{icons.ICON_FA_IMAGE}  Save as PNG…###png", half):
+    halves, is_new = beside(2), curves.clip == project.clip
+    png, csv = f"{icons.ICON_FA_IMAGE}  Save as PNG…", f"{icons.ICON_FA_TABLE}  Save as CSV…"
+    if text_button(f"{png}###png", next(halves), enabled=is_new):
         actions.append(do(saving.ask_curves_png))
-    imgui.same_line()
-    if imgui.button(f"{icons.ICON_FA_TABLE}  Save as CSV…###csv", half):
+    if text_button(f"{csv}###csv", next(halves), enabled=is_new):
         actions.append(do(saving.ask_curves_csv))
-    imgui.end_disabled()
     return actions
 
 
@@ -286,9 +282,7 @@ def _plot(
     plot, other = plots
     actions: list[Action] = []
     project, palette = session.project, look.palette
-    if project is None or not implot.begin_plot(
-        f"##over time {plot.title}", ImVec2(-1, height), QUIET
-    ):
+    if project is None or not implot.begin_plot(f"##over time {plot.title}", (-1, height), QUIET):
         return actions
     quiet = implot.AxisFlags_.no_highlight
     along = quiet | implot.AxisFlags_.no_grid_lines
@@ -298,41 +292,37 @@ def _plot(
     first, last = float(curves.frames[0]), float(curves.frames[-1])
     top = plot.top if other is None else min(max(plot.top, other.top), MOST * plot.top)
     implot.setup_axes_limits(first, last, plot.least, top, implot.Cond_.always)
-    keys = implot.Spec()
-    keys.line_color = palette.line
-    frames = [float(key.frame) for key in project.figure.keys]
-    implot.plot_inf_lines("##keys", np.array(frames), keys)
-    line = implot.Spec()
+    _rule("keys", [key.frame for key in project.figure.keys], palette.line)
     alpha = 0.10 if curves.clip != project.clip else 0.30
-    line.line_color = ImVec4(palette.accent.x, palette.accent.y, palette.accent.z, alpha)
     if other is not None:
-        line.line_color = ImVec4(palette.warning.x, palette.warning.y, palette.warning.z, alpha)
-        implot.plot_line("##others", other.frames, other.values, line)
-        line.line_color = ImVec4(palette.accent.x, palette.accent.y, palette.accent.z, alpha)
-    implot.plot_line("##points", plot.frames, plot.values, line)
-    _limit(look, plot.bound, vertical=False)
-    now = implot.Spec()
-    now.line_color = palette.text
-    frame = playback.current_frame(session, project)
-    implot.plot_inf_lines("##now", np.array([float(frame)]), now)
+        _trace("others", other, faint(palette.warning, alpha))
+    _trace("points", plot, faint(palette.accent, alpha))
+    _rule("bound", [plot.bound], palette.danger, width=LIMIT * look.em, across=True)
+    _rule("now", [playback.current_frame(session, project)], palette.text)
     corner = implot.get_plot_pos()
-    place = ImVec2(corner.x + 0.5 * look.em, corner.y + 0.2 * look.em)
+    place = corner + ImVec2(0.5 * look.em, 0.2 * look.em)
     implot.get_plot_draw_list().add_text(place, ink(palette.text), plot.title)
     # A plot that takes no inputs of its own never counts as hovered.
-    size = implot.get_plot_size()
-    opposite = ImVec2(corner.x + size.x, corner.y + size.y)
-    is_over = imgui.is_window_hovered() and imgui.is_mouse_hovering_rect(corner, opposite)
-    if is_over and imgui.is_mouse_clicked(imgui.MouseButton_.left):
+    is_over = imgui.is_mouse_hovering_rect(corner, corner + implot.get_plot_size())
+    if is_over and imgui.is_window_hovered() and imgui.is_mouse_clicked(imgui.MouseButton_.left):
         actions.append(do(playback.seek, round(implot.get_plot_mouse_pos().x)))
     implot.end_plot()
     tip("Click to go to that frame")
     return actions
 
 
-def _limit(look: Look, value: float, *, vertical: bool) -> None:
-    limit = implot.Spec()
-    limit.line_color = look.palette.danger
-    limit.line_weight = 0.11 * look.em
-    if not vertical:
-        limit.flags = implot.InfLinesFlags_.horizontal
-    implot.plot_inf_lines("##bound", np.array([value]), limit)
+def _trace(name: str, plot: _Plot, colour: ImVec4) -> None:
+    line = implot.Spec()
+    line.line_color = colour
+    implot.plot_line(f"##{name}", plot.frames, plot.values, line)
+
+
+def _rule(
+    name: str, values: Sequence[float], colour: ImVec4, *, width: float = 1.0, across: bool = False
+) -> None:
+    """Draw lines through all of a plot: upright, or across it."""
+    line = implot.Spec()
+    line.line_color, line.line_weight = colour, width
+    if across:
+        line.flags = implot.InfLinesFlags_.horizontal
+    implot.plot_inf_lines(f"##{name}", np.array(values, dtype=float), line)

@@ -18,13 +18,19 @@ from app.ui.style import (
     FILL,
     SMALL,
     Look,
+    beside,
+    colour_field,
     heading,
     icon_button,
     ink,
     label,
     main_button,
+    progress,
+    rgb,
     segments,
+    sized,
     small,
+    text_button,
     tip,
 )
 
@@ -144,12 +150,8 @@ def _background(look: Look, settings: ExportSettings) -> ExportSettings:
     if is_clear:
         return settings
     imgui.same_line(0, imgui.get_style().item_inner_spacing.x)
-    values = [level / 255 for level in bytes.fromhex(settings.background[1:])]
-    changed, values = imgui.color_edit3("##colour", values, imgui.ColorEditFlags_.no_inputs)
-    if not changed:
-        return settings
-    code = "".join(f"{round(255 * min(max(value, 0.0), 1.0)):02x}" for value in values[:3])
-    return replace(settings, background=f"#{code}")
+    colour = colour_field("colour", settings.background, imgui.ColorEditFlags_.no_inputs)
+    return replace(settings, background=colour or settings.background)
 
 
 def _size(
@@ -208,14 +210,12 @@ def _frames(look: Look, project: Project, settings: ExportSettings) -> ExportSet
         case "own":
             settings = replace(settings, frames=frames)
     label(look, "First, last")
-    gap = imgui.get_style().item_inner_spacing.x
-    each = (imgui.get_content_region_avail().x - gap) / 2
     imgui.begin_disabled(settings.frames is None)
     ends = []
-    for index, (name, frame) in enumerate((("first", frames.first), ("last", frames.last))):
-        if index:
-            imgui.same_line(0, gap)
-        imgui.set_next_item_width(each)
+    widths = beside(2, imgui.get_style().item_inner_spacing.x)
+    both = zip(("first", "last"), (frames.first, frames.last), widths, strict=True)
+    for name, frame, width in both:
+        imgui.set_next_item_width(width)
         _, entered = imgui.input_int(f"##{name} frame", frame, 0)
         done = imgui.is_item_deactivated_after_edit()
         ends.append(document.frames.clamp(entered) if done else frame)
@@ -247,23 +247,21 @@ def _output(session: Session, look: Look, project: Project) -> list[Action]:
     if icon_button(look, icons.ICON_FA_FOLDER_OPEN, "choose output", "Choose where to…"):
         actions.append(do(exporting.choose))
     run = session.export
-    if run is not None or exporting.PREPARING in session.jobs.kinds:
-        if run is None:
-            imgui.progress_bar(-0.5 * imgui.get_time(), ImVec2(FILL, 0), "Preparing…")
-        else:
+    if exporting.is_under_way(session):
+        # Below zero, a bar only shows that something goes on.
+        share, text = -0.5 * imgui.get_time(), "Preparing…"
+        if run is not None:
             total = len(run.plan.times)
+            share = run.done / total
             text = f"{run.done} of {total}" if run.done < total else "Finishing…"
-            imgui.progress_bar(run.done / total, ImVec2(FILL, 0), text)
-        if imgui.button("Cancel###stop", ImVec2(FILL, 0)):
-            actions.append(do(exporting.cancel))
-        return actions
+        return [*actions, do(exporting.cancel)] if progress(share, text) else actions
     if main_button(look, f"{icons.ICON_FA_FILE_EXPORT}  Export###start", FILL):
         actions.append(do(exporting.repeat))
     tip("Export now", BINDINGS["export again"].keys_in_words)
     if EXPORT_FORMATS[project.document.export.format].is_still:
-        if imgui.button(f"{icons.ICON_FA_COPY}  Copy###copy", ImVec2(FILL, 0)):
+        text, hint = f"{icons.ICON_FA_COPY}  Copy###copy", "Put the picture on the clipboard"
+        if text_button(text, FILL, hint, BINDINGS["copy picture"].keys_in_words):
             actions.append(do(exporting.copy_picture))
-        tip("Put the picture on the clipboard", BINDINGS["copy picture"].keys_in_words)
     return actions
 
 
@@ -284,8 +282,7 @@ def _preview(
     width, height = imgui.get_content_region_avail().x, _preview_height(look)
     corner = imgui.get_cursor_screen_pos()
     extent = around.upper - around.lower
-    inner = 0.5 * look.em
-    scale = min((width - 2 * inner) / extent.real, (height - 2 * inner) / extent.imag)
+    scale = min((width - look.em) / extent.real, (height - look.em) / extent.imag)
     middle = (around.lower + around.upper) / 2
 
     def place(point: complex) -> ImVec2:
@@ -297,14 +294,11 @@ def _preview(
         return place(upper_left), place(complex(box.upper.real, box.lower.imag))
 
     palette, draw_list = look.palette, imgui.get_window_draw_list()
-    rounding = 0.4 * look.em
-    opposite = ImVec2(corner.x + width, corner.y + height)
-    draw_list.add_rect_filled(corner, opposite, ink(palette.desk), rounding)
-    colour = ink(palette.raised)
-    if settings.background != "transparent":
-        red, green, blue = bytes.fromhex(settings.background[1:])
-        colour = imgui.IM_COL32(red, green, blue, 255)
-    draw_list.add_rect_filled(*ends(frame), colour)
+    opposite = corner + ImVec2(width, height)
+    draw_list.add_rect_filled(corner, opposite, ink(palette.desk), 0.4 * look.em)
+    is_clear = settings.background == "transparent"
+    colour = palette.raised if is_clear else rgb(settings.background)
+    draw_list.add_rect_filled(*ends(frame), ink(colour))
     if project.puppet.shown is not None:
         count = len(project.puppet.shown.mesh.domain.outline)
         for point in project.puppet.shown.positions[:count]:
@@ -313,7 +307,7 @@ def _preview(
     draw_list.add_rect(*ends(canvas), ink(palette.dim, 0.6))
     draw_list.add_rect(*ends(motion), ink(palette.warning, 0.8))
     draw_list.add_rect(*ends(frame), ink(palette.accent), 0.0, 1.6)
-    imgui.dummy(ImVec2(width, height))
+    imgui.dummy((width, height))
     tip(
         "Blue: what the export shows, as in the viewport. Grey: the picture's canvas.\n"
         "Orange: where the motion reaches."
@@ -328,11 +322,10 @@ def _preview(
 
 def _note(look: Look, text: str) -> None:
     """Write one of the notes, in the room that the longest of them takes."""
-    imgui.push_font(None, SMALL * imgui.get_style().font_size_base)
-    width = imgui.get_content_region_avail().x
-    room = max(imgui.calc_text_size(note, wrap_width=width).y for note in (MEASURES, LEAVES, KEEPS))
-    imgui.pop_font()
+    width, notes = imgui.get_content_region_avail().x, (MEASURES, LEAVES, KEEPS)
+    with sized(SMALL):
+        room = max(imgui.calc_text_size(note, wrap_width=width).y for note in notes)
     top = imgui.get_cursor_pos_y()
     small(look, text)
     imgui.set_cursor_pos_y(top + room + imgui.get_style().item_spacing.y)
-    imgui.dummy(ImVec2(0, 0))
+    imgui.dummy((0, 0))

@@ -4,18 +4,19 @@ import math
 from collections.abc import Sequence
 from dataclasses import replace
 
-from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui
+from imgui_bundle import icons_fontawesome_6 as icons, imgui, imgui_ctx
 
 from app.document import Handle, Shortfall, Target, figure_commands, find_shortfall, handle_commands
 from app.editor import Action, Project, Session, do, layering
 from app.editor.actions import editing, posing
 from app.ui.panels import depth
-from app.ui.shortcuts import bound_text_button, with_key
+from app.ui.shortcuts import BINDINGS, CTRL, bound_button, bound_text_button, with_key
 from app.ui.style import (
     FILL,
     Look,
     Scale,
     at_end,
+    beside,
     heading,
     icon_button,
     label,
@@ -25,10 +26,10 @@ from app.ui.style import (
     shortened,
     slider,
     small,
+    text_button,
     tip,
 )
 
-CTRL = int(imgui.Key.mod_ctrl)
 MOST_ROWS = 5.5
 # In words: the weights that they stand for.
 HOLDS = {"Soft": 0.1, "Normal": 1.0, "Firm": 10.0}
@@ -43,11 +44,11 @@ def draw(session: Session, look: Look, project: Project) -> list[Action]:
     if not figure.handles:
         heading(look, "Handles")
         small(look, "There are none yet. Click on the drawing to add one, then drag it, or:")
-        text = f"{icons.ICON_FA_WAND_MAGIC_SPARKLES}  Suggest handles###suggest"
-        is_pressed = main_button(look, text, FILL)
-        tip("Put handles at the tips of limbs and in the middle of the body")
-        return [do(posing.suggest_handles)] if is_pressed else []
-    actions = _heading_with_delete(look, project)
+        suggest = BINDINGS["suggest handles"]
+        is_pressed = main_button(look, f"{suggest.icon}  {suggest.label}###{suggest.label}", FILL)
+        tip(suggest.hint)
+        return [suggest.action] if is_pressed else []
+    actions = _heading_with_delete(session, look, project)
     actions += _list(look, project)
     chosen = [handle for handle in figure.handles if handle.id in project.selected]
     if len(chosen) == 1:
@@ -55,7 +56,7 @@ def draw(session: Session, look: Look, project: Project) -> list[Action]:
     elif chosen:
         heading(look, f"{len(chosen)} handles")
         small(look, "Dragging one of them moves them all; arrows nudge them.")
-        actions += _hold(session, look, chosen)
+        actions += _firmness(session, look, chosen)
     else:
         small(look, "Select a handle to see its settings.")
     if len(chosen) != 1 and session.tints_depth:
@@ -64,17 +65,10 @@ def draw(session: Session, look: Look, project: Project) -> list[Action]:
     return actions + _anchor(look, project, chosen)
 
 
-def _heading_with_delete(look: Look, project: Project) -> list[Action]:
+def _heading_with_delete(session: Session, look: Look, project: Project) -> list[Action]:
     heading(look, "Handles", framed=True)
-    actions: list[Action] = []
     at_end(2 * 1.15 * imgui.get_frame_height() + imgui.get_style().item_inner_spacing.x)
-    if icon_button(
-        look,
-        icons.ICON_FA_WAND_MAGIC_SPARKLES,
-        "suggest",
-        "Put handles at the tips of limbs and in the middle of the body",
-    ):
-        actions.append(do(posing.suggest_handles))
+    actions = bound_button(session, look, "suggest handles")
     imgui.same_line(0, imgui.get_style().item_inner_spacing.x)
     if icon_button(
         look,
@@ -95,7 +89,7 @@ def _list(look: Look, project: Project) -> list[Action]:
     style = imgui.get_style()
     rows = min(len(figure.handles), MOST_ROWS) * imgui.get_text_line_height_with_spacing()
     height = rows - style.item_spacing.y + 2 * style.window_padding.y
-    imgui.begin_child("handles", ImVec2(0, height), imgui.ChildFlags_.borders)
+    imgui.begin_child("handles", (0, height), imgui.ChildFlags_.borders)
     for handle in figure.handles:
         is_anchor = handle.position == figure.anchor
         clicked, _ = imgui.selectable(
@@ -141,21 +135,16 @@ def _details(session: Session, look: Look, project: Project, handle: Handle) -> 
         actions.append(
             do(editing.edit_figure, handle_commands.rename_handle, handle.id, name.strip())
         )
-    actions += _hold(session, look, [handle])
-    placed = _point(
-        look,
-        project,
-        "At rest",
-        handle.position,
-        "Where it sits on the drawing at rest, in pixels from the upper left corner",
-    )
+    actions += _firmness(session, look, [handle])
+    hint = "Where it sits on the drawing at rest, in pixels from the upper left corner"
+    placed = _point(look, project, "At rest", handle.position, hint)
     if placed is not None:
         actions.append(do(editing.edit_figure, handle_commands.move_handle, handle.id, placed))
     actions += _wish(look, project, handle)
     return actions + depth.draw(session, look, project, handle)
 
 
-def _hold(session: Session, look: Look, chosen: Sequence[Handle]) -> list[Action]:
+def _firmness(session: Session, look: Look, chosen: Sequence[Handle]) -> list[Action]:
     """Draw how firmly the selected handles hold, and what is done with all of them at once."""
     actions: list[Action] = []
     identities = frozenset(handle.id for handle in chosen)
@@ -177,11 +166,9 @@ def _hold(session: Session, look: Look, chosen: Sequence[Handle]) -> list[Action
     names = ["pin here", "lock", "group" if len(chosen) > 1 else "mirror", "mirrored"]
     if any(handle.group for handle in chosen):
         names[2] = "ungroup"
-    half = ImVec2((imgui.get_content_region_avail().x - imgui.get_style().item_spacing.x) / 2, 0)
-    for index, name in enumerate(names):
-        if index % 2:
-            imgui.same_line()
-        actions += bound_text_button(session, name, half)
+    for pair in (names[:2], names[2:]):
+        for name, width in zip(pair, beside(2), strict=True):
+            actions += bound_text_button(session, name, width)
     return actions
 
 
@@ -192,13 +179,8 @@ def _wish(look: Look, project: Project, handle: Handle) -> list[Action]:
         small(look, "Between keys it goes with the shape. Drag it to make a key here.")
         return actions
     target = shown.pose.targets[handle.id]
-    wished = _point(
-        look,
-        project,
-        "Target",
-        target.position,
-        "Where this pose wants it, in pixels from the upper left corner",
-    )
+    hint = "Where this pose wants it, in pixels from the upper left corner"
+    wished = _point(look, project, "Target", target.position, hint)
     if wished is not None:
         actions.append(do(posing.wish, {handle.id: replace(target, position=wished)}))
     actions += _turn(look, project, handle, target)
@@ -207,9 +189,8 @@ def _wish(look: Look, project: Project, handle: Handle) -> list[Action]:
     if lag is not None:
         is_coming = project.pull is not None and not project.pull.is_at_rest
         why = "on its way" if is_coming else shortfall.reason
-        imgui.push_text_wrap_pos(0.0)
-        imgui.text_colored(look.palette.warning, f"{lag:.0f} px short of its target, {why}")
-        imgui.pop_text_wrap_pos()
+        with imgui_ctx.push_text_wrap_pos(0.0):
+            imgui.text_colored(look.palette.warning, f"{lag:.0f} px short of its target, {why}")
     return actions
 
 
@@ -241,15 +222,13 @@ def _point(look: Look, project: Project, text: str, place: complex, hint: str) -
     """Draw two fields for a place, as people count pixels: y down; return it if one was entered."""
     height = project.document.canvas[1]
     label(look, text)
-    gap = imgui.get_style().item_inner_spacing.x
-    each = (imgui.get_content_region_avail().x - gap) / 2
-    imgui.set_next_item_width(each)
-    x = number(f"{text.lower()} x", place.real, "%.1f")
-    tip(hint)
-    imgui.same_line(0, gap)
-    imgui.set_next_item_width(each)
-    y = number(f"{text.lower()} y", height - place.imag, "%.1f")
-    tip(hint)
+    entered = []
+    widths = beside(2, imgui.get_style().item_inner_spacing.x)
+    for axis, at, width in zip("xy", (place.real, height - place.imag), widths, strict=True):
+        imgui.set_next_item_width(width)
+        entered.append(number(f"{text.lower()} {axis}", at, "%.1f"))
+        tip(hint)
+    x, y = entered
     if x is None and y is None:
         return None
     return complex(place.real if x is None else x, place.imag if y is None else height - y)
@@ -262,26 +241,19 @@ def _anchor(look: Look, project: Project, chosen: list[Handle]) -> list[Action]:
     if figure.anchor is None:
         small(look, "Automatic: in-betweens follow the middle of the shape.")
     elif holder is not None:
-        small(
-            look,
-            f"In-betweens follow “{shortened(holder, 12 * look.em)}”: it goes the straightest way.",
-        )
+        name = shortened(holder, 12 * look.em)
+        small(look, f"In-betweens follow “{name}”: it goes the straightest way.")
     else:
         anchor = figure.anchor
         y = project.document.canvas[1] - anchor.imag
         small(look, f"In-betweens follow the point {anchor.real:.0f}, {y:.0f}.")
     is_chosen = len(chosen) == 1 and chosen[0].position != figure.anchor
-    gap = imgui.get_style().item_spacing.x
-    half = ImVec2((imgui.get_content_region_avail().x - gap) / 2, 0)
-    actions: list[Action] = []
-    imgui.begin_disabled(not is_chosen)
-    if imgui.button(f"{icons.ICON_FA_ANCHOR}  Follow this handle###anchor here", half):
+    halves, actions = beside(2), list[Action]()
+    text = f"{icons.ICON_FA_ANCHOR}  Follow this handle###anchor here"
+    hint, keys = "Let in-betweens follow the selected handle", with_key(CTRL, "click")
+    if text_button(text, next(halves), hint, keys, enabled=is_chosen):
         actions.append(do(posing.anchor_at, chosen[0].id))
-    imgui.end_disabled()
-    tip("Let in-betweens follow the selected handle", with_key(CTRL, "click"))
-    imgui.same_line()
-    imgui.begin_disabled(figure.anchor is None)
-    if imgui.button("Automatic anchor###clear anchor", half):
+    has_own = figure.anchor is not None
+    if text_button("Automatic anchor###clear anchor", next(halves), enabled=has_own):
         actions.append(do(editing.edit_figure, figure_commands.set_anchor, None))
-    imgui.end_disabled()
     return actions

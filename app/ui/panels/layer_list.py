@@ -15,10 +15,11 @@ from app.ui.style import (
     begin_tip,
     icon_button,
     ink,
+    name_popup,
     shortened,
     show_picture,
-    small,
-    tip,
+    sized,
+    write_in,
 )
 from engine.arrays import Bytes
 
@@ -41,13 +42,13 @@ def draw_list(
     pitch = ROW * look.em + imgui.get_style().item_spacing.y
     room = imgui.get_content_region_avail().y - OTHERS * look.em
     shown = min(float(len(figures)), max(FEWEST, room / pitch))
-    imgui.begin_child("list", ImVec2(0, shown * pitch))
+    imgui.begin_child("list", (0, shown * pitch))
     frame = playback.current_frame(session, project)
     for figure in reversed(figures):
         is_seen = is_visible(figure, frame)
         actions += _row(session, look, figure, pictures, is_seen=is_seen)
     # An item: placing the cursor alone gives the list no height.
-    imgui.dummy(ImVec2(0, 0))
+    imgui.dummy((0, 0))
     _scroll_while_dragged(look)
     imgui.end_child()
     if project.listed != project.active:
@@ -57,50 +58,28 @@ def draw_list(
 
 def _bar(look: Look, project: Project) -> list[Action]:
     """Draw the buttons for whole layers."""
-    actions = []
+    actions: list[Action] = []
     active, figures = project.active, project.document.figures
     index, last = figures.index(project.figure), len(figures) - 1
-    for icon, name, hint, enabled, action in (
-        (icons.ICON_FA_PLUS, "add layer", "Add a picture as a layer", True, do(layering.ask)),
-        (
-            icons.ICON_FA_CLONE,
-            "copy layer",
-            "Duplicate the layer",
-            True,
-            do(layering.duplicate, active),
-        ),
-        (
-            icons.ICON_FA_FILE_IMAGE,
-            "replace picture",
-            "Replace the layer's picture by another file: handles, keys and joints stay",
-            True,
-            do(layering.ask_replace, active),
-        ),
-        (
-            icons.ICON_FA_ARROW_UP,
-            "raise",
-            "Bring the layer forward",
-            index < last,
-            do(layering.move, active, index + 1),
-        ),
-        (
-            icons.ICON_FA_ARROW_DOWN,
-            "lower",
-            "Send the layer back",
-            index > 0,
-            do(layering.move, active, index - 1),
-        ),
-        (
-            icons.ICON_FA_TRASH,
-            "delete layer",
-            "Delete the layer" if last else "A scene has at least one layer",
-            last > 0,
-            do(layering.remove, active),
-        ),
-    ):
+
+    def button(icon: str, name: str, hint: str, action: Action, *, enabled: bool = True) -> None:
         if icon_button(look, icon, name, hint, enabled=enabled):
             actions.append(action)
         imgui.same_line()
+
+    forward, back = (do(layering.move, active, index + by) for by in (1, -1))
+    replace = "Replace the layer's picture by another file: handles, keys and joints stay"
+    delete = "Delete the layer" if last else "A scene has at least one layer"
+    button(icons.ICON_FA_PLUS, "add layer", "Add a picture as a layer", do(layering.ask))
+    button(icons.ICON_FA_CLONE, "copy layer", "Duplicate the layer", do(layering.duplicate, active))
+    button(icons.ICON_FA_FILE_IMAGE, "replace picture", replace, do(layering.ask_replace, active))
+    button(
+        icons.ICON_FA_ARROW_UP, "raise", "Bring the layer forward", forward, enabled=index < last
+    )
+    button(icons.ICON_FA_ARROW_DOWN, "lower", "Send the layer back", back, enabled=index > 0)
+    button(
+        icons.ICON_FA_TRASH, "delete layer", delete, do(layering.remove, active), enabled=last > 0
+    )
     imgui.new_line()
     return actions
 
@@ -117,7 +96,7 @@ def _row(
     # Below all that follows, which takes the pointer first.
     flags = imgui.SelectableFlags_.allow_overlap | imgui.SelectableFlags_.allow_double_click
     is_active = identity == project.active
-    if imgui.selectable(f"###row {identity}", is_active, flags, ImVec2(0, height))[0]:
+    if imgui.selectable(f"###row {identity}", is_active, flags, (0, height))[0]:
         actions.append(do(layering.choose, identity))
     after = imgui.get_cursor_screen_pos()
     low, high = imgui.get_item_rect_min(), imgui.get_item_rect_max()
@@ -134,9 +113,13 @@ def _row(
     if is_named or asks or session.named_layer == identity:
         imgui.open_popup(f"name {identity}")
         actions.append(do(layering.ask_name, None))
-    actions += _name(look, project, figure, ImVec2(low.x, low.y))
+    imgui.set_next_window_pos(low)
+    taken = (other.name for other in project.document.figures if other is not figure)
+    name = name_popup(look, f"name {identity}", figure.name, taken, "layer")
+    if name is not None:
+        actions.append(do(layering.rename, identity, name))
     middle = (low.y + high.y) / 2
-    imgui.set_cursor_screen_pos(ImVec2(corner.x, middle - imgui.get_frame_height() / 2))
+    imgui.set_cursor_screen_pos((corner.x, middle - imgui.get_frame_height() / 2))
     actions += _switches(look, figure)
     left = imgui.get_item_rect_max().x + GAP * em
     _picture(look, project, figure, ImVec2(left, middle), pictures, is_seen=is_seen)
@@ -191,18 +174,11 @@ def _picture(
     picture = None if pixels is None else pictures(figure.id, pixels)
     if picture is None:
         icon = icons.ICON_FA_IMAGE if figure.still else icons.ICON_FA_PERSON
-        size = imgui.calc_text_size(icon)
-        middle = ImVec2((low.x + high.x - size.x) / 2, (low.y + high.y - size.y) / 2)
-        draw_list.add_text(middle, SIGN, icon)
+        write_in(low, high, icon, SIGN)
         return
-    room = ImVec2(high.x - low.x - 2 * pad, high.y - low.y - 2 * pad)
-    show_picture(
-        picture.texture,
-        picture.size,
-        ImVec2(low.x + pad, low.y + pad),
-        room,
-        opacity=1.0 if is_seen else HIDDEN,
-    )
+    corner, room = low + ImVec2(pad, pad), high - low - ImVec2(2 * pad, 2 * pad)
+    opacity = 1.0 if is_seen else HIDDEN
+    show_picture(picture.texture, picture.size, corner, room, opacity=opacity)
 
 
 def _text(look: Look, figure: Figure, left: float, end: ImVec2, *, is_seen: bool) -> None:
@@ -214,16 +190,15 @@ def _text(look: Look, figure: Figure, left: float, end: ImVec2, *, is_seen: bool
     signs += [icons.ICON_FA_IMAGE] if figure.still else []
     signs += [icons.ICON_FA_BAN] if figure.reference else []
     right = end.x - GAP * em
-    imgui.push_font(None, SMALL * imgui.get_style().font_size_base)
-    for sign in reversed(signs):
-        size = imgui.calc_text_size(sign)
-        right -= size.x
-        draw_list.add_text(ImVec2(right, middle - size.y / 2), ink(palette.dim), sign)
-        right -= GAP * em
-    imgui.pop_font()
+    with sized(SMALL):
+        for sign in reversed(signs):
+            size = imgui.calc_text_size(sign)
+            right -= size.x
+            draw_list.add_text((right, middle - size.y / 2), ink(palette.dim), sign)
+            right -= GAP * em
     colour = ink(palette.text if is_seen else palette.dim)
     top = middle - imgui.get_text_line_height() / 2
-    draw_list.add_text(ImVec2(left, top), colour, shortened(figure.name, right - left))
+    draw_list.add_text((left, top), colour, shortened(figure.name, right - left))
 
 
 def _drag(look: Look, project: Project, figure: Figure, low: ImVec2, high: ImVec2) -> list[Action]:
@@ -245,7 +220,7 @@ def _drag(look: Look, project: Project, figure: Figure, low: ImVec2, high: ImVec
         is_above = imgui.get_mouse_pos().y < (low.y + high.y) / 2
         y = (low.y if is_above else high.y) - 0.5
         imgui.get_window_draw_list().add_line(
-            ImVec2(low.x, y), ImVec2(high.x, y), ink(look.palette.accent), 0.14 * look.em
+            (low.x, y), (high.x, y), ink(look.palette.accent), 0.14 * look.em
         )
         others = [each.id for each in project.document.figures if each.id != payload.data_id]
         if figure.id in others and imgui.is_mouse_released(imgui.MouseButton_.left):
@@ -294,25 +269,3 @@ def _menu(project: Project, figure: Figure) -> tuple[list[Action], bool]:
         actions.append(do(layering.remove, identity))
     imgui.end_popup()
     return actions, asks
-
-
-def _name(look: Look, project: Project, figure: Figure, corner: ImVec2) -> list[Action]:
-    """Draw the field for a layer's name over its row, if it is open."""
-    imgui.set_next_window_pos(corner)
-    if not imgui.begin_popup(f"name {figure.id}"):
-        return []
-    actions: list[Action] = []
-    if imgui.is_window_appearing():
-        imgui.set_keyboard_focus_here()
-    imgui.set_next_item_width(14 * look.em)
-    flags = imgui.InputTextFlags_.auto_select_all | imgui.InputTextFlags_.enter_returns_true
-    entered, name = imgui.input_text("##name", figure.name, flags)
-    tip("Enter takes the name, Esc leaves it")
-    taken = {other.name for other in project.document.figures if other is not figure}
-    if name.strip() in taken:
-        small(look, "Another layer has this name.")
-    elif entered:
-        actions.append(do(layering.rename, figure.id, name))
-        imgui.close_current_popup()
-    imgui.end_popup()
-    return actions

@@ -1,33 +1,37 @@
 """The layers of the scene: which there are, what is in front, what hangs on what."""
 
-from imgui_bundle import ImVec2, imgui
+from imgui_bundle import imgui
 
 from app.document import Figure, is_visible
 from app.editor import Action, Project, Session, do, layering
 from app.editor.actions import playback, rebuilding
 from app.ui.panels.layer_list import SmallPictures, draw_list
-from app.ui.style import FILL, Look, Scale, heading, label, shortened, slider, small, tip
+from app.ui.style import (
+    FILL,
+    Look,
+    Scale,
+    heading,
+    label,
+    progress,
+    shortened,
+    slider,
+    small,
+    text_button,
+    tip,
+)
 
 PERCENT = Scale(left=0, right=100)
 NOTHING = "nothing"
 
 
 def draw(session: Session, look: Look, project: Project, pictures: SmallPictures) -> list[Action]:
-    """Draw the list of layers, and the settings of the chosen one.
-
-    Parameters
-    ----------
-    pictures : callable
-        Returns the texture of a layer's small picture, by the layer's id.
-    """
+    """Draw the list of layers with their small pictures, and the settings of the chosen one."""
     actions = draw_list(session, look, project, pictures)
     if len(project.document.figures) == 1:
         small(look, "Drop another picture here, or open an .ora or .psd file, for more layers.")
     renewal = project.renewal
-    if renewal is not None and renewal.replaces:
-        imgui.progress_bar(renewal.progress, ImVec2(FILL, 0), renewal.now)
-        if imgui.button("Cancel###stop", ImVec2(FILL, 0)):
-            actions.append(do(rebuilding.cancel))
+    if renewal is not None and renewal.replaces and progress(renewal.progress, renewal.now):
+        actions.append(do(rebuilding.cancel))
     heading(look, shortened(project.figure.name, imgui.get_content_region_avail().x))
     frame = playback.current_frame(session, project)
     return actions + _settings(project, look, project.figure, frame)
@@ -55,9 +59,9 @@ def _settings(project: Project, look: Look, figure: Figure, frame: int) -> list[
     actions += _joint(project, look, figure)
     if figure.still:
         small(look, "A still picture: it is shown as it was drawn.")
-        if imgui.button("Let it be posed", ImVec2(FILL, 0)):
+        if imgui.button("Let it be posed", (FILL, 0)):
             actions.append(do(layering.stand_up, identity))
-    elif imgui.button("Make it a still picture", ImVec2(FILL, 0)):
+    elif imgui.button("Make it a still picture", (FILL, 0)):
         actions.append(do(layering.stand_still, identity))
     return actions
 
@@ -66,13 +70,12 @@ def _switch(look: Look, figure: Figure, frame: int) -> list[Action]:
     """Draw what shows or hides a layer from the present frame on."""
     actions = []
     is_seen = is_visible(figure, frame)
-    imgui.begin_disabled(figure.hidden)
-    if imgui.button(f"{'Hide' if is_seen else 'Show'} from frame {frame} on", ImVec2(FILL, 0)):
+    text = f"{'Hide' if is_seen else 'Show'} from frame {frame} on"
+    hint = "For mouths, blinks and props: layers that take turns"
+    if text_button(text, FILL, hint, enabled=not figure.hidden):
         actions.append(do(layering.switch_here, figure.id))
-    imgui.end_disabled()
-    tip("For mouths, blinks and props: layers that take turns")
     is_switched = any(switch.frame == frame for switch in figure.switches)
-    if is_switched and imgui.button(f"No change at frame {frame}", ImVec2(FILL, 0)):
+    if is_switched and imgui.button(f"No change at frame {frame}", (FILL, 0)):
         actions.append(do(layering.unswitch_here, figure.id))
     if figure.switches:
         told = (f"{'shown' if s.visible else 'hidden'} from {s.frame}" for s in figure.switches)

@@ -2,25 +2,30 @@
 
 from collections.abc import Callable
 
-from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui
+from imgui_bundle import ImVec2, imgui
 
 from app.document import KeptPose, Pose
 from app.editor import Action, Project, Session, do
 from app.editor.actions import viewing
 from app.editor.poses import flipping, library
-from app.ui.shortcuts import BINDINGS, bound_button
+from app.ui.shortcuts import bound_button, bound_text_button
 from app.ui.style import (
+    FILL,
     POSE_PAYLOAD,
     SMALL,
     Look,
     Scale,
     at_end,
+    density,
     heading,
     ink,
     label,
+    name_popup,
     number,
     shortened,
+    sized,
     small,
+    text_button,
     tip,
     track,
 )
@@ -31,13 +36,7 @@ Pictures = Callable[[Pose, int], int | None]
 
 
 def draw(session: Session, look: Look, project: Project, pictures: Pictures) -> list[Action]:
-    """Draw the poses that are kept, and where poses are flipped.
-
-    Parameters
-    ----------
-    pictures : callable
-        Returns the texture of a pose, of a number of pixels each way.
-    """
+    """Draw the poses that are kept, each as a picture of some pixels a side, and flipping them."""
     if project.puppet.shown is None:
         return []
     heading(look, "Poses", framed=True)
@@ -70,7 +69,10 @@ def _tiles(look: Look, project: Project, pictures: Pictures) -> list[Action]:
         imgui.push_id(kept.name)
         actions += _tile(look, project, kept, index, pictures)
         actions += _blend(look, project, kept, side)
-        actions += _rename(look, project, kept)
+        taken = (other.name for other in project.figure.library if other is not kept)
+        name = name_popup(look, "name", kept.name, taken, "pose")
+        if name is not None:
+            actions.append(do(library.rename, kept.name, name))
         imgui.pop_id()
         imgui.end_group()
     return actions
@@ -86,25 +88,23 @@ def _tile(
     if imgui.invisible_button(f"pose {kept.name}", size):
         actions.append(do(library.apply, kept.name))
     hot = imgui.is_item_hovered()
-    high = ImVec2(low.x + TILE * em, low.y + TILE * em)
+    high = low + ImVec2(TILE * em, TILE * em)
     draw_list.add_rect_filled(low, high, ink(palette.desk), 0.4 * em)
-    density = imgui.get_io().display_framebuffer_scale.x or 1.0
-    texture = pictures(kept.pose, round(TILE * em * density))
+    texture = pictures(kept.pose, round(TILE * em * density()))
     if texture is not None:
         _show(texture, low, high, 0.4 * em)
-    is_picked = kept.name == project.kept
+    is_picked = kept.name == project.picked_pose
     if hot or is_picked:
         draw_list.add_rect(low, high, ink(palette.accent, 1.0 if hot else 0.6), 0.4 * em, 1.5)
-    imgui.push_font(None, SMALL * imgui.get_style().font_size_base)
-    text = shortened(kept.name, TILE * em)
-    x = (low.x + high.x - imgui.calc_text_size(text).x) / 2
-    colour = palette.text if hot or is_picked else palette.dim
-    draw_list.add_text(ImVec2(x, high.y + 0.15 * em), ink(colour), text)
-    imgui.pop_font()
+    with sized(SMALL):
+        text = shortened(kept.name, TILE * em)
+        x = (low.x + high.x - imgui.calc_text_size(text).x) / 2
+        colour = palette.text if hot or is_picked else palette.dim
+        draw_list.add_text((x, high.y + 0.15 * em), ink(colour), text)
     if imgui.begin_drag_drop_source():
         imgui.set_drag_drop_payload_py_id(POSE_PAYLOAD, index)
         corner = imgui.get_cursor_screen_pos()
-        imgui.dummy(ImVec2(TILE * em / 2, TILE * em / 2))
+        imgui.dummy((TILE * em / 2, TILE * em / 2))
         if texture is not None:
             _show(texture, corner, imgui.get_item_rect_max(), 0.2 * em)
         imgui.end_drag_drop_source()
@@ -117,8 +117,8 @@ def _show(texture: int, low: ImVec2, high: ImVec2, rounding: float) -> None:
         imgui.ImTextureRef(texture),
         low,
         high,
-        ImVec2(0, 1),
-        ImVec2(1, 0),
+        (0, 1),
+        (1, 0),
         imgui.IM_COL32(255, 255, 255, 255),
         rounding,
     )
@@ -130,8 +130,7 @@ def _blend(look: Look, project: Project, kept: KeptPose, width: float) -> list[A
     # Near the name above it.
     imgui.set_cursor_pos_y(imgui.get_cursor_pos_y() - 0.5 * look.em)
     moved = track(look, "blend", share, SHARES, width, colour=look.palette.accent)
-    told = f"{100 * share:.0f}% blended in" if share else "Drag to blend it into the present pose"
-    tip(told)
+    tip(f"{100 * share:.0f}% blended in" if share else "Drag to blend it into the present pose")
     if moved is None:
         return []
     actions = [do(library.blend, kept.name, moved.value)]
@@ -153,36 +152,8 @@ def _menu(kept: KeptPose) -> list[Action]:
     return actions
 
 
-def _rename(look: Look, project: Project, kept: KeptPose) -> list[Action]:
-    """Draw the field for a pose's name, if it is open."""
-    if not imgui.begin_popup("name"):
-        return []
-    actions: list[Action] = []
-    if imgui.is_window_appearing():
-        imgui.set_keyboard_focus_here()
-    imgui.set_next_item_width(12 * look.em)
-    flags = imgui.InputTextFlags_.auto_select_all | imgui.InputTextFlags_.enter_returns_true
-    entered, name = imgui.input_text("##name", kept.name, flags)
-    taken = {other.name for other in project.figure.library if other is not kept}
-    if name.strip() in taken:
-        small(look, "Another pose has this name.")
-    elif entered:
-        if name.strip():
-            actions.append(do(library.rename, kept.name, name.strip()))
-        imgui.close_current_popup()
-    imgui.end_popup()
-    return actions
-
-
 def _flip(session: Session, look: Look, project: Project) -> list[Action]:
-    actions: list[Action] = []
-    figure, binding = project.figure, BINDINGS["paste flipped"]
-    width = imgui.get_content_region_avail().x
-    imgui.begin_disabled(not binding.is_possible(session))
-    if imgui.button(f"{icons.ICON_FA_PASTE}  {binding.label}###flip", ImVec2(width, 0)):
-        actions.append(binding.action)
-    imgui.end_disabled()
-    tip(binding.hint, binding.keys_in_words)
+    figure, actions = project.figure, bound_text_button(session, "paste flipped", FILL)
     label(look, "Axis")
     if imgui.checkbox("##axis", session.overlays.mirror)[0]:
         actions.append(do(viewing.toggle, "mirror"))
@@ -196,11 +167,9 @@ def _flip(session: Session, look: Look, project: Project) -> list[Action]:
     if placed is not None:
         actions.append(do(flipping.place_axis, placed))
     imgui.same_line(0, gap)
-    imgui.begin_disabled(figure.mirror is None)
-    if imgui.button("Middle", ImVec2(button, 0)):
+    hint = "Put the axis in the middle of the pairs of handles, or of the shape"
+    if text_button("Middle", button, hint, enabled=figure.mirror is not None):
         actions.append(do(flipping.place_axis, None))
-    imgui.end_disabled()
-    tip("Put the axis in the middle of the pairs of handles, or of the shape")
     small(
         look,
         "Handles are pairs by their names, such as “paw.L” and “paw.R” or “left ear” and "

@@ -5,8 +5,16 @@ Out: actions.
 Imports: `app.editor`, `app.ui.style`.
 """
 
+from app.ui.shortcuts.binding import Binding as Binding
 from app.ui.shortcuts.gestures import GESTURES as GESTURES
-from app.ui.shortcuts.keys import MODIFIERS as MODIFIERS, in_words as in_words, with_key as with_key
+from app.ui.shortcuts.keys import (
+    ALT as ALT,
+    CTRL as CTRL,
+    MODIFIERS as MODIFIERS,
+    SHIFT as SHIFT,
+    in_words as in_words,
+    with_key as with_key,
+)
 from app.ui.shortcuts.pressed import ARROWS as ARROWS, pressed as pressed
 from app.ui.shortcuts.table import BINDINGS as BINDINGS, MENUS as MENUS
 from app.ui.shortcuts.widgets import (

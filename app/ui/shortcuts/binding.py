@@ -1,15 +1,15 @@
 """What an action is that has a name."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import KW_ONLY, dataclass
 
 from app.editor import Action, Project, Session
-from app.ui.shortcuts.keys import IS_MAC, in_words
+from app.ui.shortcuts.keys import IS_MAC, chords_of, in_words
 
 Test = Callable[[Session, Project], object]  # passed where it returns what counts as true
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+@dataclass(frozen=True, slots=True, eq=False)
 class Binding:
     """Something that can be done, and all ways that lead to it.
 
@@ -17,11 +17,11 @@ class Binding:
     ----------
     label : str
         In menus and in the sheet of keys.
+    keys : str
+        Chords of keys, parted by commas; any of them does it.
     parted : bool
         Whether a line parts it from the entry above in its menu.
-    keys : tuple of int
-        ImGui's key chords; any of them does it.
-    mac_keys : tuple of int
+    mac_keys : str
         In their place on macOS, where the system has them for itself.
     told : str
         Its keys in words, where they are not pressed as such.
@@ -29,8 +29,8 @@ class Binding:
     hint : str
         Tooltip; the label where it is empty.
     needs_project : bool
-        Whether it can be done only with an open project. Without one, none of the tests below is
-        asked.
+        Whether it can be done only with an open project. Without one, `detail` and `possible` are
+        not asked.
     detail : callable
         What it would do now, in words that follow the label in its menu.
     possible : callable
@@ -43,21 +43,22 @@ class Binding:
 
     label: str
     action: Action
+    keys: str = ""
+    _: KW_ONLY
     parted: bool = False
-    keys: tuple[int, ...] = ()
-    mac_keys: tuple[int, ...] = ()
+    mac_keys: str = ""
     told: str = ""
     icon: str = ""
     hint: str = ""
     needs_project: bool = True
     detail: Callable[[Session, Project], str | None] | None = None
     possible: Test | None = None
-    active: Test | None = None
+    active: Callable[[Session], object] | None = None
     repeats: bool = False
 
     def chords(self, *, is_mac: bool = IS_MAC) -> tuple[int, ...]:
         """Return the key chords that do it on this system, or on another one."""
-        return (is_mac and self.mac_keys) or self.keys
+        return chords_of((is_mac and self.mac_keys) or self.keys)
 
     @property
     def keys_in_words(self) -> str:
@@ -77,6 +78,5 @@ class Binding:
         return self.possible is None or bool(self.possible(session, session.project))
 
     def is_active(self, session: Session) -> bool:
-        """Tell whether what it switches is on in the open project."""
-        project = session.project
-        return bool(self.active and project and self.active(session, project))
+        """Tell whether what it switches is on, also where it cannot be switched now."""
+        return bool(self.active and self.active(session))

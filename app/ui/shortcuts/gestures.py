@@ -2,13 +2,7 @@
 
 from dataclasses import dataclass
 
-from imgui_bundle import imgui
-
-from app.ui.shortcuts.keys import with_key
-
-CTRL, SHIFT, ALT = (
-    int(key) for key in (imgui.Key.mod_ctrl, imgui.Key.mod_shift, imgui.Key.mod_alt)
-)
+from app.ui.shortcuts.keys import ALT, CTRL, SHIFT, with_key
 
 
 @dataclass(frozen=True, slots=True)

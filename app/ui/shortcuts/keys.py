@@ -8,9 +8,11 @@ from imgui_bundle import imgui
 Key = imgui.Key
 # On macOS Dear ImGui takes the command key for Ctrl.
 IS_MAC = sys.platform == "darwin"
-MODIFIERS = {int(Key.mod_ctrl): "Ctrl", int(Key.mod_shift): "Shift", int(Key.mod_alt): "Alt"}
+# Whole numbers: combined as members, these keys fail to form a flag in Python 3.11.2.
+CTRL, SHIFT, ALT = int(Key.mod_ctrl), int(Key.mod_shift), int(Key.mod_alt)
+MODIFIERS = {CTRL: "Ctrl", SHIFT: "Shift", ALT: "Alt"}
 # In the order in which Apple writes them.
-MAC_MODIFIERS = {int(Key.mod_alt): "⌥", int(Key.mod_shift): "⇧", int(Key.mod_ctrl): "⌘"}
+MAC_MODIFIERS = {ALT: "⌥", SHIFT: "⇧", CTRL: "⌘"}
 KEY_NAMES = {
     "UpArrow": "Up",
     "DownArrow": "Down",
@@ -24,6 +26,19 @@ KEY_NAMES = {
     "LeftBracket": "[",
     "RightBracket": "]",
 }
+# As they are written in the table of bindings: "PageUp", "1", "F9".
+KEYS = {
+    "".join(part.capitalize() for part in name.split("_")): int(key)
+    for name, key in Key.__members__.items()
+}
+
+
+@cache
+def chords_of(text: str) -> tuple[int, ...]:
+    """Return ImGui's key chords of a text such as "Ctrl+Shift+Z, Ctrl+Y"."""
+    by_name = {name: modifier for modifier, name in MODIFIERS.items()} | KEYS
+    chords = text.split(", ") if text else []
+    return tuple(sum(by_name[name] for name in chord.split("+")) for chord in chords)
 
 
 @cache

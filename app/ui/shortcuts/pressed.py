@@ -4,10 +4,10 @@ from imgui_bundle import imgui
 
 from app.editor import Action, Session, do
 from app.editor.actions import playback, posing
+from app.ui.shortcuts.keys import CTRL
 from app.ui.shortcuts.table import BINDINGS
 
 Key = imgui.Key
-CTRL = int(Key.mod_ctrl)
 ARROWS = {Key.left_arrow: -1, Key.right_arrow: 1, Key.up_arrow: 1j, Key.down_arrow: -1j}
 
 

@@ -1,10 +1,13 @@
 """All actions that have a name, in the order of the menus: adding one is adding it here."""
 
-from imgui_bundle import hello_imgui, icons_fontawesome_6 as icons, imgui
+from typing import Any
+
+from imgui_bundle import hello_imgui, icons_fontawesome_6 as icons
 
 from app.document import LINEAR, PRESETS
 from app.editor import Project, Session, do, layering, with_project
 from app.editor.actions import (
+    OverlayName,
     cutting,
     editing,
     exporting,
@@ -18,8 +21,6 @@ from app.editor.actions import (
 )
 from app.editor.poses import copying, flipping, library
 from app.ui.shortcuts.binding import Binding
-
-Key = imgui.Key
 
 
 def _undo_label(_: Session, project: Project) -> str | None:
@@ -42,8 +43,18 @@ def _grouped(_: Session, project: Project) -> bool:
     return any(h.group for h in project.figure.handles if h.id in project.selected)
 
 
-def _all_locked(_: Session, project: Project) -> bool:
-    return bool(project.selected) and all(map(project.figure.is_locked, project.selected))
+def _all_locked(session: Session) -> bool:
+    project = session.project
+    selected = project.selected if project else frozenset[int]()
+    return bool(project and selected and all(map(project.figure.is_locked, selected)))
+
+
+def _loops(session: Session) -> bool:
+    return session.project is not None and session.project.document.loop
+
+
+def _plays(session: Session) -> bool:
+    return session.project is not None and session.project.playhead.since is not None
 
 
 def _brushes(session: Session, _: Project) -> bool:
@@ -59,193 +70,172 @@ def _rename_layer(session: Session, project: Project) -> None:
     layering.ask_name(session, project.active)
 
 
+def _overlay(label: str, name: OverlayName, keys: str, **more: Any) -> Binding:
+    """Return what shows or hides an overlay."""
+
+    def is_shown(session: Session) -> bool:
+        return bool(getattr(session.overlays, name))
+
+    return Binding(label, do(viewing.toggle, name), keys, active=is_shown, **more)
+
+
 def _reset_layout(_: Session) -> None:
     """Put the panels back where they are at first."""
     hello_imgui.get_runner_params().docking_params.layout_reset = True
 
 
-# Whole numbers: combined as members, these keys fail to form a flag in Python 3.11.2.
-CTRL, SHIFT, ALT = int(Key.mod_ctrl), int(Key.mod_shift), int(Key.mod_alt)
 MENUS: dict[str, dict[str, Binding]] = {
     "File": {
-        "open": Binding(
-            label="Open…",
-            action=do(files.ask_open),
-            keys=(CTRL | int(Key.o),),
-            needs_project=False,
+        "open": Binding("Open…", do(files.ask_open), "Ctrl+O", needs_project=False),
+        "save": Binding("Save", do(saving.save), "Ctrl+S", parted=True),
+        "save as": Binding("Save as…", do(saving.save_as), "Ctrl+Shift+S"),
+        "export": Binding("Export…", do(exporting.ask), "Ctrl+E", parted=True),
+        "export again": Binding("Export again", do(exporting.repeat), "Ctrl+Shift+E"),
+        "copy picture": Binding("Copy picture", do(exporting.copy_picture), "Ctrl+Shift+C"),
+        "unsaved work": Binding(
+            "Unsaved work…", do(files.show_recovery), parted=True, needs_project=False
         ),
-        "save": Binding(
-            label="Save", action=do(saving.save), keys=(CTRL | int(Key.s),), parted=True
-        ),
-        "save as": Binding(
-            label="Save as…", action=do(saving.save_as), keys=(CTRL | SHIFT | int(Key.s),)
-        ),
-        "export": Binding(
-            label="Export…", action=do(exporting.ask), keys=(CTRL | int(Key.e),), parted=True
-        ),
-        "export again": Binding(
-            label="Export again", action=do(exporting.repeat), keys=(CTRL | SHIFT | int(Key.e),)
-        ),
-        "copy picture": Binding(
-            label="Copy picture",
-            action=do(exporting.copy_picture),
-            keys=(CTRL | SHIFT | int(Key.c),),
-        ),
-        "unsaved work": Binding(label="Unsaved work…", action=do(files.show_recovery), parted=True),
-        "close": Binding(
-            label="Close", action=do(saving.close), keys=(CTRL | int(Key.w),), parted=True
-        ),
-        "quit": Binding(
-            label="Quit",
-            action=do(saving.quit_lissom),
-            keys=(CTRL | int(Key.q),),
-            needs_project=False,
-        ),
+        "close": Binding("Close", do(saving.close), "Ctrl+W", parted=True),
+        "quit": Binding("Quit", do(saving.quit_lissom), "Ctrl+Q", needs_project=False),
     },
     "Edit": {
         "undo": Binding(
-            label="Undo",
-            action=do(editing.undo),
-            keys=(CTRL | int(Key.z),),
+            "Undo",
+            do(editing.undo),
+            "Ctrl+Z",
             possible=_undo_label,
             repeats=True,
             detail=_undo_label,
         ),
         "redo": Binding(
-            label="Redo",
-            action=do(editing.redo),
-            keys=(CTRL | SHIFT | int(Key.z), CTRL | int(Key.y)),
+            "Redo",
+            do(editing.redo),
+            "Ctrl+Shift+Z, Ctrl+Y",
             possible=_redo_label,
             repeats=True,
             detail=_redo_label,
         ),
-        "copy pose": Binding(
-            label="Copy pose", action=do(copying.copy), keys=(CTRL | int(Key.c),), parted=True
-        ),
+        "copy pose": Binding("Copy pose", do(copying.copy), "Ctrl+C", parted=True),
         "paste pose": Binding(
-            label="Paste pose",
-            action=do(copying.paste),
-            keys=(CTRL | int(Key.v),),
-            possible=copying.copied_for,
+            "Paste pose", do(copying.paste), "Ctrl+V", possible=copying.copied_for
         ),
         "paste flipped": Binding(
-            label="Paste flipped",
-            action=do(flipping.paste),
-            keys=(CTRL | SHIFT | int(Key.v),),
+            "Paste flipped",
+            do(flipping.paste),
+            "Ctrl+Shift+V",
+            icon=icons.ICON_FA_PASTE,
             hint="Put the copied pose in a key at this frame, left and right exchanged",
             possible=copying.copied_here,
         ),
         "paste on selected": Binding(
-            label="Paste on selected handles",
-            action=do(copying.paste_on_selected),
-            keys=(CTRL | ALT | int(Key.v),),
+            "Paste on selected handles",
+            do(copying.paste_on_selected),
+            "Ctrl+Alt+V",
             possible=copying.copied_for_selected,
         ),
         "flip on selected": Binding(
-            label="Paste flipped on selected",
-            action=do(flipping.paste_on_selected),
-            keys=(CTRL | ALT | SHIFT | int(Key.v),),
+            "Paste flipped on selected",
+            do(flipping.paste_on_selected),
+            "Ctrl+Alt+Shift+V",
             possible=copying.copied_for_selected,
         ),
         "keep pose": Binding(
-            label="Keep pose",
-            action=do(library.keep),
-            keys=(SHIFT | int(Key.k),),
+            "Keep pose",
+            do(library.keep),
+            "Shift+K",
             icon=icons.ICON_FA_PLUS,
             hint="Put this pose into the library of poses",
         ),
-        "select all": Binding(
-            label="Select all handles",
-            action=do(editing.select_all),
-            keys=(CTRL | int(Key.a),),
-            parted=True,
-        ),
+        "select all": Binding("Select all handles", do(editing.select_all), "Ctrl+A", parted=True),
         "cut out": Binding(
-            label="Cut out by a brush",
-            action=do(cutting.begin_or_swap),
-            keys=(Key.x,),
-            active=lambda session, _: session.cutting is not None,
+            "Cut out by a brush",
+            do(cutting.begin_or_swap),
+            "X",
+            active=lambda session: session.cutting is not None,
             parted=True,
         ),
         "smaller brush": Binding(
-            label="Smaller brush",
-            action=do(cutting.shrink_brush),
-            keys=(Key.left_bracket,),
+            "Smaller brush",
+            do(cutting.shrink_brush),
+            "LeftBracket",
             possible=_brushes,
             repeats=True,
         ),
         "larger brush": Binding(
-            label="Larger brush",
-            action=do(cutting.enlarge_brush),
-            keys=(Key.right_bracket,),
+            "Larger brush",
+            do(cutting.enlarge_brush),
+            "RightBracket",
             possible=_brushes,
             repeats=True,
         ),
         "stop cutting": Binding(
-            label="Stop cutting out",
-            action=do(cutting.take_up, None),
-            keys=(Key.escape,),
+            "Stop cutting out",
+            do(cutting.take_up, None),
+            "Escape",
             possible=lambda session, _: session.cutting is not None and session.pointer is None,
         ),
         "delete": Binding(
-            label="Delete",
-            action=do(editing.delete),
-            keys=(Key.delete, Key.backspace),
+            "Delete",
+            do(editing.delete),
+            "Delete, Backspace",
             possible=lambda _, project: project.selected or project.chosen_of,
         ),
-        "rename layer": Binding(
-            label="Rename layer", action=do(_rename_layer), keys=(Key.f2,), parted=True
-        ),
+        "rename layer": Binding("Rename layer", do(_rename_layer), "F2", parted=True),
     },
     "Handles": {
-        "suggest handles": Binding(label="Suggest handles", action=do(posing.suggest_handles)),
+        "suggest handles": Binding(
+            "Suggest handles",
+            do(posing.suggest_handles),
+            icon=icons.ICON_FA_WAND_MAGIC_SPARKLES,
+            hint="Put handles at the tips of limbs and in the middle of the body",
+        ),
         "pin here": Binding(
-            label="Pin here",
-            action=do(posing.pin_here),
-            keys=(Key.p,),
+            "Pin here",
+            do(posing.pin_here),
+            "P",
             icon=icons.ICON_FA_THUMBTACK,
             hint="Let the selected handles stay where they are in this frame",
             possible=_selected,
             parted=True,
         ),
         "lock": Binding(
-            label="Lock",
-            action=do(editing.lock),
-            keys=(SHIFT | int(Key.l),),
+            "Lock",
+            do(editing.lock),
+            "Shift+L",
             icon=icons.ICON_FA_LOCK,
             hint="Locked handles hold their places and are not dragged",
             possible=_selected,
             active=_all_locked,
         ),
         "group": Binding(
-            label="Group",
-            action=do(editing.group),
-            keys=(CTRL | int(Key.g),),
+            "Group",
+            do(editing.group),
+            "Ctrl+G",
             icon=icons.ICON_FA_OBJECT_GROUP,
             hint="Select and drag these handles together from now on",
             possible=lambda _, project: len(project.selected) > 1,
             parted=True,
         ),
         "ungroup": Binding(
-            label="Ungroup",
-            action=do(editing.ungroup),
-            keys=(CTRL | SHIFT | int(Key.g),),
+            "Ungroup",
+            do(editing.ungroup),
+            "Ctrl+Shift+G",
             icon=icons.ICON_FA_OBJECT_UNGROUP,
             hint="Let each of these handles be dragged alone",
             possible=_grouped,
         ),
         "mirror": Binding(
-            label="Mirror",
-            action=do(posing.mirror_handles),
+            "Mirror",
+            do(posing.mirror_handles),
             icon=icons.ICON_FA_LEFT_RIGHT,
             hint="Add partners on the other side, named by .L and .R or left and right",
             possible=_selected,
             parted=True,
         ),
         "mirrored": Binding(
-            label="Select partners",
-            action=do(editing.select_mirrored),
-            keys=(SHIFT | int(Key.m),),
+            "Select partners",
+            do(editing.select_mirrored),
+            "Shift+M",
             icon=icons.ICON_FA_RIGHT_LEFT,
             hint="Select the handles on the other side that have the same names",
             possible=_selected,
@@ -253,244 +243,186 @@ MENUS: dict[str, dict[str, Binding]] = {
     },
     "View": {
         "fit": Binding(
-            label="Fit pose",
-            action=do(viewing.fit_pose),
-            keys=(Key.home,),
+            "Fit pose",
+            do(viewing.fit_pose),
+            "Home",
             icon=icons.ICON_FA_EXPAND,
             hint="Show all of the shape as it is in this frame",
         ),
-        "fit motion": Binding(
-            label="Fit motion", action=do(viewing.fit_motion), keys=(SHIFT | int(Key.home),)
-        ),
-        "fit selection": Binding(
-            label="Fit selection", action=do(viewing.fit_selection), keys=(Key.f,)
-        ),
-        "fit picture": Binding(label="Fit picture", action=do(viewing.look_from, None)),
-        "actual size": Binding(
-            label="Actual size",
-            action=do(viewing.actual_size),
-            keys=(Key._1,),  # noqa: SLF001 - its public name begins so
-        ),
-        "handles": Binding(
-            label="Handles",
-            action=do(viewing.toggle, "handles"),
-            keys=(Key.h,),
+        "fit motion": Binding("Fit motion", do(viewing.fit_motion), "Shift+Home"),
+        "fit selection": Binding("Fit selection", do(viewing.fit_selection), "F"),
+        "fit picture": Binding("Fit picture", do(viewing.look_from, None)),
+        "actual size": Binding("Actual size", do(viewing.actual_size), "1"),
+        "handles": _overlay(
+            "Handles",
+            "handles",
+            "H",
             icon=icons.ICON_FA_CIRCLE_DOT,
             hint="Show or hide the handles",
-            active=lambda session, _: session.overlays.handles,
             parted=True,
         ),
-        "wireframe": Binding(
-            label="Wireframe",
-            action=do(viewing.toggle, "wireframe"),
-            keys=(Key.w,),
+        "wireframe": _overlay(
+            "Wireframe",
+            "wireframe",
+            "W",
             icon=icons.ICON_FA_DRAW_POLYGON,
             hint="Show the triangles",
-            active=lambda session, _: session.overlays.wireframe,
         ),
-        "outline": Binding(
-            label="Outline",
-            action=do(viewing.toggle, "outline"),
-            keys=(Key.c,),
+        "outline": _overlay(
+            "Outline",
+            "outline",
+            "C",
             icon=icons.ICON_FA_VECTOR_SQUARE,
             hint="Show the edge of the shape",
-            active=lambda session, _: session.overlays.outline,
         ),
         "heat map": Binding(
-            label="Heat map",
-            action=do(viewing.toggle_heat_map),
-            keys=(Key.d,),
+            "Heat map",
+            do(viewing.toggle_heat_map),
+            "D",
             icon=icons.ICON_FA_TEMPERATURE_HALF,
             hint="Colour the shape by its distortion",
-            active=lambda session, _: session.overlays.heat_map != "none",
+            active=lambda session: session.overlays.heat_map != "none",
         ),
         "split view": Binding(
-            label="Split view",
-            action=do(viewing.toggle_split),
-            keys=(Key.u,),
+            "Split view",
+            do(viewing.toggle_split),
+            "U",
             icon=icons.ICON_FA_TABLE_COLUMNS,
             hint="Compare with another method, under a divider that can be dragged",
-            active=lambda session, _: session.split is not None,
+            active=lambda session: session.split is not None,
         ),
-        "onion skin": Binding(
-            label="Onion skin",
-            action=do(viewing.toggle, "onion"),
-            keys=(Key.o,),
+        "onion skin": _overlay(
+            "Onion skin",
+            "onion",
+            "O",
             icon=icons.ICON_FA_GHOST,
             hint="Show the poses before and after",
-            active=lambda session, _: session.overlays.onion,
         ),
-        "mirror axis": Binding(
-            label="Mirror axis",
-            action=do(viewing.toggle, "mirror"),
-            keys=(CTRL | int(Key.m),),
-            mac_keys=(CTRL | SHIFT | int(Key.m),),
-            active=lambda session, _: session.overlays.mirror,
-        ),
-        "motion paths": Binding(
-            label="Motion paths",
-            action=do(viewing.toggle, "paths"),
-            keys=(Key.j,),
+        "mirror axis": _overlay("Mirror axis", "mirror", "Ctrl+M", mac_keys="Ctrl+Shift+M"),
+        "motion paths": _overlay(
+            "Motion paths",
+            "paths",
+            "J",
             icon=icons.ICON_FA_ROUTE,
             hint="Show where the selected handles go, with a dot for each frame",
-            active=lambda session, _: session.overlays.paths,
         ),
         "theme": Binding(
-            label="Light or dark",
-            action=do(viewing.toggle_theme),
-            needs_project=False,
-            parted=True,
+            "Light or dark", do(viewing.toggle_theme), needs_project=False, parted=True
         ),
         "larger": Binding(
-            label="Larger interface",
-            action=do(viewing.scale_up),
-            keys=(CTRL | int(Key.equal), CTRL | int(Key.keypad_add)),
+            "Larger interface",
+            do(viewing.scale_up),
+            "Ctrl+Equal, Ctrl+KeypadAdd",
             needs_project=False,
         ),
         "smaller": Binding(
-            label="Smaller interface",
-            action=do(viewing.scale_down),
-            keys=(CTRL | int(Key.minus), CTRL | int(Key.keypad_subtract)),
+            "Smaller interface",
+            do(viewing.scale_down),
+            "Ctrl+Minus, Ctrl+KeypadSubtract",
             needs_project=False,
         ),
         "reset layout": Binding(
-            label="Reset layout", action=do(_reset_layout), parted=True, needs_project=False
+            "Reset layout", do(_reset_layout), parted=True, needs_project=False
         ),
     },
     "Time": {
         "play": Binding(
-            label="Play",
-            action=do(playback.toggle_play),
+            "Play",
+            do(playback.toggle_play),
             icon=icons.ICON_FA_PLAY,
             hint="Play or stop",
-            active=lambda _, project: project.playhead.since is not None,
+            active=_plays,
             told="Space",
         ),
         "start": Binding(
-            label="First frame",
-            action=do(playback.to_start),
-            keys=(CTRL | int(Key.page_up),),
-            icon=icons.ICON_FA_BACKWARD_FAST,
+            "First frame", do(playback.to_start), "Ctrl+PageUp", icon=icons.ICON_FA_BACKWARD_FAST
         ),
         "end": Binding(
-            label="Last frame",
-            action=do(playback.to_end),
-            keys=(CTRL | int(Key.page_down),),
-            icon=icons.ICON_FA_FORWARD_FAST,
+            "Last frame", do(playback.to_end), "Ctrl+PageDown", icon=icons.ICON_FA_FORWARD_FAST
         ),
         "back": Binding(
-            label="Previous frame",
-            action=do(playback.step, -1),
-            keys=(Key.page_up,),
+            "Previous frame",
+            do(playback.step, -1),
+            "PageUp",
             icon=icons.ICON_FA_BACKWARD_STEP,
             repeats=True,
         ),
         "on": Binding(
-            label="Next frame",
-            action=do(playback.step, 1),
-            keys=(Key.page_down,),
+            "Next frame",
+            do(playback.step, 1),
+            "PageDown",
             icon=icons.ICON_FA_FORWARD_STEP,
             repeats=True,
         ),
         "previous key": Binding(
-            label="Previous key",
-            action=do(playback.to_key, -1),
-            keys=(Key.down_arrow,),
+            "Previous key",
+            do(playback.to_key, -1),
+            "DownArrow",
             possible=_none_selected,
             repeats=True,
         ),
         "next key": Binding(
-            label="Next key",
-            action=do(playback.to_key, 1),
-            keys=(Key.up_arrow,),
-            possible=_none_selected,
-            repeats=True,
+            "Next key", do(playback.to_key, 1), "UpArrow", possible=_none_selected, repeats=True
         ),
         "insert key": Binding(
-            label="Insert key",
-            action=do(posing.insert_key),
-            keys=(Key.i,),
+            "Insert key",
+            do(posing.insert_key),
+            "I",
             icon=icons.ICON_FA_DIAMOND,
             hint="Keep this pose in a key",
             parted=True,
         ),
         "loop": Binding(
-            label="Loop",
-            action=do(keys.toggle_loop),
-            keys=(Key.l,),
+            "Loop",
+            do(keys.toggle_loop),
+            "L",
             icon=icons.ICON_FA_REPEAT,
             hint="Loop: the end leads back to the start",
-            active=lambda _, project: project.document.loop,
+            active=_loops,
         ),
         "auto-key": Binding(
-            label="Auto-key",
-            action=do(viewing.toggle_auto_key),
-            keys=(Key.k,),
+            "Auto-key",
+            do(viewing.toggle_auto_key),
+            "K",
             icon=icons.ICON_FA_KEY,
             hint="Posing makes and changes keys",
-            active=lambda session, _: session.preferences.auto_key,
+            active=lambda session: session.preferences.auto_key,
         ),
         "preview start": Binding(
-            label="Start preview range here",
-            action=do(keys.start_preview_here),
-            keys=(Key.b,),
-            parted=True,
+            "Start preview range here", do(keys.start_preview_here), "B", parted=True
         ),
-        "preview end": Binding(
-            label="End preview range here", action=do(keys.end_preview_here), keys=(Key.n,)
-        ),
+        "preview end": Binding("End preview range here", do(keys.end_preview_here), "N"),
         "preview none": Binding(
-            label="Play all frames",
-            action=do(keys.play_all),
-            keys=(ALT | int(Key.p),),
+            "Play all frames",
+            do(keys.play_all),
+            "Alt+P",
             possible=lambda _, project: project.document.preview is not None,
         ),
-        "marker": Binding(
-            label="Add marker", action=do(keys.mark_here), keys=(Key.m,), parted=True
-        ),
+        "marker": Binding("Add marker", do(keys.mark_here), "M", parted=True),
         "previous marker": Binding(
-            label="Previous marker",
-            action=do(playback.to_marker, -1),
-            keys=(SHIFT | int(Key.page_up),),
-            repeats=True,
+            "Previous marker", do(playback.to_marker, -1), "Shift+PageUp", repeats=True
         ),
         "next marker": Binding(
-            label="Next marker",
-            action=do(playback.to_marker, 1),
-            keys=(SHIFT | int(Key.page_down),),
-            repeats=True,
+            "Next marker", do(playback.to_marker, 1), "Shift+PageDown", repeats=True
         ),
         "fit time": Binding(
-            label="Fit timeline",
-            action=do(timeline_pointing.fit),
-            keys=(CTRL | int(Key.home),),
+            "Fit timeline",
+            do(timeline_pointing.fit),
+            "Ctrl+Home",
             icon=icons.ICON_FA_ARROWS_LEFT_RIGHT_TO_LINE,
             hint="Show all frames",
         ),
     },
     "Keys": {
-        "pass": Binding(label="Pass keys otherwise", action=do(keys.pass_otherwise), keys=(Key.t,)),
-        "ease": Binding(
-            label="Ease in and out", action=do(keys.ease, PRESETS["in-out"]), keys=(Key.f9,)
-        ),
-        "ease in": Binding(
-            label="Ease in", action=do(keys.ease, PRESETS["in"]), keys=(SHIFT | int(Key.f9),)
-        ),
-        "ease out": Binding(
-            label="Ease out",
-            action=do(keys.ease, PRESETS["out"]),
-            keys=(CTRL | SHIFT | int(Key.f9),),
-        ),
-        "ease not": Binding(
-            label="Linear", action=do(keys.ease, LINEAR), keys=(ALT | int(Key.f9),)
-        ),
+        "pass": Binding("Pass keys otherwise", do(keys.pass_otherwise), "T"),
+        "ease": Binding("Ease in and out", do(keys.ease, PRESETS["in-out"]), "F9"),
+        "ease in": Binding("Ease in", do(keys.ease, PRESETS["in"]), "Shift+F9"),
+        "ease out": Binding("Ease out", do(keys.ease, PRESETS["out"]), "Ctrl+Shift+F9"),
+        "ease not": Binding("Linear", do(keys.ease, LINEAR), "Alt+F9"),
     },
     "Help": {
         "shortcuts": Binding(
-            label="Keys and mouse",
-            action=do(viewing.show_shortcuts),
-            keys=(Key.f1,),
-            needs_project=False,
+            "Keys and mouse", do(viewing.show_shortcuts), "F1", needs_project=False
         ),
     },
 }

@@ -1,12 +1,10 @@
 """Menu entries and buttons of what the table names."""
 
-from imgui_bundle import ImVec2, imgui
+from imgui_bundle import imgui, imgui_ctx
 
 from app.editor import Action, Session
 from app.ui.shortcuts.table import BINDINGS
-from app.ui.style import Look, icon_button, tip
-
-PRESSED = imgui.Col_.button_active
+from app.ui.style import Look, icon_button, text_button
 
 
 def bound_item(session: Session, name: str) -> list[Action]:
@@ -21,18 +19,19 @@ def bound_item(session: Session, name: str) -> list[Action]:
     return [binding.action] if clicked else []
 
 
-def bound_text_button(session: Session, name: str, size: ImVec2) -> list[Action]:
+def bound_text_button(session: Session, name: str, width: float) -> list[Action]:
     """Draw the button of a named action with its icon and its words."""
     binding = BINDINGS[name]
     is_active = binding.is_active(session)
-    imgui.begin_disabled(not binding.is_possible(session))
-    if is_active:
-        imgui.push_style_color(imgui.Col_.button, imgui.get_style_color_vec4(PRESSED))
-    is_pressed = imgui.button(f"{binding.icon}  {binding.label}###{name}", size)
-    if is_active:
-        imgui.pop_style_color()
-    imgui.end_disabled()
-    tip(binding.hint or binding.label, binding.keys_in_words)
+    slot = imgui.Col_.button_active if is_active else imgui.Col_.button
+    with imgui_ctx.push_style_color(imgui.Col_.button, imgui.get_style_color_vec4(slot)):
+        is_pressed = text_button(
+            f"{binding.icon}  {binding.label}###{name}",
+            width,
+            binding.hint or binding.label,
+            binding.keys_in_words,
+            enabled=binding.is_possible(session),
+        )
     return [binding.action] if is_pressed else []
 
 

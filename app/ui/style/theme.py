@@ -9,10 +9,15 @@ SMALL, LARGE, TITLE = 0.87, 1.2, 2.1  # sizes of type, relative to the text's
 CHOSEN = 0.18  # opacity of the accent colour behind the row that is chosen of a list
 
 
-def rgb(code: str, alpha: float = 1.0) -> ImVec4:
-    """Return the colour written `rrggbb`."""
-    red, green, blue = (int(code[i : i + 2], 16) / 255 for i in (0, 2, 4))
-    return ImVec4(red, green, blue, alpha)
+def rgb(code: str) -> ImVec4:
+    """Return the colour written "rrggbb" or "#rrggbb"."""
+    red, green, blue = (level / 255 for level in bytes.fromhex(code.removeprefix("#")))
+    return ImVec4(red, green, blue, 1.0)
+
+
+def faint(colour: ImVec4, alpha: float) -> ImVec4:
+    """Return a colour with another opacity."""
+    return ImVec4(colour.x, colour.y, colour.z, alpha)
 
 
 def ink(colour: ImVec4, alpha: float = 1.0) -> int:
@@ -93,7 +98,6 @@ class Look:
 
     palette: Palette
     bold: imgui.ImFont
-    mono: imgui.ImFont
     em: float  # pixels
 
 
@@ -108,12 +112,15 @@ def interface_scale(scale: float) -> float:
     return scale * imgui.get_style().font_scale_dpi
 
 
-def load_fonts() -> tuple[imgui.ImFont, imgui.ImFont]:
-    """Load the text font (with icons) as the default; return the bold and the fixed-width one."""
+def density() -> float:
+    """Return how many pixels of a picture there are to a pixel of the window."""
+    return imgui.get_io().display_framebuffer_scale.x or 1.0
+
+
+def load_fonts() -> imgui.ImFont:
+    """Load the text font (with icons) as the default; return the bold one."""
     _load_with_icons("Roboto/Roboto-Regular.ttf")
-    bold = _load_with_icons("Roboto/Roboto-Bold.ttf")
-    mono = hello_imgui.load_font("fonts/Inconsolata-Medium.ttf", FONT_SIZE)
-    return bold, mono
+    return _load_with_icons("Roboto/Roboto-Bold.ttf")
 
 
 def _load_with_icons(name: str) -> imgui.ImFont:
@@ -180,10 +187,6 @@ _SIZES: dict[str, float | tuple[float, float]] = {
 
 def _colour(style: imgui.Style, palette: Palette) -> None:
     none = ImVec4(0, 0, 0, 0)
-
-    def faint(colour: ImVec4, alpha: float) -> ImVec4:
-        return ImVec4(colour.x, colour.y, colour.z, alpha)
-
     colours = {
         "text": palette.text,
         "text_disabled": palette.dim,

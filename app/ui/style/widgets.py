@@ -1,46 +1,49 @@
 """The few widgets that every panel is made of."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import AbstractContextManager
 
-from imgui_bundle import ImVec2, imgui
+from imgui_bundle import ImVec2, imgui, imgui_ctx
 
 from app.ui.style.theme import SMALL, Look
 
-LABEL_WIDTH = 6.2  # em
+LABEL_WIDTH, NAME_WIDTH = 6.2, 14.0  # em
 FILL = -imgui.FLT_MIN  # as a width: the rest of the line
 TOAST = "##toast"  # begins the names of the windows of messages
 POSE_PAYLOAD = "pose of the library"  # what is dragged from there to the timeline
 TIP_ROOM = (28.0, 8.0)  # em: width and height that hardly any tooltip exceeds
 
 
+def sized(size: float, font: imgui.ImFont | None = None) -> AbstractContextManager[object]:
+    """Write in another size of type, relative to the text's, and maybe in another font."""
+    return imgui_ctx.push_font(font, size * imgui.get_style().font_size_base)
+
+
+def bold(look: Look, text: str) -> None:
+    """Write something bold."""
+    with imgui_ctx.push_font(look.bold, 0):
+        imgui.text(text)
+
+
 def heading(look: Look, text: str, *, framed: bool = False) -> None:
     """Begin a group of settings; `framed` where a button follows on the line."""
     if imgui.get_cursor_pos_y() > imgui.get_cursor_start_pos().y:
-        imgui.dummy(ImVec2(0, 0.3 * look.em))
+        imgui.dummy((0, 0.3 * look.em))
     if framed:
         imgui.align_text_to_frame_padding()
-    imgui.push_font(look.bold, 0)
-    imgui.text(text)
-    imgui.pop_font()
+    bold(look, text)
 
 
 def small(look: Look, text: str) -> None:
     """Write a remark, smaller and dimmer than the text, wrapped to the panel."""
-    imgui.push_font(None, SMALL * imgui.get_style().font_size_base)
-    imgui.push_style_color(imgui.Col_.text, look.palette.dim)
-    imgui.push_text_wrap_pos(0.0)
-    imgui.text_unformatted(text)
-    imgui.pop_text_wrap_pos()
-    imgui.pop_style_color()
-    imgui.pop_font()
+    with sized(SMALL), imgui_ctx.push_text_wrap_pos(0.0):
+        imgui.text_colored(look.palette.dim, text)
 
 
 def label(look: Look, text: str) -> None:
     """Name the field that follows on the same line, which takes the rest of its width."""
     imgui.align_text_to_frame_padding()
-    imgui.push_style_color(imgui.Col_.text, look.palette.dim)
-    imgui.text_unformatted(text)
-    imgui.pop_style_color()
+    imgui.text_colored(look.palette.dim, text)
     imgui.same_line(LABEL_WIDTH * look.em)
     imgui.set_next_item_width(FILL)
 
@@ -69,7 +72,7 @@ def begin_tip() -> bool:
         if mouse.x + room[0] > window.pos.x and mouse.y + room[1] > window.pos.y:
             # Messages are in the lower right corner: up and to the left there is none.
             corner = ImVec2(mouse.x - 0.4 * em, mouse.y - 0.4 * em)
-            imgui.set_next_window_pos(corner, imgui.Cond_.always, ImVec2(1, 1))
+            imgui.set_next_window_pos(corner, imgui.Cond_.always, (1, 1))
     return imgui.begin_tooltip()
 
 
@@ -110,7 +113,7 @@ def icon_button(
     imgui.push_style_color(imgui.Col_.button, (0, 0, 0, 0))
     imgui.push_style_color(imgui.Col_.text, palette.accent if active else palette.text)
     size = imgui.get_frame_height()
-    pressed = imgui.button(f"{icon}###{name}", ImVec2(size * 1.15, size))
+    pressed = imgui.button(f"{icon}###{name}", (size * 1.15, size))
     imgui.pop_style_color(2)
     imgui.end_disabled()
     tip(hint, keys)
@@ -124,21 +127,80 @@ def main_button(look: Look, text: str, width: float = 0.0, *, enabled: bool = Tr
     for slot in (imgui.Col_.button, imgui.Col_.button_hovered, imgui.Col_.button_active):
         imgui.push_style_color(slot, palette.accent)
     imgui.push_style_color(imgui.Col_.text, palette.on_accent)
-    pressed = imgui.button(text, ImVec2(width, 0))
+    pressed = imgui.button(text, (width, 0))
     imgui.pop_style_color(4)
     imgui.end_disabled()
     return pressed
 
 
-def choice(name: str, options: Sequence[str], current: str) -> str | None:
-    """Draw a list to choose from; return what was newly chosen."""
-    chosen = None
-    if imgui.begin_combo(name, current):
-        for option in options:
-            if imgui.selectable(option, option == current)[0] and option != current:
-                chosen = option
-        imgui.end_combo()
-    return chosen
+def text_button(
+    text: str, width: float = 0.0, hint: str = "", keys: str = "", *, enabled: bool = True
+) -> bool:
+    """Draw a button with words, and its tooltip; return whether it was pressed."""
+    imgui.begin_disabled(not enabled)
+    pressed = imgui.button(text, (width, 0))
+    imgui.end_disabled()
+    if hint:
+        tip(hint, keys)
+    return pressed
+
+
+def beside(count: int, gap: float | None = None, *, room: float = 0.0) -> Iterator[float]:
+    """Lay items side by side over the rest of the line: yield the width of each, before it.
+
+    Parameters
+    ----------
+    gap : float, optional
+        Pixels between two; by default those between any two items.
+    room : float
+        Pixels to leave free at the end of the line.
+    """
+    gap = imgui.get_style().item_spacing.x if gap is None else gap
+    width = (imgui.get_content_region_avail().x - room - gap * (count - 1)) / count
+    for index in range(count):
+        if index:
+            imgui.same_line(0, gap)
+        yield width
+
+
+def progress(share: float, text: str) -> bool:
+    """Draw how far something is, and a button that cancels it; return whether it was pressed."""
+    imgui.progress_bar(share, (FILL, 0), text)
+    return imgui.button("Cancel###stop", (FILL, 0))
+
+
+def name_popup(
+    look: Look, popup: str, name: str, taken: Iterable[str] = (), kind: str = ""
+) -> str | None:
+    """Draw the field for another name in a popup, if that is open; return what was entered.
+
+    No name is entered that is `taken` by another one of its kind, which is given in words.
+    """
+    if not imgui.begin_popup(popup):
+        return None
+    if imgui.is_window_appearing():
+        imgui.set_keyboard_focus_here()
+    imgui.set_next_item_width(NAME_WIDTH * look.em)
+    flags = imgui.InputTextFlags_.auto_select_all | imgui.InputTextFlags_.enter_returns_true
+    entered, name = imgui.input_text("##name", name, flags)
+    tip("Enter takes the name, Esc leaves it")
+    name = name.strip()
+    is_free = name not in taken
+    if not is_free:
+        small(look, f"Another {kind} has this name.")
+    elif entered:
+        imgui.close_current_popup()
+    imgui.end_popup()
+    return name if entered and is_free and name else None
+
+
+def colour_field(name: str, code: str, flags: int = 0) -> str | None:
+    """Draw a field for a colour, "#rrggbb"; return it when another one was chosen."""
+    levels = [level / 255 for level in bytes.fromhex(code[1:])]
+    changed, levels = imgui.color_edit3(f"##{name}", levels, flags)
+    if not changed:
+        return None
+    return f"#{bytes(round(255 * min(max(level, 0.0), 1.0)) for level in levels[:3]).hex()}"
 
 
 def segments(
@@ -163,21 +225,15 @@ def segments(
     """
     chosen = None
     palette = look.palette
-    spacing = imgui.get_style().item_spacing.y
-    width = imgui.get_content_region_avail().x - room
     imgui.push_id(name)
-    imgui.push_style_var(imgui.StyleVar_.item_spacing, ImVec2(0.12 * look.em, spacing))
-    each = (width - 0.12 * look.em * (len(options) - 1)) / len(options)
-    for index, (value, text) in enumerate(options):
-        if index:
-            imgui.same_line()
+    widths = beside(len(options), 0.12 * look.em, room=room)
+    for (value, text), width in zip(options, widths, strict=True):
         is_current = value == current
         imgui.push_style_color(imgui.Col_.button, palette.pressed if is_current else palette.raised)
         imgui.push_style_color(imgui.Col_.text, palette.text if is_current else palette.dim)
-        if imgui.button(f"{text}###{value}", ImVec2(each, 0)) and not is_current:
+        if imgui.button(f"{text}###{value}", (width, 0)) and not is_current:
             chosen = value
         imgui.pop_style_color(2)
-    imgui.pop_style_var()
     imgui.pop_id()
     return chosen
 
@@ -192,8 +248,8 @@ def show_picture(
     y = corner.y + (room.y - height) / 2
     imgui.get_window_draw_list().add_image(
         imgui.ImTextureRef(texture),
-        ImVec2(x, y),
-        ImVec2(x + width, y + height),
+        (x, y),
+        (x + width, y + height),
         col=imgui.IM_COL32(255, 255, 255, round(255 * opacity)),
     )
 
@@ -210,3 +266,13 @@ def shortened(text: str, width: float) -> str:
         else:
             too_long = middle
     return f"{text[:fits].rstrip()}…"
+
+
+def in_hand() -> bool:
+    """Tell whether the pointer is over the last item, or holds it."""
+    return imgui.is_item_hovered() or imgui.is_item_active()
+
+
+def is_pressed() -> bool:
+    """Tell whether the left button of the mouse was pressed on the last item just now."""
+    return imgui.is_item_activated() and imgui.is_mouse_clicked(imgui.MouseButton_.left)

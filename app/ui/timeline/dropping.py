@@ -1,12 +1,12 @@
 """Poses of the library that are dropped on the track."""
 
-from imgui_bundle import ImVec2, imgui
+from imgui_bundle import imgui
 
 from app.document import LAST_FRAME
 from app.editor import Action, do
 from app.editor.poses import library
 from app.ui.style import POSE_PAYLOAD, ink
-from app.ui.timeline.track import Track, write_tag
+from app.ui.timeline.track import Track, tag
 
 
 def draw_dropped(track: Track) -> list[Action]:
@@ -25,8 +25,8 @@ def draw_dropped(track: Track) -> list[Action]:
         return []
     draw_list, accent = imgui.get_window_draw_list(), ink(track.look.palette.accent)
     x = track.x(frame)
-    draw_list.add_line(ImVec2(x, track.track_top), ImVec2(x, track.track_bottom), accent, 2.0)
-    write_tag(track, x, f"{frame}")
+    draw_list.add_line((x, track.track_top), (x, track.track_bottom), accent, 2.0)
+    tag(track, x, f"{frame}")
     if imgui.is_mouse_released(imgui.MouseButton_.left):
         return [do(library.apply_at, kept[payload.data_id].name, frame)]
     return []

@@ -7,7 +7,7 @@ from imgui_bundle import ImVec2, imgui
 from app.document import MOST_TURNS, PRESETS, Easing, Keyframe
 from app.editor import Action, Project, do
 from app.editor.actions import keys
-from app.ui.style import SMALL, Look, ink, label, small, tip
+from app.ui.style import SMALL, Look, bold, in_hand, ink, label, sized, small, tip
 
 SIDE = 12.0  # em: of the editor's square
 TILE = 4.4  # em: width of a preset
@@ -20,9 +20,9 @@ def draw_curve(easing: Easing, corner: ImVec2, size: ImVec2, colour: int, thickn
     draw_list = imgui.get_window_draw_list()
     if easing.curve is None:
         bottom, right = corner.y + size.y, corner.x + size.x - thickness / 2
-        draw_list.path_line_to(ImVec2(corner.x, bottom))
-        draw_list.path_line_to(ImVec2(right, bottom))
-        draw_list.path_line_to(ImVec2(right, corner.y))
+        draw_list.path_line_to((corner.x, bottom))
+        draw_list.path_line_to((right, bottom))
+        draw_list.path_line_to((right, corner.y))
     else:
         _trace(easing.curve, corner, size)
     draw_list.path_stroke(colour, thickness)
@@ -35,8 +35,8 @@ def fill_curve(easing: Easing, corner: ImVec2, size: ImVec2, below: float, colou
     draw_list = imgui.get_window_draw_list()
     bottom = corner.y + size.y + below
     _trace(easing.curve, corner, size)
-    draw_list.path_line_to(ImVec2(corner.x + size.x, bottom))
-    draw_list.path_line_to(ImVec2(corner.x, bottom))
+    draw_list.path_line_to((corner.x + size.x, bottom))
+    draw_list.path_line_to((corner.x, bottom))
     draw_list.path_fill_concave(colour)
 
 
@@ -56,16 +56,14 @@ def easing_popup(name: str, look: Look, project: Project, key: Keyframe) -> list
 
     It changes those of all chosen keys, if the key is one of them.
     """
-    imgui.push_style_var(imgui.StyleVar_.window_padding, ImVec2(look.em, 0.8 * look.em))
+    imgui.push_style_var(imgui.StyleVar_.window_padding, (look.em, 0.8 * look.em))
     is_open = imgui.begin_popup(name)
     imgui.pop_style_var()
     if not is_open:
         return []
     taken = project.keys_with(project.active, key.frame)
     count = sum(map(len, taken.values()))
-    imgui.push_font(look.bold, 0)
-    imgui.text("Easing")
-    imgui.pop_font()
+    bold(look, "Easing")
     imgui.same_line()
     imgui.text_disabled(f"after {count} keys" if count > 1 else f"after frame {key.frame}")
     actions: list[Action] = []
@@ -96,7 +94,7 @@ def _presets(look: Look, easing: Easing) -> Easing | None:
 def _tile(look: Look, name: str, preset: Easing, *, current: bool) -> bool:
     palette, draw_list, em = look.palette, imgui.get_window_draw_list(), look.em
     low = imgui.get_cursor_screen_pos()
-    clicked = imgui.invisible_button(name, ImVec2(TILE * em, 3.9 * em))
+    clicked = imgui.invisible_button(name, (TILE * em, 3.9 * em))
     high = imgui.get_item_rect_max()
     hovered = imgui.is_item_hovered()
     draw_list.add_rect_filled(
@@ -107,11 +105,10 @@ def _tile(look: Look, name: str, preset: Easing, *, current: bool) -> bool:
     colour = palette.accent if current else palette.text
     corner, size = ImVec2(low.x + 0.9 * em, low.y + 0.6 * em), ImVec2((TILE - 1.8) * em, 1.6 * em)
     draw_curve(preset, corner, size, ink(colour), 0.12 * em)
-    imgui.push_font(None, SMALL * imgui.get_style().font_size_base)
-    width = imgui.calc_text_size(LABELS[name]).x
-    place = ImVec2((low.x + high.x - width) / 2, high.y - 1.25 * em)
-    draw_list.add_text(place, ink(palette.text if current else palette.dim), LABELS[name])
-    imgui.pop_font()
+    with sized(SMALL):
+        width = imgui.calc_text_size(LABELS[name]).x
+        place = ((low.x + high.x - width) / 2, high.y - 1.25 * em)
+        draw_list.add_text(place, ink(palette.text if current else palette.dim), LABELS[name])
     return clicked
 
 
@@ -120,7 +117,7 @@ def _editor(look: Look, easing: Easing) -> Easing | None:
     palette, draw_list, em = look.palette, imgui.get_window_draw_list(), look.em
     low = imgui.get_cursor_screen_pos()
     room = ImVec2(SIDE * 1.9 * em, SIDE * em)
-    high = ImVec2(low.x + room.x, low.y + room.y)
+    high = low + room
     draw_list.add_rect_filled(low, high, ink(palette.desk), 0.4 * em)
     # As wide as high, so that linear is at 45 degrees.
     pad = 1.0 * em
@@ -129,8 +126,8 @@ def _editor(look: Look, easing: Easing) -> Easing | None:
     for part in range(5):
         x, y = corner.x + part / 4 * side, corner.y + part / 4 * side
         colour = ink(palette.line, 1.0 if part in {0, 4} else 0.6)
-        draw_list.add_line(ImVec2(x, corner.y), ImVec2(x, corner.y + side), colour)
-        draw_list.add_line(ImVec2(corner.x, y), ImVec2(corner.x + side, y), colour)
+        draw_list.add_line((x, corner.y), (x, corner.y + side), colour)
+        draw_list.add_line((corner.x, y), (corner.x + side, y), colour)
     fill_curve(easing, corner, size, 0.0, ink(palette.accent, 0.12))
     draw_curve(easing, corner, size, ink(palette.accent), 0.16 * em)
     moved = None
@@ -151,10 +148,10 @@ def _control_points(
         x, y = curve[2 * index : 2 * index + 2]
         centre = _point(x, y, corner, size)
         draw_list.add_line(end, centre, ink(palette.dim), 1.5)
-        imgui.set_cursor_screen_pos(ImVec2(centre.x - radius, centre.y - radius))
+        imgui.set_cursor_screen_pos((centre.x - radius, centre.y - radius))
         imgui.set_next_item_allow_overlap()
-        imgui.invisible_button(f"control {index + 1}", ImVec2(2 * radius, 2 * radius))
-        hot = imgui.is_item_hovered() or imgui.is_item_active()
+        imgui.invisible_button(f"control {index + 1}", (2 * radius, 2 * radius))
+        hot = in_hand()
         tip("Drag: both points stay inside the square, so that in-betweens keep their limits")
         draw_list.add_circle_filled(centre, 0.5 * em if hot else 0.42 * em, ink(palette.desk))
         draw_list.add_circle_filled(

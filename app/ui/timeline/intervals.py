@@ -7,10 +7,10 @@ from imgui_bundle import ImVec2, imgui
 
 from app.document import HOLD, Keyframe, closes
 from app.editor import Action
-from app.ui.style import SMALL, ink, tip
+from app.ui.style import SMALL, in_hand, ink, is_pressed, sized, tip
 from app.ui.timeline.easing_curve import draw_curve, easing_popup, fill_curve
 from app.ui.timeline.keys import begin_box, is_plain_click
-from app.ui.timeline.track import ROUNDING, Track, in_hand, is_pressed
+from app.ui.timeline.track import ROUNDING, Track
 
 LEAST = 0.6  # em: narrower bars are not drawn
 INSET = 0.35  # em: between the curve and the bar's edge
@@ -86,7 +86,7 @@ def _draw_still(track: Track) -> None:
         colour = ink(track.look.palette.dim, 0.35)
         for low, high in ends:
             imgui.get_window_draw_list().add_line(
-                ImVec2(track.x(low), track.middle), ImVec2(track.x(high), track.middle), colour, 1.5
+                (track.x(low), track.middle), (track.x(high), track.middle), colour, 1.5
             )
 
 
@@ -139,10 +139,8 @@ def _label(track: Track, name: str, turns: int, low: ImVec2, high: ImVec2) -> No
     em = track.look.em
     text = f"{name}, {turns:+d} turns" if abs(turns) > 1 else f"{name}, {turns:+d} turn"
     text = text if turns else name
-    imgui.push_font(None, SMALL * imgui.get_style().font_size_base)
     left = max(low.x, track.left) + 0.6 * em
-    if left + 2.2 * imgui.calc_text_size(text).x + em < min(high.x, track.right):
-        imgui.get_window_draw_list().add_text(
-            ImVec2(left, low.y + 0.25 * em), ink(track.look.palette.dim), text
-        )
-    imgui.pop_font()
+    with sized(SMALL):
+        if left + 2.2 * imgui.calc_text_size(text).x + em < min(high.x, track.right):
+            place, colour = (left, low.y + 0.25 * em), ink(track.look.palette.dim)
+            imgui.get_window_draw_list().add_text(place, colour, text)

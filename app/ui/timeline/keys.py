@@ -8,21 +8,11 @@ from imgui_bundle import ImVec2, ImVec4, icons_fontawesome_6 as icons, imgui
 from app.document import LAST_FRAME, Figure, Keyframe, Passing
 from app.editor import Action, KeyBox, KeyDrag, Project, TimeGesture, do, layering
 from app.editor.actions import editing, keys, timeline_pointing
-from app.ui.shortcuts import with_key
-from app.ui.style import begin_tip, ink
+from app.ui.shortcuts import CTRL, with_key
+from app.ui.style import begin_tip, in_hand, ink, is_pressed
 from app.ui.timeline.menus import PASSINGS, key_menu, track_menu
-from app.ui.timeline.track import (
-    ROUNDING,
-    FigureRow,
-    Track,
-    in_hand,
-    in_seconds,
-    is_pressed,
-    was_dragged,
-    write_tag,
-)
+from app.ui.timeline.track import ROUNDING, FigureRow, Track, in_seconds, tag, was_dragged
 
-CTRL = int(imgui.Key.mod_ctrl)
 REACH, SMALLEST = 0.55, 0.26  # em: half a key's diagonal, with room and among many
 SMALLER = 0.7  # keys of figures that are not the active one, as a part of what theirs would be
 GRIP = 1.45  # half the side of the box in which the pointer takes a key, as a part of that
@@ -37,9 +27,7 @@ def draw_ground(track: Track) -> list[Action]:
     document = track.project.document
     for frames, alpha in ((document.frames, 0.45), (document.played, 1.0)):
         begin, end = track.x(frames.first), track.x(frames.last)
-        draw_list.add_rect_filled(
-            ImVec2(begin, low.y), ImVec2(end, high.y), ink(palette.panel, alpha)
-        )
+        draw_list.add_rect_filled((begin, low.y), (end, high.y), ink(palette.panel, alpha))
     draw_list.pop_clip_rect()
     return _press_ground(track, low, high)
 
@@ -124,8 +112,8 @@ def _draw_row(track: Track, row: FigureRow) -> list[Action]:
         box = ImVec2(x - grip, row.middle - grip), ImVec2(x + grip, row.middle + grip)
         origin = _origin(gesture, row.figure, key.frame)
         track.button(f"key {origin}", *box, right=True)
-        is_held = row.is_active and _is_held(gesture, key.frame)
-        _draw_key(track, row, key, 1.15 * radius if in_hand() or is_held else radius)
+        is_dragged = row.is_active and _is_dragged(gesture, key.frame)
+        _draw_key(track, row, key, 1.15 * radius if in_hand() or is_dragged else radius)
         if is_pressed():
             actions += _press(track, identity, key.frame)
         if imgui.is_item_clicked(imgui.MouseButton_.right):
@@ -148,7 +136,7 @@ def _radius(track: Track, row: FigureRow) -> float:
     return part * min(max(0.48 * gap * track.strip.scale, SMALLEST), REACH) * track.look.em
 
 
-def _is_held(gesture: TimeGesture | None, frame: int) -> bool:
+def _is_dragged(gesture: TimeGesture | None, frame: int) -> bool:
     """Tell whether a key of the active figure is the one that is dragged."""
     return isinstance(gesture, KeyDrag) and frame == gesture.pressed + gesture.by
 
@@ -199,13 +187,13 @@ def _draw_key(track: Track, row: FigureRow, key: Keyframe, radius: float) -> Non
         row.is_active
         and isinstance(gesture, KeyDrag)
         and gesture.by
-        and _is_held(gesture, key.frame)
+        and _is_dragged(gesture, key.frame)
     ):
-        write_tag(track, x, f"{key.frame}  ({gesture.by:+d})")
+        tag(track, x, f"{key.frame}  ({gesture.by:+d})")
     if warns and chosen:
         _mark(passing, centre, 0.45 * radius, ink(warns))
     if warns and row.is_active:
-        draw_list.add_circle_filled(ImVec2(x, track.bar_top - 0.1 * em), 0.2 * em, ink(warns))
+        draw_list.add_circle_filled((x, track.bar_top - 0.1 * em), 0.2 * em, ink(warns))
 
 
 def _warning(track: Track, row: FigureRow, key: Keyframe) -> ImVec4 | None:
@@ -225,25 +213,23 @@ def _mark(passing: Passing, centre: ImVec2, radius: float, colour: int) -> None:
             draw_list.add_circle_filled(centre, 0.86 * radius, colour)
         case Passing.HOLD:
             half = 1.06 * across
-            draw_list.add_rect_filled(
-                ImVec2(x - half, y - half), ImVec2(x + half, y + half), colour
-            )
+            draw_list.add_rect_filled((x - half, y - half), (x + half, y + half), colour)
         case Passing.STOP:
             half, waist = 1.1 * across, 0.3 * across
             for side in (-1, 1):
                 draw_list.add_quad_filled(
-                    ImVec2(x - half, y + side * half),
-                    ImVec2(x + half, y + side * half),
-                    ImVec2(x + waist, y),
-                    ImVec2(x - waist, y),
+                    (x - half, y + side * half),
+                    (x + half, y + side * half),
+                    (x + waist, y),
+                    (x - waist, y),
                     colour,
                 )
         case _:
             draw_list.add_quad_filled(
-                ImVec2(x, y - radius),
-                ImVec2(x + radius, y),
-                ImVec2(x, y + radius),
-                ImVec2(x - radius, y),
+                (x, y - radius),
+                (x + radius, y),
+                (x, y + radius),
+                (x - radius, y),
                 colour,
             )
 

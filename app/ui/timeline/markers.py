@@ -7,9 +7,9 @@ from imgui_bundle import ImVec2, imgui
 from app.document import Marker
 from app.editor import Action, MarkerDrag, TimeGesture, do
 from app.editor.actions import keys, playback, timeline_pointing
-from app.ui.shortcuts import BINDINGS
-from app.ui.style import SMALL, begin_tip, ink, shortened
-from app.ui.timeline.track import Track, in_hand, in_seconds, is_pressed, write_tag
+from app.ui.shortcuts import bound_item
+from app.ui.style import SMALL, begin_tip, in_hand, ink, is_pressed, name_popup, shortened, sized
+from app.ui.timeline.track import Track, in_seconds, tag
 
 HALF, GRIP = 0.42, 0.6  # em: half the width of a flag, and of where the pointer takes it
 LEAST_NAME = 3.0  # em: with less room names are left out
@@ -39,7 +39,10 @@ def draw_markers(track: Track) -> list[Action]:
         )
         _draw(track, marker, x, text)
         actions += _point(track, marker)
-        actions += _rename(track, marker) + _menu(marker)
+        actions += _menu(track, marker)
+        entered = name_popup(track.look, f"name of marker {marker.frame}", marker.name)
+        if entered is not None:
+            actions.append(do(keys.rename_marker, marker.frame, entered))
     draw_list.pop_clip_rect()
     return actions
 
@@ -68,14 +71,12 @@ def _draw(track: Track, marker: Marker, x: float, text: str) -> None:
     begin, end = ImVec2(x, track.track_top), ImVec2(x, track.track_bottom)
     draw_list.add_line(begin, end, ink(colour, 0.8 if hot else 0.35), 1.0)
     if text and not track.is_cramped:
-        imgui.push_font(None, SMALL * imgui.get_style().font_size_base)
-        height = imgui.get_text_line_height()
-        place = ImVec2(x + half + 0.3 * em, (top + bottom - height) / 2)
-        draw_list.add_text(place, ink(palette.text if hot else palette.dim), text)
-        imgui.pop_font()
+        with sized(SMALL):
+            place = (x + half + 0.3 * em, (top + bottom - imgui.get_text_line_height()) / 2)
+            draw_list.add_text(place, ink(palette.text if hot else palette.dim), text)
     gesture = track.project.timing.gesture
     if isinstance(gesture, MarkerDrag) and gesture.at == marker.frame != gesture.marker:
-        write_tag(track, x, f"{marker.frame}")
+        tag(track, x, f"{marker.frame}")
 
 
 def _point(track: Track, marker: Marker) -> list[Action]:
@@ -103,42 +104,19 @@ def _point(track: Track, marker: Marker) -> list[Action]:
     return []
 
 
-def _rename(track: Track, marker: Marker) -> list[Action]:
-    """Draw the field for a marker's name, if it is open."""
-    if not imgui.begin_popup(f"name of marker {marker.frame}"):
-        return []
-    actions: list[Action] = []
-    if imgui.is_window_appearing():
-        imgui.set_keyboard_focus_here()
-    imgui.set_next_item_width(12 * track.look.em)
-    flags = imgui.InputTextFlags_.auto_select_all | imgui.InputTextFlags_.enter_returns_true
-    entered, name = imgui.input_text("##name", marker.name, flags)
-    if entered:
-        if name.strip():
-            actions.append(do(keys.rename_marker, marker.frame, name.strip()))
-        imgui.close_current_popup()
-    imgui.end_popup()
-    return actions
-
-
-def _menu(marker: Marker) -> list[Action]:
+def _menu(track: Track, marker: Marker) -> list[Action]:
     """Draw the menu of a marker, if it is open."""
-    name = f"menu of marker {marker.frame}"
     asks = False
     actions: list[Action] = []
-    if imgui.begin_popup(name):
+    if imgui.begin_popup(f"menu of marker {marker.frame}"):
         if imgui.menu_item_simple("Go there", "Click"):
             actions.append(do(playback.scrub, marker.frame))
         asks = imgui.menu_item_simple("Rename…", "Double-click")
         if imgui.menu_item_simple("Delete"):
             actions.append(do(keys.delete_marker, marker.frame))
         imgui.separator()
-        others = (BINDINGS["previous marker"], BINDINGS["next marker"])
-        actions += [
-            binding.action
-            for binding in others
-            if imgui.menu_item_simple(binding.label, binding.keys_in_words)
-        ]
+        for name in ("previous marker", "next marker"):
+            actions += bound_item(track.session, name)
         imgui.end_popup()
     if asks:
         imgui.open_popup(f"name of marker {marker.frame}")

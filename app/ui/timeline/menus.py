@@ -3,9 +3,9 @@
 from imgui_bundle import imgui
 
 from app.document import PRESETS, Keyframe, Passing
-from app.editor import Action, Project, do
+from app.editor import Action, Project, Session, do
 from app.editor.actions import keys, playback
-from app.ui.shortcuts import BINDINGS
+from app.ui.shortcuts import BINDINGS, bound_item
 from app.ui.style import Look, shortened, tip
 from app.ui.timeline.easing_curve import LABELS
 from app.ui.timeline.track import Track
@@ -47,7 +47,7 @@ def key_menu(track: Track, figure: int, key: Keyframe) -> list[Action]:
                 actions.append(do(keys.set_easing, taken, preset))
         imgui.end_menu()
     imgui.separator()
-    actions += _time_items(track.look, project)
+    actions += _time_items(track.session, track.look, project)
     imgui.end_popup()
     return actions
 
@@ -64,21 +64,21 @@ def track_menu(track: Track) -> list[Action]:
     if imgui.menu_item_simple(f"Add marker at frame {frame}###Add marker"):
         actions.append(do(keys.add_marker, frame))
     imgui.separator()
-    actions += _time_items(track.look, track.project)
+    actions += _time_items(track.session, track.look, track.project)
     imgui.end_popup()
     return actions
 
 
-def time_menu(look: Look, project: Project) -> list[Action]:
+def time_menu(session: Session, look: Look, project: Project) -> list[Action]:
     """Draw the menu of the whole timeline, if it is open."""
     actions: list[Action] = []
     if imgui.begin_popup("menu of time"):
-        actions += _time_items(look, project)
+        actions += _time_items(session, look, project)
         imgui.end_popup()
     return actions
 
 
-def _time_items(look: Look, project: Project) -> list[Action]:
+def _time_items(session: Session, look: Look, project: Project) -> list[Action]:
     actions: list[Action] = []
     count, chosen = len(project.figure.keys), project.count_chosen
     several = f"{chosen} keys" if chosen > 1 else "all keys"
@@ -110,8 +110,5 @@ def _time_items(look: Look, project: Project) -> list[Action]:
         actions.append(do(keys.match_ends))
     imgui.separator()
     for name in ("preview start", "preview end", "preview none"):
-        binding = BINDINGS[name]
-        enabled = name != "preview none" or project.document.preview is not None
-        if imgui.menu_item_simple(binding.label, binding.keys_in_words, enabled=enabled):
-            actions.append(binding.action)
+        actions += bound_item(session, name)
     return actions

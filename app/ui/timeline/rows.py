@@ -4,11 +4,11 @@ from itertools import pairwise
 
 from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui
 
-from app.document import Figure, is_visible, layer_commands
-from app.editor import Action, SwitchDrag, TimeGesture, do, layering
+from app.document import Figure, Switch, is_visible, layer_commands
+from app.editor import Action, SwitchDrag, do, layering
 from app.editor.actions import editing, timeline_pointing
-from app.ui.style import CHOSEN, SMALL, begin_tip, ink, shortened
-from app.ui.timeline.track import THIN, FigureRow, Track, in_hand, is_pressed, write_tag
+from app.ui.style import CHOSEN, SMALL, begin_tip, in_hand, ink, is_pressed, shortened, sized
+from app.ui.timeline.track import THIN, FigureRow, Track, tag
 
 HATCH = 0.55  # em between the lines over a time in which a figure is hidden
 EYE = 0.62  # em: half the width of the mark where a figure is shown or hidden
@@ -29,7 +29,7 @@ def draw_rows(track: Track, frame: int) -> list[Action]:
     for row in track.rows:
         imgui.push_id(f"row {row.figure.id}")
         for switch in row.figure.switches:
-            actions += _draw_switch(track, row, switch.frame, visible=switch.visible)
+            actions += _draw_switch(track, row, switch)
         imgui.pop_id()
     imgui.pop_clip_rect()
     return actions
@@ -41,7 +41,7 @@ def _draw_ground(track: Track, row: FigureRow) -> None:
     low, high = ImVec2(track.left, row.top), ImVec2(track.right, row.bottom)
     if row.is_active:
         draw_list.add_rect_filled(low, high, ink(palette.accent, 0.08))
-    draw_list.add_line(ImVec2(low.x, high.y), high, ink(palette.line))
+    draw_list.add_line((low.x, high.y), high, ink(palette.line))
 
 
 def _draw_names(track: Track, frame: int) -> list[Action]:
@@ -49,7 +49,6 @@ def _draw_names(track: Track, frame: int) -> list[Action]:
     palette, draw_list, em = track.look.palette, imgui.get_window_draw_list(), track.look.em
     low, high = ImVec2(track.corner.x, track.track_top), ImVec2(track.left, track.track_bottom)
     imgui.push_clip_rect(low, high, intersect_with_current_clip_rect=True)
-    imgui.push_font(None, SMALL * imgui.get_style().font_size_base)
     for row in track.rows:
         box = ImVec2(low.x, row.top), ImVec2(high.x - 0.3 * em, row.bottom)
         if track.button(f"name {row.figure.id}", *box):
@@ -58,12 +57,12 @@ def _draw_names(track: Track, frame: int) -> list[Action]:
             colour = ink(palette.accent, CHOSEN) if row.is_active else ink(palette.hovered)
             draw_list.add_rect_filled(*box, colour, 0.2 * em)
         icon = icons.ICON_FA_IMAGE if row.figure.still else icons.ICON_FA_PERSON
-        text = shortened(row.figure.name, box[1].x - low.x - 2.6 * em)
         colour = ink(palette.text if is_visible(row.figure, frame) else palette.dim)
-        top = row.middle - imgui.get_text_line_height() / 2
-        draw_list.add_text(ImVec2(low.x + 0.4 * em, top), colour, icon)
-        draw_list.add_text(ImVec2(low.x + 1.8 * em, top), colour, text)
-    imgui.pop_font()
+        with sized(SMALL):
+            text = shortened(row.figure.name, box[1].x - low.x - 2.6 * em)
+            top = row.middle - imgui.get_text_line_height() / 2
+            draw_list.add_text((low.x + 0.4 * em, top), colour, icon)
+            draw_list.add_text((low.x + 1.8 * em, top), colour, text)
     _draw_scrolled(track)
     imgui.pop_clip_rect()
     return actions
@@ -78,8 +77,8 @@ def _draw_scrolled(track: Track) -> None:
     top = track.track_top + per_pixel * (track.track_top - track.rows[0].top)
     width = 0.18 * track.look.em
     imgui.get_window_draw_list().add_rect_filled(
-        ImVec2(track.left - width, top),
-        ImVec2(track.left, top + per_pixel * height),
+        (track.left - width, top),
+        (track.left, top + per_pixel * height),
         ink(track.look.palette.dim, 0.8),
         width / 2,
     )
@@ -116,41 +115,58 @@ def _hatch(track: Track, row: FigureRow, begin: int | None, end: int | None) -> 
     first = track.x(0)
     x = first + ((left - height - first) // gap) * gap
     while x < right:
-        draw_list.add_line(ImVec2(x, high.y), ImVec2(x + height, low.y), ink(palette.dim, 0.35))
+        draw_list.add_line((x, high.y), (x + height, low.y), ink(palette.dim, 0.35))
         x += gap
     imgui.pop_clip_rect()
 
 
-def _draw_switch(track: Track, row: FigureRow, frame: int, *, visible: bool) -> list[Action]:
+def _draw_switch(track: Track, row: FigureRow, switch: Switch) -> list[Action]:
     """Draw an eye where a figure comes to be seen, or a struck one where it is hidden."""
-    actions: list[Action] = []
-    palette, em, x = track.look.palette, track.look.em, track.x(frame)
-    if not track.shows(x - EYE * em, x + EYE * em):
+    frame, half = switch.frame, EYE * track.look.em
+    x = track.x(frame)
+    if not track.shows(x - half, x + half):
         return []
-    # Below the keys of the active figure, and beside those of the others.
-    is_below = row.is_active and row.bottom - row.top > 2 * THIN * em
-    middle = row.bottom - (0.1 + THIN / 2) * em if is_below else row.middle
-    is_at_key = not is_below and frame in row.figure.key_frames
-    left, half = x + (BESIDE * em if is_at_key else 0.0), EYE * em
-    low, high = ImVec2(left, middle - half), ImVec2(left + 2 * half, middle + half)
-    gesture = track.project.timing.gesture
-    track.button(f"switch {_origin(gesture, row.figure, frame)}", low, high, right=True)
-    is_held = isinstance(gesture, SwitchDrag) and _is_held(gesture, row.figure, frame)
-    draw_list = imgui.get_window_draw_list()
+    left = _left_of_eye(track, row, frame)
+    drag = track.project.timing.gesture
+    if not isinstance(drag, SwitchDrag) or (drag.figure, drag.at) != (row.figure.id, frame):
+        drag = None
+    # By where it was before it was dragged, so that its button stays the same one.
+    origin = frame if drag is None else drag.switch
+    box = left - ImVec2(0, half), left + ImVec2(2 * half, half)
+    track.button(f"switch {origin}", *box, right=True)
+    _draw_eye(track, row, switch, left, is_hot=in_hand() or drag is not None)
+    if origin != frame:
+        tag(track, x, f"{frame}  ({frame - origin:+d})")
+    return _point(track, row, switch) + _menu(row, frame)
+
+
+def _left_of_eye(track: Track, row: FigureRow, frame: int) -> ImVec2:
+    """Return where an eye begins: below the keys of the active figure, and beside the others'."""
+    em, x = track.look.em, track.x(frame)
+    if row.is_active and row.bottom - row.top > 2 * THIN * em:
+        return ImVec2(x, row.bottom - (0.1 + THIN / 2) * em)
+    is_at_key = frame in row.figure.key_frames
+    return ImVec2(x + (BESIDE * em if is_at_key else 0.0), row.middle)
+
+
+def _draw_eye(track: Track, row: FigureRow, switch: Switch, left: ImVec2, *, is_hot: bool) -> None:
+    draw_list, x = imgui.get_window_draw_list(), track.x(switch.frame)
+    colour = ink(track.look.palette.text if is_hot else track.look.palette.anchor)
+    draw_list.add_line((x, row.top + 2), (x, row.bottom - 2), colour, 1.5)
+    icon = icons.ICON_FA_EYE if switch.visible else icons.ICON_FA_EYE_SLASH
+    with sized(SMALL * SMALL):
+        top = left.y - imgui.get_text_line_height() / 2
+        draw_list.add_text((left.x + 0.15 * track.look.em, top), colour, icon)
+
+
+def _point(track: Track, row: FigureRow, switch: Switch) -> list[Action]:
+    """Take what the pointer does to an eye, the last item, and tell what can be done with it."""
+    frame, document = switch.frame, track.project.document
     if in_hand():
         imgui.set_mouse_cursor(imgui.MouseCursor_.resize_ew)
-    colour = ink(palette.text if in_hand() or is_held else palette.anchor)
-    draw_list.add_line(ImVec2(x, row.top + 2), ImVec2(x, row.bottom - 2), colour, 1.5)
-    imgui.push_font(None, SMALL * SMALL * imgui.get_style().font_size_base)
-    icon = icons.ICON_FA_EYE if visible else icons.ICON_FA_EYE_SLASH
-    top = middle - imgui.get_text_line_height() / 2
-    draw_list.add_text(ImVec2(left + 0.15 * em, top), colour, icon)
-    imgui.pop_font()
-    menu = f"menu of switch {frame}"
     if imgui.is_item_clicked(imgui.MouseButton_.right):
-        imgui.open_popup(menu)
+        imgui.open_popup(f"menu of switch {frame}")
     elif is_pressed():
-        document = track.project.document
         drag = SwitchDrag(
             figure=row.figure.id,
             switch=frame,
@@ -159,28 +175,20 @@ def _draw_switch(track: Track, row: FigureRow, frame: int, *, visible: bool) -> 
             before=document,
             after=document,
         )
-        actions.append(do(timeline_pointing.begin, drag, track.strip))
-    if is_held and isinstance(gesture, SwitchDrag) and gesture.at != gesture.switch:
-        write_tag(track, x, f"{frame}  ({frame - gesture.switch:+d})")
-    if gesture is None and begin_tip():
-        imgui.text_unformatted(f"{'Shown' if visible else 'Hidden'} from frame {frame} on")
+        return [do(timeline_pointing.begin, drag, track.strip)]
+    if track.project.timing.gesture is None and begin_tip():
+        imgui.text_unformatted(f"{'Shown' if switch.visible else 'Hidden'} from frame {frame} on")
         imgui.text_disabled("Click to go there, drag to move it, right click to take it away")
         imgui.end_tooltip()
-    if imgui.begin_popup(menu):
+    return []
+
+
+def _menu(row: FigureRow, frame: int) -> list[Action]:
+    """Draw the menu of an eye, if it is open."""
+    actions: list[Action] = []
+    if imgui.begin_popup(f"menu of switch {frame}"):
         if imgui.menu_item_simple("Delete"):
             command = layer_commands.switch_at(row.figure.id, frame, visible=None)
             actions.append(do(editing.edit, command))
         imgui.end_popup()
     return actions
-
-
-def _is_held(gesture: SwitchDrag, figure: Figure, frame: int) -> bool:
-    """Tell whether it is what happens to a figure at this frame that is dragged."""
-    return gesture.figure == figure.id and gesture.at == frame
-
-
-def _origin(gesture: TimeGesture | None, figure: Figure, frame: int) -> int:
-    """Return where a mark was before it was dragged, so that its button stays the same one."""
-    if isinstance(gesture, SwitchDrag) and _is_held(gesture, figure, frame):
-        return gesture.switch
-    return frame

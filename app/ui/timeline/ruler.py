@@ -4,10 +4,11 @@ from imgui_bundle import ImVec2, imgui
 
 from app.editor import Action, Scrub, do
 from app.editor.actions import timeline_pointing
-from app.ui.style import SMALL, ink
-from app.ui.timeline.track import Track, in_hand, in_seconds, is_pressed
+from app.ui.style import SMALL, in_hand, ink, is_pressed, sized, write_in
+from app.ui.timeline.track import Track, in_seconds
 
 TICK_ROOM = 0.55  # em between small ticks at least
+RULER_TAG = 1.2  # em: height of the playhead's number
 LABEL_GAP = 2.4  # em between labels at least
 MULTIPLES = (2, 5, 10, 30, 60, 120, 300, 600, 1800, 3600, 7200, 18000)
 
@@ -23,13 +24,12 @@ def draw_ruler(track: Track, frame: int) -> list[Action]:
         ]
     if imgui.is_item_hovered():
         imgui.set_mouse_cursor(imgui.MouseCursor_.resize_ew)
-    imgui.push_font(None, SMALL * imgui.get_style().font_size_base)
     draw_list = imgui.get_window_draw_list()
     low, high = ImVec2(track.left, track.ruler_top), ImVec2(track.right, track.track_bottom)
     draw_list.push_clip_rect(low, high, intersect_with_current_clip_rect=True)
-    _draw_ticks(track, frame)
+    with sized(SMALL):
+        _draw_ticks(track, frame)
     draw_list.pop_clip_rect()
-    imgui.pop_font()
     return actions
 
 
@@ -54,18 +54,18 @@ def _draw_ticks(track: Track, present: int) -> None:
     for frame in range(begin, last + 1, small):
         x = track.x(frame)
         if frame % large:
-            draw_list.add_line(ImVec2(x, bottom - 0.35 * em), ImVec2(x, bottom), faint)
+            draw_list.add_line((x, bottom - 0.35 * em), (x, bottom), faint)
             continue
-        draw_list.add_line(ImVec2(x, track.ruler_top + 0.15 * em), ImVec2(x, bottom), dim)
-        draw_list.add_line(ImVec2(x, track.track_top), ImVec2(x, track.track_bottom), grid)
+        draw_list.add_line((x, track.ruler_top + 0.15 * em), (x, bottom), dim)
+        draw_list.add_line((x, track.track_top), (x, track.track_bottom), grid)
         number, top = f"{frame}", track.ruler_top + 0.1 * em
         seconds = in_seconds(frame, document.fps)
         wide = 0.7 * em + imgui.calc_text_size(number).x + imgui.calc_text_size(seconds).x
         if x < covered[1] and x + wide > covered[0]:
             continue
-        draw_list.add_text(ImVec2(x + 0.3 * em, top), text, number)
+        draw_list.add_text((x + 0.3 * em, top), text, number)
         beside = x + 0.7 * em + imgui.calc_text_size(number).x
-        draw_list.add_text(ImVec2(beside, top), dim, seconds)
+        draw_list.add_text((beside, top), dim, seconds)
 
 
 def _steps(fps: float) -> list[int]:
@@ -79,11 +79,10 @@ def draw_playhead(track: Track, frame: int) -> list[Action]:
     """Draw a line at the present frame, and its number on the ruler, to be dragged."""
     palette, draw_list, em = track.look.palette, imgui.get_window_draw_list(), track.look.em
     x = track.x(frame)
-    imgui.push_font(track.look.bold, SMALL * imgui.get_style().font_size_base)
-    width = _tag_width(track, frame)
-    height = RULER_TAG * em
+    with sized(SMALL, track.look.bold):
+        width = _tag_width(track, frame)
     low = ImVec2(x - width / 2, track.ruler_top + 0.05 * em)
-    high = ImVec2(x + width / 2, low.y + height)
+    high = low + ImVec2(width, RULER_TAG * em)
     actions: list[Action] = []
     if track.shows(low.x, high.x):
         track.button("playhead", low, high)
@@ -93,33 +92,25 @@ def draw_playhead(track: Track, frame: int) -> list[Action]:
         colour = palette.warning if track.project.unkeyed is not None else palette.accent
         if in_hand():
             imgui.set_mouse_cursor(imgui.MouseCursor_.resize_ew)
-        bounds = ImVec2(track.left, track.top), ImVec2(track.right, track.bottom)
-        draw_list.push_clip_rect(*bounds, intersect_with_current_clip_rect=True)
-        draw_list.add_line(
-            ImVec2(x, high.y), ImVec2(x, track.track_bottom), ink(colour), max(1.5, 0.1 * em)
-        )
+        draw_list.push_clip_rect(*track.bounds, intersect_with_current_clip_rect=True)
+        draw_list.add_line((x, high.y), (x, track.track_bottom), ink(colour), max(1.5, 0.1 * em))
         draw_list.add_rect_filled(low, high, ink(colour), 0.35 * em)
         half = 0.32 * em
         draw_list.add_triangle_filled(
-            ImVec2(x - half, high.y - 0.5),
-            ImVec2(x + half, high.y - 0.5),
-            ImVec2(x, high.y + half),
+            (x - half, high.y - 0.5),
+            (x + half, high.y - 0.5),
+            (x, high.y + half),
             ink(colour),
         )
-        size = imgui.calc_text_size(f"{frame}")
-        place = ImVec2(x - size.x / 2, (low.y + high.y - size.y) / 2)
-        draw_list.add_text(place, ink(palette.on_accent), f"{frame}")
+        with sized(SMALL, track.look.bold):
+            write_in(low, high, f"{frame}", ink(palette.on_accent))
         draw_list.pop_clip_rect()
-    imgui.pop_font()
     return actions
 
 
 def _tag_width(track: Track, frame: int) -> float:
     """Return the width of the playhead's number with its margins."""
     return max(imgui.calc_text_size(f"{frame}").x + 0.9 * track.look.em, 1.9 * track.look.em)
-
-
-RULER_TAG = 1.2  # em: height of the playhead's number
 
 
 def draw_overview(track: Track, frame: int) -> list[Action]:
@@ -134,17 +125,10 @@ def draw_overview(track: Track, frame: int) -> list[Action]:
     per_frame = track.size.x / (high - low)
     left, right = (track.left + (at - low) * per_frame for at in (strip.start, end))
     track.button("overview", ImVec2(left, top), ImVec2(right, bottom))
-    hot = in_hand()
     rounding = (bottom - top) / 2
-    draw_list.add_rect_filled(
-        ImVec2(track.left, top), ImVec2(track.right, bottom), ink(palette.desk), rounding
-    )
-    draw_list.add_rect_filled(
-        ImVec2(left, top),
-        ImVec2(right, bottom),
-        ink(palette.dim if hot else palette.pressed),
-        rounding,
-    )
+    draw_list.add_rect_filled((track.left, top), (track.right, bottom), ink(palette.desk), rounding)
+    bar = ink(palette.dim if in_hand() else palette.pressed)
+    draw_list.add_rect_filled((left, top), (right, bottom), bar, rounding)
     middle = (top + bottom) / 2
     # Each frame once, however many figures have a key there; those of the active one over them.
     own = track.project.figure.key_frames
@@ -157,9 +141,9 @@ def draw_overview(track: Track, frame: int) -> list[Action]:
     ):
         for at in frames_of:
             x = track.left + (at - low) * per_frame
-            draw_list.add_circle_filled(ImVec2(x, middle), radius, colour, 8)
+            draw_list.add_circle_filled((x, middle), radius, colour, 8)
     x = track.left + (frame - low) * per_frame
-    draw_list.add_line(ImVec2(x, top), ImVec2(x, bottom), ink(palette.accent), 1.5)
+    draw_list.add_line((x, top), (x, bottom), ink(palette.accent), 1.5)
     delta = imgui.get_io().mouse_delta.x
     if imgui.is_item_active() and delta:
         moved = strip.panned(delta / per_frame * strip.scale)

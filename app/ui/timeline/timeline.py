@@ -1,6 +1,6 @@
 """Keys in time: the transport above, the ruler, and the track with keys and easing."""
 
-from imgui_bundle import ImVec2, imgui
+from imgui_bundle import imgui
 
 from app.editor import (
     Action,
@@ -17,7 +17,7 @@ from app.editor import (
 )
 from app.editor.actions import editing, playback, timeline_pointing
 from app.editor.tools import pointing
-from app.ui.shortcuts import with_key
+from app.ui.shortcuts import CTRL, with_key
 from app.ui.style import Look
 from app.ui.timeline.bar import draw_bar
 from app.ui.timeline.dropping import draw_dropped
@@ -29,7 +29,6 @@ from app.ui.timeline.rows import draw_rows
 from app.ui.timeline.ruler import draw_overview, draw_playhead, draw_ruler
 from app.ui.timeline.track import THIN, Track, in_seconds, was_dragged
 
-CTRL = int(imgui.Key.mod_ctrl)
 ZOOM_STEP = 1.2  # a notch of the wheel
 SCROLL_STEP = 4.0  # em
 # Parts of the way beyond the edge by which the view follows the pointer in each frame.
@@ -41,7 +40,7 @@ def draw(session: Session, look: Look, project: Project) -> list[Action]:
     """Draw the timeline of the open project."""
     actions = draw_bar(session, look, project)
     imgui.begin_child("track", imgui.get_content_region_avail(), 0, FLAGS)
-    track = Track(look, project)
+    track = Track(session, look, project)
     if track.is_usable:
         actions += _draw_track(track, playback.current_frame(session, project))
     imgui.end_child()
@@ -66,7 +65,7 @@ def _draw_track(track: Track, frame: int) -> list[Action]:
     if imgui.is_window_hovered() or track.project.timing.gesture is not None:
         actions.append(do(pointing.explain, _hint(track)))
     imgui.set_cursor_screen_pos(track.corner)
-    imgui.dummy(ImVec2(0, 0))
+    imgui.dummy((0, 0))
     return actions
 
 

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 from imgui_bundle import ImVec2, imgui
 
 from app.document import Figure
-from app.editor import Project, Strip
-from app.ui.style import Look, ink
+from app.editor import Project, Session, Strip
+from app.ui.style import Look, tag_size, write_tag
 
 PREVIEW, RULER, OVERVIEW = 0.7, 1.55, 0.75  # em: heights of the bands above and below the track
 MARKS, SMALL_MARKS = 1.25, 0.7  # em: height of the band of markers, with their names or without
@@ -35,7 +35,8 @@ class FigureRow:
 class Track:
     """The bands of the timeline, and the way between frames and pixels."""
 
-    def __init__(self, look: Look, project: Project) -> None:
+    def __init__(self, session: Session, look: Look, project: Project) -> None:
+        self.session = session
         self.look = look
         self.project = project
         self.corner = imgui.get_cursor_screen_pos()
@@ -61,7 +62,7 @@ class Track:
         self.bar_top, self.bar_bottom = self.middle - height / 2, self.middle + height / 2
         timing = project.timing
         fitting = Strip.fitting(project.document.frames, self.width)
-        self.strip = timing.held or timing.strip or fitting
+        self.strip = timing.gesture_strip or timing.strip or fitting
 
     def _lay_rows(self, figures: tuple[Figure, ...]) -> tuple[list[FigureRow], float]:
         """Return a row for each figure, the one in front on top, and for how much there is no room.
@@ -93,6 +94,11 @@ class Track:
         imgui.push_clip_rect(low, high, intersect_with_current_clip_rect=True)
 
     @property
+    def bounds(self) -> tuple[ImVec2, ImVec2]:
+        """The corners of all of it but the names."""
+        return ImVec2(self.left, self.top), ImVec2(self.right, self.bottom)
+
+    @property
     def width(self) -> float:
         """Its width in em."""
         return self.size.x / self.look.em
@@ -122,12 +128,7 @@ class Track:
     def button(self, name: str, low: ImVec2, high: ImVec2, *, right: bool = False) -> bool:
         """Lay an invisible button over a box; return whether it was clicked.
 
-        Parameters
-        ----------
-        name : str
-        low, high : ImVec2
-        right : bool
-            Whether the right button of the mouse counts as well.
+        With `right`, the right button of the mouse counts as well.
         """
         imgui.set_cursor_screen_pos(low)
         imgui.set_next_item_allow_overlap()
@@ -138,28 +139,11 @@ class Track:
         return imgui.invisible_button(name, size, flags)
 
 
-def write_tag(track: Track, x: float, text: str) -> None:
+def tag(track: Track, x: float, text: str) -> None:
     """Write something short below the ruler, over what is dragged."""
-    palette, em = track.look.palette, track.look.em
-    draw_list = imgui.get_window_draw_list()
-    size = imgui.calc_text_size(text)
-    width, height = size.x + em, 1.4 * em
+    width = tag_size(track.look, text).x
     left = min(max(x - width / 2, track.left), track.right - width)
-    low = ImVec2(left, track.track_top + 0.15 * em)
-    high = ImVec2(low.x + width, low.y + height)
-    draw_list.add_rect_filled(low, high, ink(palette.accent), 0.3 * em)
-    place = ImVec2(low.x + em / 2, low.y + (height - size.y) / 2)
-    draw_list.add_text(place, ink(palette.on_accent), text)
-
-
-def in_hand() -> bool:
-    """Tell whether the pointer is over the last item, or holds it."""
-    return imgui.is_item_hovered() or imgui.is_item_active()
-
-
-def is_pressed() -> bool:
-    """Tell whether the left button of the mouse was pressed on the last item just now."""
-    return imgui.is_item_activated() and imgui.is_mouse_clicked(imgui.MouseButton_.left)
+    write_tag(track.look, ImVec2(left, track.track_top + 0.15 * track.look.em), text)
 
 
 def was_dragged() -> bool:

@@ -6,5 +6,6 @@ Imports: `app.ui.style`, `app.ui.shortcuts`, `app.render`.
 """
 
 from app.ui.viewport import viewport as viewport
-from app.ui.viewport.canvas import Canvas as Canvas, heat_limits as heat_limits, measure as measure
+from app.ui.viewport.canvas import Canvas as Canvas, heat_limits as heat_limits
+from app.ui.viewport.drawing import measure as measure
 from app.ui.viewport.split_view import SplitTextures as SplitTextures

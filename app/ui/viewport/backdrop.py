@@ -5,7 +5,8 @@ from imgui_bundle import ImVec4
 
 from app.render import Backdrop
 from app.storage import CHECKER
-from app.ui.style import PALETTES, Palette
+from app.ui.style import PALETTES, Palette, rgb
+from app.ui.viewport.marks import plain
 from engine.arrays import Bytes, Floats
 
 SQUARE = 12.0  # pixels at a scale of 1
@@ -18,11 +19,7 @@ STEP = 4  # pixels: every so manieth is looked at
 
 
 def measure_brightness(picture: Bytes) -> Floats:
-    """Return which share of a picture's opaque area has which brightness.
-
-    Parameters
-    ----------
-    picture : (h, w, 4) uint8
+    """Return which share of a picture's (h, w, 4) opaque area has which brightness.
 
     Returns
     -------
@@ -50,12 +47,11 @@ def background(backdrop: str, palette: Palette, brightness: Floats, scale: float
         Pixels of the screen that a pixel of the design takes.
     """
     if backdrop != CHECKER:
-        red, green, blue = (channel / 255 for channel in bytes.fromhex(backdrop[1:]))
-        return Backdrop(colour=(red, green, blue, 1.0))
+        return Backdrop(colour=plain(rgb(backdrop)))
     if _lost(brightness, palette.paper) > MUCH:
         papers = PALETTES.values()
         palette = min(papers, key=lambda other: _lost(brightness, other.paper))
-    paper, check = ((c.x, c.y, c.z, c.w) for c in (palette.paper, palette.check))
+    paper, check = plain(palette.paper), plain(palette.check)
     return Backdrop(colour=paper, checks=check, square=SQUARE * scale)
 
 

@@ -1,29 +1,26 @@
 """What the viewport shows: the drawing, its ghosts, and all that marks it."""
 
-from collections.abc import Collection, Mapping
+from collections.abc import Mapping
 from dataclasses import replace
 from functools import partial
 
-import numpy as np
-
 from app.document import is_visible, time_of
 from app.editor import HeatMap, Project, Puppet, Session
-from app.motion import PosableMesh, Shown, Vertices
-from app.render import DrawnMesh, Ghost, Heat, Renderer, Scene, Wireframe, shader_is_faster
-from app.render.gpu import GpuMesh, GpuPicture, PosedMesh, RenderTarget
-from app.storage import Picture
+from app.motion import PosableMesh, Shown
+from app.render import Ghost, Heat, Renderer, Scene, Wireframe
+from app.render.gpu import PosedMesh, RenderTarget
 from app.ui.style import PALETTES
-from app.ui.viewport.backdrop import background, measure_brightness
-from app.ui.viewport.cut_view import CutView, mark_holes
+from app.ui.viewport.backdrop import background
+from app.ui.viewport.cut_view import mark_holes
+from app.ui.viewport.drawing import Drawing
 from app.ui.viewport.marks import forget_places, mark_all, pixel_scale, plain
 from app.ui.viewport.pose_pictures import PosePictures
-from engine.arrays import Floats
-from engine.maps import distortion
 
 GHOST_BEFORE, GHOST_AFTER = (0.93, 0.36, 0.36), (0.30, 0.62, 0.98)
 GHOST_OPACITY = 0.38
-TWIN = -2  # number of the poses of what is shown beside the drawing
-SMALL_PICTURE = -1  # number of the poses that are drawn for the library; ghosts count from 1
+# A mesh is posed several times for one picture. These copies are numbered: 0 is the drawing itself,
+# ghosts count from 1, the picture of another method and those of the library have their own.
+TWIN, SMALL_PICTURE = -2, -1
 
 
 class Canvas:
@@ -33,7 +30,7 @@ class Canvas:
         self._renderer = renderer
         self._targets: list[RenderTarget] = []
         self._retired: list[RenderTarget] = []
-        self._drawing: _Drawing | None = None
+        self._drawing: Drawing | None = None
         self._drawn: tuple[object, ...] = ()
         self.pose_pictures = PosePictures(renderer)
 
@@ -47,7 +44,7 @@ class Canvas:
         """The same of the picture by another method; None where the viewport is not split."""
         return self._targets[1].texture.glo if len(self._targets) > 1 else None
 
-    def keep_only(self, project: Project | None) -> bool:
+    def release_others(self, project: Project | None) -> bool:
         """Let go of any other project than this; return whether there was one."""
         if self._drawing is None or self._drawing.project is project:
             return False
@@ -65,7 +62,7 @@ class Canvas:
         is_split &= session.cutting is None
         self._fit_targets(session.screen, 1 + is_split)
         if self._drawing is None:
-            self._drawing = _Drawing(self._renderer, project)
+            self._drawing = Drawing(self._renderer, project)
         posable = partial(self._drawing.drawn_mesh, project.active, number=SMALL_PICTURE)
         self.pose_pictures.draw(session, project, posable)
         inputs = _inputs(session, project)
@@ -104,99 +101,6 @@ class Canvas:
             forget_places()
 
 
-class _Drawing:
-    """The pictures and meshes of a project's figures on the graphics card."""
-
-    def __init__(self, renderer: Renderer, project: Project) -> None:
-        self.project = project
-        self._renderer = renderer
-        # By figures' ids and their pictures: a layer's may be replaced, or a new one get the id of
-        # one that is gone.
-        self._pictures: dict[tuple[int, Picture], GpuPicture] = {}
-        self._meshes: dict[PosableMesh, GpuMesh] = {}
-        self._drawn_meshes: dict[tuple[PosableMesh, int], DrawnMesh] = {}
-        self._heated: dict[PosedMesh, tuple[Vertices, HeatMap]] = {}
-        self._cut_view: CutView | None = None
-        # Of the picture behind all others: what the backdrop must differ from.
-        (first, *_) = project.document.figures
-        self.brightness = measure_brightness(project.puppets[first.id].cut.value.texture)
-
-    def drawn_mesh(self, figure: int, mesh: PosableMesh, number: int = 0) -> DrawnMesh:
-        """Return the poses of a figure's mesh with this number, 0 for the drawing itself."""
-        if (mesh, number) not in self._drawn_meshes:
-            by_shader = shader_is_faster(self._renderer.programs.context)
-            drawn = DrawnMesh(self._mesh(figure, mesh), by_shader=by_shader)
-            self._drawn_meshes[mesh, number] = drawn
-        return self._drawn_meshes[mesh, number]
-
-    def heat(self, pose: PosedMesh, shown: Shown, heat_map: HeatMap) -> None:
-        """Upload a distortion of what is shown, if it is another than before."""
-        wanted = (shown.vertices, heat_map)
-        if self._heated.get(pose) != wanted:
-            pose.write_heat(measure(shown, heat_map).astype(np.float32))
-            self._heated[pose] = wanted
-
-    def refresh(self) -> None:
-        """Bring the pictures up to what is cut out of them now."""
-        puppets = self.project.puppets
-        for figure, picture in list(self._pictures):
-            puppet = puppets.get(figure)
-            if puppet is None or puppet.picture is not picture:
-                # Undo brings it back; it has no mesh any more.
-                self._pictures.pop((figure, picture)).release()
-            else:
-                self._pictures[figure, picture].write(puppet.cut.value.texture)
-
-    def tint(self, pose: PosedMesh, values: Floats) -> None:
-        """Upload other values of the vertices."""
-        pose.write_heat(values.astype(np.float32))
-        self._heated.pop(pose, None)
-
-    def keep_only(self, meshes: Collection[PosableMesh]) -> None:
-        """Let the buffers of other meshes go."""
-        for mesh, number in [key for key in self._drawn_meshes if key[0] not in meshes]:
-            self._drawn_meshes.pop((mesh, number)).release()
-            self._heated.clear()
-        for mesh in [mesh for mesh in self._meshes if mesh not in meshes]:
-            self._meshes.pop(mesh).release()
-
-    def cut_view(self) -> CutView:
-        """Return what is drawn of the active figure while it is cut out."""
-        if self._cut_view is None or self._cut_view.puppet is not self.project.puppet:
-            self._forget_cut_view()
-            self._cut_view = CutView(self._renderer, self.project, self.project.active)
-        return self._cut_view
-
-    def _forget_cut_view(self) -> None:
-        if self._cut_view is not None:
-            self._cut_view.release()
-            self._cut_view = None
-
-    def release(self) -> None:
-        self._forget_cut_view()
-        self.keep_only(())
-        for picture in self._pictures.values():
-            picture.release()
-
-    def _mesh(self, figure: int, mesh: PosableMesh) -> GpuMesh:
-        if mesh not in self._meshes:
-            drawn = mesh.domain.mesh
-            self._meshes[mesh] = GpuMesh(
-                self._renderer.programs,
-                self._picture(figure),
-                rest=drawn.vertices - self.project.document.figure(figure).corner,
-                triangles=drawn.triangles,
-            )
-        return self._meshes[mesh]
-
-    def _picture(self, figure: int) -> GpuPicture:
-        puppet = self.project.puppets[figure]
-        if (figure, puppet.picture) not in self._pictures:
-            drawn = GpuPicture(self._renderer.programs.context, puppet.cut.value.texture)
-            self._pictures[figure, puppet.picture] = drawn
-        return self._pictures[figure, puppet.picture]
-
-
 def _inputs(session: Session, project: Project) -> tuple[object, ...]:
     """Return all that the picture depends on: while it stays the same, so does the picture."""
     return (
@@ -206,6 +110,7 @@ def _inputs(session: Session, project: Project) -> tuple[object, ...]:
         project.puppet.store.whole if session.overlays.onion else None,
         project.puppet.store.sampler,
         project.paths.value if session.overlays.paths else None,
+        project.joints.value,
         project.pull.targets if project.pull else None,
         project.active,
         project.selected,
@@ -223,18 +128,6 @@ def _inputs(session: Session, project: Project) -> tuple[object, ...]:
     )
 
 
-def measure(shown: Shown, heat_map: HeatMap) -> Floats:
-    """Return one of the distortions at the vertices of what is shown, (v,)."""
-    fz, fzbar = shown.derivatives
-    match heat_map:
-        case "sigma_a":
-            return distortion.sigma_a(fz, fzbar)
-        case "sigma_b":
-            return distortion.sigma_b(fz, fzbar)
-        case _:
-            return distortion.k(fz, fzbar)
-
-
 def heat_limits(project: Project, heat_map: HeatMap) -> tuple[float, float]:
     """Return the values at the two ends of the colours: from none to all that the bounds allow."""
     bounds = project.figure.bounds
@@ -247,11 +140,11 @@ def heat_limits(project: Project, heat_map: HeatMap) -> tuple[float, float]:
             return 0.0, bounds.k
 
 
-def _scene(session: Session, project: Project, shown: Shown, drawing: _Drawing) -> Scene:
+def _scene(session: Session, project: Project, shown: Shown, drawing: Drawing) -> Scene:
     palette = PALETTES[session.preferences.theme]
     overlays = session.overlays
     puppets = project.puppets.values()
-    drawing.keep_only({mesh for puppet in puppets for mesh in _meshes(puppet)})
+    drawing.release_but({mesh for puppet in puppets for mesh in _meshes(puppet)})
     drawing.refresh()
     if session.cutting is not None:
         scale = pixel_scale(session)
@@ -282,7 +175,7 @@ def _scene(session: Session, project: Project, shown: Shown, drawing: _Drawing) 
     )
 
 
-def _twin_scene(session: Session, project: Project, scene: Scene, drawing: _Drawing) -> Scene:
+def _twin_scene(session: Session, project: Project, scene: Scene, drawing: Drawing) -> Scene:
     """Return the same scene by the method that is compared, without the poses around."""
     shows = {figure: puppet.twin.shown for figure, puppet in project.puppets.items() if puppet.twin}
     meshes = _posed(session, project, shows, drawing, number=TWIN)
@@ -296,7 +189,7 @@ def _posed(
     session: Session,
     project: Project,
     shows: Mapping[int, Shown | None],
-    drawing: _Drawing,
+    drawing: Drawing,
     *,
     number: int = 0,
 ) -> tuple[PosedMesh, ...]:
@@ -328,7 +221,7 @@ def _meshes(puppet: Puppet) -> set[PosableMesh]:
 
 
 def _ghosts(
-    session: Session, project: Project, shown: Shown, drawing: _Drawing
+    session: Session, project: Project, shown: Shown, drawing: Drawing
 ) -> tuple[Ghost, ...]:
     choice, store = session.preferences, project.puppet.store
     # While the hand moves, in-betweens come a moment later: until then the last ones stay.
@@ -348,8 +241,8 @@ def _ghosts(
             if vertices is None or time_of(known, frame) == time_of(known, shown.frame):
                 continue
             placement = shown.placement
-            if project.joints.value is not None and known == project.clip:
-                placement = project.joints.value.placement(project.active, frame)
+            if known == project.clip:
+                (placement,) = project.placements([frame], placement)
             drawn = drawing.drawn_mesh(project.active, store.mesh, number)
             pose = drawn.pose(vertices, placement=placement)
             ghosts.append(Ghost(meshes=(pose,), tint=tint, opacity=GHOST_OPACITY / step**0.5))

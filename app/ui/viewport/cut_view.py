@@ -1,22 +1,20 @@
 """The picture at rest while it is cut out: what is removed lies under a veil."""
 
 import math
-from collections.abc import Sequence
 
 import numpy as np
 from imgui_bundle import ImVec2, imgui
 
-from app.editor import Project, Session, StrokeMark
+from app.editor import Project, Session
 from app.editor.actions import cutting
 from app.render import Disc, Renderer
 from app.render.gpu import GpuMesh, GpuPicture, PosedMesh, PositionBuffer, singles
-from app.ui.style import Look, Palette, ink
+from app.ui.style import Look, Palette, ink, outlined
 from app.ui.viewport.marks import plain
 from engine.arrays import Booleans, Bytes, Complexes, Integers
 
 VEIL = (214, 48, 72, 150)
 FINEST = 1024  # pixels of the veil's longer side
-STROKE = 0.45  # opacity of one that is not done yet
 HOLE = 7.0  # pixels: radius of the mark in a hole
 SQUARE: Integers = np.array([[0, 1, 2], [0, 2, 3]], dtype=np.int32)
 
@@ -100,40 +98,19 @@ def mark_holes(project: Project, palette: Palette, scale: float) -> tuple[Disc, 
 
 
 def draw_brush(session: Session, look: Look, at: ImVec2, scale: float) -> None:
-    """Draw the ring of the brush around the pointer.
-
-    Parameters
-    ----------
-    at : ImVec2
-        Where the pointer is.
-    scale : float
-        Pixels of the screen that one of the picture takes.
-    """
+    """Draw the ring of the brush around a place; a pixel of the picture takes `scale` pixels."""
     if session.project is None or session.cutting not in {"keep", "remove"}:
         return
     keeps = (session.cutting == "keep") != imgui.get_io().key_alt
-    palette, em = look.palette, look.em
     radius = cutting.brush_radius(session.project) * scale
     draw_list = imgui.get_window_draw_list()
-    # Dark below light, so that it shows on any picture.
-    draw_list.add_circle(at, radius, ink(palette.desk, 0.6), 64, 0.22 * em)
-    draw_list.add_circle(at, radius, ink(palette.good if keeps else palette.danger), 64, 0.1 * em)
-    sign = 0.35 * em
-    colour = ink(palette.good if keeps else palette.danger)
-    draw_list.add_line(ImVec2(at.x - sign, at.y), ImVec2(at.x + sign, at.y), colour, 0.12 * em)
+    colour = ink(look.palette.good if keeps else look.palette.danger)
+    for tone, width in outlined(look, colour, 0.1):
+        draw_list.add_circle(at, radius, tone, 64, width)
+    sign, width = 0.35 * look.em, 0.12 * look.em
+    draw_list.add_line((at.x - sign, at.y), (at.x + sign, at.y), colour, width)
     if keeps:
-        draw_list.add_line(ImVec2(at.x, at.y - sign), ImVec2(at.x, at.y + sign), colour, 0.12 * em)
-
-
-def draw_stroke(look: Look, mark: StrokeMark, points: Sequence[ImVec2], scale: float) -> None:
-    """Draw a stroke that is not done yet; `points` are its places on the screen."""
-    colour = look.palette.good if mark.keeps else look.palette.danger
-    draw_list = imgui.get_window_draw_list()
-    radius = mark.radius * scale
-    if len(points) > 1:
-        draw_list.add_polyline(list(points), ink(colour, STROKE), 2 * radius, 0)
-    else:
-        draw_list.add_circle_filled(points[0], radius, ink(colour, STROKE))
+        draw_list.add_line((at.x, at.y - sign), (at.x, at.y + sign), colour, width)
 
 
 def _corners(width: float, height: float) -> Complexes:

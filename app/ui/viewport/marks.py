@@ -3,13 +3,13 @@
 from functools import lru_cache, partial
 
 import numpy as np
-from imgui_bundle import ImVec4, imgui
+from imgui_bundle import ImVec4
 
 from app.document import falls_short
 from app.editor import Project, Session
 from app.motion import AttachedPoints, Box, PosableMesh, Shown
 from app.render import Colour, Disc, HandleMark, Line, mark_anchor, mark_handles
-from app.ui.style import Palette, interface_scale
+from app.ui.style import Palette, density, interface_scale
 from engine.arrays import Complexes
 from engine.domain import Domain
 from engine.geometry import deepest_point
@@ -21,8 +21,7 @@ DOT, KEY_DOT = 2.4, 4.4  # pixels: radius of a frame on a path, and of a key
 
 def pixel_scale(session: Session) -> float:
     """Return how many pixels of the picture a pixel of the design takes."""
-    density = imgui.get_io().display_framebuffer_scale.x or 1.0
-    return interface_scale(session.preferences.scale) * density
+    return interface_scale(session.preferences.scale) * density()
 
 
 def plain(colour: ImVec4, alpha: float = 1.0) -> Colour:
@@ -130,13 +129,12 @@ def _paths(
     project: Project, shown: Shown, palette: Palette, scale: float
 ) -> tuple[list[Line], tuple[Disc, ...]]:
     """Return the paths of the selected handles: a dot for each frame, and a larger one for keys."""
-    paths, joints = project.paths.value, project.joints.value
+    paths = project.paths.value
     if paths is None or len(paths.frames) < 2 or paths.clip.figure.id != project.active:
         return [], ()
-    places = shown.placement.on(paths.places)
-    if joints is not None:
-        rows = zip(paths.frames.tolist(), paths.places, strict=True)
-        places = np.array([joints.placement(project.active, frame).on(row) for frame, row in rows])
+    placements = project.placements(paths.frames.tolist(), shown.placement)
+    rows = zip(placements, paths.places, strict=True)
+    places = np.array([placement.on(row) for placement, row in rows])
     keys = np.isin(paths.frames, [key.frame for key in project.figure.keys])
     lines, discs = [], []
     for handle, path in zip(paths.clip.figure.handles, places.T, strict=True):

@@ -36,10 +36,7 @@ class PosePictures:
     ) -> None:
         """Draw what was asked for in this frame, and let all else go.
 
-        Parameters
-        ----------
-        posable : callable
-            Returns a mesh on the graphics card that can be posed.
+        From `posable` comes a mesh on the graphics card that can be posed.
         """
         mesh = project.puppet.store.mesh
         kind = (mesh, self._side, session.preferences.theme)

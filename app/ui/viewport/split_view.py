@@ -8,7 +8,7 @@ from app.document import Baseline, Variant
 from app.editor import Action, Project, Session, do
 from app.editor.actions import viewing
 from app.ui.methods import METHODS
-from app.ui.style import Look, ink, tip
+from app.ui.style import Look, draw_knob, in_hand, ink, outlined, tip, write_in
 
 GRIP, LINE = 0.55, 0.12  # em: half the width that takes the pointer, and the line's
 KNOB = 0.85  # em: radius of what is seen of the grip
@@ -51,9 +51,9 @@ def draw_pictures(parts: Parts, own: int, twin: int | None) -> None:
     draw_list.add_image(
         imgui.ImTextureRef(own),
         corner,
-        ImVec2(corner.x + room.x, bottom),
-        ImVec2(0, 1),
-        ImVec2(1, 0),
+        (corner.x + room.x, bottom),
+        (0, 1),
+        (1, 0),
     )
     if twin is None:
         return
@@ -62,14 +62,14 @@ def draw_pictures(parts: Parts, own: int, twin: int | None) -> None:
     end = parts.divider + room.x if is_beside else corner.x + room.x
     draw_list.add_image(
         imgui.ImTextureRef(twin),
-        ImVec2(parts.divider, corner.y),
-        ImVec2(end, bottom),
-        ImVec2(left, 1),
-        ImVec2(1, 0),
+        (parts.divider, corner.y),
+        (end, bottom),
+        (left, 1),
+        (1, 0),
     )
 
 
-def draw_divider(session: Session, look: Look, parts: Parts, width: float) -> list[Action]:
+def draw_divider(session: Session, look: Look, parts: Parts, room: float) -> list[Action]:
     """Draw the divider with the methods' names beside it; dragged, it moves.
 
     Before the canvas: what comes first gets the pointer.
@@ -82,27 +82,23 @@ def draw_divider(session: Session, look: Look, parts: Parts, width: float) -> li
     draw_list = imgui.get_window_draw_list()
     is_hot = False
     if not split.beside:
-        imgui.set_cursor_screen_pos(ImVec2(x - GRIP * look.em, top))
-        imgui.invisible_button("divider", ImVec2(2 * GRIP * look.em, height))
-        is_hot = imgui.is_item_hovered() or imgui.is_item_active()
+        imgui.set_cursor_screen_pos((x - GRIP * look.em, top))
+        imgui.invisible_button("divider", (2 * GRIP * look.em, height))
+        is_hot = in_hand()
         if is_hot:
             imgui.set_mouse_cursor(imgui.MouseCursor_.resize_ew)
         if imgui.is_item_active() and imgui.get_io().mouse_delta.x:
-            place = (imgui.get_mouse_pos().x - parts.corner.x) / width
+            place = (imgui.get_mouse_pos().x - parts.corner.x) / room
             actions.append(do(viewing.move_divider, place))
         tip("Drag to compare")
     palette = look.palette
     colour = palette.accent if is_hot else palette.text
-    draw_list.add_line(
-        ImVec2(x, top), ImVec2(x, top + height), ink(palette.desk, 0.7), 3 * LINE * look.em
-    )
-    draw_list.add_line(ImVec2(x, top), ImVec2(x, top + height), ink(colour), LINE * look.em)
+    for tone, width in outlined(look, ink(colour), LINE):
+        draw_list.add_line((x, top), (x, top + height), tone, width)
     if not split.beside:
         knob = ImVec2(x, top + height / 2)
-        draw_list.add_circle_filled(knob, KNOB * look.em, ink(colour))
-        size = imgui.calc_text_size(icons.ICON_FA_LEFT_RIGHT)
-        corner = ImVec2(x - size.x / 2, knob.y - size.y / 2)
-        draw_list.add_text(corner, ink(palette.on_accent), icons.ICON_FA_LEFT_RIGHT)
+        draw_knob(look, knob, KNOB, colour)
+        write_in(knob, knob, icons.ICON_FA_LEFT_RIGHT, ink(palette.on_accent))
     _names(look, project, split.method, x, top)
     return actions
 
@@ -118,4 +114,4 @@ def _names(look: Look, project: Project, method: Variant | Baseline, x: float, t
         low = ImVec2(left - pad, top + pad)
         high = ImVec2(left + size.x + pad, top + size.y + 2 * pad)
         draw_list.add_rect_filled(low, high, ink(look.palette.desk, 0.8), 0.3 * look.em)
-        draw_list.add_text(ImVec2(left, top + 1.5 * pad), ink(look.palette.text), text)
+        draw_list.add_text((left, top + 1.5 * pad), ink(look.palette.text), text)

@@ -21,12 +21,7 @@ class _Wish(NamedTuple):
 
 
 class Docking:
-    """Keeps what is docked as large in em as the person made it, and tabs as wordy as fits.
-
-    Parameters
-    ----------
-    panels : sequence of Panel
-    """
+    """Keeps what is docked as large in em as the person made it, and tabs as wordy as fits."""
 
     def __init__(self, panels: Sequence[Panel]) -> None:
         self._panels = panels

@@ -12,13 +12,7 @@ BUDGET = 0.02  # seconds of each frame of the window
 
 
 class Exporter:
-    """Owner of what an export that is under way draws with.
-
-    Parameters
-    ----------
-    renderer : Renderer
-        Of the window.
-    """
+    """Owner of what an export that is under way draws with, by the window's renderer."""
 
     def __init__(self, renderer: Renderer) -> None:
         self._context = renderer.programs.context

@@ -21,14 +21,9 @@ class FreeMemory:
         self._due: float | None = None  # none before there is work
 
     def maintain(self, *, has_closed: bool) -> None:
-        """Give it back when a project was closed or nothing went on for a while; once a frame.
+        """Give it back when a project `has_closed` or nothing went on for a while; once a frame.
 
         It takes some 10 ms after an export or a drag, which nobody sees in a picture that rests.
-
-        Parameters
-        ----------
-        has_closed : bool
-            Whether a project was closed in this frame.
         """
         session = self._session
         project = session.project

@@ -24,19 +24,12 @@ LAYOUT = 1
 # Input wakes the window at once, and so does all that goes on by itself.
 IDLE_FPS = 0.2
 AWAKE = 0.5  # seconds for which it goes on after that, for what it leads to
-SETTLED = 2  # frames in which panels have shown what they are to show
+REPEATS = 2  # frames after which the next ones would show nothing new
 LEFT = imgui.MouseButton_.left
 
 
 class Shell:
-    """Draws the window's contents from a session, once a frame, and applies what was asked for.
-
-    Parameters
-    ----------
-    panels : sequence of Panel
-    thumbnail : callable
-        Returns the thumbnail of a picture file.
-    """
+    """Draws the window's contents from a session, once a frame, and applies what was asked for."""
 
     def __init__(
         self,
@@ -48,7 +41,7 @@ class Shell:
         self._thumbnail = thumbnail
         self._panels = panels
         self._docking = Docking(panels)
-        self._fonts: tuple[imgui.ImFont, imgui.ImFont] | None = None
+        self._bold: imgui.ImFont | None = None
         self._themed: tuple[str, float] | None = None
         self._dialogs = Dialogs()
         self._actions: list[Action] = []
@@ -92,7 +85,7 @@ class Shell:
     @property
     def awaits_worker(self) -> bool:
         """Whether frames would only repeat what is shown, and take time from the worker."""
-        return self._idle_frames >= SETTLED
+        return self._idle_frames >= REPEATS
 
     def release(self) -> None:
         """Close what is open beside the window."""
@@ -110,14 +103,12 @@ class Shell:
     @property
     def look(self) -> Look:
         """What panels draw with at present."""
-        if self._fonts is None:
+        if self._bold is None:
             raise RuntimeError("the window has no fonts before its first frame")
-        bold, mono = self._fonts
         preferences = self.session.preferences
         return Look(
             palette=PALETTES[preferences.theme],
-            bold=bold,
-            mono=mono,
+            bold=self._bold,
             em=imgui.get_font_size() or FONT_SIZE * interface_scale(preferences.scale),
         )
 
@@ -150,7 +141,7 @@ class Shell:
         self.session.tell(text, tone="error", details=details)
 
     def _load_fonts(self) -> None:
-        self._fonts = load_fonts()
+        self._bold = load_fonts()
 
     def _configure(self) -> None:
         io = imgui.get_io()
@@ -197,8 +188,9 @@ class Shell:
             self._part("The welcome view", partial(welcome.draw, thumbnail=self._thumbnail))()
         self._part("The dialog", partial(self._dialogs.draw, thumbnail=self._thumbnail))()
         self._part("The messages", toasts.draw)()
-        held = imgui.internal.get_active_id()
-        self._actions.append(do(editing.hold, held or int(imgui.is_mouse_down(LEFT))))
+        # Where the pointer is down on no widget, that counts as one.
+        widget = imgui.internal.get_active_id() or int(imgui.is_mouse_down(LEFT))
+        self._actions.append(do(editing.use_widget, widget))
 
     def _apply_actions(self) -> None:
         # What panels saw of the pointer comes first: what was dropped there depends on it.

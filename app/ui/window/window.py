@@ -19,7 +19,7 @@ from PIL import Image
 import glfw  # isort: skip
 
 from app.document import Pose
-from app.editor import Action, FileDialog, Session, do, layering
+from app.editor import Action, FileDialog, Project, Session, do, layering
 from app.editor.actions import exporting, saving
 from app.errors import EXPECTED_ERRORS, LissomError, shown_name
 from app.render import LayerPictures, Renderer, Thumbnail, Thumbnails
@@ -27,6 +27,7 @@ from app.render.gpu import is_software
 from app.storage import app_icon, sample_images
 from app.ui.panel import Panel
 from app.ui.panels import cut_out, deform, distortion, domain, export, handle, layers, poses
+from app.ui.style import Look
 from app.ui.timeline import timeline
 from app.ui.viewport import Canvas, SplitTextures, viewport
 from app.ui.window.dropped import accept_files
@@ -183,7 +184,7 @@ class Window:
         if self._canvas is None or self._renderer is None:
             return
         try:
-            self._memory.maintain(has_closed=self._canvas.keep_only(self.session.project))
+            self._memory.maintain(has_closed=self._canvas.release_others(self.session.project))
             self._canvas.draw(self.session)
         except Exception as error:  # noqa: BLE001 - part of the frame guard
             self._tell_of_drawing(error)
@@ -202,7 +203,7 @@ class Window:
         if project is not None and saving.has_unsaved(project):
             kept = " Unsaved work was kept."
             try:
-                saving.keep_now(session)
+                saving.autosave_now(session)
             except EXPECTED_ERRORS as reason:
                 kept = f" Unsaved work could not be kept ({reason})."
         session.tell(
@@ -214,50 +215,26 @@ class Window:
         )
 
     def _panels(self) -> list[Panel]:
+        draw_layers = partial(layers.draw, pictures=self._layer_picture)
+        draw_poses = partial(poses.draw, pictures=self._pose_picture)
         return [
-            Panel(
-                title="Viewport",
-                icon=icons.ICON_FA_IMAGE,
-                place="MainDockSpace",
-                draw=lambda session, look, project: viewport.draw(
-                    session, look, project, self._pictures
-                ),
-            ),
-            Panel(title="Timeline", icon=icons.ICON_FA_FILM, place="bottom", draw=timeline.draw),
-            Panel(title="Handle", icon=icons.ICON_FA_CIRCLE_DOT, place="side", draw=handle.draw),
-            Panel(
-                title="Layers",
-                icon=icons.ICON_FA_LAYER_GROUP,
-                place="side",
-                draw=lambda session, look, project: layers.draw(
-                    session, look, project, self._layer_picture
-                ),
-            ),
-            Panel(
-                title="Poses",
-                icon=icons.ICON_FA_PERSON_RUNNING,
-                place="side",
-                draw=lambda session, look, project: poses.draw(
-                    session, look, project, self._pose_picture
-                ),
-            ),
-            Panel(title="Deform", icon=icons.ICON_FA_SLIDERS, place="side", draw=deform.draw),
-            Panel(
-                title="Distortion",
-                icon=icons.ICON_FA_CHART_LINE,
-                place="side",
-                draw=distortion.draw,
-            ),
-            Panel(title="Mesh", icon=icons.ICON_FA_SHAPES, place="side", draw=domain.draw),
-            Panel(title="Cut-out", icon=icons.ICON_FA_SCISSORS, place="side", draw=cut_out.draw),
-            Panel(title="Export", icon=icons.ICON_FA_FILE_EXPORT, place="side", draw=export.draw),
+            Panel("Viewport", icons.ICON_FA_IMAGE, self._draw_viewport, place="MainDockSpace"),
+            Panel("Timeline", icons.ICON_FA_FILM, timeline.draw, place="bottom"),
+            Panel("Handle", icons.ICON_FA_CIRCLE_DOT, handle.draw),
+            Panel("Layers", icons.ICON_FA_LAYER_GROUP, draw_layers),
+            Panel("Poses", icons.ICON_FA_PERSON_RUNNING, draw_poses),
+            Panel("Deform", icons.ICON_FA_SLIDERS, deform.draw),
+            Panel("Distortion", icons.ICON_FA_CHART_LINE, distortion.draw),
+            Panel("Mesh", icons.ICON_FA_SHAPES, domain.draw),
+            Panel("Cut-out", icons.ICON_FA_SCISSORS, cut_out.draw),
+            Panel("Export", icons.ICON_FA_FILE_EXPORT, export.draw),
         ]
 
-    @property
-    def _pictures(self) -> SplitTextures:
+    def _draw_viewport(self, session: Session, look: Look, project: Project) -> list[Action]:
         if self._canvas is None:
-            return SplitTextures(None, None)
-        return SplitTextures(self._canvas.texture, self._canvas.twin_texture)
+            return []
+        pictures = SplitTextures(self._canvas.texture, self._canvas.twin_texture)
+        return viewport.draw(session, look, project, pictures)
 
     def _pose_picture(self, pose: Pose, side: int) -> int | None:
         return self._canvas.pose_pictures.get(pose, side) if self._canvas else None

@@ -2,6 +2,7 @@
 
 import configparser
 import io
+import os
 import re
 import shlex
 import shutil
@@ -188,6 +189,19 @@ def test_a_program_in_a_strange_folder_is_quoted(home, monkeypatch, tmp_path):
     line = said["Exec"].replace("\\\\", "\\")
     quoted = re.fullmatch(r'"((?:[^"`$\\]|\\["`$\\])*)" %f', line)
     assert re.sub(r"\\(.)", r"\1", quoted[1]) == str(scripts / "lissom").replace("%", "%%")
+
+
+def test_a_program_in_a_folder_of_several_lines_stays_on_one(home, monkeypatch, tmp_path):
+    scripts = tmp_path / "my\nExec=evil\r\tprograms\udcff"
+    scripts.mkdir()
+    (scripts / "lissom").touch()
+    monkeypatch.setattr(desktop.sysconfig, "get_path", lambda _: str(scripts))
+    main(["desktop", "--install"])
+    for place in ("applications/lissom.desktop", "thumbnailers/lissom.thumbnailer"):
+        lines = os.fsdecode((home / place).read_bytes()).split("\n")
+        (line,) = (line for line in lines if line.startswith("Exec="))
+        assert r"my\nExec=evil\r\tprograms" in line
+        assert not any("evil" in line for line in lines if not line.startswith(("Exec", "TryExec")))
 
 
 def test_an_installation_without_the_program_says_so(home, monkeypatch, tmp_path, capsys):

@@ -25,7 +25,10 @@ pytestmark = pytest.mark.skipif(os.name == "nt", reason="Windows has no such sig
 LISTEN = """
 import signal, sys, threading, time
 from app.cli import process
-signal.signal(signal.SIGINT, signal.default_int_handler)  # ignored where a shell is not looked at
+# As in a terminal: what runs unattended may hand on that it ignores some of them.
+signal.signal(signal.SIGINT, signal.default_int_handler)
+signal.signal(signal.SIGTERM, signal.SIG_DFL)
+signal.signal(signal.SIGHUP, signal.SIG_DFL)
 def say(*words):
     print(*words, flush=True)
 wake = None
@@ -138,7 +141,7 @@ def test_what_could_not_be_kept_is_not_said_to_be(monkeypatch, capfd):
     def refuse(_):
         raise LissomError("the disk is full")
 
-    monkeypatch.setattr(saving, "keep_now", refuse)
+    monkeypatch.setattr(saving, "autosave_now", refuse)
     window._keep(None)
     assert capfd.readouterr().err.endswith("unsaved work could not be kept: the disk is full\n")
 

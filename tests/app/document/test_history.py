@@ -298,7 +298,7 @@ def test_what_completes_a_step_is_undone_with_it():
     history.do(set_fps(20))
     later = history.document
     history.undo()
-    history.complete(scene_commands.set_loop(loop=True))
+    history.extend_step(scene_commands.set_loop(loop=True))
     completed = history.document
     assert (completed.fps, completed.loop) == (10, True)
     assert history.undo_label == "Set frames per second"
@@ -310,11 +310,11 @@ def test_what_completes_a_step_is_undone_with_it():
     assert history.document is first
     # A pose that no key holds is over the domain of before.
     history.pose(pose)
-    history.complete(scene_commands.set_loop(loop=True))
+    history.extend_step(scene_commands.set_loop(loop=True))
     assert history.unkeyed is None
     # What changes nothing completes nothing.
     same = history.document
-    history.complete(scene_commands.set_loop(loop=True))
+    history.extend_step(scene_commands.set_loop(loop=True))
     assert history.document is same
 
 
@@ -347,7 +347,7 @@ def test_what_a_gesture_led_to_goes_on_in_its_step_and_in_all_later_ones():
         assert all(kept.pose.phi is rest.phi for kept in now.library if kept.name == "copy")
         history.redo() if documents == 0 else history.undo()
     history.redo()
-    assert history._held == held(history)
+    assert history._bytes == held(history)
     while history.undo_label is not None:
         history.undo()
     assert history.document is first, "nothing before it has changed"

@@ -1,6 +1,8 @@
 """Sprite sheets as an engine reads them: by the JSON beside the PNG."""
 
+import errno
 import json
+import os
 from pathlib import Path
 
 import numpy as np
@@ -108,12 +110,12 @@ def test_data_lie_beside_their_sheet(tmp_path):
     assert data_file(tmp_path / "v1.2", "spritesheet") == tmp_path / "v1.2.json"
 
 
-@pytest.mark.parametrize("calls", [1, 2])
+@pytest.mark.parametrize("calls", [1, 2, 3])
 def test_a_sheet_that_is_replaced_half_way_never_has_the_data_of_another(
     tmp_path, monkeypatch, calls
 ):
     exported(tmp_path)
-    before = [path.read_bytes() for path in (tmp_path / "walk.png", tmp_path / "walk.json")]
+    before = contents(tmp_path)
     replace, left = Path.replace, [calls]
 
     def stopped(self, target):
@@ -125,5 +127,29 @@ def test_a_sheet_that_is_replaced_half_way_never_has_the_data_of_another(
     monkeypatch.setattr(Path, "replace", stopped)
     with pytest.raises(LissomError, match="Input/output"):
         exported(tmp_path, padding=9)
-    sheet, data = tmp_path / "walk.png", tmp_path / "walk.json"
-    assert not data.exists() or [sheet.read_bytes(), data.read_bytes()] == before
+    if calls < 3:
+        assert contents(tmp_path) == before
+    else:  # nothing comes after it but the data
+        assert not (tmp_path / "walk.json").exists()
+
+
+@pytest.mark.parametrize("calls", [1, 2])
+def test_a_sheet_for_which_there_is_no_room_leaves_both_files_as_they_were(
+    tmp_path, monkeypatch, calls
+):
+    exported(tmp_path)
+    before, left = contents(tmp_path), [calls]
+
+    def full(_):
+        left[0] -= 1
+        if not left[0]:
+            raise OSError(errno.EFBIG, "File too large")
+
+    monkeypatch.setattr(os, "fsync", full)
+    with pytest.raises(LissomError, match=r"File too large.* make room"):
+        exported(tmp_path, padding=9)
+    assert contents(tmp_path) == before
+
+
+def contents(folder):
+    return {path.name: path.read_bytes() for path in folder.iterdir()}

@@ -104,12 +104,12 @@ def test_a_key_that_changes_has_four_intervals_prepared_again():
 
 def test_how_much_of_their_velocity_keys_keep_is_told():
     document = row(4)
-    assert prepared(document)[0].kept(clip_of(document, 0)) == {10: 1.0, 20: 1.0}
+    assert prepared(document)[0].velocity_shares(clip_of(document, 0)) == {10: 1.0, 20: 1.0}
     tight = altered(document, bounds=Bounds(k=0.01, sigma_a=1.01, sigma_b=0.99))
-    kept = prepared(tight)[0].kept(clip_of(tight, 0))
+    kept = prepared(tight)[0].velocity_shares(clip_of(tight, 0))
     assert kept.keys() == {10, 20}
     assert max(kept.values()) < 0.01
-    assert prepared(tight)[0].kept(clip_of(document, 0)) == {}
+    assert prepared(tight)[0].velocity_shares(clip_of(document, 0)) == {}
 
 
 def test_an_outline_whose_preparation_was_ended_is_prepared_anew():

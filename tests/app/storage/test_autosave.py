@@ -34,6 +34,23 @@ sys.stdin.read()
 """
 
 
+def test_unsaved_work_is_nobody_elses(tmp_path):
+    folder = tmp_path / "settings"
+    folder.mkdir(mode=0o755)
+    own = Autosave(folder)
+    for _ in range(2):
+        own.write(disc_document(), UNKNOWN)
+        assert folder.stat().st_mode & 0o777 == 0o700
+        assert {path.stat().st_mode & 0o777 for path in folder.iterdir()} == {0o600}
+        for path in folder.glob("*.lissom"):
+            path.chmod(0o644)  # as earlier versions left it
+    own.forget()
+    Autosave(tmp_path / "new").write(disc_document(), UNKNOWN)
+    assert (tmp_path / "new").stat().st_mode & 0o777 == 0o700
+    save_project(tmp_path / "mine.lissom", disc_document())
+    assert (tmp_path / "mine.lissom").stat().st_mode & 0o044
+
+
 @pytest.fixture
 def autosave(tmp_path):
     own = Autosave(tmp_path)

@@ -194,7 +194,7 @@ def test_a_figure_that_is_named_again_and_again_is_read_never(tmp_path, members,
 
 @pytest.mark.parametrize("method", [zipfile.ZIP_LZMA, zipfile.ZIP_BZIP2])
 def test_other_ways_of_packing_are_refused(tmp_path, members, method):
-    with pytest.raises(LissomError, match="packed in a way"):
+    with pytest.raises(LissomError, match="is not a Lissom project, or it is damaged"):
         load_project(pack(tmp_path / "a", members, method=method))
 
 

@@ -8,7 +8,7 @@ import pytest
 from documents import disc_document
 from PIL import Image
 
-from app.storage import draw_thumbnail, read_thumbnail, save_project
+from app.storage import decode_picture, draw_thumbnail, read_thumbnail, save_project
 from app.storage.thumbnail import SIDE, shrink
 
 RGBA = np.zeros((900, 600, 4), np.uint8)
@@ -44,6 +44,20 @@ def test_large_photographs_are_read_at_a_fraction_and_turned_upright(tmp_path):
     small = read_thumbnail(path)
     assert small.shape[:2] == (SIDE, SIDE * 3 // 4)
     assert np.abs(small[9, 9, :3].astype(int) - (200, 30, 90)).max() <= 4
+
+
+@pytest.mark.parametrize("kind", ["PNG", "WEBP", "JPEG"])
+@pytest.mark.parametrize(
+    "notes", [b"\xe5]`\xed\xf7}\x9f\xe0", b"Exif\0\0nonsense", b"II*\0", b"MM"]
+)
+def test_a_camera_whose_notes_are_damaged_spoils_no_picture(tmp_path, kind, notes):
+    path = tmp_path / "a"
+    Image.fromarray(RGBA[:20, :30, :3]).save(path, kind, exif=notes, quality=95)
+    shown = read_thumbnail(path)
+    picture = decode_picture(path.read_bytes(), "it")
+    assert shown.shape == picture.rgba.shape == (20, 30, 4)
+    assert np.abs(shown[9, 9, :3].astype(int) - (200, 30, 90)).max() <= 4
+    assert picture.notices in {(), ("ignored the camera's notes, which are damaged",)}
 
 
 def test_what_has_no_picture_has_no_thumbnail(tmp_path):

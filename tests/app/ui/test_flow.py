@@ -11,7 +11,7 @@ from app.editor.action import do
 from app.editor.actions import editing, exporting, keys, playback, posing, saving, viewing
 from app.render.view import View
 from app.storage.assets import sample_images
-from app.ui.viewport import badges, marks
+from app.ui.viewport import hints, marks
 from engine.deform import Status
 
 BAR = sample_images() / "bar.png"
@@ -631,17 +631,17 @@ def test_three_hints_lead_to_the_first_motion(window):
     """Click, drag, move the playhead and drag again; one handle is enough."""
     session = window.session
     project = window.open(BAR)
-    steps = [badges.first_step(project)]
+    steps = [hints.first_step(project)]
     place = complex(*project.document.canvas) / 2
     posing.add_handle(session, place)
     window.settle()
-    steps.append(badges.first_step(project))
+    steps.append(hints.first_step(project))
     posing.wish(session, {0: Target(position=place + 60j)})
     window.settle()
-    steps.append(badges.first_step(project))
+    steps.append(hints.first_step(project))
     playback.seek(session, 24)
     window.settle()
     posing.wish(session, {0: Target(position=place)})
     window.settle()
-    steps.append(badges.first_step(project))
+    steps.append(hints.first_step(project))
     assert steps == [0, 1, 2, None]

@@ -66,7 +66,7 @@ def test_handles_are_suggested_and_taken_back_by_a_click(window, bar, play):
     posing.remove_handles(window.session, frozenset({0, 1}))
     window.frames(2)
     before = bar.document
-    play(lambda robot: robot.item_click("**/###suggest"))
+    play(lambda robot: robot.item_click("**/###Suggest handles"))
     width, height = bar.document.canvas
     found = sorted(handle.position.real / width for handle in bar.figure.handles)
     assert_allclose(found, [0.06, 0.5, 0.94], rtol=0, atol=0.06)
@@ -79,7 +79,7 @@ def test_handles_are_suggested_and_taken_back_by_a_click(window, bar, play):
 
 
 def test_suggestions_are_taken_back_after_other_steps(window, bar, play):
-    play(lambda robot: robot.item_click("**/###suggest"))
+    play(lambda robot: robot.item_click("**/###Suggest handles"))
     suggested = {handle.id for handle in bar.figure.handles} - {0, 1}
     assert len(suggested) == 1, "there are handles at both ends already"
     editing.select(window.session, frozenset({0}))

@@ -8,12 +8,20 @@ from documents import differences
 from layered import openraster
 from PIL import Image, ImageDraw
 
-from app.document import clip_of, figure_commands, fronts_at, key_commands, layer_commands
+from app.document import (
+    Attachment,
+    clip_of,
+    figure_commands,
+    fronts_at,
+    key_commands,
+    layer_commands,
+)
 from app.editor import layering
-from app.editor.actions import editing, files, playback, posing
+from app.editor.actions import editing, files, playback, posing, viewing
+from app.motion import HERE
 from app.storage import Autosave, Origin
 from app.ui.style import PALETTES
-from app.ui.viewport.marks import find_anchor
+from app.ui.viewport.marks import find_anchor, mark_all
 
 WIDTH, HEIGHT = 240, 200
 LAYERS = {
@@ -236,3 +244,66 @@ def test_unsaved_work_comes_back_with_its_joints_and_depths(window, scene, drag,
         np.testing.assert_allclose(on_scene(again, name), places, rtol=0, atol=1e-3)
     clip = clip_of(again.document, arm)
     assert [fronts_at(clip, frame)[0].depth for frame in (6, 12)] == [-0.5, 1.0]
+
+
+@pytest.fixture
+def swung(window, scene):
+    """The arm hangs on the body, which turns; a handle's way is shown, and ghosts."""
+    arm, body = identity(scene, "arm"), identity(scene, "body")
+    figure = scene.document.figure(body)
+    pose = figure.keys[0].pose
+    turned = replace(pose, phi=100 + (figure.domain.cage - 100) * np.exp(0.3j))
+    scene.history.do(key_commands.insert_key(body, 24, turned), gesture=None)
+    joint = layer_commands.attach(arm, SHOULDER, Attachment(to=body, at=SHOULDER))
+    window.act(editing.edit, joint)
+    window.act(playback.seek, 24)
+    window.settle()
+    window.act(posing.add_handle, PALM)
+    for overlay in ("paths", "onion"):
+        window.act(viewing.toggle, overlay)
+    window.settle()
+    return scene
+
+
+def ways(window, project):
+    """Return the ways of handles that are drawn."""
+    lines, _ = mark_all(window.session, project, project.puppet.shown, PALETTES["dark"])
+    return [line.points for line in lines if len(line.points) > 2]
+
+
+def test_a_layer_that_is_let_go_leaves_its_way_on_the_other_one(window, swung):
+    (way,) = ways(window, swung)
+    assert abs(way[-1] - way[0]) > 10
+    window.act(layering.let_hang, identity(swung, "arm"))
+    window.settle()
+    assert ways(window, swung) == []
+    window.act(editing.undo)
+    window.settle()
+    np.testing.assert_allclose(ways(window, swung), [way], rtol=0, atol=1e-9)
+
+
+def test_where_layers_hang_is_not_told_by_joints_of_an_earlier_document(window, swung):
+    (way,) = ways(window, swung)
+    joints = swung.joints.value
+    figure = swung.document.figure(identity(swung, "body"))
+    pose = replace(figure.keys[0].pose, phi=figure.domain.cage + 50)
+    editing.edit(window.session, key_commands.pose_key(figure.id, 0, pose))
+    assert swung.joints.value is joints
+    assert swung.placements([0], HERE) == [HERE]
+    window.settle()
+    (now,) = ways(window, swung)
+    np.testing.assert_allclose([now[0], now[-1]], [way[0] + 50, way[-1]], rtol=0, atol=1e-6)
+
+
+def test_a_layer_that_comes_to_a_scene_with_joints_has_its_own_way(window, swung, tmp_path):
+    path = tmp_path / "ball.png"
+    Image.new("RGBA", (40, 40), (90, 200, 90, 255)).save(path)
+    window.act(layering.add, [path])
+    window.settle()
+    assert swung.figure.name == "ball"
+    shown = swung.puppet.shown
+    window.act(posing.add_handle, complex(shown.positions.mean()))
+    window.act(posing.nudge, 12)
+    window.settle()
+    (way,) = ways(window, swung)
+    assert abs(way[-1] - way[0] - 12) < 1e-6

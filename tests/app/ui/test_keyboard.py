@@ -4,7 +4,7 @@ import pytest
 from imgui_bundle import imgui
 
 from app.editor import Question, do
-from app.editor.actions import posing, show_dialog
+from app.editor.actions import posing, show_dialog, viewing
 from app.storage.assets import sample_images
 from app.ui.shortcuts import BINDINGS, MENUS
 from app.ui.shortcuts.keys import in_words, with_key
@@ -161,6 +161,23 @@ def test_menus_are_made_from_the_table(window):
 
     window.run(look)
     assert found == list(BINDINGS)
+
+
+def test_greyed_entries_tell_what_is_on_without_a_project(window):
+    window.act(viewing.toggle, "wireframe")
+    told = {}
+
+    def look(robot):
+        robot.set_ref("##MainMenuBar")
+        robot.menu_click("View")
+        for label in ("Wireframe", "Handles", "Outline"):
+            told[label] = robot.item_is_checked(f"//$FOCUSED/{label}")
+            assert robot.item_info(f"//$FOCUSED/{label}").item_flags & imgui.ItemFlags_.disabled
+        robot.popup_close_all()
+
+    window.run(look)
+    assert told == {"Wireframe": True, "Handles": True, "Outline": False}
+    assert not BINDINGS["loop"].is_active(window.session)
 
 
 def test_the_layout_can_be_put_back(window):

@@ -12,7 +12,7 @@ from app.editor.action import do
 from app.editor.actions import files, posing, saving, viewing
 from app.editor.dialogs import FileDialog, Question
 from app.storage.assets import sample_images
-from app.ui.dialogs import native_dialog, system_dialogs
+from app.ui.dialogs import native_dialog
 
 MOST_POLLS = 3000
 PROGRAM = """\
@@ -74,7 +74,7 @@ def program(window, tmp_path, monkeypatch):
     script.chmod(0o755)
     monkeypatch.setenv("PATH", f"{place}:/usr/bin:/bin")
     monkeypatch.setenv("XDG_SESSION_DESKTOP", "gnome")
-    window.session.system_dialogs = system_dialogs.find_system_dialogs() is not None
+    window.session.system_dialogs = native_dialog.find_system_dialogs() is not None
     assert window.session.system_dialogs
     program = Program(window, place)
     yield program
@@ -267,8 +267,8 @@ def test_the_window_takes_the_dialog_with_it(window, program, ask):
 
 def test_without_a_program_our_browser_is_used(window, ask, chosen, tmp_path, monkeypatch):
     monkeypatch.setenv("PATH", str(tmp_path))
-    monkeypatch.setattr(system_dialogs.sys, "platform", "linux")
-    assert system_dialogs.find_system_dialogs() is None
+    monkeypatch.setattr(native_dialog.sys, "platform", "linux")
+    assert native_dialog.find_system_dialogs() is None
     ask()
     window.frames(2)
     window.run(lambda robot: robot.item_click("//###dialog/Save"))
@@ -277,9 +277,9 @@ def test_without_a_program_our_browser_is_used(window, ask, chosen, tmp_path, mo
 
 @pytest.mark.parametrize("platform", ["win32", "darwin"])
 def test_other_systems_have_dialogs_always(platform, monkeypatch):
-    monkeypatch.setattr(system_dialogs.sys, "platform", platform)
+    monkeypatch.setattr(native_dialog.sys, "platform", platform)
     monkeypatch.setattr(shutil, "which", lambda _: None)
-    assert system_dialogs.find_system_dialogs() is not None
+    assert native_dialog.find_system_dialogs() is not None
 
 
 def is_running(program):

@@ -62,7 +62,7 @@ def test_a_loop_takes_few_clicks_and_drags(window, tmp_path):
     window.settle()
     project = session.project
     person.show_tab("Handle")
-    person.click("//Handle/**/###suggest")
+    person.click("//Handle/**/###Suggest handles")
     first = project.document
     assert len(project.figure.handles) >= 3
     person.drag_playhead(0.5)

@@ -75,13 +75,13 @@ def test_a_bound_that_is_reached_warns(window):
 
 
 def test_a_pull_that_is_held_back_is_told_with_its_remedy(window, bent):
-    assert bars.hold_back(window.session) == ""
+    assert bars.limit_of_pose(window.session) == ""
     width, height = bent.document.canvas
     posing.wish(window.session, {1: Target(position=complex(2.4 * width, 0.5 * height))})
     window.settle()
     figure = bent.figure
     lag = figure.lags(figure.key(24).pose)[1]
-    told = bars.hold_back(window.session)
+    told = bars.limit_of_pose(window.session)
     assert re.fullmatch(
         r"Stretch limit reached – handle \d is \d+ px short(, 1 more too)?", told
     ), told

@@ -13,7 +13,7 @@ from app.document.keyframe import Handle, Keyframe, Passing, Target
 from app.document.settings import FrameRange
 from app.editor.actions import editing, keys, playback, rebuilding, timeline_pointing
 from app.editor.timeline_view import Strip
-from app.ui.bars.status import slow_down
+from app.ui.bars.status import limit_of_motion
 from app.ui.style import PALETTES
 from app.ui.viewport.marks import mark_all
 from engine.maps import Bounds
@@ -330,7 +330,7 @@ def test_the_paths_of_selected_handles_are_shown_and_follow_the_keys(window, pro
 
 
 def test_keys_that_the_limits_slow_down_are_told_with_a_remedy(window, project):
-    assert slow_down(window.session) == ""
+    assert limit_of_motion(window.session) == ""
     tight = Bounds(k=0.01, sigma_a=1.001, sigma_b=0.999)
     command = figure_commands.set_bounds(0, tight)
     project.history.do(figure_commands.set_variant(0, "nu"))
@@ -339,7 +339,7 @@ def test_keys_that_the_limits_slow_down_are_told_with_a_remedy(window, project):
     project.history.do(key_commands.pose_key(0, 12, squeezed))
     project.history.do(command)
     window.settle()
-    assert slow_down(window.session) == (
+    assert limit_of_motion(window.session) == (
         "The motion stops at frame 12 to keep within the stretch limit"
     )
     rebuilding.loosen_bounds(window.session)
@@ -430,7 +430,7 @@ def test_a_strip_that_is_scrolled_by_a_drag_stays_so(window, project, play):
         hand.robot.mouse_move_to_pos(ImVec2(1275, edge.y))
         for _ in range(10):
             hand.robot.yield_()
-        assert project.timing.held.start > 0
+        assert project.timing.gesture_strip.start > 0
         hand.robot.mouse_up(0)
 
     play(drag_beyond_the_edge)

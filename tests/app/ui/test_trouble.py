@@ -378,7 +378,7 @@ def test_older_work_that_waits_to_be_kept_does_not_replace_what_was_kept_at_once
     window.frames(2)
     assert saving.AUTOSAVING in window.session.jobs.kinds
     window.act(posing.add_handle, middle + 50)
-    saving.keep_now(window.session)
+    saving.autosave_now(window.session)
     end.set()
     window.settle()
     (kept,) = window.folder.glob("unsaved-*.lissom")
@@ -404,7 +404,7 @@ def test_every_unsaved_work_is_offered_whenever_it_was_kept(window, project):
     assert len(window.session.dialog.candidates) == 2
     answer(window, "Later")
     assert window.session.dialog is None
-    window.act(files.show_recovery)
+    window.run(lambda robot: robot.menu_click("//##MainMenuBar/File/Unsaved work…"))
     assert len(window.session.dialog.candidates) == 2
     answer(window, "Open")
     assert window.session.project is not None

@@ -17,8 +17,9 @@ from PIL import Image
 
 from app.document import UnkeyedPose
 from app.document.settings import ExportSettings
-from app.editor.actions import editing, exporting, files, keys, playback, posing, saving
+from app.editor.actions import cutting, editing, exporting, files, keys, playback, posing, saving
 from app.editor.dialogs import Question
+from app.editor.layering import pictures
 from app.motion import inbetweens
 from app.storage.assets import sample_images
 from app.ui.window import exporter
@@ -540,3 +541,34 @@ def test_what_the_clipboard_needs_is_told(window, monkeypatch, tmp_path):
     window.act(exporting.copy_picture)
     assert window.session.export is None
     assert any("sudo apt install xclip" in text for text in texts(window)), texts(window)
+
+
+def test_nothing_is_written_over_what_the_project_was_made_from(window, tmp_path):
+    drawing, layer, saved = (tmp_path / name for name in ("a.png", "b.png", "walk.json"))
+    drawing.write_bytes(BAR.read_bytes())
+    layer.write_bytes(BAR.read_bytes())
+    session, project = window.session, window.open(drawing)
+    pictures.add(session, [layer])
+    window.settle()
+    saving.write(session, saved, None)
+    window.settle()
+    (link := tmp_path / "link.png").symlink_to(layer)
+    before = {path: path.read_bytes() for path in (drawing, layer, saved)}
+
+    def refused(action, *arguments):
+        session.toasts = []
+        window.act(action, *arguments)
+        window.settle()
+        assert session.export is None
+        assert any("is the same file as" in toast.text + toast.details for toast in session.toasts)
+        assert {path: path.read_bytes() for path in before} == before
+
+    exporting.set_export(session, ExportSettings(format="picture", size=SIZE))
+    for out in (drawing, link):
+        refused(exporting.start_at, out)
+        refused(cutting.save_mask, out)
+        refused(saving.write, out, None)
+    refused(cutting.save_mask, saved)
+    exporting.set_export(session, ExportSettings(format="spritesheet", size=SIZE))
+    refused(exporting.start_at, tmp_path / "walk.png")
+    assert project.path == saved

@@ -16,8 +16,8 @@ from engine.dirichlet.product_integration import is_near, panel_weights
 from engine.dirichlet.refinement import Refinement
 from engine.geometry import contains
 from engine.geometry.polygon import box_diagonal, edges
-from engine.interpolation.blends import OutlineMetric
-from engine.interpolation.passing import Course
+from engine.interpolation import Course
+from engine.interpolation.blends.outline import OutlineMetric
 from engine.maps import Bounds
 
 

@@ -5,6 +5,7 @@ Out: poses in the document, step by step; handles and the anchor.
 Imports: `app.editor`, `app.document`, `app.motion`, `app.solving`.
 """
 
+from app.editor.actions.posing.adopting import as_key as as_key, retargeted as retargeted
 from app.editor.actions.posing.handles import (
     add_handle as add_handle,
     anchor_at as anchor_at,
@@ -18,7 +19,6 @@ from app.editor.actions.posing.inserting import (
     insert_key as insert_key,
     insert_key_at as insert_key_at,
 )
-from app.editor.actions.posing.keeping import holding as holding, retargeted as retargeted
 from app.editor.actions.posing.pulling import (
     end_at as end_at,
     free_turn as free_turn,
@@ -33,7 +33,7 @@ from app.editor.actions.posing.pulling import (
 )
 from app.editor.actions.posing.settling import (
     bring_all as bring_all,
-    keep_up as keep_up,
+    maintain as maintain,
     tried_clips as tried_clips,
 )
 from app.editor.actions.posing.solving import POSING as POSING, STEPS as STEPS

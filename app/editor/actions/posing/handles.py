@@ -1,4 +1,4 @@
-"""Handles and the anchor: added, deleted and set, in the pose that no key holds as well."""
+"""Handles and the anchor: adding, deleting and setting them, also in the pose that no key holds."""
 
 from dataclasses import replace
 
@@ -13,7 +13,7 @@ from app.document import (
     pairs_by_name,
 )
 from app.editor.action import do
-from app.editor.actions.posing.keeping import retargeted
+from app.editor.actions.posing.adopting import retargeted
 from app.editor.actions.posing.pulling import let_go
 from app.editor.project import Project
 from app.editor.session import Session, with_project
@@ -55,7 +55,7 @@ def remove_handles(
 
 @with_project
 def suggest_handles(session: Session, project: Project) -> None:
-    """Put handles at the tips of limbs and in the middle of the body, but where there are some."""
+    """Put handles at the tips of limbs and in the middle of the body, where there are none yet."""
     figure = project.figure
     places = domains.suggest_handles(figure.domain.loops)
     near = NEAR * box_diagonal(figure.domain.outline)
@@ -95,7 +95,7 @@ def _take_suggestions_back(
 
 @with_project
 def mirror_handles(session: Session, project: Project) -> None:
-    """Give each selected handle a partner on the other side of the mirror axis, named so."""
+    """Give each selected handle a partner on the other side of the mirror axis, named to match."""
     figure, pairs = project.figure, pairs_by_name(project.figure.handles)
     alone = [handle for handle in figure.handles if handle.id in project.selected - pairs.keys()]
     gesture, outside = object(), 0
@@ -125,7 +125,7 @@ def _is_inside(domain: Domain, place: complex) -> bool:
 
 
 def _change_handles(project: Project, command: Command, gesture: object) -> None:
-    """Add or delete handles, in the pose that no key holds as well."""
+    """Add or delete handles, also in the targets of the pose that no key holds."""
     project.history.do(command, gesture=gesture)
     unkeyed = project.history.unkeyed
     if unkeyed is not None:
@@ -158,6 +158,6 @@ def put_anchor(
 
 
 def _at_rest(shown: Shown, place: complex) -> complex:
-    """Return where the point that is shown at a place is in the drawing at rest."""
+    """Return the place, in the drawing at rest, of the point that is shown at a place."""
     found = shown.mesh.locate(np.array([place]), shown.positions)
     return complex(found.on(shown.mesh.domain.mesh.vertices)[0])

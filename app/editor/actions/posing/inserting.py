@@ -1,4 +1,4 @@
-"""Keys of what a frame shows."""
+"""Inserting keys with the poses that frames show."""
 
 from collections.abc import Callable
 from functools import partial
@@ -7,7 +7,7 @@ from app.document import Clip, Pose, UnkeyedPose, clip_of
 from app.editor import promises
 from app.editor.action import do
 from app.editor.actions import playback
-from app.editor.actions.posing.keeping import holding
+from app.editor.actions.posing.adopting import as_key
 from app.editor.project import Project
 from app.editor.session import Session, with_project
 from app.editor.work import Kind
@@ -36,7 +36,7 @@ def insert_key_at(session: Session, project: Project, figure: int, frame: int) -
     unkeyed = project.history.unkeyed
     if unkeyed is not None and (unkeyed.figure, unkeyed.frame) == (figure, frame):
         gesture = object()
-        project.history.do(holding(session, project, unkeyed), gesture=gesture)
+        project.history.do(as_key(session, project, unkeyed), gesture=gesture)
         project.history.pose(None, gesture=gesture)
     elif frame not in project.document.figure(figure).key_frames:
         clip = clip_of(project.document, figure)
@@ -69,7 +69,7 @@ def _insert(session: Session, project: Project, clip: Clip, frame: int, pose: Po
     figure = clip.figure.id
     if figure in project.puppets and clip_of(project.document, figure) == clip:
         found = UnkeyedPose(figure=figure, frame=frame, pose=pose)
-        project.history.do(holding(session, project, found))
+        project.history.do(as_key(session, project, found))
         if project.active == figure:
             project.chosen = frozenset({frame})
     else:

@@ -6,7 +6,7 @@ from functools import partial
 
 from app.document import Pose, Target, resting_pose, time_of
 from app.editor.actions import playback
-from app.editor.actions.posing.keeping import keep
+from app.editor.actions.posing.adopting import adopt
 from app.editor.actions.posing.solving import POSING, go_on
 from app.editor.project import Project
 from app.editor.session import Session, with_project
@@ -35,6 +35,7 @@ def pull(
         held = _begin(session, project, gesture or object())
     wanted = wish if callable(wish) else partial(_wherever, wish)
     held.wish(gesture or object(), wanted)
+    held.position = project.history.position
     go_on(session, project)
 
 
@@ -92,7 +93,10 @@ def pull_again(session: Session, project: Project, *, gesture: object) -> None:
 
 @with_project
 def take_back(session: Session, project: Project, gesture: object) -> None:
-    """Take back what a gesture has wished; a pull of nothing else goes with all that it led to."""
+    """Take back what a gesture has wished.
+
+    A pull that has no other wishes ends, with all that it led to.
+    """
     for pull in project.pulls:
         if gesture in pull.wishes:
             pull.forget(gesture)
@@ -103,7 +107,7 @@ def take_back(session: Session, project: Project, gesture: object) -> None:
 
 
 def give_up(session: Session, project: Project, pull: Pull) -> None:
-    """Let a pull be where it is, or before it began."""
+    """End a pull, whose pose stays as it is in the document, or never gets there."""
     project.pending.remove(pull)
     # What comes of it is not taken.
     session.jobs.drop(POSING)
@@ -113,7 +117,7 @@ def give_up(session: Session, project: Project, pull: Pull) -> None:
 def end_at(session: Session, project: Project, pull: Pull, pose: Pose) -> None:
     """Let the document have a pose in place of what a pull comes to."""
     give_up(session, project, pull)
-    keep(session, project, pull, pose)
+    adopt(session, project, pull, pose)
 
 
 def _wherever(
@@ -148,7 +152,7 @@ def _begin(session: Session, project: Project, gesture: object) -> Pull:
 
 
 def _start(session: Session, project: Project, earlier: Pull | None) -> Start | None:
-    """Return what a pull begins with, as far as that is there.
+    """Return what a pull begins with; None where that is an in-between that is not there yet.
 
     An earlier pull of the same pose, which is not at rest yet, says what was wished last.
     """

@@ -1,9 +1,9 @@
-"""Pulls that nobody sees: the document has them when their in-betweens are there."""
+"""Pulls until they rest: how their poses come into the document, seen or not."""
 
 from collections.abc import Sequence
 
 from app.document import Clip, clip_of, exchanged
-from app.editor.actions.posing.keeping import keep
+from app.editor.actions.posing.adopting import adopt
 from app.editor.actions.posing.solving import go_on, is_here
 from app.editor.project import Project
 from app.editor.session import Session
@@ -12,7 +12,7 @@ from app.editor.work import Pull
 MOST_UNSEEN = 8  # pulls that go on for the case that they are done again
 
 
-def keep_up(session: Session, project: Project) -> None:
+def maintain(session: Session, project: Project) -> None:
     """Let the document have what pulls have come to; once a frame."""
     for pull in project.pulls:
         _follow_key(project, pull)
@@ -24,7 +24,7 @@ def keep_up(session: Session, project: Project) -> None:
     for pull in unseen:
         # Nobody sees its in-betweens; it waits for nothing but the solver.
         if pull.newest is not None:
-            keep(session, project, pull, pull.newest)
+            adopt(session, project, pull, pull.newest)
     for pull in unseen[:-MOST_UNSEEN]:
         if pull in project.pending:
             project.pending.remove(pull)
@@ -32,20 +32,21 @@ def keep_up(session: Session, project: Project) -> None:
 
 
 def _bring(session: Session, project: Project, pull: Pull, *, is_here: bool) -> None:
-    """Let the document have the newest pose where it is seen, or one with in-betweens.
+    """Let the document have the newest pose of a pull at whose frame the playhead rests.
 
-    So what is shown elsewhere stays exact while the pose comes to rest.
+    If it is elsewhere, the document gets the newest pose whose in-betweens are prepared: so the
+    in-betweens that are shown meanwhile stay exact while the pose comes to rest.
     """
     newest = pull.newest
     if newest is None:
         return
     if is_here:
         pull.is_left = False
-        keep(session, project, pull, newest)
+        adopt(session, project, pull, newest)
     elif not pull.is_left:
         pull.is_left, pull.is_held = True, False
         if pull.ready is not None:
-            keep(session, project, pull, pull.ready)
+            adopt(session, project, pull, pull.ready)
     if pull.is_held:
         pull.tried = None
         return
@@ -55,13 +56,13 @@ def _bring(session: Session, project: Project, pull: Pull, *, is_here: bool) -> 
     if pull.tried is None and newest not in (pull.ready, pull.kept if not is_here else None):
         pull.tried = newest
     if not is_here and pull.ready is not None:
-        keep(session, project, pull, pull.ready)
+        adopt(session, project, pull, pull.ready)
     elif not is_here and pull.is_at_rest and project.afterwards:
-        keep(session, project, pull, newest)
+        adopt(session, project, pull, newest)
 
 
 def tried_clips(project: Project) -> Sequence[Clip]:
-    """Return the clips with a pose on its way whose in-betweens are to be prepared."""
+    """Return clips with poses that the document does not have yet, to prepare their in-betweens."""
     return [clip for pull in project.pulls if (clip := _tried_clip(project, pull)) is not None]
 
 
@@ -69,7 +70,7 @@ def bring_all(session: Session, project: Project) -> None:
     """Let the document have the newest pose of each pull, as it may be the last thing done."""
     for pull in project.pulls:
         if pull.newest is not None:
-            keep(session, project, pull, pull.newest)
+            adopt(session, project, pull, pull.newest)
 
 
 def _tried_clip(project: Project, pull: Pull) -> Clip | None:

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 from app.document import Clip, Pose, Target, resting_pose, time_of
 from app.editor.actions import playback
-from app.editor.actions.posing.keeping import keep
+from app.editor.actions.posing.adopting import adopt
 from app.editor.failures import ask_worker, report
 from app.editor.project import Project
 from app.editor.session import Session
@@ -23,7 +23,7 @@ REST = 0.012
 
 
 def go_on(session: Session, project: Project) -> None:
-    """Let the worker go on with the pull that is wanted most, unless it is at one."""
+    """Let the worker, unless it is busy with a pull, go on with the one that is wanted most."""
     if POSING in session.jobs.kinds:
         return
     moving = [pull for pull in project.pulls if not pull.is_at_rest]
@@ -54,7 +54,7 @@ def go_on(session: Session, project: Project) -> None:
     )
     aim = pull.targets if pull.targets is not None else tuple(pull.wishes.values())
     work = partial(_take_steps, pull.drag, begin, aim, _pace(pull), session.clock)
-    ask_worker(session, POSING, work, partial(_take, session, project, pull), failed)
+    ask_worker(session, POSING, work, partial(_note, session, project, pull), failed)
 
 
 def is_here(session: Session, project: Project, pull: Pull) -> bool:
@@ -64,7 +64,7 @@ def is_here(session: Session, project: Project, pull: Pull) -> bool:
 
 
 def is_there(session: Session, project: Project) -> bool:
-    """Tell whether what should be shown is, or never will be."""
+    """Tell whether what belongs at the playhead is shown, or is known never to be."""
     shown = project.puppet.shown
     if project.unkeyed is not None or project.puppet.store.has_failed(project.clip):
         return True
@@ -83,7 +83,7 @@ class _Pace(NamedTuple):
 
 
 def _pace(pull: Pull) -> _Pace:
-    """Return the pace that shows every step while the hand moves, and hurries while it rests."""
+    """Return the pace: while the hand moves, every step is shown; at rest, it is hurried."""
     return _Pace(STEPS, HASTE) if pull.steps == 0 else _Pace(MOST_STEPS, REST)
 
 
@@ -134,7 +134,7 @@ def _begin(
     return Drag.begin(rig, pose), pose
 
 
-def _take(session: Session, project: Project, pull: Pull, steps: _Steps) -> None:
+def _note(session: Session, project: Project, pull: Pull, steps: _Steps) -> None:
     """Take note of where the worker has come, and let it go on if there is more to do."""
     if session.project is not project or pull not in project.pending:
         return
@@ -149,5 +149,5 @@ def _take(session: Session, project: Project, pull: Pull, steps: _Steps) -> None
     pull.drag, pull.solved = steps.drag, steps.targets
     pull.newest = steps.drag.pose(steps.targets)
     if pull.kept is None or is_here(session, project, pull):
-        keep(session, project, pull, pull.newest)
+        adopt(session, project, pull, pull.newest)
     go_on(session, project)

@@ -26,7 +26,7 @@ from app.editor.tools.entry import ERASE, TypedWay
 def test_what_is_typed_makes_a_number(typed, value):
     entry = TypedWay()
     for character in typed:
-        entry.take(character)
+        entry.type(character)
     assert entry.value == value
 
 
@@ -48,5 +48,5 @@ def test_what_is_typed_makes_a_number(typed, value):
 )
 def test_a_way_is_as_long_as_was_typed_and_keeps_to_the_axis(typed, offset, way):
     entry = TypedWay()
-    entry.take(typed)
+    entry.type(typed)
     assert entry.way(offset) == pytest.approx(way)

@@ -1,4 +1,5 @@
 import io
+import struct
 import zipfile
 
 import numpy as np
@@ -123,8 +124,8 @@ def photoshop(build):
 def test_layers_of_a_photoshop_file():
     def build(drawing):
         drawing.create_pixel_layer(blob(50, 60), name="body", top=40, left=5)
-        group = drawing.create_group(name="face", opacity=128)
-        head = group.create_pixel_layer(blob(30, 20), name="head", top=20, left=10)
+        head = drawing.create_pixel_layer(blob(30, 20), name="head", top=20, left=10)
+        drawing.create_group([head], name="face", opacity=128)
         head.visible = False
         head.blend_mode = BlendMode.MULTIPLY
 
@@ -163,6 +164,40 @@ def test_a_photoshop_file_without_layers_is_one_layer():
 def test_damaged_photoshop_files_are_told_in_words(data):
     with pytest.raises(LissomError, match="Photoshop"):
         read_photoshop(data)
+
+
+@pytest.mark.parametrize("mode", ["RGBA", "L"])
+def test_one_byte_that_costs_a_photoshop_layer_a_colour_is_told(mode):
+    """All single bytes that say which channels there are, how they are packed, and how long."""
+    colours = np.zeros((40, 30, 4), np.uint8)
+    colours[...] = (200, 80, 40, 255)
+    image = Image.fromarray(colours).convert(mode)
+    file = io.BytesIO()
+    drawing = PSDImage.new("RGB", (30, 40))
+    drawing.create_pixel_layer(image, name="head")
+    drawing.save(file)
+    whole = file.getvalue()
+    (layer,) = PSDImage.open(io.BytesIO(whole))
+    places = []
+    for told, channel in zip(layer._record.channel_info, layer._channels, strict=True):
+        entry = struct.pack(">hI", int(told.id), told.length)
+        places += range(whole.index(entry), whole.index(entry) + len(entry))
+        begun = whole.index(channel.data) - 2
+        places += range(begun, begun + 8)
+    before = read_photoshop(whole).layers[0].picture.rgba
+    refused = 0
+    for place in places:
+        for bit in (1, 0x80, 0xFF):
+            damaged = bytearray(whole)
+            damaged[place] ^= bit
+            try:
+                read = read_photoshop(bytes(damaged))
+            except LissomError:
+                refused += 1
+                continue
+            after = read.layers[0].picture.rgba
+            assert ((after == 0).all((0, 1)) <= (before == 0).all((0, 1))).all() or read.notices
+    assert refused > len(places)
 
 
 def test_a_photoshop_file_cut_short_is_told_in_words():

@@ -10,17 +10,20 @@ from app.editor.session import Session
 from app.editor.work import Pull
 
 
-def keep(session: Session, project: Project, pull: Pull, pose: Pose) -> None:
-    """Let the document have a pose of a pull in place of the one before; else the pull is over."""
+def adopt(session: Session, project: Project, pull: Pull, pose: Pose) -> None:
+    """Let the document have a pose of a pull in place of the pull's last one, if it still can.
+
+    If not, as where its key was deleted, the pull is over.
+    """
     if pose is pull.kept:
         return
     _follow_copies(session, pull, pose)
     if pull.kept is None:
-        is_kept = _keep_first(session, project, pull, pose)
+        is_adopted = _adopt_first(session, project, pull, pose)
     else:
-        is_kept = project.history.amend(pull.gesture, pull.kept, pull.brought_to(pose))
+        is_adopted = project.history.amend(pull.gesture, pull.kept, pull.brought_to(pose))
     pull.kept = pose
-    if not is_kept and pull in project.pending:
+    if not is_adopted and pull in project.pending:
         project.pending.remove(pull)
 
 
@@ -44,7 +47,7 @@ def _follow_copies(session: Session, pull: Pull, pose: Pose) -> None:
     )
 
 
-def _keep_first(session: Session, project: Project, pull: Pull, pose: Pose) -> bool:
+def _adopt_first(session: Session, project: Project, pull: Pull, pose: Pose) -> bool:
     """Let the document have the first pose of a pull, as one more step; tell whether it can."""
     if pull.figure not in project.puppets:
         return False
@@ -62,7 +65,7 @@ def _keep_first(session: Session, project: Project, pull: Pull, pose: Pose) -> b
         return True
     for frame in frames:
         found = UnkeyedPose(figure=pull.figure, frame=frame, pose=pose)
-        command = replace(holding(session, project, found), label="Pose")
+        command = replace(as_key(session, project, found), label="Pose")
         project.history.do(command, gesture=pull.gesture)
     left = project.history.unkeyed
     if left is not None and (left.figure, left.frame) == (pull.figure, pull.frame):
@@ -71,7 +74,10 @@ def _keep_first(session: Session, project: Project, pull: Pull, pose: Pose) -> b
 
 
 def _frames_now(figure: Figure, pull: Pull) -> set[int]:
-    """Return the frames of the key that is pulled and of its copies since; of a new key its own."""
+    """Return at which frames a pull's pose belongs now.
+
+    Those are of the key that is pulled, and of its copies since; of a new key it is its own.
+    """
     then = pull.clip.figure
     if pull.frame not in then.key_frames:
         return {pull.frame}
@@ -80,7 +86,7 @@ def _frames_now(figure: Figure, pull: Pull) -> set[int]:
     return (alike - then.key_frames) | ({pull.frame} & figure.key_frames)
 
 
-def holding(session: Session, project: Project, unkeyed: UnkeyedPose) -> Command:
+def as_key(session: Session, project: Project, unkeyed: UnkeyedPose) -> Command:
     """Return the command that lets a key hold a pose, a new one if there is none at its frame."""
     figure, frame, pose = unkeyed.figure, unkeyed.frame, unkeyed.pose
     if frame in project.document.figure(figure).key_frames:

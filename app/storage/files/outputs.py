@@ -1,0 +1,91 @@
+"""Where may be written: never over what is read, nor over anything that is no plain file."""
+
+import os
+import stat
+from collections.abc import Iterable
+from contextlib import suppress
+from pathlib import Path
+
+from app.errors import LissomError
+
+# What tells one file from all others, whatever it is called and whichever links lead to it; of one
+# that is not there yet, that is its folder and its name in it.
+Identity = tuple[int, int, str]
+STREAMS = (0, 1, 2)  # descriptors
+
+
+def check_writable(*outs: Path, sources: Iterable[Path] = ()) -> None:
+    """Refuse output paths that cannot work or would destroy something, before any long computation.
+
+    Parameters
+    ----------
+    *outs : Path
+        All that one command writes.
+    sources : iterable of Path
+        What it is made from; those that are not there do not matter.
+
+    Raises
+    ------
+    LissomError
+        If one is a folder, or no plain file, or a link that leads in a circle, or may only be read,
+        or its folder is missing; or if it is the same file as one of the sources or another one.
+    """
+    taken: dict[Identity, str] = {}
+    for source in sources:
+        with suppress(OSError, ValueError):
+            taken[_identity(source)] = f"{source}, from which it is made"
+    for out in outs:
+        try:
+            _check_place(out)
+            own = _identity(out)
+        except (OSError, ValueError) as error:  # the latter of names that no file can have
+            reason = getattr(error, "strerror", None) or error
+            raise LissomError(f"cannot write {out}: {reason}") from error
+        if own in taken:
+            raise LissomError(
+                f"cannot write {out}: it is the same file as {taken[own]}; name another one"
+            )
+        taken[own] = f"{out}, which is written as well"
+
+
+def _check_place(path: Path) -> None:
+    target = Path(os.path.realpath(path))
+    if target.is_symlink():
+        raise LissomError(f"cannot write {path}: it is a link that leads in a circle")
+    try:
+        status = target.stat()
+    except (FileNotFoundError, NotADirectoryError):
+        if not target.parent.is_dir():
+            folder = target.parent if path.is_symlink() else path.parent
+            raise LissomError(f"cannot write {path}: the folder {folder} does not exist") from None
+        return
+    if stat.S_ISDIR(status.st_mode):
+        raise LissomError(f"cannot write {path}: it is a folder; name a file")
+    if not stat.S_ISREG(status.st_mode) or _is_stream(status):
+        raise LissomError(
+            f"cannot write {path}: it is a device, a pipe, a socket or standard output, which "
+            "would be replaced; name a plain file"
+        )
+    if not os.access(target, os.W_OK):
+        # To put another file in its place would be possible where the folder may be written to.
+        raise LissomError(
+            f"cannot write {path}: it may only be read; choose another name, or allow to write it"
+        )
+
+
+def _is_stream(status: os.stat_result) -> bool:
+    """Tell whether a file is what this process reads or writes by itself, as /dev/stdout says."""
+    for descriptor in STREAMS:
+        with suppress(OSError):  # it may be closed
+            if os.path.samestat(status, os.fstat(descriptor)):
+                return True
+    return False
+
+
+def _identity(path: Path) -> Identity:
+    target = Path(os.path.realpath(path))
+    try:
+        status, name = target.stat(), ""
+    except (FileNotFoundError, NotADirectoryError):
+        status, name = target.parent.stat(), os.path.normcase(target.name)
+    return status.st_dev, status.st_ino, name

@@ -1,0 +1,121 @@
+"""What a project needs on the graphics card: the pictures and meshes of its figures."""
+
+from collections.abc import Collection
+
+import numpy as np
+
+from app.editor import HeatMap, Project
+from app.motion import PosableMesh, Shown, Vertices
+from app.render import DrawnMesh, Renderer, shader_is_faster
+from app.render.gpu import GpuMesh, GpuPicture, PosedMesh
+from app.storage import Picture
+from app.ui.viewport.backdrop import measure_brightness
+from app.ui.viewport.cut_view import CutView
+from engine.arrays import Floats
+from engine.maps import distortion
+
+
+def measure(shown: Shown, heat_map: HeatMap) -> Floats:
+    """Return one of the distortions at the vertices of what is shown, (v,)."""
+    fz, fzbar = shown.derivatives
+    match heat_map:
+        case "sigma_a":
+            return distortion.sigma_a(fz, fzbar)
+        case "sigma_b":
+            return distortion.sigma_b(fz, fzbar)
+        case _:
+            return distortion.k(fz, fzbar)
+
+
+class Drawing:
+    """Owner of the pictures and meshes of a project's figures on the graphics card."""
+
+    def __init__(self, renderer: Renderer, project: Project) -> None:
+        self.project = project
+        self._renderer = renderer
+        # By figures' ids and their pictures: a layer's may be replaced, or a new one get the id of
+        # one that is gone.
+        self._pictures: dict[tuple[int, Picture], GpuPicture] = {}
+        self._meshes: dict[PosableMesh, GpuMesh] = {}
+        self._drawn_meshes: dict[tuple[PosableMesh, int], DrawnMesh] = {}
+        self._heated: dict[PosedMesh, tuple[Vertices, HeatMap]] = {}
+        self._cut_view: CutView | None = None
+        # Of the picture behind all others: what the backdrop must differ from.
+        (first, *_) = project.document.figures
+        self.brightness = measure_brightness(project.puppets[first.id].cut.value.texture)
+
+    def drawn_mesh(self, figure: int, mesh: PosableMesh, number: int = 0) -> DrawnMesh:
+        """Return the copy of a figure's mesh with this number, which is posed by itself."""
+        if (mesh, number) not in self._drawn_meshes:
+            by_shader = shader_is_faster(self._renderer.programs.context)
+            drawn = DrawnMesh(self._mesh(figure, mesh), by_shader=by_shader)
+            self._drawn_meshes[mesh, number] = drawn
+        return self._drawn_meshes[mesh, number]
+
+    def heat(self, pose: PosedMesh, shown: Shown, heat_map: HeatMap) -> None:
+        """Colour a pose by a distortion of what is shown; uploaded only if it is another."""
+        wanted = (shown.vertices, heat_map)
+        if self._heated.get(pose) != wanted:
+            pose.write_heat(measure(shown, heat_map).astype(np.float32))
+            self._heated[pose] = wanted
+
+    def refresh(self) -> None:
+        """Bring the pictures up to what is cut out of them now."""
+        puppets = self.project.puppets
+        for figure, picture in list(self._pictures):
+            puppet = puppets.get(figure)
+            if puppet is None or puppet.picture is not picture:
+                # Undo brings it back; it has no mesh any more.
+                self._pictures.pop((figure, picture)).release()
+            else:
+                self._pictures[figure, picture].write(puppet.cut.value.texture)
+
+    def tint(self, pose: PosedMesh, values: Floats) -> None:
+        """Colour a pose by values of its vertices, (v,), that are no distortion."""
+        pose.write_heat(values.astype(np.float32))
+        self._heated.pop(pose, None)
+
+    def release_but(self, meshes: Collection[PosableMesh]) -> None:
+        """Let the buffers of other meshes go."""
+        for mesh, number in [key for key in self._drawn_meshes if key[0] not in meshes]:
+            self._drawn_meshes.pop((mesh, number)).release()
+            self._heated.clear()
+        for mesh in [mesh for mesh in self._meshes if mesh not in meshes]:
+            self._meshes.pop(mesh).release()
+
+    def cut_view(self) -> CutView:
+        """Return what is drawn of the active figure while it is cut out."""
+        if self._cut_view is None or self._cut_view.puppet is not self.project.puppet:
+            self._forget_cut_view()
+            self._cut_view = CutView(self._renderer, self.project, self.project.active)
+        return self._cut_view
+
+    def _forget_cut_view(self) -> None:
+        if self._cut_view is not None:
+            self._cut_view.release()
+            self._cut_view = None
+
+    def release(self) -> None:
+        """Let everything go."""
+        self._forget_cut_view()
+        self.release_but(())
+        for picture in self._pictures.values():
+            picture.release()
+
+    def _mesh(self, figure: int, mesh: PosableMesh) -> GpuMesh:
+        if mesh not in self._meshes:
+            drawn = mesh.domain.mesh
+            self._meshes[mesh] = GpuMesh(
+                self._renderer.programs,
+                self._picture(figure),
+                rest=drawn.vertices - self.project.document.figure(figure).corner,
+                triangles=drawn.triangles,
+            )
+        return self._meshes[mesh]
+
+    def _picture(self, figure: int) -> GpuPicture:
+        puppet = self.project.puppets[figure]
+        if (figure, puppet.picture) not in self._pictures:
+            drawn = GpuPicture(self._renderer.programs.context, puppet.cut.value.texture)
+            self._pictures[figure, puppet.picture] = drawn
+        return self._pictures[figure, puppet.picture]

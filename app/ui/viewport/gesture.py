@@ -1,0 +1,127 @@
+"""What the pointer has begun in the viewport: what is drawn of it, and how it goes on."""
+
+from collections.abc import Iterable
+
+from imgui_bundle import ImVec2, imgui
+
+from app.editor import (
+    Action,
+    BoxMark,
+    EntryMark,
+    JointMark,
+    Mark,
+    Session,
+    StrokeMark,
+    SweepMark,
+    do,
+)
+from app.editor.tools import ERASE, pointing
+from app.ui.style import Look, ink, outlined, tag_size, write_tag
+from app.ui.viewport.marks import moved_loops
+from app.ui.viewport.screen import Screen
+
+DIGITS = "0123456789.,-"
+AXES = ((imgui.Key.x, "x"), (imgui.Key.y, "y"))
+STROKE = 0.45  # opacity of one that is not done yet
+
+
+def go_on(session: Session, look: Look, screen: Screen) -> list[Action]:
+    """Follow the pointer in what it began; end it where the button is let go."""
+    gesture = session.pointer
+    if gesture is None:
+        return []
+    if imgui.is_key_pressed(imgui.Key.escape) or imgui.is_mouse_clicked(imgui.MouseButton_.right):
+        return [do(pointing.cancel)]
+    draw_marks(look, screen, gesture.marks)
+    io, pointer = imgui.get_io(), screen.pointer
+    actions: list[Action] = []
+    # Only what is turned goes by steps; Ctrl let go after Ctrl+Z is not to pull once more.
+    is_turning = any(isinstance(mark, SweepMark) for mark in gesture.marks)
+    is_stepped = is_turning and io.key_ctrl != session.snaps
+    if io.mouse_delta.x or io.mouse_delta.y or is_stepped:
+        move = pointing.move_in_steps if io.key_ctrl else pointing.move
+        actions.append(do(move, pointer))
+    characters = _typed()
+    if characters:
+        actions.append(do(pointing.type_in, characters))
+    is_entered = any(map(imgui.is_key_pressed, (imgui.Key.enter, imgui.Key.keypad_enter)))
+    if is_entered or not imgui.is_mouse_down(imgui.MouseButton_.left):
+        actions.append(do(pointing.end, pointer))
+    return actions
+
+
+def draw_marks(look: Look, screen: Screen, marks: Iterable[Mark]) -> None:
+    """Draw what marks a gesture over the picture."""
+    for mark in marks:
+        match mark:
+            case BoxMark():
+                low, high = screen.point(mark.corner), screen.point(mark.opposite)
+                draw_list, accent = imgui.get_window_draw_list(), look.palette.accent
+                draw_list.add_rect_filled(low, high, ink(accent, 0.12))
+                draw_list.add_rect(low, high, ink(accent, 0.8))
+            case StrokeMark():
+                _draw_stroke(look, screen, mark)
+            case JointMark():
+                _draw_joint(look, screen, mark)
+            case EntryMark():
+                _draw_entry(look, screen, mark)
+
+
+def draw_coming_strokes(look: Look, screen: Screen) -> None:
+    """Draw the strokes of the brush that the worker has not come to yet."""
+    figure, known = screen.project.figure, screen.project.puppet.cut.source
+    done = () if known is None else known.strokes
+    for stroke in figure.cut_out.strokes[len(done) :]:
+        places = tuple(complex(place) for place in stroke.points + figure.corner)
+        mark = StrokeMark(points=places, radius=stroke.radius, keeps=stroke.keeps)
+        _draw_stroke(look, screen, mark)
+
+
+def _typed() -> str:
+    """Return what was typed for a drag in this frame, in the order in which it counts."""
+    characters = [chr(code) for code in imgui.get_io().input_queue_characters]
+    text = "".join(character for character in characters if character in DIGITS)
+    # By their keys: a character is repeated while its key is held, and would let the axis go again.
+    text += "".join(axis for key, axis in AXES if imgui.is_key_pressed(key, repeat=False))
+    return text + (ERASE if imgui.is_key_pressed(imgui.Key.backspace) else "")
+
+
+def _draw_entry(look: Look, screen: Screen, mark: EntryMark) -> None:
+    """Draw the axis that a drag keeps to, and beside the pointer what was typed."""
+    corner, room = imgui.get_window_pos(), imgui.get_window_size()
+    if mark.direction is not None:
+        centre = screen.point(mark.place)
+        low, high = ImVec2(corner.x, centre.y), ImVec2(corner.x + room.x, centre.y)
+        if not mark.direction.real:
+            low, high = ImVec2(centre.x, corner.y), ImVec2(centre.x, corner.y + room.y)
+        for tone, width in outlined(look, ink(look.palette.accent), 0.12):
+            imgui.get_window_draw_list().add_line(low, high, tone, width)
+    mouse, last = imgui.get_mouse_pos(), corner + room - tag_size(look, mark.text)
+    left = min(max(mouse.x + look.em, corner.x), last.x)
+    top = min(max(mouse.y + look.em, corner.y), last.y)
+    write_tag(look, ImVec2(left, top), mark.text)
+
+
+def _draw_stroke(look: Look, screen: Screen, mark: StrokeMark) -> None:
+    colour = ink(look.palette.good if mark.keeps else look.palette.danger, STROKE)
+    points, radius = [screen.point(place) for place in mark.points], mark.radius * screen.scale
+    draw_list = imgui.get_window_draw_list()
+    if len(points) > 1:
+        draw_list.add_polyline(list(points), colour, 2 * radius, 0)
+    else:
+        draw_list.add_circle_filled(points[0], radius, colour)
+
+
+def _draw_joint(look: Look, screen: Screen, mark: JointMark) -> None:
+    """Draw the way from the anchor to the pointer, and the outline of the layer there."""
+    draw_list = imgui.get_window_draw_list()
+    colour = look.palette.danger if mark.is_refused else look.palette.accent
+    start, end = screen.point(mark.start), screen.point(mark.end)
+    parent = None if mark.parent is None else screen.project.puppets[mark.parent].shown
+    loops = [] if parent is None else map(parent.placement.on, moved_loops(parent))
+    edges = [screen.points(loop) for loop in loops]
+    for tone, width in outlined(look, ink(colour), 0.16):
+        for edge in edges:
+            draw_list.add_polyline(list(edge), tone, width, imgui.ImDrawFlags_.closed)
+        draw_list.add_line(start, end, tone, width)
+        draw_list.add_circle(end, 0.45 * look.em, tone, thickness=width)

@@ -1,0 +1,135 @@
+"""What lies over the drawing to be dragged: the ring that turns it, and the axis of mirroring."""
+
+import math
+from typing import NamedTuple
+
+from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui
+
+from app.editor import Session, SweepMark
+from app.editor.poses import flipping
+from app.ui.style import (
+    Look,
+    draw_knob,
+    in_hand,
+    ink,
+    is_pressed,
+    outlined,
+    tag_size,
+    tip,
+    write_in,
+    write_tag,
+)
+from app.ui.viewport.screen import Screen
+
+RADIUS, BAND, KNOB = 2.2, 0.5, 0.3  # em: of the ring, of where the pointer takes it, of its knob
+LINE = 0.12  # em
+AXIS_TOP, AXIS_RADIUS = 3.2, 0.85  # em: of the axis' grip, below the edge; its size
+DASH, GAP, THIN = 0.6, 0.45, 0.1  # em: of the axis
+
+
+class Ring(NamedTuple):
+    """The ring around the one selected handle, on the screen.
+
+    Parameters
+    ----------
+    turn : float
+        How far the shape is turned there, in radians.
+    is_dragged : bool
+        Whether the pointer turns it.
+    swept : float
+        How far it has turned it, in radians.
+    """
+
+    centre: ImVec2
+    turn: float
+    is_dragged: bool
+    swept: float
+
+    def is_pointed(self, look: Look) -> bool:
+        """Tell whether the pointer is on it."""
+        away = imgui.get_mouse_pos() - self.centre
+        return abs(math.hypot(away.x, away.y) - RADIUS * look.em) < BAND * look.em
+
+
+def find_ring(session: Session, screen: Screen) -> Ring | None:
+    """Return the ring around the one handle that is selected, where it can be turned."""
+    project, gesture = screen.project, session.pointer
+    held = next((m for m in gesture.marks if isinstance(m, SweepMark)), None) if gesture else None
+    if not session.overlays.handles or project.playhead.since is not None or session.cutting:
+        return None
+    if any(project.figure.is_locked(handle) for handle in project.selected):
+        return None
+    if len(project.selected) != 1 or not (gesture is None or held is not None):
+        return None
+    shown = screen.shown
+    found = zip(shown.clip.figure.handles, shown.handle_places, shown.handle_turns, strict=True)
+    for handle, place, turn in found:
+        if handle.id in project.selected:
+            centre = screen.point(complex(place))
+            if held is not None:
+                return Ring(centre, held.turn, is_dragged=True, swept=held.swept)
+            return Ring(centre, turn, is_dragged=False, swept=0.0)
+    return None
+
+
+def draw_ring(look: Look, ring: Ring, *, is_pointed: bool) -> None:
+    """Draw the ring with a knob where the turned shape's up is; while it is held, the angle."""
+    draw_list, radius = imgui.get_window_draw_list(), RADIUS * look.em
+    is_hot = is_pointed or ring.is_dragged
+    colour = look.palette.accent if is_hot else look.palette.text
+    for tone, width in outlined(look, ink(colour, 1.0 if is_hot else 0.55), LINE):
+        draw_list.add_circle(ring.centre, radius, tone, 64, width)
+    up = ring.turn + math.pi / 2
+    knob = ring.centre + ImVec2(radius * math.cos(up), -radius * math.sin(up))
+    if ring.is_dragged:
+        draw_list.add_line(ring.centre, knob, ink(colour), LINE * look.em)
+    draw_knob(look, knob, KNOB, colour)
+    if is_hot:
+        imgui.set_mouse_cursor(imgui.MouseCursor_.hand)
+    if ring.is_dragged:
+        degrees = round(math.degrees(ring.swept))
+        text = f"{degrees:+d}°".replace("-", "−") if degrees else "0°"
+        above = ImVec2(tag_size(look, text).x / 2, (RADIUS + 2.2) * look.em)
+        write_tag(look, ring.centre - above, text)
+
+
+class Axis(NamedTuple):
+    """The axis at which poses are flipped: where it is on the screen, if it is shown; its grip."""
+
+    x: float | None = None
+    is_hot: bool = False
+    is_pressed: bool = False
+
+
+def lay_axis(session: Session, look: Look, screen: Screen) -> Axis:
+    """Lay a button over the grip of the axis, if it is shown."""
+    if not flipping.shows_axis(session, screen.project):
+        return Axis()
+    x, radius = screen.point(complex(screen.project.figure.axis)).x, AXIS_RADIUS * look.em
+    imgui.set_cursor_screen_pos(_grip(look, x) - ImVec2(radius, radius))
+    imgui.invisible_button("mirror axis", (2 * radius, 2 * radius))
+    if in_hand():
+        imgui.set_mouse_cursor(imgui.MouseCursor_.resize_ew)
+    tip("Poses are flipped here: drag it where the drawing has its middle")
+    return Axis(x, in_hand(), is_pressed())
+
+
+def draw_axis(look: Look, axis: Axis) -> None:
+    """Draw the axis from top to bottom, with its grip."""
+    if axis.x is None:
+        return
+    palette, y = look.palette, imgui.get_window_pos().y
+    bottom = y + imgui.get_window_size().y
+    colour = ink(palette.accent if axis.is_hot else palette.text, 0.8)
+    while y < bottom:
+        end = min(y + DASH * look.em, bottom)
+        for tone, width in outlined(look, colour, THIN):
+            imgui.get_window_draw_list().add_line((axis.x, y), (axis.x, end), tone, width)
+        y += (DASH + GAP) * look.em
+    centre = _grip(look, axis.x)
+    draw_knob(look, centre, AXIS_RADIUS, palette.accent)
+    write_in(centre, centre, icons.ICON_FA_ARROWS_LEFT_RIGHT, ink(palette.on_accent))
+
+
+def _grip(look: Look, x: float) -> ImVec2:
+    return ImVec2(x, imgui.get_window_pos().y + AXIS_TOP * look.em)

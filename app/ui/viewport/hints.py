@@ -1,0 +1,108 @@
+"""What the viewport says: what can be done under the pointer and next, and what is special now."""
+
+from imgui_bundle import ImVec2, imgui
+
+from app.document import Figure
+from app.editor import Action, Hint, Project, Session
+from app.editor.tools import Spot, tools_of
+from app.ui.shortcuts import ALT, BINDINGS, CTRL, SHIFT, Binding, with_key
+from app.ui.style import Look, ink, tip
+from app.ui.viewport.screen import Screen
+from engine.maps import HarmonicMap
+
+HINTS = (
+    "Click on the drawing to add a handle.",
+    "Drag a handle to pose; a second one holds another part in place.",
+    "Move the playhead, then drag again: that makes the second key.",
+)
+KEYS = {"ctrl": CTRL, "shift": SHIFT, "alt": ALT}
+
+
+def hint_at(session: Session, screen: Screen, spot: Spot) -> str:
+    """Return what can be done where the pointer is."""
+    project = screen.project
+    if session.pointer is not None:
+        return _sentence([*map(_in_words, session.pointer.ways), "Esc takes it back"])
+    if session.cutting is None and project.playhead.since is not None:
+        return "Space stops"
+    if session.cutting is None and not session.overlays.handles:
+        return "The handles are hidden: H shows them"
+    told = [
+        _in_words(hint) for tool in tools_of(session) for hint in tool.hints(session, project, spot)
+    ]
+    if session.cutting is not None:
+        return _sentence([*told, "Esc goes back"])
+    if spot.handle is not None:
+        return f"{screen.shown.clip.figure.handle(spot.handle).name}: {', '.join(told)}"
+    if not (spot.on_shape or spot.on_ring):
+        told += ["wheel to zoom", "middle drag to move the view"]
+    return _sentence(told)
+
+
+def _sentence(parts: list[str]) -> str:
+    text = ", ".join(parts)
+    return text[:1].upper() + text[1:]
+
+
+def _in_words(hint: Hint) -> str:
+    return f"{with_key(KEYS[hint.key], hint.how) if hint.key else hint.how} {hint.what}"
+
+
+def draw_badges(look: Look, project: Project, corner: ImVec2, room: ImVec2) -> list[Action]:
+    """Tell what is special now: a pose that no key holds, or what to do next."""
+    top = corner + ImVec2(room.x / 2, look.em)
+    if project.unkeyed is not None:
+        return _pill(look, "Unkeyed pose", top, BINDINGS["insert key"])
+    step = first_step(project)
+    if step is None:
+        return []
+    return _pill(look, HINTS[step], corner + ImVec2(room.x / 2, room.y - 3.2 * look.em))
+
+
+def draw_cutting(look: Look, corner: ImVec2, room: ImVec2) -> list[Action]:
+    """Tell that the picture is shown at rest, to be cut out, and how to go back."""
+    keys = BINDINGS["stop cutting"].keys_in_words
+    place = corner + ImVec2(room.x / 2, look.em)
+    return _pill(look, f"Cutting out: {keys} goes back to posing", place)
+
+
+def first_step(project: Project) -> int | None:
+    """Return which hint a new project is at; None where the person has found the way."""
+    figure = project.figure
+    if not figure.handles:
+        return 0
+    if len(figure.keys) > 1 or project.playhead.since is not None:
+        return None
+    return 2 if _is_posed(figure) else 1
+
+
+def _is_posed(figure: Figure) -> bool:
+    """Tell whether the first pose is another than the one in which the picture was drawn."""
+    pose = figure.keys[0].pose
+    rest = HarmonicMap.identity(figure.domain.cage, figure.domain.holes)
+    return not figure.map_of(pose).is_same(rest)
+
+
+def _pill(look: Look, text: str, place: ImVec2, remedy: Binding | None = None) -> list[Action]:
+    """Write a text below a place; one that warns has the button of a remedy beside it."""
+    palette, draw_list = look.palette, imgui.get_window_draw_list()
+    padding, height = 0.7 * look.em, 2.1 * look.em
+    beside = imgui.calc_text_size(remedy.label).x + 1.6 * look.em if remedy else 0.0
+    size = imgui.calc_text_size(text)
+    low = place - ImVec2(size.x / 2 + padding + beside / 2, 0)
+    high = low + ImVec2(size.x + 2 * padding + beside, height)
+    draw_list.add_rect_filled(low, high, ink(palette.panel, 0.92), height / 2)
+    draw_list.add_rect(low, high, ink(palette.warning if remedy else palette.line), height / 2, 1.2)
+    text_place = low + ImVec2(padding, (height - size.y) / 2)
+    draw_list.add_text(text_place, ink(palette.warning if remedy else palette.text), text)
+    if remedy is None:
+        return []
+    slim = imgui.get_frame_height() - 0.1 * look.em
+    corner = (high.x - beside - 0.2 * look.em, low.y + (height - slim) / 2)
+    imgui.set_cursor_screen_pos(corner)
+    imgui.push_style_var(imgui.StyleVar_.frame_rounding, slim / 2)
+    imgui.push_style_var(imgui.StyleVar_.frame_padding, (0, 0))
+    is_pressed = imgui.button(remedy.label, (beside, slim))
+    imgui.pop_style_var(2)
+    tip(remedy.hint, remedy.keys_in_words)
+    return [remedy.action] if is_pressed else []

@@ -1,0 +1,96 @@
+"""Where places of the drawing are on the screen, and what of it is under the pointer."""
+
+import numpy as np
+from imgui_bundle import ImVec2, imgui
+
+from app.editor import Project, Session, layering
+from app.editor.tools import Spot
+from app.motion import Shown
+from app.ui.style import Look, density
+from app.ui.viewport.marks import find_anchor, moved_loops
+from engine.arrays import Complexes
+from engine.geometry import contains
+
+GRIP = 0.75  # em: radius within which a handle is grabbed
+
+
+class Screen:
+    """The viewport's picture of the figure that is posed, on the screen from a corner on.
+
+    Places are those of the figure by itself, unless they are said to be of the scene.
+    """
+
+    def __init__(self, session: Session, project: Project, shown: Shown, corner: ImVec2) -> None:
+        self.project = project
+        self.shown = shown
+        self.view = project.view(session.screen)
+        self.density = density()
+        self._corner = complex(corner.x, corner.y)
+
+    @property
+    def scale(self) -> float:
+        """How many pixels of the screen a pixel of the picture takes."""
+        return self.view.scale / self.density
+
+    @property
+    def pointer(self) -> complex:
+        """The place under the pointer."""
+        return self.shown.placement.back(self._in_scene)
+
+    @property
+    def pixel(self) -> complex:
+        """The pixel of the view under the pointer."""
+        pixel = (complex(*imgui.get_mouse_pos()) - self._corner) * self.density
+        # Of a picture beside it, the same pixel.
+        return complex(pixel.real % self.view.size[0], pixel.imag)
+
+    @property
+    def _in_scene(self) -> complex:
+        """The place of the scene under the pointer."""
+        pixel = (complex(*imgui.get_mouse_pos()) - self._corner) * self.density
+        return self.view.to_plane(pixel)
+
+    def point(self, place: complex) -> ImVec2:
+        """Return the point of the screen at a place."""
+        (point,) = self.points(self.shown.placement.on(np.array([place])))
+        return point
+
+    def points(self, in_scene: Complexes) -> list[ImVec2]:
+        """Return the points of the screen at places of the scene."""
+        pixels = self.view.to_pixels(in_scene) / self.density + self._corner
+        return [ImVec2(pixel.real, pixel.imag) for pixel in pixels.tolist()]
+
+    def spot(self, look: Look, handle: int | None, *, on_ring: bool, on_axis: bool) -> Spot:
+        """Return where the pointer is, and what is under it, as far as that is not given."""
+        io, place = imgui.get_io(), self.pointer
+        outline, *holes = moved_loops(self.shown)
+        return Spot(
+            place=place,
+            handle=handle,
+            on_axis=on_axis,
+            on_anchor=self._is_anchor(handle, place, GRIP * look.em / self.scale),
+            on_ring=on_ring,
+            on_shape=bool(contains(outline, np.array([place]), holes=holes)[0]),
+            figure=self._figure(through=io.key_alt),
+            ctrl=io.key_ctrl,
+            shift=io.key_shift,
+            alt=io.key_alt,
+        )
+
+    def _figure(self, *, through: bool) -> int | None:
+        """Return the figure under the pointer, or `through` the one that is posed, the next one."""
+        if len(self.project.document.figures) == 1:
+            return None
+        below = self.project.active if through else None
+        return layering.figure_at(self.project, self._in_scene, below=below)
+
+    def _is_anchor(self, handle: int | None, place: complex, reach: float) -> bool:
+        """Tell whether the anchor is at a place, or a handle there is it, in a scene of several."""
+        project, shown = self.project, self.shown
+        if len(project.document.figures) == 1 or project.playhead.since is not None:
+            return False
+        if handle is not None:
+            figure = shown.clip.figure
+            return figure.anchor == figure.handle(handle).position
+        anchor = find_anchor(project, shown)
+        return anchor is not None and abs(anchor - place) <= reach

@@ -1,0 +1,192 @@
+"""What strangers hand in: refused in one line, whatever it is."""
+
+import io
+import os
+import resource
+import subprocess
+import sys
+import zipfile
+
+import numpy as np
+import pytest
+
+from app.cli import process
+from app.cli.main import main
+from app.cli.process import LEAST_MEMORY
+from app.storage import sample_images
+
+SQUARE = np.array([0, 1, 1 + 1j, 1j])
+CAGE = (SQUARE - 0.5 - 0.5j) * 1.4 + 0.5 + 0.5j
+MAPS = {
+    "outline": SQUARE,
+    "cage": CAGE,
+    "points": np.array([0.5 + 0.5j, 0.3 + 0.4j, 0.6 + 0.4j]),
+    "phi": np.array([CAGE, 1.2j * CAGE]),
+    "psi": np.zeros((2, 4)),
+}
+BY_BOUNDARY = {name: MAPS[name] for name in ("outline", "cage", "points")}
+HOLE = np.array([0.4 + 0.4j, 0.4 + 0.6j, 0.6 + 0.6j, 0.6 + 0.4j])
+HUGE = 2**63 - 1
+
+
+def refusal(capsys, *words):
+    with pytest.raises(SystemExit) as leaving:
+        main([str(word) for word in words])
+    assert leaving.value.code == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    return line
+
+
+def interpolated(capsys, tmp_path, *paths, variant="nu"):
+    words = ("interpolate", *paths, "--variant", variant, "--times=0", "--out", tmp_path / "out")
+    return refusal(capsys, *words)
+
+
+@pytest.mark.parametrize("packing", [zipfile.ZIP_LZMA, zipfile.ZIP_BZIP2])
+def test_what_is_packed_in_rare_ways_is_refused(tmp_path, capsys, packing):
+    path = tmp_path / "a.npz"
+    with zipfile.ZipFile(path, "w", packing) as archive:
+        for name, values in MAPS.items():
+            file = io.BytesIO()
+            np.save(file, values)
+            archive.writestr(f"{name}.npy", file.getvalue())
+    content = bytearray(path.read_bytes())
+    content[60:70] = b"\xff" * 10  # of the first member, packed
+    path.write_bytes(content)
+    assert "not an NPZ file" in interpolated(capsys, tmp_path, path)
+    path = path.rename(tmp_path / "a.ora")
+    assert "not an OpenRaster" in refusal(capsys, "domain", path, "--out", tmp_path / "out")
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({**MAPS, "cage": 1e300 * CAGE}, "too far from the outline"),
+        ({**MAPS, "cage": 1e9 * CAGE}, "too far from the outline"),
+        ({**MAPS, "outline": 1e200 * SQUARE, "cage": 1e200 * CAGE}, "move or scale it"),
+        ({**MAPS, "outline": 1e-200 * SQUARE, "cage": 1e-200 * CAGE}, "move or scale it"),
+        ({**MAPS, "outline": SQUARE + 1e12, "cage": CAGE + 1e12}, "move or scale it"),
+        ({**MAPS, "triangles": np.empty((0, 3), int)}, "no triangles"),
+        ({**BY_BOUNDARY, "boundary": np.empty((0, 4))}, "must be of shape"),
+        ({**BY_BOUNDARY, "boundary": np.zeros((2, 4))}, "more than one point"),
+        ({**BY_BOUNDARY, "boundary": np.full((2, 4), 1e308) * SQUARE}, "infinitely far"),
+        *(
+            (
+                {
+                    **MAPS,
+                    "hole_outlines": np.tile(HOLE, len(sizes)),
+                    "hole_cages": np.tile(HOLE, len(sizes)),
+                    "hole_outline_sizes": np.array(sizes),
+                    "hole_cage_sizes": np.array(sizes),
+                    "hole_centres": np.full(len(sizes), 0.5 + 0.5j),
+                },
+                "whole numbers that add up",
+            )
+            for sizes in ([-4, 12], [HUGE, HUGE, 14])  # the latter wrap around to 12
+        ),
+    ],
+)
+def test_arrays_that_make_no_sense_are_refused(tmp_path, capsys, changes, words):
+    path = tmp_path / "a.npz"
+    np.savez(path, **changes)
+    assert words in interpolated(capsys, tmp_path, path)
+
+
+@pytest.mark.parametrize(
+    ("face", "words"),
+    [
+        ("f 1 2 4294967297", "names vertex 4294967297"),
+        ("f 1 2 999999999999999999999", "line 4"),
+        ("f 1 2 4", "names vertex 4"),
+        ("f", "line 4"),
+        ("v nan 0 0\nf 1 2 3", "not finite"),
+    ],
+)
+def test_meshes_that_make_no_sense_are_refused(tmp_path, capsys, face, words):
+    path = tmp_path / "a.obj"
+    path.write_text(f"v 0 0 0\nv 1 0 0\nv 0 1 0\n{face}\n")
+    assert words in interpolated(capsys, tmp_path, path, path, variant="arap")
+
+
+@pytest.mark.parametrize("kind", ["pipe", "device", "folder"])
+@pytest.mark.parametrize("suffix", [".obj", ".npz", ".png", ".lissom", ".ora", ".json"])
+def test_what_is_no_plain_file_is_never_waited_for(tmp_path, capsys, suffix, kind):
+    path, out = tmp_path / f"a{suffix}", tmp_path / "out"
+    if kind == "pipe":
+        os.mkfifo(path)
+    elif kind == "device":
+        path.symlink_to("/dev/zero")
+    else:
+        path.mkdir()
+    calls = {
+        ".obj": ("interpolate", path, path, "--variant", "arap", "--times=0", "--out", out),
+        ".npz": ("deform", path, "--out", out),
+        ".lissom": ("certify", path),
+        ".json": ("pose", __file__, path, "--out", out),
+    }
+    said = refusal(capsys, *calls.get(suffix, ("domain", path, "--out", out)))
+    assert "not an ordinary file" in said or "it is a folder" in said
+
+
+SAMPLE = sample_images() / "bar.png"
+PROGRAM = [sys.executable, "-m", "app"]
+
+
+def run(*words, **how):
+    how = {"capture_output": True, "text": True, **how}
+    return subprocess.run([*PROGRAM, *map(str, words)], check=False, **how)
+
+
+@pytest.mark.parametrize("words", [("--version",), ("doctor",), ("domain", "--help")])
+def test_a_full_standard_output_is_told_in_one_line(words):
+    environment = {name: value for name, value in os.environ.items() if name != "PYTHONUNBUFFERED"}
+    with open("/dev/full", "w") as full:  # noqa: PTH123 - it is no file
+        ended = run(
+            *words, env=environment, capture_output=False, stdout=full, stderr=subprocess.PIPE
+        )
+    assert ended.returncode == 2
+    assert ended.stderr == ("lissom: error: cannot use standard output: No space left on device\n")
+
+
+def test_closed_streams_and_poor_alphabets_stop_nothing(tmp_path):
+    out = tmp_path / "out.npz"
+    words = ("domain", SAMPLE, "--triangles", 1000, "--out", out)
+
+    def close():
+        os.closerange(0, 3)
+
+    ended = run(*words, capture_output=False, preexec_fn=close)
+    assert ended.returncode == 0
+    with np.load(out) as written:
+        assert "outline" in written
+    out.unlink()
+    ended = run(*words, env={**os.environ, "PYTHONIOENCODING": "ascii"})
+    assert (ended.returncode, ended.stderr) == (0, "")
+    assert out.exists()
+
+
+@pytest.mark.parametrize("limit", [150_000_000, LEAST_MEMORY - 1])
+def test_too_little_memory_is_told_in_one_line(tmp_path, limit):
+    def lessen():
+        resource.setrlimit(resource.RLIMIT_AS, (limit, limit))
+
+    ended = run("domain", SAMPLE, "--out", tmp_path / "out", preexec_fn=lessen)
+    assert ended.returncode == 2
+    assert ended.stderr.startswith("lissom: error: not enough memory")
+    assert ended.stderr.count("\n") == 1
+
+
+def test_a_library_that_cannot_be_loaded_is_told_in_one_line(monkeypatch, capsys, tmp_path):
+    def missing(_):
+        raise ImportError("libfine.so: failed to map segment")
+
+    monkeypatch.setattr("app.cli.main.importlib.import_module", missing)
+    assert "cannot be loaded (libfine.so" in refusal(capsys, "doctor")
+    monkeypatch.undo()
+    monkeypatch.setattr(process.threading.Thread, "start", _no_thread)
+    words = ("domain", SAMPLE, "--out", tmp_path / "out")
+    assert "not enough memory" in refusal(capsys, *words)
+
+
+def _no_thread(_):
+    raise RuntimeError("can't start new thread")
