@@ -111,10 +111,10 @@ class BoundaryOperator:
             row = place[near.indices[entry]]
             there = row >= 0
             into[row[there], column[there]] = near.data[entry[there]]
-            for mean in self.means:
-                # As symmetric as the rest, since the mean's weights are the squares of the roots.
-                scaled = np.where(mean[columns] > 0, self.roots[columns], 0.0)
-                np.add(into, (mean[rows] / self.roots[rows])[:, None] * scaled, out=into)
+            if len(self.means):
+                # As symmetric as the rest, since the means' weights are squares of the roots.
+                own, others = self.means[:, rows] / self.roots[rows], self.means[:, columns] > 0
+                np.add(into, own.T @ (others * self.roots[columns]), out=into)
         return found
 
 

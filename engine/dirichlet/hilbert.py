@@ -21,6 +21,7 @@ from typing import NamedTuple, Self
 
 import numpy as np
 import shapely
+from scipy.spatial import cKDTree
 
 from engine.arrays import Complexes, Floats
 from engine.dirichlet.boundary_operator import BoundaryOperator
@@ -29,6 +30,7 @@ from engine.dirichlet.panels import Panels
 from engine.dirichlet.skeleton_solver import SkeletonSolver
 from engine.geometry import (
     Hole,
+    as_xy,
     box_diagonal,
     contains,
     distance_to_boundary,
@@ -211,21 +213,21 @@ def _strictly_inside(loops: Sequence[Complexes], points: Complexes) -> Complexes
     near = distance_to_boundary(outline, outer, holes) < EDGE_DEPTH * size
     close = doubtful[near | ~contains(outline, outer, holes=holes)]
     moved = points.copy()
-    z = points[close, None]
-    corners = np.concatenate(loops)
-    sides = loop_ends(loops) - corners
+    z, corners, ends = points[close], np.concatenate(loops), loop_ends(loops)
+    sides = ends - corners
     direction = sides / np.abs(sides)
-    along = np.clip(((z - corners) * sides.conj()).real / np.abs(sides) ** 2, 0.0, 1.0)
-    feet = corners + along * sides
-    rows, nearest = np.arange(len(z)), np.abs(z - feet).argmin(axis=1)
-    inside = feet[rows, nearest] + 1j * EDGE_DEPTH * size * direction[nearest]
+    both = np.column_stack([corners, ends])
+    edges = shapely.STRtree(shapely.linestrings(both.real, both.imag))
+    nearest = edges.nearest(shapely.points(as_xy(z)))
+    along = ((z - corners[nearest]) / sides[nearest]).real
+    feet = corners[nearest] + np.clip(along, 0.0, 1.0) * sides[nearest]
+    inside = feet + 1j * EDGE_DEPTH * size * direction[nearest]
     firsts = np.cumsum([0, *map(len, loops[:-1])])
     before = np.argsort(next_on_loop(firsts, len(corners)))
     interior_angle = np.pi - np.angle(direction / direction[before])
     bisector = direction * np.exp(0.5j * interior_angle)
-    to_vertex = np.abs(z - corners)
-    vertex = to_vertex.argmin(axis=1)
-    at_corner = to_vertex[rows, vertex] < 4 * EDGE_DEPTH * size
+    to_vertex, vertex = cKDTree(as_xy(corners)).query(as_xy(z))
+    at_corner = to_vertex < 4 * EDGE_DEPTH * size
     corner = corners[vertex] + CORNER_DEPTH * size * bisector[vertex]
     moved[close] = np.where(at_corner, corner, inside)
     return moved

@@ -26,10 +26,10 @@ LEAF = 6 * NODES  # nodes of a box of the lowest level, about
 SMALL = 600  # nodes that are solved for directly
 # Of what a skeleton loses, relative to what acts; random sums lose a digit more, corners another.
 TOLERANCE = 5e-12
-CIRCLE = 2.0  # radius of the circle around a box, over the box's own
-ON_CIRCLE = 40  # points; what they miss falls like CIRCLE^−ON_CIRCLE
+CIRCLE = 1.6  # radius of the circle around a box, over the box's own
+ON_CIRCLE = 60  # points; what they miss falls like CIRCLE^−ON_CIRCLE
 BLOCK = 2**18  # entries that are worked out at a time, so that they stay in cache
-SUMMED = 6  # random sums into which a row goes
+SUMMED = 4  # random sums into which a row goes
 
 
 class SkeletonBox(NamedTuple):
