@@ -23,14 +23,13 @@ from app.document.layering import Attachment, Switch, require_in_order
 from app.document.settings import NATURAL, VARIANTS, Meshing
 from app.errors import LissomError
 from engine.arrays import Booleans, Complexes
+from engine.deform import MOST_HANDLES
 from engine.domain import CutOut, Domain
-from engine.geometry import box_diagonal, contains
+from engine.geometry import ON_OUTLINE, box_diagonal, contains
 from engine.maps import Bounds, Certificate, HarmonicMap
 from engine.variant import Variant
 
 Posed = TypeVar("Posed", Keyframe, KeptPose)
-# Handles may sit on the outline itself, where rounding decides on which side they are.
-ON_OUTLINE = 1e-9
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -222,6 +221,11 @@ class Figure:
 
     def _check_handles(self) -> None:
         handles = self.handles
+        require(
+            len(handles) <= MOST_HANDLES,
+            f"{self.name!r} has {len(handles):,} handles, more than the {MOST_HANDLES:,} that a "
+            "drawing may have.",
+        )
         require_distinct((handle.id for handle in handles), "Two handles have the id {!r}.")
         require_distinct((handle.name for handle in handles), "Two handles have the name {!r}.")
         require_distinct((each.position for each in handles), "Two handles have the place {!r}.")

@@ -6,23 +6,26 @@ from collections.abc import Sequence, Set as AbstractSet
 import numpy as np
 
 from app.document import Clip, Pose, Transit, Variant, resting_pose, time_of, transits
-from engine.arrays import Complexes, Integers
+from app.errors import tell
+from engine.arrays import Complexes
 from engine.dirichlet import Extension, HilbertTransform
 from engine.domain import Domain
 from engine.interpolation import (
+    BLENDS,
     Course,
     End,
     Frame,
     Inbetweens,
+    Interval,
     Joint,
     KeyframeSamples,
+    Passage,
     Sites,
     Tangent,
     frame_at,
     prepare_inbetweens,
     prepare_sites,
     sample_keyframes,
-    shortened,
 )
 from engine.maps import Bounds, HarmonicMap
 from engine.paths import root_sheets
@@ -83,7 +86,9 @@ class PoseSampler:
         with self._transform_lock:
             if self._transform is None:
                 self._transform = (
-                    HilbertTransform.on(self.domain.outline, self.domain.cage, self.domain.holes)
+                    HilbertTransform.on(
+                        self.domain.outline, self.domain.cage, self.domain.holes, progress=tell
+                    )
                     if self._sibling is None
                     else self._sibling.transform
                 )
@@ -122,18 +127,21 @@ class PoseSampler:
         self, first: Pose, second: Pose, variant: Variant, *, turns: int = 0
     ) -> Inbetweens:
         """Return the in-betweens of two poses alone, with whole turns beyond the shorter way."""
-        return self._prepared((first, second), (turns,), Course.straight(), variant)
+        poses, course = (first, second), Course.straight()
+        interval = self._interval(poses, (turns,), course, variant, Bounds())
+        return prepare_inbetweens(variant, interval)
 
     def inbetweens_of(self, transit: Transit, bounds: Bounds, variant: Variant) -> Inbetweens:
         """Return the in-betweens of a clip's interval; the motion through keys obeys the bounds."""
         poses = tuple(key.pose for key in transit.keys)
         course = self._course(transit, bounds, variant)
-        obeyed = bounds if transit.is_joined else None
-        return self._prepared(poses, transit.turns, course, variant, bounds=obeyed)
+        obeyed = bounds if transit.is_joined else Bounds()
+        interval = self._interval(poses, transit.turns, course, variant, obeyed)
+        return prepare_inbetweens(variant, interval)
 
     def makes_single_frames(self, variant: Variant) -> bool:
         """Tell whether one in-between alone takes less time than all of its interval."""
-        return variant.needs_transform and self.sites.closing is None
+        return variant.needs_transform and self.sites.period_basis is None
 
     def frame_of(self, transit: Transit, bounds: Bounds, variant: Variant, weight: float) -> Frame:
         """Return one of these in-betweens; a variant that `makes_single_frames` says so.
@@ -145,16 +153,11 @@ class PoseSampler:
         weight : float
             Its time from one key to the other, in [0, 1].
         """
-        samples = [self.samples(key.pose) for key in transit.keys]
+        poses = tuple(key.pose for key in transit.keys)
+        course = self._course(transit, bounds, variant)
+        obeyed = bounds if transit.is_joined else Bounds()
         return frame_at(
-            weight,
-            variant,
-            self.sites,
-            samples,
-            _sheets(samples, transit.turns),
-            transform=self.extension,
-            course=self._course(transit, bounds, variant),
-            bounds=bounds if transit.is_joined else Bounds(),
+            weight, variant, self._interval(poses, transit.turns, course, variant, obeyed)
         )
 
     def _course(self, transit: Transit, bounds: Bounds, variant: Variant) -> Course:
@@ -188,32 +191,27 @@ class PoseSampler:
             key = tuple(poses), joint, bounds, variant
             if key not in self._tangents:
                 maps = [self.samples(pose).map for pose in poses]
-                self._tangents[key] = shortened(variant, maps, joint, bounds, self.sites.boundary)
+                self._tangents[key] = BLENDS[variant].tangent(
+                    maps, joint, bounds, self.sites.boundary
+                )
             return self._tangents[key]
 
-    def _prepared(
+    def _interval(
         self,
         poses: tuple[Pose, ...],
         turns: tuple[int, ...],
         course: Course,
         variant: Variant,
-        *,
-        bounds: Bounds | None = None,
-    ) -> Inbetweens:
+        bounds: Bounds,
+    ) -> Interval:
         samples = [self.samples(pose) for pose in poses]
-        return prepare_inbetweens(
-            variant,
-            self.sites,
-            samples,
-            _sheets(samples, turns),
+        sheets = root_sheets(np.array([sample.anchor_fz for sample in samples]), turns)
+        return Interval(
+            sites=self.sites,
+            passage=Passage.of(samples, sheets, course),
+            bounds=bounds,
             transform=self.extension if variant.needs_transform else None,
-            course=course,
-            bounds=bounds or Bounds(),
         )
-
-
-def _sheets(samples: Sequence[KeyframeSamples], turns: Sequence[int]) -> Integers:
-    return root_sheets(np.array([sample.anchor_fz for sample in samples]), turns)
 
 
 class Animation:

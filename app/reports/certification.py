@@ -110,7 +110,7 @@ def certify_clip(clip: Clip, variant: Variant | None = None) -> Report:
         for t in np.linspace(0.0, 1.0, TIMES)[1:-1]:
             frame = inbetweens.frame(float(t))
             reached = reached.joined(Extremes.measured(frame.fz, frame.fzbar))
-        proof = prove(inbetweens, animation.variant, boundary, clip.figure.bounds)
+        proof = prove(inbetweens)
         reports.append(
             IntervalReport(
                 first=clip.keys[first].frame,

@@ -5,9 +5,9 @@ Out: positions of the vertices at any time, and f_z and f_z̄ in each triangle.
 Imports: `engine.interpolation`, `engine.deform`, `engine.paths`, `engine.maps`, `engine.domain`.
 
     prepared = prepare_baseline("arap", keyframes, points, triangles)  # a `Baseline` or its name
-    prepared.at(0.5)        # positions of the vertices, complex128 (n,)
     frame = prepared.frame(0.5)
-    frame.positions, frame.fz, frame.fzbar  # the last two of the triangles, complex128 (m,)
+    frame.positions  # of the vertices, complex128 (n,)
+    frame.fz, frame.fzbar  # of the triangles, complex128 (m,)
 
 Keyframe i is at time i. `prepared.domain` has the mesh, its triangles counter-clockwise, and
 `domain.derivatives(positions)`, which gives f_z and f_z̄ of each triangle for any other method's

@@ -19,11 +19,6 @@ class ArapInbetweens:
     Departs from their paper: its triangles weigh alike, here by their areas, so that the result
     does not hang on the mesh; and the angles are consistent unless the keyframes' are principal, as
     Section 8 of *Bounded Distortion Harmonic Shape Interpolation* has it for its comparisons.
-
-    Parameters
-    ----------
-    first, second : MeshKeyframe
-    step : PoissonStep
     """
 
     first: MeshKeyframe
@@ -36,8 +31,5 @@ class ArapInbetweens:
         rotation = np.exp(1j * (rest * first.angles + time * second.angles))
         similar = rest * np.abs(first.fz) + time * np.abs(second.fz)
         other = rest * first.stretch + time * second.stretch
-        return self.step.integrate(
-            rotation * similar,
-            rotation * other,
-            rest * first.anchor_position + time * second.anchor_position,
-        )
+        anchor = rest * first.anchor_position + time * second.anchor_position
+        return self.step.integrate(rotation * similar, rotation * other, anchor)

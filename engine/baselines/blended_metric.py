@@ -26,8 +26,6 @@ class FlatInbetweens:
 
     Parameters
     ----------
-    first, second : MeshKeyframe
-    flattening : Flattening
     squared : float64, shape (2, m, 3)
         Lengths of the half-edges in both keyframes, squared.
     """
@@ -41,26 +39,24 @@ class FlatInbetweens:
     def of(cls, first: MeshKeyframe, second: MeshKeyframe, flattening: Flattening) -> Self:
         """Work out the metrics of both keyframes."""
         lengths = [edge_lengths(flattening.domain, key.positions) for key in (first, second)]
-        return cls(
-            first=first, second=second, flattening=flattening, squared=freeze(np.square(lengths))
-        )
+        squared = freeze(np.square(lengths))
+        return cls(first=first, second=second, flattening=flattening, squared=squared)
 
     def blended_lengths(self, time: float) -> Floats:
         """Return the lengths (m, 3) of the half-edges before the flattening."""
-        lengths: Floats = np.sqrt((1.0 - time) * self.squared[0] + time * self.squared[1])
-        return lengths
+        return np.asarray(np.sqrt((1.0 - time) * self.squared[0] + time * self.squared[1]))
 
     def frame(self, time: float) -> MeshFrame:
         """Return the in-between at a time in [0, 1]."""
         first, second, domain = self.first, self.second, self.flattening.domain
-        flat = self.flattening.flatten(self.blended_lengths(time))
-        fz, fzbar = domain.derivatives(flat.positions)
+        positions, defect = self.flattening.flatten(self.blended_lengths(time))
+        fz, fzbar = domain.derivatives(positions)
         angle = (1.0 - time) * first.anchor_angle + time * second.anchor_angle
         turn = np.exp(1j * (angle - np.angle(domain.anchor_fz(fz))))
         anchor = (1.0 - time) * first.anchor_position + time * second.anchor_position
         return MeshFrame(
-            positions=anchor + turn * flat.positions,
+            positions=anchor + turn * positions,
             fz=turn * fz,
             fzbar=turn * fzbar,
-            angle_defect=flat.defect,
+            angle_defect=defect,
         )

@@ -32,8 +32,6 @@ class FfmpInbetweens:
 
     Parameters
     ----------
-    first, second : MeshKeyframe
-    step : PoissonStep
     angles, scales : float64, shape (2, 2 e)
         Of the ratios at inner edges, to and fro, in each keyframe: those of the similar part.
     stretches : complex128, shape (2, 2 e)
@@ -67,9 +65,8 @@ class FfmpInbetweens:
         """Return the in-between at a time in [0, 1]."""
         first, second, weights = self.first, self.second, np.array([1.0 - time, time])
         rotation = np.exp(1j * (weights @ self.angles))
-        matrix = self._mismatch(
-            rotation * (weights @ self.scales), rotation * (weights @ self.stretches)
-        )
+        ratios = rotation * (weights @ self.scales), rotation * (weights @ self.stretches)
+        matrix = self._mismatch(*ratios)
         root = self.step.domain.crossings.order[0]
         turn = np.exp(1j * (weights @ [first.angles[root], second.angles[root]]))
         similar = turn * (weights @ [abs(first.fz[root]), abs(second.fz[root])])
@@ -90,14 +87,9 @@ class FfmpInbetweens:
         values = [np.column_stack([ones, -x, -y]) for x, y in columns]
         places = [np.column_stack([2 * end + k, 2 * start, 2 * start + 1]) for k in (0, 1)]
         count = 2 * len(start)
-        return csr_array(
-            (
-                np.concatenate(values).ravel(),
-                np.concatenate(places).ravel(),
-                np.arange(0, 3 * count + 1, 3),
-            ),
-            shape=(count, 2 * len(self.step.domain.areas)),
-        )
+        rows = np.arange(0, 3 * count + 1, 3)
+        entries = np.concatenate(values).ravel(), np.concatenate(places).ravel(), rows
+        return csr_array(entries, shape=(count, 2 * len(self.step.domain.areas)))
 
 
 def _directed(domain: TriangulatedDomain) -> tuple[Indices, Indices]:
@@ -110,24 +102,20 @@ def _ratios(key: MeshKeyframe, start: Indices, end: Indices) -> tuple[Complexes,
     """Return c and d of J_i⁻¹ J_j, z ↦ c z + d z̄, from triangles i to triangles j."""
     a, b = key.fz[start], key.fzbar[start]
     c, d = key.fz[end], key.fzbar[end]
-    determinant = np.abs(a) ** 2 - np.abs(b) ** 2
-    return (
-        (a.conj() * c - b * d.conj()) / determinant,
-        (a.conj() * d - b * c.conj()) / determinant,
-    )
+    area = np.abs(a) ** 2 - np.abs(b) ** 2
+    return (a.conj() * c - b * d.conj()) / area, (a.conj() * d - b * c.conj()) / area
 
 
 def _fitted(
     matrix: csr_array, root: int, similar: complex, other: complex
 ) -> tuple[Complexes, Complexes]:
     """Return f_z and f_z̄ (m,) of the frames that fit the ratios best, given the root's."""
-    given = np.array([similar + other, 1j * (similar - other)])
+    own, given = [2 * root, 2 * root + 1], np.array([similar + other, 1j * (similar - other)])
     columns = csc_array(matrix)
-    free = np.delete(np.arange(matrix.shape[1]), [2 * root, 2 * root + 1])
-    unknown = columns[:, free]
-    known = np.asarray(columns[:, [2 * root, 2 * root + 1]] @ given)
+    free = np.delete(np.arange(matrix.shape[1]), own)
+    unknown, known = columns[:, free], np.asarray(columns[:, own] @ given)
     frames = np.empty(matrix.shape[1], dtype=np.complex128)
     frames[free] = solved(factorised(unknown.T @ unknown), -np.asarray(unknown.T @ known))
-    frames[[2 * root, 2 * root + 1]] = given
+    frames[own] = given
     by_x, by_y = frames[::2], frames[1::2]
     return (by_x - 1j * by_y) / 2, (by_x + 1j * by_y) / 2

@@ -7,7 +7,7 @@ defect, its Hessian half the cotangent Laplacian.
 """
 
 from dataclasses import dataclass
-from typing import NamedTuple, Self
+from typing import Self
 
 import numpy as np
 from scipy.sparse import csc_array
@@ -23,21 +23,6 @@ FLOOR = 1e-9  # of the Hessian's diagonal, where all triangles around a vertex a
 ENOUGH = 1e-10  # angle defect, in radians, at which the search ends
 
 
-class Flat(NamedTuple):
-    """A metric that is flat inside.
-
-    Parameters
-    ----------
-    positions : complex128, shape (n,)
-        Of the vertices in the plane, the anchor at 0, turned anyhow.
-    defect : float
-        The largest angle defect inside that is left, in radians.
-    """
-
-    positions: Complexes
-    defect: float
-
-
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Flattening:
     """Makes metrics of a simply connected mesh flat, with their lengths on the border kept.
@@ -46,7 +31,6 @@ class Flattening:
 
     Parameters
     ----------
-    domain : TriangulatedDomain
     inner : intp, shape (i,)
         Vertices that are not on the border.
     place : intp, shape (n,)
@@ -95,13 +79,15 @@ class Flattening:
             forward=freeze(forward),
         )
 
-    def flatten(self, lengths: Floats) -> Flat:
-        """Lay a metric out in the plane.
+    def flatten(self, lengths: Floats) -> tuple[Complexes, float]:
+        """Lay a metric out in the plane, given by the lengths (m, 3) of the half-edges.
 
-        Parameters
-        ----------
-        lengths : float64, shape (m, 3)
-            Of half-edges k, from corner k to the next; equal in twins.
+        Returns
+        -------
+        positions : complex128, shape (n,)
+            Of the vertices, the anchor at 0, turned anyhow.
+        defect : float
+            The largest angle defect inside that is left, in radians.
 
         Notes
         -----
@@ -133,7 +119,7 @@ class Flattening:
         scaled = _scaled(lengths, logarithms, corners)
         angles, _ = _angles(scaled)
         worst = float(np.abs(self._defects(angles)).max(initial=0.0))
-        return Flat(self._laid_out(scaled, angles), worst)
+        return self._laid_out(scaled, angles), worst
 
     def _defects(self, angles: Floats) -> Floats:
         """Return 2π less the sum of the angles (m, 3) around each inner vertex, (i,)."""
@@ -151,35 +137,25 @@ class Flattening:
             for ends in (start, end)
         )
         both = (start >= 0) & (end >= 0)
-        rows, columns, values = start[both], end[both], weights[both]
-        every = np.arange(count)
-        return csc_array(
-            (
-                np.concatenate([np.maximum(diagonal, FLOOR), -values, -values]),
-                (
-                    np.concatenate([every, rows, columns]),
-                    np.concatenate([every, columns, rows]),
-                ),
-            ),
-            shape=(count, count),
-        )
+        rows, columns, every = start[both], end[both], np.arange(count)
+        values = [np.maximum(diagonal, FLOOR), -weights[both], -weights[both]]
+        places = np.hstack([[every, every], [rows, columns], [columns, rows]])
+        return csc_array((np.concatenate(values), places), shape=(count, count))
 
     def _laid_out(self, lengths: Floats, angles: Floats) -> Complexes:
         """Return the positions (n,) of a flat metric, the anchor at 0."""
         # Directions of the half-edges against the first of their triangle.
         turned = np.pi - angles
-        own = np.stack(
-            [np.zeros(len(angles)), turned[:, 1], turned[:, 1] + turned[:, 2]], axis=1
-        ).ravel()
+        turned[:, 0] = 0.0
+        own = np.cumsum(turned, axis=1).ravel()
         hinge, twin = self.hinges.T
         # Twins lead in opposite directions.
-        direction = self.domain.crossings.sums(
-            np.where(hinge == twin, 0.0, own[twin] + np.pi - own[hinge])
-        )
+        steps = np.where(hinge == twin, 0.0, own[twin] + np.pi - own[hinge])
+        direction = self.domain.crossings.sums(steps)
         edges = lengths.ravel() * np.exp(1j * (np.repeat(direction, 3) + own))
-        steps = np.where(self.forward, edges[self.reached], -edges[self.reached])
-        steps[self.domain.anchor] = 0.0
-        return self.domain.ways.positions(steps)
+        ways = np.where(self.forward, edges[self.reached], -edges[self.reached])
+        ways[self.domain.anchor] = 0.0
+        return self.domain.ways.sums(ways)
 
 
 def edge_lengths(domain: TriangulatedDomain, positions: Complexes) -> Floats:
@@ -190,8 +166,7 @@ def edge_lengths(domain: TriangulatedDomain, positions: Complexes) -> Floats:
 
 def _scaled(lengths: Floats, logarithms: Floats, corners: Indices) -> Floats:
     factors = np.exp(logarithms / 2)[corners]
-    scaled: Floats = lengths * factors * np.roll(factors, -1, axis=1)
-    return scaled
+    return lengths * factors * np.roll(factors, -1, axis=1)
 
 
 def _angles(lengths: Floats) -> tuple[Floats, Floats]:
@@ -213,14 +188,12 @@ def _angles(lengths: Floats) -> tuple[Floats, Floats]:
 
 def _hinges(domain: TriangulatedDomain) -> Indices:
     """Return by which half-edges triangles hang on their parents; the root's are both its first."""
-    count = len(domain.areas)
     twins = np.concatenate([domain.twins, domain.twins[:, ::-1]])
     child, parent = (twins // 3).T
-    used = twins[domain.crossings.parent[child] == parent]
     root = domain.crossings.order[0]
-    hinges = np.full((count, 2), 3 * root)
-    used = used[used[:, 0] // 3 != root]
-    hinges[used[:, 0] // 3] = used
+    hinges = np.full((len(domain.areas), 2), 3 * root)
+    used = (domain.crossings.parent[child] == parent) & (child != root)
+    hinges[child[used]] = twins[used]
     return hinges
 
 

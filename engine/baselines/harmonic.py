@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from engine.arrays import Complexes
 from engine.baselines.frames import MeshFrame
 from engine.baselines.triangulated_domain import TriangulatedDomain
 from engine.deform import Deformer
@@ -22,17 +23,10 @@ class HandleInbetweens:
     Chen and Weber (2015) keep their bounds in each frame, but handles that go straight go where
     nobody would pull them. A keyframe comes out as far as it is a pose of least energy for these
     handles: the search begins at the keyframe that is nearer in time, and may end elsewhere.
-
-    Parameters
-    ----------
-    domain : TriangulatedDomain
-    deformer : Deformer
-        With the handles and the bounds.
-    first, second : HarmonicMap
     """
 
     domain: TriangulatedDomain
-    deformer: Deformer
+    deformer: Deformer  # with the handles and the bounds
     first: HarmonicMap
     second: HarmonicMap
 
@@ -42,9 +36,7 @@ class HandleInbetweens:
         targets = (1.0 - time) * self.first(handles.points) + time * self.second(handles.points)
         start = self.deformer.resume(self.first if time < 0.5 else self.second)
         state, _ = self.deformer.settle(start, handles.wish(targets))
-        positions = state.map(self.domain.points)
-        fz, fzbar = self.domain.derivatives(positions)
-        return MeshFrame(positions=positions, fz=fz, fzbar=fzbar)
+        return _frame(self.domain, state.map(self.domain.points))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -53,25 +45,22 @@ class ConformalInbetweens:
 
     Departs from their paper: f' is integrated, not fitted in the span of the Cauchy coordinates,
     so that the keyframes come out exactly.
-
-    Parameters
-    ----------
-    domain : TriangulatedDomain
-    prepared : Prepared
-        All keyframes by the ν variant, which for holomorphic ones blends log f' alone.
-    start : int
-        The keyframe at time 0.
     """
 
     domain: TriangulatedDomain
-    prepared: Prepared
-    start: int
+    prepared: (
+        Prepared  # all keyframes by the ν variant: for holomorphic ones it blends log f' alone
+    )
+    start: int  # the keyframe at time 0
 
     def frame(self, time: float) -> MeshFrame:
         """Return the in-between at a time in [0, 1]."""
-        positions = self.prepared.frame(self.start + time).positions
-        fz, fzbar = self.domain.derivatives(positions)
-        return MeshFrame(positions=positions, fz=fz, fzbar=fzbar)
+        return _frame(self.domain, self.prepared.frame(self.start + time).positions)
+
+
+def _frame(domain: TriangulatedDomain, positions: Complexes) -> MeshFrame:
+    fz, fzbar = domain.derivatives(positions)
+    return MeshFrame(positions=positions, fz=fz, fzbar=fzbar)
 
 
 def require_holomorphic(maps: Sequence[HarmonicMap], boundary: Boundary) -> None:

@@ -23,46 +23,28 @@ class MeshEtaInbetweens:
 
     ρ is the least of what the triangles allow, Equations (16) to (18), with the same passage from
     the worst bounds beside a keyframe as `engine.interpolation.scaling.sharp.SharpScaling`.
-
-    Parameters
-    ----------
-    first, second : MeshKeyframe
-    step : PoissonStep
-    eta : complex128, shape (2, m)
-        Of the keyframes.
-    samples : PointSamples
-        What ρ depends on, of each triangle.
-    worst : Worst
-        Of all triangles.
     """
 
     first: MeshKeyframe
     second: MeshKeyframe
     step: PoissonStep
-    eta: Complexes
-    samples: PointSamples
-    worst: Worst
+    eta: Complexes  # of both keyframes, (2, m)
+    samples: PointSamples  # what ρ depends on, of each triangle
+    worst: Worst  # of all triangles
 
     @classmethod
     def of(cls, first: MeshKeyframe, second: MeshKeyframe, step: PoissonStep) -> Self:
         """Work out η and the bounds of both keyframes."""
-        fz, fzbar = (
-            np.array(part) for part in ((first.fz, second.fz), (first.fzbar, second.fzbar))
-        )
+        fz, fzbar = np.array([first.fz, second.fz]), np.array([first.fzbar, second.fzbar])
         none = np.empty((0, fz.shape[1]), dtype=np.complex128)
         samples = PointSamples.of(fz, fzbar.conj(), none, none)
-        return cls(
-            first=first,
-            second=second,
-            step=step,
-            eta=freeze(distortion.eta(fz, fzbar)),
-            samples=samples,
-            worst=Worst(
-                k=float(samples.k.max()),
-                sigma_a=float(samples.sigma_a.max()),
-                sigma_b=float(samples.sigma_b.min()),
-            ),
+        worst = Worst(
+            k=float(samples.k.max()),
+            sigma_a=float(samples.sigma_a.max()),
+            sigma_b=float(samples.sigma_b.min()),
         )
+        eta = freeze(distortion.eta(fz, fzbar))
+        return cls(first=first, second=second, step=step, eta=eta, samples=samples, worst=worst)
 
     def rho(self, time: float) -> float:
         """Return the scaling of η at a time, 1 at keyframes."""

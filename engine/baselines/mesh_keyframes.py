@@ -37,8 +37,7 @@ class MeshKeyframe:
     @property
     def stretch(self) -> Complexes:
         """S of the polar decomposition R S: |f_z| z + this (m,) times z̄."""
-        stretch: Complexes = self.fzbar * np.exp(-1j * self.angles)
-        return stretch
+        return np.asarray(self.fzbar * np.exp(-1j * self.angles))
 
 
 def mesh_keyframes(
@@ -111,8 +110,7 @@ def _continued(domain: TriangulatedDomain, fz: Complexes, anchor: complex) -> Fl
     principal = np.angle(fz / anchor)
     # Only the integer is taken from the sum, so that no rounding adds up on the way.
     sheets = np.round((crossings.sums(turns) - principal) / (2 * np.pi))
-    angles: Floats = principal + 2 * np.pi * sheets
-    return angles
+    return principal + 2 * np.pi * sheets
 
 
 def _require_unwound(

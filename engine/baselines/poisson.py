@@ -19,19 +19,11 @@ class PoissonStep:
     Frobenius norm of the difference of the Jacobians, over the piecewise linear maps f that leave
     the anchor where it is wanted (Alexa et al. 2000, Section 3; that it is a Poisson equation is in
     Xu et al. 2006).
-
-    Parameters
-    ----------
-    domain : TriangulatedDomain
-    free : intp, shape (n − 1,)
-        All vertices but the anchor.
-    factors : SuperLU
-        Of the Laplacian, at the free vertices.
     """
 
     domain: TriangulatedDomain
-    free: Indices
-    factors: SuperLU
+    free: Indices  # all vertices but the anchor
+    factors: SuperLU  # of the Laplacian, at the free vertices
 
     @classmethod
     def on(cls, domain: TriangulatedDomain) -> Self:

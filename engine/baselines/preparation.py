@@ -19,10 +19,9 @@ from engine.baselines.poisson import PoissonStep
 from engine.baselines.triangulated_domain import TriangulatedDomain
 from engine.deform import Deformer, Handles
 from engine.errors import EngineError
-from engine.geometry import diameter, require_inside
+from engine.geometry import ON_OUTLINE, diameter, require_inside
 from engine.interpolation import Variant, interval_at, prepare, require_keyframes
 from engine.maps import Boundary, Bounds, HarmonicMap
-from engine.paths import ON_OUTLINE
 from engine.variant import Baseline
 
 
@@ -44,10 +43,6 @@ class PreparedBaseline:
     baseline: Baseline
     domain: TriangulatedDomain
     intervals: tuple[MeshInbetweens, ...]
-
-    def at(self, time: float) -> Complexes:
-        """Return the positions (n,) of the vertices at a time, as `frame` does."""
-        return self.frame(time).positions
 
     def frame(self, time: float) -> MeshFrame:
         """Return the in-between at a time from 0 to the number of intervals.
@@ -111,20 +106,17 @@ def prepare_baseline(
     baseline = _known_baseline(baseline)
     domain = TriangulatedDomain.of(points, triangles, anchor)
     around = [*keyframes, *keyframes[:1]] if loop else list(keyframes)
-    if outline is not None:
-        outline = as_points(outline, "outline", at_least=3)
+    border = None if outline is None else as_points(outline, "outline", at_least=3)
+    if border is not None:
         holes = around[0].holes if around and isinstance(around[0], HarmonicMap) else ()
-        require_inside(
-            outline,
-            domain.points,
-            "point",
-            holes=[hole.outline for hole in holes],
-            tolerance=ON_OUTLINE * diameter(outline),
-        )
+        loops, near = [hole.outline for hole in holes], ON_OUTLINE * diameter(border)
+        require_inside(border, domain.points, "point", holes=loops, tolerance=near)
     intervals: Sequence[MeshInbetweens]
     if baseline.needs_maps:
         maps = _maps_over_one_cage(baseline, around)
-        boundary = Boundary.sample(*_polygons(baseline, outline, maps[0]), maps[0].holes)
+        if border is None:
+            raise EngineError(f"The method {baseline} needs the domain's outline.")
+        boundary = Boundary.sample(border, maps[0].cage, maps[0].holes)
         if baseline is Baseline.HANDLES:
             intervals = _by_handles(domain, boundary, maps, handles, bounds)
         else:
@@ -206,14 +198,6 @@ def _maps_over_one_cage(
         )
     require_keyframes(maps)
     return maps
-
-
-def _polygons(
-    baseline: Baseline, outline: npt.ArrayLike | None, f: HarmonicMap
-) -> tuple[Complexes, Complexes]:
-    if outline is None:
-        raise EngineError(f"The method {baseline} needs the domain's outline.")
-    return as_points(outline, "outline", at_least=3), f.cage
 
 
 def _known_baseline(baseline: Baseline | str) -> Baseline:

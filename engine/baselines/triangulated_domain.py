@@ -1,7 +1,7 @@
 """A triangulated domain: piecewise linear maps on it, their derivatives, and ways through it."""
 
 from dataclasses import dataclass
-from typing import Self
+from typing import Self, TypeVar
 
 import numpy as np
 import numpy.typing as npt
@@ -11,10 +11,12 @@ from scipy.sparse.linalg import SuperLU, splu
 from scipy.spatial import cKDTree
 
 from engine.arrays import Booleans, Complexes, Floats, Indices, as_points, freeze
-from engine.domain.meshing import Mesh
+from engine.domain.meshing import Mesh, sides_of
 from engine.errors import EngineError
+from engine.geometry import as_xy
 from engine.paths import SpanningTree, breadth_first_parents, depth_first_numbering
 
+type_ = TypeVar("type_", Complexes, Floats)
 FLAT = 1e-12  # area of a triangle, over the square of its longest edge, that counts as none
 
 
@@ -45,14 +47,8 @@ class Tour:
         tree = SpanningTree.of_parents(place[parent[order]])
         return cls(tree=tree, order=freeze(order), parent=freeze(parent))
 
-    def sums(self, steps: Floats) -> Floats:
+    def sums(self, steps: type_) -> type_:
         """Return for each node (s,) the sum of `steps` (s,) on the way from the root."""
-        sums = np.empty_like(steps)
-        sums[self.order] = self.tree.sums(steps[self.order])
-        return sums
-
-    def positions(self, steps: Complexes) -> Complexes:
-        """Return the same for steps in the plane."""
         sums = np.empty_like(steps)
         sums[self.order] = self.tree.sums(steps[self.order])
         return sums
@@ -120,7 +116,7 @@ class TriangulatedDomain:
         points = as_points(points, "points", at_least=3)
         corners = _oriented(points, _as_corners(triangles, len(points)))
         mesh = Mesh(vertices=points, triangles=corners.astype(np.int32))
-        edges, sides, twins = _adjacency(corners, len(points))
+        edges, sides, twins = _adjacency(corners)
         pairs = twins // 3
         _require_whole(corners, pairs, len(points))
         areas = mesh.areas()
@@ -156,11 +152,6 @@ class TriangulatedDomain:
         """The two triangles at each inner edge, intp (e, 2)."""
         return self.twins // 3
 
-    @property
-    def around_anchor(self) -> Indices:
-        """The triangles at the anchor."""
-        return np.flatnonzero((self.mesh.triangles == self.anchor).any(axis=1))
-
     def derivatives(self, positions: Complexes) -> tuple[Complexes, Complexes]:
         """Return f_z and f_z̄ (m,) of the piecewise linear map to positions (n,)."""
         fz = np.asarray(self.gradient @ positions)
@@ -170,12 +161,11 @@ class TriangulatedDomain:
     def sums_at_vertices(self, fz: Complexes, fzbar: Complexes) -> Complexes:
         """Return the transpose of `derivatives` with the triangles' areas, complex128 (n,)."""
         similar = np.asarray(self.gradient.T @ (self.areas * fz.conj())).conj()
-        sums: Complexes = similar + np.asarray(self.gradient.T @ (self.areas * fzbar))
-        return sums
+        return np.asarray(similar + self.gradient.T @ (self.areas * fzbar))
 
     def anchor_fz(self, fz: Complexes) -> complex:
         """Return the mean of f_z (m,) around the anchor."""
-        near = self.around_anchor
+        near = (self.mesh.triangles == self.anchor).any(axis=1)
         return complex((self.areas[near] @ fz[near]) / self.areas[near].sum())
 
     def laplacian(self) -> csr_array:
@@ -201,8 +191,7 @@ def factorised(matrix: csr_array | csc_array) -> SuperLU:
 def solved(factors: SuperLU, right: Complexes) -> Complexes:
     """Solve a real system for a complex right-hand side (n,)."""
     both = factors.solve(np.column_stack([right.real, right.imag]))
-    solution: Complexes = both[:, 0] + 1j * both[:, 1]
-    return solution
+    return np.asarray(both[:, 0] + 1j * both[:, 1])
 
 
 def _as_corners(triangles: npt.ArrayLike, count: int) -> Indices:
@@ -242,24 +231,17 @@ def _oriented(points: Complexes, corners: Indices) -> Indices:
     return corners
 
 
-def _adjacency(corners: Indices, count: int) -> tuple[Indices, Indices, Indices]:
+def _adjacency(corners: Indices) -> tuple[Indices, Indices, Indices]:
     """Return all edges (e, 2), those on the border (b, 2), and the half-edges of inner ones."""
-    ends = np.stack([corners, np.roll(corners, -1, axis=1)], axis=-1).reshape(-1, 2)
-    low, high = ends.min(axis=1), ends.max(axis=1)
-    keys = low * count + high
-    order = np.argsort(keys, kind="stable")
-    sorted_keys = keys[order]
-    starts = np.flatnonzero(np.diff(sorted_keys, prepend=-1))
-    shared = np.diff(np.append(starts, len(keys)))
+    edges, numbers, twins = sides_of(corners)
+    shared = np.bincount(numbers.ravel())
     if shared.max() > 2:
-        edge = ends[order[starts[shared.argmax()]]]
+        first, second = edges[shared.argmax()]
         raise EngineError(
-            f"The edge from point {edge[0]} to point {edge[1]} is in {shared.max()} triangles; an "
+            f"The edge from point {first} to point {second} is in {shared.max()} triangles; an "
             "edge of a plane mesh is in one or two."
         )
-    edges = np.column_stack([low, high])[order[starts]]
-    inner = starts[shared == 2]
-    return edges, edges[shared == 1], np.column_stack([order[inner], order[inner + 1]])
+    return edges, edges[shared == 1], twins
 
 
 def _require_whole(corners: Indices, pairs: Indices, count: int) -> None:
@@ -267,9 +249,7 @@ def _require_whole(corners: Indices, pairs: Indices, count: int) -> None:
     unused = np.flatnonzero(np.bincount(corners.ravel(), minlength=count) == 0)
     if len(unused):
         raise EngineError(f"Point {unused[0]} is in no triangle; leave it out.")
-    graph = csr_array(
-        (np.ones(len(pairs), np.int8), (pairs[:, 0], pairs[:, 1])), shape=(len(corners),) * 2
-    )
+    graph = csr_array((np.ones(len(pairs), np.int8), pairs.T), shape=(len(corners),) * 2)
     pieces, number = connected_components(graph, directed=False)
     if pieces > 1:
         apart = np.flatnonzero(number != number[0])[0]
@@ -289,7 +269,7 @@ def _gradient(points: Complexes, corners: Indices, areas: Floats) -> csr_array:
 
 def _farthest(points: Complexes, border: Booleans) -> int:
     """Return the vertex farthest from those on the border."""
-    xy = np.column_stack([points.real, points.imag])
+    xy = as_xy(points)
     distances, _ = cKDTree(xy[border]).query(xy)
     return int(np.argmax(distances))
 

@@ -42,10 +42,7 @@ class Domain:
     def moved(self, by: complex) -> "Domain":
         """Return the domain elsewhere in the plane."""
         mesh = Mesh(vertices=self.mesh.vertices + by, triangles=self.mesh.triangles)
-        holes = tuple(
-            Hole(outline=hole.outline + by, cage=hole.cage + by, centre=hole.centre + by)
-            for hole in self.holes
-        )
+        holes = tuple(hole.moved(by) for hole in self.holes)
         return Domain(outline=self.outline + by, cage=self.cage + by, mesh=mesh, holes=holes)
 
     def contains(self, points: Complexes) -> Booleans:

@@ -7,7 +7,6 @@ each linked to its neighbours: their circumcentres tend to the medial axis (Bran
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -15,6 +14,7 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import dijkstra
 
 from engine.arrays import Booleans, Complexes, Floats, Indices
+from engine.domain.meshing import sides_of
 from engine.geometry import (
     Pieces,
     bisect,
@@ -43,34 +43,17 @@ THICK = 0.4
 CORNERS_OF_A_RING = 4
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class MedialAxis:
-    """A graph in the middle of a shape.
-
-    Parameters
-    ----------
-    places : complex128, shape (n,)
-    radii : float64, shape (n,)
-        Distances from the boundary.
-    links : intp, shape (m, 2)
-        Pairs of nodes.
-    """
+class MedialAxis(NamedTuple):
+    """A graph of n nodes in the middle of a shape; links (m, 2) are pairs of them."""
 
     places: Complexes
-    radii: Floats
+    radii: Floats  # distances from the boundary
     links: Indices
 
 
 def medial_axis(loops: Sequence[Complexes]) -> MedialAxis:
-    """Return the medial axis of a shape, with a spur into each convex corner.
+    """Return the medial axis of a shape given by its loops, with a spur into each convex corner.
 
-    Parameters
-    ----------
-    loops : sequence of complex128
-        The outline, counter-clockwise, and the outlines of the holes.
-
-    Notes
-    -----
     A node stands for a triangle: at its circumcentre, which is as far from the boundary as from the
     corners if the circle is empty. Where the samples are too far apart for that, it is between the
     midpoints of the sides that the triangle shares. The triangulation has no inner points, so that
@@ -84,14 +67,9 @@ def medial_axis(loops: Sequence[Complexes]) -> MedialAxis:
     fine = [bisect(Pieces.whole(loop, np.roll(loop, -1)), is_short).starts for loop in loops]
     vertices = np.concatenate(fine)
     triangles = constrained_delaunay(fine[0], fine[1:])
-    # Side j of a triangle lies opposite its corner j.
-    sides = np.sort(np.stack([np.roll(triangles, -1, 1), np.roll(triangles, -2, 1)], 2), 2)
-    keys = sides.reshape(-1, 2) @ np.array([len(vertices), 1])
-    order = np.argsort(keys, kind="stable")
-    shared = np.flatnonzero(np.diff(keys[order]) == 0)
-    first, second = order[shared], order[shared + 1]
+    _, _, twins = sides_of(triangles)
     is_shared = np.zeros(triangles.size, dtype=np.bool_)
-    is_shared[first] = is_shared[second] = True
+    is_shared[twins] = True
     places = _between_shared_sides(vertices[triangles], is_shared.reshape(-1, 3))
     radii = distance_to_boundary(loops[0], places, loops[1:])
     centres, apart = _circumcircles(vertices[triangles])
@@ -99,13 +77,12 @@ def medial_axis(loops: Sequence[Complexes]) -> MedialAxis:
     depth = distance_to_boundary(loops[0], centres[inside], loops[1:])
     is_empty = depth >= EMPTY * apart[inside]
     places[inside[is_empty]], radii[inside[is_empty]] = centres[inside[is_empty]], depth[is_empty]
-    links = np.column_stack([first // 3, second // 3])
-    return MedialAxis(places=places, radii=radii, links=links)
+    return MedialAxis(places, radii, twins // 3)
 
 
 def _between_shared_sides(corners: Complexes, is_shared: Booleans) -> Complexes:
     """Return the mean of the midpoints of the sides that triangles (t, 3) share, (t,)."""
-    middles = (np.roll(corners, -1, 1) + np.roll(corners, -2, 1)) / 2
+    middles = (corners + np.roll(corners, -1, 1)) / 2
     places: Complexes = (middles * is_shared).sum(1) / np.maximum(is_shared.sum(1), 1)
     return places
 

@@ -4,9 +4,11 @@ import numpy as np
 
 from engine.arrays import Complexes, Integers
 from engine.domain.build import MOST_TRIANGLES, Domain
+from engine.domain.meshing import sides_of
 from engine.domain.outline import LARGEST_OUTLINE
 from engine.errors import EngineError
 from engine.geometry import (
+    ON_OUTLINE,
     box_diagonal,
     distance_to_boundary,
     require_around,
@@ -19,10 +21,8 @@ from engine.geometry import (
 MOST_MESH_TRIANGLES = 2 * MOST_TRIANGLES
 # Farther out than any picture goes, and squares still have digits to spare.
 FARTHEST = 1e7
-# Of the diagonal: how far rounding may move a vertex off the edge of the outline that it is on,
-ON_OUTLINE = 1e-9
-# and how near a vertex of the cage may come. Samples of the outline are graded towards it, so that
-# this bounds their number; a built cage keeps 300 times that distance.
+# Of the diagonal: how near a vertex of the cage may come. Samples of the outline are graded towards
+# it, so that this bounds their number; a built cage keeps 300 times that distance.
 NEAREST = 1e-6
 # Of the outline's area.
 SAME_AREA = 1e-9
@@ -77,11 +77,9 @@ def _require_tiling(domain: Domain) -> None:
     areas = mesh.areas()
     if not (areas > 0).all():
         raise EngineError("The mesh has triangles that are flat or run clockwise.")
-    border = _border(triangles)
-    first, last = vertices[border[:, 0]], vertices[border[:, 1]]
-    distances = distance_to_boundary(
-        outline, np.concatenate([first, last, (first + last) / 2]), holes
-    )
+    first, last = (vertices[ends] for ends in _border(triangles))
+    on_border = np.concatenate([first, last, (first + last) / 2])
+    distances = distance_to_boundary(outline, on_border, holes)
     area = sum(map(signed_area, domain.loops))
     spokes = [(last - hole.centre) / (first - hole.centre) for hole in domain.holes]
     if (
@@ -92,14 +90,11 @@ def _require_tiling(domain: Domain) -> None:
         raise EngineError("The mesh does not fill the inside of the outline exactly.")
 
 
-def _border(triangles: Integers) -> Integers:
-    """Return the directed edges (b, 2) that have no opposite one."""
-    ends = np.concatenate([triangles[:, [k, (k + 1) % 3]] for k in range(3)])
-    low, high = ends.min(axis=1).astype(np.int64), ends.max(axis=1)
-    keys, where, counts = np.unique(low << 32 | high, return_index=True, return_counts=True)
-    del keys
-    directions = np.sort(ends[:, 0].astype(np.int64) << 32 | ends[:, 1])
-    if counts.max() > 2 or (np.diff(directions) == 0).any():
+def _border(triangles: Integers) -> tuple[Integers, Integers]:
+    """Return from where to where (b,) the directed edges lead that have no opposite one."""
+    _, numbers, _ = sides_of(triangles)
+    ends = np.roll(triangles, -1, axis=1)
+    if np.bincount((2 * numbers + (triangles < ends)).ravel()).max() > 1:
         raise EngineError("The mesh has edges on which triangles overlap.")
-    border: Integers = ends[where[counts == 1]]
-    return border
+    alone = np.bincount(numbers.ravel())[numbers] == 1
+    return triangles[alone], ends[alone]

@@ -7,6 +7,7 @@ Imports: `engine.arrays`, `engine.errors`.
 
 from engine.geometry.hole import Hole as Hole, require_cages_in_holes as require_cages_in_holes
 from engine.geometry.polygon import (
+    ON_OUTLINE as ON_OUTLINE,
     SIZES as SIZES,
     as_xy as as_xy,
     box_diagonal as box_diagonal,

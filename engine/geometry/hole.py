@@ -40,6 +40,11 @@ class Hole:
         (centre,) = as_points([self.centre], "centre of a hole")
         object.__setattr__(self, "centre", complex(centre))
 
+    def moved(self, shift: complex, scale: float = 1.0) -> "Hole":
+        """Return the hole enlarged about the origin, and then shifted."""
+        outline, cage = shift + scale * self.outline, shift + scale * self.cage
+        return Hole(outline=outline, cage=cage, centre=shift + scale * self.centre)
+
 
 def require_cages_in_holes(holes: Sequence[Hole], outline: Complexes) -> None:
     """Raise `EngineError` unless the holes lie apart inside the outline, and a cage in each."""

@@ -13,6 +13,9 @@ from engine.arrays import Booleans, Complexes, Floats, Indices
 from engine.errors import EngineError
 from engine.geometry.segments import Pieces, bisect, distance_to_segments
 
+# Distance, over the size of a shape, at which a point counts as on its outline: so far may rounding
+# move it off.
+ON_OUTLINE = 1e-9
 SIZES = (1e-60, 1e60)  # of polygons; the fourth powers of smaller and larger ones are no numbers
 FARTHEST = 1e9  # from the origin, over a polygon's size: beyond, its shape is lost in rounding
 FARTHEST_CAGE = 1e6  # from the outline, over its size: beyond, the coordinates are all the same
@@ -131,20 +134,9 @@ def contains(
     holes: Sequence[Complexes] = (),
     tolerance: float = 0.0,
 ) -> Booleans:
-    """Tell for each point whether it lies in the closed region or within `tolerance` of it.
+    """Tell for each point (p,) whether it lies in the closed region or within `tolerance` of it.
 
-    Parameters
-    ----------
-    polygon : complex128, shape (n,)
-    points : complex128, shape (p,)
-    holes : sequence of complex128
-        Polygons whose inside does not belong to the region.
-    tolerance : float
-        Distance, in the units of the points, by which a point may lie outside.
-
-    Returns
-    -------
-    bool, shape (p,)
+    The inside of the `holes`, polygons too, does not belong to the region.
     """
     area = region(polygon, holes)
     shapely.prepare(area)
@@ -163,17 +155,7 @@ def require_inside(
     holes: Sequence[Complexes] = (),
     tolerance: float = 0.0,
 ) -> None:
-    """Raise `EngineError` unless all points lie in the closed region, or that near to it.
-
-    Parameters
-    ----------
-    outline : complex128, shape (n,)
-    points : complex128, shape (p,)
-    name : str
-        What one of the points is called in the error.
-    holes, tolerance : sequence of complex128, float
-        As in `contains`.
-    """
+    """Raise `EngineError` unless `contains` is true of all points (p,), each called `name`."""
     outside = np.flatnonzero(~contains(outline, points, holes=holes, tolerance=tolerance))
     if len(outside):
         number = f" {outside[0]}" if len(points) > 1 else ""
@@ -189,10 +171,6 @@ def require_around(cage: Complexes, outline: Complexes) -> None:
     """Raise `EngineError` unless a cage winds once around the outline, with room between them.
 
     Only that: published cages are known that cross themselves elsewhere.
-
-    Parameters
-    ----------
-    cage, outline : complex128, shapes (n,) and (p,)
     """
     if np.abs(cage - outline[0]).max() > FARTHEST_CAGE * box_diagonal(outline):
         raise EngineError("The cage lies too far from the outline; let it follow the outline.")
@@ -213,19 +191,10 @@ def winding(polygon: Complexes, point: complex) -> int:
 
 
 def constrained_delaunay(polygon: Complexes, holes: Sequence[Complexes] = ()) -> Indices:
-    """Cut the inside of a simple polygon into triangles without further points.
+    """Return the constrained Delaunay triangulation of a simple polygon without its holes.
 
-    Parameters
-    ----------
-    polygon : complex128, shape (n,)
-    holes : sequence of complex128
-        Simple polygons inside and apart, with h vertices in all, which are left out.
-
-    Returns
-    -------
-    intp, shape (n + h + 2 len(holes) - 2, 3)
-        The vertices of each triangle, counter-clockwise, those of the holes numbered after the
-        polygon's: the constrained Delaunay triangulation.
+    They are simple polygons inside and apart. The triangles, intp (t, 3), run counter-clockwise;
+    their vertices are those of the polygon and then of the holes, without further ones.
     """
     parts = shapely.get_parts(shapely.constrained_delaunay_triangles(region(polygon, holes)))
     corners = shapely.get_coordinates(parts).reshape(-1, 4, 2)[:, :3] @ [1, 1j]
@@ -234,8 +203,7 @@ def constrained_delaunay(polygon: Complexes, holes: Sequence[Complexes] = ()) ->
     triangles: Indices = by_place[np.searchsorted(vertices[by_place], corners)]
     a, b, c = vertices[triangles].T
     clockwise = ((b - a).conj() * (c - a)).imag < 0
-    triangles[clockwise] = triangles[clockwise][:, ::-1]
-    return triangles
+    return np.where(clockwise[:, None], triangles[:, ::-1], triangles)
 
 
 def sample_graded(
@@ -246,22 +214,7 @@ def sample_graded(
     Each edge is bisected until every segment is no longer than `ratio` times its distance to the
     nearest centre and no longer than `longest`. With the cage vertices as centres this resolves
     the logarithmic singularities of the Cauchy coordinates' derivatives, which uniform samples
-    miss.
-
-    Parameters
-    ----------
-    polygon : complex128, shape (n,)
-    centres : complex128, shape (c,)
-        Points off the polygon.
-    ratio : float
-        Largest segment length over distance to the nearest centre.
-    longest : float
-        Largest segment length.
-
-    Returns
-    -------
-    complex128, shape (m,)
-        The samples in order along the polygon; every vertex of the polygon is one of them.
+    miss. The samples (m,) are in order along the polygon, and every vertex is one of them.
 
     Raises
     ------

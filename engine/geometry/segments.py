@@ -1,7 +1,7 @@
 """Straight segments: their distances from points, and pieces of them that are halved over again."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Self
 
 import numpy as np
@@ -64,37 +64,23 @@ class Pieces:
 
     def select(self, chosen: Booleans) -> "Pieces":
         """Return the pieces that are marked in `chosen` (c,)."""
-        return Pieces(
-            origin=self.origin,
-            span=self.span,
-            segment=self.segment[chosen],
-            place=self.place[chosen],
-            width=self.width[chosen],
-        )
+        segment, place, width = self.segment[chosen], self.place[chosen], self.width[chosen]
+        return replace(self, segment=segment, place=place, width=width)
 
     def halved(self, chosen: Booleans) -> "Pieces":
         """Return the pieces with two halves instead of each that is marked in `chosen` (c,)."""
         parent = np.repeat(np.arange(len(self)), 1 + chosen)
         second = np.diff(parent, prepend=-1) == 0
         width = np.where(chosen, self.width / 2, self.width)[parent]
-        return Pieces(
-            origin=self.origin,
-            span=self.span,
-            segment=self.segment[parent],
-            place=self.place[parent] + second * width,
-            width=width,
-        )
+        place = self.place[parent] + second * width
+        return replace(self, segment=self.segment[parent], place=place, width=width)
 
 
 def bisect(pieces: Pieces, is_fine: Callable[[Pieces], Booleans]) -> Pieces:
     """Halve pieces until each of them is fine.
 
-    Parameters
-    ----------
-    pieces : Pieces
-    is_fine : callable
-        Tells for each of some pieces (c,) whether it may stay as it is; every piece is asked about
-        once.
+    `is_fine` tells for each of some pieces (c,) whether it may stay as it is; every piece is asked
+    about once.
     """
     new = np.ones(len(pieces), dtype=np.bool_)
     while True:
@@ -112,5 +98,4 @@ def distance_to_segments(points: Complexes, starts: Complexes, ends: Complexes) 
     offset = points[:, None] - starts
     length2 = np.maximum(np.abs(along) ** 2, np.finfo(np.float64).tiny)
     parameter = np.clip((offset * along.conj()).real / length2, 0.0, 1.0)
-    distances: Floats = np.abs(offset - parameter * along)
-    return distances
+    return np.asarray(np.abs(offset - parameter * along))

@@ -59,10 +59,10 @@ class Boundary:
         segment.
     vertex_coordinates : complex128, shape (p, n)
         The functions themselves at the vertices of all loops.
-    basis : complex128, shape (n, n)
+    basis : complex128, shape (n, r)
         The coefficients, one function a column, of `Span.orthonormal_basis` on the own samples; all
         but the constants with the mean 0 at the vertices.
-    basis_derivatives : complex128, shape (m, n)
+    basis_derivatives : complex128, shape (m, r)
         Of the functions of the basis.
     """
 
@@ -97,21 +97,17 @@ class Boundary:
             If the outline is not simple, or not strictly inside the cage, or a hole is not inside
             the outline, or its cage not in the hole.
         """
-        outline, cage = (
-            as_points(outline, "outline", at_least=3),
-            as_points(cage, "cage", at_least=3),
-        )
+        outline = as_points(outline, "outline", at_least=3)
+        cage = as_points(cage, "cage", at_least=3)
         require_simple(outline, "outline")
         require_around(cage, outline)
         require_cages_in_holes(holes, outline)
         span = Span(cage=cage, holes=tuple(holes))
         loops = [outline, *(hole.outline for hole in holes)]
         size = box_diagonal(outline)
-        singular = np.concatenate([span.vertices, span.centres])
+        singular, longest = np.concatenate([span.vertices, span.centres]), SEGMENT_PER_SIZE * size
         samples = [
-            sample_graded(
-                loop, singular, ratio=SEGMENT_PER_DISTANCE, longest=SEGMENT_PER_SIZE * size
-            )
+            sample_graded(loop, singular, ratio=SEGMENT_PER_DISTANCE, longest=longest)
             for loop in loops
         ]
         points = np.concatenate(samples)
@@ -123,9 +119,8 @@ class Boundary:
         vertex_coordinates = readonly(span.coordinates(np.concatenate(loops)))
         basis = span.orthonormal_basis(derivatives, lengths, size)
         # With the mean 0 a handle is about as stiff against one function as against another.
-        others = np.setdiff1d(np.arange(len(span)), [part.start for part in span.slices])
-        means = vertex_coordinates.mean(axis=0) @ basis[:, others]
-        basis[: len(cage), others] -= means
+        others = basis[:, len(span.cages) :]
+        others[: len(cage)] -= vertex_coordinates.mean(axis=0) @ others
         return cls(
             outline=outline,
             span=span,
@@ -178,13 +173,7 @@ class Boundary:
         return sum(array.nbytes for array in arrays)
 
     def refined(self, segments: Indices) -> Self:
-        """Return the same boundary with one more sample in the middle of each given segment.
-
-        Parameters
-        ----------
-        segments : int, shape (s,)
-            In any order.
-        """
+        """Return the boundary with one more sample in the middle of each given segment (s,)."""
         segments = np.unique(segments)
         starts = self.points[segments]
         ends = self.points[self.following[segments]]
@@ -198,6 +187,7 @@ class Boundary:
         kernel[first] = self.span.bending_kernel(starts, middles)
         kernel[first + 1] = self.span.bending_kernel(middles, ends)
         rows = self.span.derivatives(middles)
+        of_basis = np.insert(self.basis_derivatives, segments + 1, rows @ self.basis, axis=0)
         share = 1.0 / np.count_nonzero(self.weights)
         return replace(
             self,
@@ -208,9 +198,7 @@ class Boundary:
             half_lengths=freeze(half),
             derivatives=freeze(np.insert(self.derivatives, segments + 1, rows, axis=0)),
             bending_kernel=freeze(kernel),
-            basis_derivatives=freeze(
-                np.insert(self.basis_derivatives, segments + 1, rows @ self.basis, axis=0)
-            ),
+            basis_derivatives=freeze(of_basis),
         )
 
 

@@ -12,10 +12,6 @@ class Limits:
 
     Any numbers. What a person allows are `Bounds`; the solver also holds maps to limits that the
     identity does not keep, as on the way of an enlarged map into tighter bounds.
-
-    Parameters
-    ----------
-    k, sigma_a, sigma_b : float
     """
 
     k: float

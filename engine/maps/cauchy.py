@@ -21,6 +21,7 @@ import numpy as np
 
 from engine.arrays import Complexes, Floats
 from engine.errors import EngineError
+from engine.geometry import edges
 
 TWO_PI_I = 2j * np.pi
 # Entries of one block of points × cage vertices: 8 bytes each, so that a few blocks stay in cache.
@@ -28,20 +29,10 @@ BLOCK_ENTRIES = 1 << 16
 
 
 def edge_logarithms(cage: Complexes, points: Complexes) -> Complexes:
-    """Return ℓ_j(z) = log(B_{j+1} / B_j) for each point and each cage edge.
+    """Return ℓ_j(z) = log(B_{j+1} / B_j) for each point (m,) and cage edge (n,), complex128 (m, n).
 
-    Parameters
-    ----------
-    cage : complex128, shape (n,)
-        Vertices in counter-clockwise order.
-    points : complex128, shape (m,)
-        Points strictly inside the cage.
-
-    Returns
-    -------
-    complex128, shape (m, n)
-        Column j belongs to the edge from vertex j to vertex j + 1. The imaginary part is the signed
-        angle under which the point sees the edge, in (−π, π).
+    Column j belongs to the edge from vertex j to vertex j + 1. The imaginary part is the signed
+    angle under which the point sees the edge, in (−π, π).
 
     Raises
     ------
@@ -56,14 +47,14 @@ def edge_logarithms(cage: Complexes, points: Complexes) -> Complexes:
 
 def divided_differences(cage: Complexes, coefficients: Complexes) -> Complexes:
     """Return s_j = (φ_{j+1} − φ_j) / (z_{j+1} − z_j), shaped like `coefficients` (n, ...)."""
-    lengths = _rises(cage)
-    return _rises(coefficients) / lengths.reshape(-1, *[1] * (coefficients.ndim - 1))
+    lengths = np.diff(cage, append=cage[:1]).reshape(-1, *[1] * (coefficients.ndim - 1))
+    return np.diff(coefficients, axis=0, append=coefficients[:1]) / lengths
 
 
 def difference_jumps(cage: Complexes, coefficients: Complexes) -> Complexes:
     """Return s_j − s_{j−1} at the vertices, shaped like `coefficients`."""
     differences = divided_differences(cage, coefficients)
-    return np.concatenate([differences[:1] - differences[-1:], np.diff(differences, axis=0)])
+    return np.diff(differences, axis=0, prepend=differences[-1:])
 
 
 def cauchy_coordinates(cage: Complexes, points: Complexes) -> Complexes:
@@ -71,7 +62,7 @@ def cauchy_coordinates(cage: Complexes, points: Complexes) -> Complexes:
 
     They sum to 1 and reproduce z. Cost: m·n logarithms.
     """
-    lengths = np.roll(cage, -1) - cage
+    lengths = edges(cage)
     coordinates = np.empty((len(points), len(cage)), dtype=np.complex128)
     for block in _blocks(len(points), len(cage)):
         logarithms = edge_logarithms(cage, points[block]) / TWO_PI_I
@@ -83,7 +74,7 @@ def cauchy_coordinates(cage: Complexes, points: Complexes) -> Complexes:
 
 def cauchy_derivatives(cage: Complexes, points: Complexes) -> Complexes:
     """Return D_j(z) = C_j'(z), complex128 (m, n); log-singular at cage vertices."""
-    lengths = TWO_PI_I * (np.roll(cage, -1) - cage)
+    lengths = TWO_PI_I * edges(cage)
     derivatives = np.empty((len(points), len(cage)), dtype=np.complex128)
     for block in _blocks(len(points), len(cage)):
         per_length = edge_logarithms(cage, points[block]) / lengths
@@ -173,14 +164,6 @@ def _following(values: Floats) -> Floats:
     following = np.empty_like(values)
     following[:, :-1], following[:, -1] = values[:, 1:], values[:, 0]
     return following
-
-
-def _rises(values: Complexes) -> Complexes:
-    """Return by how much values at the vertices (n, ...) rise to the next one."""
-    rises = np.empty_like(values)
-    np.subtract(values[1:], values[:-1], out=rises[:-1])
-    np.subtract(values[:1], values[-1:], out=rises[-1:])
-    return rises
 
 
 def _product(real: Floats, imaginary: Floats, coefficients: Complexes) -> Complexes:

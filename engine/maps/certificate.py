@@ -96,13 +96,8 @@ def certify_segments(
 ) -> tuple[Certificate, Indices, "Enclosures"]:
     """Certify a map like `certify`, and tell what is so of its segments.
 
-    Returns
-    -------
-    Certificate
-    Indices
-        The segments on which a limit is broken or could not be proven.
-    Enclosures
-        Of the segments as they are, as `segment_enclosures` has them.
+    Returns the certificate, the segments on which a limit is broken or could not be proven, and
+    what `segment_enclosures` has of all of them.
 
     Raises
     ------
@@ -131,12 +126,7 @@ def segment_enclosures(harmonic_map: HarmonicMap, boundary: Boundary) -> Enclosu
         If the map is over another cage.
     """
     _, segments = _measure(harmonic_map, boundary)
-    worst, _, _ = _enclose(segments)
-    return _enclosures(worst)
-
-
-def _enclosures(worst: Floats) -> Enclosures:
-    k, sigma_a, negative_sigma_b = worst
+    (k, sigma_a, negative_sigma_b), _, _ = _enclose(segments)
     return Enclosures(k, sigma_a, -negative_sigma_b)
 
 
@@ -195,7 +185,7 @@ def _bisect(
     turned, bisected, shorter = np.zeros(len(boundary.points)), 0, 1
     broken: list[Indices] = []
     worst, clear, delta = _enclose(segments)
-    enclosures = _enclosures(worst)
+    enclosures = Enclosures(worst[0], worst[1], -worst[2])
     while True:
         attained = _largest(attained, _distortions(*np.abs(segments.ends[1:, 0])))
         # All said positively: what is not a number is neither tight nor within.
@@ -229,11 +219,7 @@ def _largest(before: Floats, distortions: Floats) -> Floats:
 
 def _distortions(a: Floats, b: Floats) -> Floats:
     """Return k, σ_a and −σ_b (3, m) of |f_z| and |f_z̄| (m,), where bounds say: no larger."""
-    worst = np.empty((3, len(a)))
-    worst[0] = ratio(b, a)
-    np.add(a, b, out=worst[1])
-    np.subtract(b, a, out=worst[2])
-    return worst
+    return np.array([ratio(b, a), a + b, b - a])
 
 
 def _enclose(segments: _Segments) -> tuple[Floats, Booleans, Floats]:
@@ -244,10 +230,7 @@ def _enclose(segments: _Segments) -> tuple[Floats, Booleans, Floats]:
     r = a * np.cos(delta / 2)
     error_f, error_g = segments.errors + ROUNDING * (a[0] + a[1])
     least, both = r - error_f, error_f + error_g
-    of_ends = np.empty((3, *a.shape))
-    of_ends[0] = ratio(b + error_g, least)
-    np.add(a + b, both, out=of_ends[1])
-    np.add(b - r, both, out=of_ends[2])
+    of_ends = np.array([ratio(b + error_g, least), a + b + both, b - r + both])
     return of_ends.max(axis=1), least.min(axis=0) > 0, delta
 
 

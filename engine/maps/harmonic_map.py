@@ -69,12 +69,7 @@ class HarmonicMap:
 
     @classmethod
     def similarity(
-        cls,
-        cage: Complexes,
-        holes: tuple[Hole, ...] = (),
-        *,
-        factor: complex = 1,
-        shift: complex = 0,
+        cls, cage: Complexes, holes: tuple[Hole, ...] = (), factor: complex = 1, shift: complex = 0
     ) -> Self:
         """Return the map z ↦ factor · z + shift."""
         inside = np.zeros(sum(len(hole.cage) for hole in holes), dtype=np.complex128)
@@ -94,37 +89,24 @@ class HarmonicMap:
 
     @property
     def columns(self) -> tuple[Complexes, Complexes]:
-        """The same one by one, complex128 (n,) each."""
+        """Those of Φ and those of Ψ, logarithms included, complex128 (n,) each."""
         if not self.holes:
             return self.phi, self.psi
-        return (
-            np.concatenate([self.phi, self.logs]),
-            np.concatenate([self.psi, self.logs.conj()]),
-        )
+        logs = self.logs
+        return np.concatenate([self.phi, logs]), np.concatenate([self.psi, logs.conj()])
 
     def changed(self, phi: Complexes, psi: Complexes) -> Self:
-        """Return the map with something added to its coefficients.
+        """Return the map with something added to its `columns`.
 
-        Parameters
-        ----------
-        phi, psi : complex128, shape (n,)
-            Like `columns`: the second ends in the conjugates of the first's last entries.
+        `psi` ends in the conjugates of the last entries of `phi`.
         """
         count = len(self.phi)
-        return replace(
-            self,
-            phi=self.phi + phi[:count],
-            psi=self.psi + psi[:count],
-            logs=self.logs + phi[count:],
-        )
+        logs = self.logs + phi[count:]
+        return replace(self, phi=self.phi + phi[:count], psi=self.psi + psi[:count], logs=logs)
 
     def is_same(self, other: "HarmonicMap") -> bool:
         """Tell whether both have the same coefficients."""
-        return (
-            np.array_equal(self.phi, other.phi)
-            and np.array_equal(self.psi, other.psi)
-            and np.array_equal(self.logs, other.logs)
-        )
+        return all(map(np.array_equal, self.columns, other.columns))
 
     def __call__(self, points: Complexes) -> Complexes:
         """Return f at points (m,) strictly inside the cage, and outside those in holes."""

@@ -15,7 +15,6 @@ from engine.paths.integration_paths import (
 )
 from engine.paths.loops import Loops as Loops
 from engine.paths.path_network import (
-    ON_OUTLINE as ON_OUTLINE,
     mesh_network as mesh_network,
     scattered_network as scattered_network,
     with_loops as with_loops,

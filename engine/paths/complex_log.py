@@ -9,6 +9,7 @@ from engine.arrays import Complexes, Floats, Indices, Integers, freeze
 from engine.errors import EngineError
 from engine.paths.integration_paths import IntegrationPaths
 
+MOST_TURNS = 1_000_000  # at the anchor, in all: more leave less than nine digits of an angle
 LARGEST_TURN = 1.0  # radians by which f_z may turn along a step without a closer look
 MOST_BISECTIONS = 12
 
@@ -74,7 +75,7 @@ def root_sheets(anchor_fz: Complexes, turns: npt.ArrayLike | None = None) -> Int
     Raises
     ------
     EngineError
-        If `turns` has not one entry for each pair of neighbours, or is not of integers.
+        If `turns` has not one entry for each pair of neighbours, is not of integers, or too large.
     """
     extra = np.zeros(len(anchor_fz) - 1, np.int32) if turns is None else np.asarray(turns)
     if extra.shape != (len(anchor_fz) - 1,) or extra.dtype.kind not in "iu":
@@ -84,8 +85,10 @@ def root_sheets(anchor_fz: Complexes, turns: npt.ArrayLike | None = None) -> Int
         )
     principal = np.angle(anchor_fz)
     shorter = np.angle(anchor_fz[1:] / anchor_fz[:-1])
-    sheets = np.round((shorter - np.diff(principal)) / (2 * np.pi)) + extra
-    return freeze(np.concatenate([[0], np.cumsum(sheets)]).astype(np.int32))
+    sheets = np.cumsum(np.round((shorter - np.diff(principal)) / (2 * np.pi)) + extra)
+    if np.abs(sheets).max(initial=0.0) > MOST_TURNS:
+        raise EngineError(f"The keyframes make more than {MOST_TURNS:,} turns; give smaller turns.")
+    return freeze(np.concatenate([[0], sheets]).astype(np.int32))
 
 
 def _turns_along(

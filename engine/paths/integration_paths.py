@@ -48,18 +48,8 @@ class IntegrationPaths:
     @property
     def nbytes(self) -> int:
         """Memory that the arrays take, in bytes."""
-        tree = self.tree
-        arrays = (
-            self.nodes,
-            self.steps,
-            self.places,
-            self.around,
-            self.cornered,
-            tree.parent,
-            tree.down,
-            tree.up,
-        )
-        return sum(array.nbytes for array in arrays)
+        own = (self.nodes, self.steps, self.places, self.around, self.cornered)
+        return sum(array.nbytes for array in (*own, self.tree.parent, self.tree.down, self.tree.up))
 
     def step_integrals(self, values: Complexes, derivatives: Complexes) -> Complexes:
         """Integrate along each step by the Hermite rule.
@@ -88,8 +78,7 @@ class IntegrationPaths:
 
     def integrals(self, step_integrals: Complexes) -> Complexes:
         """Sum the integrals of the steps from the anchor to each point, (m,)."""
-        sums: Complexes = self.tree.sums(step_integrals)[self.places]
-        return sums
+        return np.asarray(self.tree.sums(step_integrals)[self.places])
 
 
 def lay_paths(network: Network, outline: Complexes, cage: Complexes) -> IntegrationPaths:
@@ -119,8 +108,7 @@ def lay_paths(network: Network, outline: Complexes, cage: Complexes) -> Integrat
         room = np.maximum(distance - lengths / 2, 0.0) / scale
         near = (STEP_PER_SIZE * (STEP_PER_DISTANCE * room) ** 4) ** 0.2
         longest = scale * np.clip(near, SHORTEST_PER_SIZE, STEP_PER_SIZE)
-        fine: Booleans = lengths <= longest
-        return fine
+        return np.asarray(lengths <= longest)
 
     nodes, parents = _chain(network, children, bisect(legs, is_fine))
     numbering = depth_first_numbering(parents, 0)

@@ -33,15 +33,9 @@ class Loops:
 
     @classmethod
     def around(cls, outline: Complexes, holes: Sequence[Complexes], singular: Complexes) -> "Loops":
-        """Lay the loops.
+        """Lay loops between the outlines of a domain and of its holes.
 
-        Parameters
-        ----------
-        outline : complex128, shape (p,)
-        holes : sequence of complex128
-            Their outlines.
-        singular : complex128, shape (v,)
-            Where integrands are singular, outside the domain or on its boundary.
+        Integrands are `singular` at points (v,) outside the domain or on its boundary.
         """
         nodes, differentials = [], []
         rings = [shapely.LinearRing(as_xy(loop)) for loop in (outline, *holes)]
@@ -72,13 +66,11 @@ class Loops:
     @property
     def counts(self) -> Indices:
         """How many nodes each loop has, (holes,)."""
-        counts: Indices = np.diff(self.starts, append=len(self.nodes))
-        return counts
+        return np.diff(self.starts, append=len(self.nodes))
 
     def integrals(self, values: Complexes) -> Complexes:
         """Integrate over each loop: (..., c) to (..., holes)."""
-        sums: Complexes = np.add.reduceat(values * self.differentials, self.starts, axis=-1)
-        return sums
+        return np.asarray(np.add.reduceat(values * self.differentials, self.starts, axis=-1))
 
     def products(self, values: Complexes, functions: Complexes) -> Complexes:
         """Integrate values (t, c) times functions (c, b) over each loop, (t, holes, b)."""

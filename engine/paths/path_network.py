@@ -6,7 +6,7 @@ triangle is convex, so that each leg of such a path stays inside, however narrow
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 import shapely
@@ -14,9 +14,17 @@ from scipy import ndimage
 from scipy.sparse import csr_array
 
 from engine.arrays import Booleans, Complexes, Indices, Integers, ragged
-from engine.domain.meshing import Mesh
+from engine.domain.meshing import Mesh, sides_of
 from engine.errors import EngineError
-from engine.geometry import as_xy, box_diagonal, constrained_delaunay, loop_ends, region
+from engine.geometry import (
+    ON_OUTLINE,
+    as_xy,
+    box_diagonal,
+    constrained_delaunay,
+    edges,
+    loop_ends,
+    region,
+)
 from engine.paths.loops import Loops
 from engine.paths.spanning_tree import breadth_first_parents, shortest_parents
 
@@ -24,7 +32,6 @@ CELL = 1 / 50  # longest edge of the triangles between scattered points, over th
 MOST_CELLS = 2000  # over the box diagonal, by which segments near the boundary are looked for
 NEIGHBOURS = 64  # nodes that are tried for a straight way to the anchor, or to a loop
 TRIES = 32  # places of a loop around a hole from which nodes are looked for
-ON_OUTLINE = 1e-9  # distance, over the size of the shape, at which a point counts as on the outline
 
 # How a triangle with corners 0, 1, 2 is cut where the sides 01, 12, 20 (bits 1, 2, 4 of the index)
 # have the middles 3, 4, 5.
@@ -141,11 +148,11 @@ def scattered_network(
     cells = shapely.STRtree(shapely.polygons(as_xy(corners)[triangles]))
     # A point on the outline can fall outside by rounding: the nearest triangle is its own.
     home = sides[cells.query_nearest(shapely.points(as_xy(ends)), all_matches=False)[1]]
-    legs = [np.column_stack([sides[:, k], np.roll(sides, -1, axis=1)[:, k]]) for k in range(3)]
+    legs = [sides[:, [k, (k + 1) % 3]] for k in range(3)]
     legs = [leg[(leg >= 0).all(axis=1)] + len(ends) for leg in legs]
-    for k in range(3):
-        inner = np.flatnonzero(home[:, k] >= 0)
-        legs.append(np.column_stack([inner, home[inner, k] + len(ends)]))
+    for own in home.T:
+        inner = np.flatnonzero(own >= 0)
+        legs.append(np.column_stack([inner, own[inner] + len(ends)]))
     beside = np.flatnonzero((home[1:] == home[0]).all(axis=1)) + 1
     legs.append(np.column_stack([np.zeros_like(beside), beside]))
     nodes = np.concatenate([ends, portals])
@@ -182,19 +189,13 @@ def with_loops(
         own[order - first] = np.concatenate([seen[:1], order[:-1]])
         parents.append(own)
         first += len(along)
-    return Network(
-        nodes=np.concatenate([network.nodes, loops.nodes]),
-        parents=np.concatenate(parents),
-        places=network.places,
-        around=len(network.nodes) + np.arange(len(loops.nodes)),
-    )
+    around = len(network.nodes) + np.arange(len(loops.nodes))
+    nodes = np.concatenate([network.nodes, loops.nodes])
+    return replace(network, nodes=nodes, parents=np.concatenate(parents), around=around)
 
 
 def _directed(triangles: Integers, count: int) -> tuple[csr_array, csr_array]:
-    """Return how often triangles pass from each of `count` points to each other, and the reverse.
-
-    int32, (count, count) both.
-    """
+    """Return how often triangles pass from each point to each other (n, n), and its transpose."""
     starts, ends = triangles.ravel(), triangles[:, [1, 2, 0]].ravel()
     ones = np.ones(len(starts), dtype=np.int32)
     along = csr_array((ones, (starts, ends)), shape=(count, count))
@@ -240,30 +241,21 @@ def _near_boundary(loops: Sequence[Complexes], starts: Complexes, ends: Complexe
     marked = np.zeros((size, size), dtype=np.bool_)
     marked[cells(boundary)] = True
     marked = ndimage.binary_dilation(marked, np.ones((5, 5), dtype=np.bool_))
-    near: Booleans = marked[cells(starts)] | (lengths > cell)
-    return near
+    return np.asarray(marked[cells(starts)] | (lengths > cell))
 
 
 def _dense(loop: Complexes, spacing: float) -> Complexes:
     """Return points along a closed polygon, no farther apart than `spacing`."""
-    sides = np.roll(loop, -1) - loop
-    side, place = ragged(np.ceil(np.abs(sides) / spacing).astype(np.intp) + 1)
-    counts = np.bincount(side)
-    points: Complexes = loop[side] + sides[side] * (place / counts[side])
-    return points
-
-
-def _sides(triangles: Indices) -> tuple[Indices, Indices]:
-    """Return the undirected sides (e, 2) and, for each triangle, the numbers (t, 3) of its own."""
-    ends = np.sort(np.stack([triangles, np.roll(triangles, -1, axis=1)], axis=-1), axis=-1)
-    keys, numbers = np.unique(ends[..., 0] << 32 | ends[..., 1], return_inverse=True)
-    return np.column_stack([keys >> 32, keys & 0xFFFFFFFF]), numbers.reshape(-1, 3)
+    sides = edges(loop)
+    counts = np.ceil(np.abs(sides) / spacing).astype(np.intp) + 1
+    side, place = ragged(counts)
+    return loop[side] + sides[side] * (place / counts[side])
 
 
 def _refine(corners: Complexes, triangles: Indices, longest: float) -> tuple[Complexes, Indices]:
     """Halve every side longer than `longest`, in both of its triangles, until none is left."""
     while True:
-        sides, numbers = _sides(triangles)
+        sides, numbers, _ = sides_of(triangles)
         long = np.abs(corners[sides[:, 0]] - corners[sides[:, 1]]) > longest
         if not long.any():
             return corners, triangles
@@ -281,7 +273,7 @@ def _portals(corners: Complexes, triangles: Indices) -> tuple[Complexes, Indices
 
     The second array is (t, 3), −1 for a side on the polygon.
     """
-    sides, numbers = _sides(triangles)
+    sides, numbers, _ = sides_of(triangles)
     shared = np.bincount(numbers.ravel(), minlength=len(sides)) == 2
     portal = np.where(shared, np.cumsum(shared) - 1, -1)
     return corners[sides[shared]].mean(axis=1), portal[numbers]

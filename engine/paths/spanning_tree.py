@@ -50,29 +50,20 @@ class SpanningTree:
         tour[self.down] = steps
         tour[self.up] = -steps
         np.cumsum(tour, out=tour)
-        sums: type_ = tour[self.down]
-        return sums
+        return tour[self.down]
 
 
 def breadth_first_parents(count: int, edges: Indices, root: int) -> Indices:
-    """Return the parents (count,) on the paths with the fewest edges; −1 where there is none.
-
-    Parameters
-    ----------
-    count : int
-        Number of nodes.
-    edges : intp, shape (e, 2)
-        Undirected edges.
-    root : int
-        The root; it is its own parent.
-    """
-    ones = np.ones(len(edges), dtype=np.int8)
-    graph = csr_array((ones, (edges[:, 0], edges[:, 1])), shape=(count, count))
+    """Return `shortest_parents` of a graph with so many nodes and undirected edges (e, 2)."""
+    graph = csr_array((np.ones(len(edges), dtype=np.int8), edges.T), shape=(count, count))
     return shortest_parents(graph + graph.T, root)
 
 
 def shortest_parents(graph: csr_array, root: int) -> Indices:
-    """Return the same in a graph that is given as a symmetric matrix (n, n)."""
+    """Return each node's parent (n,) on the path with the fewest edges from the root.
+
+    The root is its own; −1 where there is no path. The graph is a symmetric matrix (n, n).
+    """
     order, predecessors = breadth_first_order(graph, root)
     parents = np.full(graph.shape[0], -1, dtype=np.intp)
     parents[order] = predecessors[order]
@@ -90,8 +81,7 @@ def depth_first_numbering(parents: Indices, root: int) -> Indices:
     ones = np.ones(len(children), dtype=np.int8)
     size = len(parents)
     tree = csr_array((ones, (parents[children], children)), shape=(size, size))
-    order: Indices = depth_first_order(tree, root, return_predecessors=False).astype(np.intp)
-    return order
+    return np.asarray(depth_first_order(tree, root, return_predecessors=False), dtype=np.intp)
 
 
 def _depths(parent: Indices) -> Indices:

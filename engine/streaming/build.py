@@ -1,22 +1,23 @@
 """From the direct path to series: few functions of time, found cheaply, and few samples."""
 
 from collections.abc import Generator
-from typing import TypeVar
+from math import inf
 
 import numpy as np
 
 from engine.arrays import Floats
 from engine.streaming.channels import Channels
-from engine.streaming.cutting import SampledMotion, cut
+from engine.streaming.cutting import OF_PIECES, SampledMotion, cut
 from engine.streaming.functions import TimeFunctions
 from engine.streaming.series import Series
-
-Result = TypeVar("Result")
 
 # Shares of the tolerance; the rest is for rounding to float32. What is found at some points may be
 # exceeded at others: then it is tried again with less.
 OF_FUNCTIONS = 0.2
 CHECKED = 0.7  # of the tolerance, at the times that are looked at; between them it may be more
+MARGIN = 1.4  # by which it may be more there
+BESIDE = (0.25, 0.75)  # of the first and the last gap, where it is looked at, too
+GAPS = 3  # between the samples, the widest, in the middle of which the series is looked at
 TIGHTER, ROUNDS = 1 / 4, 3
 
 
@@ -60,22 +61,20 @@ def build_series(channels: Channels) -> Generator[None, None, Series]:
                 error = max(error, float(np.abs(found.values(time) - values[time]).max()))
                 yield
         if error <= CHECKED * channels.tolerance:
-            return Series(pieces=pieces, error=error)
-    return Series(pieces=(), error=0.0)
-
-
-def finish(steps: Generator[None, None, Result]) -> Result:
-    """Take all steps that are left, and return what comes of them."""
-    while True:
-        try:
-            next(steps)
-        except StopIteration as stop:
-            result: Result = stop.value
-            return result
+            # Where nothing was looked at the error is what functions and pieces were allowed.
+            least = (OF_FUNCTIONS + OF_PIECES) * channels.tolerance
+            return Series(pieces=pieces, error=max(MARGIN * error, least))
+    return Series(pieces=(), error=inf)
 
 
 def _between(times: Floats) -> list[float]:
-    """Return where values at times are missed most: beside both ends, and in the widest gap."""
+    """Return where values at times are missed most: beside both ends, and in the widest gaps.
+
+    Beside a keyframe a motion may bend within a part of the first gap.
+    """
     every = np.concatenate([[0.0], times, [1.0]])
-    middles = (every[1:] + every[:-1]) / 2
-    return sorted({float(middles[i]) for i in (0, np.diff(every).argmax(), -1)})
+    widths = np.diff(every)
+    middles = every[:-1] + widths / 2
+    beside = [share * widths[0] for share in BESIDE]
+    beside += [1.0 - share * widths[-1] for share in BESIDE]
+    return sorted({*beside, *middles[widths.argsort()[-GAPS:]].tolist()})

@@ -11,7 +11,9 @@ from engine.interpolation import Inbetweens, Sites
 from engine.maps import distortion
 
 ROUNDING = 2.0**-21  # what sums of some float32 numbers lose, relative to the largest
-PROBED = 500  # points that tell how all of them depend on time
+OF_DIAMETER, OF_STRETCH = 1e-6, 1e-5  # errors that are allowed, of positions and of derivatives
+# Points that tell how all of them depend on time: some spread over all, and the most distorted.
+SPREAD, EXTREME = 400, 100
 
 
 class Channels(Protocol):
@@ -45,13 +47,13 @@ class Positions:
     length: float
 
     @classmethod
-    def of(cls, inbetweens: Inbetweens, sites: Sites, *, relative: float = 1e-6) -> Self:
+    def of(cls, inbetweens: Inbetweens, sites: Sites) -> Self:
         """Allow an error of a part of the diameter, or what float32 can hold if that is more."""
         largest = max(float(np.abs(key.positions).max()) for key in inbetweens.passage.ends)
         return cls(
             inbetweens=inbetweens,
-            tolerance=max(relative * sites.diameter, ROUNDING * largest),
-            derivatives=inbetweens.derivatives_at(_some(len(sites.points))),
+            tolerance=max(OF_DIAMETER * sites.diameter, ROUNDING * largest),
+            derivatives=inbetweens.derivatives_at(_telling(inbetweens, sites)),
             length=sites.diameter,
         )
 
@@ -78,14 +80,14 @@ class Distortions:
     some_points: Callable[[Floats], tuple[Complexes, Complexes]]
 
     @classmethod
-    def of(cls, inbetweens: Inbetweens, sites: Sites, *, relative: float = 1e-5) -> Self:
+    def of(cls, inbetweens: Inbetweens, sites: Sites) -> Self:
         """Allow an error of a part of the largest stretch of the two keyframes."""
         everywhere = inbetweens.derivatives_at(np.arange(len(sites.points)))
         stretches = distortion.sigma_a(*everywhere(np.array([0.0, 1.0])))
         return cls(
-            tolerance=relative * float(stretches.max()),
+            tolerance=OF_STRETCH * float(stretches.max()),
             all_points=everywhere,
-            some_points=inbetweens.derivatives_at(_some(len(sites.points))),
+            some_points=inbetweens.derivatives_at(_telling(inbetweens, sites)),
         )
 
     def sample(self, time: float) -> Floats:
@@ -97,9 +99,15 @@ class Distortions:
         return _reals(np.hstack(self.some_points(times)))
 
 
-def _some(count: int) -> Indices:
-    """Return some of so many points, spread over all of them."""
-    return np.linspace(0, count - 1, min(PROBED, count)).round().astype(np.intp)
+def _telling(inbetweens: Inbetweens, sites: Sites) -> Indices:
+    """Return some of the points: spread over all, and those that the keyframes distort most.
+
+    There the motion bends most, which a few points among many would miss.
+    """
+    nodes = sites.paths.places
+    k = np.max([np.abs(key.nu[nodes]) for key in inbetweens.passage.ends], axis=0)
+    spread = np.linspace(0, len(k) - 1, min(SPREAD, len(k))).round().astype(np.intp)
+    return np.union1d(spread, np.argsort(k)[-EXTREME:])
 
 
 def _reals(values: Complexes) -> Floats:

@@ -53,7 +53,8 @@ class Series:
     pieces : tuple of SeriesPiece
         In the order of time. Between them there may be stretches that are left to the direct path.
     error : float
-        The largest difference from the direct path that was found, in units of the values.
+        An upper estimate of the difference from the direct path, in units of the values: what was
+        seen at some times, with a margin. Infinite without pieces.
     """
 
     pieces: tuple[SeriesPiece, ...]
@@ -61,8 +62,8 @@ class Series:
 
     @property
     def size(self) -> int:
-        """Number of values, c."""
-        return len(self.pieces[0].rows[0])
+        """Number of values, c; 0 without pieces."""
+        return len(self.pieces[0].rows[0]) if self.pieces else 0
 
     @property
     def nbytes(self) -> int:

@@ -16,6 +16,7 @@ from engine.arrays import Complexes, Floats, freeze
 # and of the targets that are left out. Times cost little, targets much.
 OF_BASIS, OF_TIME, OF_RANK = 0.02, 0.1, 0.85
 BLOCK = 256  # moments that are written out at once
+SHORTEST = 2.0**-6  # time that a jump of the motion may take: there no tolerance is kept
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -44,8 +45,7 @@ class ShapeTargets:
     def positions(self, time: float) -> Complexes:
         """Return the points (m,) at a time; before the first and after the last they rest."""
         weights = np.array([np.interp(time, self.times, column) for column in self.weights.T])
-        places: Complexes = self.base + weights @ self.targets
-        return places
+        return np.asarray(self.base + weights @ self.targets)
 
 
 def build_targets(
@@ -55,7 +55,6 @@ def build_targets(
     *,
     tolerance: float,
     most: int | None = None,
-    shortest: float = 2.0**-6,
 ) -> Generator[float, None, ShapeTargets]:
     """Find the fewest targets that keep a motion within a tolerance; yield the time at each step.
 
@@ -69,11 +68,10 @@ def build_targets(
         Increasing; at least one. Where the motion is looked at first: so closely that it does
         nothing in between that does not show in the middle.
     tolerance : float
-        The largest distance that is allowed between a point and where it should be, at any time.
+        The largest distance that is allowed between a point and where it should be, at any time
+        but that of a jump.
     most : int, optional
         How many targets there may be. Where they do not suffice, `error` tells how far they come.
-    shortest : float
-        Time that a jump of the motion may take: there no tolerance is kept.
 
     Notes
     -----
@@ -84,12 +82,10 @@ def build_targets(
     out where the motion allows it, as where it starts at the base.
     """
     film = _Film(base, OF_BASIS * tolerance)
-    film.add(times[0], sample(times[0]))
+    film.append(times[0], film.take(sample(times[0])))
     yield times[0]
     for start, end in pairwise(times):
-        last = film.take(sample(end))
-        yield end
-        yield from _follow(film, sample, (start, end, last), (OF_TIME * tolerance, shortest))
+        yield from film.follow(sample, start, end, OF_TIME * tolerance)
     found = film.targets(0)
     for rank in range(1, film.rank + 1):
         if found.error <= (OF_RANK + OF_TIME) * tolerance:
@@ -101,59 +97,21 @@ def build_targets(
     return found
 
 
-def _follow(
-    film: "_Film",
-    sample: Callable[[float], Complexes],
-    gap: tuple[float, float, Floats],
-    limits: tuple[float, float],
-) -> Generator[float, None, None]:
-    """Add the moments from one to the next, after the first, as closely as is needed."""
-    largest, shortest = limits
-    pending = [gap]
-    while pending:
-        start, end, last = pending.pop()
-        middle = (start + end) / 2
-        between = film.take(sample(middle))
-        yield middle
-        bend = film.largest(_sum(between, -0.5 * film.latest, -0.5 * last)[None])
-        if bend <= largest:
-            film.add_middle(between)
-            film.append(end, last)
-        elif end - start <= shortest:
-            # A jump: its middle is where it is for no time at all.
-            film.add_middle(None)
-            film.append(end, last)
-        else:
-            pending += [(middle, end, last), (start, middle, between)]
-
-
 class _Film:
-    """A motion at some moments, each of them as its coordinates in a basis that grows with them.
-
-    Parameters
-    ----------
-    base : complex128, shape (m,)
-    slack : float
-        The largest distance that a basis may leave out.
-    """
+    """A motion at some moments, each of them as its coordinates in a basis that grows with them."""
 
     def __init__(self, base: Complexes, slack: float) -> None:
         self._base = base
-        self._slack = slack
+        self._slack = slack  # the largest distance that the basis may leave out
         self._rows = np.empty((0, 2 * len(base)))  # orthonormal
         self._times: list[float] = []
         self._moments: list[Floats] = []
-        self._middles: list[Floats | None] = []
+        self._middles: list[Floats | None] = []  # half way to the next moment; None of a jump
 
     @property
     def rank(self) -> int:
         """How many shapes the basis has."""
         return len(self._rows)
-
-    @property
-    def latest(self) -> Floats:
-        """The coordinates of the moment that was added last."""
-        return self._moments[-1]
 
     def take(self, points: Complexes) -> Floats:
         """Return the coordinates (q,) of the points, in a basis that now has room for them."""
@@ -170,18 +128,29 @@ class _Film:
             coordinates = np.append(coordinates, length)
         return coordinates
 
-    def add(self, time: float, points: Complexes) -> None:
-        """Add a moment."""
-        self.append(time, self.take(points))
-
     def append(self, time: float, coordinates: Floats) -> None:
         """Add a moment by its coordinates."""
         self._times.append(time)
         self._moments.append(coordinates)
 
-    def add_middle(self, coordinates: Floats | None) -> None:
-        """Note what is in the middle between the last moment and the next one; None of a jump."""
-        self._middles.append(coordinates)
+    def follow(
+        self, sample: Callable[[float], Complexes], start: float, end: float, tolerance: float
+    ) -> Generator[float, None, None]:
+        """Add the moments after one up to the next, as close together as is needed."""
+        pending = [(start, end, self.take(sample(end)))]
+        yield end
+        while pending:
+            start, end, last = pending.pop()
+            middle = (start + end) / 2
+            between = self.take(sample(middle))
+            yield middle
+            bend = _table([between, -0.5 * self._moments[-1], -0.5 * last], self.rank).sum(axis=0)
+            is_straight = self.largest(bend[None]) <= tolerance
+            if is_straight or end - start <= SHORTEST:
+                self._middles.append(between if is_straight else None)
+                self.append(end, last)
+            else:
+                pending += [(middle, end, last), (start, middle, between)]
 
     def largest(self, coordinates: Floats) -> float:
         """Return the largest distance from the origin of any point in moments (n, q)."""
@@ -215,10 +184,8 @@ class _Film:
             weights = np.hstack([np.ones((len(weights), 1)), weights])
             shapes = np.vstack([offset, shapes])
         straight = (weights[:-1] + weights[1:])[inner] / 2
-        error = max(
-            self.largest(moments - weights @ shapes),
-            self.largest(middles - straight @ shapes),
-        )
+        apart = moments - weights @ shapes, middles - straight @ shapes
+        error = max(map(self.largest, apart))
         return ShapeTargets(
             base=self._base,
             targets=freeze((shapes @ self._rows).view(np.complex128)),
@@ -228,13 +195,8 @@ class _Film:
         )
 
 
-def _sum(*terms: Floats) -> Floats:
-    """Add up coordinates, of which those that were found earlier may be fewer."""
-    total: Floats = _table(list(terms), max(map(len, terms))).sum(axis=0)
-    return total
-
-
 def _table(rows: Sequence[Floats], width: int) -> Floats:
+    """Return rows of coordinates, of which those that were found earlier are fewer."""
     table = np.zeros((len(rows), width))
     for row, values in zip(table, rows, strict=True):
         row[: len(values)] = values

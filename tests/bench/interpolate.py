@@ -14,14 +14,16 @@ from engine.domain import CutOut, Domain, build_domain
 from engine.domain.meshing import Mesh, triangulate
 from engine.interpolation import (
     Inbetweens,
+    Interval,
     KeyframeSamples,
+    Passage,
     Sites,
     Variant,
     prepare_inbetweens,
     prepare_sites,
     sample_keyframes,
 )
-from engine.maps import HarmonicMap, Span
+from engine.maps import Bounds, HarmonicMap, Span
 from engine.paths import root_sheets
 from engine.streaming import Positions, Series, build_series, finish
 from tests.bench.table import Row, Table, measure
@@ -78,9 +80,9 @@ class KeyframePair:
 
     def inbetweens(self, variant: Variant) -> Inbetweens:
         """Prepare the interval."""
-        return prepare_inbetweens(
-            variant, self.sites, self.keyframes, self.sheets, transform=self.extension
-        )
+        passage = Passage.of(self.keyframes, self.sheets)
+        interval = Interval(self.sites, passage, Bounds(), transform=self.extension)
+        return prepare_inbetweens(variant, interval)
 
 
 def bent(cage: Complexes) -> HarmonicMap:
@@ -246,9 +248,9 @@ class _HoledPair:
 
         def prepared() -> Series:
             sheets = root_sheets(np.array([key.anchor_fz for key in keyframes]))
-            inbetweens = prepare_inbetweens(
-                variant, self.sites, keyframes, sheets, transform=self.extension
-            )
+            passage = Passage.of(keyframes, sheets)
+            interval = Interval(self.sites, passage, Bounds(), self.extension)
+            inbetweens = prepare_inbetweens(variant, interval)
             return finish(build_series(Positions.of(inbetweens, self.sites)))
 
         series = prepared()

@@ -11,6 +11,8 @@ from app.editor.work import Kind
 from app.solving import Rig
 from engine.maps import Bounds, certify
 
+Putting = Callable[[Figure, tuple[Keyframe, ...]], None]
+
 
 def put(
     session: Session,
@@ -110,12 +112,7 @@ def shown_keys(project: Project) -> tuple[Keyframe, ...]:
     return () if pose is None else (_as_key(pose),)
 
 
-def find_pose(
-    session: Session,
-    project: Project,
-    kind: Kind,
-    take: Callable[[Figure, tuple[Keyframe, ...]], None],
-) -> None:
+def find_pose(session: Session, project: Project, kind: Kind, take: Putting) -> None:
     """Let the worker find the pose that is nearest to the in-between that is shown."""
     clip, frame = project.clip, playback.current_frame(session, project)
 

@@ -1,7 +1,7 @@
 """From an outline to a near-equilateral triangulation inside it, in the order of painting.
 
 In: a simple polygon and a number of triangles.
-Out: a `Mesh`.
+Out: a `Mesh`; the sides of its triangles.
 Imports: `engine.geometry`.
 """
 
@@ -13,5 +13,5 @@ from engine.domain.meshing.draw_order import (
     in_order_of as in_order_of,
     with_limbs_on_top as with_limbs_on_top,
 )
-from engine.domain.meshing.mesh import Mesh as Mesh
+from engine.domain.meshing.mesh import Mesh as Mesh, sides_of as sides_of
 from engine.domain.meshing.triangulation import triangulate as triangulate

@@ -7,7 +7,8 @@ import scipy.sparse
 from scipy.sparse.csgraph import dijkstra
 
 from engine.arrays import Complexes, Floats, Indices, Integers, readonly
-from engine.domain.meshing.mesh import Mesh, signed_areas
+from engine.domain.meshing.half_edges import following, preceding
+from engine.domain.meshing.mesh import Mesh, sides_of, signed_areas
 
 # Of the extent; up to there the depth is the point's own. Two limbs that are both so near are as
 # deep as each other, and keep the order that they have without depth.
@@ -60,12 +61,9 @@ def spread_depth(
 
 
 def in_depth_order(mesh: Mesh, depths: Floats) -> Integers:
-    """Return the triangles (m, 3) from back to front; equally deep ones in the order they have.
+    """Return the triangles (m, 3) from back to front by the depths (v,) of their corners.
 
-    Parameters
-    ----------
-    mesh : Mesh
-    depths : float64, shape (v,)
+    Equally deep ones keep their order.
     """
     levels = np.rint(depths[mesh.triangles].mean(axis=1) / FINEST).astype(np.int64)
     return readonly(mesh.triangles[np.argsort(levels, kind="stable")])
@@ -81,18 +79,12 @@ def _ways(mesh: Mesh) -> scipy.sparse.csr_array:
 
 def _across(mesh: Mesh) -> Indices:
     """Return the vertices (n, 2) that face each other across an edge and see each other there."""
-    triangles = mesh.triangles.astype(np.intp)
-    sides = np.concatenate([triangles[:, [k, (k + 1) % 3]] for k in range(3)])
-    opposite = np.concatenate([triangles[:, (k + 2) % 3] for k in range(3)])
-    keys = sides.min(axis=1) * len(mesh.vertices) + sides.max(axis=1)
-    order = np.argsort(keys, kind="stable")
-    twin = np.flatnonzero(keys[order[1:]] == keys[order[:-1]])
-    here, there = order[twin], order[twin + 1]
-    a, b = sides[here].T
-    c, d = opposite[here], opposite[there]
+    _, _, twins = sides_of(mesh.triangles)
+    corners = mesh.triangles.ravel().astype(np.intp)
+    a, b = corners[twins[:, 0]], corners[following(twins[:, 0])]
+    c, d = corners[preceding(twins.T)]
     # The way from c to d stays inside if the four corners are convex.
     seen = np.ones(len(a), dtype=np.bool_)
     for end, sign in ((a, 1.0), (b, -1.0)):
-        corners = np.column_stack([c, d, end])
-        seen &= sign * signed_areas(mesh.vertices, corners) < 0
+        seen &= sign * signed_areas(mesh.vertices, np.column_stack([c, d, end])) < 0
     return np.column_stack([c, d])[seen]

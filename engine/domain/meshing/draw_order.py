@@ -5,9 +5,10 @@ import scipy.sparse
 from scipy.sparse.csgraph import breadth_first_order, connected_components, dijkstra
 from scipy.spatial import cKDTree
 
-from engine.arrays import Booleans, Indices, Integers, readonly
+from engine.arrays import Booleans, Indices, Integers, freeze
 from engine.domain.meshing.limbs import rank_limbs
-from engine.domain.meshing.mesh import Mesh
+from engine.domain.meshing.mesh import Mesh, sides_of
+from engine.geometry import as_xy
 
 
 def with_limbs_on_top(mesh: Mesh, centre: complex) -> Mesh:
@@ -17,18 +18,11 @@ def with_limbs_on_top(mesh: Mesh, centre: complex) -> Mesh:
     covers the other, wherever they cross; a limb that curls covers itself by what is farther out.
     No pose is asked, so that the order is steady while the shape moves.
 
-    Parameters
-    ----------
-    mesh : Mesh
-    centre : complex
-        Ways go out from the vertex next to it, along the edges.
-
     Notes
     -----
-    Around a hole ways meet again. What they lead around is a limb like others at first; then the
-    sides of the line where they meet are told apart within it.
-
-    Cost: that of Dijkstra's algorithm and of sorting, O(v log v).
+    Ways go out along the edges from the vertex next to `centre`. Around a hole they meet again.
+    What they lead around is a limb like others at first; then the sides of the line where they meet
+    are told apart within it. Cost: that of Dijkstra's algorithm and of sorting, O(v log v).
     """
     edges = mesh.edges()
     lengths = np.abs(mesh.vertices[edges[:, 1]] - mesh.vertices[edges[:, 0]])
@@ -50,31 +44,21 @@ def with_limbs_on_top(mesh: Mesh, centre: complex) -> Mesh:
 
 def in_order_of(mesh: Mesh, other: Mesh) -> Mesh:
     """Return a mesh with its triangles in the order that another one of the same shape has."""
-    middles = [
-        np.column_stack([middle.real, middle.imag])
-        for middle in (each.vertices[each.triangles].mean(axis=1) for each in (other, mesh))
-    ]
-    _, nearest = cKDTree(middles[0]).query(middles[1])
+    here, there = (as_xy(each.vertices[each.triangles].mean(axis=1)) for each in (mesh, other))
+    _, nearest = cKDTree(there).query(here)
     return _reordered(mesh, np.argsort(nearest, kind="stable"))
 
 
 def _reordered(mesh: Mesh, order: Indices) -> Mesh:
-    return Mesh(vertices=mesh.vertices, triangles=readonly(mesh.triangles[order]))
+    return Mesh(vertices=mesh.vertices, triangles=freeze(mesh.triangles[order]))
 
 
 def _where_ways_meet(mesh: Mesh, edges: Integers, previous: Integers) -> Booleans:
-    """Tell which edges (e,) cross a line from a hole to the border where shortest ways meet.
+    """Tell which `Mesh.edges` cross a line from a hole to the border where shortest ways meet.
 
     The edges that are on no shortest way join the triangles, the holes and the outside to another
-    tree (Eppstein 2003); its branches to the holes are the lines.
-
-    Parameters
-    ----------
-    mesh : Mesh
-    edges : int32, shape (e, 2)
-        As `Mesh.edges` returns them.
-    previous : int32, shape (v,)
-        The vertex before each vertex on its shortest way.
+    tree (Eppstein 2003); its branches to the holes are the lines. `previous` (v,) is the vertex
+    before each vertex on its shortest way.
     """
     faces, outside = _faces_beside(mesh, edges)
     near, far = edges.T
@@ -99,14 +83,10 @@ def _faces_beside(mesh: Mesh, edges: Integers) -> tuple[Indices, int]:
     Faces are the triangles, by their indices, and after them the loops of the border.
     """
     count = len(mesh.vertices)
-    sides = np.concatenate([mesh.triangles[:, [k, (k + 1) % 3]] for k in range(3)])
-    forward = (sides[:, 0] < sides[:, 1]).astype(np.intp)
-    sides.sort(axis=1)
-    keys = edges.astype(np.int64) @ (count, 1)
+    _, numbers, _ = sides_of(mesh.triangles)
+    forward = (mesh.triangles < np.roll(mesh.triangles, -1, axis=1)).astype(np.intp)
     faces = np.full((len(edges), 2), -1)
-    found = np.searchsorted(keys, sides.astype(np.int64) @ (count, 1))
-    faces[found, forward] = np.tile(np.arange(len(mesh.triangles)), 3)
-
+    faces[numbers, forward] = np.arange(len(mesh.triangles))[:, None]
     border = np.flatnonzero((faces < 0).any(axis=1))
     ends = edges[border]
     loops = scipy.sparse.coo_array((np.ones(len(ends)), ends.T), shape=(count, count))

@@ -9,20 +9,15 @@ import numpy as np
 import numpy.typing as npt
 
 from engine.arrays import Booleans, Complexes, Floats, Indices
+from engine.domain.meshing.mesh import sides_of
 
-OUTLINE = -1
-"""Twin of a half-edge on the outline."""
-SEAM = -2
-"""Twin of a half-edge on which a part of the mesh begins that is not edited."""
-
-ROUNDING = 1e-11
-"""Where a sign decides, smaller numbers count as zero. The region must be of size 1."""
-
-FLAT = 1e-6
-"""A point in a triangle lies on one of its edges if the height over it is less, over its length."""
-
-LONGEST_WALK = 1_000
-"""Triangles after which a walk is given up."""
+# Twins of half-edges on the outline, and of those beyond which the mesh is not edited.
+OUTLINE, SEAM = -1, -2
+ROUNDING = 1e-11  # where a sign decides, smaller numbers are zero; the region must be of size 1
+FLAT = (
+    1e-6  # a point lies on an edge of its triangle if its height over it is less, over its length
+)
+LONGEST_WALK = 1_000  # triangles after which a walk is given up
 
 
 def following(half_edges: Indices) -> Indices:
@@ -82,17 +77,10 @@ class HalfEdgeMesh:
     def __init__(self, points: Complexes, triangles: Indices) -> None:
         self.points = points
         self.origins = np.array(triangles, dtype=np.intp).ravel()  # A copy, to be edited.
-        self.twins = self._match()
+        self.twins = np.full(len(self.origins), OUTLINE)
+        _, _, twins = sides_of(self.triangles)
+        self._join(*twins.T)
         self.waiting = self.places = np.empty(0, dtype=np.intp)
-
-    def _match(self) -> Indices:
-        """Return the twin of each half-edge, found by its two ends."""
-        starts, ends = self.ends(np.arange(len(self.origins)))
-        forward = starts * len(self.points) + ends
-        backward = ends * len(self.points) + starts
-        order = np.argsort(forward)
-        place = np.minimum(np.searchsorted(forward, backward, sorter=order), len(order) - 1)
-        return np.where(forward[order[place]] == backward, order[place], OUTLINE)
 
     @property
     def triangles(self) -> Indices:
@@ -141,12 +129,8 @@ class HalfEdgeMesh:
     ) -> tuple[Booleans, Indices]:
         """Insert vertices into the triangles that they lie in, as many as is possible at once.
 
-        Returns
-        -------
-        inserted : bool, shape (r,)
-            Which of them are now corners of triangles.
-        suspects : intp, shape (s,)
-            Half-edges that may not be Delaunay any more.
+        Returns which of them (r,) are now corners of triangles, and the half-edges (s,) that may
+        not be Delaunay any more.
         """
         corners = self.points[self.triangles[triangles]]
         along = np.roll(corners, -1, axis=1) - corners
@@ -228,13 +212,9 @@ class HalfEdgeMesh:
     def walk(self, starts: Indices, targets: Complexes) -> tuple[Indices, Indices]:
         """Go straight from the middle of triangles to targets, as far as the region reaches.
 
-        Returns
-        -------
-        triangles : intp, shape (r,)
-            Where the walks ended.
-        exits : intp, shape (r,)
-            -1 where the target lies in that triangle, else the half-edge on the border that the
-            walk would have crossed. (If rounding made a walk circle, any half-edge.)
+        Returns the triangles (r,) where the walks ended and the exits (r,): -1 where the target
+        lies in that triangle, else the half-edge on the border that the walk would have crossed.
+        (If rounding made a walk circle, any half-edge.)
         """
         triangles, exits = starts.copy(), np.full(len(starts), -1)
         sources = self.points[self.triangles[starts]].mean(axis=1)

@@ -1,53 +1,35 @@
 """The lattice of equilateral triangles inside polygons."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
-from engine.arrays import Booleans, Complexes, Floats, Indices
+from engine.arrays import Booleans, Complexes, Floats, Indices, ragged
 from engine.geometry import loop_ends
 
-ROW_HEIGHT = 3.0**0.5 / 2
-"""Distance between neighbouring rows over the spacing of the points in a row."""
+ROW_HEIGHT = 3.0**0.5 / 2  # distance between neighbouring rows over the spacing in a row
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Lattice:
-    """Points of the triangular lattice, sorted by row, then by column.
+class Lattice(NamedTuple):
+    """Points (s,) of the triangular lattice, sorted by row, then by column.
 
     Every odd row is shifted right by half a spacing.
-
-    Parameters
-    ----------
-    columns, rows : int64, shape (s,)
-        Where the points are in the lattice.
-    points : complex128, shape (s,)
-        Where they are in the plane.
     """
 
     columns: Indices
     rows: Indices
-    points: Complexes
+    points: Complexes  # in the plane
 
     def select(self, which: Booleans) -> "Lattice":
         """Return the lattice of the points marked in `which` (s,)."""
-        return Lattice(
-            columns=self.columns[which], rows=self.rows[which], points=self.points[which]
-        )
+        return Lattice(self.columns[which], self.rows[which], self.points[which])
 
 
 def lattice_inside(loops: Sequence[Complexes], spacing: float) -> Lattice:
-    """Fill a region with the points of a lattice, row by row (scan conversion).
+    """Fill the inside of a simple polygon, less its holes, with a lattice (scan conversion).
 
     Points within rounding of the boundary may fall on either side.
-
-    Parameters
-    ----------
-    loops : sequence of complex128
-        A simple polygon, and those of its holes.
-    spacing : float
-        Distance between neighbouring points.
     """
     starts, ends = np.concatenate(loops), loop_ends(loops)
     origin = complex(starts.real.min(), starts.imag.min())
@@ -56,11 +38,11 @@ def lattice_inside(loops: Sequence[Complexes], spacing: float) -> Lattice:
     shift = origin.real + 0.5 * spacing * (row % 2)
     first = np.ceil((left - shift) / spacing).astype(np.intp)
     last = np.floor((right - shift) / spacing).astype(np.intp)
-    run, place = _runs(np.maximum(last - first + 1, 0))
+    run, place = ragged(np.maximum(last - first + 1, 0))
     columns, rows = first[run] + place, row[run]
     x = shift[run] + columns * spacing
     y = origin.imag + (rows + 0.5) * (ROW_HEIGHT * spacing)
-    return Lattice(columns=columns, rows=rows, points=x + 1j * y)
+    return Lattice(columns, rows, x + 1j * y)
 
 
 def lattice_triangles(lattice: Lattice) -> Indices:
@@ -76,14 +58,10 @@ def lattice_triangles(lattice: Lattice) -> Indices:
     east = _find(keys, keys + 1)
     north_east = _find(keys, keys + width + odd)
     north_west = _find(keys, keys + width + odd - 1)
-    upward = (east >= 0) & (north_east >= 0)
-    downward = (north_east >= 0) & (north_west >= 0)
-    return np.concatenate(
-        [
-            np.column_stack([own, east, north_east])[upward],
-            np.column_stack([own, north_east, north_west])[downward],
-        ]
-    )
+    upward = np.column_stack([own, east, north_east])
+    downward = np.column_stack([own, north_east, north_west])
+    units = np.concatenate([upward, downward])
+    return units[(units >= 0).all(axis=1)]
 
 
 def _crossings(
@@ -100,18 +78,12 @@ def _crossings(
     next_level = (ends.imag - bottom) / height - 0.5
     lowest = np.ceil(np.minimum(level, next_level)).astype(np.intp)
     highest = np.ceil(np.maximum(level, next_level)).astype(np.intp)
-    edge, place = _runs(highest - lowest)
+    edge, place = ragged(highest - lowest)
     row = lowest[edge] + place
     fraction = (row - level[edge]) / (next_level[edge] - level[edge])
     x = starts.real[edge] + fraction * along.real[edge]
     order = np.lexsort((x, row))
     return row[order], x[order]
-
-
-def _runs(lengths: Indices) -> tuple[Indices, Indices]:
-    """Return, for runs of the given lengths laid end to end, the run and the place in it."""
-    run = np.repeat(np.arange(len(lengths)), lengths)
-    return run, np.arange(len(run)) - (np.cumsum(lengths) - lengths)[run]
 
 
 def _find(keys: Indices, wanted: Indices) -> Indices:

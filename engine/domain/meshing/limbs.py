@@ -38,9 +38,7 @@ def rank_limbs(vertices: Complexes, edges: Integers, areas: Floats, ways: Floats
 
     Parameters
     ----------
-    vertices : complex128, shape (v,)
-    edges : int32, shape (e, 2)
-        What is connected.
+    vertices, edges : complex128, shape (v,), and int32, shape (e, 2)
     areas : float64, shape (v,)
         What each vertex stands for.
     ways : float64, shape (v,)

@@ -43,6 +43,30 @@ class Mesh:
         return np.column_stack([keys >> 32, keys & 0xFFFFFFFF]).astype(np.int32)
 
 
+def sides_of(triangles: Integers | Indices) -> tuple[Indices, Indices, Indices]:
+    """Find the sides of triangles (m, 3), and which of them two triangles share.
+
+    Returns
+    -------
+    sides : intp, shape (e, 2)
+        As `Mesh.edges` has them.
+    numbers : intp, shape (m, 3)
+        Which of them leads from each corner of a triangle to its next.
+    twins : intp, shape (p, 2)
+        For each shared one, in order, where its number stands twice in `numbers` as it lies flat.
+    """
+    ends = np.stack([triangles, np.roll(triangles, -1, axis=1)], axis=-1).reshape(-1, 2)
+    low, high = ends.min(axis=1).astype(np.intp), ends.max(axis=1)
+    keys = low << 32 | high
+    order = np.argsort(keys, kind="stable")
+    is_new = np.diff(keys[order], prepend=-1) > 0
+    numbers = np.empty_like(order)
+    numbers[order] = np.cumsum(is_new) - 1
+    again = np.flatnonzero(~is_new)
+    twins = np.column_stack([order[again - 1], order[again]])
+    return np.column_stack([low, high])[order[is_new]], numbers.reshape(-1, 3), twins
+
+
 def signed_areas(vertices: Complexes, triangles: Integers | Indices) -> Floats:
     """Return the signed area (m,) of each triangle, positive where counter-clockwise."""
     a, b, c = (vertices[triangles[:, k]] for k in range(3))

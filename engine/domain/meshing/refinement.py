@@ -11,11 +11,9 @@ from engine.arrays import Booleans, Complexes, Indices
 from engine.domain.meshing.half_edges import OUTLINE, HalfEdgeMesh, disjoint, following, preceding
 from engine.domain.meshing.mesh import smallest_angles
 
-MOST_ROUNDS = 100
-"""Rounds of refinement; a bad outline takes about 40."""
-
+MOST_ROUNDS = 100  # a bad outline takes about 40
+# Edges of the outline must be longer, and are never split below this, over its size.
 SHORTEST_EDGE = 1e-6
-"""Edges of the outline must be longer, and are never split below this, over its size."""
 
 
 def refine(mesh: HalfEdgeMesh, smallest: float) -> None:

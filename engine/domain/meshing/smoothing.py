@@ -6,8 +6,7 @@ from engine.arrays import Complexes, Indices
 from engine.domain.meshing.half_edges import OUTLINE, HalfEdgeMesh, following, preceding
 from engine.domain.meshing.mesh import smallest_angles
 
-GOOD_ANGLE = 30.0
-"""Degrees: a triangle may lose quality as long as its smallest angle stays above this."""
+GOOD_ANGLE = 30.0  # degrees: above, the smallest angle of a triangle may become smaller
 
 
 def smooth_mesh(mesh: HalfEdgeMesh, corners: int, sweeps: int) -> None:
@@ -52,10 +51,7 @@ def _best_places(mesh: HalfEdgeMesh) -> Complexes:
     small. (With equal weights a vertex inside would go to the mean of its neighbours.)
     """
     corner = np.arange(len(mesh.origins))
-    p, q = (
-        mesh.points[mesh.origins[following(corner)]],
-        mesh.points[mesh.origins[preceding(corner)]],
-    )
+    p, q = (mesh.points[mesh.origins[near(corner)]] for near in (following, preceding))
     weight = 1 / np.abs(q - p)
     apex = weight * ((p + q) / 2 + 1j * np.sqrt(0.75) * (q - p))
     size = len(mesh.points)

@@ -8,7 +8,7 @@ import shapely
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
-from engine.arrays import Booleans, Complexes, Indices
+from engine.arrays import Booleans, Complexes, Indices, ragged
 from engine.domain.meshing.half_edges import OUTLINE, HalfEdgeMesh, disjoint
 from engine.geometry import as_xy, constrained_delaunay, loop_ends
 
@@ -37,23 +37,18 @@ def cut_edges(loops: Sequence[Complexes], spacing: float) -> Rings:
     starts = np.concatenate(loops)
     along = loop_ends(loops) - starts
     pieces = np.maximum(np.round(np.abs(along) / spacing), 1).astype(np.intp)
-    edge = np.repeat(np.arange(len(starts)), pieces)
-    place = np.arange(len(edge)) - (np.cumsum(pieces) - pieces)[edge]
+    edge, place = ragged(pieces)
     points = starts[edge] + place / pieces[edge] * along[edge]
     # Vertices of the loops go first.
     rank = np.argsort(place > 0, kind="stable")
     sizes = np.add.reduceat(pieces, np.cumsum([0, *map(len, loops[:-1])]))
-    return Rings(
-        points=points[rank],
-        order=np.argsort(rank),
-        size=np.repeat(sizes, sizes),
-    )
+    return Rings(points=points[rank], order=np.argsort(rank), size=np.repeat(sizes, sizes))
 
 
 def triangulate_strip(
     loops: Sequence[Complexes], rings: Rings, lattice: HalfEdgeMesh, loose: Indices
 ) -> Indices:
-    """Triangulate the region between the rings and a part of a lattice inside.
+    """Return counter-clockwise triangles (m, 3) between the rings and a part of a lattice inside.
 
     Parameters
     ----------
@@ -67,11 +62,6 @@ def triangulate_strip(
         point of a loop is within the circumcircle of a triangle.
     loose : intp, shape (s,)
         Points of the lattice that no unit triangle uses.
-
-    Returns
-    -------
-    intp, shape (m, 3)
-        Counter-clockwise triangles on the points of the lattice.
     """
     mesh = HalfEdgeMesh(lattice.points, constrained_delaunay(loops[0], loops[1:]))
     _cut_border(mesh, rings)

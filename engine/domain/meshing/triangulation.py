@@ -20,29 +20,16 @@ from engine.domain.meshing.strip import cut_edges, triangulate_strip
 from engine.errors import EngineError
 from engine.geometry import as_xy, box_diagonal, edges, require_holes, require_simple, signed_area
 
+# Least distance of a lattice point from the outline, in spacings. It must exceed the lattice's
+# circumradius, 0.577, so that no part of the outline comes between the corners of a unit triangle,
+# and every edge of the lattice is Delaunay.
 CLEARANCE = 0.6
-"""Least distance of a lattice point from the outline, in spacings.
-
-It must exceed the lattice's circumradius, 0.577, so that no part of the outline comes between the
-corners of a unit triangle, and every edge of the lattice is Delaunay.
-"""
-BAND = 3.5
-"""Depth in spacings down to which the lattice may give way to smoothing and refinement."""
-
-SMALLEST_ANGLE = 28.0
-"""Degrees that refinement asks for."""
-
-RELAXED_ANGLE = 20.0
-"""Degrees that it asks for where otherwise there would be too many triangles."""
-
-SWEEPS = 4
-"""Sweeps of smoothing."""
-
-CLOSE_ENOUGH = 0.03
-"""Relative error of the number of triangles that is accepted."""
-
-MOST_TRIALS = 10
-"""Spacings that are tried for the right number of triangles."""
+BAND = 3.5  # spacings down to which the lattice may give way to smoothing and refinement
+# Degrees that refinement asks for, and where otherwise there would be too many triangles.
+SMALLEST_ANGLE, RELAXED_ANGLE = 28.0, 20.0
+SWEEPS = 4  # of smoothing
+CLOSE_ENOUGH = 0.03  # relative error of the number of triangles that is accepted
+MOST_TRIALS = 10  # spacings that are tried for the right number of triangles
 
 
 def triangulate(outline: Complexes, count: int, *, holes: Sequence[Complexes] = ()) -> Mesh:
@@ -165,8 +152,7 @@ def _fill(loops: Sequence[Complexes], spacing: float, smallest: float) -> Mesh:
 def _depth(loops: Sequence[Complexes], points: Complexes, spacing: float) -> Floats:
     """Return the distance of points from the loops in spacings, infinite below the band."""
     # So dense that the distance from the samples is at most 2 % too large at the clearance.
-    samples = cut_edges(loops, spacing / 6).points
-    tree = cKDTree(as_xy(samples))
+    tree = cKDTree(as_xy(cut_edges(loops, spacing / 6).points))
     distance, _ = tree.query(as_xy(points), distance_upper_bound=(BAND + 0.1) * spacing)
     return np.asarray(distance / spacing)
 

@@ -48,30 +48,23 @@ def offset_cage(outline: Complexes, offset: float, *, hole: bool = False) -> Com
     require_simple(outline, "outline", clockwise=hole)
     if not offset > 0:
         raise EngineError(f"The cage's offset must be positive, not {offset}.")
-    least = LEAST_DISTANCE * box_diagonal(outline)
-    directions = _miters(outline)
+    directions, arcs = _miters(outline), arc_lengths(outline)
     offsets = np.minimum(offset, ROOM * _room_outside(outline, directions))
     for _ in range(MOST_ROUNDS):
-        offsets = _graded(offsets, outline)
+        offsets = limit_growth(offsets, arcs, SLOPE)
         cage = outline + offsets * directions
         faulty = _faulty_edges(outline, cage)
         if not faulty.any():
             break
         offsets[faulty | np.roll(faulty, 1)] *= SHRINKING
-    if faulty.any() or _distance_between(outline, cage) < least:
+    # Two polygons that do not cross are closest at a vertex of one of them.
+    ways = distance_to_boundary(outline, cage), distance_to_boundary(cage, outline)
+    if faulty.any() or np.min(ways) < LEAST_DISTANCE * box_diagonal(outline):
         raise EngineError(
             f"The outline comes too close to itself for a cage around its {len(outline)} vertices; "
             "choose a coarser detail, or widen the gap in the picture."
         )
     return readonly(cage)
-
-
-def _distance_between(outline: Complexes, cage: Complexes) -> float:
-    """Return the least distance between two polygons that do not cross."""
-    return min(
-        float(distance_to_boundary(outline, cage).min()),
-        float(distance_to_boundary(cage, outline).min()),
-    )
 
 
 def _miters(outline: Complexes) -> Complexes:
@@ -106,11 +99,6 @@ def _room_outside(outline: Complexes, directions: Complexes) -> Floats:
     start_room = (radius + SLOPE * parameter * np.abs(along)).min(axis=0)
     end_room = (radius + SLOPE * (1 - parameter) * np.abs(along)).min(axis=0)
     return np.asarray(np.minimum(at_vertex, np.minimum(start_room, np.roll(end_room, 1))))
-
-
-def _graded(offsets: Floats, outline: Complexes) -> Floats:
-    """Lower the offsets where they change too fast along the outline."""
-    return limit_growth(offsets, arc_lengths(outline), SLOPE)
 
 
 def _faulty_edges(outline: Complexes, cage: Complexes) -> Booleans:

@@ -27,11 +27,7 @@ def at_arc_lengths(curve: Complexes, wanted: Floats) -> Complexes:
 def outward_normals(curve: Complexes, reach: int) -> Complexes:
     """Return the unit normals to the right of a curve: outwards if it runs counter-clockwise.
 
-    Parameters
-    ----------
-    curve : complex128, shape (n,)
-    reach : int
-        Number of points before and after each one over which the tangent is taken.
+    Tangents are taken over `reach` points before and after each one.
     """
     tangent = np.roll(curve, -reach) - np.roll(curve, reach)
     return -1j * tangent / np.maximum(np.abs(tangent), np.finfo(np.float64).tiny)
@@ -48,15 +44,9 @@ def smooth_curve(curve: Complexes, leash: Floats, rounds: int) -> Complexes:
 
 
 def limit_growth(values: Floats, arcs: Floats, slope: float) -> Floats:
-    """Lower `values` (n,) until they grow by no more than `slope` per arc length either way.
+    """Lower values (n,) on a closed curve until they grow by at most `slope` per arc length.
 
-    Parameters
-    ----------
-    values : float64, shape (n,)
-        At the points of a closed curve.
-    arcs : float64, shape (n + 1,)
-        The curve's `arc_lengths`.
-    slope : float
+    That is either way round; `arcs` (n + 1,) are the curve's `arc_lengths`.
     """
     # Twice round: the lowest value may stand just before point 0.
     around = slope * np.concatenate([arcs[:-1], arcs[:-1] + arcs[-1]])

@@ -119,14 +119,7 @@ def enclose(
     return Enclosure(
         outline=readonly(grid.to_picture(fit.outline)),
         cage=readonly(grid.to_picture(fit.cage)),
-        holes=tuple(
-            Hole(
-                outline=readonly(grid.to_picture(hole.outline)),
-                cage=readonly(grid.to_picture(hole.cage)),
-                centre=complex(grid.to_picture(np.array([hole.centre]))[0]),
-            )
-            for hole in kept.values()
-        ),
+        holes=tuple(hole.moved(grid.origin, grid.cell) for hole in kept.values()),
         notices=(
             *piece.notices,
             *piece.told_filled(filled),
@@ -142,7 +135,7 @@ def _kept_holes(
 ) -> tuple[dict[int, Hole], list[int]]:
     """Trace those of the wanted holes that are large enough, as many as there are vertices for.
 
-    Return them by their numbers, and the numbers of those for which there are none left.
+    Return holes by their numbers, and the numbers of those for which there are no vertices left.
     """
     kept: dict[int, Hole] = {}
     room = MOST_VERTICES - len(fit.outline)

@@ -12,7 +12,7 @@ from engine.domain.outline.crossings import edges_that_cross
 from engine.domain.outline.curve import arc_lengths, at_arc_lengths, smooth_curve
 from engine.domain.outline.margin import MarginCurve
 from engine.domain.outline.simplify import FARTHEST, choose_vertices
-from engine.geometry import as_xy, contains, edges, signed_area
+from engine.geometry import as_xy, contains, edges, region, signed_area
 
 FEWEST_EDGES = 40
 SHORTEST_EDGE, LONGEST_EDGE = 0.0012, 0.07  # of the diagonal
@@ -57,21 +57,10 @@ class Candidates:
 
 
 def fit_polygon(candidates: Candidates, corners: Complexes) -> Complexes | None:
-    """Fit a simple polygon of few edges to a curve that has `corners` on its left.
+    """Fit a simple polygon of few edges (p,) to a curve that has `corners` (c,) on its left.
 
     Where it crosses itself, turns back or leaves out a corner, it is fitted again, closer to the
-    curve.
-
-    Parameters
-    ----------
-    candidates : Candidates
-    corners : complex128, shape (c,)
-        Points that must lie inside, or outside a hole.
-
-    Returns
-    -------
-    complex128, shape (p,), or None
-        In the direction of the curve; None if that does not help.
+    curve. Returns it in the direction of the curve; None if that does not help.
     """
     points, margins = candidates.points, candidates.margins
     slack = np.ones(len(points))
@@ -116,6 +105,4 @@ def _faults(polygon: Complexes, corners: Complexes) -> Complexes:
         return np.asarray(polygon[crossing | sharp])
     if signed_area(polygon) > 0:
         return corners[~contains(polygon, corners)]
-    hole = shapely.Polygon(as_xy(polygon))
-    shapely.prepare(hole)
-    return np.asarray(corners[shapely.contains_xy(hole, corners.real, corners.imag)])
+    return np.asarray(corners[shapely.contains_xy(region(polygon), corners.real, corners.imag)])

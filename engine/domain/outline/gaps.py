@@ -52,19 +52,10 @@ def half_gaps(curve: Complexes, normals: Complexes, *, reach: float, separation:
 def empty_disc_radius(normals: Complexes, across: Complexes) -> Floats:
     """Return the radius of the disc that touches a curve from outside and another place of it.
 
-    Parameters
-    ----------
-    normals : complex128
-        Outward unit normals m where the disc touches.
-    across : complex128, of a shape that broadcasts with that of `normals`
-        Vectors q - p from there to the other places.
-
-    Returns
-    -------
-    float64
-        |q - p| / (2 cos a), a the angle between m and q - p; infinity where q does not lie
-        opposite. The cosine is kept above 0.7 because normals at corners point past what is nearest
-        to them; that only makes the disc smaller.
+    That is |q - p| / (2 cos a), a the angle between the outward unit normal m where it touches and
+    the vector q - p `across` from there to the other place; infinity where q does not lie opposite.
+    The cosine is kept above 0.7 because normals at corners point past what is nearest to
+    them; that only makes the disc smaller.
     """
     distance = np.abs(across)
     cosine = (across * normals.conj()).real / np.maximum(distance, np.finfo(np.float64).tiny)

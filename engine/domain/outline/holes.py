@@ -133,4 +133,4 @@ def trace_hole(
         cage = offset_cage(outline, offset, hole=True)
     except EngineError:
         return None
-    return Hole(outline=outline + corner, cage=cage + corner, centre=deepest_point(cage) + corner)
+    return Hole(outline=outline, cage=cage, centre=deepest_point(cage)).moved(corner)

@@ -128,17 +128,13 @@ def curve_at_margin(
         skin, margin=margin, offset=offset, closing=closing, separation=SEPARATION * diagonal
     )
     tree = cKDTree(as_xy(skin))
-    everywhere = np.allclose(margins, margin)
-    level = margin if everywhere else _spread(field, tree, margins, margin)
+    level = margin if np.allclose(margins, margin) else _spread(field, tree, margins, margin)
     ring, enclosed = _largest_ring(field.distance - level, hole=hole)
     ring, pockets = _without_slits(ring, SLIT * closing)
     _, nearest = tree.query(as_xy(ring))
+    enclosed += pockets
     return MarginCurve(
-        points=ring,
-        margins=margins[nearest],
-        enclosed=enclosed + pockets,
-        skin=skin,
-        deep=DEEP * margin,
+        points=ring, margins=margins[nearest], enclosed=enclosed, skin=skin, deep=DEEP * margin
     )
 
 

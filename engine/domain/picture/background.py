@@ -8,6 +8,7 @@ from scipy import ndimage
 from engine.arrays import Booleans, Bytes
 from engine.domain.picture.cut_out import BackgroundColour
 from engine.domain.picture.grid import block_factor, reduce_blocks, repeat_blocks
+from engine.domain.picture.parts import WITH_CORNERS, touching
 
 WORKING_SIDE = 1400  # pixels: larger pictures are flooded in blocks
 COLOUR_BIN = 16  # levels: how finely colours are told apart when the border votes
@@ -76,7 +77,7 @@ def flood_background(
         enclosed = _refined(enclosed, factor, alike) & ~flooded
     noise = _noise(flooded | enclosed, rgb, wanted)
     if noise.any() and enclosed.any():
-        enclosed = _touching(noise | enclosed, enclosed)
+        enclosed = touching(noise | enclosed, enclosed)
     flooded |= noise & ~enclosed
     if _is_vivid(wanted):
         enclosed |= alike & ~flooded
@@ -89,7 +90,7 @@ def _is_vivid(colour: Bytes) -> bool:
 
 def _refined(blocks: Booleans, factor: int, alike: Booleans) -> Booleans:
     """Return those of the pixels `alike` that are in blocks or beside them."""
-    near = ndimage.binary_dilation(blocks, np.ones((3, 3), dtype=np.bool_))
+    near = ndimage.binary_dilation(blocks, WITH_CORNERS)
     return repeat_blocks(near, factor, alike.shape) & alike
 
 
@@ -119,7 +120,7 @@ def _alike(rgb: Bytes, colour: Bytes, tolerance: int) -> Booleans:
 
 def _noise(background: Booleans, rgb: Bytes, colour: Bytes) -> Booleans:
     """Return the islands in a background that are an encoder's noise."""
-    labels, count = ndimage.label(~background, np.ones((3, 3)))
+    labels, count = ndimage.label(~background, WITH_CORNERS)
     is_noise = np.bincount(labels.ravel(), minlength=count + 1) < SMALLEST_ISLAND
     is_noise[0] = False
     noise = is_noise[labels]
@@ -134,19 +135,18 @@ def _noise(background: Booleans, rgb: Bytes, colour: Bytes) -> Booleans:
 
 
 def _flood(alike: Booleans) -> tuple[Booleans, Booleans]:
-    """Flood the pixels `alike` from the border, past no narrow channel, and all other wide places.
-
-    Return both floods.
-    """
+    """Flood pixels `alike` from the border, past no narrow channel; and all other wide places."""
     radius = max(1.0, CHANNEL_WIDTH / 2 * float(np.hypot(*alike.shape)))
     wide = _opened(alike, radius)
-    flooded = _touching(wide, _frame(wide.shape))
+    frame = np.ones_like(wide)
+    frame[1:-1, 1:-1] = False
+    flooded = touching(wide, frame)
     enclosed = wide & ~flooded
     thin = alike & ~wide
-    flooded |= _touching(thin | flooded, flooded) & thin
+    flooded |= touching(thin | flooded, flooded) & thin
     if enclosed.any():
         thin &= ~flooded
-        enclosed |= _touching(thin | enclosed, enclosed) & thin
+        enclosed |= touching(thin | enclosed, enclosed) & thin
     return flooded, enclosed
 
 
@@ -160,19 +160,3 @@ def _opened(area: Booleans, radius: float) -> Booleans:
     opened = ndimage.distance_transform_edt(~core) <= radius
     inner = slice(padding, -padding)
     return area & opened[inner, inner]
-
-
-def _frame(shape: tuple[int, ...]) -> Booleans:
-    """Return True on the border pixels."""
-    frame = np.ones(shape, dtype=np.bool_)
-    frame[1:-1, 1:-1] = False
-    return frame
-
-
-def _touching(area: Booleans, seeds: Booleans) -> Booleans:
-    """Return the edge-connected components of `area` that contain a seed."""
-    labels, count = ndimage.label(area)
-    chosen = np.zeros(count + 1, dtype=np.bool_)
-    chosen[labels[seeds]] = True
-    chosen[0] = False
-    return chosen[labels]

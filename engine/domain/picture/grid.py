@@ -5,6 +5,7 @@ ones are enlarged.
 """
 
 from dataclasses import dataclass
+from functools import reduce
 
 import numpy as np
 
@@ -78,32 +79,16 @@ def block_factor(shape: tuple[int, ...], longest: int) -> int:
 
 
 def reduce_blocks(mask: Booleans, factor: int, combine: np.ufunc) -> Booleans:
-    """Combine the pixels of each block into one: `np.logical_or` for any, `np.logical_and` for all.
+    """Combine the pixels (h, w) of each block into one (ceil(h / factor), ceil(w / factor)).
 
-    Parameters
-    ----------
-    mask : bool, shape (h, w)
-    factor : int
-        Side of a block in pixels. The last blocks of a row or column may be cut off.
-    combine : numpy ufunc
-
-    Returns
-    -------
-    bool, shape (ceil(h / factor), ceil(w / factor))
+    Blocks at the end of a row or column may be cut off. `combine` is `np.logical_or` for any pixel
+    of a block, `np.logical_and` for all.
     """
-    if factor == 1:
-        return mask
-    # Ten times as fast as `reduceat`, which goes pixel by pixel.
-    rows = mask[::factor].copy()
-    for row in range(1, factor):
-        others = mask[row::factor]
-        combine(rows[: len(others)], others, out=rows[: len(others)])
-    blocks = rows[:, ::factor].copy()
-    for column in range(1, factor):
-        rest = rows[:, column::factor]
-        part = blocks[:, : rest.shape[1]]
-        combine(part, rest, out=part)
-    return blocks
+    missing = [(0, -side % factor) for side in mask.shape]
+    whole = np.pad(mask, missing, constant_values=combine.identity)
+    # Ten times as fast as `combine.reduce` and `reduceat`, which go pixel by pixel.
+    rows = reduce(combine, [whole[row::factor] for row in range(factor)])
+    return reduce(combine, [rows[:, column::factor] for column in range(factor)])
 
 
 def repeat_blocks(blocks: Booleans, factor: int, shape: tuple[int, ...]) -> Booleans:

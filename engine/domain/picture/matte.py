@@ -69,7 +69,10 @@ def matted(rgba: Bytes, subject: Booleans) -> Bytes:
     windows = list(_parts(subject))
     edge = measured_edge(rgba, subject, windows)
     for inner, outer in windows:
-        _mix(result[inner], rgba[outer], subject[outer], _within(inner, outer), edge)
+        top, left = (part.start - around.start for part, around in zip(inner, outer, strict=True))
+        height, width = result[inner].shape[:2]
+        within = slice(top, top + height), slice(left, left + width)
+        _mix(result[inner], rgba[outer], subject[outer], within, edge)
     return readonly(result)
 
 
@@ -86,14 +89,6 @@ def _parts(subject: Booleans) -> Iterator[tuple[Part, Part]]:
             window = subject[outer]
             if window.any() and not window.all():
                 yield (slice(top, bottom), slice(left, right)), outer
-
-
-def _within(inner: Part, outer: Part) -> Part:
-    rows, columns = (
-        slice(part.start - around.start, part.stop - around.start)
-        for part, around in zip(inner, outer, strict=True)
-    )
-    return rows, columns
 
 
 def _mix(result: Bytes, rgba: Bytes, subject: Booleans, inner: Part, edge: SoftEdge) -> None:

@@ -3,7 +3,6 @@
 Pixels are looked at in their tones, brightness, blueness and redness: JPEG blurs the last two.
 """
 
-from dataclasses import dataclass
 from typing import NamedTuple, Self
 
 import numpy as np
@@ -20,8 +19,7 @@ HUES = (1, 2)  # which of them are the last two
 ROUNDING = 0.5  # levels of noise that every picture has
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Tile:
+class Tile(NamedTuple):
     """A part of a picture with some room around it.
 
     Parameters
@@ -54,14 +52,7 @@ class Tile:
         if not sure.any():
             sure = depth < 0
         background, noise = _local(tones, sure, NEARBY, tones_of(paper))
-        return cls(
-            rgb=colours,
-            tones=tones,
-            subject=subject,
-            depth=depth,
-            background=background,
-            noise=noise,
-        )
+        return cls(colours, tones, subject, depth, background, noise)
 
 
 class Mixture(NamedTuple):
@@ -94,14 +85,8 @@ class Mixture(NamedTuple):
         _, varied = _local(front, near, NOISE_REACH, tones_of(np.full(3, 128.0)))
         behind = tile.background.reshape(-1, 3)[band]
         noise = (varied + tile.noise).reshape(-1, 3)[band] / 2 + ROUNDING**2
-        core = nearest.ravel()[band]
-        return cls(
-            band=band,
-            core=core,
-            way=front.reshape(-1, 3)[band] - behind,
-            off=tile.tones.reshape(-1, 3)[band] - behind,
-            noise=noise,
-        )
+        way, off = (tones.reshape(-1, 3)[band] - behind for tones in (front, tile.tones))
+        return cls(band, nearest.ravel()[band], way, off, noise)
 
 
 def tones_of(colours: Floats) -> Floats:
@@ -141,12 +126,12 @@ def _local(values: Floats, where: Booleans, reach: int, otherwise: Floats) -> tu
         # Around a value in the middle, so that squares keep their digits.
         shifted = np.where(where, values[..., channel] - otherwise[channel], 0.0)
         shifted = shifted.astype(np.float32)
-        sums = [
+        first, second = (
             ndimage.uniform_filter(power, 2 * reach + 1, mode="constant")
+            * known
             / np.where(known, weight, 1.0)
             for power in (shifted, shifted**2)
-        ]
-        first, second = (np.where(known, moment, 0.0) for moment in sums)
+        )
         mean[..., channel] = otherwise[channel] + first
         variance[..., channel] = np.maximum(second - first**2, 0.0)
     return mean, variance

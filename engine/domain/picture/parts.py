@@ -17,6 +17,7 @@ MOST_DROPPED = 0.05  # of the subject's area
 CLOUD = 6  # parts from which on gaps are closed as well as bridged
 CLOUD_GAP = 0.04  # of the diagonal: widest half gap that is closed in a cloud of parts
 BRIDGE_WIDTHS = (0.012, 0.05)  # of the diagonal
+WITH_CORNERS = ((1, 1, 1), (1, 1, 1), (1, 1, 1))  # which neighbours of a pixel are one with it
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -60,15 +61,6 @@ class WholePiece:
         return (f"{told}, {reason}" if reason else told,)
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class _Bridges:
-    """The shortest bridges between parts: pairs of pixels at complex positions x + iy."""
-
-    starts: Complexes
-    ends: Complexes
-    widths: Floats
-
-
 def join_parts(mask: Booleans, diagonal: float) -> WholePiece:
     """Make one piece of a mask.
 
@@ -84,7 +76,7 @@ def join_parts(mask: Booleans, diagonal: float) -> WholePiece:
     EngineError
         If the mask falls into too many parts to be joined.
     """
-    labels, count = ndimage.label(mask, np.ones((3, 3)))
+    labels, count = ndimage.label(mask, WITH_CORNERS)
     areas = np.bincount(labels.ravel(), minlength=count + 1)[1:].astype(np.float64)
     kept = areas >= SPECK * areas.sum()
     _require_few_parts(areas, kept)
@@ -105,9 +97,18 @@ def join_parts(mask: Booleans, diagonal: float) -> WholePiece:
     return WholePiece(mask=filled, holes=holes, hole_areas=hole_areas, notices=tuple(notices))
 
 
+def touching(area: Booleans, seeds: Booleans, *, corners: bool = False) -> Booleans:
+    """Return the components of `area`, joined by edges or by corners too, that have a seed."""
+    labels, count = ndimage.label(area, WITH_CORNERS if corners else None)
+    chosen = np.zeros(count + 1, dtype=np.bool_)
+    chosen[labels[seeds]] = True
+    chosen[0] = False
+    return np.asarray(chosen[labels])
+
+
 def without_specks(mask: Booleans) -> Booleans:
     """Return a mask without its specks: what is no part of a subject."""
-    labels, count = ndimage.label(mask, np.ones((3, 3)))
+    labels, count = ndimage.label(mask, WITH_CORNERS)
     areas = np.bincount(labels.ravel(), minlength=count + 1)
     kept = areas >= SPECK * areas[1:].sum()
     kept[0] = False
@@ -131,36 +132,33 @@ def _require_few_parts(areas: Floats, kept: Booleans) -> None:
 
 def _bridged(mask: Booleans, labels: Integers, areas: Floats, diagonal: float) -> Booleans:
     """Join the labelled parts; gaps of a cloud of many parts are closed as well."""
-    bridges = _shortest_bridges(mask, labels, areas, diagonal)
+    starts, ends, widths = _shortest_bridges(mask, labels, areas, diagonal)
     joined = mask.copy()
-    for start, end, width in zip(bridges.starts, bridges.ends, bridges.widths, strict=True):
-        _draw_capsule(joined, complex(start), complex(end), float(width))
+    for start, end, width in zip(starts.tolist(), ends.tolist(), widths.tolist(), strict=True):
+        _draw_capsule(joined, start, end, width)
     if len(areas) < CLOUD:
         return joined
-    half_gap = float(np.abs(bridges.ends - bridges.starts).max()) / 2
+    half_gap = float(np.abs(ends - starts).max()) / 2
     return _closed(joined, min(half_gap, CLOUD_GAP * diagonal))
 
 
-def _shortest_bridges(mask: Booleans, labels: Integers, areas: Floats, diagonal: float) -> _Bridges:
-    """Return the minimum spanning tree of the parts.
+def _shortest_bridges(
+    mask: Booleans, labels: Integers, areas: Floats, diagonal: float
+) -> tuple[Complexes, Complexes, Floats]:
+    """Return the minimum spanning tree of the parts: starts x + iy, ends and widths of bridges.
 
     Where the nearest part changes from one pixel to the next, the nearest pixels of both parts
     make a candidate; the tree's edges are among these (it lies in the Delaunay graph).
     """
-    nearest = ndimage.distance_transform_edt(~mask, return_distances=False, return_indices=True)
-    rows, columns = nearest
+    rows, columns = ndimage.distance_transform_edt(
+        ~mask, return_distances=False, return_indices=True
+    )
     owner = labels[rows, columns]
     pairs: list[Indices] = []
-    for here, there in (
-        (np.s_[:, :-1], np.s_[:, 1:]),
-        (np.s_[:-1, :], np.s_[1:, :]),
-    ):
+    for here, there in ((np.s_[:, :-1], np.s_[:, 1:]), (np.s_[:-1, :], np.s_[1:, :])):
         change = owner[here] != owner[there]
-        pairs.append(
-            np.stack(
-                [part[side][change] for side in (here, there) for part in (owner, rows, columns)]
-            )
-        )
+        both = [part[side][change] for side in (here, there) for part in (owner, rows, columns)]
+        pairs.append(np.stack(both))
     part0, y0, x0, part1, y1, x1 = np.concatenate(pairs, axis=1).astype(np.intp)
     starts, ends = x0 + 1j * y0, x1 + 1j * y1
     length = np.abs(ends - starts)
@@ -173,7 +171,7 @@ def _shortest_bridges(mask: Booleans, labels: Integers, areas: Floats, diagonal:
     side = np.sqrt(np.minimum(areas[low], areas[high]))[used]
     narrowest, widest = BRIDGE_WIDTHS
     widths = np.clip(0.5 * side, narrowest * diagonal, widest * diagonal)
-    return _Bridges(starts=starts[chosen][used], ends=ends[chosen][used], widths=widths)
+    return starts[chosen][used], ends[chosen][used], widths
 
 
 def _central_shortest(keys: Indices, starts: Complexes, ends: Complexes) -> Indices:
@@ -201,11 +199,8 @@ def _draw_capsule(mask: Booleans, start: complex, end: complex, width: float) ->
     rows = slice(max(0, int(low_y - radius)), int(high_y + radius) + 2)
     columns = slice(max(0, int(low_x - radius)), int(high_x + radius) + 2)
     window = mask[rows, columns]
-    y, x = np.ogrid[
-        rows.start : rows.start + window.shape[0],
-        columns.start : columns.start + window.shape[1],
-    ]
-    offset = x + 1j * y - start
+    y, x = np.ogrid[: window.shape[0], : window.shape[1]]
+    offset = x + columns.start + 1j * (y + rows.start) - start
     along = (end - start) / max(abs(end - start), 1.0)
     nearest = np.clip((offset * np.conj(along)).real, 0, abs(end - start)) * along
     window |= np.abs(offset - nearest) <= radius

@@ -51,15 +51,9 @@ class SoftEdge(NamedTuple):
 
 
 def measured_edge(rgba: Bytes, subject: Booleans, windows: list[tuple[Part, Part]]) -> SoftEdge:
-    """Measure the edge of a subject on some of the parts through which it runs.
+    """Measure the edge of a subject (h, w) of a picture (h, w, 4) on some of the `windows`.
 
-    Parameters
-    ----------
-    rgba : uint8, shape (h, w, 4)
-    subject : bool, shape (h, w)
-        False on the background.
-    windows : list of (Part, Part)
-        The parts without and with room around them.
+    They are the parts through which the edge runs, without and with room around them.
     """
     step = max(1, len(rgba) * rgba.shape[1] // (MOST_SAMPLED * 25))
     paper = np.median(rgba[..., :3][~subject][::step], axis=0).astype(np.float64)

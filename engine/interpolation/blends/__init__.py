@@ -1,13 +1,10 @@
 """The variants of the paper: how the derivatives of an in-between follow from the keyframes'.
 
 In: the passage from one keyframe to the next; for the metric variant an outline's transform.
-Out: f_z, conj(f_z̄) and their derivatives at any time.
-Imports: `engine.dirichlet`, `engine.interpolation.derivatives`, `engine.interpolation.periods`.
+Out: f_z, conj(f_z̄) and their derivatives at any time; what is blended, and how far it distorts.
+Imports: `engine.dirichlet`, `engine.interpolation.passage`, `engine.interpolation.enclosing`,
+`engine.interpolation.scaling`, `engine.interpolation.courses`, `engine.interpolation.periods`.
 """
 
-from engine.interpolation.blends.eta import EtaBlend as EtaBlend
-from engine.interpolation.blends.metric import (
-    MetricResidual as MetricResidual,
-    OutlineMetric as OutlineMetric,
-)
-from engine.interpolation.blends.nu import NuBlend as NuBlend
+from engine.interpolation.blends.blend import Blend as Blend
+from engine.interpolation.blends.table import BLENDS as BLENDS

@@ -1,53 +1,63 @@
 """The η variants (Sections 5.1, 5.4 and 5.5)."""
 
-from dataclasses import dataclass
-from typing import Self
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Any, Self
 
 import numpy as np
 
 from engine.arrays import Complexes, Floats, Indices, freeze
-from engine.interpolation.derivatives import Derivatives, Passage, weighted
-from engine.interpolation.periods import combined
+from engine.interpolation.blends.blend import Blend, PairCurves
+from engine.interpolation.enclosing import Changes, EndValues, Patch, exponential
+from engine.interpolation.passage import Derivatives, Interval, weighted
+from engine.interpolation.periods import Closing
+from engine.interpolation.scaling import SharpScaling
+from engine.interpolation.series import combined
+from engine.interpolation.sites import Sites
+from engine.maps import Enclosures
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class EtaBlend:
+class EtaBlend(Blend):
     """log f_z and η linear in the weights, Equations (3) and (6): Properties 1, 2 and 8.
-
-    Scaled by ρ (`engine.interpolation.scaling`) it has Properties 3 to 7 as well.
 
     Parameters
     ----------
     passage : Passage
         Another branch of its logarithms only turns the in-betweens.
+    bounds : Bounds
     conj_eta, conj_eta_z : tuple of complex128, shape (s,)
         conj(η) = Φ' Ψ' of each keyframe, holomorphic, and its derivative.
     """
 
-    passage: Passage
     conj_eta: tuple[Complexes, ...]
     conj_eta_z: tuple[Complexes, ...]
 
     @classmethod
-    def of(cls, passage: Passage) -> Self:
+    def of(cls, interval: Interval) -> Self:
         """Work out η of the keyframes."""
         values, derivatives = [], []
-        for key in passage.keyframes:
+        for key in interval.passage.keyframes:
             squared = np.exp(2 * key.log_fz)
             values.append(freeze(key.nu * squared))
             derivatives.append(freeze((key.nu_z + 2 * key.nu * key.log_fz_z) * squared))
-        return cls(passage=passage, conj_eta=tuple(values), conj_eta_z=tuple(derivatives))
+        return cls(
+            passage=interval.passage,
+            bounds=interval.bounds,
+            conj_eta=tuple(values),
+            conj_eta_z=tuple(derivatives),
+        )
 
     @property
     def nbytes(self) -> int:
-        """Memory beyond the passage's own, in bytes."""
-        return sum(array.nbytes for array in (*self.conj_eta, *self.conj_eta_z))
+        """Memory beyond the keyframes' own, in bytes."""
+        known = sum(array.nbytes for array in (*self.conj_eta, *self.conj_eta_z))
+        return self.passage.nbytes + known
 
     def values(self, times: Floats) -> tuple[Complexes, Complexes]:
         """Return f_z and conj(f_z̄) at times (t,), each (t, s)."""
-        course = self.passage.eta_course or self.passage.course
         fz = np.exp(self.passage.log_fz_at(times))
-        g = combined(course.at(times).T, np.array(self.conj_eta))
+        g = combined(self.passage.eta_course.at(times).T, np.array(self.conj_eta))
         g /= fz
         return fz, g
 
@@ -57,7 +67,7 @@ class EtaBlend:
         Departs from the paper: Equation (7) lost a bar; it reads f_z̄ = η / conj(f_z), that is
         Ψ' = conj(η) / Φ'. The unscaled Ψ' is returned; ρ is a factor of it.
         """
-        weights = (self.passage.eta_course or self.passage.course)(time)
+        weights = self.passage.eta_course(time)
         logarithm, logarithm_z = self.passage.log_fz(time)
         fz = np.exp(logarithm)
         inverse = 1.0 / fz
@@ -70,8 +80,54 @@ class EtaBlend:
 
     def at(self, which: Indices) -> Self:
         """Return the same at some of the nodes only."""
-        return type(self)(
+        return replace(
+            self,
             passage=self.passage.at(which),
             conj_eta=tuple(freeze(values[which]) for values in self.conj_eta),
             conj_eta_z=tuple(freeze(values[which]) for values in self.conj_eta_z),
+        )
+
+    @staticmethod
+    def pair(fz: Complexes, g: Complexes) -> tuple[Complexes, Complexes]:
+        """Return ln |f_z| and conj(η)."""
+        return np.log(np.abs(fz)) + 0j, fz * g
+
+    @staticmethod
+    def stretches(first: Complexes, second: Complexes) -> tuple[Floats, Floats]:
+        """Return |f_z| ± |η| / |f_z|."""
+        a = np.exp(first.real)
+        b = np.abs(second) / a
+        return a + b, a - b
+
+    def curves(self, values: EndValues) -> PairCurves:
+        """Return ln |f_z| and conj(η) along pieces of the boundary."""
+        return values.log_modulus(), values.conj_eta()
+
+    @staticmethod
+    def enclose(first: Patch[Any], second: Patch[Any], changes: Changes | None, /) -> Enclosures:
+        """Enclose the distortion on cells: h keeps η, and ρ and d scale what there is."""
+        if changes is None:
+            return exponential(first, first.times(-1.0), first.times(-2.0), second)
+        log_a = first.plus(changes.correction)
+        log_g = log_a.times(-1.0).plus(changes.rho)
+        log_ratio = log_a.times(-2.0).plus(changes.rho).plus(changes.factor.times(-1.0))
+        return exponential(log_a.plus(changes.factor), log_g, log_ratio, second)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class ScaledEtaBlend(EtaBlend):
+    """The same, scaled by ρ: it has Properties 3 to 7 as well."""
+
+    is_scaled = True
+
+    def sharp_scaling(
+        self, sites: Sites, closing: Closing | None, conformal: Closing | None
+    ) -> Callable[[Floats], Floats]:
+        """Return the largest ρ that the outline allows."""
+        return SharpScaling.of(
+            [key.map for key in self.passage.keyframes],
+            sites.outline,
+            self.passage.course,
+            self.bounds,
+            tuple(each for each in (closing, conformal) if each is not None),
         )

@@ -5,21 +5,44 @@ The pullback metric of a map h has the matrix M_h = 𝒜 I + 2 [[Re η, Im η], 
 that gives |f_z^t|. It differs from the logarithmic blend by a residual that vanishes at both
 keyframes, is analytic in time, and takes few forms across the outline: as Σ_j c_j(t) U_j(ζ), a
 handful of Dirichlet problems serve every time.
+
+Around holes ln |f_z| differs from what Equation (13) asks for: by a constant on the boundary of
+each hole, which no single-valued f_z does without (`engine.dirichlet`), and by the h that closes
+the periods and makes the constants good as far as it can (`engine.interpolation.periods`). Between
+hard keyframes the map may then leave their bounds, and even fold. There η is scaled by a ρ, as in
+the scaled η variant.
 """
 
-from dataclasses import dataclass
-from typing import NamedTuple
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Any, Self
 
 import numpy as np
 
-from engine.arrays import Complexes, Floats
+from engine.arrays import Complexes, Floats, Indices
 from engine.dirichlet import Extension, Refinement
-from engine.interpolation.chebyshev import PiecewiseSeries, one, separate
-from engine.interpolation.derivatives import Passage
-from engine.interpolation.passing import Course, Tangent, bernstein, curbed
-from engine.interpolation.periods import Residual
-from engine.maps import Bounds, derivatives_of
-from engine.paths import IntegrationPaths
+from engine.errors import EngineError
+from engine.interpolation.blends.blend import PairCurves
+from engine.interpolation.blends.eta import EtaBlend
+from engine.interpolation.blends.outline import (
+    OutlineMetric,
+    control_curves,
+    course_of_trace,
+)
+from engine.interpolation.courses import Course, Joint, Tangent, shortened_metric
+from engine.interpolation.enclosing import (
+    Changes,
+    EndValues,
+    Patch,
+    changed_metric,
+    from_metric,
+)
+from engine.interpolation.passage import Interval
+from engine.interpolation.periods import Closing
+from engine.interpolation.scaling import Worst, allowed
+from engine.interpolation.series import HoleConstants, PiecewiseSeries, Residual, one, separate
+from engine.interpolation.sites import Sites
+from engine.maps import Boundary, Bounds, Enclosures, derivatives_of
 
 TOLERANCE = 1e-9  # of the series' last terms, in ln |f_z|
 # Of the modes, at most, in ln |f_z|: of places it is felt in the eighth digit. Where keyframes are
@@ -28,13 +51,15 @@ LEFT_OUT, LEFT_OUT_PASSING = 2e-6, 1e-7
 # Last Legendre coefficients of the residual on a panel, in ln |f_z|, up to which it may stay; the
 # times at which they are looked at; and how often a panel may be halved.
 RESOLVED, LOOKED_AT, MOST_HALVINGS = 5e-4, (0.03, 0.25, 0.5, 0.75, 0.97), 8
+# What in-betweens around holes may be beyond the worst of the keyframes: the errors of the
+# Dirichlet problem's solution.
+BEYOND = 1e-3
+BLOCK = 64  # times that are looked at together
 
 
-class MetricResidual(NamedTuple):
-    """What the metric variant adds to the logarithmic blend of f_z.
-
-    It makes the metric tensor linear on the outline, and with η linear gives Properties 1 to 4, 5'
-    to 7' and 8.
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class MetricBlend(EtaBlend):
+    """The metric tensor linear on the outline, and η: Properties 1 to 4, 5' to 7' and 8.
 
     log f_z is the logarithmic blend and a holomorphic residual,
 
@@ -42,155 +67,202 @@ class MetricResidual(NamedTuple):
 
     with the weights of the interval's course, 1 − t and t between two keyframes; the real part of
     H_j on the outline is the mode U_j of the residual. It vanishes at both keyframes, which come
-    out exactly however coarsely the integral equation was solved.
+    out exactly however coarsely the integral equation was solved. The residual is the first of the
+    passage's.
 
     Departs from the paper: Section 7.4 transforms ln |f_z^t| as a whole, with an integration
     constant for the whole shape. Here the constant is tied to the anchor: arg f_z is linear there.
 
     Parameters
     ----------
-    residual : Residual
-    lacking : float64, shape (holes, j)
+    passage, bounds, conj_eta, conj_eta_z
+        As in `EtaBlend`.
+    lost : HoleConstants
         By how much each H_j stays below U_j on the boundary of a hole.
     """
 
-    residual: Residual
-    lacking: Floats
+    is_scaled_around_holes = True
 
-    def lacking_at(self, times: Floats) -> Floats:
-        """Return how much the real part stays below at times (t,), (t, holes)."""
-        missing: Floats = self.residual.series.at(times).T @ self.lacking.T
-        return missing
+    lost: HoleConstants
 
     @classmethod
-    def of(
-        cls,
-        passage: Passage,
-        bounds: Bounds,
-        paths: IntegrationPaths,
-        transform: Extension,
-    ) -> "MetricResidual":
-        """Solve the Dirichlet problems of the residual between two keyframes."""
-        metric, panels = _resolved(passage, bounds, transform, np.array(LOOKED_AT))
-        real_parts, series = separate(
+    def of(cls, interval: Interval) -> Self:
+        """Solve the Dirichlet problems of the residual.
+
+        Raises
+        ------
+        EngineError
+            If the transform is missing, or of another domain.
+        """
+        metric, panels = _resolved(interval, np.array(LOOKED_AT))
+        forms = separate(
             metric.residuals,
             tolerance=TOLERANCE,
-            left_out=LEFT_OUT if passage.course.is_straight else LEFT_OUT_PASSING,
+            left_out=LEFT_OUT if interval.passage.course.is_straight else LEFT_OUT_PASSING,
         )
-        return cls._extended(real_parts, series, panels, paths)
+        return cls._extended(interval, panels, *forms)
 
     @classmethod
-    def at(
-        cls,
-        time: float,
-        passage: Passage,
-        bounds: Bounds,
-        paths: IntegrationPaths,
-        transform: Extension,
-    ) -> "MetricResidual":
-        """Solve the one Dirichlet problem of a time in [0, 1]; at others it is not the residual."""
-        metric, panels = _resolved(passage, bounds, transform, np.array([time]))
-        return cls._extended(metric.residuals(np.array([time])), one(), panels, paths)
+    def only_at(cls, time: float, interval: Interval, /) -> Self:
+        """Solve the one Dirichlet problem of a time in [0, 1]."""
+        times = np.array([time])
+        metric, panels = _resolved(interval, times)
+        return cls._extended(interval, panels, metric.residuals(times), one())
 
     @classmethod
     def _extended(
-        cls,
-        real_parts: Floats,
-        series: PiecewiseSeries,
-        panels: Refinement,
-        paths: IntegrationPaths,
-    ) -> "MetricResidual":
-        modes, modes_z, lacking = panels.extend(real_parts)
+        cls, interval: Interval, panels: Refinement, real_parts: Floats, series: PiecewiseSeries
+    ) -> Self:
+        modes, modes_z, lost = panels.extend(real_parts)
         modes.imag -= modes[0].imag
         # Unbounded there; the steps beside these nodes are so short that it is not missed.
-        modes_z[paths.cornered] = 0.0
-        return cls(Residual.of(series, modes, modes_z), lacking)
+        modes_z[interval.sites.paths.cornered] = 0.0
+        known, passage = EtaBlend.of(interval), interval.passage
+        # All but η keeps its velocities at keyframes.
+        passage = replace(passage, course=passage.course.full)
+        return cls(
+            passage=passage.with_residual(Residual.of(series, modes, modes_z)),
+            bounds=interval.bounds,
+            conj_eta=known.conj_eta,
+            conj_eta_z=known.conj_eta_z,
+            lost=HoleConstants(series, lost),
+        )
+
+    @property
+    def constants(self) -> HoleConstants:
+        """What the correction around holes has to make good beside the periods."""
+        return self.lost
+
+    def sharp_scaling(
+        self, sites: Sites, closing: Closing | None, conformal: Closing | None
+    ) -> Callable[[Floats], Floats]:
+        """Return the largest ρ that samples of the boundary allow."""
+        boundary, course = sites.boundary, self.passage.eta_course
+        fz, fzbar = derivatives_of([key.map for key in self.passage.keyframes], boundary.points)
+        a, b = np.abs(fz), np.abs(fzbar)
+        worst = Worst(k=(b / a).max(), sigma_a=(a + b).max(), sigma_b=(a - b).min())
+        corrections = []
+        for each in (closing, conformal):
+            if each is not None:
+                (modes,) = boundary.span.evaluate(each.functions, boundary.points, orders=(0,))
+                corrections.append((modes, each.series))
+        counts = np.diff([*boundary.starts, len(boundary.points)])
+        return _Ratios(
+            metric=OutlineMetric.of(fz, fzbar, course, self.bounds),
+            constants=self.lost,
+            loops=np.repeat(np.arange(len(counts)), counts),
+            worst=worst if course.is_straight else worst.widened(self.bounds),
+            corrections=tuple(corrections),
+        )
+
+    @staticmethod
+    def pair(fz: Complexes, g: Complexes) -> tuple[Complexes, Complexes]:
+        """Return 𝒜 and conj(η)."""
+        return np.abs(fz) ** 2 + np.abs(g) ** 2 + 0j, fz * g
+
+    @staticmethod
+    def stretches(first: Complexes, second: Complexes) -> tuple[Floats, Floats]:
+        """Return the roots of 𝒜 ± 2 |η| = σ², Equations (10) and (11)."""
+        trace, twice = first.real, 2 * np.abs(second)
+        return np.sqrt(np.maximum(trace + twice, 0.0)), np.sqrt(np.maximum(trace - twice, 0.0))
+
+    @classmethod
+    def _shortened(
+        cls, quantities: Complexes, joint: Joint, bounds: Bounds, boundary: Boundary, /
+    ) -> Tangent:
+        return shortened_metric(quantities, joint, bounds, boundary)
+
+    @property
+    def courses(self) -> tuple[Course, Course]:
+        """The weights in time of the `curves` of both quantities."""
+        return course_of_trace(self.passage.eta_course), self.passage.eta_course
+
+    def curves(self, values: EndValues) -> PairCurves:
+        """Return 𝒜, or its control values in time, and conj(η) along pieces of the boundary."""
+        eta = values.conj_eta()
+        return control_curves(values.trace(), eta, self.passage.eta_course, self.bounds), eta
+
+    @staticmethod
+    def enclose(first: Patch[Any], second: Patch[Any], changes: Changes | None, /) -> Enclosures:
+        """Enclose the distortion on cells."""
+        if changes is None:
+            return from_metric(first, second)
+        return changed_metric(first, second, changes)
 
 
-def _resolved(
-    passage: Passage, bounds: Bounds, transform: Extension, times: Floats
-) -> tuple["OutlineMetric", Refinement]:
+def _resolved(interval: Interval, times: Floats) -> tuple[OutlineMetric, Refinement]:
     """Return the metrics at nodes that resolve the residual at some times, and the nodes' panels.
 
     The nodes follow the shape. Keyframes at extreme bounds vary faster still beside a vertex of the
     cage, and for them panels are halved there.
     """
+    _, passage, bounds, _ = interval
     maps = [key.map for key in passage.keyframes]
-    course = passage.course
-    panels = Refinement.of(transform)
-    metric = OutlineMetric.of(*derivatives_of(maps, panels.nodes), course, bounds)
+    panels = Refinement.of(_matching(interval))
+    metric = OutlineMetric.of(*derivatives_of(maps, panels.nodes), passage.course, bounds)
     for _ in range(MOST_HALVINGS):
         coarse = panels.panels.unresolved(metric.residuals(times), RESOLVED)
         if not coarse.any():
             break
         panels = panels.halved(coarse)
-        metric = OutlineMetric.of(*derivatives_of(maps, panels.nodes), course, bounds)
+        metric = OutlineMetric.of(*derivatives_of(maps, panels.nodes), passage.course, bounds)
     return metric, panels
 
 
+def _matching(interval: Interval) -> Extension:
+    """Refuse a transform of another domain, whose in-betweens would be wrong without a word."""
+    transform, sites = interval.transform, interval.sites
+    if transform is None:
+        raise EngineError("The metric variant needs a Hilbert transform of the outline.")
+    sites.require_boundary(transform.loops)
+    if not np.array_equal(transform.points, sites.paths.nodes):
+        raise EngineError(
+            "The Hilbert transform is prepared for other points; prepare it for the nodes of the "
+            "sites' paths."
+        )
+    return transform
+
+
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class OutlineMetric:
-    """The metrics along an interval's course at points of the outline.
+class _Ratios:
+    """The largest ρ at each time around holes: the minimum over samples of the boundary (p,).
 
     Parameters
     ----------
-    course : Course
-        Of η.
-    log_modulus : float64, shape (q, N)
-        ln |f_z| of the keyframes.
-    trace : float64, shape (2, N) or (4, N)
-        𝒜 = |f_z|² + |f_z̄|², half the trace of the metric tensor: of two keyframes where the course
-        is straight, else control values.
-    eta : complex128, shape (q, N)
-        η up to conjugation, which |f_z| does not see.
+    metric : OutlineMetric
+        At the samples.
+    constants : HoleConstants
+    loops : intp, shape (p,)
+        The loop of the boundary that a sample is on, 0 for the outline.
+    worst : Worst
+        Of the keyframes.
+    corrections : tuple of (complex128 (p, j), PiecewiseSeries)
+        The modes of h at the samples, and those of d where it is known.
     """
 
-    course: Course
-    log_modulus: Floats
-    trace: Floats
-    eta: Complexes
+    metric: OutlineMetric
+    constants: HoleConstants
+    loops: Indices
+    worst: Worst
+    corrections: tuple[tuple[Complexes, PiecewiseSeries], ...]
 
-    @classmethod
-    def of(cls, fz: Complexes, fzbar: Complexes, course: Course, bounds: Bounds) -> "OutlineMetric":
-        """Work the metrics out from the derivatives (q, N) of the course's keyframes."""
-        trace, eta = np.abs(fz) ** 2 + np.abs(fzbar) ** 2, fz * fzbar.conj()
-        return cls(
-            course=course,
-            log_modulus=np.log(np.abs(fz)),
-            trace=_controls(trace, eta, course, bounds),
-            eta=eta,
+    def __call__(self, times: Floats) -> Floats:
+        """Return ρ in (0, 1] at times (t,)."""
+        blocks = np.array_split(times, max(1, -(-len(times) // BLOCK)))
+        return np.concatenate([self._minima(block) for block in blocks])
+
+    def _minima(self, times: Floats) -> Floats:
+        metric = self.metric
+        h, *conformal = (series.at(times).T @ modes.T for modes, series in self.corrections)
+        logarithm = metric.residuals(times).T + metric.course.full.at(times).T @ metric.log_modulus
+        lost = np.pad(self.constants.at(times), ((0, 0), (1, 0)))[:, self.loops]
+        a = np.exp(logarithm - lost + h.real)
+        b = np.abs(metric.course.at(times).T @ metric.eta) / a
+        limits = (
+            self.worst.k * (1 + BEYOND),
+            self.worst.sigma_a * (1 + BEYOND),
+            self.worst.sigma_b * (1 - BEYOND),
         )
-
-    def residuals(self, times: Floats) -> Floats:
-        """Return ln |f_z| of the blended metric less the blend of the ln |f_z|, (N, times).
-
-        Departs from the paper: the bars of Equation (13) and the lines before it were lost; the
-        product of its roots is |η|².
-        """
-        weights = self.course.full.at(times)
-        trace = self.trace.T @ (weights if self.course.is_straight else bernstein(times))
-        twice_eta = 2 * np.abs(self.eta.T @ self.course.at(times))
-        # σ_a² = 𝒜 + 2|η| and σ_b² = 𝒜 − 2|η|, Equations (10) and (11); K² is their quotient,
-        # Equation (12). The first is convex in time and the second concave: Properties 5' to 7'.
-        # Their product is the discriminant of (13), above 0 by Lemma 7; as a product it keeps its
-        # digits where the map is nearly singular.
-        discriminant = (trace + twice_eta) * (trace - twice_eta)
-        squared = (trace + np.sqrt(discriminant)) / 2  # Equation (13), the larger root
-        residuals: Floats = 0.5 * np.log(squared) - self.log_modulus.T @ weights
-        return residuals
-
-
-def _controls(trace: Floats, eta: Complexes, course: Course, bounds: Bounds) -> Floats:
-    """Return the control values of 𝒜 (4, N) along a course, from the keyframes' 𝒜 and η (q, N)."""
-    full = course.full.controls
-    if full is None:
-        return trace
-    controls: Floats = full @ trace
-    start, end = course.ends
-    if isinstance(start, Tangent):
-        curb = curbed(trace[:3], eta[:3], start, bounds)
-        controls[1] = trace[1] + start.joint.arms[1] * curb
-    if isinstance(end, Tangent):
-        curb = curbed(trace[-3:], eta[-3:], end, bounds)
-        controls[2] = trace[-2] + end.joint.arms[0] * curb
-    return controls
+        ratios = allowed(a, b, conformal[0] if conformal else None, limits)
+        smallest: Floats = np.minimum(ratios.min(axis=1), 1.0)
+        return smallest

@@ -1,17 +1,20 @@
 """The ν variant (Sections 5.1 and 5.2)."""
 
 from dataclasses import dataclass
-from typing import Self
+from typing import Any, Self
 
 import numpy as np
 
-from engine.arrays import Complexes, Floats, Indices
-from engine.interpolation.derivatives import Derivatives, Passage, weighted
-from engine.interpolation.periods import combined
+from engine.arrays import Complexes, Floats
+from engine.interpolation.blends.blend import Blend, PairCurves
+from engine.interpolation.enclosing import Changes, EndValues, Patch, exponential
+from engine.interpolation.passage import Derivatives, Interval, weighted
+from engine.interpolation.series import combined
+from engine.maps import Enclosures
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class NuBlend:
+class NuBlend(Blend):
     """log f_z and ν linear in the weights, Equations (3) and (4): Properties 1 to 5 and 7.
 
     Parameters
@@ -19,14 +22,15 @@ class NuBlend:
     passage : Passage
         A change of one of its sheets by a full turn changes the shape of the in-betweens, not only
         how it turns.
+    bounds : Bounds
     """
 
-    passage: Passage
+    sign = 1
 
-    @property
-    def nbytes(self) -> int:
-        """Memory beyond the passage's own, in bytes."""
-        return 0
+    @classmethod
+    def of(cls, interval: Interval) -> Self:
+        """Take the passage as it is."""
+        return cls(passage=interval.passage, bounds=interval.bounds)
 
     def values(self, times: Floats) -> tuple[Complexes, Complexes]:
         """Return f_z and conj(f_z̄) at times (t,), each (t, s)."""
@@ -53,6 +57,23 @@ class NuBlend:
         nu *= fz
         return Derivatives(fz=fz, fzz=logarithm_z, g=nu, gz=nu_z)
 
-    def at(self, which: Indices) -> Self:
-        """Return the same at some of the nodes only."""
-        return type(self)(passage=self.passage.at(which))
+    @staticmethod
+    def pair(fz: Complexes, g: Complexes) -> tuple[Complexes, Complexes]:
+        """Return ln |f_z| and ν."""
+        return np.log(np.abs(fz)) + 0j, g / fz
+
+    @staticmethod
+    def stretches(first: Complexes, second: Complexes) -> tuple[Floats, Floats]:
+        """Return |f_z| (1 ± |ν|)."""
+        a, k = np.exp(first.real), np.abs(second)
+        return a * (1.0 + k), a * (1.0 - k)
+
+    def curves(self, values: EndValues) -> PairCurves:
+        """Return ln |f_z| and ν along pieces of the boundary."""
+        return values.log_modulus(), values.nu()
+
+    @staticmethod
+    def enclose(first: Patch[Any], second: Patch[Any], changes: Changes | None, /) -> Enclosures:
+        """Enclose the distortion on cells: h changes f_z and conj(f_z̄) alike."""
+        log_fz = first if changes is None else first.plus(changes.correction)
+        return exponential(log_fz, log_fz, Patch(0.0 * first.controls, 0.0 * first.error), second)

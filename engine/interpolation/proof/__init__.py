@@ -1,9 +1,8 @@
 """Proof of in-betweens: how far they distort, at every time and in the whole domain.
 
-In: the in-betweens of two keyframes, the boundary of their domain.
+In: the in-betweens of two keyframes.
 Out: enclosures of k, σ_a and σ_b, and the times where they are not tight.
-Imports: `engine.maps`, `engine.interpolation.passing`, `engine.interpolation.scaling`,
-`engine.interpolation.inbetweens`.
+Imports: `engine.maps`, `engine.interpolation.enclosing`, `engine.interpolation.inbetweens`.
 """
 
 from engine.interpolation.proof.bisection import Proof as Proof, prove as prove

@@ -15,11 +15,10 @@ from math import inf
 import numpy as np
 
 from engine.arrays import Booleans
+from engine.interpolation.enclosing import Subdivision
 from engine.interpolation.inbetweens import Inbetweens
-from engine.interpolation.proof.blended import Cells, Method, method_of
-from engine.interpolation.proof.pieces import Subdivision
-from engine.maps import Boundary, Bounds, Enclosures
-from engine.variant import Variant
+from engine.interpolation.proof.enclosing_cells import CellEnclosures, Cells
+from engine.maps import Enclosures
 
 # Cells are cut until the enclosure is this close to what is attained: of k, and of σ over the
 # largest stretch.
@@ -55,30 +54,19 @@ class Proof:
         return self.k < 1 and self.sigma_b > 0
 
 
-def prove(
-    inbetweens: Inbetweens, variant: Variant, boundary: Boundary, bounds: Bounds = Bounds()
-) -> Proof:
-    """Enclose the distortion of in-betweens.
-
-    Parameters
-    ----------
-    inbetweens : Inbetweens
-    variant : Variant
-        Theirs.
-    boundary : Boundary
-        Of their domain.
-    bounds : Bounds
-        Those that the in-betweens were prepared with.
-    """
-    pieces = Subdivision.of([key.map for key in inbetweens.passage.keyframes], boundary)
+def prove(inbetweens: Inbetweens) -> Proof:
+    """Enclose the distortion of in-betweens: cut cells until they are tight."""
+    keyframes = inbetweens.passage.keyframes
+    pieces = Subdivision.of([key.map for key in keyframes], inbetweens.boundary)
     with np.errstate(over="ignore", invalid="ignore"):
-        return _bisect(pieces, method_of(pieces, inbetweens, variant, boundary, bounds))
+        return _bisect(pieces, CellEnclosures(inbetweens, pieces))
 
 
-def _bisect(pieces: Subdivision, method: Method) -> Proof:
+def _bisect(pieces: Subdivision, enclosures: CellEnclosures) -> Proof:
     """Cut cells until they are tight."""
-    attained, cuts = method.floor, method.cuts
-    proven = Enclosures(np.array([0.0]), np.array([0.0]), np.array([inf]))
+    none = np.array([0.0])
+    attained = proven = Enclosures(none, none, none + inf)
+    cuts = enclosures.cuts
     count = len(pieces.halves)
     pending = Cells(
         np.tile(np.arange(count), len(cuts) - 1),
@@ -88,7 +76,7 @@ def _bisect(pieces: Subdivision, method: Method) -> Proof:
     looked_at, unsettled = 0, []
     for depth in range(DEEPEST):
         found = [
-            method.enclose(pending.at(slice(i, i + BLOCK)))
+            enclosures.of(pending.at(slice(i, i + BLOCK)))
             for i in range(0, len(pending.piece), BLOCK)
         ]
         enclosed = _together([block.enclosed for block in found])
@@ -111,7 +99,7 @@ def _bisect(pieces: Subdivision, method: Method) -> Proof:
     return Proof(
         k=k,
         sigma_a=sigma_a,
-        sigma_b=sigma_b if k < 1 else 0.0,
+        sigma_b=max(sigma_b, 0.0) if k < 1 else 0.0,
         unsettled=_merged([*unsettled, rest]),
     )
 

@@ -11,11 +11,9 @@ import numpy as np
 from numpy.polynomial import chebyshev
 
 from engine.arrays import Complexes, Floats, Indices
-from engine.interpolation.blends import MetricResidual
-from engine.interpolation.chebyshev import PiecewiseSeries
+from engine.interpolation.enclosing import Patch, Subdivision, followed
 from engine.interpolation.periods import Closing
-from engine.interpolation.proof.cells import Patch
-from engine.interpolation.proof.pieces import Subdivision, followed
+from engine.interpolation.series import HoleConstants, PiecewiseSeries
 from engine.maps import Boundary
 
 LEFT_OUT = 1e-9  # of h: its smallest modes
@@ -61,8 +59,8 @@ class Correction:
     boundary : Boundary
     pieces : Subdivision
         At the beginning, when its pieces are the boundary's segments.
-    metric : MetricResidual, optional
-        What its modes lack around holes is taken off.
+    constants : HoleConstants, optional
+        Of the boundaries of holes; they are taken off.
     """
 
     def __init__(
@@ -70,7 +68,7 @@ class Correction:
         closing: Closing,
         boundary: Boundary,
         pieces: Subdivision,
-        metric: MetricResidual | None = None,
+        constants: HoleConstants | None = None,
     ) -> None:
         self._functions, series = closing.leading(LEFT_OUT)
         self._series = TimeSeries(series)
@@ -81,17 +79,17 @@ class Correction:
         self._errors = (kernel @ bending) * (boundary.half_lengths**2 / 2)[:, None]
         values = self._values(boundary.points)
         self._ends = np.stack([values, values[boundary.following]], axis=1)
-        self._metric = None if metric is None else TimeSeries(metric.residual.series)
-        # By the loops of the boundary, of which the outline lacks nothing.
-        self._lacking = np.zeros((0, 0))
-        if metric is not None:
-            self._lacking = np.vstack([0.0 * metric.lacking[:1], metric.lacking])
+        self._lost = None if constants is None else TimeSeries(constants.series)
+        # By the loops of the boundary, of which the outline loses nothing.
+        self._by_loop = np.zeros((0, 0))
+        if constants is not None:
+            self._by_loop = np.pad(constants.at_holes, ((1, 0), (0, 0)))
 
     @property
     def breaks(self) -> Floats:
         """Where time is to be cut."""
         own = self._series.series.breaks
-        return own if self._metric is None else np.union1d(own, self._metric.series.breaks)
+        return own if self._lost is None else np.union1d(own, self._lost.series.breaks)
 
     def on(
         self, piece: Indices, starts: Floats, ends: Floats
@@ -106,11 +104,11 @@ class Correction:
         controls = np.einsum("caj,cbj->cab", chords.ends, modes)
         in_place = (np.abs(chords.ends).max(axis=1) * errors).sum(axis=1) + LEFT_OUT
         in_time = (chords.errors * (np.abs(modes).max(axis=1) + errors)).sum(axis=1)
-        if self._metric is not None:
-            lacking = self._lacking[self._pieces.loops[piece]]
-            missing = self._metric.chords(starts, ends)
-            controls = controls - np.einsum("caj,cj->ca", missing.ends, lacking)[:, :, None]
-            in_time += (missing.errors * np.abs(lacking)).sum(axis=1)
+        if self._lost is not None:
+            constants = self._by_loop[self._pieces.loops[piece]]
+            lost = self._lost.chords(starts, ends)
+            controls = controls - np.einsum("caj,cj->ca", lost.ends, constants)[:, :, None]
+            in_time += (lost.errors * np.abs(constants)).sum(axis=1)
         return Patch(controls, in_place + in_time), in_time
 
     def _catch_up(self) -> None:

@@ -2,16 +2,17 @@
 
 In: keyframes, an outline, the course through the keys, bounds.
 Out: the factor ρ at any time.
-Imports: `engine.maps`, `engine.interpolation.blends`, `engine.interpolation.passing`,
-    `engine.interpolation.periods`.
+Imports: `engine.maps`, `engine.interpolation.courses.course`, `engine.interpolation.periods`.
 """
 
-from engine.interpolation.scaling.metric import MetricRatios as MetricRatios
+from engine.interpolation.scaling.pointwise import (
+    PointSamples as PointSamples,
+    Worst as Worst,
+    allowed as allowed,
+)
 from engine.interpolation.scaling.sharp import (
     BESIDE_KEY as BESIDE_KEY,
-    PointSamples as PointSamples,
     SharpScaling as SharpScaling,
-    Worst as Worst,
     looseness as looseness,
 )
 from engine.interpolation.scaling.smooth import (

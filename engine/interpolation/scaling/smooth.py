@@ -9,7 +9,7 @@ from typing import Self
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
-from engine.arrays import Floats, Indices, freeze
+from engine.arrays import Floats, Indices, freeze, ragged
 
 # Time is stretched to u, t = 1 / (1 + exp(−STRETCH sinh(u / STRETCH))), so that a window of
 # constant width in u narrows towards both keyframes, where ρ has to be 1.
@@ -26,7 +26,7 @@ MIDDLE = (3, -25, 150, 150, -25, 3)  # over 256, of six samples: the polynomial 
 # What the difference from the sharp ρ is enlarged by, since it is seen at the samples only.
 CAUTION = 1.25
 ROUNDING = 2e-7
-STRIPS = 32  # of each sample's surroundings, on which ρ is bounded from above
+STRIPS = 128  # of each sample's surroundings, on which ρ is bounded from above
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -100,16 +100,21 @@ class Scaling:
         width = 2 * HALF_WINDOW + 1
         windows = sliding_window_view(self.logarithms, width)
         excess = sliding_window_view(self.excess, width)
-        # The weights sum to 1, so that of the values only their range counts.
-        reach = [
-            steepness * np.ptp(each, axis=1)
-            for steepness, each in zip(_steepness(), (windows, excess), strict=True)
-        ]
+        # The weights sum to 1, so that of the values only their range counts; and as a fit follows
+        # what is linear, only that of what is not.
+        samples = np.arange(-HALF_WINDOW, HALF_WINDOW + 1)
+        slope = windows @ samples / (samples @ samples)
+        bent, of_excess = _steepness()
+        reach = np.abs(slope) + bent * np.ptp(windows - slope[:, None] * samples, axis=1)
+        reach += of_excess * np.ptp(excess, axis=1)
         middle = windows @ fits.T - excess @ means.T
-        margin = ((reach[0] + reach[1]) / (2 * STRIPS))[:, None]
+        margin = (reach / (2 * STRIPS))[:, None]
+        count = len(windows) * STRIPS
         return ScalingEnclosures(
+            scaling=self,
             lowest=freeze(np.minimum((middle - margin).ravel(), 0.0)),
             highest=freeze(np.minimum((middle + margin).ravel(), 0.0)),
+            times=freeze(time_of(((np.arange(count + 1)) / STRIPS - 1.5) * SPACING - FARTHEST)),
         )
 
 
@@ -119,24 +124,40 @@ class ScalingEnclosures:
 
     Parameters
     ----------
+    scaling : Scaling
     lowest, highest : float64, shape (s,)
         From half a sample before the first window's middle on.
+    times : float64, shape (s + 1,)
+        The ends of the strips.
     """
 
+    scaling: Scaling
     lowest: Floats
     highest: Floats
+    times: Floats
 
-    def on(self, starts: Floats, ends: Floats) -> tuple[Floats, Floats]:
-        """Return between which ρ is from one time to another, (c,) each."""
+    def chords(self, starts: Floats, ends: Floats) -> tuple[Floats, Floats]:
+        """Return ln ρ at both ends of pieces of time (c,), and by how much it may be off the chord.
+
+        Returns
+        -------
+        float64, shape (c, 2)
+        float64, shape (c,)
+        """
         pairs, which = np.unique(np.stack([starts, ends]), axis=1, return_inverse=True)
+        values = np.log(np.stack([self.scaling.at(times) for times in pairs], axis=1))
         # By the strips before and behind, against rounding.
         first = np.maximum(self._strip(pairs[0]) - 1, 0)
-        last = np.minimum(self._strip(pairs[1]) + 2, len(self.highest) - 1)
-        bounds = np.stack([first, last], axis=1).ravel()
-        least = np.exp(np.minimum.reduceat(self.lowest, bounds)[::2])
-        most = np.exp(np.maximum.reduceat(self.highest, bounds)[::2])
-        most[(pairs[0] <= 0.0) | (pairs[1] >= 1.0)] = 1.0
-        return least[which], most[which]
+        counts = np.minimum(self._strip(pairs[1]) + 2, len(self.highest)) - first
+        owner, place = ragged(counts)
+        strip = first[owner] + place
+        beside = np.clip(self.times[[strip, strip + 1]], pairs[0][owner], pairs[1][owner])
+        share = (beside - pairs[0][owner]) / (pairs[1] - pairs[0])[owner]
+        chord = values[owner, 0] + share * np.diff(values, axis=1)[owner, 0]
+        above = self.highest[strip] - chord.min(axis=0)
+        off = np.maximum(above, chord.max(axis=0) - self.lowest[strip])
+        errors = np.maximum(np.maximum.reduceat(off, counts.cumsum() - counts), 0.0)
+        return values[which], errors[which]
 
     def _strip(self, times: Floats) -> Indices:
         return np.asarray((_places(times) + 1.5) * STRIPS, dtype=np.intp)

@@ -19,7 +19,7 @@ def test_turns_make_a_rotation_go_the_long_way_and_a_loop_comes_back():
     between = prepared(maps, turns=[1, 0], loop=True, anchor=0.5)
     fz = between.domain.anchor_fz(between.frame(0.5).fz)
     assert_allclose(fz, np.exp(0.5j * (1.0 + 2 * np.pi)), rtol=0, atol=1e-9)
-    assert_allclose(between.at(2.0), MESH.vertices, rtol=0, atol=1e-9)
+    assert_allclose(between.frame(2.0).positions, MESH.vertices, rtol=0, atol=1e-9)
 
 
 def test_consistent_angles_follow_a_bend_of_more_than_half_a_turn_where_principal_ones_fail():

@@ -34,7 +34,7 @@ def test_arap_is_not_invariant_to_affine_maps():
     positions = [f(MESH.vertices) for f in stretched_pair()]
     moved = [z + 0.5 * z.conj() for z in positions]
     before, after = (
-        prepare_baseline("arap", each, MESH.vertices, MESH.triangles).at(0.4)
+        prepare_baseline("arap", each, MESH.vertices, MESH.triangles).frame(0.4).positions
         for each in (positions, moved)
     )
     affine = np.column_stack([np.ones(len(before)), before, before.conj()])

@@ -35,7 +35,7 @@ def test_keyframes_come_out_exactly(name):
     maps = pair_for(name)
     between = prepared(name, maps)
     for time, f in enumerate(maps):
-        assert_allclose(between.at(time), f(MESH.vertices), rtol=0, atol=1e-8)
+        assert_allclose(between.frame(time).positions, f(MESH.vertices), rtol=0, atol=1e-8)
 
 
 @pytest.mark.parametrize("name", ON_MESHES)
@@ -43,7 +43,10 @@ def test_keyframes_that_are_meshes_do_the_same_as_maps(name):
     maps = stretched_pair()
     positions = [f(MESH.vertices) for f in maps]
     assert_allclose(
-        prepared(name, positions).at(0.4), prepared(name, maps).at(0.4), rtol=0, atol=1e-12
+        prepared(name, positions).frame(0.4).positions,
+        prepared(name, maps).frame(0.4).positions,
+        rtol=0,
+        atol=1e-12,
     )
 
 
@@ -56,7 +59,7 @@ def test_a_rigid_motion_is_interpolated_as_a_rotation_about_the_anchor(name, tur
     centre = z[between.domain.anchor]
     before, after = (f(np.array([centre]))[0] for f in maps)
     expected = 0.7 * before + 0.3 * after + np.exp(1j * (0.4 + 0.3 * turn)) * (z - centre)
-    assert_allclose(between.at(0.3), expected, rtol=0, atol=1e-8)
+    assert_allclose(between.frame(0.3).positions, expected, rtol=0, atol=1e-8)
 
 
 @pytest.mark.parametrize("name", ON_MESHES)
@@ -66,7 +69,7 @@ def test_three_keyframes_and_a_loop_pass_every_keyframe_once(name):
     between = prepared(name, maps, loop=True)
     assert len(between.intervals) == 3
     for time, f in enumerate([*maps, first]):
-        assert_allclose(between.at(time), f(MESH.vertices), rtol=0, atol=1e-8)
+        assert_allclose(between.frame(time).positions, f(MESH.vertices), rtol=0, atol=1e-8)
 
 
 @pytest.mark.parametrize("name", EXACT)
@@ -156,7 +159,7 @@ def test_points_outside_the_outline_are_refused():
 def test_the_least_mesh_is_one_triangle(name):
     z = np.array([0, 1, 1j])
     between = prepare_baseline(name, [z, 2j * z + 1], z, [[0, 1, 2]])
-    assert_allclose(between.at(1.0), 2j * z + 1, rtol=0, atol=1e-12)
+    assert_allclose(between.frame(1.0).positions, 2j * z + 1, rtol=0, atol=1e-12)
     assert np.all(np.abs(between.frame(0.5).fz) > 1)
 
 
@@ -164,7 +167,7 @@ def test_handles_that_go_straight_keep_their_bounds_and_shrink_a_turning_bar():
     # The handles at both ends change places: halfway they are wanted at one point.
     maps = [rigid(0.0, 0j), rigid(2.8, 0j)]
     between = prepared("handles", maps)
-    assert_allclose(between.at(0.0), MESH.vertices, rtol=0, atol=1e-4)
+    assert_allclose(between.frame(0.0).positions, MESH.vertices, rtol=0, atol=1e-4)
     frame = between.frame(0.5)
     assert (np.abs(frame.fz) - np.abs(frame.fzbar)).min() > 0
     assert np.abs(frame.fz).mean() < 0.8

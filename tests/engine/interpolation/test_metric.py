@@ -4,9 +4,9 @@ import numpy as np
 from hypothesis import given, settings, strategies as st
 from numpy.testing import assert_allclose
 
-from engine.interpolation.blends import OutlineMetric
-from engine.interpolation.chebyshev import separate
-from engine.interpolation.passing import Course
+from engine.interpolation import Course
+from engine.interpolation.blends.outline import OutlineMetric
+from engine.interpolation.series.chebyshev import separate
 from engine.maps import Bounds
 
 

@@ -17,8 +17,11 @@ from numpy.testing import assert_allclose, assert_array_equal
 from engine.dirichlet import HilbertTransform
 from engine.errors import EngineError
 from engine.interpolation import (
+    BLENDS,
     Course,
+    Interval,
     Joint,
+    Passage,
     Tangent,
     Variant,
     frame_at,
@@ -26,7 +29,6 @@ from engine.interpolation import (
     prepare_inbetweens,
     prepare_sites,
     sample_keyframes,
-    shortened,
 )
 from engine.maps import Boundary, Bounds, HarmonicMap
 from engine.paths import root_sheets
@@ -142,14 +144,9 @@ def test_two_keyframes_have_the_in_betweens_of_the_paper(variant, through):
     # A stop at both ends is the same way at another pace.
     sites = plain.sites
     sheets = root_sheets(np.array([key.anchor_fz for key in plain.keyframes]))
-    stopped = prepare_inbetweens(
-        variant,
-        sites,
-        plain.keyframes,
-        sheets,
-        transform=transform().at(sites.paths.nodes) if variant == "metric" else None,
-        course=Course.between(0.0, 0.0),
-    )
+    passage = Passage.of(plain.keyframes, sheets, Course.between(0.0, 0.0))
+    extension = transform().at(sites.paths.nodes) if variant == "metric" else None
+    stopped = prepare_inbetweens(variant, Interval(sites, passage, Bounds(), transform=extension))
     if not variant.is_scaled:  # whose ρ is for other bounds
         eased = plain.frame(0.3**2 * (3 - 2 * 0.3))
         assert_allclose(stopped.frame(0.3).positions, eased.positions, atol=1e-9)
@@ -267,7 +264,7 @@ def test_a_tangent_is_the_same_in_any_unit_of_time_and_shrinks_with_the_bounds()
     three = [random_map(SHAPE, seed, k=0.5, bend=0.8) for seed in (1, 2, 3)]
 
     def length(joint, bounds):
-        return shortened(Variant.METRIC, three, joint, bounds, boundary()).length
+        return BLENDS[Variant.METRIC].tangent(three, joint, bounds, boundary()).length
 
     tight, tighter = (
         Bounds(k=0.8, sigma_a=3.2, sigma_b=0.2),
@@ -284,17 +281,10 @@ def test_a_frame_alone_is_the_same_as_among_the_others(variant, through):
     prepared = between(MAPS[:3], variant=variant, through=through)
     interval, sites = prepared.intervals[0], prepared.sites
     passage = interval.passage
-    extension = transform().at(sites.paths.nodes)
+    own = Passage.of(passage.keyframes, passage.sheets, passage.eta_course)
+    alone = Interval(sites, own, Bounds(), transform=transform().at(sites.paths.nodes))
     for time in (0.0, 0.37, 1.0):
-        frame = frame_at(
-            time,
-            variant,
-            sites,
-            passage.keyframes,
-            passage.sheets,
-            transform=extension,
-            course=passage.eta_course or passage.course,
-        )
+        frame = frame_at(time, variant, alone)
         expected = interval.frame(time)
         assert_allclose(frame.positions, expected.positions, rtol=0, atol=2e-7 * sites.diameter)
         assert_allclose(frame.fz, expected.fz, rtol=0, atol=1e-5)
@@ -303,7 +293,7 @@ def test_a_frame_alone_is_the_same_as_among_the_others(variant, through):
             positions = passage.ends[int(time)].positions
             assert_allclose(frame.positions, positions, rtol=0, atol=1e-12)
     with pytest.raises(EngineError, match="from time 0 to 1"):
-        frame_at(1.5, variant, sites, passage.keyframes, passage.sheets)
+        frame_at(1.5, variant, alone)
 
 
 def test_a_course_asks_for_its_keyframes():
@@ -312,4 +302,4 @@ def test_a_course_asks_for_its_keyframes():
     sheets = root_sheets(np.array([key.anchor_fz for key in keys]))
     course = Course.between(Tangent(Joint(1.0, 1.0), 1.0, 1.0), 1.0)
     with pytest.raises(EngineError, match="three keyframes, not 2"):
-        prepare_inbetweens(Variant.NU, sites, keys, sheets, course=course)
+        Passage.of(keys, sheets, course)

@@ -9,11 +9,18 @@ from engine.dirichlet.hilbert import HilbertTransform
 from engine.domain.meshing.triangulation import triangulate
 from engine.errors import EngineError
 from engine.geometry import polygon
-from engine.interpolation import Variant, prepare, prepare_inbetweens, prepare_sites
-from engine.interpolation.blends import OutlineMetric
+from engine.interpolation import (
+    Course,
+    Interval,
+    Passage,
+    Variant,
+    prepare,
+    prepare_inbetweens,
+    prepare_sites,
+)
 from engine.interpolation.blends.metric import RESOLVED
-from engine.interpolation.keyframe_samples import sample_keyframes
-from engine.interpolation.passing import Course
+from engine.interpolation.blends.outline import OutlineMetric
+from engine.interpolation.passage.keyframe_samples import sample_keyframes
 from engine.maps import Bounds
 from engine.maps.harmonic_map import HarmonicMap, derivatives_of
 from engine.paths.complex_log import root_sheets
@@ -45,11 +52,12 @@ def test_intervals_are_prepared_one_at_a_time_and_keyframes_shared(variant):
     whole = between(variant=variant)
     sites = prepare_sites(OUTLINE, CAGE, POINTS)
     keys = sample_keyframes(MAPS[:2], sites)
-    keys += sample_keyframes(MAPS[2:], sites, first=2)
+    keys += sample_keyframes(MAPS[2:], sites)
     sheets = root_sheets(np.array([key.anchor_fz for key in keys]))
     transform = HilbertTransform.on(OUTLINE, CAGE).at(sites.paths.nodes)
     for i, pair in enumerate((keys[:2], keys[1:])):
-        interval = prepare_inbetweens(variant, sites, pair, sheets[i : i + 2], transform=transform)
+        passage = Passage.of(pair, sheets[i : i + 2])
+        interval = prepare_inbetweens(variant, Interval(sites, passage, Bounds(), transform))
         frame = interval.frame(0.4)
         expected = whole.frame(i + 0.4)
         assert_allclose(frame.positions, expected.positions, rtol=0, atol=1e-12)
@@ -200,14 +208,14 @@ def test_what_a_variant_needs_is_asked_for():
     keys = sample_keyframes(MAPS, sites)
     sheets = root_sheets(np.array([key.anchor_fz for key in keys]))
     with pytest.raises(EngineError, match="two keyframes, not 3 with 3 sheets"):
-        prepare_inbetweens(Variant.NU, sites, keys, sheets)
+        Passage.of(keys, sheets)
+    interval = Interval(sites, Passage.of(keys[:2], sheets[:2]), Bounds())
     for variant in Variant:
         if variant.needs_transform:
             with pytest.raises(EngineError, match="needs a Hilbert transform"):
-                prepare_inbetweens(variant, sites, keys[:2], sheets[:2])
+                prepare_inbetweens(variant, interval)
         else:
-            interval = prepare_inbetweens(variant, sites, keys[:2], sheets[:2])
-            frame = interval.frame(0.5)
+            frame = prepare_inbetweens(variant, interval).frame(0.5)
             assert (frame.rho is not None) == variant.is_scaled
 
 

@@ -6,13 +6,14 @@ from holed_shapes import plate, random_map as holed_map
 from hypothesis import given, settings, strategies as st
 from interpolation_shapes import bar, inner_points, letter_l, random_map, scattered_on
 
-from engine.interpolation import Course, Variant, prepare
-from engine.interpolation.passing import Joint, Tangent
+from engine.interpolation import Course, Joint, Tangent, Variant, prepare
+from engine.interpolation.blends.eta import EtaBlend
+from engine.interpolation.blends.linear import LinearBlend
+from engine.interpolation.blends.metric import MetricBlend
+from engine.interpolation.blends.nu import NuBlend
+from engine.interpolation.enclosing import Changes, Patch, Subdivision
 from engine.interpolation.proof import bisection, prove
 from engine.interpolation.proof.bisection import TIGHTNESS
-from engine.interpolation.proof.blended import controls_on
-from engine.interpolation.proof.cells import Patch, from_eta, from_metric, from_nu, linear
-from engine.interpolation.proof.pieces import Subdivision
 from engine.maps import Boundary, Bounds, distortion
 from engine.maps.harmonic_map import HarmonicMap
 
@@ -44,7 +45,7 @@ def test_nothing_is_beyond_what_is_proven_and_that_is_tight(variant, seed):
     maps = [random_map(SHAPE, 2 * seed + i, k=0.5, bend=0.8) for i in range(2)]
     (interval,) = prepare(maps, POINTS, outline=OUTLINE, variant=variant).intervals
     k, sigma_a, sigma_b = measured(interval)
-    proof = prove(interval, variant, BOUNDARY)
+    proof = prove(interval)
     slack = ACCURACY if variant is Variant.METRIC else 1e-9
     assert proof.k >= k * (1 - slack)
     assert proof.sigma_a >= sigma_a * (1 - slack)
@@ -63,7 +64,7 @@ def test_motion_through_keyframes_is_proven(variant):
     prepared = prepare(maps, POINTS, outline=OUTLINE, variant=variant, through=True, bounds=bounds)
     for interval in prepared.intervals:
         k, sigma_a, sigma_b = measured(interval, TIMES[::4])
-        proof = prove(interval, variant, BOUNDARY, bounds)
+        proof = prove(interval)
         assert proof.k >= k - ACCURACY
         assert proof.sigma_a >= sigma_a * (1 - ACCURACY)
         assert proof.sigma_b <= max(sigma_b * (1 + ACCURACY), 0.0)
@@ -89,25 +90,37 @@ def test_in_betweens_around_holes_are_proven(variant, through):
     interval = prepared.intervals[0]
     assert interval.correction > 1e-3
     k, sigma_a, sigma_b = measured(interval, np.linspace(0, 1, 9))
-    proof = prove(interval, variant, boundary)
+    proof = prove(interval)
     slack = 2e-3 if variant is Variant.METRIC else 1e-7
     assert k * (1 - slack) <= proof.k
     assert sigma_a * (1 - slack) <= proof.sigma_a
     assert sigma_b * (1 + slack) >= proof.sigma_b
     assert proof.never_folds
-    if not (through and variant is Variant.METRIC):
-        assert proof.k <= k + 0.02
-        assert proof.sigma_a <= 1.02 * sigma_a
-        assert proof.sigma_b >= sigma_b - 0.02
+    assert proof.k <= k + 0.02
+    assert proof.sigma_a <= 1.02 * sigma_a
+    assert proof.sigma_b >= sigma_b - 0.02
+
+
+def test_a_small_rho_is_proven_as_tightly_as_any_other():
+    maps = [random_map(SHAPE, seed, k=0.85, bend=1.0) for seed in (0, 1)]
+    points = np.concatenate([POINTS, scattered_on(OUTLINE, 3000)])
+    (interval,) = prepare(maps, points, outline=OUTLINE, variant="scaled-eta").intervals
+    times = np.linspace(0, 1, 33)
+    assert min(map(interval.rho, times)) < 0.2
+    k, sigma_a, sigma_b = measured(interval, times)
+    proof = prove(interval)
+    assert proof.unsettled == ()
+    assert k <= proof.k <= k + 2e-3
+    assert sigma_a <= proof.sigma_a <= 1.002 * sigma_a
+    assert sigma_b >= proof.sigma_b >= sigma_b - 0.002 * sigma_a
 
 
 def test_what_folds_between_its_keyframes_is_not_proven():
     outline, cage = bar()
     maps = [HarmonicMap.identity(cage), HarmonicMap(cage=cage, phi=-1.0 * cage, psi=0.0 * cage)]
-    boundary = Boundary.sample(outline, cage)
     points = np.array([0.1, -1.3])
     linearly, by_nu = (
-        prove(prepare(maps, points, outline=outline, variant=v).intervals[0], v, boundary)
+        prove(prepare(maps, points, outline=outline, variant=v).intervals[0])
         for v in (Variant.LINEAR, Variant.NU)
     )
     assert not linearly.never_folds
@@ -124,10 +137,10 @@ def test_times_that_cannot_be_settled_are_named(monkeypatch):
     monkeypatch.setattr(bisection, "MOST_CELLS", 1)
     maps = [HarmonicMap.identity(CAGE), random_map(SHAPE, 3, k=0.5, bend=0.8)]
     (interval,) = prepare(maps, POINTS[:2], outline=OUTLINE, variant="eta").intervals
-    proof = prove(interval, Variant.ETA, BOUNDARY)
+    proof = prove(interval)
     assert proof.unsettled
     monkeypatch.undo()
-    better = prove(interval, Variant.ETA, BOUNDARY)
+    better = prove(interval)
     assert better.unsettled == ()
     assert better.k <= proof.k
     assert better.sigma_b >= proof.sigma_b
@@ -164,6 +177,12 @@ def bernstein(degree, x):
     )
 
 
+def linearly(patch, s, t):
+    controls = patch.controls[0]
+    along = controls[:, :1] * (1 - s) + controls[:, 1:] * s
+    return along[0] * (1 - t) + along[1] * t
+
+
 @settings(max_examples=60, deadline=None)
 @given(st.integers(0, 2**32 - 1), st.sampled_from([1, 3]))
 def test_cells_enclose_what_is_blended_on_them(seed, degree):
@@ -190,17 +209,35 @@ def test_cells_enclose_what_is_blended_on_them(seed, degree):
     eta = patch(0.3 * (rng.normal() + 1j * rng.normal()), 3, is_complex=True)
     trace = patch(rng.uniform(0.5, 3), 3, is_complex=False)
     f, g = patch(1j, 2, is_complex=True), patch(0.5, 2, is_complex=True)
-    rho = np.array([rng.uniform(0.1, 1)])
-    size_a = np.exp(values(a))
+    h, rho, factor = (patch(rng.normal() / 9, 2, is_complex=False) for _ in range(3))
+    if degree > 1:  # changes are linear in time
+        h, rho, factor = (Patch(each.controls[:, [0, -1]], each.error) for each in (h, rho, factor))
+    changes = Changes(h, rho, factor)
+    size_a, by_h = np.exp(values(a)), np.exp(linearly(h, s, t))
+    by_rho, by_factor = np.exp(linearly(rho, s, t)), np.exp(linearly(factor, s, t))
+    size_eta = np.abs(values(eta))
     pairs = [
-        (from_nu(a, nu), size_a, size_a * np.abs(values(nu))),
-        (from_eta(a, eta, rho), size_a, rho * np.abs(values(eta)) / size_a),
-        (linear(f, g), np.abs(values(f)), np.abs(values(g))),
+        (NuBlend.enclose(a, nu, None), size_a, size_a * np.abs(values(nu))),
+        (EtaBlend.enclose(a, eta, None), size_a, size_eta / size_a),
+        (
+            EtaBlend.enclose(a, eta, changes),
+            size_a * by_h * by_factor,
+            size_eta / (size_a * by_h) * by_rho,
+        ),
+        (LinearBlend.enclose(f, g, None), np.abs(values(f)), np.abs(values(g))),
     ]
     squares = values(trace), 2 * np.abs(values(eta))
     if (squares[0] > squares[1]).all():
         largest, least = np.sqrt(squares[0] + squares[1]), np.sqrt(squares[0] - squares[1])
-        pairs.append((from_metric(trace, eta), (largest + least) / 2, (largest - least) / 2))
+        fz, fzbar = (largest + least) / 2, (largest - least) / 2
+        pairs += [
+            (MetricBlend.enclose(trace, eta, None), fz, fzbar),
+            (
+                MetricBlend.enclose(trace, eta, changes),
+                fz * by_h * by_factor,
+                fzbar / by_h * by_rho,
+            ),
+        ]
     for (k, sigma_a, sigma_b), fz, fzbar in pairs:
         assert k[0] >= (fzbar / fz).max() - 1e-12
         assert sigma_a[0] >= (fz + fzbar).max() - 1e-12
@@ -210,22 +247,22 @@ def test_cells_enclose_what_is_blended_on_them(seed, degree):
 def test_a_course_is_cut_exactly():
     course = Course.between(Tangent(Joint(1.0, 2.0), 0.7, 0.7), 0.0)
     start, end = np.array([0.0, 0.3]), np.array([1.0, 0.35])
-    controls = controls_on(course, start, end)
+    controls = course.controls_on(start, end)
     for x in (0.0, 0.4, 1.0):
         weights = np.einsum("d,cdq->cq", bernstein(3, np.array(x)), controls)
         np.testing.assert_allclose(weights, course.at(start + x * (end - start)).T, atol=1e-14)
 
 
-def test_the_bound_on_rho_is_above_it_and_near():
+def test_the_bound_on_rho_encloses_it_and_is_near():
     maps = [random_map(SHAPE, seed, k=0.6, bend=1.0) for seed in (3, 6)]
     (interval,) = prepare(maps, POINTS[:2], outline=OUTLINE, variant="scaled-eta").intervals
     rng = np.random.default_rng(0)
     starts = np.concatenate([rng.uniform(size=300), [0.0, 1e-9, 0.999999]])
     ends = np.minimum(starts + 10.0 ** rng.uniform(-9, -2, len(starts)), 1.0)
-    below, above = interval.scale.enclosures().on(starts, ends)
-    for start, end, least, bound in zip(starts, ends, below, above, strict=True):
-        rho = [interval.scale(float(time)) for time in np.linspace(start, end, 20)]
-        assert least <= min(rho) + 1e-15
-        assert bound >= max(rho) - 1e-15
-        assert least >= min(rho) - 0.02
-        assert bound <= max(rho) + 0.02
+    values, errors = interval.scale.enclosures().chords(starts, ends)
+    share = np.linspace(0, 1, 20)
+    for start, end, ends_of, error in zip(starts, ends, values, errors, strict=True):
+        rho = interval.scale.at(start + share * (end - start))
+        off = np.abs(np.log(rho) - (1 - share) * ends_of[0] - share * ends_of[1])
+        assert off.max() <= error + 1e-15
+        assert error <= off.max() + 5e-3

@@ -7,8 +7,7 @@ from interpolation_shapes import bar, bent, letter_l, random_map
 from numpy.testing import assert_allclose
 
 from engine.geometry.polygon import edges
-from engine.interpolation import prepare
-from engine.interpolation.passing import Course
+from engine.interpolation import Course, prepare
 from engine.interpolation.scaling import BESIDE_KEY, PointSamples, SharpScaling
 from engine.interpolation.scaling.smooth import FARTHEST, HALF_WINDOW, Scaling, time_of
 from engine.maps import Bounds, distortion
@@ -112,7 +111,7 @@ def test_each_bound_is_just_reached_where_it_alone_counts(bound):
     samples = PointSamples(
         log_modulus=np.log([[1.0], [4.0]]),
         conj_eta=np.array([[8.0 + 0j], [8.0]]),
-        opening=np.empty((0, 1), np.complex128),
+        conformal=np.empty((0, 1), np.complex128),
         **values,
     )
     (rho,) = samples.ratios(np.array([[0.5], [0.5]]))
@@ -129,7 +128,7 @@ def test_around_holes_no_smaller_rho_leaves_the_bounds_and_no_larger_one_obeys_t
     samples = PointSamples(
         log_modulus=np.log(a)[None],
         conj_eta=(a * b + 0j)[None],
-        opening=d[None],
+        conformal=d[None],
         **{name: np.full(count, bound) for name, bound in bounds.items()},
     )
     (ratios,) = samples.ratios(np.ones((2, 1, 1)))

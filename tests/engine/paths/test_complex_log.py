@@ -77,6 +77,16 @@ def test_turns_are_added_from_their_interval_on():
     assert_array_equal(root_sheets(fz, [0, 2, -1]), [0, 0, 2, 1])
 
 
+@pytest.mark.parametrize(
+    "turns", [[2**31, 0], [-(2**40), 0], [600_000, 600_000], np.array([2**63, 0], dtype=np.uint64)]
+)
+def test_more_turns_than_an_angle_has_digits_for_are_refused(turns):
+    fz = np.ones(3, dtype=complex)
+    assert_array_equal(root_sheets(fz, [1_000_000, -2_000_000]), [0, 1_000_000, -1_000_000])
+    with pytest.raises(EngineError, match="more than 1,000,000 turns"):
+        root_sheets(fz, turns)
+
+
 @pytest.mark.parametrize("turns", [[1], [1.0, 0.0], [[0, 0]]])
 def test_turns_of_the_wrong_kind_are_refused(turns):
     with pytest.raises(EngineError, match="2 integers"):

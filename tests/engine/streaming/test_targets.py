@@ -80,7 +80,7 @@ def test_a_jump_is_as_short_as_it_may_be():
     def motion(time):
         return BASE + (1.0 if time >= 4 else 0.0) + 0.1 * time
 
-    targets = built(motion, shortest=2.0**-6)
+    targets = built(motion)
     times = np.random.default_rng(0).uniform(0, 10, 400)
     away = times[np.abs(times - 4 + 2.0**-7) > 2.0**-6]
     assert largest_distance(targets, motion, away) <= TOLERANCE

@@ -68,9 +68,7 @@ class KeyframeSamples:
         return sum(array.nbytes for array in (*at_nodes, *at_points))
 
 
-def sample_keyframes(
-    maps: Sequence[HarmonicMap], sites: Sites, *, first: int = 0
-) -> tuple[KeyframeSamples, ...]:
+def sample_keyframes(maps: Sequence[HarmonicMap], sites: Sites) -> tuple[KeyframeSamples, ...]:
     """Sample maps over one cage; one pass over the nodes' logarithms serves all of them.
 
     Parameters
@@ -78,8 +76,6 @@ def sample_keyframes(
     maps : sequence of HarmonicMap
         Maps over the sites' cage.
     sites : Sites
-    first : int
-        Number of the first map among the keyframes, for the errors.
 
     Raises
     ------
@@ -88,7 +84,7 @@ def sample_keyframes(
     """
     paths = sites.paths
     for i, f in enumerate(maps):
-        _require_unfolded(f, sites, first + i)
+        _require_unfolded(f, sites, i)
     span = sites.boundary.span
     coefficients = np.hstack([f.coefficients for f in maps])
     values, first_order, second_order = span.evaluate(coefficients, paths.nodes, orders=(0, 1, 2))

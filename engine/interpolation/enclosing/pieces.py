@@ -46,6 +46,10 @@ class EdgeCurves(NamedTuple, Generic[number]):
         """Return those of some of the pieces."""
         return EdgeCurves(self.controls[which], self.errors[which])
 
+    def of(self, keyframes: slice) -> "EdgeCurves[number]":
+        """Return those of some of the keyframes."""
+        return EdgeCurves(self.controls[:, keyframes], self.errors[:, keyframes])
+
 
 @dataclass(slots=True, kw_only=True, eq=False)
 class Subdivision:

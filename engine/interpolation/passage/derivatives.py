@@ -2,19 +2,18 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Self
+from typing import NamedTuple, Self
 
 import numpy as np
 
 from engine.arrays import Complexes, Floats, Indices, Integers
 from engine.errors import EngineError
-from engine.interpolation.keyframe_samples import KeyframeSamples
-from engine.interpolation.passing import Course
-from engine.interpolation.periods import Residual, combined
+from engine.interpolation.courses import Course
+from engine.interpolation.passage.keyframe_samples import KeyframeSamples
+from engine.interpolation.series import Residual, combined
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Derivatives:
+class Derivatives(NamedTuple):
     """Φ', Φ'', Ψ' and Ψ'' of an in-between, each complex128 (s,).
 
     Section 4.1: f_z = Φ' and f_z̄ = conj(Ψ').
@@ -39,8 +38,9 @@ class Passage:
     sheets : int32, shape (q,)
         Branch of each logarithm, from `root_sheets`.
     course : Course
-    eta_course : Course, optional
-        Of η, where that has another one.
+        Of log f_z and of the anchor.
+    eta_course : Course
+        Of η, which the metric variant has on another one.
     residuals : tuple of Residual
         What is added to the blend of log f_z.
     """
@@ -48,7 +48,7 @@ class Passage:
     keyframes: tuple[KeyframeSamples, ...]
     sheets: Integers
     course: Course
-    eta_course: Course | None = None
+    eta_course: Course
     residuals: tuple[Residual, ...] = ()
 
     @classmethod
@@ -69,7 +69,7 @@ class Passage:
                 f"An interval of this course has {wanted} keyframes, not {len(keyframes)} with "
                 f"{len(sheets)} sheets."
             )
-        return cls(keyframes=tuple(keyframes), sheets=sheets, course=course)
+        return cls(keyframes=tuple(keyframes), sheets=sheets, course=course, eta_course=course)
 
     @property
     def ends(self) -> tuple[KeyframeSamples, KeyframeSamples]:
@@ -99,6 +99,10 @@ class Passage:
             keyframes=tuple(key.at(which) for key in self.keyframes),
             residuals=tuple(residual.at(which) for residual in self.residuals),
         )
+
+    def with_residual(self, residual: Residual) -> Self:
+        """Return the same with something more added to log f_z."""
+        return replace(self, residuals=(*self.residuals, residual))
 
     def log_fz(self, time: float) -> tuple[Complexes, Complexes]:
         """Return Σ w_i log f_z of the keyframes and its derivative, each (s,); Equation (3).

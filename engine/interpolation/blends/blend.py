@@ -1,0 +1,154 @@
+"""What a variant is: two quantities that are blended, and all that follows from them."""
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from typing import Any, ClassVar, Self
+
+import numpy as np
+
+from engine.arrays import Complexes, Floats, Indices
+from engine.interpolation.courses import (
+    Course,
+    Joint,
+    Tangent,
+    are_same,
+    derivatives_along,
+    shortened,
+)
+from engine.interpolation.enclosing import Changes, EdgeCurves, EndValues, Patch
+from engine.interpolation.passage import Derivatives, Interval, Passage
+from engine.interpolation.periods import Closing
+from engine.interpolation.series import HoleConstants, Residual
+from engine.interpolation.sites import Sites
+from engine.maps import Boundary, Bounds, Enclosures, HarmonicMap
+
+PairCurves = tuple[EdgeCurves[Any], EdgeCurves[Any]]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Blend(ABC):
+    """How the derivatives of an in-between follow from the keyframes and the time.
+
+    A variant is a subclass, and a row of `engine.interpolation.blends.BLENDS`.
+
+    Parameters
+    ----------
+    passage : Passage
+    bounds : Bounds
+        That in-betweens through keyframes obey, as far as the variant can.
+    """
+
+    # What the correction around holes keeps: 1 for ν, −1 for η; 0 where none is needed.
+    sign: ClassVar[int] = -1
+    # Whether Ψ is scaled by a ρ: always, or where closed periods around holes ask for it.
+    is_scaled: ClassVar[bool] = False
+    is_scaled_around_holes: ClassVar[bool] = False
+
+    passage: Passage
+    bounds: Bounds
+
+    @classmethod
+    @abstractmethod
+    def of(cls, interval: Interval) -> Self:
+        """Prepare the blend of an interval."""
+
+    @classmethod
+    def only_at(cls, _time: float, interval: Interval, /) -> Self:
+        """Prepare it for one time in [0, 1], without holes; at others it may be wrong."""
+        return cls.of(interval)
+
+    @property
+    def nbytes(self) -> int:
+        """Memory beyond the keyframes' own, in bytes."""
+        return self.passage.nbytes
+
+    @abstractmethod
+    def values(self, times: Floats) -> tuple[Complexes, Complexes]:
+        """Return f_z and conj(f_z̄) at times (t,) and the nodes of the paths, each (t, s)."""
+
+    @abstractmethod
+    def derivatives(self, time: float) -> Derivatives:
+        """Return the in-between's derivatives at the nodes of the paths."""
+
+    def at(self, which: Indices) -> Self:
+        """Return the same at some of the nodes only."""
+        return replace(self, passage=self.passage.at(which))
+
+    def with_residual(self, residual: Residual) -> Self:
+        """Return the same with something more added to log f_z."""
+        return replace(self, passage=self.passage.with_residual(residual))
+
+    @property
+    def constants(self) -> HoleConstants | None:
+        """What the correction around holes has to make good beside the periods."""
+        return None
+
+    def sharp_scaling(
+        self, sites: Sites, closing: Closing | None, conformal: Closing | None
+    ) -> Callable[[Floats], Floats]:
+        """Return the largest ρ at times (t,) in ascending order, where Ψ is scaled.
+
+        Parameters
+        ----------
+        sites : Sites
+        closing, conformal : Closing or None
+            Around holes the corrections for ρ = 1, and what leads on from there to that for ρ = 0.
+        """
+        raise NotImplementedError
+
+    @staticmethod
+    @abstractmethod
+    def pair(fz: Complexes, g: Complexes) -> tuple[Complexes, Complexes]:
+        """Return the two quantities that are blended, of f_z and conj(f_z̄) of any shape."""
+
+    @staticmethod
+    @abstractmethod
+    def stretches(first: Complexes, second: Complexes) -> tuple[Floats, Floats]:
+        """Return σ_a and σ_b of the two quantities."""
+
+    @classmethod
+    def tangent(
+        cls, maps: Sequence[HarmonicMap], joint: Joint, bounds: Bounds, boundary: Boundary
+    ) -> Tangent:
+        """Return a joint's tangent, short enough for the control values to obey the bounds.
+
+        Parameters
+        ----------
+        maps : sequence of HarmonicMap, length 3
+            The keyframe and its neighbours, in order of time.
+        joint : Joint
+        bounds : Bounds
+            Widened where the keyframe itself exceeds them.
+        boundary : Boundary
+
+        Returns
+        -------
+        Tangent
+            Of length 0, a stop, where the keyframe is equal to a neighbour: past it the motion
+            would swing beyond the pose that is to be kept.
+        """
+        if any(are_same(maps[1], f, boundary) for f in (maps[0], maps[2])):
+            return Tangent(joint, 0.0, 0.0)
+        quantities = np.array([cls.pair(*derivatives_along(f, boundary)) for f in maps])
+        return cls._shortened(quantities, joint, bounds, boundary)
+
+    @classmethod
+    def _shortened(
+        cls, quantities: Complexes, joint: Joint, bounds: Bounds, _boundary: Boundary, /
+    ) -> Tangent:
+        return shortened(quantities, cls.stretches, joint, bounds)
+
+    @property
+    def courses(self) -> tuple[Course, Course]:
+        """The weights in time of the `curves` of both quantities."""
+        return self.passage.course, self.passage.eta_course
+
+    @abstractmethod
+    def curves(self, values: EndValues) -> PairCurves:
+        """Return what is known of the two quantities along pieces of the boundary."""
+
+    @staticmethod
+    @abstractmethod
+    def enclose(first: Patch[Any], second: Patch[Any], changes: Changes | None, /) -> Enclosures:
+        """Enclose the distortion on cells, of the two quantities and what becomes of them."""

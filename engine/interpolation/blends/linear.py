@@ -1,0 +1,82 @@
+"""The maps themselves, blended linearly: for comparison, without any guarantee."""
+
+from dataclasses import dataclass, replace
+from typing import Any, Self
+
+import numpy as np
+
+from engine.arrays import Complexes, Floats, Indices, freeze
+from engine.interpolation.blends.blend import Blend, PairCurves
+from engine.interpolation.enclosing import Changes, EndValues, Patch, linear
+from engine.interpolation.passage import Derivatives, Interval, weighted
+from engine.interpolation.series import combined
+from engine.maps import Enclosures
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class LinearBlend(Blend):
+    """f_z and conj(f_z̄) linear in the weights.
+
+    Parameters
+    ----------
+    passage, bounds
+        As in `Blend`.
+    known : tuple of Derivatives
+        Of the keyframes.
+    """
+
+    sign = 0  # sums of closed maps are closed
+
+    known: tuple[Derivatives, ...]
+
+    @classmethod
+    def of(cls, interval: Interval) -> Self:
+        """Work out the derivatives of the keyframes."""
+        known = []
+        for key in interval.passage.keyframes:
+            fz = np.exp(key.log_fz)
+            gz = (key.nu_z + key.nu * key.log_fz_z) * fz
+            parts = fz, key.log_fz_z * fz, key.nu * fz, gz
+            known.append(Derivatives(*map(freeze, parts)))
+        return cls(passage=interval.passage, bounds=interval.bounds, known=tuple(known))
+
+    @property
+    def nbytes(self) -> int:
+        """Memory beyond the keyframes' own, in bytes."""
+        return self.passage.nbytes + sum(array.nbytes for each in self.known for array in each)
+
+    def values(self, times: Floats) -> tuple[Complexes, Complexes]:
+        """Return f_z and conj(f_z̄) at times (t,), each (t, s)."""
+        weights = self.passage.course.at(times).T
+        fz, g = (np.array([getattr(each, of) for each in self.known]) for of in ("fz", "g"))
+        return combined(weights, fz), combined(weights, g)
+
+    def derivatives(self, time: float) -> Derivatives:
+        """Blend all derivatives linearly."""
+        weights = self.passage.course(time)
+        return Derivatives(*(weighted(parts, weights) for parts in zip(*self.known, strict=True)))
+
+    def at(self, which: Indices) -> Self:
+        """Return the same at some of the nodes only."""
+        known = tuple(Derivatives(*(freeze(part[which]) for part in each)) for each in self.known)
+        return replace(self, passage=self.passage.at(which), known=known)
+
+    @staticmethod
+    def pair(fz: Complexes, g: Complexes) -> tuple[Complexes, Complexes]:
+        """Return f_z and conj(f_z̄) themselves."""
+        return fz, g
+
+    @staticmethod
+    def stretches(first: Complexes, second: Complexes) -> tuple[Floats, Floats]:
+        """Return |f_z| ± |f_z̄|."""
+        a, b = np.abs(first), np.abs(second)
+        return a + b, a - b
+
+    def curves(self, values: EndValues) -> PairCurves:
+        """Return f_z and conj(f_z̄) along pieces of the boundary."""
+        return values.conformal(), values.anticonformal()
+
+    @staticmethod
+    def enclose(first: Patch[Any], second: Patch[Any], _changes: Changes | None, /) -> Enclosures:
+        """Enclose the distortion on cells."""
+        return linear(first, second)

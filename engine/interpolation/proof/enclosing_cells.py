@@ -1,0 +1,162 @@
+"""How cells are enclosed: the quantities that a variant blends, and what becomes of them."""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from engine.arrays import Booleans, Floats, Indices
+from engine.interpolation.enclosing import Changes, EdgeCurves, Patch, Subdivision
+from engine.interpolation.inbetweens import Inbetweens
+from engine.interpolation.proof.correction import Correction
+from engine.maps import Enclosures
+
+PARTS = 4  # into which time is cut at first
+LEAST = 1.0  # what the changes of a quantity are compared with, at least
+
+
+class Cells(NamedTuple):
+    """Pieces of the boundary (c,), from one time to another."""
+
+    piece: Indices
+    start: Floats
+    end: Floats
+
+    def at(self, which: Booleans | slice) -> "Cells":
+        """Return some of them."""
+        return Cells(self.piece[which], self.start[which], self.end[which])
+
+
+class CellResults(NamedTuple):
+    """What is proven of cells, what is attained at their corners, and which to cut across time."""
+
+    enclosed: Enclosures
+    attained: Enclosures
+    by_time: Booleans
+
+
+class CellEnclosures:
+    """Enclosures of an interval's in-betweens on cells.
+
+    Parameters
+    ----------
+    inbetweens : Inbetweens
+    pieces : Subdivision
+        Of the boundary; it may grow later on.
+    """
+
+    def __init__(self, inbetweens: Inbetweens, pieces: Subdivision) -> None:
+        self._pieces = pieces
+        self._blend = inbetweens.blend
+        self._curves = self._blend.curves(pieces.derivatives(0))
+        self._rho = None if inbetweens.scale is None else inbetweens.scale.enclosures()
+        constants = self._blend.constants
+        self._h, self._d = (
+            None if closing is None else Correction(closing, inbetweens.boundary, pieces, lost)
+            for closing, lost in (
+                (inbetweens.closing, constants),
+                (inbetweens.conformal_closing, None),
+            )
+        )
+
+    @property
+    def cuts(self) -> Floats:
+        """The times, from 0 to 1, over which no cell may reach, float64 (b,)."""
+        cuts = np.linspace(0.0, 1.0, PARTS + 1)
+        for each in (self._h, self._d):
+            cuts = cuts if each is None else np.union1d(cuts, each.breaks)
+        return cuts
+
+    def of(self, chosen: Cells) -> CellResults:
+        """Enclose cells."""
+        self._catch_up()
+        first, second = (
+            _patch(curves.at(chosen.piece), course.controls_on(chosen.start, chosen.end))
+            for curves, course in zip(self._curves, self._blend.courses, strict=True)
+        )
+        changes, off_in_time = self._changes(chosen)
+        enclose = self._blend.enclose
+        return CellResults(
+            enclose(first, second, changes),
+            enclose(
+                first.corners(), second.corners(), None if changes is None else changes.corners()
+            ),
+            _varies_more_in_time(off_in_time, first, second, *(changes or ())),
+        )
+
+    def _changes(self, chosen: Cells) -> tuple[Changes | None, Floats]:
+        """Return what the corrections around holes and the scaling of Ψ do to cells.
+
+        Beside it, (c,), how far they are off because the cells are long in time.
+        """
+        nothing = np.zeros(len(chosen.piece))
+        if self._h is None and self._rho is None:
+            return None, nothing
+        none = Patch(np.zeros((len(nothing), 2, 2)), nothing)
+        h, rho, factor, off = none, none, none, nothing
+        if self._h is not None:
+            known, off = self._h.on(*chosen)
+            h = Patch(known.controls.real, known.error)
+        if self._rho is not None:
+            values, errors = self._rho.chords(chosen.start, chosen.end)
+            rho, off = Patch(np.repeat(values[:, :, None], 2, axis=2), errors), off + errors
+        if self._d is not None:
+            d, _ = self._d.on(*chosen)
+            factor = _factor(d, rho)
+        return Changes(h, rho, factor), off
+
+    def _catch_up(self) -> None:
+        """Learn the pieces that were added since."""
+        since = len(self._curves[0].errors)
+        if since < len(self._pieces.halves):
+            first, second = self._blend.curves(self._pieces.derivatives(since))
+            self._curves = _joined(self._curves[0], first), _joined(self._curves[1], second)
+
+
+def _factor(d: Patch[np.complex128], log_rho: Patch[np.float64]) -> Patch[np.float64]:
+    """Return ln |w|, w = ρ + (1 − ρ) e^d, of which f_z is that for ρ = 1 times w.
+
+    Between its values at the corners it is off by an eighth of its second derivatives along both
+    sides of the cell, and by its first ones times what d and ln ρ are off themselves.
+    """
+    rho = np.exp(log_rho.controls)
+    least = np.exp(log_rho.controls.min(axis=(1, 2)) - log_rho.error)
+    most = np.minimum(np.exp(log_rho.controls.max(axis=(1, 2)) + log_rho.error), 1.0)
+    size = d.highest.max(axis=(1, 2))
+    clear = 1.0 - (1.0 - least) * np.expm1(size)  # |w| at least
+    clear = np.where(clear > 0, clear, np.nan)
+    by_d, by_rho = (1.0 - least) * np.exp(size) / clear, most * np.expm1(size) / clear
+    by_both = most * np.exp(size) / clear**2
+    along, over, over_rho = (
+        np.abs(np.diff(patch.controls, axis=axis)).max(axis=(1, 2))
+        for patch, axis in ((d, 2), (d, 1), (log_rho, 1))
+    )
+    bend = by_d * (1 + by_d) * (along**2 + over**2) + by_rho * (1 + by_rho) * over_rho**2
+    bend += 2 * by_both * over * over_rho
+    error = bend / 8 + by_d * d.error + by_rho * log_rho.error
+    return Patch(np.log(np.abs(rho + (1.0 - rho) * np.exp(d.controls))), error)
+
+
+def _patch(curves: EdgeCurves[Any], weights: Floats) -> Patch[Any]:
+    """Blend curves (c, q, b) by weights (c, d, q)."""
+    return Patch(
+        weights @ curves.controls,
+        (np.abs(weights) @ curves.errors[..., None])[..., 0].max(axis=1),
+    )
+
+
+def _varies_more_in_time(off_in_time: Floats, *patches: Patch[Any]) -> Booleans:
+    """Tell along which side cells are to be cut."""
+    in_time, in_place = off_in_time.copy(), -off_in_time
+    for patch in patches:
+        size = np.maximum(np.abs(patch.controls).max(axis=(1, 2)), LEAST)
+        in_time += np.abs(np.diff(patch.controls, axis=1)).max(axis=(1, 2), initial=0.0) / size
+        along = np.abs(np.diff(patch.controls, axis=2)).max(axis=(1, 2), initial=0.0)
+        in_place += (along + patch.error) / size
+    more: Booleans = in_time > in_place
+    return more
+
+
+def _joined(one: EdgeCurves[Any], other: EdgeCurves[Any]) -> EdgeCurves[Any]:
+    return EdgeCurves(
+        np.concatenate([one.controls, other.controls]), np.concatenate([one.errors, other.errors])
+    )
