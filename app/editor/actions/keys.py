@@ -32,7 +32,7 @@ def retime(session: Session, project: Project, command: Command) -> None:
 
 
 def insert_at(session: Session, frame: int) -> None:
-    """Put the playhead on a frame, and hold what is shown there in a key."""
+    """Put the playhead on a frame, and insert a key of what is shown there."""
     playback.scrub(session, frame)
     posing.insert_key(session)
 

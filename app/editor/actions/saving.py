@@ -246,7 +246,7 @@ def ask_unsaved(session: Session, project: Project, then: Action) -> None:
 
 @with_project
 def key_and_save(session: Session, project: Project, then: Action) -> None:
-    """Hold the pose that no key holds in a key, and save the project."""
+    """Make a key of the pose that no key holds, and save the project."""
     unkeyed = project.history.unkeyed
     if unkeyed is not None:
         posing.insert_key_at(session, unkeyed.figure, unkeyed.frame)

@@ -64,7 +64,7 @@ def copied_for_selected(session: Session, project: Project) -> CopiedKeys | None
 
 @with_project
 def paste(session: Session, project: Project) -> None:
-    """Let a key at the present frame hold what was copied; of several keys, the first one."""
+    """Put what was copied into a key at the present frame: of several keys, the first one."""
     frame = putting.stand_at_frame(session, project)
     promises.once_settled(session, do(_paste, frame), "Paste")
 

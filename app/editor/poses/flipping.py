@@ -18,7 +18,7 @@ FLIPPING = Kind("Flipping", "The pose could not be flipped", "hand")
 
 @with_project
 def paste(session: Session, project: Project) -> None:
-    """Let keys hold what was copied, mirrored at the figure's axis."""
+    """Put what was copied into keys, mirrored at the figure's axis."""
     frame = putting.stand_at_frame(session, project)
     promises.once_settled(session, do(_paste, frame), "Paste flipped")
 

@@ -35,13 +35,13 @@ def _keep(session: Session, project: Project, figure: Figure, keys: tuple[Keyfra
 
 @with_project
 def apply(session: Session, project: Project, name: str) -> None:
-    """Let a key at the present frame hold a pose of the library."""
+    """Put a pose of the library into a key at the present frame."""
     _put(session, project, name, putting.stand_at_frame(session, project))
 
 
 @with_project
 def apply_at(session: Session, project: Project, name: str, frame: int) -> None:
-    """Let a key at a frame hold a pose of the library, and go there."""
+    """Put a pose of the library into a key at a frame, and go there."""
     putting.stand_at_frame(session, project)
     _put(session, project, name, frame)
     playback.seek(session, frame)

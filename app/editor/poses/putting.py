@@ -23,9 +23,9 @@ def put(
     label: str | None = None,
     gesture: object | None = None,
 ) -> None:
-    """Let keys at a frame, and as much later as they were copied, hold poses; choose them.
+    """Put poses into keys: the first at a frame, others as much later as they were copied.
 
-    Of one alone only its pose is taken.
+    These keys are chosen then. Where there is one alone, only its pose is taken.
 
     Parameters
     ----------

@@ -102,7 +102,7 @@ class Joining(Tool):
 
 
 def _takes_anchor(session: Session, project: Project, spot: Spot) -> bool:
-    """Tell whether a press takes hold of the anchor of a layer, in a scene of several."""
+    """Tell whether a press takes the anchor of a layer, in a scene of several."""
     is_free = not (spot.shift or spot.alt or spot.on_ring) and session.overlays.handles
     return spot.on_anchor and is_free and len(project.document.figures) > 1
 

@@ -1,6 +1,6 @@
 """What marks the drawing in the viewport: handles, anchor, outline, cage and export frame."""
 
-from functools import lru_cache, partial
+from functools import lru_cache
 
 import numpy as np
 from imgui_bundle import ImVec4
@@ -34,7 +34,6 @@ def mark_all(
 ) -> tuple[tuple[Line, ...], tuple[Disc, ...]]:
     """Return all lines and discs that mark what is shown, in the order in which they are drawn."""
     scale = pixel_scale(session)
-    figure = shown.clip.figure
     lines: list[Line] = []
     if session.overlays.outline:
         lines += _outlines(shown, palette, scale)
@@ -46,31 +45,34 @@ def mark_all(
         lines += path_lines
     if session.export_frame is not None:
         lines.append(_frame(session.export_frame, palette, scale))
-    on = partial(_on, shown)
     if not session.overlays.handles or project.playhead.since is not None:
         return tuple(lines), dots
-    wishes = project.pull.targets if project.pull else None
-    if wishes is None and shown.pose is not None:
-        wishes = shown.pose.targets
+    handle_lines, discs = mark_handles(_handles(session, project, shown), scale=scale)
+    anchor = find_anchor(project, shown)
+    faint = _others(project, scale)
+    below = () if anchor is None else mark_anchor(_on(shown, anchor), scale=scale)
+    return (*lines, *handle_lines), (*dots, *faint, *below, *discs)
+
+
+def _handles(session: Session, project: Project, shown: Shown) -> list[HandleMark]:
+    figure, targets = shown.clip.figure, shown.pose.targets if shown.pose else {}
+    if project.pull and project.pull.targets is not None:
+        targets = project.pull.targets
     marks = []
-    for handle, place in zip(figure.handles, shown.handle_places, strict=True):
-        wish = wishes.get(handle.id) if wishes else None
+    for handle, place in zip(figure.handles, shown.handle_places.tolist(), strict=True):
+        wish = targets.get(handle.id)
         lags = wish is not None and falls_short(figure, abs(wish.position - place))
         marks.append(
             HandleMark(
-                place=on(complex(place)),
-                wish=on(wish.position) if lags and wish is not None else None,
+                place=_on(shown, place),
+                wish=_on(shown, wish.position) if lags and wish is not None else None,
                 anchor=handle.position == figure.anchor,
                 selected=handle.id in project.selected,
                 hovered=handle.id == session.hovered,
                 locked=handle.locked,
             )
         )
-    handle_lines, discs = mark_handles(marks, scale=scale)
-    anchor = find_anchor(project, shown)
-    faint = _others(project, scale)
-    below = () if anchor is None else mark_anchor(on(anchor), scale=scale)
-    return (*lines, *handle_lines), (*dots, *faint, *below, *discs)
+    return marks
 
 
 def find_anchor(project: Project, shown: Shown) -> complex | None:

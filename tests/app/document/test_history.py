@@ -14,7 +14,7 @@ from app.document.commands import (
     pose_commands,
     scene_commands,
 )
-from app.document.history import History, UnkeyedPose, _held_only_by
+from app.document.history import History, UnkeyedPose, _bytes_only_in
 from app.errors import LissomError
 
 seeds = st.lists(st.integers(0, 2**32 - 1), max_size=25)
@@ -326,7 +326,7 @@ def moved(pose, by):
 def held(history):
     """Return the bytes that history counts, anew."""
     pairs = zip(history._steps, history._steps[1:], strict=False)
-    return [*(_held_only_by(old, new) for old, new in pairs), 0]
+    return [*(_bytes_only_in(old, new) for old, new in pairs), 0]
 
 
 def test_what_a_gesture_led_to_goes_on_in_its_step_and_in_all_later_ones():

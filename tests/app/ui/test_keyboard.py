@@ -7,7 +7,7 @@ from app.editor import Question, do
 from app.editor.actions import posing, show_dialog, viewing
 from app.storage.assets import sample_images
 from app.ui.shortcuts import BINDINGS, MENUS
-from app.ui.shortcuts.keys import in_words, with_key
+from app.ui.shortcuts.keys import chords_of, in_words, with_key
 
 OPEN = imgui.test_engine.TestAction.open
 CTRL, SHIFT, ALT = (
@@ -132,6 +132,17 @@ def test_keys_are_written_as_the_system_writes_them():
     assert in_words(ALT | int(imgui.Key.up_arrow), is_mac=True) == "⌥Up"
     assert with_key(ALT, "drag", is_mac=False) == "Alt+drag"
     assert with_key(ALT, "drag", is_mac=True) == "⌥ drag"
+
+
+def test_chords_are_read_as_the_table_has_them():
+    key = imgui.Key
+    undone_again = (CTRL | SHIFT | int(key.z), CTRL | int(key.y))
+    assert chords_of("Ctrl+Shift+Z, Ctrl+Y") == undone_again
+    named = (int(key.page_up), int(key._1), CTRL | int(key.keypad_add), ALT | int(key.f9))
+    assert chords_of("PageUp, 1, Ctrl+KeypadAdd, Alt+F9") == named
+    assert chords_of("") == ()
+    with pytest.raises(KeyError):
+        chords_of("Ctrl+Zed")
 
 
 def test_the_fonts_have_the_signs_of_all_keys(window):

@@ -87,7 +87,7 @@ def _frames_now(figure: Figure, pull: Pull) -> set[int]:
 
 
 def as_key(session: Session, project: Project, unkeyed: UnkeyedPose) -> Command:
-    """Return the command that lets a key hold a pose, a new one if there is none at its frame."""
+    """Return the command that gives a pose to the key at its frame, or inserts one with it."""
     figure, frame, pose = unkeyed.figure, unkeyed.frame, unkeyed.pose
     if frame in project.document.figure(figure).key_frames:
         return key_commands.pose_key(figure, frame, pose)

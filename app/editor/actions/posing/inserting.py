@@ -18,7 +18,7 @@ INSERTING = Kind("Inserting a key", "The key could not be inserted", "hand")
 
 @with_project
 def insert_key(session: Session, project: Project) -> None:
-    """Hold the pose that is shown in a key at the present frame."""
+    """Insert a key of the pose that is shown, at the present frame."""
     playback.halt(session)
     frame = playback.current_frame(session, project)
     if any((pull.figure, pull.frame) == (project.active, frame) for pull in project.pulls):
@@ -30,7 +30,7 @@ def insert_key(session: Session, project: Project) -> None:
 
 @with_project
 def insert_key_at(session: Session, project: Project, figure: int, frame: int) -> None:
-    """Hold the pose that a figure has at a frame in a key there."""
+    """Insert a key of the pose that a figure has at a frame."""
     if figure not in project.puppets:
         return
     unkeyed = project.history.unkeyed
