@@ -22,6 +22,7 @@ CAMPAIGNS = {
     "shapes": ("shapes", 500),
     "soak": ("minutes in the window", 30),
     "readers": ("files tampered with", 11_000),
+    "commands": ("commands upon damaged files", 14_000),
 }
 
 
