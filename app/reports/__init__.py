@@ -8,6 +8,7 @@ Imports: `app.motion`, `app.storage`.
 from app.reports.certification import (
     IntervalReport as IntervalReport,
     Report as Report,
+    Verdict as Verdict,
     certify_clip as certify_clip,
 )
 from app.reports.curve_picture import draw_curves as draw_curves

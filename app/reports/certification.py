@@ -1,17 +1,42 @@
 """How far an animation distorts its drawing: the keyframes' certificates, and the in-betweens'."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass
+from enum import StrEnum
+from functools import reduce
 
 import numpy as np
 
 from app.document import Clip, Extremes, Variant, intervals, time_of, transits
 from app.motion import Animation
-from engine.interpolation import Proof, prove
+from engine.arrays import Floats
+from engine.interpolation import Inbetweens, Proof, prove
 from engine.maps import Boundary, Certificate, certify
 
 TIMES = 65  # in each interval, at which in-betweens are measured
+CLOSER = 15  # more, between the neighbours of each worst one
 # Of the larger k, σ_a or σ_b: what the quadrature and the integral equation may add.
 ACCURACY = 1e-6
+# By how much proven values may be beyond the limits and count as within: of k, and of σ_a and σ_b
+# as a share of the larger σ_a. By as much enclosures are wider than what they enclose.
+BEYOND = 0.002
+
+
+class Verdict(StrEnum):
+    """What is known of every moment of an interval, or of an animation, the best first.
+
+    Proven to be within its limits; measured to be, and proven not to fold; or else beyond its
+    limits, or not proven not to fold.
+    """
+
+    PROVEN = "proven"
+    MEASURED = "measured"
+    OVER = "over"
+
+    @staticmethod
+    def worst(verdicts: Iterable["Verdict"]) -> "Verdict":
+        """Return the worst of some, the best where there are none."""
+        return max(verdicts, key=list(Verdict).index, default=Verdict.PROVEN)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -21,7 +46,7 @@ class IntervalReport:
     `limits` is what they are to keep: the keys' own distortion, but where the motion passes through
     a key, the figure's bounds, or what the keys around have beyond them. `proof` encloses the
     in-betweens at all times. `unsettled` are the frames about which it cannot tell that they do not
-    fold.
+    fold; where none does, those at which it is less tight.
     """
 
     first: int
@@ -48,8 +73,30 @@ class IntervalReport:
         return not self.proof.never_folds
 
     @property
+    def error(self) -> Extremes:
+        """By how much the true extremes may be worse than the measured ones: what is proven is."""
+        return Extremes(
+            k=max(self.proof.k - self.reached.k, 0.0),
+            sigma_a=max(self.proof.sigma_a - self.reached.sigma_a, 0.0),
+            sigma_b=max(self.reached.sigma_b - self.proof.sigma_b, 0.0),
+        )
+
+    @property
+    def verdict(self) -> Verdict:
+        """What is known of the interval."""
+        if self.may_fold or not self.is_within:
+            return Verdict.OVER
+        limits, excess = self.limits, self.excess
+        is_proven = (
+            excess.k <= BEYOND
+            and excess.sigma_a <= BEYOND * limits.sigma_a
+            and excess.sigma_b <= BEYOND * limits.sigma_a
+        )
+        return Verdict.PROVEN if is_proven else Verdict.MEASURED
+
+    @property
     def is_within(self) -> bool:
-        """Whether the in-betweens keep the limits, but for rounding."""
+        """Whether the in-betweens as measured keep the limits, but for rounding."""
         reached, limits = self.reached, self.limits
         return (
             reached.k <= limits.k + ACCURACY
@@ -66,11 +113,11 @@ class Report:
     intervals: tuple[IntervalReport, ...]
 
     @property
-    def certified(self) -> bool:
-        """Whether keyframes are certified, and in-betweens within their bounds and never fold."""
-        return all(certificate.certified for _, certificate in self.keys) and all(
-            interval.is_within and not interval.may_fold for interval in self.intervals
-        )
+    def verdict(self) -> Verdict:
+        """The worst of the intervals'; over if a keyframe is not certified."""
+        if not all(certificate.certified for _, certificate in self.keys):
+            return Verdict.OVER
+        return Verdict.worst(interval.verdict for interval in self.intervals)
 
 
 def certify_clip(clip: Clip, variant: Variant | None = None) -> Report:
@@ -106,10 +153,7 @@ def certify_clip(clip: Clip, variant: Variant | None = None) -> Report:
             for end in ends:
                 limits = limits.joined(end)
         inbetweens = animation.sampler.inbetweens_of(transit, clip.figure.bounds, animation.variant)
-        reached = bound
-        for t in np.linspace(0.0, 1.0, TIMES)[1:-1]:
-            frame = inbetweens.frame(float(t))
-            reached = reached.joined(Extremes.measured(frame.fz, frame.fzbar))
+        reached = bound.joined(_measured(inbetweens))
         proof = prove(inbetweens)
         reports.append(
             IntervalReport(
@@ -124,6 +168,25 @@ def certify_clip(clip: Clip, variant: Variant | None = None) -> Report:
             )
         )
     return Report(keys=keys, intervals=tuple(reports))
+
+
+def _measured(inbetweens: Inbetweens) -> Extremes:
+    """Return the extremes over time: at equal steps, then more closely around each worst one."""
+
+    def at(times: Floats) -> list[Extremes]:
+        frames = (inbetweens.frame(float(t)) for t in times)
+        return [Extremes.measured(frame.fz, frame.fzbar) for frame in frames]
+
+    times = np.linspace(0.0, 1.0, TIMES)[1:-1]
+    found = at(times)
+    step = times[1] - times[0]
+    worst = {
+        float(times[int(np.argmax([sign * value for value in values]))])
+        for sign, values in zip((1, 1, -1), zip(*found, strict=True), strict=True)
+    }
+    for time in worst:
+        found += at(np.linspace(time - step, time + step, CLOSER + 2)[1:-1])
+    return reduce(Extremes.joined, found)
 
 
 def _frames(

@@ -18,6 +18,7 @@ from engine.geometry.segments import Pieces, bisect, distance_to_segments
 ON_OUTLINE = 1e-9
 SIZES = (1e-60, 1e60)  # of polygons; the fourth powers of smaller and larger ones are no numbers
 FARTHEST = 1e9  # from the origin, over a polygon's size: beyond, its shape is lost in rounding
+SHORTEST_EDGE = 1e-12  # of a cage, over the outline's size: the coordinates divide by it
 FARTHEST_CAGE = 1e6  # from the outline, over its size: beyond, the coordinates are all the same
 
 
@@ -172,7 +173,10 @@ def require_around(cage: Complexes, outline: Complexes) -> None:
 
     Only that: published cages are known that cross themselves elsewhere.
     """
-    if np.abs(cage - outline[0]).max() > FARTHEST_CAGE * box_diagonal(outline):
+    size = box_diagonal(outline)
+    if np.abs(edges(cage)).min() <= SHORTEST_EDGE * size:
+        raise EngineError("The cage repeats a vertex, or nearly; give each vertex once.")
+    if np.abs(cage - outline[0]).max() > FARTHEST_CAGE * size:
         raise EngineError("The cage lies too far from the outline; let it follow the outline.")
     if shapely.intersects(shapely.LinearRing(as_xy(cage)), shapely.Polygon(as_xy(outline))):
         raise EngineError(

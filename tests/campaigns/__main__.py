@@ -25,6 +25,7 @@ CAMPAIGNS = {
     "series": ("pairs of poses", 200),
     "soak": ("minutes in the window", 30),
     "readers": ("files tampered with", 11_000),
+    "commands": ("commands upon damaged files", 14_000),
 }
 
 

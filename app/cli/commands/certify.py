@@ -7,12 +7,15 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from app.document import Extremes, clip_of
-from app.reports import IntervalReport, Report, certify_clip
+from app.reports import IntervalReport, Report, Verdict, certify_clip
 from app.storage import load_project
 from engine.interpolation import Proof
 from engine.maps import Certificate
 
 NAMES = ("k", "sigma_a", "sigma_b")
+EXITS = {Verdict.PROVEN: 0, Verdict.MEASURED: 3, Verdict.OVER: 1}
+# As the table calls them.
+WORDS = {Verdict.PROVEN: "proven", Verdict.MEASURED: "MEASURED ONLY", Verdict.OVER: "OVER"}
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -24,12 +27,20 @@ def run(arguments: argparse.Namespace) -> int:
         if not figure.still
     }
     print(_as_json(reports) if arguments.json else _as_tables(reports))
-    return 0 if all(report.certified for report in reports.values()) else 1
+    return EXITS[_verdict(reports)]
+
+
+def _verdict(reports: Mapping[str, Report]) -> Verdict:
+    return Verdict.worst(report.verdict for report in reports.values())
 
 
 def _as_json(reports: Mapping[str, Report]) -> str:
     blocks = {name: _block(report) for name, report in reports.items()}
-    content = {"figures": blocks} if len(blocks) != 1 else next(iter(blocks.values()))
+    content = (
+        {**_judged(_verdict(reports)), "figures": blocks}
+        if len(blocks) != 1
+        else next(iter(blocks.values()))
+    )
     return json.dumps(content, indent=2)
 
 
@@ -44,24 +55,31 @@ def _block(report: Report) -> dict[str, Any]:
         {"frame": frame, **_named(own), "certified": own.certified} for frame, own in report.keys
     ]
     return {
-        "certified": report.certified,
+        **_judged(report.verdict),
         "keys": keys,
         "intervals": [_interval_block(interval) for interval in report.intervals],
     }
+
+
+def _judged(verdict: Verdict) -> dict[str, Any]:
+    return {"verdict": verdict, "certified": verdict is Verdict.PROVEN}
 
 
 def _interval_block(interval: IntervalReport) -> dict[str, Any]:
     return {
         "from": interval.first,
         "to": interval.last,
+        "verdict": interval.verdict,
         **_named(interval.reached),
         **{f"{name}_keys": value for name, value in _named(interval.keys).items()},
+        "error": list(_named(interval.error).values()),
         "correction": interval.correction,
         "proven": {
             **_named(interval.proof),
             "excess": list(_named(interval.excess).values()),
             "never_folds": interval.proof.never_folds,
-            "unsettled_frames": list(interval.unsettled),
+            "unsettled_frames": list(interval.unsettled) if interval.may_fold else [],
+            "loose_frames": [] if interval.may_fold else list(interval.unsettled),
         },
     }
 
@@ -91,11 +109,13 @@ def _as_table(report: Report) -> str:
         "In brackets: the worse of the two keyframes; of what is proven, how far that is beyond it"
         " (or beyond the figure's bounds, where the motion passes through a key)."
     )
+    lines.append(f"All in all: {WORDS[report.verdict]}.")
     largest = max((interval.correction for interval in report.intervals), default=0.0)
     if largest > 0:
         lines.append(
             f"Around holes the in-betweens are stretched and turned by up to {largest:.2%} to "
-            "close; what is kept of the bounds is proven above."
+            "close, and Equation (13) of the metric variant holds by least squares only; what is "
+            "kept of the bounds is proven above."
         )
     return "\n".join(lines)
 
@@ -113,7 +133,7 @@ def _interval_lines(interval: IntervalReport) -> list[str]:
         _line(
             "  proven",
             [f"{value:.4f} ({sign}{by:.4f})" for value, sign, by in proven],
-            "NOT PROVEN" if interval.may_fold else "never folds",
+            "MAY FOLD" if interval.may_fold else WORDS[interval.verdict],
         ),
     ]
     if interval.unsettled:

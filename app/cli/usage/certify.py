@@ -8,9 +8,16 @@ EPILOG = """\
 Keyframes are certified: their k, sigma_a and sigma_b hold at every point of the shape, not only at
 samples. For each interval between two keys the extremes of the in-betweens over time and space, as
 measured, stand beside the two keys' own; below them what is proven of every moment and every point.
-Frames that fold, or that cannot be proven not to, are named. The exit status is 0 if every keyframe
-is certified, every in-between is proven not to fold, and every interval is within its keyframes'
-bounds, or within the figure's where the motion passes through its keys; 1 if not.
+The true extremes lie between what is measured and what is proven ("error" in JSON). Frames that
+fold, or that cannot be proven not to, are named.
+
+Each interval, and the whole, has one verdict, about the keyframes' bounds, or the figure's where
+the motion passes through its keys:
+  proven    every moment is proven to be within; exit status 0
+  measured  in-betweens never fold, but that they are within is measured only; exit status 3
+  over      some are not within, or may fold, or a keyframe is not certified; exit status 1
+Proven values are enclosures, and count as within up to .002 (k) or .2 % of sigma_a (both sigmas)
+beyond. Around holes the metric variant meets its Equation (13) by least squares only.
 
 examples:
   lissom certify wave.lissom

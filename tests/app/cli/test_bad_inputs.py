@@ -66,6 +66,7 @@ def test_what_is_packed_in_rare_ways_is_refused(tmp_path, capsys, packing):
         ({**MAPS, "outline": 1e200 * SQUARE, "cage": 1e200 * CAGE}, "move or scale it"),
         ({**MAPS, "outline": 1e-200 * SQUARE, "cage": 1e-200 * CAGE}, "move or scale it"),
         ({**MAPS, "outline": SQUARE + 1e12, "cage": CAGE + 1e12}, "move or scale it"),
+        ({**MAPS, "cage": CAGE[[0, 1, 1, 2]]}, "cage repeats a vertex"),
         ({**MAPS, "triangles": np.empty((0, 3), int)}, "no triangles"),
         ({**BY_BOUNDARY, "boundary": np.empty((0, 4))}, "must be of shape"),
         ({**BY_BOUNDARY, "boundary": np.zeros((2, 4))}, "more than one point"),

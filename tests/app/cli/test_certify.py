@@ -2,13 +2,19 @@
 
 import json
 from dataclasses import replace
+from math import inf
 from pathlib import Path
+from types import SimpleNamespace
 
+import numpy as np
 import pytest
 
 from app.cli.main import main
-from app.document import Document, Meshing, new_figure
+from app.document import Document, Extremes, Meshing, new_figure
+from app.reports import IntervalReport, Report, certification
 from app.storage import load_project, save_project
+from engine.interpolation import Proof
+from engine.maps import Certificate
 
 SAMPLE = Path(__file__).parents[3] / "sample_images/giraffe.lissom"
 
@@ -36,11 +42,15 @@ def test_in_betweens_are_proven_between_frames_too(capsys):
 def test_frames_that_fold_are_named(capsys):
     status, said = certified(capsys, "--variant", "linear")
     assert status == 1
-    assert "NOT PROVEN" in said
+    assert "MAY FOLD" in said
+    assert "All in all: OVER." in said
     assert "may fold       frames 12, 13, 14, 15, 16, 17, 18\n" in said
     _, said = certified(capsys, "--variant", "linear", "--json")
     first, second, _ = json.loads(said)["intervals"]
     assert not first["proven"]["never_folds"]
+    assert first["proven"]["unsettled_frames"] == list(range(12, 19))
+    assert first["proven"]["loose_frames"] == []
+    assert first["verdict"] == "over"
     assert first["sigma_b"] < 0
     assert second["proven"]["never_folds"]
 
@@ -51,4 +61,68 @@ def test_where_every_layer_stands_still_there_is_nothing_to_certify(tmp_path, ca
     path = tmp_path / "still.lissom"
     save_project(path, Document(figures=(still,)))
     assert main(["certify", str(path), "--json"]) == 0
-    assert json.loads(capsys.readouterr().out) == {"figures": {}}
+    assert json.loads(capsys.readouterr().out) == {
+        "verdict": "proven",
+        "certified": True,
+        "figures": {},
+    }
+
+
+def interval(k=0.5, sigma_a=2.0, sigma_b=0.5, *, reached=(0.4, 1.8, 0.6), unsettled=()):
+    return IntervalReport(
+        first=0,
+        last=12,
+        reached=Extremes(*reached),
+        keys=Extremes(0.5, 2.0, 0.5),
+        correction=0.0,
+        limits=Extremes(0.5, 2.0, 0.5),
+        proof=Proof(k=k, sigma_a=sigma_a, sigma_b=sigma_b, unsettled=()),
+        unsettled=unsettled,
+    )
+
+
+@pytest.mark.parametrize(
+    ("made", "verdict"),
+    [
+        (interval(), "proven"),
+        (interval(0.5019, 2.0039, 0.4961), "proven"),
+        (interval(unsettled=(3,)), "proven"),
+        (interval(0.503), "measured"),
+        (interval(sigma_a=2.005), "measured"),
+        (interval(sigma_b=0.49), "measured"),
+        (interval(reached=(0.51, 1.8, 0.6), k=0.52), "over"),
+        (interval(reached=(0.4, 1.8, 0.45), sigma_b=0.44), "over"),
+        (interval(k=inf, sigma_a=inf, sigma_b=0.0), "over"),
+    ],
+)
+def test_an_interval_has_one_verdict(made, verdict, monkeypatch, capsys):
+    key = Certificate(k=0.5, sigma_a=2.0, sigma_b=0.5, winding=0, certified=True)
+    other = replace(key, certified=False)
+    assert made.verdict == verdict
+    assert Report(keys=((0, key),), intervals=(interval(), made)).verdict == verdict
+    assert Report(keys=((0, other),), intervals=(made,)).verdict == "over"
+    report = Report(keys=((0, key),), intervals=(made,))
+    monkeypatch.setattr("app.cli.commands.certify.certify_clip", lambda *_: report)
+    status, said = certified(capsys, "--json")
+    assert status == {"proven": 0, "measured": 3, "over": 1}[verdict]
+    told = json.loads(said)
+    assert (told["verdict"], told["certified"]) == (verdict, verdict == "proven")
+    (own,) = told["intervals"]
+    # What is said of frames never contradicts what is said of the whole.
+    assert bool(own["proven"]["unsettled_frames"]) <= (not own["proven"]["never_folds"])
+    assert own["proven"]["loose_frames"] == list(made.unsettled)
+    for name, by, sign in zip(("k", "sigma_a", "sigma_b"), own["error"], (1, 1, -1), strict=True):
+        if made.proof.k < 1:
+            assert own[name] + sign * by == pytest.approx(own["proven"][name])
+    assert "All in all: " in certified(capsys)[1]
+
+
+def test_what_is_measured_is_the_maximum_between_the_steps_too():
+    """A peak in time that no equal step meets is found."""
+
+    class Peaked:
+        def frame(self, t):
+            k = 0.5 * np.exp(-(((t - 22.5 / 64) / 0.01) ** 2))
+            return SimpleNamespace(fz=np.array([1.0 + 0j]), fzbar=np.array([k + 0j]))
+
+    assert certification._measured(Peaked()).k == pytest.approx(0.5, abs=2e-3)
