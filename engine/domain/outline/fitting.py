@@ -105,4 +105,6 @@ def _faults(polygon: Complexes, corners: Complexes) -> Complexes:
         return np.asarray(polygon[crossing | sharp])
     if signed_area(polygon) > 0:
         return corners[~contains(polygon, corners)]
-    return np.asarray(corners[shapely.contains_xy(region(polygon), corners.real, corners.imag)])
+    hole = region(polygon)
+    shapely.prepare(hole)
+    return np.asarray(corners[shapely.contains_xy(hole, corners.real, corners.imag)])
