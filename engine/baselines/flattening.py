@@ -80,7 +80,7 @@ class Flattening:
         )
 
     def flatten(self, lengths: Floats) -> tuple[Complexes, float]:
-        """Lay a metric out in the plane, given by the lengths (m, 3) of the half-edges.
+        """Lay a metric out in the plane, given by the lengths (m, 3) of half-edges, equal in twins.
 
         Returns
         -------
