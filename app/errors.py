@@ -1,9 +1,18 @@
-"""What is told to the person: errors that are messages and no tracebacks, and names of files."""
+"""What is told to the person: errors, names of files, and how far long work is.
+
+Errors are messages and no tracebacks. Between what computes for long and whoever waits for it are
+many rooms that have nothing to add: so who listens is said once, for a block on the same thread.
+"""
 
 import re
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
 
 from engine.errors import EngineError
 
+Listener = Callable[[float], None]
+_listener: ContextVar[Listener | None] = ContextVar("listener", default=None)
 # What Python makes of the bytes of a file's name that are no UTF-8, on Linux.
 _UNREADABLE = re.compile("[\ud800-\udfff]")
 
@@ -22,3 +31,26 @@ def shown_name(name: object) -> str:
     Neither a window nor a file of text takes such a name as it is.
     """
     return _UNREADABLE.sub("\N{REPLACEMENT CHARACTER}", str(name))
+
+
+@contextmanager
+def told_to(listener: Listener) -> Iterator[None]:
+    """Let somebody listen to what this thread does in a `with` block.
+
+    Parameters
+    ----------
+    listener : callable
+        Takes the share that is done, from 0 to 1; what it raises ends the work.
+    """
+    before = _listener.set(listener)
+    try:
+        yield
+    finally:
+        _listener.reset(before)
+
+
+def tell(share: float) -> None:
+    """Tell how far the work is, if somebody listens."""
+    listener = _listener.get()
+    if listener is not None:
+        listener(share)

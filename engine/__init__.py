@@ -1,5 +1,7 @@
 """Harmonic shape interpolation: pure numerics, free of files, windows and global state.
 
+But for one thing: it keeps BLAS to one thread (`engine.arrays`), in a script as in the program.
+
 In: pictures, handles, harmonic maps, as arrays.
 Out: domains, certified maps, in-betweens, series in time, as arrays.
 Imports: NumPy, SciPy, contourpy, Shapely; never `app`.
@@ -19,7 +21,7 @@ Equation map of *Bounded Distortion Harmonic Shape Interpolation* (Chien, Chen, 
     (2), (15)       continuous logarithm           engine.paths.complex_log.continue_logarithm
     Section 7.2     branch at the anchor           engine.paths.complex_log.root_sheets
     Section 4.1     harmonic in-betweens           engine.interpolation.Inbetweens
-    (3)             logarithmic blend of f_z       engine.interpolation.derivatives.Passage
+    (3)             logarithmic blend of f_z       engine.interpolation.passage.derivatives.Passage
     (4), (5)        ν variant                      engine.interpolation.blends.nu.NuBlend
     (6), (7)        η variant                      engine.interpolation.blends.eta.EtaBlend
     (8), (16)-(18)  scaled η, largest ρ(t)         engine.interpolation.scaling.sharp.SharpScaling
@@ -40,6 +42,6 @@ The deformer follows Chen and Weber, *Bounded Distortion Harmonic Mappings in th
 
     2015            bounds k, σ_a, σ_b               engine.maps.bounds.Bounds
     2015, Th. 4     certificate in the whole domain  engine.maps.certificate.certify
-    2017            symmetric Dirichlet energy       engine.deform.energy.symmetric_dirichlet
-    2017            Newton step, projected Hessian   engine.deform.newton.newton_direction
+    2017            symmetric Dirichlet energy       engine.deform.model.energy.symmetric_dirichlet
+    2017            Newton step, projected Hessian   engine.deform.model.newton.newton_direction
 """

@@ -1,11 +1,20 @@
-"""Array types shared by the whole engine, the checks at its borders, and ragged arrays."""
+"""Array types shared by the whole engine, the checks at its borders, and ragged arrays.
+
+Whatever works with arrays imports this first: from then on BLAS keeps to one thread. The matrices
+are small, and a second thread on a busy core can make a solver's step a hundred times slower. With
+one thread results repeat bit for bit.
+"""
 
 from typing import TypeVar
 
 import numpy as np
 import numpy.typing as npt
+import scipy.linalg  # noqa: F401  brings a BLAS of its own
+from threadpoolctl import threadpool_limits
 
 from engine.errors import EngineError
+
+threadpool_limits(limits=1, user_api="blas")
 
 type_ = TypeVar("type_", bound=np.generic)
 Complexes = npt.NDArray[np.complex128]

@@ -29,7 +29,8 @@ VERBS = (
 )
 
 # Calls that say what a thing is, and compute nothing.
-DECLARATIONS = {"TypeVar", "field", "get_args"}
+# That BLAS keeps to one thread is said once for all that the engine does.
+DECLARATIONS = {"TypeVar", "field", "get_args", "threadpool_limits"}
 
 
 def module_files() -> dict[str, Path]:

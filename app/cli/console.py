@@ -2,11 +2,13 @@
 
 import argparse
 import sys
+import time
 from typing import NoReturn, Self
 
 from app.errors import shown_name
 
 EXIT_ERROR = 2
+PATIENCE = 0.5  # seconds before a person is told how far a computation is
 
 
 class Parser(argparse.ArgumentParser):
@@ -42,6 +44,7 @@ class StatusLine:
 
     def __init__(self) -> None:
         self._is_seen = sys.stderr.isatty()
+        self._begun = time.monotonic()
 
     def __enter__(self) -> Self:
         return self
@@ -53,3 +56,8 @@ class StatusLine:
         """Put a text in place of the one before."""
         if self._is_seen:
             print(f"\r\x1b[K{text}", end="", file=sys.stderr, flush=True)
+
+    def tell(self, share: float) -> None:
+        """Tell how much of what takes long is done, from 0 to 1."""
+        if time.monotonic() - self._begun > PATIENCE:
+            self.show(f"preparing the outline: {share:.0%}" if share < 1.0 else "")

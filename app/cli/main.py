@@ -7,7 +7,7 @@ import sys
 from collections.abc import Sequence
 from importlib.metadata import version
 
-from app.cli.console import Parser, fail
+from app.cli.console import Parser, StatusLine, fail
 from app.cli.process import (
     Endings,
     drop_output,
@@ -16,7 +16,7 @@ from app.cli.process import (
     require_memory,
     use_one_thread,
 )
-from app.errors import EXPECTED_ERRORS
+from app.errors import EXPECTED_ERRORS, told_to
 
 EXIT_PIPE_CLOSED = 141
 
@@ -47,7 +47,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     endings = Endings()
     try:
         require_memory()
-        with endings:
+        with endings, StatusLine() as status_line, told_to(status_line.tell):
             try:
                 arguments = build_parser(words).parse_args(words)
                 command = importlib.import_module(f"app.cli.commands.{arguments.command}")

@@ -5,6 +5,7 @@ once, so that a window that waits for events can be woken, and what hangs does n
 alive.
 """
 
+import ctypes
 import io
 import os
 import signal
@@ -12,6 +13,7 @@ import sys
 import threading
 import time
 from collections.abc import Callable
+from contextlib import suppress
 from types import FrameType, TracebackType
 from typing import Final, Self
 
@@ -170,6 +172,26 @@ class Endings:
         while os.read(pipe, 1):  # where Python tells of more signals, which change nothing
             pass
         os.close(pipe)
+
+
+def at_lost_display(keep: Callable[[], None], status: int) -> object:
+    """Let something be done when the X server goes away, before the process ends with a status.
+
+    Xlib ends it at once otherwise. What is returned must live as long as the window.
+    """
+    if sys.platform != "linux":
+        return None
+
+    def lost(_: int | None) -> int:
+        try:
+            keep()
+        finally:
+            os._exit(status)
+
+    heard = ctypes.CFUNCTYPE(ctypes.c_int, ctypes.c_void_p)(lost)
+    with suppress(OSError):  # without the library there are no such windows
+        ctypes.CDLL("libX11.so.6").XSetIOErrorHandler(heard)
+    return heard
 
 
 def has_threads_left() -> bool:

@@ -16,19 +16,15 @@ HALVINGS = 54
 class Easing:
     """A monotone map of [0, 1] to itself, or a hold.
 
-    Parameters
-    ----------
-    curve : tuple of 4 floats, or None
-        x1, y1, x2, y2 of a cubic Bézier curve from (0, 0) to (1, 1). With all four in [0, 1] both
-        coordinates are monotone, so that the blend stays convex, as the bounds on the distortion
-        require. None holds the first key until the second one.
-
     Raises
     ------
     LissomError
         If there are not four numbers, or one is outside [0, 1].
     """
 
+    # x1, y1, x2, y2 of a cubic Bézier curve from (0, 0) to (1, 1). With all four in [0, 1] both
+    # coordinates are monotone, so that the blend stays convex, as the bounds on the distortion
+    # require. None holds the first key until the second one.
     curve: tuple[float, float, float, float] | None
 
     def __post_init__(self) -> None:

@@ -23,6 +23,7 @@ from app.document.layering import Attachment, Switch, require_in_order
 from app.document.settings import NATURAL, VARIANTS, Meshing
 from app.errors import LissomError
 from engine.arrays import Booleans, Complexes
+from engine.deform import MOST_HANDLES
 from engine.domain import CutOut, Domain
 from engine.geometry import ON_OUTLINE, box_diagonal, contains
 from engine.maps import Bounds, Certificate, HarmonicMap
@@ -33,21 +34,11 @@ Posed = TypeVar("Posed", Keyframe, KeptPose)
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class PictureFile:
-    """The picture as it was opened, byte for byte.
+    """The picture as it was opened, byte for byte."""
 
-    Parameters
-    ----------
-    data : bytes
-        Contents of the picture file.
-    suffix : str
-        Of its name, such as ".png".
-    size : tuple of int
-        Width and height in pixels as shown (after rotation by EXIF data).
-    """
-
-    data: bytes = field(repr=False)
-    suffix: str
-    size: tuple[int, int]
+    data: bytes = field(repr=False)  # contents of the picture file
+    suffix: str  # of its name, such as ".png"
+    size: tuple[int, int]  # width and height in pixels as shown (after rotation by EXIF data)
     sha256: str = field(init=False)
 
     def __post_init__(self) -> None:
@@ -62,81 +53,41 @@ class PictureFile:
 
 @dataclass(frozen=True, slots=True, weakref_slot=True, kw_only=True, eq=False)
 class Figure:
-    """A picture that is deformed, with all that is its own; time and export are the scene's.
+    """A picture that is deformed, with all that is its own; time and export are the scene's."""
 
-    Parameters
-    ----------
-    id : int
-        Never given twice in one document.
-    picture : PictureFile
-    meshing : Meshing
-        What the domain was built with.
-    cut_out : CutOut
-        What tells the subject from the rest of the picture.
-    is_stale : bool
-        Whether the domain is still that of an earlier cut-out.
-    handles : tuple of Handle
-    next_handle : int
-        The id that the next handle will get.
-    keys : tuple of Keyframe
-        In the order of their frames; there is always one.
-    anchor : complex, optional
-        The point of the picture whose place and turn are blended directly; None lets the engine
-        choose it.
-    variant : Variant
-        Or its name.
-    bounds : Bounds
-        Distortion that the solver allows in new poses.
-    library : tuple of KeptPose
-        Poses that are kept to be used again.
-    mirror : float, optional
-        Where the upright axis crosses the picture at which flipped poses are mirrored, in pixels
-        from its left edge; None takes the middle of the handles that are pairs, or of the shape.
-    name : str
-        Unique in the document.
-    corner : complex
-        Where the lower left corner of the picture is on the canvas; the domain, the handles and all
-        else are in pixels of the canvas, y up.
-    still : bool
-        Whether it is a picture that is never deformed, such as a background. Its domain is all of
-        it, whatever is cut out.
-    reference : bool
-        Whether it is there for the person only, and not exported.
-    locked : bool
-        Whether a click on the drawing passes through it.
-    hidden : bool
-        Whether it is seen at no time.
-    switches : tuple of Switch
-        When it comes to be seen or hidden, in the order of their frames; it begins as the first one
-        says. Always seen without any.
-    opacity : float
-        In [0, 1].
-    attachment : Attachment, optional
-        The joint by which it hangs on another figure. Its anchor is then given.
-    """
-
-    id: int = 0
+    id: int = 0  # never given twice in one document
     picture: PictureFile
     domain: Domain
-    meshing: Meshing
-    cut_out: CutOut = CutOut()
-    is_stale: bool = False
+    meshing: Meshing  # what the domain was built with
+    cut_out: CutOut = CutOut()  # what tells the subject from the rest of the picture
+    is_stale: bool = False  # whether the domain is still that of an earlier cut-out
     handles: tuple[Handle, ...] = ()
-    next_handle: int = 0
-    keys: tuple[Keyframe, ...]
+    next_handle: int = 0  # the id that the next handle will get
+    keys: tuple[Keyframe, ...]  # in the order of their frames; there is always one
+    # The point of the picture whose place and turn are blended directly; None lets the engine
+    # choose it.
     anchor: complex | None = None
-    variant: Variant = Variant.METRIC
-    bounds: Bounds = NATURAL.bounds
-    library: tuple[KeptPose, ...] = ()
+    variant: Variant = Variant.METRIC  # it may be given by its name
+    bounds: Bounds = NATURAL.bounds  # distortion that the solver allows in new poses
+    library: tuple[KeptPose, ...] = ()  # poses that are kept to be used again
+    # Where the upright axis crosses the picture at which flipped poses are mirrored, in pixels from
+    # its left edge; None takes the middle of the handles that are pairs, or of the shape.
     mirror: float | None = None
-    name: str = "figure"
+    name: str = "figure"  # unique in the document
+    # Where the lower left corner of the picture is on the canvas; the domain, the handles and all
+    # else are in pixels of the canvas, y up.
     corner: complex = 0j
+    # Whether it is a picture that is never deformed, such as a background. Its domain is all of it,
+    # whatever is cut out.
     still: bool = False
-    reference: bool = False
-    locked: bool = False
-    hidden: bool = False
+    reference: bool = False  # whether it is there for the person only, and not exported
+    locked: bool = False  # whether a click on the drawing passes through it
+    hidden: bool = False  # whether it is seen at no time
+    # When it comes to be seen or hidden, in the order of their frames; it begins as the first one
+    # says. Always seen without any.
     switches: tuple[Switch, ...] = ()
-    opacity: float = 1.0
+    opacity: float = 1.0  # in [0, 1]
+    # The joint by which it hangs on another figure. Its anchor is then given.
     attachment: Attachment | None = None
     unknown: Unknown = field(default_factory=lambda: NOTHING, repr=False, hash=False)
 
@@ -270,6 +221,11 @@ class Figure:
 
     def _check_handles(self) -> None:
         handles = self.handles
+        require(
+            len(handles) <= MOST_HANDLES,
+            f"{self.name!r} has {len(handles):,} handles, more than the {MOST_HANDLES:,} that a "
+            "drawing may have.",
+        )
         require_distinct((handle.id for handle in handles), "Two handles have the id {!r}.")
         require_distinct((handle.name for handle in handles), "Two handles have the name {!r}.")
         require_distinct((each.position for each in handles), "Two handles have the place {!r}.")

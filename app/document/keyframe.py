@@ -36,37 +36,20 @@ class Passing(StrEnum):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Handle:
-    """A named point of the picture by which poses are pulled.
+    """A named point of the picture by which poses are pulled."""
 
-    Parameters
-    ----------
-    id : int
-        Never given twice in one document.
-    name : str
-        Unique in the document.
-    position : complex
-        Where it sits in the picture at rest, in pixels, y up.
-    weight : float
-        How strongly it pulls, relative to others.
-    front : float
-        What the drawing is painted in around it where it lies over itself: −1 behind, 1 in front, 0
-        in its usual order. Keys may say otherwise.
-    extent : float, optional
-        How far around it that holds, in pixels; None is the usual part of the drawing.
-    locked : bool
-        Whether it holds its place: it is not dragged, and hardly gives in to others.
-    group : str
-        Those of one group are taken together; "" is none.
-    """
-
-    id: int
-    name: str
-    position: complex
-    weight: float = 1.0
+    id: int  # never given twice in one document
+    name: str  # unique in the document
+    position: complex  # where it sits in the picture at rest, in pixels, y up
+    weight: float = 1.0  # how strongly it pulls, relative to others
+    # What the drawing is painted in around it where it lies over itself: −1 behind, 1 in front, 0
+    # in its usual order. Keys may say otherwise.
     front: float = 0.0
+    # How far around it that holds, in pixels; None is the usual part of the drawing.
     extent: float | None = None
+    # Whether it holds its place: it is not dragged, and hardly gives in to others.
     locked: bool = False
-    group: str = ""
+    group: str = ""  # those of one group are taken together; "" is none
     unknown: Unknown = field(default_factory=lambda: NOTHING, repr=False, hash=False)
 
     def __post_init__(self) -> None:
@@ -101,17 +84,10 @@ def require_front(front: float) -> None:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Target:
-    """Where a pose wants a handle.
+    """Where a pose wants a handle."""
 
-    Parameters
-    ----------
-    position : complex
-        In pixels of the picture, y up; it may lie outside the picture.
-    rotation : float, optional
-        By how much the shape turns at the handle, in radians; None leaves that free.
-    """
-
-    position: complex
+    position: complex  # in pixels of the picture, y up; it may lie outside the picture
+    # By how much the shape turns at the handle, in radians; None leaves that free.
     rotation: float | None = None
     unknown: Unknown = field(default_factory=lambda: NOTHING, repr=False, hash=False)
 
@@ -125,24 +101,15 @@ class Target:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Pose:
-    """A map with the wishes that it was solved for.
+    """A map with the wishes that it was solved for."""
 
-    Parameters
-    ----------
-    targets : mapping of int to Target
-        One for each handle of the document, by the handle's id.
-    phi, psi : complex128, shape (n,)
-        Coefficients of the map over the domain's cage, and those in its holes.
-    logs : complex128, shape (holes,)
-        Those of its logarithms.
-    certificate : Certificate
-        What is proven of the map, by the solver or when it was read; it is never written.
-    """
-
-    targets: Mapping[int, Target]
+    targets: Mapping[int, Target]  # one for each handle of the document, by the handle's id
+    # complex128 (n,): Coefficients of the map over the domain's cage, and those in its holes.
     phi: Complexes
     psi: Complexes
+    # complex128 (holes,): Those of its logarithms.
     logs: Complexes = field(default_factory=lambda: freeze(np.empty(0, dtype=np.complex128)))
+    # What is proven of the map, by the solver or when it was read; it is never written.
     certificate: Certificate
 
     def __post_init__(self) -> None:
@@ -184,26 +151,16 @@ class KeptPose:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Keyframe:
-    """A pose at a frame, and the way from there to the next key.
-
-    Parameters
-    ----------
-    frame : int
-    easing : Easing
-        How time runs until the next key.
-    passing : Passing
-        How the motion passes the pose, other than by a hold, which is an easing.
-    turns : int
-        Whole turns, counter-clockwise, that the anchor makes on the way beyond the shorter way.
-    fronts : mapping of int to float
-        What is in front from here on, by the ids of handles; the others stay as they were.
-    """
+    """A pose at a frame, and the way from there to the next key."""
 
     frame: int
     pose: Pose
-    easing: Easing = LINEAR
+    easing: Easing = LINEAR  # how time runs until the next key
+    # How the motion passes the pose, other than by a hold, which is an easing.
     passing: Passing = Passing.THROUGH
+    # Whole turns, counter-clockwise, that the anchor makes on the way beyond the shorter way.
     turns: int = 0
+    # What is in front from here on, by the ids of handles; the others stay as they were.
     fronts: Mapping[int, float] = field(default_factory=lambda: NO_FRONTS)
     unknown: Unknown = field(default_factory=lambda: NOTHING, repr=False, hash=False)
 

@@ -14,23 +14,12 @@ class Attachment:
     The anchor of the figure is where the point of its parent is, at every time: the one freedom
     that the in-betweens leave (Section 7, "a user curve for the anchor"), so that the figure is no
     more distorted than without.
-
-    Parameters
-    ----------
-    to : int
-        The id of the parent.
-    at : complex
-        The point of the parent, where it is drawn at rest.
-    turns : bool
-        Whether the figure turns with the parent around that point.
-    rest : float
-        The parent's turn, in radians, at which the figure is as it is by itself.
     """
 
-    to: int
-    at: complex
-    turns: bool = True
-    rest: float = 0.0
+    to: int  # the id of the parent
+    at: complex  # the point of the parent, where it is drawn at rest
+    turns: bool = True  # whether the figure turns with the parent around that point
+    rest: float = 0.0  # the parent's turn, in radians, at which the figure is as it is by itself
 
     def __post_init__(self) -> None:
         require(self.to >= 0, f"A figure's id is not negative, unlike {self.to}.")

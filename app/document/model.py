@@ -18,42 +18,25 @@ from app.errors import LissomError
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Document:
-    """Everything that a project file holds.
+    """Everything that a project file holds."""
 
-    Parameters
-    ----------
-    figures : tuple of Figure
-        From the one behind all others to the one in front; there is always one.
-    frames : FrameRange
-        All frames of the animation; every key lies in it.
-    preview : FrameRange, optional
-        The part of them that plays, to look at it; None plays everything. Exports do not heed it.
-    fps : float
-        Frames per second.
-    markers : tuple of Marker
-        In the order of their frames, of which each has one at most.
-    loop : bool
-        Whether the last frame leads back to the first one: both are the same moment.
-    export : ExportSettings
-    unknown : mapping
-        Fields of the project file that this version does not know and hands on.
-    attachments : mapping of str to bytes
-        Likewise its members, by their names.
-    size : tuple of int, optional
-        Width and height of the canvas; None takes those of the picture behind all others.
-    """
-
+    # From the one behind all others to the one in front; there is always one.
     figures: tuple[Figure, ...]
-    frames: FrameRange = FrameRange(0, 48)
+    frames: FrameRange = FrameRange(0, 48)  # all frames of the animation; every key lies in it
+    # The part of them that plays, to look at it; None plays everything. Exports do not heed it.
     preview: FrameRange | None = None
-    markers: tuple[Marker, ...] = ()
-    fps: float = 24.0
+    markers: tuple[Marker, ...] = ()  # in the order of their frames, of which each has one at most
+    fps: float = 24.0  # frames per second
+    # Whether the last frame leads back to the first one: both are the same moment.
     loop: bool = False
     export: ExportSettings = ExportSettings()
+    # Fields of the project file that this version does not know and hands on.
     unknown: Unknown = field(default_factory=lambda: NOTHING, repr=False, hash=False)
+    # Likewise its members, by their names.
     attachments: Mapping[str, bytes] = field(
         default_factory=lambda: NOTHING, repr=False, hash=False
     )
+    # Width and height of the canvas; None takes those of the picture behind all others.
     size: tuple[int, int] | None = None
 
     def __post_init__(self) -> None:

@@ -13,21 +13,12 @@ SLACK = 1e-6
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Playhead:
-    """A frame that stands, or runs since a reading of the clock.
+    """A frame that stands, or runs since a reading of the clock."""
 
-    Parameters
-    ----------
-    frame : int
-        Where it stands, or where it started.
-    since : float, optional
-        Reading of the clock in seconds when it started; None while it stands.
-    speed : float
-        Times the document's own; negative runs backwards.
-    """
-
-    frame: int = 0
+    frame: int = 0  # where it stands, or where it started
+    # Reading of the clock in seconds when it started; None while it stands.
     since: float | None = None
-    speed: float = 1.0
+    speed: float = 1.0  # times the document's own; negative runs backwards
 
     def __post_init__(self) -> None:
         if self.speed == 0 or not math.isfinite(self.speed):

@@ -45,4 +45,4 @@ from app.editor.timeline_view import (
     SwitchDrag as SwitchDrag,
     TimeGesture as TimeGesture,
 )
-from app.editor.work import Jobs as Jobs
+from app.editor.work import Jobs as Jobs, Kind as Kind

@@ -10,18 +10,11 @@ State = TypeVar("State")
 
 @dataclass(frozen=True, slots=True)
 class Action:
-    """Something that the person asked for.
+    """Something that the person asked for."""
 
-    Parameters
-    ----------
-    verb : callable
-        A function of `app.editor.actions` whose first parameter is the session.
-    arguments : tuple
-        The others.
-    """
-
+    # A function of `app.editor.actions` whose first parameter is the session.
     verb: Callable[..., None]
-    arguments: tuple[Any, ...] = ()
+    arguments: tuple[Any, ...] = ()  # the others
 
     def apply(self, session: object) -> None:
         """Do it."""

@@ -6,6 +6,7 @@ from collections.abc import Sequence, Set as AbstractSet
 import numpy as np
 
 from app.document import Clip, Pose, Transit, Variant, resting_pose, time_of, transits
+from app.errors import tell
 from engine.arrays import Complexes
 from engine.dirichlet import Extension, HilbertTransform
 from engine.domain import Domain
@@ -85,7 +86,9 @@ class PoseSampler:
         with self._transform_lock:
             if self._transform is None:
                 self._transform = (
-                    HilbertTransform.on(self.domain.outline, self.domain.cage, self.domain.holes)
+                    HilbertTransform.on(
+                        self.domain.outline, self.domain.cage, self.domain.holes, progress=tell
+                    )
                     if self._sibling is None
                     else self._sibling.transform
                 )
@@ -138,7 +141,7 @@ class PoseSampler:
 
     def makes_single_frames(self, variant: Variant) -> bool:
         """Tell whether one in-between alone takes less time than all of its interval."""
-        return variant.needs_transform and self.sites.closing is None
+        return variant.needs_transform and self.sites.period_basis is None
 
     def frame_of(self, transit: Transit, bounds: Bounds, variant: Variant, weight: float) -> Frame:
         """Return one of these in-betweens; a variant that `makes_single_frames` says so.

@@ -43,25 +43,13 @@ class IntervalStore:
     All is kept within the budget: first what no clip needs makes room, the longest unwanted first;
     then that to which undo and redo lead, then series, those farthest from the playhead first. What
     is prepared of present clips stays.
-
-    Parameters
-    ----------
-    mesh : PosableMesh
-    budget : int
-        In bytes.
-    sampler : PoseSampler, optional
-        Of the workers; None as long as nothing moves.
-    whole : Clip, optional
-        The document's newest one all of whose in-betweens were there.
-    build : Build, optional
-        A series in the making, while no worker is at it.
     """
 
     mesh: PosableMesh
-    budget: int = BUDGET
-    sampler: PoseSampler | None = None
-    whole: Clip | None = None
-    build: Build | None = None
+    budget: int = BUDGET  # in bytes
+    sampler: PoseSampler | None = None  # of the workers; None as long as nothing moves
+    whole: Clip | None = None  # the document's newest one all of whose in-betweens were there
+    build: Build | None = None  # a series in the making, while no worker is at it
     # By when they were wanted, the latest last; beside them their bytes, and the largest so far.
     _known: dict[Pair, KnownInterval] = field(init=False, default_factory=dict)
     _sizes: dict[Pair, tuple[int, int, int]] = field(init=False, default_factory=dict)

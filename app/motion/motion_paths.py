@@ -14,21 +14,12 @@ MOST = 1000  # frames that are traced; of longer animations every second, third 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class MotionPaths:
-    """Where the handles of a figure are in the frames of its clip.
-
-    Parameters
-    ----------
-    frames : intp, shape (f,)
-    places : complex128, shape (f, h)
-        Of each handle, on the figure by itself.
-    tracked : TrackedPoints or None
-        Of the worker alone; None where there are no handles.
-    """
+    """Where the handles of a figure are in the frames of its clip."""
 
     clip: Clip
-    frames: Indices
-    places: Complexes
-    tracked: TrackedPoints | None
+    frames: Indices  # intp (f,)
+    places: Complexes  # complex128 (f, h): Of each handle, on the figure by itself
+    tracked: TrackedPoints | None  # of the worker alone; None where there are no handles
 
 
 def trace_paths(

@@ -21,16 +21,10 @@ EDGE = 1e-6  # barycentric weights that rounding may lack of 0
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class AttachedPoints:
-    """Points that stick to a mesh, by the triangles they are in.
+    """Points that stick to a mesh, by the triangles they are in."""
 
-    Parameters
-    ----------
-    vertices : int32, shape (p, 3)
-    weights : float64, shape (p, 3)
-        Barycentric; one is clearly negative where a point is outside the mesh.
-    """
-
-    vertices: Integers
+    vertices: Integers  # int32 (p, 3)
+    # float64 (p, 3): Barycentric; one is clearly negative where a point is outside the mesh.
     weights: Floats
 
     @property

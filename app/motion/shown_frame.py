@@ -17,32 +17,18 @@ from engine.domain import Domain
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Shown:
-    """A frame as it is drawn, and what it was made from.
-
-    Parameters
-    ----------
-    frame : int
-    pose : Pose, optional
-        The pose that is shown; None for an in-between.
-    mesh : PosableMesh
-    vertices : Vertices
-        The mesh's.
-    handles : AttachedPoints
-        Of the figure's handles in the mesh.
-    placement : Placement
-        Where the figure is in the scene; all else is where it is by itself.
-    stand_in : Pose, OneFrame or Domain, optional
-        What is shown instead until the in-between is there: one of its two keys, or another
-        in-between of theirs; or what was drawn of another domain.
-    """
+    """A frame as it is drawn, and what it was made from."""
 
     clip: Clip
     frame: int
-    pose: Pose | None
+    pose: Pose | None  # the pose that is shown; None for an in-between
     mesh: PosableMesh
-    vertices: Vertices
-    handles: AttachedPoints
+    vertices: Vertices  # the mesh's
+    handles: AttachedPoints  # of the figure's handles in the mesh
+    # What is shown instead until the in-between is there: one of its two keys, or another of their
+    # in-betweens; or what was drawn of another domain.
     stand_in: Pose | OneFrame | Domain | None = None
+    # Where the figure is in the scene; all else is where it is by itself.
     placement: Placement = HERE
 
     @property

@@ -11,16 +11,11 @@ from engine.streaming import Series
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Placed:
-    """Vertices whose positions are worked out already.
+    """Vertices whose positions are worked out already."""
 
-    Parameters
-    ----------
-    positions : complex128, shape (v,)
-    triangles : int32, shape (m, 3)
-        Of the mesh, in the order in which they are painted: where they overlap, the last is seen.
-    """
-
-    positions: Complexes
+    positions: Complexes  # complex128 (v,)
+    # int32 (m, 3): Of the mesh, in the order in which they are painted: where they overlap, the
+    # last is seen.
     triangles: Integers
 
 

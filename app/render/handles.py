@@ -22,19 +22,10 @@ RADIUS, RIM_WIDTH, BLUR = 7.0, 2.0, 5.0
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class HandleMark:
-    """A handle as it is to be shown.
+    """A handle as it is to be shown."""
 
-    Parameters
-    ----------
-    place : complex
-        Where the handle is, in the plane.
-    wish : complex, optional
-        Where it should be, if it is out of reach within the bounds.
-    anchor, selected, hovered, locked : bool
-    """
-
-    place: complex
-    wish: complex | None = None
+    place: complex  # where the handle is, in the plane
+    wish: complex | None = None  # where it should be, if it is out of reach within the bounds
     anchor: bool = False
     selected: bool = False
     hovered: bool = False

@@ -14,39 +14,23 @@ TRANSPARENT: Final[Colour] = (0.0, 0.0, 0.0, 0.0)
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Backdrop:
-    """What lies behind everything.
-
-    Parameters
-    ----------
-    checks : Colour, optional
-        The second colour of a checkerboard.
-    square : float
-        Side of its squares in pixels. They move with the plane but keep their size.
-    """
+    """What lies behind everything."""
 
     colour: Colour = TRANSPARENT
-    checks: Colour | None = None
+    checks: Colour | None = None  # the second colour of a checkerboard
+    # Side of its squares in pixels. They move with the plane but keep their size.
     square: float = 12.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Heat:
-    """A heat map of the values that the meshes were given.
+    """A heat map of the values that the meshes were given."""
 
-    Parameters
-    ----------
-    low, high : float
-        The values at the two ends of the colours; those beyond get the colour of the end.
-    contours : int
-        Number of lines of equal value in between.
-    strength : float
-        1 shows the heat map alone, 0 the drawing alone.
-    """
-
+    # The values at the two ends of the colours; those beyond get the colour of the end.
     low: float
     high: float
-    contours: int = 9
-    strength: float = 0.85
+    contours: int = 9  # number of lines of equal value in between
+    strength: float = 0.85  # 1 shows the heat map alone, 0 the drawing alone
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -59,92 +43,46 @@ class Wireframe:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Ghost:
-    """A drawing that shines through: another frame of it under the current one, an onion skin.
+    """A drawing that shines through: another frame of it under the current one, an onion skin."""
 
-    Parameters
-    ----------
-    meshes : tuple of PosedMesh
-        The drawing in that frame, the furthest first.
-    tint : tuple of float or None
-        Red, green and blue; None leaves the colours as they are.
-    opacity : float
-    """
-
-    meshes: tuple[PosedMesh, ...]
+    meshes: tuple[PosedMesh, ...]  # the drawing in that frame, the furthest first
+    # Red, green and blue; None leaves the colours as they are.
     tint: tuple[float, float, float] | None
     opacity: float
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Line:
-    """A smooth polyline of constant width on the screen.
+    """A smooth polyline of constant width on the screen."""
 
-    Parameters
-    ----------
-    points : complex128, shape (n,)
-        At least two, in the plane.
-    width : float
-        In pixels.
-    dash : float
-        Length of a dash and of a gap in pixels; 0 for a solid line.
-    closed : bool
-        Join the last point to the first.
-    """
-
-    points: Complexes
+    points: Complexes  # complex128 (n,): At least two, in the plane
     colour: Colour
-    width: float = 1.5
-    dash: float = 0.0
-    closed: bool = False
+    width: float = 1.5  # in pixels
+    dash: float = 0.0  # length of a dash and of a gap in pixels; 0 for a solid line
+    closed: bool = False  # join the last point to the first
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Disc:
-    """A smooth disc of constant size on the screen.
+    """A smooth disc of constant size on the screen."""
 
-    Parameters
-    ----------
-    centre : complex
-        In the plane.
-    radius : float
-        In pixels, to the outer edge of the rim.
-    fill, rim : Colour
-    rim_width : float
-        In pixels.
-    softness : float
-        Width of the outer edge in pixels: 1 is sharp, more makes a shadow.
-    """
-
-    centre: complex
-    radius: float
+    centre: complex  # in the plane
+    radius: float  # in pixels, to the outer edge of the rim
     fill: Colour
     rim: Colour = TRANSPARENT
-    rim_width: float = 0.0
-    softness: float = 1.0
+    rim_width: float = 0.0  # in pixels
+    softness: float = 1.0  # width of the outer edge in pixels: 1 is sharp, more makes a shadow
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Scene:
-    """A frame, from back to front: background, ghosts, drawing, wireframe, lines, discs.
-
-    Parameters
-    ----------
-    background : Backdrop
-    meshes : tuple of PosedMesh
-        The drawing in this frame, the furthest first.
-    heat : Heat, optional
-        Paints the drawing in the colours of the values last written to its meshes.
-    wireframe : Wireframe, optional
-    ghosts : tuple of Ghost
-        The furthest first.
-    lines : tuple of Line
-    discs : tuple of Disc
-    """
+    """A frame, from back to front: background, ghosts, drawing, wireframe, lines, discs."""
 
     background: Backdrop = Backdrop()
-    meshes: tuple[PosedMesh, ...] = ()
+    meshes: tuple[PosedMesh, ...] = ()  # the drawing in this frame, the furthest first
+    # Paints the drawing in the colours of the values last written to its meshes.
     heat: Heat | None = None
     wireframe: Wireframe | None = None
-    ghosts: tuple[Ghost, ...] = ()
+    ghosts: tuple[Ghost, ...] = ()  # the furthest first
     lines: tuple[Line, ...] = ()
     discs: tuple[Disc, ...] = ()

@@ -8,21 +8,11 @@ from engine.arrays import Complexes
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class View:
-    """A camera that looks straight at the plane.
+    """A camera that looks straight at the plane."""
 
-    Parameters
-    ----------
-    centre : complex
-        The point, x + iy with y up, in the middle of the frame.
-    scale : float
-        Pixels of the frame per unit of the plane.
-    size : tuple of int
-        Width and height of the frame in pixels.
-    """
-
-    centre: complex
-    scale: float
-    size: tuple[int, int]
+    centre: complex  # the point, x + iy with y up, in the middle of the frame
+    scale: float  # pixels of the frame per unit of the plane
+    size: tuple[int, int]  # width and height of the frame in pixels
 
     def __post_init__(self) -> None:
         if min(self.size) < 1:

@@ -18,27 +18,18 @@ TIMES = 24  # in each interval
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Curves:
-    """Distortion of an animation at its worst points.
-
-    Parameters
-    ----------
-    frames : float64, shape (t,)
-    k, tau : float64, shape (t, p)
-        At the points where each is the largest over all time.
-    k_share, tau_share : float64, shape (t, p)
-        The same, at each point as a share of the larger one of the two keys around: bounded
-        in-betweens never exceed 1. τ counts from 1, where nothing is distorted.
-    extremes : float64, shape (t, 3)
-        Of all points: the largest k and σ_a, and the smallest σ_b.
-    """
+    """Distortion of an animation at its worst points."""
 
     clip: Clip
-    frames: Floats
+    frames: Floats  # float64 (t,)
+    # float64 (t, p): At the points where each is the largest over all time.
     k: Floats
     tau: Floats
+    # float64 (t, p): The same, at each point as a share of the larger one of the two keys around:
+    # bounded in-betweens never exceed 1. τ counts from 1, where nothing is distorted.
     k_share: Floats
     tau_share: Floats
-    extremes: Floats
+    extremes: Floats  # float64 (t, 3): Of all points: the largest k and σ_a, and the smallest σ_b
 
     def extremes_at(self, frame: float) -> Extremes:
         """Return the extremes at a frame, between those that were measured around it."""

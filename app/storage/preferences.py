@@ -45,6 +45,8 @@ class Preferences:
         Where a file was chosen last.
     exported : Path, optional
         The folder that was exported into last.
+    memory : int, optional
+        Megabytes that the pictures of a file may take, decoded; None for a share of the machine's.
     """
 
     theme: ThemeName = "dark"
@@ -58,6 +60,7 @@ class Preferences:
     recent: tuple[Path, ...] = ()
     folder: Path | None = None
     exported: Path | None = None
+    memory: int | None = None
 
     @property
     def written(self) -> frozenset[Path]:
@@ -159,6 +162,7 @@ def _understood(content: dict[str, Any]) -> Preferences:
         recent=tuple(Path(path) for path in paths if isinstance(path, str))[:MOST_RECENT],
         folder=folder,
         exported=exported,
+        memory=memory if (memory := number("memory", 1, 10**9)) is None else int(memory),
     )
 
 

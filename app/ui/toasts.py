@@ -1,6 +1,6 @@
 """Messages in the lower right corner, which go by themselves unless they are looked at."""
 
-from imgui_bundle import icons_fontawesome_6 as icons, imgui
+from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui
 
 from app.editor import Action, Session, Toast, do
 from app.editor.actions import dismiss
@@ -29,8 +29,8 @@ def draw(session: Session, look: Look) -> list[Action]:
     for toast in reversed(session.toasts[-MOST:]):
         age = now - toast.born
         left = SECONDS[toast.tone] - age
-        imgui.set_next_window_pos((right, bottom), imgui.Cond_.always, (1, 1))
-        imgui.set_next_window_size((WIDTH * look.em, 0))
+        imgui.set_next_window_pos(ImVec2(right, bottom), imgui.Cond_.always, ImVec2(1, 1))
+        imgui.set_next_window_size(ImVec2(WIDTH * look.em, 0))
         imgui.push_style_var(imgui.StyleVar_.alpha, max(0.15, min(1.0, age / FADE + 0.15)))
         imgui.push_style_var(imgui.StyleVar_.window_border_size, 1.0)
         imgui.push_style_var(imgui.StyleVar_.window_rounding, 0.5 * look.em)
@@ -78,7 +78,7 @@ def _contents(toast: Toast, look: Look) -> list[Action]:
         if imgui.small_button(toast.label):
             actions.append(toast.action)
     imgui.end_group()
-    imgui.set_cursor_pos((imgui.get_window_width() - 2.1 * look.em, 0.35 * look.em))
+    imgui.set_cursor_pos(ImVec2(imgui.get_window_width() - 2.1 * look.em, 0.35 * look.em))
     imgui.push_style_color(imgui.Col_.button, (0, 0, 0, 0))
     if imgui.small_button(f"{icons.ICON_FA_XMARK}###dismiss"):
         actions.append(do(dismiss, toast))
@@ -90,7 +90,7 @@ def _stripe(toast: Toast, look: Look) -> None:
     corner, size = imgui.get_window_pos(), imgui.get_window_size()
     imgui.get_window_draw_list().add_rect_filled(
         corner,
-        (corner.x + 0.22 * look.em, corner.y + size.y),
+        ImVec2(corner.x + 0.22 * look.em, corner.y + size.y),
         ink(_colour(toast, look)),
         0.22 * look.em,
     )

@@ -32,14 +32,14 @@ def draw(session: Session, look: Look, thumbnail: Look_up) -> list[Action]:
     viewport = imgui.get_main_viewport()
     imgui.set_next_window_pos(viewport.work_pos)
     status = imgui.get_frame_height() + look.em
-    imgui.set_next_window_size((viewport.work_size.x, viewport.work_size.y - status))
+    imgui.set_next_window_size(ImVec2(viewport.work_size.x, viewport.work_size.y - status))
     imgui.push_style_var(imgui.StyleVar_.window_rounding, 0.0)
     imgui.push_style_color(imgui.Col_.window_bg, look.palette.desk)
     imgui.begin("Welcome", flags=FLAGS)
     imgui.pop_style_color()
     imgui.pop_style_var()
     left = max(GAP * look.em, (viewport.work_size.x - WIDTH * look.em) / 2)
-    imgui.set_cursor_pos((left, max(1.5 * look.em, 0.07 * viewport.work_size.y)))
+    imgui.set_cursor_pos(ImVec2(left, max(1.5 * look.em, 0.07 * viewport.work_size.y)))
     imgui.begin_group()
     actions = _greeting(session, look)
     actions += _samples(look, thumbnail)
@@ -56,7 +56,7 @@ def _greeting(session: Session, look: Look) -> list[Action]:
     told = "Pose a drawing with a few handles, and get in-betweens that never fold."
     with sized(LARGE):
         imgui.text_colored(look.palette.dim, told)
-    imgui.dummy((0, 0.8 * look.em))
+    imgui.dummy(ImVec2(0, 0.8 * look.em))
     binding = BINDINGS["open"]
     if main_button(look, f"{icons.ICON_FA_FOLDER_OPEN}  Open image or project…", 16 * look.em):
         actions.append(binding.action)
@@ -64,19 +64,19 @@ def _greeting(session: Session, look: Look) -> list[Action]:
     imgui.align_text_to_frame_padding()
     busy = next((kind for kind in session.jobs.kinds), None)
     imgui.text_colored(look.palette.dim, f"{busy.label}…" if busy else "or drop a picture here")
-    imgui.dummy((0, 1.0 * look.em))
+    imgui.dummy(ImVec2(0, 1.0 * look.em))
     return actions
 
 
 def _samples(look: Look, thumbnail: Look_up) -> list[Action]:
     actions: list[Action] = []
     bold(look, "Try one of these")
-    imgui.dummy((0, 0.2 * look.em))
+    imgui.dummy(ImVec2(0, 0.2 * look.em))
     for index, sample in enumerate(files.samples()):
         if index % 4:
             imgui.same_line(0, GAP * look.em)
         elif index:
-            imgui.dummy((0, GAP * look.em - 2 * imgui.get_style().item_spacing.y))
+            imgui.dummy(ImVec2(0, GAP * look.em - 2 * imgui.get_style().item_spacing.y))
         if _card(look, sample, thumbnail(sample.picture)):
             actions.append(do(files.open_file, sample.file))
     return actions
@@ -112,7 +112,7 @@ def _recent(session: Session, look: Look, thumbnail: Look_up) -> list[Action]:
     recent = files.recent_files(session)[:MOST_RECENT]
     if not recent:
         return actions
-    imgui.dummy((0, 0.8 * look.em))
+    imgui.dummy(ImVec2(0, 0.8 * look.em))
     bold(look, "Recent")
     for index, (path, is_there) in enumerate(recent):
         if index % 2:

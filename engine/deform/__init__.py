@@ -6,8 +6,17 @@ Imports: `engine.maps`, `engine.geometry`.
 """
 
 from engine.deform.deformer import Deformer as Deformer
-from engine.deform.handles import Handles as Handles, Wish as Wish
-from engine.deform.newton import line_search as line_search, newton_direction as newton_direction
-from engine.deform.objective import Objective as Objective
+from engine.deform.handles import (
+    MOST_HANDLES as MOST_HANDLES,
+    Handles as Handles,
+    Wish as Wish,
+    require_held as require_held,
+)
+from engine.deform.model import (
+    Objective as Objective,
+    line_search as line_search,
+    newton_direction as newton_direction,
+    projected_hessian as projected_hessian,
+)
 from engine.deform.rest import ActiveBound as ActiveBound
 from engine.deform.state import State as State, Statistics as Statistics, Status as Status

@@ -5,9 +5,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from engine.arrays import Floats, Indices, readonly
-from engine.deform.barrier import with_samples_between
-from engine.deform.newton import Direction, Sketch, line_search, sketched_direction
-from engine.deform.objective import Jet, Objective
+from engine.deform.model import (
+    Direction,
+    Jet,
+    Objective,
+    Sketch,
+    line_search,
+    sketched_direction,
+    with_samples_between,
+)
 from engine.maps import Boundary, Certificate, HarmonicMap, Limits, certify_segments
 
 # No point of the shape moves farther (of L) in one step: removed handles make no jump.
@@ -33,8 +39,6 @@ class CertifiedStep:
     direction : Direction
     length : float
         Part of the direction that was taken; 0 where no map along it could be certified.
-    refusals : int
-        Maps that were tried and not certified.
     broken : Indices
         The segments where the first of them broke a bound.
     sketch : Sketch or None
@@ -46,7 +50,6 @@ class CertifiedStep:
     jet: Jet
     direction: Direction
     length: float
-    refusals: int
     broken: Indices
     sketch: Sketch | None
 
@@ -94,7 +97,6 @@ def take_certified_step(
         jet=jet,
         direction=direction,
         length=length if refusals < HALVINGS else 0.0,
-        refusals=refusals,
         broken=broken,
         sketch=sketch if refusals == 0 and length > FAR_FROM_WALLS else None,
     )

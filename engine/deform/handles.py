@@ -1,5 +1,6 @@
 """Points of the shape that a person holds, and what holding them costs."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
@@ -8,15 +9,21 @@ import numpy.typing as npt
 
 from engine.arrays import Complexes, Floats, as_points, readonly
 from engine.errors import EngineError
-from engine.geometry import require_inside
+from engine.geometry import Hole, box_diagonal, require_inside
 from engine.maps import Boundary
 
 # λ = STIFFNESS / L² for a handle of weight 1.
 STIFFNESS = 1e4
 # A prescribed rotation is as stiff as two handles this far (of L) on either side of the point.
 ARM = 0.02
-# Handles nearer than this (of L) are one point, and cannot be in two places.
-COINCIDENT = 1e-9
+# Handles nearer than this (of L) are at one place, and cannot be wanted so much farther apart.
+COINCIDENT = 1e-6
+APART = 1e-4
+# Vertices of all cages: the time of a step grows with their cube.
+MOST_VERTICES = 400
+# How far outside the outline, of L, a point may be by rounding.
+OUTSIDE = 1e-9
+MOST_HANDLES = 1_000
 
 
 class Wish(NamedTuple):
@@ -32,6 +39,12 @@ class Wish(NamedTuple):
 
     positions: Complexes
     rotations: Floats
+
+    def is_same(self, other: "Wish | None") -> bool:
+        """Tell whether another wish asks for the same."""
+        return other is not None and all(
+            np.array_equal(one, two, equal_nan=True) for one, two in zip(self, other, strict=True)
+        )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -50,7 +63,7 @@ class Handles:
         Length that turns a rotation into a distance: an angle δ costs 2 λ (arm · δ)².
     coordinates, derivatives : complex128, shape (h, n)
         Of the functions of the span, C_j and C_j', at the points.
-    basis_coordinates, basis_derivatives : complex128, shape (h, n)
+    basis_coordinates, basis_derivatives : complex128, shape (h, r)
         The same of the functions of the boundary's basis.
     hessian : float64, shape (u, u)
         Of the energy of the positions, in the order of `Objective`.
@@ -85,16 +98,10 @@ class Handles:
         Raises
         ------
         EngineError
-            If a point is outside the outline or not finite, or a weight is not positive.
+            If a point is outside the outline or not finite, a weight is not positive, or the cages
+            have too many vertices.
         """
-        points = as_points(points, "handles")
-        require_inside(
-            boundary.outline,
-            points,
-            "handle",
-            holes=boundary.loops[1:],
-            tolerance=COINCIDENT * boundary.size,
-        )
+        points = require_held(points, boundary.outline, boundary.cage, boundary.holes)
         stiffness = _weights(weights, len(points)) * STIFFNESS / boundary.size**2
         coordinates = boundary.span.coordinates(points)
         derivatives = boundary.span.derivatives(points)
@@ -136,11 +143,8 @@ class Handles:
                 f"{len(self.points)} handles need as many targets, not {len(targets)}."
             )
         for i, j in self.coincident:
-            if abs(targets[i] - targets[j]) > COINCIDENT * self.arm / ARM:
-                raise EngineError(
-                    f"Handles {i} and {j} are the same point of the shape but have different "
-                    "targets; remove one of them."
-                )
+            if abs(targets[i] - targets[j]) > APART * self.arm / ARM:
+                raise _told_twice(i, j, "targets")
         if rotations is None:
             return Wish(targets, np.full(len(targets), np.nan))
         angles = np.asarray(rotations, dtype=np.float64)
@@ -149,7 +153,43 @@ class Handles:
                 f"Rotations must be {len(targets)} finite angles, or NaN where a handle may turn "
                 f"freely; got {angles.shape} {angles}."
             )
+        for i, j in self.coincident:
+            if abs(np.exp(1j * angles[i]) - np.exp(1j * angles[j])) > APART:
+                raise _told_twice(i, j, "rotations")
         return Wish(targets, angles)
+
+
+def _told_twice(i: int, j: int, what: str) -> EngineError:
+    return EngineError(
+        f"Handles {i} and {j} are at the same point of the shape but have different {what}; remove "
+        "one of them."
+    )
+
+
+def require_held(
+    points: npt.ArrayLike, outline: npt.ArrayLike, cage: npt.ArrayLike, holes: Sequence[Hole]
+) -> Complexes:
+    """Return the points of handles, or raise `EngineError` unless they can hold a shape.
+
+    Nothing needs to be sampled before.
+    """
+    points, cage = as_points(points, "handles"), as_points(cage, "cage", at_least=3)
+    outline = as_points(outline, "outline", at_least=3)
+    if len(points) > MOST_HANDLES:
+        raise EngineError(
+            f"{len(points):,} handles are too many, as their memory grows with their square; "
+            f"give at most {MOST_HANDLES:,}."
+        )
+    count = len(cage) + sum(len(hole.cage) for hole in holes)
+    if count > MOST_VERTICES:
+        raise EngineError(
+            f"The cages have {count} vertices, and more than {MOST_VERTICES} would take minutes to "
+            "come to rest; choose a coarser cage."
+        )
+    inner = [hole.outline for hole in holes]
+    near = OUTSIDE * box_diagonal(outline)
+    require_inside(outline, points, "handle", holes=inner, tolerance=near)
+    return points
 
 
 def _weights(weights: npt.ArrayLike | None, count: int) -> Floats:
@@ -164,16 +204,16 @@ def _weights(weights: npt.ArrayLike | None, count: int) -> Floats:
 
 def _hessian(boundary: Boundary, coordinates: Complexes, stiffness: Floats) -> Floats:
     root = np.sqrt(2.0 * stiffness)[:, None] * coordinates
-    count = len(boundary.holes)
-    of_psi = root[:, 1 : len(boundary.span) - count]
+    r, count = root.shape[1], len(boundary.holes)
+    of_psi = root[:, 1 : r - count]
     # A logarithm is in Φ and, conjugate, in Ψ.
-    root[:, len(boundary.span) - count :] *= 2.0
+    root[:, r - count :] *= 2.0
     # Re f = Re(Σ C φ + Σ C ψ), Im f = Im(Σ C φ − Σ C ψ).
     real, imaginary = np.hstack([root, of_psi]), -1j * np.hstack([root, -of_psi])
     rows = np.concatenate([real, imaginary]).view(np.float64)
     hessian: Floats = rows.T @ rows
-    for part in boundary.span.slices[1:]:
-        # A constant on the cage of a hole is nothing, and would be free.
-        for first in (2 * part.start, 2 * (part.start + len(boundary.span) - 1)):
+    for constant in range(1, 1 + count):
+        # On the cage of a hole it is nothing, and would be free.
+        for first in (2 * constant, 2 * (constant + r - 1)):
             hessian[[first, first + 1], [first, first + 1]] += STIFFNESS
     return hessian

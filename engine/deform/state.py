@@ -5,7 +5,7 @@ from enum import Enum
 
 from engine.arrays import Floats
 from engine.deform.handles import Handles, Wish
-from engine.deform.newton import Sketch
+from engine.deform.model import Sketch
 from engine.deform.rest import ActiveBound, Search, Way
 from engine.deform.steering import Schedule
 from engine.maps import Boundary, Certificate, HarmonicMap, Limits
@@ -49,14 +49,8 @@ class Statistics:
         Gain that Newton's model expected of the whole step.
     length : float
         Part of the step that was taken.
-    barrier_weight : float
-    leash : float
-        Part of it that was paid out.
     leashed : bool
         Whether the leash held handles back.
-    refusals : int
-        Maps that were tried and not certified.
-    samples : int
     optimality : float
         Expected gain and complementarity of the bounds over the objective: 0 at a minimum, infinite
         where it is not known.
@@ -69,11 +63,7 @@ class Statistics:
     handle_error: float
     decrement: float
     length: float
-    barrier_weight: float
-    leash: float
     leashed: bool
-    refusals: int
-    samples: int
     optimality: float
     active: tuple[ActiveBound, ...]
 
@@ -111,6 +101,10 @@ class State:
         Of this search and of those that are still to come.
     outcome : Search or None
         The best of the searches that are over.
+    steps : int
+        Newton steps of the search that found the map; 0 on the way of a drag.
+    tried : int
+        Those of the searches that are over.
     """
 
     map: HarmonicMap
@@ -127,3 +121,5 @@ class State:
     search: Search | None = None
     ways: tuple[Way, ...] = ()
     outcome: Search | None = None
+    steps: int = 0
+    tried: int = 0

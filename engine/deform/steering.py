@@ -2,13 +2,13 @@
 
 from dataclasses import dataclass, replace
 from math import inf
-from typing import Self
+from typing import NamedTuple, Self
 
 import numpy as np
 
 from engine.arrays import Complexes, Floats
 from engine.deform.handles import Handles, Wish
-from engine.deform.objective import Jet
+from engine.deform.model import MARGIN, Jet, Walls
 from engine.maps import Certificate, HarmonicMap, Limits
 
 # The leash: a handle is pulled towards a point at most this far (of L) ahead of it, and turned by
@@ -37,9 +37,7 @@ FULL = 0.7
 PROGRESS = 1e-3
 # After so many steps without progress the drag is at rest.
 IDLE_AT_REST = 50
-# The walls stand inside the limits by this part of the way to the identity,
-MARGIN = 3e-4
-# and beyond every sample at least by this much, or this part of sigma_a: a map may be at its limits
+# Walls stand beyond every sample by this much, or this part of sigma_a: a map may be at its limits
 # to the last digit, and the barrier's Hessian has a root only where there is slack.
 LEAST_SLACK = 1e-10
 # A step leaves at least this part of the slack between the walls and the map.
@@ -129,48 +127,67 @@ def cut_to_leash(
     return Wish(positions + cut * pull, near), leashed
 
 
-def rigidly_aligned(handles: Handles, wish: Wish, at_rest: HarmonicMap) -> HarmonicMap:
-    """Return the rigid motion that brings the shape at rest nearest to its wish."""
-    centre, wanted, angle, _ = _common_motion(handles, handles.points, wish.positions)
-    turn = complex(np.exp(1j * angle))
+def rigidly_aligned(
+    handles: Handles, wish: Wish, at_rest: HarmonicMap, turn: float = 0.0
+) -> HarmonicMap:
+    """Return the rigid motion that brings the shape at rest nearest to its wish.
+
+    It is turned further by an angle around where the centre of the handles is wanted.
+    """
+    common = common_motion(handles, handles.points, wish.positions)
+    factor = complex(np.exp(1j * (common.angle + turn)))
     return HarmonicMap.similarity(
-        at_rest.cage, at_rest.holes, factor=turn, shift=wanted - turn * centre
+        at_rest.cage, at_rest.holes, factor=factor, shift=common.wanted - factor * common.centre
     )
-
-
-def correlation(handles: Handles, targets: Complexes) -> float:
-    """Return how much of the way to their targets a rotation of all handles leads, 0 to 1."""
-    if len(targets) < 2:
-        return 1.0
-    _, _, _, common = _common_motion(handles, handles.points, targets)
-    return common
 
 
 def _turned(handles: Handles, positions: Complexes, targets: Complexes, most: float) -> Complexes:
     """Return the positions turned as a whole towards the targets, up to an angle."""
     if len(positions) == 0:
         return positions
-    centre, _, angle, _ = _common_motion(handles, positions, targets)
-    turn = np.exp(1j * np.clip(angle, -most, most))
-    turned: Complexes = centre + turn * (positions - centre)
+    common = common_motion(handles, positions, targets)
+    turn = np.exp(1j * np.clip(common.angle, -most, most))
+    turned: Complexes = common.centre + turn * (positions - common.centre)
     return turned
 
 
-def _common_motion(
-    handles: Handles, positions: Complexes, targets: Complexes
-) -> tuple[complex, complex, float, float]:
-    """Return the centres of positions and targets, the angle between both, and its correlation.
+class CommonMotion(NamedTuple):
+    """The rigid motion that brings points nearest to their targets (Procrustes).
 
-    The angle is Procrustes's, and 0 where the correlation (0 to 1) is weak.
+    Parameters
+    ----------
+    centre, wanted : complex
+        The centres of points and targets.
+    angle : float
+        Between both; 0 where the correlation is weak.
+    correlation : float
+        How much of the way to the targets a rotation leads, 0 to 1.
+    misfit : float
+        How far from the targets the best one leaves the points, root mean square.
     """
+
+    centre: complex
+    wanted: complex
+    angle: float
+    correlation: float
+    misfit: float
+
+
+def common_motion(handles: Handles, positions: Complexes, targets: Complexes) -> CommonMotion:
+    """Return the motion that all handles have in common, each as important as it is stiff."""
     weights = handles.stiffness / handles.stiffness.sum()
     centre, wanted = complex(weights @ positions), complex(weights @ targets)
     from_centre, from_wanted = positions - centre, targets - wanted
-    product = weights @ (from_centre.conj() * from_wanted)
+    product = complex(weights @ (from_centre.conj() * from_wanted))
     scale = float(weights @ (np.abs(from_centre) * np.abs(from_wanted)))
-    if abs(product) <= CORRELATED * scale:
-        return centre, wanted, 0.0, float(abs(product)) / max(scale, np.finfo(np.float64).tiny)
-    return centre, wanted, float(np.angle(product)), float(abs(product)) / scale
+    squares = float(weights @ (np.abs(from_centre) ** 2 + np.abs(from_wanted) ** 2))
+    return CommonMotion(
+        centre,
+        wanted,
+        angle=float(np.angle(product)) if abs(product) > CORRELATED * scale else 0.0,
+        correlation=abs(product) / scale if scale > 0 else 1.0,
+        misfit=float(np.sqrt(max(squares - 2 * abs(product), 0.0))),
+    )
 
 
 def limits_for(certificate: Certificate, bounds: Limits) -> Limits:
@@ -183,7 +200,7 @@ def limits_for(certificate: Certificate, bounds: Limits) -> Limits:
     )
 
 
-def closing_limits(bounds: Limits, before: Limits, a: Floats, b: Floats) -> Limits:
+def tightening_limits(bounds: Limits, before: Limits, a: Floats, b: Floats) -> Limits:
     """Return the bounds, or limits that close in on a map that is outside of them."""
     k, sigma_a, sigma_b = _extremes(a, b)
     if k < bounds.k and sigma_a < bounds.sigma_a and sigma_b > bounds.sigma_b:
@@ -201,24 +218,31 @@ def closing_limits(bounds: Limits, before: Limits, a: Floats, b: Floats) -> Limi
 
 def place_walls(
     limits: Limits, a: Floats, b: Floats, certificate: Certificate
-) -> tuple[Limits, Limits]:
-    """Return the walls of the barrier, and the bounds that the next map must keep everywhere."""
+) -> tuple[Walls, Limits]:
+    """Return the walls of the samples, and the bounds that the next map must keep everywhere."""
     inner = limits.towards_identity(MARGIN)
-    k, sigma_a, sigma_b = _extremes(a, b)
+    k, sigma_a, sigma_b = b / a, a + b, a - b
     rounding = LEAST_SLACK * sigma_a
     # A map may start between the walls and the limits.
-    walls = Limits(
-        k=max(inner.k, k + max((limits.k - k) / 4, LEAST_SLACK)),
-        sigma_a=max(inner.sigma_a, sigma_a + max((limits.sigma_a - sigma_a) / 4, rounding)),
-        sigma_b=min(inner.sigma_b, sigma_b - max((sigma_b - limits.sigma_b) / 4, rounding)),
+    walls = Walls(
+        k=np.maximum(inner.k, k + np.maximum((limits.k - k) / 4, LEAST_SLACK)),
+        sigma_a=np.maximum(
+            inner.sigma_a, sigma_a + np.maximum((limits.sigma_a - sigma_a) / 4, rounding)
+        ),
+        sigma_b=np.minimum(
+            inner.sigma_b, sigma_b - np.maximum((sigma_b - limits.sigma_b) / 4, rounding)
+        ),
     )
-    required = Limits(
-        k=walls.k - KEPT * (walls.k - k),
-        sigma_a=walls.sigma_a - KEPT * (walls.sigma_a - sigma_a),
-        sigma_b=walls.sigma_b - KEPT * (walls.sigma_b - sigma_b),
+    outermost, required = (
+        Limits(
+            k=float((walls.k - kept * (walls.k - k)).max()),
+            sigma_a=float((walls.sigma_a - kept * (walls.sigma_a - sigma_a)).max()),
+            sigma_b=float((walls.sigma_b - kept * (walls.sigma_b - sigma_b)).min()),
+        )
+        for kept in (0.0, KEPT)
     )
     # Between its samples the present map may have less slack than that.
-    for asked in (required, walls, limits.towards_identity(ROUNDING)):
+    for asked in (required, outermost, limits.towards_identity(ROUNDING)):
         within = limits.allow(k=asked.k, sigma_a=asked.sigma_a, sigma_b=asked.sigma_b)
         if within and asked.allow(
             k=certificate.k, sigma_a=certificate.sigma_a, sigma_b=certificate.sigma_b

@@ -1,7 +1,8 @@
 """The matrix of the integral equation, entry by entry.
 
 Row i is the equation at node i, μ/2 + 1/(2π) ∮ μ Im(dζ / (ζ − z)) = b: plain quadrature far from a
-panel, and exact integrals of its polynomials near it.
+panel, and exact integrals of its polynomials near it. Both sides are taken times the roots of the
+nodes' weights, and μ as well, so that the matrix is nearly symmetric.
 
 On the loop of a hole the mean of μ there is added. Constants there, which the integral does not
 see, are ruled out by it, and what the mean is in the end is what the real part lacks: a function
@@ -29,98 +30,92 @@ class BoundaryOperator:
 
     Parameters
     ----------
-    nodes, differentials : complex128, shape (N,)
+    panels : Panels
+    nodes, directions : complex128, shape (N,)
+        And dζ there over its length.
+    roots : float64, shape (N,)
+        Of the lengths.
     near : csr_array, float64, shape (N, N)
         Entries of panels at the nodes near them, zeros among them.
     near_by_column : csr_array, float64, shape (N, N)
         The transpose.
-    starts : intp, shape (1 + holes,)
-        The first node of each loop.
     means : float64, shape (holes, N)
         The weights of the mean over the loop of each hole.
     """
 
+    panels: Panels
     nodes: Complexes
-    differentials: Complexes
+    directions: Complexes
+    roots: Floats
     near: csr_array
     near_by_column: csr_array
-    starts: Indices
     means: Floats
 
     @classmethod
     def of(cls, panels: Panels) -> Self:
         """Integrate the panels exactly at the nodes near them."""
-        nodes = panels.nodes.ravel()
+        nodes, differentials = panels.nodes.ravel(), panels.differentials().ravel()
         size = len(nodes)
+        lengths = np.abs(differentials)
+        roots = np.sqrt(lengths)
         rows, values = [], []
         for power in np.unique(panels.power):
             each = _near_entries(panels, nodes, int(power))
             rows.append(each[0])
             values.append(each[1])
-        pairs, entries = np.concatenate(rows), np.concatenate(values)
         # On a straight panel the kernel of a node of the same panel vanishes, but for the jump.
-        own = np.repeat(np.eye(NODES)[None] * np.pi, len(panels), axis=0).reshape(size, NODES)
-        pairs = np.concatenate(
-            [pairs, np.column_stack([np.arange(size), np.arange(size) // NODES])]
-        )
-        entries = np.concatenate([entries, own])
-        columns = pairs[:, 1:] * NODES + np.arange(NODES)
-        row = np.repeat(pairs[:, 0], NODES)
-        entries /= 2 * np.pi
-        near = csr_array((entries.ravel(), (row, columns.ravel())), shape=(size, size))
-        differentials = panels.differentials().ravel()
+        rows.append(np.column_stack([np.arange(size), np.arange(size) // NODES]))
+        values.append(np.tile(np.pi * np.eye(NODES), (len(panels), 1)))
+        pairs, entries = np.concatenate(rows), np.concatenate(values) / (2 * np.pi)
+        row, column = pairs[:, :1], pairs[:, 1:] * NODES + np.arange(NODES)
+        entries *= roots[row] / roots[column]
+        row = np.broadcast_to(row, column.shape)
+        near = csr_array((entries.ravel(), (row.ravel(), column.ravel())), shape=(size, size))
         firsts = NODES * panels.starts
         means = np.zeros((len(firsts) - 1, size))
         for number, (start, end) in enumerate(pairwise([*firsts[1:], size])):
-            lengths = np.abs(differentials[start:end])
-            means[number, start:end] = lengths / lengths.sum()
+            means[number, start:end] = lengths[start:end] / lengths[start:end].sum()
         return cls(
+            panels=panels,
             nodes=nodes,
-            differentials=differentials,
+            directions=differentials / lengths,
+            roots=roots,
             near=near,
             near_by_column=near.T.tocsr(),
-            starts=firsts,
             means=means,
         )
 
-    def near_rows(self, columns: Indices) -> Indices:
-        """Return the nodes at which some columns are integrated exactly, some more than once."""
-        return _chosen(self.near_by_column, columns)[2]
+    def entries(self, rows: Indices, columns: Indices) -> tuple[Floats, Floats]:
+        """Return a part of the matrix, and that of its transpose: what columns do there, (r, c).
 
-    def near_columns(self, rows: Indices) -> Indices:
-        """Return the columns that are integrated exactly at some nodes, some more than once."""
-        return _chosen(self.near, rows)[2]
-
-    def entries(self, rows: Indices, columns: Indices) -> Floats:
-        """Return a part of the matrix (r, c)."""
-        # The plain kernel, Im dζ / (ζ − z), without complex numbers.
+        The second is what acts on the columns' nodes from those of the rows.
+        """
+        # Im dζ / (ζ − z) and, from the other end, Im dz / (z − ζ), without complex numbers.
         to, of = self.nodes[rows, None], self.nodes[columns]
         x, y = of.real - to.real, of.imag - to.imag
-        weights = self.differentials[columns] / (2 * np.pi)
-        found: Floats = weights.imag * x
-        spare = weights.real * y
-        found -= spare
-        x *= x
-        x += np.multiply(y, y, out=spare)
+        scale = x * x
+        scale += y * y
         with np.errstate(divide="ignore", invalid="ignore"):
-            found /= x
+            np.divide(self.roots[columns] / (2 * np.pi), scale, out=scale)
+            scale *= self.roots[rows, None]
+            x *= scale
+            y *= scale
+        forward, backward = self.directions[columns], self.directions[rows, None]
+        found = forward.imag * x - forward.real * y, backward.real * y - backward.imag * x
         place = np.full(len(self.nodes), -1)
-        place[columns] = np.arange(len(columns))
-        row, entry, column = _chosen(self.near, rows)
-        column = place[column]
-        there = column >= 0
-        found[row[there], column[there]] = self.near.data[entry[there]]
-        for mean in self.means:
-            found += (mean[rows, None] > 0) * mean[columns]
+        place[rows] = np.arange(len(rows))
+        for near, into in zip((self.near_by_column, self.near), found, strict=True):
+            starts = near.indptr[columns]
+            column, entry = ragged(near.indptr[columns + 1] - starts)
+            entry += starts[column]
+            row = place[near.indices[entry]]
+            there = row >= 0
+            into[row[there], column[there]] = near.data[entry[there]]
+            for mean in self.means:
+                # As symmetric as the rest, since the mean's weights are the squares of the roots.
+                scaled = np.where(mean[columns] > 0, self.roots[columns], 0.0)
+                np.add(into, (mean[rows] / self.roots[rows])[:, None] * scaled, out=into)
         return found
-
-
-def _chosen(matrix: csr_array, rows: Indices) -> tuple[Indices, Indices, Indices]:
-    """Return the entries of some rows: in which of these, their numbers, and their columns."""
-    starts = matrix.indptr[rows]
-    row, place = ragged(matrix.indptr[rows + 1] - starts)
-    entry = starts[row] + place
-    return row, entry, matrix.indices[entry]
 
 
 def _near_entries(panels: Panels, nodes: Complexes, power: int) -> tuple[Indices, Floats]:
@@ -128,8 +123,7 @@ def _near_entries(panels: Panels, nodes: Complexes, power: int) -> tuple[Indices
     own = np.flatnonzero(panels.power == power)
     length = np.abs(panels.span[own])
     around = (0.5 + near_distance(panels.power[own])) * length
-    middles = panels.origin[own] + panels.span[own] / 2
-    found = cKDTree(as_xy(nodes)).query_ball_point(as_xy(middles), around)
+    found = cKDTree(as_xy(nodes)).query_ball_point(as_xy(panels.middles[own]), around)
     panel = np.repeat(own, [len(each) for each in found])
     node = np.concatenate([np.asarray(each, dtype=np.intp) for each in found])
     panel, node = panel[node // NODES != panel], node[node // NODES != panel]

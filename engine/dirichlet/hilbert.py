@@ -15,8 +15,8 @@ cage's own n-dimensional space. That is wrong by up to a percent of the diameter
 the keyframes, and loses the bounds that Theorem 6 proves.
 """
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 from typing import NamedTuple, Self
 
 import numpy as np
@@ -66,6 +66,9 @@ class HilbertTransform:
     ----------
     loops : tuple of complex128
         The outline, and those of holes.
+    centre : complex
+        From which the panels' places are told: far from the origin a hair's breadth beside an
+        outline would be lost in the rounding of coordinates.
     panels : Panels
     solver : SkeletonSolver
         From real parts at the nodes to densities.
@@ -74,25 +77,49 @@ class HilbertTransform:
     """
 
     loops: tuple[Complexes, ...]
+    centre: complex
     panels: Panels
     solver: SkeletonSolver
     means: Floats
 
     @classmethod
-    def on(cls, outline: Complexes, cage: Complexes, holes: Sequence[Hole] = ()) -> Self:
+    def on(
+        cls,
+        outline: Complexes,
+        cage: Complexes,
+        holes: Sequence[Hole] = (),
+        *,
+        progress: Callable[[float], None] | None = None,
+    ) -> Self:
         """Discretise and factorise the integral equation of an outline inside a cage, and holes.
 
         The number of nodes follows from the shape: it grows with the number of corners, and where
-        the outline comes near itself or near the cage. Time and memory grow with it.
+        the outline comes near itself or near the cage. Time and memory grow with it, and somewhat
+        faster where the outline fills an area. `progress` is called again and again with the share
+        of the work that is done, from 0 to 1; what it raises ends the work.
         """
-        return cls.of((outline, *(hole.outline for hole in holes)), Panels.on(outline, cage, holes))
+        loops = (outline, *(hole.outline for hole in holes))
+        centre = complex(outline.mean())
+        local = [
+            replace(hole, outline=hole.outline - centre, cage=hole.cage - centre) for hole in holes
+        ]
+        panels = Panels.on(outline - centre, cage - centre, local)
+        return cls.of(loops, panels, centre, progress)
 
     @classmethod
-    def of(cls, loops: Sequence[Complexes], panels: Panels) -> Self:
-        """Factorise the integral equation on given panels of some loops."""
+    def of(
+        cls,
+        loops: Sequence[Complexes],
+        panels: Panels,
+        centre: complex = 0j,
+        progress: Callable[[float], None] | None = None,
+    ) -> Self:
+        """Factorise the integral equation on given panels of some loops, told from a centre."""
         operator = BoundaryOperator.of(panels)
-        solver = SkeletonSolver.of(operator)
-        return cls(loops=tuple(loops), panels=panels, solver=solver, means=operator.means)
+        solver = SkeletonSolver.of(operator, progress)
+        return cls(
+            loops=tuple(loops), centre=centre, panels=panels, solver=solver, means=operator.means
+        )
 
     @property
     def nbytes(self) -> int:
@@ -102,7 +129,7 @@ class HilbertTransform:
     @property
     def nodes(self) -> Complexes:
         """Points of the boundary (N,) at which real parts are given."""
-        return self.panels.nodes.ravel()
+        return self.centre + self.panels.nodes.ravel()
 
     def at(self, points: Complexes, *, single: bool = False) -> "Extension":
         """Prepare the evaluation at points (t,) of the closed domain.
@@ -110,7 +137,7 @@ class HilbertTransform:
         Time and memory grow with the number of points and nodes, and not with their product. In
         single precision, what is far from a point errs by 2e-7 of the largest density.
         """
-        inside = _strictly_inside(self.loops, points)
+        inside = _strictly_inside([loop - self.centre for loop in self.loops], points - self.centre)
         integral = CauchyIntegral.of(self.panels, inside, single=single)
         return Extension(transform=self, points=points, inside=inside, integral=integral)
 
@@ -125,7 +152,8 @@ class Extension:
     ----------
     transform : HilbertTransform
     points, inside : complex128, shape (t,)
-        And the same but for those on the boundary, which are a hair's breadth from there.
+        And the same from the transform's centre, but that those on the boundary are a hair's
+        breadth from there.
     integral : CauchyIntegral
         At the latter.
     """
@@ -198,8 +226,6 @@ def _strictly_inside(loops: Sequence[Complexes], points: Complexes) -> Complexes
     to_vertex = np.abs(z - corners)
     vertex = to_vertex.argmin(axis=1)
     at_corner = to_vertex[rows, vertex] < 4 * EDGE_DEPTH * size
-    # Far from the origin, no less than the rounding of the coordinates.
-    depth = max(CORNER_DEPTH * size, 8 * float(np.spacing(np.abs(corners).max())))
-    corner = corners[vertex] + depth * bisector[vertex]
+    corner = corners[vertex] + CORNER_DEPTH * size * bisector[vertex]
     moved[close] = np.where(at_corner, corner, inside)
     return moved

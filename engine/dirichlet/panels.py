@@ -135,6 +135,12 @@ class Panels:
         return np.argsort(self.following)
 
     @property
+    def middles(self) -> Complexes:
+        """Half-way between the ends of each, (p,)."""
+        result: Complexes = self.origin + self.span / 2
+        return result
+
+    @property
     def nodes(self) -> Complexes:
         """Gauss-Legendre nodes, (p, NODES)."""
         result: Complexes = self.origin[:, None] + self.span[:, None] * self.arcs()
@@ -152,15 +158,6 @@ class Panels:
         speed = self.power[:, None] * tau ** (self.power[:, None] - 1)
         sign = np.where(self.forward, 1.0, -1.0)
         result: Complexes = (sign * self.span)[:, None] * speed * weights
-        return result
-
-    def increments(self, values: Complexes) -> Complexes:
-        """Return dμ at the nodes, like the values (p, NODES, j): weights of integrals of dμ."""
-        sign = np.where(self.forward, 1.0, -1.0)
-        _, weights = gauss_legendre()
-        _, differentiation = legendre_matrices()
-        by_tau = np.einsum("ik,pkj->pij", differentiation, values)
-        result: Complexes = sign[:, None, None] * weights[:, None] * by_tau
         return result
 
 

@@ -57,7 +57,7 @@ class Refinement:
     @property
     def nodes(self) -> Complexes:
         """Points of the boundary (N,) at which real parts are given."""
-        return self.panels.nodes.ravel()
+        return self.extension.transform.centre + self.panels.nodes.ravel()
 
     def extend(self, real_parts: Floats) -> Extended:
         """Return holomorphic functions with given real parts on the boundary.
@@ -87,7 +87,9 @@ class Refinement:
             )
         local = _Local(parts=parts, whole=whole, densities=2 * lacking)
         right = smooth.reshape(-1, columns)
-        right -= local.at(transform.nodes, np.repeat(np.arange(len(smooth)), NODES))[0].real
+        right -= local.at(transform.panels.nodes.ravel(), np.repeat(np.arange(len(smooth)), NODES))[
+            0
+        ].real
         means = local.means(transform.panels)
         right -= (transform.means > 0).T @ means
         densities = transform.solver(right)
@@ -151,7 +153,7 @@ class _Local:
         parts, columns = self.parts, self.densities.shape[2]
         nodes, densities = parts.nodes.ravel(), self.densities.reshape(-1, columns)
         around = (0.5 + near_distance(parts.power)) * np.abs(parts.span)
-        near = np.abs(points[:, None] - (parts.origin + parts.span / 2)) < around
+        near = np.abs(points[:, None] - parts.middles) < around
         plain = ~near
         if omitted is not None:
             near &= ~omitted

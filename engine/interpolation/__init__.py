@@ -6,24 +6,23 @@ proof that they keep their bounds.
 Imports: `engine.paths`, `engine.dirichlet`, `engine.maps`.
 """
 
-from engine.interpolation import chebyshev as chebyshev
 from engine.interpolation.blends import BLENDS as BLENDS
-from engine.interpolation.course import (
+from engine.interpolation.courses import (
     Course as Course,
     End as End,
     Joint as Joint,
     Tangent as Tangent,
 )
-from engine.interpolation.derivatives import Passage as Passage
 from engine.interpolation.inbetweens import Frame as Frame, Inbetweens as Inbetweens
-from engine.interpolation.interval import Interval as Interval
-from engine.interpolation.keyframe_samples import (
-    KeyframeSamples as KeyframeSamples,
-    sample_keyframes as sample_keyframes,
-)
 from engine.interpolation.one_interval import (
     frame_at as frame_at,
     prepare_inbetweens as prepare_inbetweens,
+)
+from engine.interpolation.passage import (
+    Interval as Interval,
+    KeyframeSamples as KeyframeSamples,
+    Passage as Passage,
+    sample_keyframes as sample_keyframes,
 )
 from engine.interpolation.preparation import (
     Prepared as Prepared,
@@ -38,5 +37,6 @@ from engine.interpolation.scaling import (
     Worst as Worst,
     looseness as looseness,
 )
+from engine.interpolation.series import chebyshev as chebyshev, finish as finish
 from engine.interpolation.sites import Sites as Sites, prepare_sites as prepare_sites
 from engine.variant import Variant as Variant

@@ -1,15 +1,16 @@
 """In-betweens of two keyframes by one variant, as functions of time from one to the other."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 
 from engine.arrays import Complexes, Floats, Indices
 from engine.interpolation.blends import Blend
-from engine.interpolation.derivatives import Derivatives, Passage, weighted
+from engine.interpolation.passage import Derivatives, Passage, weighted
 from engine.interpolation.periods import Closing
-from engine.interpolation.residual import Residual
 from engine.interpolation.scaling import Scaling
+from engine.interpolation.series import Residual
 from engine.interpolation.sites import Sites
 from engine.maps import Boundary, Bounds
 
@@ -94,30 +95,55 @@ class Inbetweens:
         """Return ρ; 1 where Ψ is not scaled."""
         return 1.0 if self.scale is None else self.scale(time)
 
-    def derivatives_at(self, which: Indices) -> "PointDerivatives":
-        """Return f_z and f_z̄ of some of the points as functions of times."""
+    def derivatives_at(self, which: Indices) -> Callable[[Floats], tuple[Complexes, Complexes]]:
+        """Return f_z and f_z̄ of some of the points (p,) as functions of times (t,), (t, p) each."""
         nodes = self.sites.paths.places[which]
-        return PointDerivatives(
-            blend=self.blend.at(nodes),
-            scale=self.scale,
-            conformal=None if self._conformal is None else self._conformal.at(nodes),
-        )
+        blend, conformal = self.blend.at(nodes), self._conformal and self._conformal.at(nodes)
+
+        def derivatives(times: Floats) -> tuple[Complexes, Complexes]:
+            fz, g = blend.values(times)
+            fzbar = np.conj(g, out=g)
+            if self.scale is not None:
+                rho = self.scale.at(times)[:, None]
+                fzbar *= rho
+                if conformal is not None:
+                    fz *= rho + (1.0 - rho) * np.exp(conformal.at_times(times))
+            return fz, fzbar
+
+        return derivatives
 
     def offsets(self, time: float) -> Complexes:
         """Return f − f(anchor) at the points, (m,)."""
         rho = self.rho(time)
-        return self._offsets(_blended(self.blend, self._conformal, time, rho), time, rho)
+        return self._offsets(self._blended(time, rho), time, rho)
 
     def frame(self, time: float) -> Frame:
         """Return the in-between at a time in [0, 1]."""
         rho = self.rho(time)
-        blended = _blended(self.blend, self._conformal, time, rho)
+        blended = self._blended(time, rho)
         places = self.sites.paths.places
         return Frame(
             positions=self.passage.anchor_position(time) + self._offsets(blended, time, rho),
             fz=blended.fz[places],
             fzbar=rho * blended.g[places].conj(),
             rho=None if self.scale is None else rho,
+        )
+
+    def _blended(self, time: float, rho: float) -> Derivatives:
+        """Return the derivatives of a frame, Ψ' and Ψ'' before their scaling by ρ.
+
+        Around holes ρ scales Φ a little, too: Φ' is the mean of that for ρ = 0, F e^d, and that for
+        ρ = 1, F (`engine.interpolation.scaling.pointwise`).
+        """
+        blended = self.blend.derivatives(time)
+        if self._conformal is None:
+            return blended
+        d, d_z = np.zeros_like(blended.fz), np.zeros_like(blended.fz)
+        self._conformal.add_to(d, d_z, time)
+        alone = (1.0 - rho) * np.exp(d)
+        share = rho + alone
+        return blended._replace(
+            fz=blended.fz * share, fzz=blended.fzz * share + blended.fz * alone * d_z
         )
 
     def _offsets(self, blended: Derivatives, time: float, rho: float) -> Complexes:
@@ -137,50 +163,3 @@ class Inbetweens:
         errors += weighted([key.phi_error for key in keyframes], weights)
         errors += paths.integrals(steps)
         return errors
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class PointDerivatives:
-    """f_z and f_z̄ of in-betweens at some points (p,), without their paths.
-
-    Parameters
-    ----------
-    blend : Blend
-        At the points.
-    scale : Scaling or None
-    conformal : Residual or None
-        d at the points.
-    """
-
-    blend: Blend
-    scale: Scaling | None
-    conformal: Residual | None
-
-    def __call__(self, times: Floats) -> tuple[Complexes, Complexes]:
-        """Return both, each (t, p), at times (t,) in [0, 1]."""
-        fz, g = self.blend.values(times)
-        fzbar = np.conj(g, out=g)
-        if self.scale is not None:
-            rho = self.scale.at(times)[:, None]
-            fzbar *= rho
-            if self.conformal is not None:
-                fz *= rho + (1.0 - rho) * np.exp(self.conformal.at_times(times))
-        return fz, fzbar
-
-
-def _blended(blend: Blend, conformal: Residual | None, time: float, rho: float) -> Derivatives:
-    """Return the derivatives of a blend, Ψ' and Ψ'' before their scaling by ρ.
-
-    Around holes ρ scales Φ a little, too: Φ' is the mean of that for ρ = 0, F e^d, and that for
-    ρ = 1, F (`engine.interpolation.scaling.pointwise`).
-    """
-    blended = blend.derivatives(time)
-    if conformal is None:
-        return blended
-    d, d_z = np.zeros_like(blended.fz), np.zeros_like(blended.fz)
-    conformal.add_to(d, d_z, time)
-    alone = (1.0 - rho) * np.exp(d)
-    share = rho + alone
-    return blended._replace(
-        fz=blended.fz * share, fzz=blended.fzz * share + blended.fz * alone * d_z
-    )

@@ -6,8 +6,8 @@ from engine.arrays import Floats
 from engine.errors import EngineError
 from engine.interpolation.blends import BLENDS, Blend
 from engine.interpolation.inbetweens import Frame, Inbetweens
-from engine.interpolation.interval import Interval
-from engine.interpolation.periods import Unclosed
+from engine.interpolation.passage import Interval
+from engine.interpolation.periods import Unclosed, close, to_conformal
 from engine.interpolation.scaling import Scaling
 from engine.interpolation.sites import Sites
 from engine.variant import Variant
@@ -41,17 +41,17 @@ def frame_at(time: float, variant: Variant, interval: Interval) -> Frame:
     """
     if not 0.0 <= time <= 1.0:
         raise EngineError(f"An interval runs from time 0 to 1; {time:g} is outside.")
-    if interval.sites.closing is not None:
+    if interval.sites.period_basis is not None:
         return prepare_inbetweens(variant, interval).frame(time)
     return _closed(BLENDS[variant].only_at(time, interval), interval.sites).frame(time)
 
 
 def _closed(blend: Blend, sites: Sites) -> Inbetweens:
     """Close the periods around holes, and scale Ψ where that is called for."""
-    unclosed, periods = blend, sites.closing
+    unclosed, basis = blend, sites.period_basis
     closing = conformal = scale = None
     is_scaled = blend.is_scaled
-    if periods is not None and blend.sign:
+    if basis is not None and blend.sign:
         constants = blend.constants
         at_loops = unclosed.at(sites.paths.around)
 
@@ -61,13 +61,13 @@ def _closed(blend: Blend, sites: Sites) -> Inbetweens:
             )
 
         breaks = (0.0, 1.0) if constants is None else tuple(constants.series.breaks)
-        closing = periods.close(at, sign=blend.sign, breaks=breaks)
+        closing = close(basis, at, sign=blend.sign, breaks=breaks)
         blend = blend.with_residual(closing.residual)
         if blend.is_scaled_around_holes:
             times = np.linspace(0.0, 1.0, TIMES + 2)[1:-1]
             is_scaled = bool(unclosed.sharp_scaling(sites, closing, None)(times).min() < 1.0)
         if is_scaled:
-            conformal = periods.to_conformal(at, sign=blend.sign, breaks=breaks)
+            conformal = to_conformal(basis, at, sign=blend.sign, breaks=breaks)
     if is_scaled:
         scale = Scaling.of(unclosed.sharp_scaling(sites, closing, conformal))
     return Inbetweens(

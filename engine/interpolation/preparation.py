@@ -1,6 +1,6 @@
 """From keyframes and points to in-betweens at any time."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -9,12 +9,10 @@ import numpy.typing as npt
 from engine.dirichlet import Extension, HilbertTransform
 from engine.errors import EngineError
 from engine.interpolation.blends import BLENDS
-from engine.interpolation.course import Course, Joint, Tangent
-from engine.interpolation.derivatives import Passage
+from engine.interpolation.courses import Course, Joint, Tangent
 from engine.interpolation.inbetweens import Frame, Inbetweens
-from engine.interpolation.interval import Interval
-from engine.interpolation.keyframe_samples import KeyframeSamples, sample_keyframes
 from engine.interpolation.one_interval import prepare_inbetweens
+from engine.interpolation.passage import Interval, KeyframeSamples, Passage, sample_keyframes
 from engine.interpolation.sites import Sites, prepare_sites
 from engine.maps import Bounds, HarmonicMap
 from engine.paths import root_sheets
@@ -93,6 +91,7 @@ def prepare(
     through: bool = False,
     loop: bool = False,
     bounds: Bounds = Bounds(),
+    progress: Callable[[float], None] | None = None,
 ) -> Prepared:
     """Prepare the in-betweens of keyframes at points.
 
@@ -119,6 +118,8 @@ def prepare(
     bounds : Bounds
         What motion through keyframes obeys, as far as the variant can; keyframes beyond them widen
         them for the intervals around.
+    progress : callable
+        As in `HilbertTransform.on`; of all that is prepared, its transform may take longest.
 
     Raises
     ------
@@ -142,7 +143,7 @@ def prepare(
     extension: Extension | None = None
     if variant.needs_transform:
         transform = transform or HilbertTransform.on(
-            sites.outline, sites.cage, sites.boundary.holes
+            sites.outline, sites.cage, sites.boundary.holes, progress=progress
         )
         sites.require_boundary(transform.loops)
         extension = transform.at(sites.paths.nodes)

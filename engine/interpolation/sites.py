@@ -10,7 +10,7 @@ import numpy.typing as npt
 from engine.arrays import Complexes, Floats, as_points, freeze
 from engine.errors import EngineError
 from engine.geometry import ON_OUTLINE, Hole, deepest_point, diameter, require_inside
-from engine.interpolation.periods import PeriodClosing
+from engine.interpolation.periods import PeriodBasis
 from engine.maps import Boundary
 from engine.paths import (
     IntegrationPaths,
@@ -42,8 +42,8 @@ class Sites:
         Around the holes, at the nodes `paths.around`.
     arguments : float64, shape (1 + m, holes)
         Of z − c_j at the anchor and the points, continued along the paths.
-    closing : PeriodClosing or None
-        Of in-betweens around the holes; None where there are none.
+    period_basis : PeriodBasis or None
+        Of corrections around the holes; None where there are none.
     """
 
     diameter: float
@@ -52,7 +52,7 @@ class Sites:
     boundary: Boundary
     loops: Loops
     arguments: Floats
-    closing: PeriodClosing | None
+    period_basis: PeriodBasis | None
 
     @property
     def outline(self) -> Complexes:
@@ -87,13 +87,13 @@ class Sites:
     @property
     def nbytes(self) -> int:
         """Memory that the arrays take, in bytes."""
-        closing = 0 if self.closing is None else self.closing.nbytes
+        basis = 0 if self.period_basis is None else self.period_basis.nbytes
         return (
             self.points.nbytes
             + self.boundary.nbytes
             + self.paths.nbytes
             + self.arguments.nbytes
-            + closing
+            + basis
         )
 
 
@@ -158,7 +158,7 @@ def prepare_sites(
         boundary=boundary,
         loops=loops,
         arguments=freeze(_arguments(paths, boundary.span.centres)),
-        closing=PeriodClosing.of(boundary, loops, paths.nodes) if inner else None,
+        period_basis=PeriodBasis.of(boundary, loops, paths.nodes) if inner else None,
     )
 
 

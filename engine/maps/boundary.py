@@ -59,10 +59,10 @@ class Boundary:
         segment.
     vertex_coordinates : complex128, shape (p, n)
         The functions themselves at the vertices of all loops.
-    basis : complex128, shape (n, n)
+    basis : complex128, shape (n, r)
         The coefficients, one function a column, of `Span.orthonormal_basis` on the own samples; all
         but the constants with the mean 0 at the vertices.
-    basis_derivatives : complex128, shape (m, n)
+    basis_derivatives : complex128, shape (m, r)
         Of the functions of the basis.
     """
 
@@ -119,9 +119,8 @@ class Boundary:
         vertex_coordinates = readonly(span.coordinates(np.concatenate(loops)))
         basis = span.orthonormal_basis(derivatives, lengths, size)
         # With the mean 0 a handle is about as stiff against one function as against another.
-        others = np.setdiff1d(np.arange(len(span)), [part.start for part in span.slices])
-        means = vertex_coordinates.mean(axis=0) @ basis[:, others]
-        basis[: len(cage), others] -= means
+        others = basis[:, len(span.cages) :]
+        others[: len(cage)] -= vertex_coordinates.mean(axis=0) @ others
         return cls(
             outline=outline,
             span=span,

@@ -14,14 +14,15 @@ ln|z − c_j| for values, and 1 / (z − c_j) for derivatives, have a_j and conj
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.linalg import solve_triangular
 
 from engine.arrays import Complexes, Floats
 from engine.geometry import Hole, distance_to_segments
 from engine.maps.cauchy import cauchy_coordinates, cauchy_derivatives, difference_jumps, evaluate
 
-# What is this small, of the mean square of the derivatives, cannot be told from nothing.
-DEGENERATE = 1e-10
+# Combinations whose mean square of the derivatives is less than this part of the mean of all are
+# left out: steps along them show next to nothing at samples, and bend most between them. Cages
+# whose vertices are nearer to each other than to the outline have many.
+DEGENERATE = 1e-5
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -120,8 +121,8 @@ class Span:
     def orthonormal_basis(self, derivatives: Complexes, weights: Floats, size: float) -> Complexes:
         """Return combinations of the functions whose derivatives are orthonormal at samples.
 
-        Around holes only nearly so: logarithms are scaled, each by itself, and other cages' columns
-        stay what they are there, free of constants. The first column of each cage is a constant.
+        But for logarithms, which are scaled, each by itself. First come constants, one of each
+        cage, which the others are free of around holes; last the logarithms.
 
         Parameters
         ----------
@@ -132,24 +133,25 @@ class Span:
 
         Returns
         -------
-        complex128, shape (n, n)
-            One combination a column. Functions that are the same at the samples become small ones.
+        complex128, shape (n, r)
+            One combination a column, of which those that are next to nothing are left out.
         """
-        basis = np.zeros((len(self), len(self)), dtype=np.complex128)
-        constants = [part.start for part in self.slices]
-        others = np.setdiff1d(np.arange(len(self) - len(self.holes)), constants)
+        starts = [part.start for part in self.slices]
+        logs = np.arange(len(self) - len(self.holes), len(self))
+        others = np.setdiff1d(np.arange(len(self) - len(logs)), starts)
         rows = np.sqrt(weights)[:, None] * derivatives
-        gram = rows[:, others].conj().T @ rows[:, others]
-        gram += DEGENERATE * gram.diagonal().real.mean() * np.eye(len(others))
-        basis[np.ix_(others, others)] = (
-            solve_triangular(np.linalg.cholesky(gram), np.eye(len(others)), lower=True).conj().T
-        )
+        squares, vectors = np.linalg.eigh(rows[:, others].conj().T @ rows[:, others])
+        kept = squares > DEGENERATE * squares.mean()
+        middle = slice(len(starts), len(starts) + np.count_nonzero(kept))
+        basis = np.zeros((len(self), middle.stop + len(logs)), dtype=np.complex128)
+        basis[others, middle] = vectors[:, kept] / np.sqrt(squares[kept])
         for part in self.slices[1:]:
             basis[part] -= basis[part].mean(axis=0)
-        for part in self.slices:
-            basis[part, part.start] = size
-        logs = np.arange(len(self) - len(self.holes), len(self))
-        basis[logs, logs] = 1.0 / np.linalg.norm(rows[:, logs], axis=0)
+        for column, part in enumerate(self.slices):
+            basis[part, column] = size
+        basis[logs, np.arange(middle.stop, basis.shape[1])] = 1.0 / np.linalg.norm(
+            rows[:, logs], axis=0
+        )
         return basis
 
     def bending(self, coefficients: Complexes) -> Floats:

@@ -6,7 +6,7 @@ programs, of a whole motion within a tolerance.
 Imports: `engine.interpolation`.
 """
 
-from engine.interpolation.chebyshev import finish as finish
+from engine.interpolation import finish as finish
 from engine.streaming.build import build_series as build_series
 from engine.streaming.channels import (
     Channels as Channels,

@@ -81,7 +81,7 @@ class _Cut(NamedTuple):
     forms: Floats  # (k, 2 + r)
 
 
-class _Known(NamedTuple):
+class _Longest(NamedTuple):
     """What is known of the longest piece from a place on.
 
     The longest that is accurate, its length and what to try after it; and the shortest that fails.
@@ -108,21 +108,21 @@ def cut(motion: SampledMotion, tolerance: float) -> Generator[None, None, tuple[
     attempts = 0
     for start, end in _stretches(motion, columns, tolerance):
         place, length = start, end - start
-        known = _Known()
+        known = _Longest()
         while place < end and attempts < MOST_ATTEMPTS:
             attempts += 1
-            room = end - place
-            length = min(max(length, chebyshev.SHORTEST), room)
-            if room / 2 < length < room:
-                length = room / 2  # no sliver is left at the end
-            goal = end if length == room else place + length
+            left = end - place
+            length = min(max(length, chebyshev.SHORTEST), left)
+            if left / 2 < length < left:
+                length = left / 2  # no sliver is left at the end
+            goal = end if length == left else place + length
             found, error = _attempt(motion, (place, goal), forms, lower)
             yield
             growth = SAFETY * (allowed / error) ** (1 / ORDER) if error > 0 else MOST
             following = length * min(max(growth, LEAST), MOST)
             if error <= allowed:
                 known = known._replace(best=found, longest=length, following=following)
-                is_over = error >= ENOUGH * allowed or length >= room / 2
+                is_over = error >= ENOUGH * allowed or length >= left / 2
             else:
                 known = known._replace(failed=length)
                 is_over = length <= chebyshev.SHORTEST
@@ -130,7 +130,7 @@ def cut(motion: SampledMotion, tolerance: float) -> Generator[None, None, tuple[
                 if known.best is not None:
                     cuts.append(known.best)
                     goal, following = known.best.piece[1], known.following
-                place, length, known = goal, following, _Known()
+                place, length, known = goal, following, _Longest()
             elif known.best is not None and known.failed < np.inf:
                 length = (known.longest * known.failed) ** 0.5
             else:

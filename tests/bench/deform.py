@@ -7,7 +7,16 @@ from typing import NamedTuple
 import numpy as np
 
 from engine.arrays import Complexes
-from engine.deform import Deformer, Handles, Objective, State, Wish, line_search, newton_direction
+from engine.deform import (
+    Deformer,
+    Handles,
+    Objective,
+    State,
+    Wish,
+    line_search,
+    newton_direction,
+    projected_hessian,
+)
 from engine.maps import Boundary, Bounds, certify
 from tests.bench.table import Row, Table, measure
 
@@ -71,7 +80,7 @@ def _drag(boundary: Boundary) -> Table:
             note=f"mean of the first {DRAG_STEPS} towards one wish, "
             f"{sum(step.end.search is not None for step in resting)} in search of rest",
         ),
-        Row(name="Hessian", seconds=measure(lambda: objective.hessian(jet, radial))),
+        Row(name="Hessian", seconds=measure(lambda: projected_hessian(objective, jet, radial))),
         Row(
             name="Hessian and its factors, direction",
             seconds=measure(lambda: newton_direction(objective, jet)),

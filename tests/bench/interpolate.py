@@ -23,7 +23,7 @@ from engine.interpolation import (
     prepare_sites,
     sample_keyframes,
 )
-from engine.maps import HarmonicMap, Span
+from engine.maps import Bounds, HarmonicMap, Span
 from engine.paths import root_sheets
 from engine.streaming import Positions, Series, build_series, finish
 from tests.bench.table import Row, Table, measure
@@ -81,7 +81,7 @@ class KeyframePair:
     def inbetweens(self, variant: Variant) -> Inbetweens:
         """Prepare the interval."""
         passage = Passage.of(self.keyframes, self.sheets)
-        interval = Interval(self.sites, passage, transform=self.extension)
+        interval = Interval(self.sites, passage, Bounds(), transform=self.extension)
         return prepare_inbetweens(variant, interval)
 
 
@@ -248,7 +248,8 @@ class _HoledPair:
 
         def prepared() -> Series:
             sheets = root_sheets(np.array([key.anchor_fz for key in keyframes]))
-            interval = Interval(self.sites, Passage.of(keyframes, sheets), transform=self.extension)
+            passage = Passage.of(keyframes, sheets)
+            interval = Interval(self.sites, passage, Bounds(), self.extension)
             inbetweens = prepare_inbetweens(variant, interval)
             return finish(build_series(Positions.of(inbetweens, self.sites)))
 

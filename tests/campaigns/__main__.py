@@ -6,6 +6,7 @@ short ones.
 
 import argparse
 import importlib
+import os
 import signal
 import sys
 import time
@@ -20,6 +21,7 @@ CAMPAIGNS = {
     "kills": ("processes killed", 1200),
     "faults": ("full disks and ended windows", 200),
     "shapes": ("shapes", 500),
+    "minima": ("requests", 96),
     "soak": ("minutes in the window", 30),
     "readers": ("files tampered with", 11_000),
 }
@@ -28,8 +30,11 @@ CAMPAIGNS = {
 def run() -> None:
     """Run the campaigns that are asked for."""
     use_one_thread()
-    # Shells let what they start in the background ignore it, and what that starts as well.
+    # Shells let what they start in the background ignore it, as nohup does another, and what that
+    # starts as well.
     signal.signal(signal.SIGINT, signal.default_int_handler)
+    if os.name != "nt" and signal.getsignal(signal.SIGHUP) is signal.SIG_IGN:
+        signal.signal(signal.SIGHUP, lambda *_: None)
     parser = argparse.ArgumentParser(prog="python -m tests.campaigns", description=__doc__)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--only", choices=list(CAMPAIGNS), nargs="+", help="some campaigns")

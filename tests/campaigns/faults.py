@@ -19,6 +19,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from functools import partial
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
@@ -275,22 +276,66 @@ def ended_windows(rng: np.random.Generator, count: int) -> dict[str, float]:
     """End windows, in which somebody edits all the time, by signals at random moments."""
     if shutil.which("Xvfb") is None:
         return {"windows ended": 0}
-    longest, lost = 0.0, 0
-    with _screen() as display:
+    ends = []
+    with _screen() as screen:
         for _ in range(count):
-            number = rng.choice([signal.SIGTERM, signal.SIGHUP, signal.SIGINT])
-            with tempfile.TemporaryDirectory() as home:
-                seconds, unsaved = _end_window(rng, display, Path(home), int(number))
-            longest, lost = max(longest, seconds), max(lost, unsaved)
-    return {"windows ended": count, "longest until the end, s": longest, "most edits lost": lost}
+            number = int(rng.choice([signal.SIGTERM, signal.SIGHUP, signal.SIGINT]))
+            ends.append(
+                _end_window(
+                    rng, screen, lambda window, n=number: window.send_signal(n), 128 + number
+                )
+            )
+    return _told(ends)
+
+
+def lost_displays(rng: np.random.Generator, count: int) -> dict[str, float]:
+    """End the X servers of windows, in which somebody edits all the time, at random moments."""
+    if shutil.which("Xvfb") is None:
+        return {"windows ended": 0}
+    ends = []
+    for _ in range(count):
+        with _screen() as screen:
+            ends.append(_end_window(rng, screen, lambda _, s=screen: s.server.kill(), 1))
+    return _told(ends)
+
+
+def _told(ends: list[tuple[float, int]]) -> dict[str, float]:
+    longest, lost = (max(column) for column in zip(*ends, strict=True))
+    return {
+        "windows ended": len(ends),
+        "longest until the end, s": longest,
+        "most edits lost": lost,
+    }
+
+
+class Screen(NamedTuple):
+    """An X server that nobody looks at, and its name."""
+
+    server: subprocess.Popen[bytes]
+    name: str
 
 
 def _end_window(
-    rng: np.random.Generator, display: str, home: Path, number: int
+    rng: np.random.Generator,
+    screen: Screen,
+    end: Callable[[subprocess.Popen[str]], None],
+    status: int,
+) -> tuple[float, int]:
+    """End a window; return the seconds that it takes, and how many edits are lost."""
+    with tempfile.TemporaryDirectory() as home:
+        return _end_window_at(rng, screen, end, status, Path(home))
+
+
+def _end_window_at(
+    rng: np.random.Generator,
+    screen: Screen,
+    end: Callable[[subprocess.Popen[str]], None],
+    status: int,
+    home: Path,
 ) -> tuple[float, int]:
     environment = {
         **os.environ,
-        "DISPLAY": display,
+        "DISPLAY": screen.name,
         "HOME": str(home),
         "XDG_CONFIG_HOME": str(home),
         "LIBGL_ALWAYS_SOFTWARE": "1",
@@ -308,13 +353,13 @@ def _end_window(
             first = process.stdout.readline()
             time.sleep(rng.uniform(0, 2))
             begun = time.monotonic()
-            process.send_signal(number)
+            end(process)
             told, said = process.communicate(timeout=PATIENCE)
             seconds = time.monotonic() - begun
         finally:
             process.kill()
     last = int((first + told).split()[-1])
-    expect(process.returncode == 128 + number, f"it ends with {process.returncode}: {said}")
+    expect(process.returncode == status, f"it ends with {process.returncode}: {said}")
     expect("your unsaved work was kept" in said, said)
     expect("Traceback" not in said, said)
     expect(seconds < MOST_SECONDS, f"it takes {seconds} s to end")
@@ -325,14 +370,14 @@ def _end_window(
 
 
 @contextmanager
-def _screen() -> Iterator[str]:
+def _screen() -> Iterator[Screen]:
     ours, theirs = os.pipe()
     command = ["Xvfb", "-displayfd", str(theirs), "-screen", "0", "1280x800x24", "-noreset"]
     server = subprocess.Popen(command, pass_fds=[theirs], stderr=subprocess.DEVNULL)
     os.close(theirs)
     try:
         expect(bool(select.select([ours], [], [], PATIENCE)[0]), "Xvfb does not start")
-        yield f":{os.read(ours, 16).decode().strip()}"
+        yield Screen(server, f":{os.read(ours, 16).decode().strip()}")
     finally:
         os.close(ours)
         server.terminate()
@@ -358,9 +403,9 @@ def refused_gl(_: np.random.Generator, __: int) -> dict[str, float]:
             tried += 1
         expect(_contents(Path(name)) == {}, "something was written")
     if shutil.which("Xvfb") is not None:
-        with _screen() as display:
+        with _screen() as screen:
             for variables in WITHOUT_GL:
-                words = _run_app([], {**variables, "DISPLAY": display})
+                words = _run_app([], {**variables, "DISPLAY": screen.name})
                 expect("the window cannot be opened" in words, words)
                 expect("lissom doctor" in words, words)
                 tried += 1
@@ -393,7 +438,8 @@ FEW = 10  # with which only the quick ones are tried, as in the tests
 KINDS = (
     ("full disks", full_disks, 0.8),
     ("refused places", refused_places, 0.0),
-    ("signals to the window", ended_windows, 0.2),
+    ("signals to the window", ended_windows, 0.1),
+    ("displays that go away", lost_displays, 0.1),
     ("no OpenGL", refused_gl, 0.0),
 )
 

@@ -6,8 +6,8 @@ import numpy as np
 from interpolation_shapes import around, subdivided
 
 from engine.deform import Deformer, Handles, Objective
+from engine.deform.model import MARGIN
 from engine.deform.rest import Search, Way, advance, begin_search
-from engine.deform.steering import MARGIN
 from engine.maps import Boundary, Bounds
 
 

@@ -28,7 +28,12 @@ from app.solving.script import load_pose_script
 from app.storage.autosave import Autosave, Origin, leftover_origin, load_leftover
 from app.storage.files import read_file
 from app.storage.pictures import decode_mask, decode_picture, read_openraster, read_photoshop
-from app.storage.preferences import Preferences, load_preferences, save_preferences
+from app.storage.preferences import (
+    Preferences,
+    load_preferences,
+    save_preferences,
+    settings_folder,
+)
 from app.storage.project_file import load_project, save_project
 from app.storage.thumbnail import draw_thumbnail, read_thumbnail
 
@@ -305,7 +310,8 @@ class Watch:
     def over(self, folder: Path) -> Iterator[None]:
         """Watch that nothing but this folder and what is installed is opened."""
         installed = {sys.prefix, sys.base_prefix, str(Path(__file__).parents[2])}
-        self._allowed = (str(folder), *installed, "/proc/", "/sys/", "/dev/null", "/etc/")
+        settings = str(settings_folder())  # how much memory pictures may take is asked there
+        self._allowed = (str(folder), *installed, settings, "/proc/", "/sys/", "/dev/null", "/etc/")
         self.strayed = []
         try:
             yield

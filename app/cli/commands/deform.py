@@ -10,7 +10,7 @@ import numpy.typing as npt
 from app.cli.hole_arrays import HOLE_ARRAYS, hole_arrays, read_holes
 from app.errors import LissomError
 from app.storage import check_writable, read_arrays, write_arrays
-from engine.deform import Deformer, Handles
+from engine.deform import Deformer, Handles, require_held
 from engine.maps import Boundary, Bounds, HarmonicMap
 
 LIMITS = ("k_max", "sigma_a_max", "sigma_b_min")
@@ -26,15 +26,18 @@ def run(arguments: argparse.Namespace) -> int:
     )
     k, sigma_a, sigma_b = (_scalar(case, name) for name in LIMITS)
     bounds = Bounds(k=k, sigma_a=sigma_a, sigma_b=sigma_b)
-    boundary = Boundary.sample(case["outline"], case["cage"], read_holes(case))
-    handles = Handles.place(boundary, case["handles"])
+    outline, cage, holes = case["outline"], case["cage"], read_holes(case)
+    points = require_held(case["handles"], outline, cage, holes)
+    boundary = Boundary.sample(outline, cage, holes)
+    handles = Handles.place(boundary, points)
     wishes = [handles.wish(row) for row in _rows(case, len(handles.points))]
     deformer = Deformer(boundary=boundary, handles=handles, bounds=bounds)
-    state, steps = deformer.start(_start(case, boundary)), 0
+    state, tried = deformer.start(_start(case, boundary)), 0
     for wish in wishes[:-1]:
         state, count = deformer.follow(state, wish)
-        steps += count
+        tried += count
     state, count = deformer.settle(state, wishes[-1])
+    tried += count
     certificate = state.certificate
     write_arrays(
         arguments.out,
@@ -51,12 +54,13 @@ def run(arguments: argparse.Namespace) -> int:
             "sigma_b": certificate.sigma_b,
             "certified": certificate.certified,
             "status": state.status.value,
-            "steps": steps + count,
+            "steps": state.steps,
+            "steps_tried": tried,
         },
     )
     print(
         f"{state.status.value}: k ≤ {certificate.k:.4f}, sigma_a ≤ {certificate.sigma_a:.4f}, "
-        f"sigma_b ≥ {certificate.sigma_b:.4f}, {steps + count} steps"
+        f"sigma_b ≥ {certificate.sigma_b:.4f}, {state.steps} steps of {tried} tried"
     )
     return 0
 

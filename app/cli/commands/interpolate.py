@@ -9,7 +9,7 @@ import numpy.typing as npt
 from app.cli.console import notice
 from app.cli.keyframes import Keyframes, read_keyframes
 from app.document import NATURAL
-from app.errors import LissomError
+from app.errors import LissomError, tell
 from app.storage import check_writable, write_arrays
 from engine.baselines import Baseline, prepare_baseline
 from engine.interpolation import Variant, prepare
@@ -55,6 +55,7 @@ def _harmonic(arguments: argparse.Namespace, given: Keyframes) -> dict[str, npt.
         through=arguments.through,
         loop=arguments.loop,
         bounds=_bounds(arguments),
+        progress=tell,
     )
     frames = [prepared.frame(time) for time in arguments.times]
     results = {

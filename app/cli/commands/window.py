@@ -9,7 +9,14 @@ from contextlib import suppress
 from pathlib import Path
 
 from app.cli.console import fail, notice
-from app.cli.process import PATIENCE, Endings, end_within, has_threads_left, share_interpreter
+from app.cli.process import (
+    PATIENCE,
+    Endings,
+    at_lost_display,
+    end_within,
+    has_threads_left,
+    share_interpreter,
+)
 from app.editor import Jobs, Session
 from app.editor.actions import files, saving
 from app.errors import EXPECTED_ERRORS
@@ -47,8 +54,10 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.file is not None:
         files.open_file(session, arguments.file.resolve())
     window = Window(session, lambda: Renderer(window_context()))
+    heard = at_lost_display(lambda: _keep_at_lost_display(session), EXIT_FAILED)
     with Endings(window.wake) as endings:
         status = _show(window, endings)
+        del heard
         have_ended = session.jobs.close(LEISURE if session.quitting else HURRY)
         if session.quitting:
             # One that was being written when the person left.
@@ -97,6 +106,15 @@ def _make(folder: Path, session: Session) -> None:
             f"Unsaved work and settings cannot be kept: {error}. Save often.", tone="error"
         )
         session.failing |= {saving.AUTOSAVING.complaint, saving.WRITING.complaint}
+
+
+def _keep_at_lost_display(session: Session) -> None:
+    """Keep unsaved work, and tell why the window ends."""
+    end_within(PATIENCE, EXIT_FAILED)
+    notice("the display is gone")
+    if not session.quitting:
+        _keep(session)
+    sys.stderr.flush()
 
 
 def _keep(session: Session) -> None:

@@ -24,7 +24,8 @@ MAP.npz holds outline, cage, the arrays of the holes, and
   certified                       whether that is within the bounds, and the map injective
   status                          "converged" at rest; "at the limits" at rest, held back by the
                                   bounds; "unfinished" where neither is proven
-  steps                           Newton steps in all
+  steps                           Newton steps of the search that found the map
+  steps_tried                     those of all searches, and along the path
 
 examples:
   lissom deform case.npz --out map.npz

@@ -14,19 +14,12 @@ class Clip:
     """A figure in the time of its scene: all that its motion follows from.
 
     Clips are equal where the motion is.
-
-    Parameters
-    ----------
-    frames : FrameRange
-        Of the scene.
-    loop : bool
-    baseline : Baseline, optional
-        A method that the figure's own variant is compared with, in place of it.
     """
 
     figure: Figure
-    frames: FrameRange
+    frames: FrameRange  # of the scene
     loop: bool
+    # A method that the figure's own variant is compared with, in place of it.
     baseline: Baseline | None = None
 
     @property

@@ -11,21 +11,11 @@ USUAL_EXTENT = 0.15
 
 
 class Front(NamedTuple):
-    """A point of the drawing that is in front, or behind, and how far around it that holds.
+    """A point of the drawing that is in front, or behind, and how far around it that holds."""
 
-    Parameters
-    ----------
-    place : complex
-        At rest.
-    depth : float
-        From −1, behind, to 1, in front.
-    extent : float
-        In pixels.
-    """
-
-    place: complex
-    depth: float
-    extent: float
+    place: complex  # at rest
+    depth: float  # from −1, behind, to 1, in front
+    extent: float  # in pixels
 
 
 def fronts_at(clip: Clip, frame: float) -> tuple[Front, ...]:

@@ -76,17 +76,10 @@ class Extremes(NamedTuple):
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Shortfall:
-    """The handles that fall short of their targets in a pose.
+    """The handles that fall short of their targets in a pose."""
 
-    Parameters
-    ----------
-    lags : mapping of int to float
-        By how many pixels, by their ids; those that arrived are not in it.
-    at_limits : bool
-        Whether the limits hold them back. Else the other handles and the shape's stiffness do.
-    """
-
-    lags: Mapping[int, float]
+    lags: Mapping[int, float]  # by how many pixels, by their ids; those that arrived are not in it
+    # Whether the limits hold them back. Else the other handles and the shape's stiffness do.
     at_limits: bool
 
     @property

@@ -18,17 +18,11 @@ SAME_PLACE = 1e-6
 
 
 class Moment(NamedTuple):
-    """A place between key `interval` and the key after it (the first one after the last).
-
-    Parameters
-    ----------
-    interval : int
-    weight : float
-        How far it is from the former, 0, to the latter, 1: the time of the interval's in-betweens.
-        Where these blend the two keys alone, it is the weight of the latter.
-    """
+    """A place between key `interval` and the key after it (the first one after the last)."""
 
     interval: int
+    # How far it is from the former, 0, to the latter, 1: the time of the interval's in-betweens.
+    # Where these blend the two keys alone, it is the weight of the latter.
     weight: float
 
 

@@ -25,19 +25,11 @@ Passed = Joint | float
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Transit:
-    """How a clip goes from one key to the next.
+    """How a clip goes from one key to the next."""
 
-    Parameters
-    ----------
-    keys : tuple of Keyframe
-        The two; with the one before where `start` is a joint, and the one after where `end` is one.
-    turns : tuple of int
-        Whole turns on the way from each of them to the next.
-    start, end : Joint or float
-    """
-
+    # The two; with the one before where `start` is a joint, and the one after where `end` is one.
     keys: tuple[Keyframe, ...]
-    turns: tuple[int, ...]
+    turns: tuple[int, ...]  # whole turns on the way from each of them to the next
     start: Passed
     end: Passed
 

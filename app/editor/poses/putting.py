@@ -11,7 +11,7 @@ from app.editor.work import Kind
 from app.solving import Rig
 from engine.maps import Bounds, certify
 
-Use = Callable[[Figure, tuple[Keyframe, ...]], None]
+Putting = Callable[[Figure, tuple[Keyframe, ...]], None]
 
 
 def put(
@@ -112,7 +112,7 @@ def shown_keys(project: Project) -> tuple[Keyframe, ...]:
     return () if pose is None else (_as_key(pose),)
 
 
-def find_pose(session: Session, project: Project, kind: Kind, take: Use) -> None:
+def find_pose(session: Session, project: Project, kind: Kind, take: Putting) -> None:
     """Let the worker find the pose that is nearest to the in-between that is shown."""
     clip, frame = project.clip, playback.current_frame(session, project)
 

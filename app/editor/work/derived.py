@@ -9,27 +9,15 @@ Value = TypeVar("Value")
 
 @dataclass(slots=True, eq=False)
 class Derived(Generic[Source, Value]):
-    """A value that follows a source; it stays while another one is on its way.
-
-    Parameters
-    ----------
-    source : Source, optional
-        What it was derived from; None before the first one.
-    failure : Source, optional
-        What none could be derived from: that is not tried again.
-    begun : tuple, optional
-        A source, and as much of its value as is worked out.
-    remembers : int
-        How many earlier values are kept for when their sources come back, as by undo.
-    earlier : list of tuple
-        Those, with their sources, the newest last.
-    """
+    """A value that follows a source; it stays while another one is on its way."""
 
     value: Value
-    source: Source | None = None
-    failure: Source | None = None
-    begun: tuple[Source, Value] | None = None
+    source: Source | None = None  # what it was derived from; None before the first one
+    failure: Source | None = None  # what none could be derived from: that is not tried again
+    begun: tuple[Source, Value] | None = None  # a source, and as much of its value as is worked out
+    # How many earlier values are kept for when their sources come back, as by undo.
     remembers: int = 0
+    # Those, with their sources, the newest last.
     earlier: list[tuple[Source, Value]] = field(default_factory=list)
 
     def follows(self, source: Source) -> bool:

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Any, Literal, get_args
 
-from app.errors import LissomError
+from app.errors import LissomError, told_to
 
 LaneName = Literal["hand", "export", "display", "keep"]
 CANCELLED = "it was cancelled"
@@ -23,42 +23,23 @@ MOMENT = 0.5  # seconds that it waits for what was given up
 
 @dataclass(frozen=True, slots=True)
 class Kind:
-    """What a job is for.
+    """What a job is for."""
 
-    Parameters
-    ----------
-    label : str
-        In words that the status bar can show.
-    complaint : str
-        What is said where it fails.
-    lane : str
-        On which thread it runs: that for what is under the "hand", for an "export", for what is to
-        be on "display", or for what the disk is to "keep".
-    """
-
-    label: str
-    complaint: str = ""
+    label: str  # in words that the status bar can show
+    complaint: str = ""  # what is said where it fails
+    # On which thread it runs: that for what is under the "hand", for an "export", for what is to be
+    # on "display", or for what the disk is to "keep".
     lane: LaneName = "display"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Job:
-    """A pure computation on frozen input, and what is done with its result.
-
-    Parameters
-    ----------
-    work : callable
-        Runs on a worker thread; touches nothing mutable and no GL.
-    done : callable
-        Takes the result, on the main thread.
-    failed : callable
-        Takes the exception that ended `work`, on the main thread.
-    """
+    """A pure computation on frozen input, and what is done with its result."""
 
     kind: Kind
-    work: Callable[[], Any]
-    done: Callable[[Any], None]
-    failed: Callable[[Exception], None]
+    work: Callable[[], Any]  # runs on a worker thread; touches nothing mutable and no GL
+    done: Callable[[Any], None]  # takes the result, on the main thread
+    failed: Callable[[Exception], None]  # takes the exception that ended `work`, on the main thread
 
 
 @dataclass(slots=True, eq=False)
@@ -69,6 +50,7 @@ class _Lane:
     running: Job | None = None
     since: float = 0.0
     is_stale: bool = False
+    share: float | None = None  # that is done, where the job tells it
 
 
 class Jobs:
@@ -117,8 +99,9 @@ class Jobs:
     def leave(self, kind: Kind) -> None:
         """Give up a job of this kind that may never end; what waits behind it goes on elsewhere.
 
-        Its result is thrown away, and it has failed as far as anybody is told. Where a newer one of
-        its kind waits for it to end, nobody is told anything: that one begins.
+        Its result is thrown away, and it has failed as far as anybody is told. One that tells how
+        far it is ends when it tells so next. Where a newer one of its kind waits for it to end,
+        nobody is told anything: that one begins.
         """
         with self._condition:
             left = {
@@ -163,6 +146,14 @@ class Jobs:
                 and lane.since <= start
                 and (not lane.is_stale or self._is_waiting(name))
             )
+
+    def share_of(self, kind: Kind) -> float | None:
+        """Return how much of a job that runs is done, from 0 to 1; None where it does not tell."""
+        with self._condition:
+            for lane in self._lanes.values():
+                if lane.running is not None and lane.running.kind == kind:
+                    return lane.share
+            return None
 
     def deliver(self) -> None:
         """Hand over what is finished; on the main thread, once a frame."""
@@ -247,7 +238,9 @@ class Jobs:
                     self._condition.wait()
                 self._waiting.remove(job)
                 lane.running, lane.since, lane.is_stale = job, self._clock(), False
-            hand_over = _attempt(job)
+                lane.share = None
+            with told_to(partial(self._hear, lane)):
+                hand_over = _attempt(job)
             with self._condition:
                 if not lane.is_stale:
                     self._finished.append((job.kind, hand_over))
@@ -256,6 +249,12 @@ class Jobs:
             self.wake()
             # While the thread waits they would keep alive what they hold, such as a whole drawing.
             del job, hand_over
+
+    def _hear(self, lane: _Lane, share: float) -> None:
+        """Note how far a job is, on its own thread; end it where it was given up."""
+        if self._is_closed or lane in self._left:
+            raise LissomError(CANCELLED)
+        lane.share = share
 
     def _next(self, lane: LaneName) -> Job | None:
         return next((job for job in self._waiting if job.kind.lane == lane), None)

@@ -32,24 +32,16 @@ REMEDIES: Final[dict[Backend, str]] = {
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BackendReport:
-    """What one way of drawing without a window offers on this machine.
-
-    Parameters
-    ----------
-    problem : str
-        Why it does not work and what to install; empty where it works, as are the fields below
-        where it does not.
-    renderer, version : str
-        GL_RENDERER and GL_VERSION.
-    largest_size : int
-        Longest side of a picture or frame, in pixels.
-    """
+    """What one way of drawing without a window offers on this machine."""
 
     backend: Backend
+    # Why it does not work and what to install; empty where it works, as are the fields below where
+    # it does not.
     problem: str = ""
+    # GL_RENDERER and GL_VERSION.
     renderer: str = ""
     version: str = ""
-    largest_size: int = 0
+    largest_size: int = 0  # longest side of a picture or frame, in pixels
 
 
 def create_context(backend: Backend | None = None) -> moderngl.Context:

@@ -13,21 +13,12 @@ HEADER: Final = "#version 330 core\n"
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ShaderFiles:
-    """The files of a program; those of one stage are joined in order.
-
-    Parameters
-    ----------
-    vertex, fragment : tuple of str
-    geometry : str
-        Empty where the program has no geometry stage.
-    constants : tuple of (name, value)
-        Known to the vertex and the fragment stage.
-    """
+    """The files of a program; those of one stage are joined in order."""
 
     vertex: tuple[str, ...]
     fragment: tuple[str, ...]
-    geometry: str = ""
-    constants: tuple[tuple[str, int], ...] = ()
+    geometry: str = ""  # empty where the program has no geometry stage
+    constants: tuple[tuple[str, int], ...] = ()  # known to the vertex and the fragment stage
 
 
 class Programs:

@@ -2,10 +2,13 @@
 
 In: the bytes of a picture file.
 Out: decoded pictures, and in words what was done to them.
-Imports: `app.document`, `engine.arrays`.
+Imports: `app.document`, `app.storage.preferences`, `engine.arrays`.
 """
 
-from app.storage.pictures.cores import side_by_side as side_by_side
+from app.storage.pictures.cores import (
+    require_memory as require_memory,
+    side_by_side as side_by_side,
+)
 from app.storage.pictures.layered import Layer as Layer, LayeredPicture as LayeredPicture
 from app.storage.pictures.openraster import read_openraster as read_openraster
 from app.storage.pictures.photoshop import read_photoshop as read_photoshop

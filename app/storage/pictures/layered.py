@@ -6,11 +6,10 @@ from dataclasses import dataclass, replace
 
 from app.document import layer_commands
 from app.errors import LissomError
+from app.storage.pictures.cores import require_memory
 from app.storage.pictures.picture import Picture
 
 MOST_LAYERS = 200
-# Pixels of all layers together; decoded, each takes four bytes.
-MOST_PIXELS = 256_000_000
 # Groups in each other.
 DEEPEST = 50
 
@@ -104,10 +103,7 @@ def require_few(count: int) -> None:
 def require_room(sizes: Sequence[tuple[int, int]]) -> None:
     """Refuse more layers, or larger ones, than there is room for, before they are decoded."""
     require_few(len(sizes))
-    if sum(width * height for width, height in sizes) > MOST_PIXELS:
-        raise LissomError(
-            f"its layers have more than {MOST_PIXELS:,} pixels together; crop or scale it first"
-        )
+    require_memory(sizes)
 
 
 def corner_from_top(left: float, top: float, size: tuple[int, int], height: int) -> complex:

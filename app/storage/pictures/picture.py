@@ -13,8 +13,8 @@ from PIL import Image, ImageFile, ImageOps, UnidentifiedImageError
 
 from app.errors import LissomError
 from app.storage.pictures.colour import to_srgb
-from app.storage.pictures.cores import side_by_side
-from engine.arrays import Booleans, Bytes, Floats, readonly
+from app.storage.pictures.cores import LARGE, PIXEL, require_memory, side_by_side
+from engine.arrays import Booleans, Bytes, Floats, freeze
 from engine.domain import Mask
 
 # PostScript and PDF are left out on purpose: Pillow would run an interpreter for them.
@@ -96,7 +96,14 @@ def decode_picture(data: bytes, name: str) -> Picture:
 
 def decode_pictures(files: Sequence[tuple[bytes, str]]) -> list[Picture]:
     """Decode the bytes of several picture files, each with what errors call it."""
+    sizes = [stored_size(*file) for file in files]
+    try:
+        require_memory(sizes)
+    except LissomError as error:
+        raise LissomError(f"{files[0][1]} is too large: {error}") from error
     with _only_bombs_told():
+        if any(PIXEL * width * height > LARGE for width, height in sizes):
+            return [_decode(*file) for file in files]
         return side_by_side(lambda file: _decode(*file), files)
 
 
@@ -116,6 +123,8 @@ def encode_mask(mask: Mask) -> bytes:
 
 def stored_size(data: bytes, name: str) -> tuple[int, int]:
     """Return the width and height in pixels that a picture file tells, without decoding it."""
+    if not data:
+        raise LissomError(f"{name} is empty")
     with (
         _only_bombs_told(),
         _told(name),
@@ -156,8 +165,6 @@ def _told(name: str) -> Iterator[None]:
 
 
 def _decode(data: bytes, name: str) -> Picture:
-    if not data:
-        raise LissomError(f"{name} is empty")
     with _told(name):
         return _decoded(data)
 
@@ -208,7 +215,7 @@ def _pixels(image: Image.Image) -> Bytes:
     for top in range(0, height, BAND):
         bottom = min(top + BAND, height)
         rgba[top:bottom] = np.asarray(image.crop((0, top, width, bottom)))
-    return readonly(rgba)
+    return freeze(rgba)
 
 
 def _is_deep(image: ImageFile.ImageFile) -> bool:

@@ -47,12 +47,16 @@ from app.storage.json_values import (
     record,
     several,
 )
+from app.storage.pictures import require_memory
 from app.storage.project.archive import Archive
 from app.storage.project.members import FigureMembers
 from engine.domain import CutOut, Stroke
-from engine.maps import Boundary, Bounds, certify
+from engine.maps import Boundary, Bounds, HarmonicMap, certify
 
 SCHEMA = 2
+# Over the longer side of the picture: how far a pose may take it, and its coefficients, which are
+# larger where they nearly cancel each other, as around tight cages.
+FARTHEST_POSE, MOST_COEFFICIENT = 1_000, 1e6
 SIZE = pair(WHOLE, WHOLE, "two whole numbers")
 RANGE = pair(WHOLE, WHOLE, "two whole numbers", make=FrameRange, of=astuple)
 MARKER = record(Marker, Field("frame", WHOLE), Field("name", TEXT))
@@ -211,7 +215,9 @@ def read_document(content: JsonObject, archive: Archive) -> Document:
     if len({figure["id"] for figure in figures}) < len(figures):
         # Told before their members are read, once for each.
         raise LissomError("two of its figures have the same id")
-    return Document(figures=tuple(_read_figure(figure, archive) for figure in figures), **fields)
+    read = tuple(_read_figure(figure, archive) for figure in figures)
+    require_memory(figure.picture.size for figure in read)
+    return Document(figures=read, **fields)
 
 
 def _bring_up_to_schema_2(content: JsonObject) -> None:
@@ -238,6 +244,7 @@ def _read_figure(fields: dict[str, Any], archive: Archive) -> Figure:
 
     def pose(kind: Literal["keys", "poses"], index: int, given: tuple[Any, ...]) -> Pose:
         targets, f = dict(given), members.map(domain, kind, index)
+        _require_near(f, boundary, max(picture.size), f"one of its {kind}")
         if len(targets) < len(given):
             raise LissomError(f"one of its {kind} has two targets for one handle")
         return Pose.of(f, targets, certify(f, boundary, fields["bounds"]))
@@ -258,6 +265,19 @@ def _read_figure(fields: dict[str, Any], archive: Archive) -> Figure:
             "keys": tuple(Keyframe(**key) for key in fields["keys"]),
             "library": tuple(KeptPose(**kept) for kept in fields["library"]),
         }
+    )
+
+
+def _require_near(f: HarmonicMap, boundary: Boundary, side: int, what: str) -> None:
+    """Refuse a map that takes a picture of this side farther than any pose, or wildly between."""
+    phi, psi = f.columns
+    largest = max(np.abs(phi).max(), np.abs(psi).max())
+    if largest <= MOST_COEFFICIENT * side:
+        places = boundary.vertex_coordinates @ f.coefficients
+        if np.abs(places[:, 0] + places[:, 1].conj()).max() <= FARTHEST_POSE * side:
+            return
+    raise LissomError(
+        f"{what} lies farther from its picture than {FARTHEST_POSE} times the picture's size"
     )
 
 

@@ -1,6 +1,6 @@
 """The slim bar of switches at the left."""
 
-from imgui_bundle import imgui
+from imgui_bundle import ImVec2, imgui
 
 from app.editor import Action, Project, Session
 from app.ui.shortcuts import bound_button
@@ -19,7 +19,7 @@ def draw_icons(session: Session, look: Look, _: Project) -> list[Action]:
     actions: list[Action] = []
     for number, names in enumerate(GROUPS):
         if number:
-            imgui.dummy((0, 0.4 * look.em))
+            imgui.dummy(ImVec2(0, 0.4 * look.em))
         for name in names:
             actions += bound_button(session, look, name)
     return actions

@@ -1,12 +1,12 @@
 """The status bar."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 from imgui_bundle import ImColor, imgui, imspinner
 
 from app.document import Extremes, find_shortfall, loosened
-from app.editor import Action, Project, Session, do, promises
+from app.editor import Action, Kind, Project, Session, do, promises
 from app.editor.actions import rebuilding, upkeep
 from app.ui.style import Look, shortened, tip
 
@@ -62,8 +62,10 @@ def draw_status(session: Session, look: Look) -> list[Action]:
     waiting = promises.waits_for(session.project) if session.project else ""
     if slow or waiting:
         _spinner(look)
-        imgui.text_unformatted(f"{waiting or slow[0].label}…")
-        actions += _cancel(session, look)
+        share = session.jobs.share_of(slow[0]) if slow else None
+        how_far = "" if share is None else f" {share:.0%}"
+        imgui.text_unformatted(f"{waiting or slow[0].label}…{how_far}")
+        actions += _cancel(session, look, slow)
     elif room > LEAST_ROOM * look.em:
         imgui.text_disabled(shortened(hint, room))
     imgui.same_line(end)
@@ -110,9 +112,10 @@ def limit_of_motion(session: Session) -> str:
     return f"The motion {verb} at {noun} {where} to keep within the stretch limit"
 
 
-def _cancel(session: Session, look: Look) -> list[Action]:
-    """Offer to end what runs for so long that it may never end."""
-    endless = session.jobs.running_for(ENDLESS)
+def _cancel(session: Session, look: Look, slow: Sequence[Kind]) -> list[Action]:
+    """Offer to end what runs for so long that it may never end, or tells how far it is."""
+    telling = tuple(kind for kind in slow if session.jobs.share_of(kind) is not None)
+    endless = session.jobs.running_for(ENDLESS) or telling
     if not endless:
         return []
     imgui.same_line(0, 0.8 * look.em)

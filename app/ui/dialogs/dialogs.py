@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from itertools import combinations_with_replacement
 
-from imgui_bundle import imgui
+from imgui_bundle import ImVec2, imgui
 
 from app.editor import Action, Dialog, FileDialog, Question, Recovery, Session, ShortcutSheet, do
 from app.editor.actions import answer, browse, close_dialog, use_own_dialogs
@@ -36,9 +36,9 @@ class Dialogs:
         imgui.open_popup(f"{title}###dialog")
         viewport = imgui.get_main_viewport()
         middle = viewport.get_center()
-        imgui.set_next_window_pos(middle, imgui.Cond_.always, (0.5, 0.5))
+        imgui.set_next_window_pos(middle, imgui.Cond_.always, ImVec2(0.5, 0.5))
         imgui.set_next_window_size_constraints(
-            (24 * look.em, 0), (viewport.size.x * 0.9, viewport.size.y * 0.9)
+            ImVec2(24 * look.em, 0), ImVec2(viewport.size.x * 0.9, viewport.size.y * 0.9)
         )
         flags = imgui.WindowFlags_.always_auto_resize | imgui.WindowFlags_.no_move
         imgui.push_style_var(imgui.StyleVar_.window_rounding, 0.6 * look.em)
@@ -109,7 +109,7 @@ def _use_keyboard(*, is_used: bool) -> None:
 
 def _waiting(look: Look) -> list[Action]:
     imgui.text_unformatted("Choose in the dialog of the system, which has a window of its own.")
-    imgui.dummy((0, 0.4 * look.em))
+    imgui.dummy(ImVec2(0, 0.4 * look.em))
     if imgui.button("Use Lissom's own dialog"):
         return [do(use_own_dialogs)]
     imgui.same_line()
@@ -125,7 +125,7 @@ def _question(question: Question, look: Look) -> list[Action]:
     imgui.push_text_wrap_pos(30 * look.em)
     imgui.text_unformatted(shown_name(question.text))
     imgui.pop_text_wrap_pos()
-    imgui.dummy((0, 0.4 * look.em))
+    imgui.dummy(ImVec2(0, 0.4 * look.em))
     for index, (text, action) in enumerate(question.answers):
         if index:
             imgui.same_line()
@@ -152,7 +152,7 @@ def _shortcuts(look: Look) -> None:
     rows["Pointer"] = [(gesture.what, gesture.how) for gesture in GESTURES]
     style = imgui.get_style()
     # Closer than elsewhere: all keys are to be seen at once.
-    imgui.push_style_var(imgui.StyleVar_.item_spacing, (style.item_spacing.x, 0.2 * look.em))
+    imgui.push_style_var(imgui.StyleVar_.item_spacing, ImVec2(style.item_spacing.x, 0.2 * look.em))
     columns = _columns({group: len(rows[group]) for group in rows})
     if imgui.begin_table("sheet", len(columns), imgui.TableFlags_.sizing_fixed_fit):
         for column in columns:
@@ -165,7 +165,7 @@ def _shortcuts(look: Look) -> None:
                     imgui.text_unformatted(text)
                     imgui.same_line(keys_at)
                     imgui.text_disabled(keys)
-            imgui.dummy((20 * look.em, 0))
+            imgui.dummy(ImVec2(20 * look.em, 0))
         imgui.end_table()
     imgui.pop_style_var()
 

@@ -82,7 +82,7 @@ class FileBrowser:
             # What is saved goes by the name that is there, even where a folder is marked.
             folder = None if now.writes else folder
         imgui.same_line()
-        if imgui.button("Cancel", (BUTTON * look.em, 0)):
+        if imgui.button("Cancel", ImVec2(BUTTON * look.em, 0)):
             return [do(close_dialog)]
         if path is not None and now.writes and _is(Path.is_file, path):
             imgui.same_line()
@@ -110,7 +110,7 @@ class FileBrowser:
 
     def _places(self, dialog: FileDialog, look: Look, height: float) -> FileDialog:
         """Draw the person's own folders, and those of the files that were open last."""
-        imgui.begin_child("places", (PLACES * look.em, height))
+        imgui.begin_child("places", ImVec2(PLACES * look.em, height))
         for title, places in (("Places", self._usual), ("Recent", self._recent)):
             if not places:
                 continue
@@ -125,7 +125,7 @@ class FileBrowser:
                 imgui.same_line(2.0 * look.em)
                 room = imgui.get_content_region_avail().x
                 imgui.text_unformatted(shortened(place.name, room))
-            imgui.dummy((0, 0.4 * look.em))
+            imgui.dummy(ImVec2(0, 0.4 * look.em))
         imgui.end_child()
         return dialog
 
@@ -227,7 +227,7 @@ def _row(entry: Entry, look: Look, thumbnail: LookUp, *, is_marked: bool) -> boo
     palette, em = look.palette, look.em
     name, height = shown_name(entry.path.name), ROW * em
     corner = imgui.get_cursor_screen_pos()
-    clicked, _ = imgui.selectable(f"###entry {name}", is_marked, ROW_FLAGS, (0, height))
+    clicked, _ = imgui.selectable(f"###entry {name}", is_marked, ROW_FLAGS, ImVec2(0, height))
     middle = corner.y + (height - imgui.get_text_line_height()) / 2
     draw_list = imgui.get_window_draw_list()
     image = None if entry.is_folder or entry.size > LARGEST_SHOWN else thumbnail(entry.path)
@@ -237,16 +237,16 @@ def _row(entry: Entry, look: Look, thumbnail: LookUp, *, is_marked: bool) -> boo
         icon = icons.ICON_FA_FOLDER if entry.is_folder else icons.ICON_FA_FILE
         colour = ink(palette.accent if entry.is_folder else palette.dim)
         inset = (2 * em - imgui.calc_text_size(icon).x) / 2
-        draw_list.add_text((corner.x + inset, middle), colour, icon)
+        draw_list.add_text(ImVec2(corner.x + inset, middle), colour, icon)
     left = corner.x + 2.5 * em
     room = corner.x + imgui.get_column_width() - left - 0.5 * em
-    draw_list.add_text((left, middle), ink(palette.text), shortened(name, room))
+    draw_list.add_text(ImVec2(left, middle), ink(palette.text), shortened(name, room))
     imgui.table_next_column()
     size = entry.size_in_words
     at_end = imgui.get_content_region_avail().x - imgui.calc_text_size(size).x
     for text, inset in ((size, max(at_end, 0)), (entry.changed_in_words, 0)):
         place = imgui.get_cursor_screen_pos()
-        draw_list.add_text((place.x + inset, middle), ink(palette.dim), text)
+        draw_list.add_text(ImVec2(place.x + inset, middle), ink(palette.dim), text)
         if text is size:
             imgui.table_next_column()
     return clicked

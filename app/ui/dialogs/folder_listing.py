@@ -39,25 +39,13 @@ class Entry:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Listing:
-    """What a folder holds, or why that cannot be told.
-
-    Parameters
-    ----------
-    folder : Path
-    suffixes : tuple of str
-        Of the files that are listed.
-    version : tuple of int
-        Another one if the folder has changed since.
-    entries : tuple of Entry
-    problem : str
-        Empty where there is none.
-    """
+    """What a folder holds, or why that cannot be told."""
 
     folder: Path
-    suffixes: tuple[str, ...]
-    version: tuple[int, ...]
+    suffixes: tuple[str, ...]  # of the files that are listed
+    version: tuple[int, ...]  # another one if the folder has changed since
     entries: tuple[Entry, ...] = ()
-    problem: str = ""
+    problem: str = ""  # empty where there is none
 
     def is_current(self, folder: Path, suffixes: tuple[str, ...]) -> bool:
         """Tell whether reading this folder would give the same."""

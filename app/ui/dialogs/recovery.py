@@ -1,6 +1,6 @@
 """The choice among unsaved work of earlier times."""
 
-from imgui_bundle import imgui
+from imgui_bundle import ImVec2, imgui
 
 from app.editor import Action, Leftover, Recovery, do
 from app.editor.actions import answer, close_dialog, files
@@ -22,16 +22,16 @@ def draw_recovery(recovery: Recovery, look: Look) -> list[Action]:
         "stays here, and is in the menu File under Unsaved work."
     )
     imgui.pop_text_wrap_pos()
-    imgui.dummy((0, 0.4 * look.em))
+    imgui.dummy(ImVec2(0, 0.4 * look.em))
     row = imgui.get_frame_height_with_spacing()
     height = min(len(recovery.candidates) * row + 0.5 * look.em, TALLEST * look.em)
-    imgui.begin_child("unsaved work", (WIDTH * look.em, height))
+    imgui.begin_child("unsaved work", ImVec2(WIDTH * look.em, height))
     for index, leftover in enumerate(recovery.candidates):
         imgui.push_id(index)
         actions += _row(leftover, look, is_main=index == 0)
         imgui.pop_id()
     imgui.end_child()
-    imgui.dummy((0, 0.4 * look.em))
+    imgui.dummy(ImVec2(0, 0.4 * look.em))
     if imgui.button("Later"):
         actions.append(do(close_dialog))
     return actions

@@ -1,6 +1,6 @@
 """Cutting the subject out of its picture: by colour, by brush, by a mask; and its holes."""
 
-from imgui_bundle import icons_fontawesome_6 as icons, imgui
+from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui
 
 from app.editor import Action, CutTool, Project, Session, do
 from app.editor.actions import cutting, rebuilding
@@ -146,7 +146,7 @@ def _tool(
     is_chosen = session.cutting == tool
     imgui.push_style_color(imgui.Col_.button, palette.accent if is_chosen else palette.raised)
     imgui.push_style_color(imgui.Col_.text, palette.on_accent if is_chosen else palette.text)
-    pressed = imgui.button(f"{text}###{tool} tool", (width, 0))
+    pressed = imgui.button(f"{text}###{tool} tool", ImVec2(width, 0))
     imgui.pop_style_color(2)
     tip(hint)
     return [do(cutting.take_up, tool)] if pressed else []
@@ -154,7 +154,7 @@ def _tool(
 
 def _state(session: Session, look: Look, project: Project) -> list[Action]:
     actions: list[Action] = []
-    imgui.dummy((0, 0.2 * look.em))
+    imgui.dummy(ImVec2(0, 0.2 * look.em))
     renewal = project.renewal
     if renewal is not None and renewal.meshing is not None:
         if progress(renewal.progress, renewal.now):

@@ -146,7 +146,7 @@ def _spread(look: Look, project: Project, shown: Shown, heat_map: HeatMap) -> No
     edges = histogram.edges
     axis = implot.AxisFlags_.no_highlight | implot.AxisFlags_.no_grid_lines
     inverted = implot.AxisFlags_.invert if heat_map == "sigma_b" else 0
-    if implot.begin_plot("##histogram", (-1, HISTOGRAM * look.em), QUIET):
+    if implot.begin_plot("##histogram", ImVec2(-1, HISTOGRAM * look.em), QUIET):
         implot.setup_axes("", "", axis | inverted, axis | implot.AxisFlags_.no_decorations)
         room = 0.02 * (edges[-1] - edges[0])
         top = max(histogram.shares) * 1.08
@@ -170,8 +170,10 @@ def _bars(look: Look, histogram: _Histogram, colours: tuple[int, ...]) -> None:
     for number, (share, colour) in enumerate(zip(histogram.shares, colours, strict=True)):
         left, right = sorted((first.x + number * step, first.x + (number + 1) * step))
         top = last.y + share * (first.y - last.y) - strip
-        draw_list.add_rect_filled((left + 0.5, top), (right - 0.5, floor - strip - 1), colour)
-        draw_list.add_rect_filled((left, floor - strip), (right + 0.5, floor), colour)
+        draw_list.add_rect_filled(
+            ImVec2(left + 0.5, top), ImVec2(right - 0.5, floor - strip - 1), colour
+        )
+        draw_list.add_rect_filled(ImVec2(left, floor - strip), ImVec2(right + 0.5, floor), colour)
     implot.pop_plot_clip_rect()
 
 
@@ -282,7 +284,9 @@ def _plot(
     plot, other = plots
     actions: list[Action] = []
     project, palette = session.project, look.palette
-    if project is None or not implot.begin_plot(f"##over time {plot.title}", (-1, height), QUIET):
+    if project is None or not implot.begin_plot(
+        f"##over time {plot.title}", ImVec2(-1, height), QUIET
+    ):
         return actions
     quiet = implot.AxisFlags_.no_highlight
     along = quiet | implot.AxisFlags_.no_grid_lines

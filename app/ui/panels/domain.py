@@ -44,7 +44,7 @@ def draw(session: Session, look: Look, project: Project) -> list[Action]:
     chosen = _settings(look, draft)
     if chosen != draft:
         actions.append(do(viewing.draft_meshing, chosen))
-    imgui.dummy((0, 0.2 * look.em))
+    imgui.dummy(ImVec2(0, 0.2 * look.em))
     renewal = project.renewal
     if renewal is not None and renewal.meshing is not None:
         if progress(renewal.progress, renewal.now):
@@ -54,7 +54,7 @@ def draw(session: Session, look: Look, project: Project) -> list[Action]:
         text = f"{icons.ICON_FA_ARROWS_ROTATE}  Rebuild###rebuild"
         if main_button(look, text, FILL, enabled=is_new):
             actions.append(do(rebuilding.rebuild))
-        if is_new and imgui.button("Revert###forget", (FILL, 0)):
+        if is_new and imgui.button("Revert###forget", ImVec2(FILL, 0)):
             actions.append(do(viewing.draft_meshing, figure.meshing))
     small(look, "Handles stay, and every key is posed again. Undo brings all of it back.")
     return actions

@@ -307,7 +307,7 @@ def _preview(
     draw_list.add_rect(*ends(canvas), ink(palette.dim, 0.6))
     draw_list.add_rect(*ends(motion), ink(palette.warning, 0.8))
     draw_list.add_rect(*ends(frame), ink(palette.accent), 0.0, 1.6)
-    imgui.dummy((width, height))
+    imgui.dummy(ImVec2(width, height))
     tip(
         "Blue: what the export shows, as in the viewport. Grey: the picture's canvas.\n"
         "Orange: where the motion reaches."
@@ -328,4 +328,4 @@ def _note(look: Look, text: str) -> None:
     top = imgui.get_cursor_pos_y()
     small(look, text)
     imgui.set_cursor_pos_y(top + room + imgui.get_style().item_spacing.y)
-    imgui.dummy((0, 0))
+    imgui.dummy(ImVec2(0, 0))

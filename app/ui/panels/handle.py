@@ -4,7 +4,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import replace
 
-from imgui_bundle import icons_fontawesome_6 as icons, imgui, imgui_ctx
+from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui, imgui_ctx
 
 from app.document import Handle, Shortfall, Target, figure_commands, find_shortfall, handle_commands
 from app.editor import Action, Project, Session, do, layering
@@ -89,7 +89,7 @@ def _list(look: Look, project: Project) -> list[Action]:
     style = imgui.get_style()
     rows = min(len(figure.handles), MOST_ROWS) * imgui.get_text_line_height_with_spacing()
     height = rows - style.item_spacing.y + 2 * style.window_padding.y
-    imgui.begin_child("handles", (0, height), imgui.ChildFlags_.borders)
+    imgui.begin_child("handles", ImVec2(0, height), imgui.ChildFlags_.borders)
     for handle in figure.handles:
         is_anchor = handle.position == figure.anchor
         clicked, _ = imgui.selectable(

@@ -42,13 +42,13 @@ def draw_list(
     pitch = ROW * look.em + imgui.get_style().item_spacing.y
     room = imgui.get_content_region_avail().y - OTHERS * look.em
     shown = min(float(len(figures)), max(FEWEST, room / pitch))
-    imgui.begin_child("list", (0, shown * pitch))
+    imgui.begin_child("list", ImVec2(0, shown * pitch))
     frame = playback.current_frame(session, project)
     for figure in reversed(figures):
         is_seen = is_visible(figure, frame)
         actions += _row(session, look, figure, pictures, is_seen=is_seen)
     # An item: placing the cursor alone gives the list no height.
-    imgui.dummy((0, 0))
+    imgui.dummy(ImVec2(0, 0))
     _scroll_while_dragged(look)
     imgui.end_child()
     if project.listed != project.active:
@@ -96,7 +96,7 @@ def _row(
     # Below all that follows, which takes the pointer first.
     flags = imgui.SelectableFlags_.allow_overlap | imgui.SelectableFlags_.allow_double_click
     is_active = identity == project.active
-    if imgui.selectable(f"###row {identity}", is_active, flags, (0, height))[0]:
+    if imgui.selectable(f"###row {identity}", is_active, flags, ImVec2(0, height))[0]:
         actions.append(do(layering.choose, identity))
     after = imgui.get_cursor_screen_pos()
     low, high = imgui.get_item_rect_min(), imgui.get_item_rect_max()
@@ -119,7 +119,7 @@ def _row(
     if name is not None:
         actions.append(do(layering.rename, identity, name))
     middle = (low.y + high.y) / 2
-    imgui.set_cursor_screen_pos((corner.x, middle - imgui.get_frame_height() / 2))
+    imgui.set_cursor_screen_pos(ImVec2(corner.x, middle - imgui.get_frame_height() / 2))
     actions += _switches(look, figure)
     left = imgui.get_item_rect_max().x + GAP * em
     _picture(look, project, figure, ImVec2(left, middle), pictures, is_seen=is_seen)
@@ -194,11 +194,11 @@ def _text(look: Look, figure: Figure, left: float, end: ImVec2, *, is_seen: bool
         for sign in reversed(signs):
             size = imgui.calc_text_size(sign)
             right -= size.x
-            draw_list.add_text((right, middle - size.y / 2), ink(palette.dim), sign)
+            draw_list.add_text(ImVec2(right, middle - size.y / 2), ink(palette.dim), sign)
             right -= GAP * em
     colour = ink(palette.text if is_seen else palette.dim)
     top = middle - imgui.get_text_line_height() / 2
-    draw_list.add_text((left, top), colour, shortened(figure.name, right - left))
+    draw_list.add_text(ImVec2(left, top), colour, shortened(figure.name, right - left))
 
 
 def _drag(look: Look, project: Project, figure: Figure, low: ImVec2, high: ImVec2) -> list[Action]:
@@ -220,7 +220,7 @@ def _drag(look: Look, project: Project, figure: Figure, low: ImVec2, high: ImVec
         is_above = imgui.get_mouse_pos().y < (low.y + high.y) / 2
         y = (low.y if is_above else high.y) - 0.5
         imgui.get_window_draw_list().add_line(
-            (low.x, y), (high.x, y), ink(look.palette.accent), 0.14 * look.em
+            ImVec2(low.x, y), ImVec2(high.x, y), ink(look.palette.accent), 0.14 * look.em
         )
         others = [each.id for each in project.document.figures if each.id != payload.data_id]
         if figure.id in others and imgui.is_mouse_released(imgui.MouseButton_.left):

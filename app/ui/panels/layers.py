@@ -1,6 +1,6 @@
 """The layers of the scene: which there are, what is in front, what hangs on what."""
 
-from imgui_bundle import imgui
+from imgui_bundle import ImVec2, imgui
 
 from app.document import Figure, is_visible
 from app.editor import Action, Project, Session, do, layering
@@ -59,9 +59,9 @@ def _settings(project: Project, look: Look, figure: Figure, frame: int) -> list[
     actions += _joint(project, look, figure)
     if figure.still:
         small(look, "A still picture: it is shown as it was drawn.")
-        if imgui.button("Let it be posed", (FILL, 0)):
+        if imgui.button("Let it be posed", ImVec2(FILL, 0)):
             actions.append(do(layering.stand_up, identity))
-    elif imgui.button("Make it a still picture", (FILL, 0)):
+    elif imgui.button("Make it a still picture", ImVec2(FILL, 0)):
         actions.append(do(layering.stand_still, identity))
     return actions
 
@@ -75,7 +75,7 @@ def _switch(look: Look, figure: Figure, frame: int) -> list[Action]:
     if text_button(text, FILL, hint, enabled=not figure.hidden):
         actions.append(do(layering.switch_here, figure.id))
     is_switched = any(switch.frame == frame for switch in figure.switches)
-    if is_switched and imgui.button(f"No change at frame {frame}", (FILL, 0)):
+    if is_switched and imgui.button(f"No change at frame {frame}", ImVec2(FILL, 0)):
         actions.append(do(layering.unswitch_here, figure.id))
     if figure.switches:
         told = (f"{'shown' if s.visible else 'hidden'} from {s.frame}" for s in figure.switches)

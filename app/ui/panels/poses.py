@@ -100,11 +100,11 @@ def _tile(
         text = shortened(kept.name, TILE * em)
         x = (low.x + high.x - imgui.calc_text_size(text).x) / 2
         colour = palette.text if hot or is_picked else palette.dim
-        draw_list.add_text((x, high.y + 0.15 * em), ink(colour), text)
+        draw_list.add_text(ImVec2(x, high.y + 0.15 * em), ink(colour), text)
     if imgui.begin_drag_drop_source():
         imgui.set_drag_drop_payload_py_id(POSE_PAYLOAD, index)
         corner = imgui.get_cursor_screen_pos()
-        imgui.dummy((TILE * em / 2, TILE * em / 2))
+        imgui.dummy(ImVec2(TILE * em / 2, TILE * em / 2))
         if texture is not None:
             _show(texture, corner, imgui.get_item_rect_max(), 0.2 * em)
         imgui.end_drag_drop_source()
@@ -117,8 +117,8 @@ def _show(texture: int, low: ImVec2, high: ImVec2, rounding: float) -> None:
         imgui.ImTextureRef(texture),
         low,
         high,
-        (0, 1),
-        (1, 0),
+        ImVec2(0, 1),
+        ImVec2(1, 0),
         imgui.IM_COL32(255, 255, 255, 255),
         rounding,
     )

@@ -11,50 +11,25 @@ Test = Callable[[Session, Project], object]  # passed where it returns what coun
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Binding:
-    """Something that can be done, and all ways that lead to it.
+    """Something that can be done, and all ways that lead to it."""
 
-    Parameters
-    ----------
-    label : str
-        In menus and in the sheet of keys.
-    keys : str
-        Chords of keys, parted by commas; any of them does it.
-    parted : bool
-        Whether a line parts it from the entry above in its menu.
-    mac_keys : str
-        In their place on macOS, where the system has them for itself.
-    told : str
-        Its keys in words, where they are not pressed as such.
-    icon : str
-    hint : str
-        Tooltip; the label where it is empty.
-    needs_project : bool
-        Whether it can be done only with an open project. Without one, `detail` and `possible` are
-        not asked.
-    detail : callable
-        What it would do now, in words that follow the label in its menu.
-    possible : callable
-        Whether it can be done now; always where there is none.
-    active : callable
-        Whether what it switches is on.
-    repeats : bool
-        Whether it is done again while the key is held.
-    """
-
-    label: str
+    label: str  # in menus and in the sheet of keys
     action: Action
-    keys: str = ""
+    keys: str = ""  # chords of keys, parted by commas; any of them does it
     _: KW_ONLY
-    parted: bool = False
-    mac_keys: str = ""
-    told: str = ""
+    parted: bool = False  # whether a line parts it from the entry above in its menu
+    mac_keys: str = ""  # in their place on macOS, where the system has them for itself
+    told: str = ""  # its keys in words, where they are not pressed as such
     icon: str = ""
-    hint: str = ""
+    hint: str = ""  # tooltip; the label where it is empty
+    # Whether it can be done only with an open project. Without one, `detail` and `possible` are not
+    # asked.
     needs_project: bool = True
+    # What it would do now, in words that follow the label in its menu.
     detail: Callable[[Session, Project], str | None] | None = None
-    possible: Test | None = None
-    active: Callable[[Session], object] | None = None
-    repeats: bool = False
+    possible: Test | None = None  # whether it can be done now; always where there is none
+    active: Callable[[Session], object] | None = None  # whether what it switches is on
+    repeats: bool = False  # whether it is done again while the key is held
 
     def chords(self, *, is_mac: bool = IS_MAC) -> tuple[int, ...]:
         """Return the key chords that do it on this system, or on another one."""

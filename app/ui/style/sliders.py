@@ -4,7 +4,7 @@ import math
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from imgui_bundle import ImVec4, imgui
+from imgui_bundle import ImVec2, ImVec4, imgui
 
 from app.ui.style.theme import Look, ink
 from app.ui.style.widgets import FILL, tip
@@ -121,7 +121,7 @@ def track(
     palette, draw_list = look.palette, imgui.get_window_draw_list()
     corner, height = imgui.get_cursor_screen_pos(), imgui.get_frame_height()
     knob, bar = KNOB * look.em, BAR * look.em
-    imgui.invisible_button(name, (max(width, 4 * knob), height))
+    imgui.invisible_button(name, ImVec2(max(width, 4 * knob), height))
     is_held = imgui.is_item_active()
     low, high = corner.x + knob, corner.x + max(width, 4 * knob) - knob
     middle = corner.y + height / 2
@@ -135,11 +135,13 @@ def track(
     place = low + scale.share(value) * (high - low)
     end = place if used is None else low + scale.share(used) * (high - low)
     top, bottom = middle - bar / 2, middle + bar / 2
-    draw_list.add_rect_filled((low - bar, top), (high + bar, bottom), ink(palette.pressed), bar / 2)
-    draw_list.add_rect_filled((low - bar, top), (end, bottom), ink(colour), bar / 2)
+    draw_list.add_rect_filled(
+        ImVec2(low - bar, top), ImVec2(high + bar, bottom), ink(palette.pressed), bar / 2
+    )
+    draw_list.add_rect_filled(ImVec2(low - bar, top), ImVec2(end, bottom), ink(colour), bar / 2)
     is_hot = is_held or imgui.is_item_hovered()
-    draw_list.add_circle_filled((place, middle), knob + bar / 2, ink(palette.panel))
+    draw_list.add_circle_filled(ImVec2(place, middle), knob + bar / 2, ink(palette.panel))
     draw_list.add_circle_filled(
-        (place, middle), knob, ink(palette.accent if is_hot else palette.text)
+        ImVec2(place, middle), knob, ink(palette.accent if is_hot else palette.text)
     )
     return edit

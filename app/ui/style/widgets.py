@@ -28,7 +28,7 @@ def bold(look: Look, text: str) -> None:
 def heading(look: Look, text: str, *, framed: bool = False) -> None:
     """Begin a group of settings; `framed` where a button follows on the line."""
     if imgui.get_cursor_pos_y() > imgui.get_cursor_start_pos().y:
-        imgui.dummy((0, 0.3 * look.em))
+        imgui.dummy(ImVec2(0, 0.3 * look.em))
     if framed:
         imgui.align_text_to_frame_padding()
     bold(look, text)
@@ -72,7 +72,7 @@ def begin_tip() -> bool:
         if mouse.x + room[0] > window.pos.x and mouse.y + room[1] > window.pos.y:
             # Messages are in the lower right corner: up and to the left there is none.
             corner = ImVec2(mouse.x - 0.4 * em, mouse.y - 0.4 * em)
-            imgui.set_next_window_pos(corner, imgui.Cond_.always, (1, 1))
+            imgui.set_next_window_pos(corner, imgui.Cond_.always, ImVec2(1, 1))
     return imgui.begin_tooltip()
 
 
@@ -113,7 +113,7 @@ def icon_button(
     imgui.push_style_color(imgui.Col_.button, (0, 0, 0, 0))
     imgui.push_style_color(imgui.Col_.text, palette.accent if active else palette.text)
     size = imgui.get_frame_height()
-    pressed = imgui.button(f"{icon}###{name}", (size * 1.15, size))
+    pressed = imgui.button(f"{icon}###{name}", ImVec2(size * 1.15, size))
     imgui.pop_style_color(2)
     imgui.end_disabled()
     tip(hint, keys)
@@ -127,7 +127,7 @@ def main_button(look: Look, text: str, width: float = 0.0, *, enabled: bool = Tr
     for slot in (imgui.Col_.button, imgui.Col_.button_hovered, imgui.Col_.button_active):
         imgui.push_style_color(slot, palette.accent)
     imgui.push_style_color(imgui.Col_.text, palette.on_accent)
-    pressed = imgui.button(text, (width, 0))
+    pressed = imgui.button(text, ImVec2(width, 0))
     imgui.pop_style_color(4)
     imgui.end_disabled()
     return pressed
@@ -138,7 +138,7 @@ def text_button(
 ) -> bool:
     """Draw a button with words, and its tooltip; return whether it was pressed."""
     imgui.begin_disabled(not enabled)
-    pressed = imgui.button(text, (width, 0))
+    pressed = imgui.button(text, ImVec2(width, 0))
     imgui.end_disabled()
     if hint:
         tip(hint, keys)
@@ -165,8 +165,8 @@ def beside(count: int, gap: float | None = None, *, room: float = 0.0) -> Iterat
 
 def progress(share: float, text: str) -> bool:
     """Draw how far something is, and a button that cancels it; return whether it was pressed."""
-    imgui.progress_bar(share, (FILL, 0), text)
-    return imgui.button("Cancel###stop", (FILL, 0))
+    imgui.progress_bar(share, ImVec2(FILL, 0), text)
+    return imgui.button("Cancel###stop", ImVec2(FILL, 0))
 
 
 def name_popup(
@@ -231,7 +231,7 @@ def segments(
         is_current = value == current
         imgui.push_style_color(imgui.Col_.button, palette.pressed if is_current else palette.raised)
         imgui.push_style_color(imgui.Col_.text, palette.text if is_current else palette.dim)
-        if imgui.button(f"{text}###{value}", (width, 0)) and not is_current:
+        if imgui.button(f"{text}###{value}", ImVec2(width, 0)) and not is_current:
             chosen = value
         imgui.pop_style_color(2)
     imgui.pop_id()
@@ -248,8 +248,8 @@ def show_picture(
     y = corner.y + (room.y - height) / 2
     imgui.get_window_draw_list().add_image(
         imgui.ImTextureRef(texture),
-        (x, y),
-        (x + width, y + height),
+        ImVec2(x, y),
+        ImVec2(x + width, y + height),
         col=imgui.IM_COL32(255, 255, 255, round(255 * opacity)),
     )
 

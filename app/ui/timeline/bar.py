@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 
-from imgui_bundle import icons_fontawesome_6 as icons, imgui
+from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui
 
 from app.document import LAST_FRAME
 from app.editor import Action, Project, Session, do
@@ -43,11 +43,11 @@ def _gap(look: Look) -> None:
     corner = imgui.get_cursor_screen_pos()
     height = imgui.get_frame_height()
     imgui.get_window_draw_list().add_line(
-        (corner.x, corner.y + 0.25 * height),
-        (corner.x, corner.y + 0.75 * height),
+        ImVec2(corner.x, corner.y + 0.25 * height),
+        ImVec2(corner.x, corner.y + 0.75 * height),
         ink(look.palette.line),
     )
-    imgui.dummy((1, height))
+    imgui.dummy(ImVec2(1, height))
     imgui.same_line(0, WIDE / 2 * look.em)
 
 
@@ -74,7 +74,7 @@ def _key_buttons(session: Session, look: Look, project: Project) -> list[Action]
     if project.unkeyed is not None:
         high = imgui.get_item_rect_max()
         imgui.get_window_draw_list().add_circle_filled(
-            (high.x - 0.4 * look.em, high.y - 1.3 * look.em),
+            ImVec2(high.x - 0.4 * look.em, high.y - 1.3 * look.em),
             0.22 * look.em,
             ink(look.palette.warning),
         )

@@ -1,6 +1,6 @@
 """Poses of the library that are dropped on the track."""
 
-from imgui_bundle import imgui
+from imgui_bundle import ImVec2, imgui
 
 from app.document import LAST_FRAME
 from app.editor import Action, do
@@ -25,7 +25,7 @@ def draw_dropped(track: Track) -> list[Action]:
         return []
     draw_list, accent = imgui.get_window_draw_list(), ink(track.look.palette.accent)
     x = track.x(frame)
-    draw_list.add_line((x, track.track_top), (x, track.track_bottom), accent, 2.0)
+    draw_list.add_line(ImVec2(x, track.track_top), ImVec2(x, track.track_bottom), accent, 2.0)
     tag(track, x, f"{frame}")
     if imgui.is_mouse_released(imgui.MouseButton_.left):
         return [do(library.apply_at, kept[payload.data_id].name, frame)]

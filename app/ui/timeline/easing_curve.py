@@ -20,9 +20,9 @@ def draw_curve(easing: Easing, corner: ImVec2, size: ImVec2, colour: int, thickn
     draw_list = imgui.get_window_draw_list()
     if easing.curve is None:
         bottom, right = corner.y + size.y, corner.x + size.x - thickness / 2
-        draw_list.path_line_to((corner.x, bottom))
-        draw_list.path_line_to((right, bottom))
-        draw_list.path_line_to((right, corner.y))
+        draw_list.path_line_to(ImVec2(corner.x, bottom))
+        draw_list.path_line_to(ImVec2(right, bottom))
+        draw_list.path_line_to(ImVec2(right, corner.y))
     else:
         _trace(easing.curve, corner, size)
     draw_list.path_stroke(colour, thickness)
@@ -35,8 +35,8 @@ def fill_curve(easing: Easing, corner: ImVec2, size: ImVec2, below: float, colou
     draw_list = imgui.get_window_draw_list()
     bottom = corner.y + size.y + below
     _trace(easing.curve, corner, size)
-    draw_list.path_line_to((corner.x + size.x, bottom))
-    draw_list.path_line_to((corner.x, bottom))
+    draw_list.path_line_to(ImVec2(corner.x + size.x, bottom))
+    draw_list.path_line_to(ImVec2(corner.x, bottom))
     draw_list.path_fill_concave(colour)
 
 
@@ -56,7 +56,7 @@ def easing_popup(name: str, look: Look, project: Project, key: Keyframe) -> list
 
     It changes those of all chosen keys, if the key is one of them.
     """
-    imgui.push_style_var(imgui.StyleVar_.window_padding, (look.em, 0.8 * look.em))
+    imgui.push_style_var(imgui.StyleVar_.window_padding, ImVec2(look.em, 0.8 * look.em))
     is_open = imgui.begin_popup(name)
     imgui.pop_style_var()
     if not is_open:
@@ -94,7 +94,7 @@ def _presets(look: Look, easing: Easing) -> Easing | None:
 def _tile(look: Look, name: str, preset: Easing, *, current: bool) -> bool:
     palette, draw_list, em = look.palette, imgui.get_window_draw_list(), look.em
     low = imgui.get_cursor_screen_pos()
-    clicked = imgui.invisible_button(name, (TILE * em, 3.9 * em))
+    clicked = imgui.invisible_button(name, ImVec2(TILE * em, 3.9 * em))
     high = imgui.get_item_rect_max()
     hovered = imgui.is_item_hovered()
     draw_list.add_rect_filled(
@@ -107,7 +107,7 @@ def _tile(look: Look, name: str, preset: Easing, *, current: bool) -> bool:
     draw_curve(preset, corner, size, ink(colour), 0.12 * em)
     with sized(SMALL):
         width = imgui.calc_text_size(LABELS[name]).x
-        place = ((low.x + high.x - width) / 2, high.y - 1.25 * em)
+        place = ImVec2((low.x + high.x - width) / 2, high.y - 1.25 * em)
         draw_list.add_text(place, ink(palette.text if current else palette.dim), LABELS[name])
     return clicked
 
@@ -126,8 +126,8 @@ def _editor(look: Look, easing: Easing) -> Easing | None:
     for part in range(5):
         x, y = corner.x + part / 4 * side, corner.y + part / 4 * side
         colour = ink(palette.line, 1.0 if part in {0, 4} else 0.6)
-        draw_list.add_line((x, corner.y), (x, corner.y + side), colour)
-        draw_list.add_line((corner.x, y), (corner.x + side, y), colour)
+        draw_list.add_line(ImVec2(x, corner.y), ImVec2(x, corner.y + side), colour)
+        draw_list.add_line(ImVec2(corner.x, y), ImVec2(corner.x + side, y), colour)
     fill_curve(easing, corner, size, 0.0, ink(palette.accent, 0.12))
     draw_curve(easing, corner, size, ink(palette.accent), 0.16 * em)
     moved = None
@@ -148,9 +148,9 @@ def _control_points(
         x, y = curve[2 * index : 2 * index + 2]
         centre = _point(x, y, corner, size)
         draw_list.add_line(end, centre, ink(palette.dim), 1.5)
-        imgui.set_cursor_screen_pos((centre.x - radius, centre.y - radius))
+        imgui.set_cursor_screen_pos(ImVec2(centre.x - radius, centre.y - radius))
         imgui.set_next_item_allow_overlap()
-        imgui.invisible_button(f"control {index + 1}", (2 * radius, 2 * radius))
+        imgui.invisible_button(f"control {index + 1}", ImVec2(2 * radius, 2 * radius))
         hot = in_hand()
         tip("Drag: both points stay inside the square, so that in-betweens keep their limits")
         draw_list.add_circle_filled(centre, 0.5 * em if hot else 0.42 * em, ink(palette.desk))

@@ -23,12 +23,14 @@ def _preview_range(track: Track) -> list[Action]:
     left, right = track.x(played.first), track.x(played.last)
     low, high = track.top + 0.05 * em, track.top + (PREVIEW - 0.15) * em
     draw_list.push_clip_rect(*track.bounds, intersect_with_current_clip_rect=True)
-    draw_list.add_rect_filled((track.left, low), (track.right, high), ink(palette.desk), 0.2 * em)
+    draw_list.add_rect_filled(
+        ImVec2(track.left, low), ImVec2(track.right, high), ink(palette.desk), 0.2 * em
+    )
     actions = _edge(track, "preview range", left, right, resizes=False) if is_part else []
     hot = is_part and in_hand()
     colour = palette.accent if is_part else palette.dim
     alpha = 0.2 if not is_part else 0.6 if hot else 0.4
-    draw_list.add_rect_filled((left, low), (right, high), ink(colour, alpha), 0.2 * em)
+    draw_list.add_rect_filled(ImVec2(left, low), ImVec2(right, high), ink(colour, alpha), 0.2 * em)
     grip = GRIP * em
     ends: tuple[tuple[Edge, float, int], ...]
     ends = ("preview start", left, 1), ("preview end", right, -1)
@@ -36,7 +38,7 @@ def _preview_range(track: Track) -> list[Action]:
         actions += _edge(track, edge, x - grip, x + grip, resizes=True)
         inner, outer = sorted((x, x + side * 0.32 * em))
         tone = ink(palette.accent if in_hand() else colour, 1.0 if is_part or in_hand() else 0.7)
-        draw_list.add_rect_filled((inner, low), (outer, high), tone, 0.1 * em)
+        draw_list.add_rect_filled(ImVec2(inner, low), ImVec2(outer, high), tone, 0.1 * em)
         where = "begins" if side > 0 else "ends"
         tip(f"Playback {where} here: drag, or double-click to play all frames")
     draw_list.pop_clip_rect()
@@ -100,10 +102,12 @@ def _animation_end(track: Track) -> list[Action]:
         tag(track, x, f"{last}")
     colour = ink(palette.accent if hot else palette.dim, 1.0 if hot else 0.8)
     draw_list.push_clip_rect(*track.bounds, intersect_with_current_clip_rect=True)
-    draw_list.add_line(low, (x, track.track_bottom), colour, 1.5)
+    draw_list.add_line(low, ImVec2(x, track.track_bottom), colour, 1.5)
     draw_list.add_rect_filled(low, high, colour, 0.25 * em, imgui.ImDrawFlags_.round_right)
     for part in (0.28, 0.5):
         line = x + part * em
-        draw_list.add_line((line, low.y + 0.4 * em), (line, high.y - 0.4 * em), ink(palette.desk))
+        draw_list.add_line(
+            ImVec2(line, low.y + 0.4 * em), ImVec2(line, high.y - 0.4 * em), ink(palette.desk)
+        )
     draw_list.pop_clip_rect()
     return actions

@@ -86,7 +86,7 @@ def _draw_still(track: Track) -> None:
         colour = ink(track.look.palette.dim, 0.35)
         for low, high in ends:
             imgui.get_window_draw_list().add_line(
-                (track.x(low), track.middle), (track.x(high), track.middle), colour, 1.5
+                ImVec2(track.x(low), track.middle), ImVec2(track.x(high), track.middle), colour, 1.5
             )
 
 

@@ -27,7 +27,9 @@ def draw_ground(track: Track) -> list[Action]:
     document = track.project.document
     for frames, alpha in ((document.frames, 0.45), (document.played, 1.0)):
         begin, end = track.x(frames.first), track.x(frames.last)
-        draw_list.add_rect_filled((begin, low.y), (end, high.y), ink(palette.panel, alpha))
+        draw_list.add_rect_filled(
+            ImVec2(begin, low.y), ImVec2(end, high.y), ink(palette.panel, alpha)
+        )
     draw_list.pop_clip_rect()
     return _press_ground(track, low, high)
 
@@ -193,7 +195,7 @@ def _draw_key(track: Track, row: FigureRow, key: Keyframe, radius: float) -> Non
     if warns and chosen:
         _mark(passing, centre, 0.45 * radius, ink(warns))
     if warns and row.is_active:
-        draw_list.add_circle_filled((x, track.bar_top - 0.1 * em), 0.2 * em, ink(warns))
+        draw_list.add_circle_filled(ImVec2(x, track.bar_top - 0.1 * em), 0.2 * em, ink(warns))
 
 
 def _warning(track: Track, row: FigureRow, key: Keyframe) -> ImVec4 | None:
@@ -213,23 +215,25 @@ def _mark(passing: Passing, centre: ImVec2, radius: float, colour: int) -> None:
             draw_list.add_circle_filled(centre, 0.86 * radius, colour)
         case Passing.HOLD:
             half = 1.06 * across
-            draw_list.add_rect_filled((x - half, y - half), (x + half, y + half), colour)
+            draw_list.add_rect_filled(
+                ImVec2(x - half, y - half), ImVec2(x + half, y + half), colour
+            )
         case Passing.STOP:
             half, waist = 1.1 * across, 0.3 * across
             for side in (-1, 1):
                 draw_list.add_quad_filled(
-                    (x - half, y + side * half),
-                    (x + half, y + side * half),
-                    (x + waist, y),
-                    (x - waist, y),
+                    ImVec2(x - half, y + side * half),
+                    ImVec2(x + half, y + side * half),
+                    ImVec2(x + waist, y),
+                    ImVec2(x - waist, y),
                     colour,
                 )
         case _:
             draw_list.add_quad_filled(
-                (x, y - radius),
-                (x + radius, y),
-                (x, y + radius),
-                (x - radius, y),
+                ImVec2(x, y - radius),
+                ImVec2(x + radius, y),
+                ImVec2(x, y + radius),
+                ImVec2(x - radius, y),
                 colour,
             )
 

@@ -72,7 +72,7 @@ def _draw(track: Track, marker: Marker, x: float, text: str) -> None:
     draw_list.add_line(begin, end, ink(colour, 0.8 if hot else 0.35), 1.0)
     if text and not track.is_cramped:
         with sized(SMALL):
-            place = (x + half + 0.3 * em, (top + bottom - imgui.get_text_line_height()) / 2)
+            place = ImVec2(x + half + 0.3 * em, (top + bottom - imgui.get_text_line_height()) / 2)
             draw_list.add_text(place, ink(palette.text if hot else palette.dim), text)
     gesture = track.project.timing.gesture
     if isinstance(gesture, MarkerDrag) and gesture.at == marker.frame != gesture.marker:

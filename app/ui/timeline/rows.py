@@ -41,7 +41,7 @@ def _draw_ground(track: Track, row: FigureRow) -> None:
     low, high = ImVec2(track.left, row.top), ImVec2(track.right, row.bottom)
     if row.is_active:
         draw_list.add_rect_filled(low, high, ink(palette.accent, 0.08))
-    draw_list.add_line((low.x, high.y), high, ink(palette.line))
+    draw_list.add_line(ImVec2(low.x, high.y), high, ink(palette.line))
 
 
 def _draw_names(track: Track, frame: int) -> list[Action]:
@@ -61,8 +61,8 @@ def _draw_names(track: Track, frame: int) -> list[Action]:
         with sized(SMALL):
             text = shortened(row.figure.name, box[1].x - low.x - 2.6 * em)
             top = row.middle - imgui.get_text_line_height() / 2
-            draw_list.add_text((low.x + 0.4 * em, top), colour, icon)
-            draw_list.add_text((low.x + 1.8 * em, top), colour, text)
+            draw_list.add_text(ImVec2(low.x + 0.4 * em, top), colour, icon)
+            draw_list.add_text(ImVec2(low.x + 1.8 * em, top), colour, text)
     _draw_scrolled(track)
     imgui.pop_clip_rect()
     return actions
@@ -77,8 +77,8 @@ def _draw_scrolled(track: Track) -> None:
     top = track.track_top + per_pixel * (track.track_top - track.rows[0].top)
     width = 0.18 * track.look.em
     imgui.get_window_draw_list().add_rect_filled(
-        (track.left - width, top),
-        (track.left, top + per_pixel * height),
+        ImVec2(track.left - width, top),
+        ImVec2(track.left, top + per_pixel * height),
         ink(track.look.palette.dim, 0.8),
         width / 2,
     )
@@ -115,7 +115,7 @@ def _hatch(track: Track, row: FigureRow, begin: int | None, end: int | None) -> 
     first = track.x(0)
     x = first + ((left - height - first) // gap) * gap
     while x < right:
-        draw_list.add_line((x, high.y), (x + height, low.y), ink(palette.dim, 0.35))
+        draw_list.add_line(ImVec2(x, high.y), ImVec2(x + height, low.y), ink(palette.dim, 0.35))
         x += gap
     imgui.pop_clip_rect()
 
@@ -152,11 +152,11 @@ def _left_of_eye(track: Track, row: FigureRow, frame: int) -> ImVec2:
 def _draw_eye(track: Track, row: FigureRow, switch: Switch, left: ImVec2, *, is_hot: bool) -> None:
     draw_list, x = imgui.get_window_draw_list(), track.x(switch.frame)
     colour = ink(track.look.palette.text if is_hot else track.look.palette.anchor)
-    draw_list.add_line((x, row.top + 2), (x, row.bottom - 2), colour, 1.5)
+    draw_list.add_line(ImVec2(x, row.top + 2), ImVec2(x, row.bottom - 2), colour, 1.5)
     icon = icons.ICON_FA_EYE if switch.visible else icons.ICON_FA_EYE_SLASH
     with sized(SMALL * SMALL):
         top = left.y - imgui.get_text_line_height() / 2
-        draw_list.add_text((left.x + 0.15 * track.look.em, top), colour, icon)
+        draw_list.add_text(ImVec2(left.x + 0.15 * track.look.em, top), colour, icon)
 
 
 def _point(track: Track, row: FigureRow, switch: Switch) -> list[Action]:

@@ -54,18 +54,18 @@ def _draw_ticks(track: Track, present: int) -> None:
     for frame in range(begin, last + 1, small):
         x = track.x(frame)
         if frame % large:
-            draw_list.add_line((x, bottom - 0.35 * em), (x, bottom), faint)
+            draw_list.add_line(ImVec2(x, bottom - 0.35 * em), ImVec2(x, bottom), faint)
             continue
-        draw_list.add_line((x, track.ruler_top + 0.15 * em), (x, bottom), dim)
-        draw_list.add_line((x, track.track_top), (x, track.track_bottom), grid)
+        draw_list.add_line(ImVec2(x, track.ruler_top + 0.15 * em), ImVec2(x, bottom), dim)
+        draw_list.add_line(ImVec2(x, track.track_top), ImVec2(x, track.track_bottom), grid)
         number, top = f"{frame}", track.ruler_top + 0.1 * em
         seconds = in_seconds(frame, document.fps)
         wide = 0.7 * em + imgui.calc_text_size(number).x + imgui.calc_text_size(seconds).x
         if x < covered[1] and x + wide > covered[0]:
             continue
-        draw_list.add_text((x + 0.3 * em, top), text, number)
+        draw_list.add_text(ImVec2(x + 0.3 * em, top), text, number)
         beside = x + 0.7 * em + imgui.calc_text_size(number).x
-        draw_list.add_text((beside, top), dim, seconds)
+        draw_list.add_text(ImVec2(beside, top), dim, seconds)
 
 
 def _steps(fps: float) -> list[int]:
@@ -93,13 +93,15 @@ def draw_playhead(track: Track, frame: int) -> list[Action]:
         if in_hand():
             imgui.set_mouse_cursor(imgui.MouseCursor_.resize_ew)
         draw_list.push_clip_rect(*track.bounds, intersect_with_current_clip_rect=True)
-        draw_list.add_line((x, high.y), (x, track.track_bottom), ink(colour), max(1.5, 0.1 * em))
+        draw_list.add_line(
+            ImVec2(x, high.y), ImVec2(x, track.track_bottom), ink(colour), max(1.5, 0.1 * em)
+        )
         draw_list.add_rect_filled(low, high, ink(colour), 0.35 * em)
         half = 0.32 * em
         draw_list.add_triangle_filled(
-            (x - half, high.y - 0.5),
-            (x + half, high.y - 0.5),
-            (x, high.y + half),
+            ImVec2(x - half, high.y - 0.5),
+            ImVec2(x + half, high.y - 0.5),
+            ImVec2(x, high.y + half),
             ink(colour),
         )
         with sized(SMALL, track.look.bold):
@@ -126,9 +128,11 @@ def draw_overview(track: Track, frame: int) -> list[Action]:
     left, right = (track.left + (at - low) * per_frame for at in (strip.start, end))
     track.button("overview", ImVec2(left, top), ImVec2(right, bottom))
     rounding = (bottom - top) / 2
-    draw_list.add_rect_filled((track.left, top), (track.right, bottom), ink(palette.desk), rounding)
+    draw_list.add_rect_filled(
+        ImVec2(track.left, top), ImVec2(track.right, bottom), ink(palette.desk), rounding
+    )
     bar = ink(palette.dim if in_hand() else palette.pressed)
-    draw_list.add_rect_filled((left, top), (right, bottom), bar, rounding)
+    draw_list.add_rect_filled(ImVec2(left, top), ImVec2(right, bottom), bar, rounding)
     middle = (top + bottom) / 2
     # Each frame once, however many figures have a key there; those of the active one over them.
     own = track.project.figure.key_frames
@@ -141,9 +145,9 @@ def draw_overview(track: Track, frame: int) -> list[Action]:
     ):
         for at in frames_of:
             x = track.left + (at - low) * per_frame
-            draw_list.add_circle_filled((x, middle), radius, colour, 8)
+            draw_list.add_circle_filled(ImVec2(x, middle), radius, colour, 8)
     x = track.left + (frame - low) * per_frame
-    draw_list.add_line((x, top), (x, bottom), ink(palette.accent), 1.5)
+    draw_list.add_line(ImVec2(x, top), ImVec2(x, bottom), ink(palette.accent), 1.5)
     delta = imgui.get_io().mouse_delta.x
     if imgui.is_item_active() and delta:
         moved = strip.panned(delta / per_frame * strip.scale)

@@ -1,6 +1,6 @@
 """Keys in time: the transport above, the ruler, and the track with keys and easing."""
 
-from imgui_bundle import imgui
+from imgui_bundle import ImVec2, imgui
 
 from app.editor import (
     Action,
@@ -65,7 +65,7 @@ def _draw_track(track: Track, frame: int) -> list[Action]:
     if imgui.is_window_hovered() or track.project.timing.gesture is not None:
         actions.append(do(pointing.explain, _hint(track)))
     imgui.set_cursor_screen_pos(track.corner)
-    imgui.dummy((0, 0))
+    imgui.dummy(ImVec2(0, 0))
     return actions
 
 

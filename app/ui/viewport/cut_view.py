@@ -108,9 +108,9 @@ def draw_brush(session: Session, look: Look, at: ImVec2, scale: float) -> None:
     for tone, width in outlined(look, colour, 0.1):
         draw_list.add_circle(at, radius, tone, 64, width)
     sign, width = 0.35 * look.em, 0.12 * look.em
-    draw_list.add_line((at.x - sign, at.y), (at.x + sign, at.y), colour, width)
+    draw_list.add_line(ImVec2(at.x - sign, at.y), ImVec2(at.x + sign, at.y), colour, width)
     if keeps:
-        draw_list.add_line((at.x, at.y - sign), (at.x, at.y + sign), colour, width)
+        draw_list.add_line(ImVec2(at.x, at.y - sign), ImVec2(at.x, at.y + sign), colour, width)
 
 
 def _corners(width: float, height: float) -> Complexes:

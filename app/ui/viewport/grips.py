@@ -28,22 +28,12 @@ DASH, GAP, THIN = 0.6, 0.45, 0.1  # em: of the axis
 
 
 class Ring(NamedTuple):
-    """The ring around the one selected handle, on the screen.
-
-    Parameters
-    ----------
-    turn : float
-        How far the shape is turned there, in radians.
-    is_dragged : bool
-        Whether the pointer turns it.
-    swept : float
-        How far it has turned it, in radians.
-    """
+    """The ring around the one selected handle, on the screen."""
 
     centre: ImVec2
-    turn: float
-    is_dragged: bool
-    swept: float
+    turn: float  # how far the shape is turned there, in radians
+    is_dragged: bool  # whether the pointer turns it
+    swept: float  # how far it has turned it, in radians
 
     def is_pointed(self, look: Look) -> bool:
         """Tell whether the pointer is on it."""
@@ -107,7 +97,7 @@ def lay_axis(session: Session, look: Look, screen: Screen) -> Axis:
         return Axis()
     x, radius = screen.point(complex(screen.project.figure.axis)).x, AXIS_RADIUS * look.em
     imgui.set_cursor_screen_pos(_grip(look, x) - ImVec2(radius, radius))
-    imgui.invisible_button("mirror axis", (2 * radius, 2 * radius))
+    imgui.invisible_button("mirror axis", ImVec2(2 * radius, 2 * radius))
     if in_hand():
         imgui.set_mouse_cursor(imgui.MouseCursor_.resize_ew)
     tip("Poses are flipped here: drag it where the drawing has its middle")
@@ -124,7 +114,9 @@ def draw_axis(look: Look, axis: Axis) -> None:
     while y < bottom:
         end = min(y + DASH * look.em, bottom)
         for tone, width in outlined(look, colour, THIN):
-            imgui.get_window_draw_list().add_line((axis.x, y), (axis.x, end), tone, width)
+            imgui.get_window_draw_list().add_line(
+                ImVec2(axis.x, y), ImVec2(axis.x, end), tone, width
+            )
         y += (DASH + GAP) * look.em
     centre = _grip(look, axis.x)
     draw_knob(look, centre, AXIS_RADIUS, palette.accent)

@@ -98,11 +98,11 @@ def _pill(look: Look, text: str, place: ImVec2, remedy: Binding | None = None) -
     if remedy is None:
         return []
     slim = imgui.get_frame_height() - 0.1 * look.em
-    corner = (high.x - beside - 0.2 * look.em, low.y + (height - slim) / 2)
+    corner = ImVec2(high.x - beside - 0.2 * look.em, low.y + (height - slim) / 2)
     imgui.set_cursor_screen_pos(corner)
     imgui.push_style_var(imgui.StyleVar_.frame_rounding, slim / 2)
-    imgui.push_style_var(imgui.StyleVar_.frame_padding, (0, 0))
-    is_pressed = imgui.button(remedy.label, (beside, slim))
+    imgui.push_style_var(imgui.StyleVar_.frame_padding, ImVec2(0, 0))
+    is_pressed = imgui.button(remedy.label, ImVec2(beside, slim))
     imgui.pop_style_var(2)
     tip(remedy.hint, remedy.keys_in_words)
     return [remedy.action] if is_pressed else []

@@ -51,9 +51,9 @@ def draw_pictures(parts: Parts, own: int, twin: int | None) -> None:
     draw_list.add_image(
         imgui.ImTextureRef(own),
         corner,
-        (corner.x + room.x, bottom),
-        (0, 1),
-        (1, 0),
+        ImVec2(corner.x + room.x, bottom),
+        ImVec2(0, 1),
+        ImVec2(1, 0),
     )
     if twin is None:
         return
@@ -62,10 +62,10 @@ def draw_pictures(parts: Parts, own: int, twin: int | None) -> None:
     end = parts.divider + room.x if is_beside else corner.x + room.x
     draw_list.add_image(
         imgui.ImTextureRef(twin),
-        (parts.divider, corner.y),
-        (end, bottom),
-        (left, 1),
-        (1, 0),
+        ImVec2(parts.divider, corner.y),
+        ImVec2(end, bottom),
+        ImVec2(left, 1),
+        ImVec2(1, 0),
     )
 
 
@@ -82,8 +82,8 @@ def draw_divider(session: Session, look: Look, parts: Parts, room: float) -> lis
     draw_list = imgui.get_window_draw_list()
     is_hot = False
     if not split.beside:
-        imgui.set_cursor_screen_pos((x - GRIP * look.em, top))
-        imgui.invisible_button("divider", (2 * GRIP * look.em, height))
+        imgui.set_cursor_screen_pos(ImVec2(x - GRIP * look.em, top))
+        imgui.invisible_button("divider", ImVec2(2 * GRIP * look.em, height))
         is_hot = in_hand()
         if is_hot:
             imgui.set_mouse_cursor(imgui.MouseCursor_.resize_ew)
@@ -94,7 +94,7 @@ def draw_divider(session: Session, look: Look, parts: Parts, room: float) -> lis
     palette = look.palette
     colour = palette.accent if is_hot else palette.text
     for tone, width in outlined(look, ink(colour), LINE):
-        draw_list.add_line((x, top), (x, top + height), tone, width)
+        draw_list.add_line(ImVec2(x, top), ImVec2(x, top + height), tone, width)
     if not split.beside:
         knob = ImVec2(x, top + height / 2)
         draw_knob(look, knob, KNOB, colour)
@@ -114,4 +114,4 @@ def _names(look: Look, project: Project, method: Variant | Baseline, x: float, t
         low = ImVec2(left - pad, top + pad)
         high = ImVec2(left + size.x + pad, top + size.y + 2 * pad)
         draw_list.add_rect_filled(low, high, ink(look.palette.desk, 0.8), 0.3 * look.em)
-        draw_list.add_text((left, top + 1.5 * pad), ink(look.palette.text), text)
+        draw_list.add_text(ImVec2(left, top + 1.5 * pad), ink(look.palette.text), text)

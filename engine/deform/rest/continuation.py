@@ -16,12 +16,10 @@ from typing import NamedTuple
 import numpy as np
 
 from engine.arrays import Indices, readonly
-from engine.deform.barrier import Barrier, Walls
-from engine.deform.newton import SHORTEST
-from engine.deform.objective import Jet, Objective
+from engine.deform.model import SHORTEST, Barrier, Jet, Objective, Walls
 from engine.deform.rest.curved_step import CAUGHT, CurvedStep, curved_step, radial_changes
-from engine.deform.rest.opening import FIRST_REACH, next_reach, room
 from engine.deform.rest.optimality import Optimality
+from engine.deform.rest.rungs import FIRST_REACH, next_reach, rung
 from engine.deform.rest.samples import resolved, walls_around
 from engine.deform.rest.search import Search, Way
 from engine.maps import (
@@ -36,9 +34,9 @@ from engine.maps import (
 # Weight of the barrier at the start: over the energy where that is large, and at least.
 FIRST_PER_ENERGY = 0.1
 FIRST_LEAST = 10.0
-# The same from the present map, which stays in its valley, and at least where walls have opened.
+# The same from the present map, which stays in its valley, and at least where walls have widened.
 HERE_PER_ENERGY = 1e-2
-OPENED_PER_ENERGY = 0.03
+WIDENED_PER_ENERGY = 0.03
 # The weight falls by this factor when the model expects less than a part of it as a gain: a small
 # part while the weight is above this part of the energy. There the valley is chosen; later, and
 # from the present map, the way is a matter of digits.
@@ -61,7 +59,7 @@ SKETCHED = 1e-3
 STRIDE = 4
 # Less slack than this cannot be told from none: the wall is moved this far away.
 ROUNDING_SLACK = 1e-11
-REOPENED = 1e-9
+MOVED_OUT = 1e-9
 # A step whose map is not certified is halved this many times.
 HALVINGS = 6
 
@@ -84,14 +82,15 @@ def begin_search(
     harmonic_map, certificate
         Where it begins; the shape at rest, unless the way is from the present map.
     inside : Limits
-        Where the walls of the shape's own samples stand.
+        Where the walls of all samples stand.
     limits : Limits
         That the certificates are for, the one at the start included.
     way : Way
     """
     jet = objective.jet(*harmonic_map.columns)
     energy = objective.energy(jet)
-    reach = FIRST_REACH if way is Way.OPENING else inf
+    reach = FIRST_REACH if way is Way.WIDENING else inf
+    own = Walls.around(inside, len(jet.a))
     return Search(
         handles=objective.handles,
         wish=objective.wish,
@@ -100,9 +99,9 @@ def begin_search(
         certificate=certificate,
         boundary=objective.boundary,
         limits=limits,
-        inside=inside,
+        inside=own,
         reach=reach,
-        walls=walls_around(room(inside, reach), limits, jet.a, jet.b),
+        walls=walls_around(rung(own, reach), limits, jet.a, jet.b),
         weight=HERE_PER_ENERGY * energy if way is Way.HERE else _first_weight(energy),
         energy=energy,
     )
@@ -117,7 +116,7 @@ def advance(search: Search) -> Search:
     with the whole Hessian, 24 m n² for m samples.
     """
     objective, barrier, jet = _objective(search)
-    step, taken, refusals, broken = _certified(search, curved_step(objective, barrier, jet))
+    step, taken, broken = _certified(search, curved_step(objective, barrier, jet))
     changes = radial_changes(jet, step.direction)
     reached = jet.advanced(1.0, step.change.jet)
     search = replace(
@@ -131,11 +130,10 @@ def advance(search: Search) -> Search:
         length=step.length,
         caught=search.caught + 1 if step.length < CAUGHT else 0,
         gain=step.gain,
-        refusals=refusals,
     )
     search = replace(search, optimality=_optimality(search, reached, step.barrier))
     if is_centred(search, convex=step.convex):
-        search = lowered(search) if search.is_open else opened(search, reached)
+        search = lowered(search) if search.is_widest else widened(search, reached)
     return resolved(search, reached, taken.enclosures, broken)
 
 
@@ -155,9 +153,9 @@ def _objective(search: Search) -> tuple[Objective, Barrier, Jet]:
         # What the last step left of it is less than the rounding of this measurement.
         k, sigma_b, sigma_a = search.walls.k, search.walls.sigma_b, search.walls.sigma_a
         walls = Walls(
-            k=np.where(too_near[0], np.maximum(k, b / a + REOPENED), k),
-            sigma_a=np.where(too_near[2], np.maximum(sigma_a, a + b + REOPENED), sigma_a),
-            sigma_b=np.where(too_near[1], np.minimum(sigma_b, a - b - REOPENED), sigma_b),
+            k=np.where(too_near[0], np.maximum(k, b / a + MOVED_OUT), k),
+            sigma_a=np.where(too_near[2], np.maximum(sigma_a, a + b + MOVED_OUT), sigma_a),
+            sigma_b=np.where(too_near[1], np.minimum(sigma_b, a - b - MOVED_OUT), sigma_b),
         )
         barrier = replace(barrier, walls=walls)
     return replace(objective, barrier=barrier), barrier, jet
@@ -171,20 +169,20 @@ class _Proven(NamedTuple):
     enclosures: Enclosures
 
 
-def _certified(search: Search, step: CurvedStep) -> tuple[CurvedStep, _Proven, int, Indices]:
-    """Shorten a step until its map is certified; return refusals and broken segments, too."""
+def _certified(search: Search, step: CurvedStep) -> tuple[CurvedStep, _Proven, Indices]:
+    """Shorten a step until its map is certified; return broken segments, too."""
     broken = np.empty(0, np.intp)
     refusals = 0
     while step.length > SHORTEST and refusals <= HALVINGS:
         tried = search.map.changed(step.change.phi, step.change.psi)
         proof, segments, enclosures = certify_segments(tried, search.boundary, search.limits)
         if proof.certified:
-            return step, _Proven(tried, proof, enclosures), refusals, broken
+            return step, _Proven(tried, proof, enclosures), broken
         broken = np.union1d(broken, segments)
         refusals += 1
         step = step.shorter()
     enclosures = segment_enclosures(search.map, search.boundary)
-    return step.given_up(), _Proven(search.map, search.certificate, enclosures), refusals, broken
+    return step.given_up(), _Proven(search.map, search.certificate, enclosures), broken
 
 
 def _optimality(search: Search, jet: Jet, barrier: Barrier) -> Optimality:
@@ -198,7 +196,7 @@ def _optimality(search: Search, jet: Jet, barrier: Barrier) -> Optimality:
         energy=search.energy,
         boundary=search.boundary,
         barrier=barrier,
-        bounds=search.room,
+        bounds=search.rung,
     )
 
 
@@ -219,11 +217,11 @@ def lowered(search: Search) -> Search:
     return replace(search, weight=max(LOWER * search.weight, least))
 
 
-def opened(search: Search, jet: Jet) -> Search:
+def widened(search: Search, jet: Jet) -> Search:
     """Return the search with its walls on the next rung."""
-    weight = max(LOWER * search.weight, OPENED_PER_ENERGY * search.energy)
+    weight = max(LOWER * search.weight, WIDENED_PER_ENERGY * search.energy)
     wider = replace(search, reach=next_reach(search.inside, search.reach), weight=weight)
-    walls = walls_around(wider.room, wider.limits, jet.a, jet.b)
+    walls = walls_around(wider.rung, wider.limits, jet.a, jet.b)
     return replace(wider, walls=walls)
 
 

@@ -17,9 +17,17 @@ from typing import NamedTuple, Self
 import numpy as np
 
 from engine.arrays import Booleans, Floats
-from engine.deform.barrier import Barrier
-from engine.deform.newton import SHORTEST, SUFFICIENT, Direction, Model, newton_models
-from engine.deform.objective import Jet, Objective
+from engine.deform.model import (
+    SHORTEST,
+    SUFFICIENT,
+    Barrier,
+    Direction,
+    Jet,
+    Model,
+    Objective,
+    newton_models,
+    stiffening,
+)
 
 # A step leaves at least this part of each slack, and walls that leave less than twice that are
 # those it is brought back from, in at most so many corrections; each must halve what is missing.
@@ -140,9 +148,8 @@ class _Start:
         stiffer = barrier.derivatives(a, b).plus(
             self.barrier.derivatives(a, b).weighted(-np.ones(len(a)))
         )
-        added = self.model.objective.stiffening(
-            self.jet, stiffer.weighted(shares), np.flatnonzero(walls.any(axis=0))
-        )
+        samples = np.flatnonzero(walls.any(axis=0))
+        added = stiffening(self.model.objective, self.jet, stiffer.weighted(shares), samples)
         return replace(
             self,
             model=self.model.stiffened(added),
@@ -219,8 +226,8 @@ def _brought_back(start: _Start, change: Direction) -> tuple[Direction | None, B
         if count == CORRECTIONS or not missing < HALVED * before:
             break
         low = share < 2 * KEPT
-        lacking = np.where(low, (start.duals / start.margins) * (left - slacks * sums), 0.0)
-        by_a, b_per_b = barrier.margin_gradient(a, -objective.boundary.shares * lacking)
+        restored = np.where(low, (start.duals / start.margins) * (left - slacks * sums), 0.0)
+        by_a, b_per_b = barrier.margin_gradient(a, -objective.boundary.shares * restored)
         samples = np.flatnonzero(low.any(axis=0))
         gradient = objective.sampled_gradient(start.jet, by_a, b_per_b, samples)
         change = change.plus(start.model.direction(gradient))

@@ -9,12 +9,17 @@ from typing import NamedTuple
 import numpy as np
 
 from engine.arrays import Floats
-from engine.deform.barrier import Barrier
-from engine.maps import Boundary, Limits
+from engine.deform.model import Barrier, Walls
+from engine.maps import Boundary
 
-# A bound is active when moving it all the way to the identity would, to first order, cost more than
-# this part of the energy.
+# A bound is active when moving it all the way to the identity, or at least by a tenth, would, to
+# first order, cost more than this part of the energy; and when what it holds back is so many times
+# what the barrier itself does: next to the identity it is twice that where nothing is held back.
 ACTIVE = 1e-4
+LEAST_MOVED = 0.1
+PRESSING = 3.0
+# In the order of a barrier's.
+BOUNDS = ("k", "sigma_b", "sigma_a")
 
 
 class ActiveBound(NamedTuple):
@@ -62,23 +67,27 @@ class Optimality(NamedTuple):
         energy: float,
         boundary: Boundary,
         barrier: Barrier,
-        bounds: Limits,
+        bounds: Walls,
     ) -> "Optimality":
         """Measure a map by a = |f_z| and b = |f_z̄| (m,) at the samples, and by its last step."""
-        complementarity = 3.0 * barrier.weight * float(boundary.shares.sum())
+        weight = barrier.weight * float(boundary.shares.sum())
+        complementarity = 3.0 * weight
         multipliers = boundary.shares * (barrier.weight / barrier.margins(a, b))
         walls = barrier.walls
         # The derivatives of c = u² − b² by the bound, away from the identity.
         prices = multipliers * np.array(
             [2 * walls.k * a * a, 2 * (a - walls.sigma_b), 2 * (walls.sigma_a - a)]
         )
-        ways = {"k": bounds.k, "sigma_b": 1.0 - bounds.sigma_b, "sigma_a": bounds.sigma_a - 1.0}
+        ways = np.array([bounds.k, 1.0 - bounds.sigma_b, bounds.sigma_a - 1.0])
+        held = (prices * ways).sum(axis=1)
+        moved = (prices * np.maximum(ways, LEAST_MOVED)).sum(axis=1)
+        active = (moved > ACTIVE * energy) & (held > PRESSING * weight)
         return cls(
             measure=float((gain + complementarity) / energy),
             gap=gain + 2.0 * complementarity,
             active=tuple(
                 ActiveBound(name, float(price.sum()), complex(boundary.points[price.argmax()]))
-                for (name, way), price in zip(ways.items(), prices, strict=True)
-                if price.sum() * way > ACTIVE * energy
+                for name, price, is_active in zip(BOUNDS, prices, active, strict=True)
+                if is_active
             ),
         )

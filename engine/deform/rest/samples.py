@@ -11,10 +11,8 @@ from dataclasses import replace
 import numpy as np
 
 from engine.arrays import Floats, Indices
-from engine.deform.barrier import Walls, with_samples_between
-from engine.deform.objective import Jet
+from engine.deform.model import MARGIN, Jet, Walls, with_samples_between, with_walls_between
 from engine.deform.rest.search import Search
-from engine.deform.steering import MARGIN
 from engine.maps import Enclosures, Limits
 
 # The wall of a sample that is beyond them stands this part of its way to the bound farther out.
@@ -27,7 +25,7 @@ BULGE_PER_MARGIN = 0.9
 MOST_SAMPLES = 4
 
 
-def walls_around(inside: Limits, limits: Limits, a: Floats, b: Floats) -> Walls:
+def walls_around(inside: Walls, limits: Limits, a: Floats, b: Floats) -> Walls:
     """Return the inner walls, moved out a little where a sample is beyond or next to them."""
     k, sigma_a, sigma_b = b / a, a + b, a - b
     return Walls(
@@ -62,8 +60,8 @@ def resolved(search: Search, jet: Jet, enclosures: Enclosures, broken: Indices) 
     excess = ((proven - ends) / allowed).max(axis=0)
     excess[broken] = np.inf
     most = int(MOST_SAMPLES * np.count_nonzero(boundary.weights))
-    room = max(most - len(a), len(broken))
-    worst = np.argsort(-excess, kind="stable")[:room]
+    free = max(most - len(a), len(broken))
+    worst = np.argsort(-excess, kind="stable")[:free]
     segments = np.sort(worst[excess[worst] > 1.0])
     if len(segments) == 0:
         return search
@@ -71,10 +69,13 @@ def resolved(search: Search, jet: Jet, enclosures: Enclosures, broken: Indices) 
     new = segments + np.arange(len(segments)) + 1
     alone = boundary.span.without_constant(search.map.coefficients)
     f, g = (finer.derivatives[new] @ alone).T
-    walls = walls_around(search.room, limits, np.abs(f), np.abs(g))
+    ends_of = boundary.following[segments]
+    search = replace(search, inside=with_walls_between(search.inside, segments, ends_of))
+    nearest = Walls(*(each[new] for each in search.rung))
+    walls = walls_around(nearest, limits, np.abs(f), np.abs(g))
     duals = search.duals
     if duals is not None:
-        duals = with_samples_between(duals, segments, boundary.following[segments])
+        duals = with_samples_between(duals, segments, ends_of)
     return replace(
         search,
         boundary=finer,

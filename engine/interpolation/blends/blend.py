@@ -8,17 +8,22 @@ from typing import Any, ClassVar, Self
 import numpy as np
 
 from engine.arrays import Complexes, Floats, Indices
-from engine.interpolation.course import Course, Joint, Tangent
-from engine.interpolation.derivatives import Derivatives, Passage
+from engine.interpolation.courses import (
+    Course,
+    Joint,
+    Tangent,
+    are_same,
+    derivatives_along,
+    shortened,
+)
 from engine.interpolation.enclosing import Changes, EdgeCurves, EndValues, Patch
-from engine.interpolation.interval import Interval
+from engine.interpolation.passage import Derivatives, Interval, Passage
 from engine.interpolation.periods import Closing
-from engine.interpolation.residual import HoleConstants, Residual
+from engine.interpolation.series import HoleConstants, Residual
 from engine.interpolation.sites import Sites
-from engine.interpolation.tangents import are_same, derivatives_along, shortened
 from engine.maps import Boundary, Bounds, Enclosures, HarmonicMap
 
-Curves = tuple[EdgeCurves[Any], EdgeCurves[Any]]
+PairCurves = tuple[EdgeCurves[Any], EdgeCurves[Any]]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -140,7 +145,7 @@ class Blend(ABC):
         return self.passage.course, self.passage.eta_course
 
     @abstractmethod
-    def curves(self, values: EndValues) -> Curves:
+    def curves(self, values: EndValues) -> PairCurves:
         """Return what is known of the two quantities along pieces of the boundary."""
 
     @staticmethod

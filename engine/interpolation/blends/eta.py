@@ -7,13 +7,12 @@ from typing import Any, Self
 import numpy as np
 
 from engine.arrays import Complexes, Floats, Indices, freeze
-from engine.interpolation.blends.blend import Blend, Curves
-from engine.interpolation.derivatives import Derivatives, weighted
+from engine.interpolation.blends.blend import Blend, PairCurves
 from engine.interpolation.enclosing import Changes, EndValues, Patch, exponential
-from engine.interpolation.interval import Interval
+from engine.interpolation.passage import Derivatives, Interval, weighted
 from engine.interpolation.periods import Closing
-from engine.interpolation.residual import combined
 from engine.interpolation.scaling import SharpScaling
+from engine.interpolation.series import combined
 from engine.interpolation.sites import Sites
 from engine.maps import Enclosures
 
@@ -100,7 +99,7 @@ class EtaBlend(Blend):
         b = np.abs(second) / a
         return a + b, a - b
 
-    def curves(self, values: EndValues) -> Curves:
+    def curves(self, values: EndValues) -> PairCurves:
         """Return ln |f_z| and conj(η) along pieces of the boundary."""
         return values.log_modulus(), values.conj_eta()
 

@@ -6,11 +6,10 @@ from typing import Any, Self
 import numpy as np
 
 from engine.arrays import Complexes, Floats, Indices, freeze
-from engine.interpolation.blends.blend import Blend, Curves
-from engine.interpolation.derivatives import Derivatives, weighted
+from engine.interpolation.blends.blend import Blend, PairCurves
 from engine.interpolation.enclosing import Changes, EndValues, Patch, linear
-from engine.interpolation.interval import Interval
-from engine.interpolation.residual import combined
+from engine.interpolation.passage import Derivatives, Interval, weighted
+from engine.interpolation.series import combined
 from engine.maps import Enclosures
 
 
@@ -73,7 +72,7 @@ class LinearBlend(Blend):
         a, b = np.abs(first), np.abs(second)
         return a + b, a - b
 
-    def curves(self, values: EndValues) -> Curves:
+    def curves(self, values: EndValues) -> PairCurves:
         """Return f_z and conj(f_z̄) along pieces of the boundary."""
         return values.conformal(), values.anticonformal()
 

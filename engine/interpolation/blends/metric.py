@@ -22,15 +22,14 @@ import numpy as np
 from engine.arrays import Complexes, Floats, Indices
 from engine.dirichlet import Extension, Refinement
 from engine.errors import EngineError
-from engine.interpolation.blends.blend import Curves
+from engine.interpolation.blends.blend import PairCurves
 from engine.interpolation.blends.eta import EtaBlend
 from engine.interpolation.blends.outline import (
     OutlineMetric,
     control_curves,
     course_of_trace,
 )
-from engine.interpolation.chebyshev import PiecewiseSeries, one, separate
-from engine.interpolation.course import Course, Joint, Tangent
+from engine.interpolation.courses import Course, Joint, Tangent, shortened_metric
 from engine.interpolation.enclosing import (
     Changes,
     EndValues,
@@ -38,12 +37,11 @@ from engine.interpolation.enclosing import (
     changed_metric,
     from_metric,
 )
-from engine.interpolation.interval import Interval
+from engine.interpolation.passage import Interval
 from engine.interpolation.periods import Closing
-from engine.interpolation.residual import HoleConstants, Residual
 from engine.interpolation.scaling import Worst, allowed
+from engine.interpolation.series import HoleConstants, PiecewiseSeries, Residual, one, separate
 from engine.interpolation.sites import Sites
-from engine.interpolation.tangents import shortened_metric
 from engine.maps import Boundary, Bounds, Enclosures, derivatives_of
 
 TOLERANCE = 1e-9  # of the series' last terms, in ln |f_z|
@@ -179,7 +177,7 @@ class MetricBlend(EtaBlend):
         """The weights in time of the `curves` of both quantities."""
         return course_of_trace(self.passage.eta_course), self.passage.eta_course
 
-    def curves(self, values: EndValues) -> Curves:
+    def curves(self, values: EndValues) -> PairCurves:
         """Return 𝒜, or its control values in time, and conj(η) along pieces of the boundary."""
         eta = values.conj_eta()
         return control_curves(values.trace(), eta, self.passage.eta_course, self.bounds), eta

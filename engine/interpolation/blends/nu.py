@@ -6,11 +6,10 @@ from typing import Any, Self
 import numpy as np
 
 from engine.arrays import Complexes, Floats
-from engine.interpolation.blends.blend import Blend, Curves
-from engine.interpolation.derivatives import Derivatives, weighted
+from engine.interpolation.blends.blend import Blend, PairCurves
 from engine.interpolation.enclosing import Changes, EndValues, Patch, exponential
-from engine.interpolation.interval import Interval
-from engine.interpolation.residual import combined
+from engine.interpolation.passage import Derivatives, Interval, weighted
+from engine.interpolation.series import combined
 from engine.maps import Enclosures
 
 
@@ -69,7 +68,7 @@ class NuBlend(Blend):
         a, k = np.exp(first.real), np.abs(second)
         return a * (1.0 + k), a * (1.0 - k)
 
-    def curves(self, values: EndValues) -> Curves:
+    def curves(self, values: EndValues) -> PairCurves:
         """Return ln |f_z| and ν along pieces of the boundary."""
         return values.log_modulus(), values.nu()
 

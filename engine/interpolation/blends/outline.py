@@ -6,9 +6,8 @@ from typing import Self
 import numpy as np
 
 from engine.arrays import Complexes, Floats
-from engine.interpolation.course import Course, Tangent
+from engine.interpolation.courses import Course, Range, Tangent, allowed_velocities, curb, curbed
 from engine.interpolation.enclosing import EdgeCurves, along_mean
-from engine.interpolation.tangents import Range, allowed_velocities, curb, curbed
 from engine.maps import Bounds
 
 

@@ -1,7 +1,6 @@
 """The variants by name."""
 
 from collections.abc import Mapping
-from types import MappingProxyType
 
 from engine.interpolation.blends.blend import Blend
 from engine.interpolation.blends.eta import EtaBlend, ScaledEtaBlend
@@ -10,12 +9,10 @@ from engine.interpolation.blends.metric import MetricBlend
 from engine.interpolation.blends.nu import NuBlend
 from engine.variant import Variant
 
-BLENDS: Mapping[Variant, type[Blend]] = MappingProxyType(
-    {
-        Variant.METRIC: MetricBlend,
-        Variant.NU: NuBlend,
-        Variant.SCALED_ETA: ScaledEtaBlend,
-        Variant.ETA: EtaBlend,
-        Variant.LINEAR: LinearBlend,
-    }
-)
+BLENDS: Mapping[Variant, type[Blend]] = {
+    Variant.METRIC: MetricBlend,
+    Variant.NU: NuBlend,
+    Variant.SCALED_ETA: ScaledEtaBlend,
+    Variant.ETA: EtaBlend,
+    Variant.LINEAR: LinearBlend,
+}

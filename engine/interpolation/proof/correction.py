@@ -11,10 +11,9 @@ import numpy as np
 from numpy.polynomial import chebyshev
 
 from engine.arrays import Complexes, Floats, Indices
-from engine.interpolation.chebyshev import PiecewiseSeries
 from engine.interpolation.enclosing import Patch, Subdivision, followed
 from engine.interpolation.periods import Closing
-from engine.interpolation.residual import HoleConstants
+from engine.interpolation.series import HoleConstants, PiecewiseSeries
 from engine.maps import Boundary
 
 LEFT_OUT = 1e-9  # of h: its smallest modes

@@ -26,7 +26,7 @@ class Cells(NamedTuple):
         return Cells(self.piece[which], self.start[which], self.end[which])
 
 
-class Enclosed(NamedTuple):
+class CellResults(NamedTuple):
     """What is proven of cells, what is attained at their corners, and which to cut across time."""
 
     enclosed: Enclosures
@@ -66,7 +66,7 @@ class CellEnclosures:
             cuts = cuts if each is None else np.union1d(cuts, each.breaks)
         return cuts
 
-    def of(self, chosen: Cells) -> Enclosed:
+    def of(self, chosen: Cells) -> CellResults:
         """Enclose cells."""
         self._catch_up()
         first, second = (
@@ -75,7 +75,7 @@ class CellEnclosures:
         )
         changes, off_in_time = self._changes(chosen)
         enclose = self._blend.enclose
-        return Enclosed(
+        return CellResults(
             enclose(first, second, changes),
             enclose(
                 first.corners(), second.corners(), None if changes is None else changes.corners()

@@ -137,9 +137,9 @@ def allowed(
     """
     k, sigma_a, sigma_b = limits
     # ρ_k, ρ_a and ρ_b of Section 7.3 have the denominator |f_z̄| in common.
-    room = np.minimum(k * a, np.minimum(sigma_a - a, a - sigma_b))
-    ratios = np.full(room.shape, CEILING)
-    np.divide(room, b, out=ratios, where=b > np.maximum(NEGLIGIBLE * a, room / CEILING))
+    slack = np.minimum(k * a, np.minimum(sigma_a - a, a - sigma_b))
+    ratios = np.full(slack.shape, CEILING)
+    np.divide(slack, b, out=ratios, where=b > np.maximum(NEGLIGIBLE * a, slack / CEILING))
     if d is not None:
         bounds = np.array([np.broadcast_to(each, a.shape) for each in limits])
         tight = _tight(ratios, a, d, bounds)

@@ -8,8 +8,7 @@ import numpy as np
 
 from engine.arrays import Booleans, Complexes, Floats, Indices
 from engine.geometry import box_diagonal, sample_graded
-from engine.interpolation.chebyshev import PiecewiseSeries
-from engine.interpolation.course import Course
+from engine.interpolation.courses import Course
 from engine.interpolation.periods import Closing
 from engine.interpolation.scaling.outline_curves import (
     PARTS,
@@ -19,6 +18,7 @@ from engine.interpolation.scaling.outline_curves import (
     worst_of,
 )
 from engine.interpolation.scaling.pointwise import CEILING, TOO_HIGH, PointSamples, Worst
+from engine.interpolation.series import PiecewiseSeries
 from engine.maps import Bounds, HarmonicMap
 
 # Segments between the samples of the outline, over the distance to the nearest cage vertex and over

@@ -9,7 +9,7 @@ from typing import Self
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
-from engine.arrays import Floats, Indices, freeze
+from engine.arrays import Floats, Indices, freeze, ragged
 
 # Time is stretched to u, t = 1 / (1 + exp(−STRETCH sinh(u / STRETCH))), so that a window of
 # constant width in u narrows towards both keyframes, where ρ has to be 1.
@@ -149,15 +149,14 @@ class ScalingEnclosures:
         # By the strips before and behind, against rounding.
         first = np.maximum(self._strip(pairs[0]) - 1, 0)
         counts = np.minimum(self._strip(pairs[1]) + 2, len(self.highest)) - first
-        begins = np.concatenate([[0], counts[:-1].cumsum()])
-        owner = np.repeat(np.arange(len(counts)), counts)
-        strip = np.arange(counts.sum()) - (begins - first)[owner]
+        owner, place = ragged(counts)
+        strip = first[owner] + place
         beside = np.clip(self.times[[strip, strip + 1]], pairs[0][owner], pairs[1][owner])
         share = (beside - pairs[0][owner]) / (pairs[1] - pairs[0])[owner]
         chord = values[owner, 0] + share * np.diff(values, axis=1)[owner, 0]
         above = self.highest[strip] - chord.min(axis=0)
         off = np.maximum(above, chord.max(axis=0) - self.lowest[strip])
-        errors = np.maximum(np.maximum.reduceat(off, begins), 0.0)
+        errors = np.maximum(np.maximum.reduceat(off, counts.cumsum() - counts), 0.0)
         return values[which], errors[which]
 
     def _strip(self, times: Floats) -> Indices:

@@ -3,6 +3,7 @@ import re
 import numpy as np
 import pytest
 from deform_shapes import STAR_POINTS, star_boundary
+from interpolation_shapes import subdivided
 from numpy.testing import assert_allclose
 
 from app.cli.main import main
@@ -45,12 +46,12 @@ def test_a_case_is_solved(write, tmp_path, capsys):
     assert set(got) == {
         *("outline", "cage", "phi", "psi", "logs", "handles_mapped"),
         *("hole_outlines", "hole_outline_sizes", "hole_cages", "hole_cage_sizes", "hole_centres"),
-        *("k", "sigma_a", "sigma_b", "certified", "status", "steps"),
+        *("k", "sigma_a", "sigma_b", "certified", "status", "steps", "steps_tried"),
     }
     assert bool(got["certified"]) is True
     assert got["certified"].dtype == bool
     assert str(got["status"]) == "converged"
-    assert int(got["steps"]) > 0
+    assert 0 < int(got["steps"]) == int(got["steps_tried"]) <= 30
     f = HarmonicMap(cage=got["cage"], phi=got["phi"], psi=got["psi"])
     assert_allclose(f(STAR_POINTS), got["handles_mapped"], atol=1e-12)
     assert_allclose(got["handles_mapped"], CASE["targets"], atol=5e-3)
@@ -112,6 +113,8 @@ DOUBLE = np.array([0.0, 0.0])
     [
         ({"handles": None}, "lacks the array 'handles'"),
         ({"handles": STAR_POINTS + 5}, "outside the outline"),
+        ({"handles": STAR_POINTS + 1e-3 + 5, "cage": CAGE[::-1]}, "outside the outline"),
+        ({"cage": subdivided(CAGE, 0.01)}, "vertices, and more than 400 .* coarser cage"),
         ({"targets": np.full(6, np.nan)}, "finite"),
         ({"targets": STAR_POINTS[:3]}, "as many targets"),
         ({"handles": DOUBLE, "targets": np.array([0, 1.0])}, "same point"),

@@ -49,6 +49,19 @@ def error_of(capsys, maps, out, *flags, **options):
     return said[0]
 
 
+def test_a_terminal_tells_how_far_a_long_preparation_is(write, tmp_path, capsys, monkeypatch):
+    assert interpolate(write(), tmp_path / "piped", variant="metric") == 0
+    assert capsys.readouterr().err == ""
+    monkeypatch.setattr("sys.stderr.isatty", lambda: True)
+    monkeypatch.setattr("app.cli.console.PATIENCE", -1.0)
+    assert interpolate(write(), tmp_path / "seen", variant="metric") == 0
+    told = capsys.readouterr().err.split("\r\x1b[K")
+    shares = [int(each[:-1].split()[-1]) for each in told if each]
+    assert shares == sorted(shares)
+    assert (shares[0], len(shares)) > (-1, 3)
+    assert told[-1] == ""
+
+
 @pytest.mark.parametrize("variant", ["nu", "eta", "scaled-eta", "metric", "linear"])
 def test_the_file_is_as_documented(write, tmp_path, variant):
     out = tmp_path / "frames"

@@ -5,6 +5,7 @@ import threading
 import pytest
 
 from app.editor.work.jobs import Job, Jobs, Kind
+from app.errors import tell
 
 
 def job(kind, work, results, *, lane="display"):
@@ -326,6 +327,7 @@ import threading
 import numpy as np
 import scipy.linalg
 from app.editor.work.jobs import Job, Jobs, Kind
+from app.errors import tell
 
 begun = threading.Event()
 matrix = np.random.default_rng(0).random((3000, 3000))
@@ -347,3 +349,46 @@ for _ in range(8):
 def test_a_program_may_end_while_a_job_runs():
     done = subprocess.run([sys.executable, "-c", PROGRAM], capture_output=True, check=False)
     assert done.returncode == 0
+
+
+def test_a_job_that_tells_how_far_it_is_ends_when_it_is_given_up():
+    jobs, results, over = Jobs(), [], []
+    told, left = threading.Event(), threading.Event()
+
+    def work():
+        try:
+            tell(0.25)
+            told.set()
+            left.wait(10)
+            tell(0.5)
+            over.append("went on")
+        finally:
+            over.append("ended")
+
+    jobs.put(job("slow", work, results))
+    assert told.wait(10)
+    assert jobs.share_of(Kind("slow")) == 0.25
+    assert jobs.share_of(Kind("other")) is None
+    jobs.leave(Kind("slow"))
+    left.set()
+    jobs.put(job("next", lambda: 2, results))
+    assert jobs.settle()
+    assert jobs.share_of(Kind("next")) is None
+    assert jobs.close()
+    assert over == ["ended"]
+    jobs.deliver()
+    assert [kind for kind, _ in results] == ["slow", "next"]
+    assert "cancelled" in str(results[0][1])
+
+
+def test_what_tells_how_far_it_is_does_not_hold_up_the_end_of_the_program():
+    jobs, told = Jobs(), threading.Event()
+
+    def work():
+        while True:
+            tell(0.5)
+            told.set()
+
+    jobs.put(job("endless", work, []))
+    assert told.wait(10)
+    assert jobs.close()

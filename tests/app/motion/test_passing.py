@@ -13,7 +13,8 @@ from app.document.easing import LINEAR, PRESETS, Easing
 from app.document.keyframe import Keyframe, Passing
 from app.document.queries.clips import clip_of
 from app.document.settings import FrameRange
-from app.motion.inbetweens import Animation
+from app.errors import LissomError, told_to
+from app.motion.inbetweens import Animation, PoseSampler
 from app.motion.interval_store import IntervalStore
 from app.motion.posable_mesh import PosableMesh
 from engine.maps import Bounds
@@ -109,3 +110,19 @@ def test_how_much_of_their_velocity_keys_keep_is_told():
     assert kept.keys() == {10, 20}
     assert max(kept.values()) < 0.01
     assert prepared(tight)[0].velocity_shares(clip_of(document, 0)) == {}
+
+
+def test_an_outline_whose_preparation_was_ended_is_prepared_anew():
+    document = moving_document()
+    sampler = PoseSampler(document.figures[0].domain, anchor=None)
+    sibling = PoseSampler(document.figures[0].domain, anchor=None, sibling=sampler)
+
+    def end(share):
+        raise LissomError(f"it was cancelled at {share:.0%}")
+
+    with told_to(end), pytest.raises(LissomError, match="cancelled"):
+        _ = sibling.transform
+    shares = []
+    with told_to(shares.append):
+        assert sibling.transform is sampler.transform
+    assert shares[-1] == 1

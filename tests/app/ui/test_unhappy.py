@@ -1,5 +1,6 @@
 """Hands that do two things at once, work that fails, and windows that are too small."""
 
+import threading
 from dataclasses import replace
 
 import numpy as np
@@ -26,9 +27,11 @@ from app.editor.actions import (
 )
 from app.editor.timeline_view import KeyBox
 from app.editor.work.derived import Derived
+from app.errors import tell
 from app.motion.extent import Box, extent_source
 from app.storage.assets import sample_images
 from app.storage.autosave import SECONDS
+from app.ui.bars.status import SLOW
 from app.ui.viewport import marks
 from engine.maps.bounds import Bounds
 
@@ -508,6 +511,29 @@ def test_job_that_raises_is_told_once_and_the_window_lives_on(
     window.settle()
     assert bent.puppet.shown.is_current
     assert bent.renewal is None
+
+
+@pytest.mark.usefixtures("bent")
+def test_work_that_tells_how_far_it_is_is_cancelled_at_once_and_ends(window, monkeypatch):
+    jobs, ended = window.session.jobs, threading.Event()
+
+    def endless(*_, **__):
+        try:
+            while True:
+                tell(0.4)
+        finally:
+            ended.set()
+
+    monkeypatch.setattr(jobs, "_clock", window.clock)
+    monkeypatch.setattr("app.motion.interval_store.prepare_intervals", endless)
+    window.act(keys.set_variant, "nu")
+    window.until(lambda: any(jobs.share_of(kind) == 0.4 for kind in jobs.kinds))
+    window.clock.now += SLOW
+    window.frames(3)
+    window.run(lambda robot: robot.item_click("//**/Cancel"))
+    assert ended.wait(10)
+    window.settle()
+    assert any("cancelled" in toast.text for toast in window.session.toasts)
 
 
 WAITING = {

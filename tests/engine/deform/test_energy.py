@@ -6,10 +6,16 @@ from deform_shapes import STAR_POINTS, star_boundary
 from numpy.testing import assert_allclose
 
 from engine.deform import Handles
-from engine.deform.barrier import DUAL_RANGE, Barrier, Walls
-from engine.deform.energy import symmetric_dirichlet, symmetric_dirichlet_derivatives
-from engine.deform.newton import line_search, newton_direction, newton_models
-from engine.deform.objective import Objective
+from engine.deform.model.barrier import DUAL_RANGE, Barrier, Walls
+from engine.deform.model.energy import symmetric_dirichlet, symmetric_dirichlet_derivatives
+from engine.deform.model.hessian import (
+    hessian_product,
+    negative_part,
+    projected_hessian,
+    single_hessian,
+)
+from engine.deform.model.newton import line_search, newton_direction, newton_models
+from engine.deform.model.objective import Objective
 from engine.maps import Bounds
 
 WALLS = Bounds(k=0.7, sigma_a=3.0, sigma_b=0.15)
@@ -187,9 +193,11 @@ def test_hessian_of_rotations_is_the_projection():
     turned[2] = np.angle(jet.fz[2]) - 0.4
     both = [
         np.triu(
-            Objective(
-                boundary=objective.boundary, handles=handles, wish=handles.wish(jet.positions, r)
-            ).hessian(jet, objective.radial(jet))
+            projected_hessian(
+                replace(objective, wish=handles.wish(jet.positions, r)),
+                jet,
+                objective.radial(jet),
+            )
         )
         for r in (None, turned)
     ]
@@ -209,7 +217,7 @@ def test_hessian_of_rotations_is_the_projection():
 
 def assert_products(objective, jet, n, rng, *, removed=0.0, tolerance=1e-6):
     """Compare the Hessian less what is `removed` from that of the map with differences."""
-    hessian = np.triu(objective.hessian(jet, objective.radial(jet)))
+    hessian = np.triu(projected_hessian(objective, jet, objective.radial(jet)))
     hessian = hessian + np.triu(hessian, 1).T
     hessian[: 2 * n, : 2 * n] -= removed
     h = 1e-6
@@ -236,16 +244,16 @@ def test_the_hessian_without_its_projection_is_exact(barrier):
     radial = objective.radial(jet)
     assert np.count_nonzero(radial.around_a < 0) > 100
     # But for the tiny stiffness against turning as a whole.
-    negative = objective.negative_part(jet, radial)
+    negative = negative_part(objective, jet, radial)
     assert_products(objective, jet, n, rng, removed=negative, tolerance=1e-5)
 
 
 def test_the_coarse_hessian_resembles_the_exact_one():
     objective, phi, psi, rng = problem(stride=4)
     jet = objective.jet(phi, psi)
-    coarse = np.triu(objective.hessian(jet, objective.radial(jet)))
+    coarse = np.triu(projected_hessian(objective, jet, objective.radial(jet)))
     whole = replace(objective, stride=1)
-    exact = np.triu(whole.hessian(jet, objective.radial(jet)))
+    exact = np.triu(projected_hessian(whole, jet, objective.radial(jet)))
     coarse, exact = (h + np.triu(h, 1).T for h in (coarse, exact))
     assert not np.array_equal(coarse, exact)
     for _ in range(20):
@@ -257,14 +265,17 @@ def test_single_precision_serves_where_handles_hold_a_shape_and_no_wall_is_near(
     objective, phi, psi, _ = problem(stride=4)
     jet = objective.jet(phi, psi)
     radial = objective.radial(jet)
-    single, double = objective.single_hessian(jet, radial), objective.hessian(jet, radial)
+    single, double = (
+        single_hessian(objective, jet, radial),
+        projected_hessian(objective, jet, radial),
+    )
     assert single.dtype == np.float32
     assert_allclose(np.triu(single), np.triu(double), rtol=1e-5, atol=1e-3)
     alone = Handles.place(objective.boundary, STAR_POINTS[:1])
     free = replace(objective, handles=alone, wish=alone.wish(STAR_POINTS[:1]))
-    assert free.single_hessian(jet, free.radial(jet)) is None
+    assert single_hessian(free, jet, free.radial(jet)) is None
     radial.aa[7] *= 1e6
-    assert objective.single_hessian(jet, radial) is None
+    assert single_hessian(objective, jet, radial) is None
 
 
 @pytest.mark.parametrize("barrier", [True, False])
@@ -274,10 +285,10 @@ def test_a_step_by_a_sketch_tends_to_that_over_all_samples(barrier, monkeypatch)
     jet = objective.jet(phi, psi)
     radial = objective.radial(jet)
     whole = replace(objective, stride=1)
-    hessian = np.triu(whole.hessian(jet, radial))
+    hessian = np.triu(projected_hessian(whole, jet, radial))
     hessian = hessian + np.triu(hessian, 1).T
     x = rng.normal(size=len(hessian))
-    product = objective.product(jet, radial, objective.change(x))
+    product = hessian_product(objective, jet, radial, objective.change(x))
     assert_allclose(product, hessian @ x, rtol=0, atol=1e-5 * np.abs(product).max())
     exact = list(newton_models(whole, jet))[-1].direction()
 
@@ -285,8 +296,8 @@ def test_a_step_by_a_sketch_tends_to_that_over_all_samples(barrier, monkeypatch)
         return np.abs(direction.jet.f - exact.jet.f).max() / np.abs(exact.jet.f).max()
 
     first = newton_direction(objective, jet)
-    monkeypatch.setattr("engine.deform.newton.REFINED", 1e-5)
-    monkeypatch.setattr("engine.deform.newton.REFINEMENTS", 20)
+    monkeypatch.setattr("engine.deform.model.newton.REFINED", 1e-5)
+    monkeypatch.setattr("engine.deform.model.newton.REFINEMENTS", 20)
     assert missed(newton_direction(objective, jet)) < 0.01 * missed(first) < 1e-3
 
 

@@ -6,8 +6,8 @@ from deform_shapes import STAR_POINTS, star_boundary
 from numpy.testing import assert_allclose, assert_array_equal
 
 from engine.deform import Handles, Objective, newton_direction
-from engine.deform.barrier import Barrier, Walls
-from engine.deform.newton import newton_models, sketched_direction
+from engine.deform.model.barrier import Barrier, Walls
+from engine.deform.model.newton import newton_models, sketched_direction
 from engine.maps import Bounds
 
 
@@ -44,15 +44,15 @@ def test_a_step_by_the_sketch_of_another_map_tends_to_the_same(maps, monkeypatch
     later, kept = sketched_direction(objective, jet, sketch)
     assert kept.factor is sketch.factor
     assert missed(maps, later) < 0.1
-    monkeypatch.setattr("engine.deform.newton.REFINED_LATER", 1e-5)
-    monkeypatch.setattr("engine.deform.newton.REFINEMENTS", 30)
+    monkeypatch.setattr("engine.deform.model.newton.REFINED_LATER", 1e-5)
+    monkeypatch.setattr("engine.deform.model.newton.REFINEMENTS", 30)
     refined, _ = sketched_direction(objective, jet, sketch)
     assert missed(maps, refined) < 1e-3
 
 
 def test_a_sketch_that_takes_too_many_rounds_is_made_anew(maps, monkeypatch):
     objective, jet, sketch = maps
-    monkeypatch.setattr("engine.deform.newton.REFINED_LATER", 1e-12)
+    monkeypatch.setattr("engine.deform.model.newton.REFINED_LATER", 1e-12)
     direction, kept = sketched_direction(objective, jet, sketch)
     assert_array_equal(direction.phi, newton_direction(objective, jet).phi)
     assert kept.factor is not sketch.factor
@@ -70,7 +70,7 @@ def test_a_sketch_serves_its_own_handles_only(maps):
 
 def test_a_sketch_serves_a_few_steps(maps, monkeypatch):
     objective, jet, sketch = maps
-    monkeypatch.setattr("engine.deform.newton.SERVES_STEPS", 3)
+    monkeypatch.setattr("engine.deform.model.newton.SERVES_STEPS", 3)
     _, second = sketched_direction(objective, jet, sketch)
     direction, third = sketched_direction(objective, jet, second)
     assert third is None

@@ -5,16 +5,16 @@ from deform_shapes import STAR_POINTS, star_boundary
 from numpy.testing import assert_allclose
 
 from engine.deform import Handles
-from engine.deform.barrier import Barrier, Walls
-from engine.deform.objective import Objective
+from engine.deform.model.barrier import MARGIN, Barrier
+from engine.deform.model.objective import Objective
 from engine.deform.steering import (
     IDLE_AT_REST,
     LEASH,
     Schedule,
-    closing_limits,
     cut_to_leash,
     limits_for,
     place_walls,
+    tightening_limits,
 )
 from engine.maps import Bounds, Certificate, Limits
 
@@ -52,15 +52,16 @@ def test_a_drag_without_progress_is_at_rest():
 
 def test_a_step_keeps_some_slack_of_the_map():
     walls, required = place_walls(BOUNDS, A, B, certificate())
-    assert 0.25 < required.k < walls.k < BOUNDS.k
-    assert 1.5 < required.sigma_a < walls.sigma_a < BOUNDS.sigma_a
-    assert 0.9 > required.sigma_b > walls.sigma_b > BOUNDS.sigma_b
+    assert 0.25 < required.k < walls.k[1] < BOUNDS.k
+    assert 1.5 < required.sigma_a < walls.sigma_a[1] < BOUNDS.sigma_a
+    assert 0.9 > required.sigma_b > walls.sigma_b[1] > BOUNDS.sigma_b
     # A map that has less slack between its samples may keep it.
     walls, required = place_walls(BOUNDS, A, B, certificate(k=0.4999))
     assert required.k >= 0.4999
-    # One between walls and bounds at a sample gets walls around it.
-    walls, _ = place_walls(BOUNDS, np.array([1.0]), np.array([0.49999]), certificate())
-    assert 0.49999 < walls.k < 0.5
+    # A sample between walls and bounds gets walls around it, and another one keeps its own.
+    walls, _ = place_walls(BOUNDS, np.ones(2), np.array([0.49999, 0.1]), certificate())
+    assert 0.49999 < walls.k[0] < 0.5
+    assert walls.k[1] == BOUNDS.towards_identity(MARGIN).k
 
 
 def test_limits_close_in_and_never_open():
@@ -68,12 +69,12 @@ def test_limits_close_in_and_never_open():
     assert wide.k > 0.7
     assert wide.sigma_a > 2.5
     assert wide.sigma_b < 0.3
-    nearer = closing_limits(BOUNDS, wide, np.array([1.5]), np.array([0.9]))
+    nearer = tightening_limits(BOUNDS, wide, np.array([1.5]), np.array([0.9]))
     assert 0.6 < nearer.k < 0.7
     assert nearer.sigma_a < wide.sigma_a
     assert nearer.sigma_b == BOUNDS.sigma_b
-    assert closing_limits(BOUNDS, nearer, np.array([1.6]), np.array([1.1])).k == nearer.k
-    assert closing_limits(BOUNDS, nearer, A, B) == BOUNDS
+    assert tightening_limits(BOUNDS, nearer, np.array([1.6]), np.array([1.1])).k == nearer.k
+    assert tightening_limits(BOUNDS, nearer, A, B) == BOUNDS
 
 
 def test_limits_may_be_far_from_the_identity():
@@ -127,7 +128,7 @@ def test_the_barrier_is_convex_for_a_map_at_its_limits_to_the_last_digit():
         at_limits = Limits(k=k, sigma_a=sigma_a, sigma_b=sigma_b)
         held = certificate(k=k, sigma_a=sigma_a, sigma_b=sigma_b)
         walls, required = place_walls(at_limits, a, b, held)
-        barrier = Barrier(walls=Walls.around(walls, 1), weight=1e-2)
+        barrier = Barrier(walls=walls, weight=1e-2)
         assert np.all(barrier.slacks(a, b) > 0)
         bent = barrier.derivatives(a, b)
         assert bent.aa > 0

@@ -22,9 +22,10 @@ from engine.interpolation import (
     prepare_sites,
     sample_keyframes,
 )
-from engine.interpolation.periods import Unclosed, as_complex
+from engine.interpolation.periods.basis import as_complex
+from engine.interpolation.periods.closing import Unclosed, correction
 from engine.interpolation.proof import bisection, prove
-from engine.maps import Boundary, HarmonicMap, distortion
+from engine.maps import Boundary, Bounds, HarmonicMap, distortion
 from engine.paths import root_sheets
 
 CLOSED = [Variant.NU, Variant.ETA, Variant.SCALED_ETA, Variant.METRIC]
@@ -207,7 +208,7 @@ def test_handles_pulled_hard_keep_bounds_and_are_closed(name):
     sheets = root_sheets(np.array([key.anchor_fz for key in keyframes]))
     for variant in (Variant.NU, Variant.SCALED_ETA, Variant.METRIC):
         passage = Passage.of(keyframes, sheets)
-        motion = prepare_inbetweens(variant, Interval(sites, passage, transform=transform))
+        motion = prepare_inbetweens(variant, Interval(sites, passage, Bounds(), transform))
         assert 1e-4 < motion.correction < 0.3
         for time in (0.2, 0.5, 0.8):
             frame = motion.frame(time)
@@ -235,7 +236,7 @@ def test_the_metric_variant_folds_nowhere_between_hard_keys(monkeypatch):
     maps = [pulled("crescent").map, pulled("swirl").map]
     keyframes = sample_keyframes(maps, sites)
     sheets = root_sheets(np.array([key.anchor_fz for key in keyframes]))
-    interval = Interval(sites, Passage.of(keyframes, sheets), transform=transform)
+    interval = Interval(sites, Passage.of(keyframes, sheets), Bounds(), transform=transform)
     motion = prepare_inbetweens(Variant.METRIC, interval)
     ends = [f.derivatives(along(shape.loops, 40)) for f in maps]
     monkeypatch.setattr(bisection, "MOST_CELLS", 30_000)
@@ -262,13 +263,13 @@ def test_the_correction_is_the_smallest():
     """Any other holomorphic function that closes the period is larger on the boundary."""
     shape = ring()
     motion = between(shape, keys(shape), "nu")
-    closing, loops = motion.sites.closing, motion.sites.loops
+    basis, loops = motion.sites.period_basis, motion.sites.loops
     plain = replace(motion.intervals[0].passage, residuals=())
     blend = replace(motion.intervals[0].blend, passage=plain.at(motion.sites.paths.around))
     here = blend.derivatives(0.5)
-    (parts,), gap = closing.correction(Unclosed(here.fz[None], here.g[None]), 1)
+    (parts,), gap = correction(basis, Unclosed(here.fz[None], here.g[None]), 1)
     assert gap < 1e-13
-    h = closing.on_boundary @ as_complex(parts)
+    h = basis.on_boundary @ as_complex(parts)
     weights = motion.sites.boundary.weights
     smallest = np.sqrt(weights @ np.abs(h) ** 2)
     assert smallest > 1e-4

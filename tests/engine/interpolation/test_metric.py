@@ -6,7 +6,7 @@ from numpy.testing import assert_allclose
 
 from engine.interpolation import Course
 from engine.interpolation.blends.outline import OutlineMetric
-from engine.interpolation.chebyshev import separate
+from engine.interpolation.series.chebyshev import separate
 from engine.maps import Bounds
 
 

@@ -146,7 +146,7 @@ def test_two_keyframes_have_the_in_betweens_of_the_paper(variant, through):
     sheets = root_sheets(np.array([key.anchor_fz for key in plain.keyframes]))
     passage = Passage.of(plain.keyframes, sheets, Course.between(0.0, 0.0))
     extension = transform().at(sites.paths.nodes) if variant == "metric" else None
-    stopped = prepare_inbetweens(variant, Interval(sites, passage, transform=extension))
+    stopped = prepare_inbetweens(variant, Interval(sites, passage, Bounds(), transform=extension))
     if not variant.is_scaled:  # whose ρ is for other bounds
         eased = plain.frame(0.3**2 * (3 - 2 * 0.3))
         assert_allclose(stopped.frame(0.3).positions, eased.positions, atol=1e-9)
@@ -282,7 +282,7 @@ def test_a_frame_alone_is_the_same_as_among_the_others(variant, through):
     interval, sites = prepared.intervals[0], prepared.sites
     passage = interval.passage
     own = Passage.of(passage.keyframes, passage.sheets, passage.eta_course)
-    alone = Interval(sites, own, transform=transform().at(sites.paths.nodes))
+    alone = Interval(sites, own, Bounds(), transform=transform().at(sites.paths.nodes))
     for time in (0.0, 0.37, 1.0):
         frame = frame_at(time, variant, alone)
         expected = interval.frame(time)

@@ -20,7 +20,7 @@ from engine.interpolation import (
 )
 from engine.interpolation.blends.metric import RESOLVED
 from engine.interpolation.blends.outline import OutlineMetric
-from engine.interpolation.keyframe_samples import sample_keyframes
+from engine.interpolation.passage.keyframe_samples import sample_keyframes
 from engine.maps import Bounds
 from engine.maps.harmonic_map import HarmonicMap, derivatives_of
 from engine.paths.complex_log import root_sheets
@@ -57,7 +57,7 @@ def test_intervals_are_prepared_one_at_a_time_and_keyframes_shared(variant):
     transform = HilbertTransform.on(OUTLINE, CAGE).at(sites.paths.nodes)
     for i, pair in enumerate((keys[:2], keys[1:])):
         passage = Passage.of(pair, sheets[i : i + 2])
-        interval = prepare_inbetweens(variant, Interval(sites, passage, transform=transform))
+        interval = prepare_inbetweens(variant, Interval(sites, passage, Bounds(), transform))
         frame = interval.frame(0.4)
         expected = whole.frame(i + 0.4)
         assert_allclose(frame.positions, expected.positions, rtol=0, atol=1e-12)
@@ -209,7 +209,7 @@ def test_what_a_variant_needs_is_asked_for():
     sheets = root_sheets(np.array([key.anchor_fz for key in keys]))
     with pytest.raises(EngineError, match="two keyframes, not 3 with 3 sheets"):
         Passage.of(keys, sheets)
-    interval = Interval(sites, Passage.of(keys[:2], sheets[:2]))
+    interval = Interval(sites, Passage.of(keys[:2], sheets[:2]), Bounds())
     for variant in Variant:
         if variant.needs_transform:
             with pytest.raises(EngineError, match="needs a Hilbert transform"):

@@ -101,6 +101,20 @@ def test_in_betweens_around_holes_are_proven(variant, through):
     assert proof.sigma_b >= sigma_b - 0.02
 
 
+def test_a_small_rho_is_proven_as_tightly_as_any_other():
+    maps = [random_map(SHAPE, seed, k=0.85, bend=1.0) for seed in (0, 1)]
+    points = np.concatenate([POINTS, scattered_on(OUTLINE, 3000)])
+    (interval,) = prepare(maps, points, outline=OUTLINE, variant="scaled-eta").intervals
+    times = np.linspace(0, 1, 33)
+    assert min(map(interval.rho, times)) < 0.2
+    k, sigma_a, sigma_b = measured(interval, times)
+    proof = prove(interval)
+    assert proof.unsettled == ()
+    assert k <= proof.k <= k + 2e-3
+    assert sigma_a <= proof.sigma_a <= 1.002 * sigma_a
+    assert sigma_b >= proof.sigma_b >= sigma_b - 0.002 * sigma_a
+
+
 def test_what_folds_between_its_keyframes_is_not_proven():
     outline, cage = bar()
     maps = [HarmonicMap.identity(cage), HarmonicMap(cage=cage, phi=-1.0 * cage, psi=0.0 * cage)]

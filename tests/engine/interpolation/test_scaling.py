@@ -128,7 +128,7 @@ def test_around_holes_no_smaller_rho_leaves_the_bounds_and_no_larger_one_obeys_t
     samples = PointSamples(
         log_modulus=np.log(a)[None],
         conj_eta=(a * b + 0j)[None],
-        opening=d[None],
+        conformal=d[None],
         **{name: np.full(count, bound) for name, bound in bounds.items()},
     )
     (ratios,) = samples.ratios(np.ones((2, 1, 1)))

@@ -8,8 +8,8 @@ from deform_shapes import search_from_rest
 from numpy.testing import assert_allclose, assert_array_equal
 
 from engine.deform import Objective
-from engine.deform.barrier import Barrier
-from engine.deform.newton import newton_models
+from engine.deform.model.barrier import Barrier
+from engine.deform.model.newton import newton_models
 from engine.deform.rest import advance
 from engine.deform.rest.curved_step import KEPT, curved_step, radial_changes
 

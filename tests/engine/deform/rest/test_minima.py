@@ -20,8 +20,8 @@ from scipy.optimize import minimize, nnls
 from shapes import regular_polygon
 
 from engine.deform import Deformer, Handles, Objective, Status
-from engine.deform.rest import OPTIMAL, Way
-from engine.deform.steering import MARGIN
+from engine.deform.model import MARGIN
+from engine.deform.rest import OPTIMAL, WORTH_A_JUMP, Way
 from engine.maps import Boundary, Bounds
 from engine.maps.cauchy import cauchy_coordinates, cauchy_derivatives
 
@@ -45,7 +45,7 @@ def test_no_direction_that_the_bounds_allow_lowers_the_energy(deformer, targets)
     assert state.status is Status.AT_LIMITS
     assert state.statistics.optimality <= OPTIMAL
     assert_sound(state, TIGHT)
-    boundary, handles = state.search.boundary, deformer.handles
+    boundary, handles = state.outcome.boundary, deformer.handles
     objective = Objective(boundary=boundary, handles=handles, wish=handles.wish(targets))
     jet, n, h = objective.jet(state.map.phi, state.map.psi), len(boundary.cage), 1e-6
     inner = TIGHT.towards_identity(MARGIN)
@@ -153,16 +153,56 @@ def test_wider_bounds_never_end_in_more_energy():
         assert wide <= (1 + 1e-6) * tight
 
 
+CORNERS = np.array([-1.8 - 0.3j, -1.8 + 0.3j, -0.6, 0.6, 1.8 - 0.3j, 1.8 + 0.3j])
+# Found by trying: the aligned shape leads to 2449, one that is turned by a quarter to 2112.
+WOUND_UP = CORNERS[[0, 2, 5, 3, 1, 4]]
+
+
+def wound_up():
+    handles = Handles.place(bar_boundary(), CORNERS)
+    bounds = Bounds(k=0.6, sigma_a=3.0, sigma_b=0.33)
+    return Deformer(boundary=bar_boundary(), handles=handles, bounds=bounds)
+
+
+def test_a_shape_that_starts_turned_finds_what_the_aligned_one_does_not():
+    deformer = wound_up()
+    state, tried = deformer.settle(deformer.start(), deformer.handles.wish(WOUND_UP))
+    assert state.status is Status.AT_LIMITS
+    assert state.outcome.way.is_turned
+    assert state.statistics.objective < 0.9 * 2449
+    assert_sound(state, deformer.bounds)
+    assert state.steps <= 60
+    assert tried == state.tried <= 250
+
+
+def test_a_better_pose_is_shown_once_and_only_if_it_is_clearly_better():
+    deformer, shown = wound_up(), []
+    state = deformer.start()
+    for share in np.linspace(0, 1, 9)[1:]:
+        row = deformer.handles.wish(CORNERS + share * (WOUND_UP - CORNERS))
+        state = deformer.step(state, row)
+    wish = deformer.handles.wish(WOUND_UP)
+    while not state.status.is_final:
+        before, state = state, deformer.step(state, wish)
+        if before.tried > 0 and state.map is not before.map:
+            shown.append((before, state))
+    ((before, after),) = shown
+    assert after is state
+    worth = (1 - WORTH_A_JUMP) * before.statistics.objective
+    assert after.statistics.objective < worth
+    assert deformer.step(state, wish) is state
+
+
 def test_of_two_ways_to_a_tangled_pose_the_lower_is_kept_under_all_bounds():
-    # The corners of a bar change places. From wide bounds and from opening ones searches end in
-    # different valleys: 2624 and 2202 within the tighter bounds, 36 and 269 within the wider ones.
+    # The corners of a bar change places. From the aligned shape and from a turned one searches end
+    # in different valleys: 2624 and 2202 within the tighter bounds; within the wider ones the
+    # aligned one leads to less.
     boundary = bar_boundary()
-    corners = np.array([-1.8 - 0.3j, -1.8 + 0.3j, -0.6, 0.6, 1.8 - 0.3j, 1.8 + 0.3j])
-    targets = corners[np.random.default_rng(8).permutation(6)]
+    targets = CORNERS[np.random.default_rng(8).permutation(6)]
     row = (Bounds(k=0.8, sigma_a=5.0, sigma_b=0.2), Bounds(k=0.9, sigma_a=10.0, sigma_b=0.1))
-    handles = Handles.place(boundary, corners)
+    handles = Handles.place(boundary, CORNERS)
     ends = [settled(Deformer(boundary=boundary, handles=handles, bounds=b), targets) for b in row]
-    assert [end.outcome.way for end in ends] == [Way.OPENING, Way.REST]
+    assert [end.outcome.way for end in ends] == [Way.RIGHT, Way.REST]
     for end in ends:
         assert end.status is Status.AT_LIMITS
         assert end.statistics.optimality <= OPTIMAL
@@ -230,7 +270,8 @@ def test_hard_requests_are_proven_minima_within_few_steps(deformer, targets):
     state, steps = deformer.settle(deformer.start(), wish)
     assert state.status in (Status.AT_LIMITS, Status.CONVERGED)
     assert state.statistics.optimality <= OPTIMAL
-    assert steps <= 45
+    assert state.steps <= 45
+    assert steps == state.tried <= 100
     assert_sound(state, deformer.bounds)
 
 
@@ -244,9 +285,11 @@ def test_a_drag_at_tight_bounds_comes_to_rest_after_release():
     while not state.status.is_final:
         state, steps = deformer.step(state, wish), steps + 1
     assert state.status is Status.AT_LIMITS
-    assert steps < 100
+    assert steps < 150
     afresh = settled(deformer, targets)
-    assert_allclose(state.statistics.objective, afresh.statistics.objective, rtol=2e-3)
+    # A better pose is shown only where it is clearly better.
+    most = (1 + WORTH_A_JUMP) * afresh.statistics.objective
+    assert state.statistics.objective <= most
 
 
 def test_coming_to_rest_is_repeated_bit_for_bit():
@@ -257,13 +300,24 @@ def test_coming_to_rest_is_repeated_bit_for_bit():
 
 
 def test_a_search_that_is_given_up_says_so(monkeypatch):
-    monkeypatch.setattr("engine.deform.rest.search.MOST_STEPS", 2)
-    monkeypatch.setattr("engine.deform.rest.search.MOST_STEPS_HERE", 2)
+    monkeypatch.setattr("engine.deform.settling.MOST_IN_ALL", 2)
     state = settled(star(TIGHT), TWISTED)
     assert state.status is Status.UNFINISHED
     assert state.status.is_final
     assert state.statistics.optimality > OPTIMAL
     assert_sound(state, TIGHT)
+
+
+@pytest.mark.parametrize("play", [1e-2, 1e-4, 1e-6])
+def test_bounds_next_to_the_identity_hold_back(play):
+    rigid = Bounds(k=play, sigma_a=1 + play, sigma_b=1 - play)
+    state = settled(star(rigid), TWISTED)
+    assert state.status is Status.AT_LIMITS
+    assert state.statistics.active
+    # And nothing where the wish is rigid.
+    state = settled(star(rigid), np.exp(0.5j) * STAR_POINTS + 1)
+    assert state.status is Status.CONVERGED
+    assert state.statistics.active == ()
 
 
 def test_bounds_that_hold_nothing_back_are_not_active():

@@ -4,7 +4,7 @@ import numpy as np
 from scipy.linalg import blas, lapack
 
 from engine.arrays import Floats, Singles
-from engine.deform.objective import Reals
+from engine.deform.model.hessian import Reals
 
 # The diagonal is made larger by this part of itself and of a floor, and by more until the
 # factorisation succeeds. Next to a wall the largest entries are 1e12 times the least, and no step

@@ -3,7 +3,7 @@
 from typing import NamedTuple
 
 from engine.dirichlet import Extension
-from engine.interpolation.derivatives import Passage
+from engine.interpolation.passage.derivatives import Passage
 from engine.interpolation.sites import Sites
 from engine.maps import Bounds
 
@@ -29,5 +29,5 @@ class Interval(NamedTuple):
 
     sites: Sites
     passage: Passage
-    bounds: Bounds = Bounds()
+    bounds: Bounds
     transform: Extension | None = None

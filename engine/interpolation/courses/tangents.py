@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 from engine.arrays import Complexes, Floats
-from engine.interpolation.course import Joint, Tangent
+from engine.interpolation.courses.course import Joint, Tangent
 from engine.maps import Boundary, Bounds, HarmonicMap
 
 PARTS = 6  # into which the boundary's segments are cut for the samples of control values

@@ -7,6 +7,9 @@ the tighter ones, so that what looser bounds find is hardly ever worse.
 
 from math import exp, inf, tanh
 
+import numpy as np
+
+from engine.deform.model import Walls
 from engine.maps import Limits
 
 # The first rung; each next one is this many times as wide.
@@ -14,30 +17,35 @@ FIRST_REACH = 0.35
 WIDER = 1.4
 
 
-def opens(limits: Limits) -> bool:
+def exceeds_first_rung(limits: Limits) -> bool:
     """Tell whether limits are wider than the first rung."""
-    first = room(limits, FIRST_REACH)
-    return not first.allow(k=limits.k, sigma_a=limits.sigma_a, sigma_b=limits.sigma_b)
+    first = rung(Walls.around(limits, 1), FIRST_REACH)
+    return not is_same(first, Walls.around(limits, 1))
 
 
-def room(inside: Limits, reach: float) -> Limits:
-    """Return limits, at most as wide as a rung.
+def rung(inside: Walls, reach: float) -> Walls:
+    """Return walls, at most as wide as a rung.
 
     Parameters
     ----------
-    inside : Limits
+    inside : Walls
     reach : float
         Of the rung, a logarithm of stretches: σ_a = exp(reach) and σ_b = exp(−reach), and what k is
-        where both are attained. Infinite for the limits themselves.
+        where both are attained. Infinite for the walls themselves.
     """
-    return Limits(
-        k=min(inside.k, tanh(reach)),
-        sigma_a=min(inside.sigma_a, exp(reach)),
-        sigma_b=max(inside.sigma_b, exp(-reach)),
+    return Walls(
+        k=np.minimum(inside.k, tanh(reach)),
+        sigma_a=np.minimum(inside.sigma_a, np.exp(reach)),
+        sigma_b=np.maximum(inside.sigma_b, exp(-reach)),
     )
 
 
-def next_reach(inside: Limits, reach: float) -> float:
+def is_same(walls: Walls, others: Walls) -> bool:
+    """Tell whether walls stand at one place."""
+    return all(map(np.array_equal, walls, others))
+
+
+def next_reach(inside: Walls, reach: float) -> float:
     """Return the reach of the rung after this one, infinite where it is wide enough."""
     wider = WIDER * reach
-    return wider if room(inside, wider) != inside else inf
+    return inf if is_same(rung(inside, wider), inside) else wider

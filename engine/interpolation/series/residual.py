@@ -7,7 +7,7 @@ import numpy as np
 import numpy.typing as npt
 
 from engine.arrays import Complexes, Floats, Indices, freeze
-from engine.interpolation.chebyshev import PiecewiseSeries
+from engine.interpolation.series.chebyshev import PiecewiseSeries
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

@@ -7,10 +7,18 @@ from typing import NamedTuple
 import numpy as np
 
 from engine.arrays import Booleans, Complexes, Floats
-from engine.deform.energy import Radial
-from engine.deform.factors import SHIFT, factor_of, factor_shifted, factor_single, solved
 from engine.deform.handles import Handles
-from engine.deform.objective import Jet, Objective, Reals
+from engine.deform.model.energy import Radial
+from engine.deform.model.factors import SHIFT, factor_of, factor_shifted, factor_single, solved
+from engine.deform.model.hessian import (
+    Reals,
+    hessian_product,
+    negative_part,
+    projected_hessian,
+    single_hessian,
+)
+from engine.deform.model.jet import Jet
+from engine.deform.model.objective import Objective
 
 # A step is accepted when it gains at least this part of what the gradient promises (Armijo).
 SUFFICIENT = 1e-4
@@ -157,10 +165,10 @@ def sketched_direction(
         )
         if rounds <= REFINEMENTS:
             return direction, sketch.after(rounds)
-    single = objective.single_hessian(jet, radial)
+    single = single_hessian(objective, jet, radial)
     factor: Reals | None = None if single is None else factor_single(single)
     if factor is None:
-        factor = factor_shifted(objective.hessian(jet, radial))
+        factor = factor_shifted(projected_hessian(objective, jet, radial))
     direction, rounds = _refined(objective, jet, radial, gradient, factor, missing=REFINED)
     return direction, Sketch(objective.handles, objective.turning, factor).after(rounds)
 
@@ -184,7 +192,7 @@ def _refined(
     rounds = REFINEMENTS + 1
     for done in range(1, REFINEMENTS + 1):
         change = objective.change(ahead)
-        curved = objective.product(jet, radial, change)
+        curved = hessian_product(objective, jet, radial, change)
         curvature = float(ahead @ curved)
         if not curvature > 0:
             break
@@ -209,8 +217,8 @@ def newton_models(objective: Objective, jet: Jet) -> Iterator[Model]:
     that the projection crawls along.
     """
     radial = objective.radial(jet)
-    hessian = objective.hessian(jet, radial)
-    removed = objective.negative_part(jet, radial)
+    hessian = projected_hessian(objective, jet, radial)
+    removed = negative_part(objective, jet, radial)
     for part in KEPT_NEGATIVE:
         bent = hessian.copy()
         bent[: len(removed), : len(removed)] -= part * removed

@@ -8,9 +8,9 @@ import numpy as np
 
 from engine.arrays import Complexes, Floats, Indices, Integers
 from engine.errors import EngineError
-from engine.interpolation.course import Course
-from engine.interpolation.keyframe_samples import KeyframeSamples
-from engine.interpolation.residual import Residual, combined
+from engine.interpolation.courses import Course
+from engine.interpolation.passage.keyframe_samples import KeyframeSamples
+from engine.interpolation.series import Residual, combined
 
 
 class Derivatives(NamedTuple):

@@ -231,8 +231,8 @@ def in_few_forms(
     """
     count = max(piece.coefficients.shape[1] for piece in pieces)
     padded = np.zeros((len(pieces), count, len(pieces[0].coefficients)))
-    for room, piece in zip(padded, pieces, strict=True):
-        room[: piece.coefficients.shape[1]] = piece.coefficients.T
+    for row, piece in zip(padded, pieces, strict=True):
+        row[: piece.coefficients.shape[1]] = piece.coefficients.T
     rows = padded.reshape(-1, padded.shape[2])
     # Where a lower degree did, the other rows are 0.
     used = np.asarray(rows.any(axis=1))

@@ -1,0 +1,31 @@
+"""What a step minimises: energy, barrier and handles, and Newton's models of them.
+
+In: a boundary, handles, a wish, walls, and the measures of a map.
+Out: values, gradients, Hessians, and directions.
+Imports: `engine.maps`, and the handles of `engine.deform`.
+"""
+
+from engine.deform.model.barrier import (
+    MARGIN as MARGIN,
+    Barrier as Barrier,
+    Walls as Walls,
+    with_samples_between as with_samples_between,
+    with_walls_between as with_walls_between,
+)
+from engine.deform.model.hessian import (
+    projected_hessian as projected_hessian,
+    stiffening as stiffening,
+)
+from engine.deform.model.jet import Jet as Jet
+from engine.deform.model.newton import (
+    SHORTEST as SHORTEST,
+    SUFFICIENT as SUFFICIENT,
+    Direction as Direction,
+    Model as Model,
+    Sketch as Sketch,
+    line_search as line_search,
+    newton_direction as newton_direction,
+    newton_models as newton_models,
+    sketched_direction as sketched_direction,
+)
+from engine.deform.model.objective import Objective as Objective

@@ -1,0 +1,64 @@
+"""What the objective knows of a map."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from engine.arrays import Complexes, Floats
+from engine.deform.model.energy import symmetric_dirichlet
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Jet:
+    """Everything the objective knows of a map; real-linear in its coefficients.
+
+    Parameters
+    ----------
+    f, g : complex128, shape (m,)
+        f_z and conj(f_z̄) at the samples.
+    positions, fz : complex128, shape (h,)
+        The map and f_z at the handles.
+    """
+
+    f: Complexes
+    g: Complexes
+    positions: Complexes
+    fz: Complexes
+
+    @cached_property
+    def a(self) -> Floats:
+        """|f_z| at the samples, float64 (m,)."""
+        moduli: Floats = np.abs(self.f)
+        return moduli
+
+    @cached_property
+    def b(self) -> Floats:
+        """|f_z̄| at the samples, float64 (m,)."""
+        moduli: Floats = np.abs(self.g)
+        return moduli
+
+    @cached_property
+    def density(self) -> Floats:
+        """The symmetric Dirichlet density at the samples, float64 (m,)."""
+        # A trial step may lead farther than numbers reach; there the energy is ∞.
+        with np.errstate(over="ignore", invalid="ignore"):
+            return symmetric_dirichlet(self.a, self.b)
+
+    def scaled(self, factor: float) -> "Jet":
+        """Return the jet of a change that is so many times as large."""
+        return Jet(
+            f=factor * self.f,
+            g=factor * self.g,
+            positions=factor * self.positions,
+            fz=factor * self.fz,
+        )
+
+    def advanced(self, length: float, direction: "Jet") -> "Jet":
+        """Return the jet of the map that lies `length` steps along a direction."""
+        return Jet(
+            f=self.f + length * direction.f,
+            g=self.g + length * direction.g,
+            positions=self.positions + length * direction.positions,
+            fz=self.fz + length * direction.fz,
+        )

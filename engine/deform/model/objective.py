@@ -1,0 +1,196 @@
+"""What a step of a drag minimises: energy, barrier and handles, with the gradient.
+
+The unknowns are φ and ψ in the boundary's basis, whose derivatives are orthonormal and whose means
+are 0: the Hessian is then well conditioned but for walls, and half the digits do for all samples
+but those next to walls. Without ψ_0, a constant (the gauge: (φ + c, ψ − conj(c)) is the same map).
+As a real vector they are the real and imaginary parts, alternating, of the conjugates of φ and ψ_1,
+ψ_2, …; with that order Re Σ P_j φ_j is the plain product with the parts of a complex row P, and
+matrices need no rearrangement.
+
+Around q holes the last q entries of φ are the logarithms' a_j, scaled, and those of ψ their
+conjugates: ψ's are no unknowns, and what they contribute is folded onto φ's. Constants on the cage
+of a hole, which change no map, have a stiffness of their own (`Handles`), and steps never change
+them. In all there are u = 4 r − 2 − 2 q real unknowns for the r functions of the basis.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from engine.arrays import Booleans, Complexes, Floats, Indices
+from engine.deform.handles import Handles, Wish
+from engine.deform.model.barrier import Barrier
+from engine.deform.model.energy import Radial, symmetric_dirichlet_derivatives
+from engine.deform.model.jet import Jet
+from engine.maps import Boundary
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Objective:
+    """Energy + barrier + handle terms.
+
+    Parameters
+    ----------
+    boundary : Boundary
+    handles : Handles
+    wish : Wish
+    barrier : Barrier or None
+    stride : int
+        One sample in so many enters the Hessian; more than one make a sketch of it, two to three
+        times faster. Its steps overshoot in directions that show between the samples only, unless
+        products with the Hessian over all samples mend them.
+    """
+
+    boundary: Boundary
+    handles: Handles
+    wish: Wish
+    barrier: Barrier | None = None
+    stride: int = 1
+
+    @cached_property
+    def turning(self) -> Booleans:
+        """Which handles have a prescribed rotation, bool (h,)."""
+        return np.isfinite(self.wish.rotations)
+
+    def coefficients(self, unknowns: Floats) -> tuple[Complexes, Complexes]:
+        """Return the columns (n,) of coefficients of φ and ψ that unknowns (u,) stand for."""
+        of_phi, of_psi = self._in_basis(unknowns)
+        return self.boundary.basis @ of_phi, self.boundary.basis @ of_psi
+
+    def change(self, unknowns: Floats) -> Jet:
+        """Measure a change of a map by its unknowns (u,)."""
+        of_phi, of_psi = self._in_basis(unknowns)
+        rows, coordinates = self.boundary.basis_derivatives, self.handles.basis_coordinates
+        return Jet(
+            f=rows @ of_phi,
+            g=rows @ of_psi,
+            positions=coordinates @ of_phi + (coordinates @ of_psi).conj(),
+            fz=self.handles.basis_derivatives @ of_phi,
+        )
+
+    def _in_basis(self, unknowns: Floats) -> tuple[Complexes, Complexes]:
+        """Return φ and ψ (r,) in the basis."""
+        r, count = self.boundary.basis.shape[1], len(self.boundary.holes)
+        conjugates = np.ascontiguousarray(unknowns).view(np.complex128).conj()
+        of_phi = conjugates[:r]
+        of_psi = np.concatenate([[0.0], conjugates[r:], of_phi[r - count :].conj()])
+        return of_phi, of_psi
+
+    def jet(self, phi: Complexes, psi: Complexes) -> Jet:
+        """Measure a map, or a change of a map, by the columns (n,) of its coefficients."""
+        span, coordinates = self.boundary.span, self.handles.coordinates
+        rows, phi_alone = self.boundary.derivatives, span.without_constant(phi)
+        return Jet(
+            f=rows @ phi_alone,
+            g=rows @ span.without_constant(psi),
+            positions=coordinates @ phi + (coordinates @ psi).conj(),
+            fz=self.handles.derivatives @ phi_alone,
+        )
+
+    def value(self, jet: Jet) -> float:
+        """Return the objective, ∞ where the map folds or leaves the walls."""
+        value = self.energy(jet)
+        if self.barrier is not None and np.isfinite(value):
+            density = self.barrier.value(jet.a, jet.b)
+            value += float(self.boundary.shares @ density)
+        return value
+
+    def energy(self, jet: Jet) -> float:
+        """Return the objective without its barrier."""
+        with np.errstate(over="ignore", invalid="ignore"):
+            pull = np.abs(jet.positions - self.wish.positions) ** 2
+            value = self.boundary.weights @ jet.density + self.handles.stiffness @ pull
+            if self.turning.any():
+                value += self.turning_stiffness @ self.turning_angles(jet) ** 2
+        return np.inf if np.isnan(value) else float(value)
+
+    def handle_error(self, jet: Jet) -> float:
+        """Return the root mean square distance of the handles from their targets, over L."""
+        errors = np.abs(jet.positions - self.wish.positions)
+        return float(np.sqrt(np.mean(errors**2))) / self.boundary.size if len(errors) else 0.0
+
+    def within(self, jet: Jet) -> bool:
+        """Tell whether the samples are strictly within the walls."""
+        if self.barrier is None:
+            return bool(np.all(jet.a > jet.b))
+        return bool(np.all(self.barrier.slacks(jet.a, jet.b) > 0))
+
+    def radial(self, jet: Jet) -> Radial:
+        """Return what each sample contributes to the derivatives of energy and barrier."""
+        a, b = jet.a, jet.b
+        energy = symmetric_dirichlet_derivatives(a, b).weighted(self.boundary.weights)
+        if self.barrier is None:
+            return energy
+        return energy.plus(self.barrier.derivatives(a, b).weighted(self.boundary.shares))
+
+    def gradient(self, jet: Jet, radial: Radial) -> Floats:
+        """Return the gradient (u,)."""
+        pull = 2.0 * self.handles.stiffness * (jet.positions - self.wish.positions)
+        by_phi = pull.conj() @ self.handles.basis_coordinates
+        by_psi = pull @ self.handles.basis_coordinates
+        if self.turning.any():
+            # d arg F = Im(dF / F) = Re(−i dF / F).
+            angle = 2.0 * self.turning_stiffness * self.turning_angles(jet)
+            by_phi += (-1j * angle / jet.fz[self.turning]) @ self.turning_rows
+        by_handles = self.by_unknowns(by_phi, by_psi)
+        gradient: Floats = by_handles + self.sampled_gradient(jet, radial.a, radial.b_per_b)
+        return gradient
+
+    def sampled_gradient(
+        self, jet: Jet, by_a: Floats, b_per_b: Floats, samples: Indices | slice = slice(None)
+    ) -> Floats:
+        """Return the gradient (u,) of a sum over samples of functions of a and b.
+
+        Parameters
+        ----------
+        jet : Jet
+        by_a, b_per_b : float64, shape (m,)
+            What each sample contributes to the derivative by a, and to that by b over b.
+        samples : Indices or slice
+            Which samples contribute, by default all.
+        """
+        rows, f, g = self.boundary.basis_derivatives[samples], jet.f[samples], jet.g[samples]
+        by_phi = (by_a[samples] / jet.a[samples] * f.conj()) @ rows
+        by_psi = (b_per_b[samples] * g.conj()) @ rows
+        return self.by_unknowns(by_phi, by_psi)
+
+    def by_unknowns(self, by_phi: Complexes, by_psi: Complexes) -> Floats:
+        """Return a gradient (u,) from what multiplies φ and ψ (r,), logarithms included."""
+        count = len(self.boundary.holes)
+        if count:
+            by_phi[-count:] += by_psi[-count:].conj()
+        return np.concatenate([by_phi, by_psi[1 : len(by_psi) - count]]).view(np.float64)
+
+    @cached_property
+    def turning_stiffness(self) -> Floats:
+        """What turning each handle with a prescribed rotation costs, float64 (t,)."""
+        return 2.0 * self.handles.arm**2 * self.handles.stiffness[self.turning]
+
+    @cached_property
+    def turning_rows(self) -> Complexes:
+        """The derivatives of the basis at these handles, complex128 (t, r)."""
+        return self.handles.basis_derivatives[self.turning]
+
+    def turning_angles(self, jet: Jet) -> Floats:
+        """Return by how much they are turned too far, float64 (t,)."""
+        wished = np.exp(-1j * self.wish.rotations[self.turning])
+        angles: Floats = np.angle(jet.fz[self.turning] * wished)
+        return angles
+
+    def turning_frames(self, jet: Jet, *, removed: bool = False) -> list[Complexes]:
+        """Return what multiplies dF of handles in rows: the projected Hessian of their rotations.
+
+        With dF / F = x + iy the term c δ² has the Hessian 2c [[0, −δ], [−δ, 1]]; its eigenvalues
+        are c (1 ± root) with root² = 1 + 4 δ², for the vectors (−2δ, 1 ± root). The negative one is
+        what the projection removed.
+        """
+        if not self.turning.any():
+            return []
+        delta = self.turning_angles(jet)
+        root = np.sqrt(1.0 + 4.0 * delta**2)
+        eigenvalue = 1.0 - root if removed else 1.0 + root
+        # x vx + y vy = Re((vx − i vy) dF / F).
+        length = np.maximum(np.hypot(2.0 * delta, eigenvalue), np.finfo(np.float64).tiny)
+        scale = np.sqrt(self.turning_stiffness * np.abs(eigenvalue)) / length
+        return [scale * (-2.0 * delta - 1j * eigenvalue) / jet.fz[self.turning]]

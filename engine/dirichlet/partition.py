@@ -1,0 +1,61 @@
+"""A partition of panels into boxes, by halves, in which panels that face each other stay together.
+
+Two sides of a narrow gap or arm act on each other through as many functions as there are nodes on
+them; a box with both acts on the rest through its ends alone. So gaps and arms are cut across, by
+lines or by places along the boundary, wherever the fewest panels that face each other are parted.
+"""
+
+import numpy as np
+from scipy.spatial import Delaunay, QhullError
+
+from engine.arrays import Floats, Indices
+from engine.dirichlet.panels import Panels
+from engine.geometry import as_xy
+
+DIRECTIONS = 8  # of the lines
+SMALLEST = 0.35  # part of the panels in either half
+
+
+def partition(panels: Panels, depth: int) -> list[Indices]:
+    """Return 2^depth boxes of panels, at most as many as these; halves follow each other."""
+    middles, own = panels.middles - panels.middles.mean(), np.arange(len(panels))
+    turns = np.exp(1j * np.pi * np.arange(DIRECTIONS) / DIRECTIONS)
+    keys = np.vstack([(middles * turns[:, None]).real, own])
+    try:
+        a, b, c = Delaunay(as_xy(middles)).simplices.T.astype(np.intp)
+    except QhullError:  # all on one line, or nearly
+        a = b = c = np.empty(0, dtype=np.intp)
+    # Neighbours in a triangulation face each other, at whatever distance.
+    sides = np.sort(np.concatenate([np.column_stack(pair) for pair in ((a, b), (b, c), (c, a))]))
+    facing = np.unique(sides, axis=0)
+    gaps = np.abs(np.diff(middles[facing])[:, 0])
+    # The farther apart, the fewer functions they act by; neighbours on a loop meet.
+    prices = np.minimum(1.0, np.abs(panels.span)[facing].min(axis=1) / gaps)
+    pairs = np.concatenate([facing, np.column_stack([own, panels.following])])
+    return _parts(keys, pairs, np.append(prices, np.ones(len(panels))), depth)
+
+
+def _parts(keys: Floats, pairs: Indices, prices: Floats, depth: int) -> list[Indices]:
+    """Cut panels by one of their keys (k, p), where least is paid for the pairs that are parted."""
+    count = keys.shape[1]
+    if depth == 0:
+        return [np.arange(count)]
+    order = np.argsort(keys, axis=1)
+    ends = np.sort(np.argsort(order, axis=1)[:, pairs])
+    # What is between the first of a pair and the second parts them.
+    opened, closed = (
+        np.array([np.bincount(each, prices, count) for each in ends[:, :, i]]) for i in (0, 1)
+    )
+    least = max(int(SMALLEST * count), 2 ** (depth - 1))
+    sizes = np.arange(least, count - least + 1)
+    paid = np.cumsum(opened - closed, axis=1)[:, sizes - 1] * (1 + np.abs(sizes / count - 0.5))
+    key, best = np.unravel_index(paid.argmin(), paid.shape)
+    found = []
+    for half in np.split(order[key], [sizes[best]]):
+        number = np.full(count, -1)
+        number[half] = np.arange(len(half))
+        inner = number[pairs]
+        whole = (inner >= 0).all(axis=1)
+        parts = _parts(keys[:, half], inner[whole], prices[whole], depth - 1)
+        found += [half[part] for part in parts]
+    return found

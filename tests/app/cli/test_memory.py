@@ -1,0 +1,148 @@
+"""Small files take little memory, and large ones no more than what is in them and a share."""
+
+import resource
+import subprocess
+import sys
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from animations import moving_document
+from layered import blob, openraster
+from PIL import Image
+
+from app.cli.main import main
+from app.errors import LissomError
+from app.storage import Preferences, load_project, save_preferences, save_project
+from app.storage.pictures import cores, decode_pictures, read_openraster
+from engine.deform import MOST_HANDLES
+
+MEGABYTE = 1_000_000
+BASE = 140 * MEGABYTE  # of a process that has done nothing
+# In the process of its own, whose largest memory is asked for.
+RUN = """
+import resource, sys
+from app.cli.main import main
+status = main(sys.argv[1:])
+print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024)
+raise SystemExit(status)
+"""
+
+
+def refusal(capsys, *words):
+    with pytest.raises(SystemExit) as leaving:
+        main([str(word) for word in words])
+    assert leaving.value.code == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    return line
+
+
+@pytest.fixture
+def budget(tmp_path, monkeypatch):
+    """Return a function that sets how many megabytes pictures may take."""
+    folder = tmp_path / "settings"
+    monkeypatch.setattr(cores, "settings_folder", lambda: folder)
+
+    def set_to(megabytes):
+        save_preferences(folder, Preferences(memory=megabytes))
+        cores._budget.cache_clear()
+
+    cores._budget.cache_clear()
+    yield set_to
+    cores._budget.cache_clear()
+
+
+def test_pictures_beyond_the_budget_are_refused_before_they_are_decoded(
+    tmp_path, budget, capsys, monkeypatch
+):
+    path, out = tmp_path / "a.png", tmp_path / "out"
+    Image.new("L", (900, 900), 255).save(path)
+    budget(3)
+
+    def never(_):
+        raise AssertionError("it was decoded")
+
+    with monkeypatch.context() as decoding:
+        decoding.setattr("app.storage.pictures.picture._decoded", never)
+        said = refusal(capsys, "domain", path, "--out", out)
+        with pytest.raises(LissomError, match="6 MB of memory"):
+            decode_pictures([(path.read_bytes(), "it")] * 2)
+    assert "decoded it takes 3 MB of memory, and pictures may take 3 MB" in said
+    assert "preferences.json" in said
+    budget(4)
+    assert main(["domain", str(path), "--out", str(out)]) == 0
+
+
+def test_the_layers_of_a_file_share_one_budget(tmp_path, budget):
+    stack = '<layer name="a" src="data/0.png"/><layer name="b" src="data/1.png"/>'
+    data = openraster((600, 600), stack, [blob(600, 600), blob(600, 600)])
+    budget(2)
+    with pytest.raises(LissomError, match="takes 3 MB of memory"):
+        read_openraster(data)
+    budget(3)
+    assert len(read_openraster(data).layers) == 2
+    path = tmp_path / "a.lissom"
+    save_project(path, moving_document())
+    assert load_project(path)
+
+
+def test_a_quarter_of_the_machine_is_usual(budget, monkeypatch):
+    monkeypatch.setattr("os.sysconf", {"SC_PAGE_SIZE": 4096, "SC_PHYS_PAGES": 10_000}.get)
+    assert cores._budget() == 10_240_000
+    budget(None)
+    assert cores._budget() == 10_240_000
+
+
+@pytest.mark.parametrize("kind", ["png", "ora"])
+def test_opening_takes_little_beyond_what_is_decoded(tmp_path, kind):
+    side, count = (5_000, 1) if kind == "png" else (4_000, 3)
+    drawn = Image.new("RGBA", (side, side))
+    drawn.paste((200, 60, 30, 255), (side // 4, side // 4, 3 * side // 4, 3 * side // 4))
+    path = tmp_path / f"a.{kind}"
+    if kind == "png":
+        drawn.save(path)
+    else:
+        stack = "".join(f'<layer name="{k}" src="data/{k}.png"/>' for k in range(count))
+        path.write_bytes(openraster((side, side), stack, [drawn] * count))
+    words = ["domain", path, "--out", tmp_path / "out", "--triangles", "1000"]
+    words += ["--layer", "0"] if kind == "ora" else []
+    told = subprocess.run(
+        [sys.executable, "-c", RUN, *map(str, words)], capture_output=True, text=True, check=True
+    ).stdout
+    decoded = 4 * side * side * count
+    # While one is decoded it is there twice; masks take five bytes a pixel.
+    assert int(told.split()[-1]) <= BASE + decoded + 1.1 * 4 * side * side
+
+
+@pytest.mark.parametrize("factor", [1e150, 1e12, 2e4])
+def test_a_map_that_goes_nowhere_near_its_picture_is_refused(tmp_path, capsys, factor):
+    document = moving_document()
+    (figure,) = document.figures
+    key = figure.keys[1]
+    phi = key.pose.phi.copy()
+    phi[2] = factor * 120
+    keys = (figure.keys[0], replace(key, pose=replace(key.pose, phi=phi)))
+    path = tmp_path / "a.lissom"
+    save_project(path, replace(document, figures=(replace(figure, keys=keys),)))
+    assert "lies farther from its picture" in refusal(capsys, "certify", path)
+
+
+def test_more_handles_than_anybody_holds_are_refused(tmp_path, capsys):
+    corners = np.array([0, 1, 1 + 1j, 1j])
+    handles = (np.arange(MOST_HANDLES + 1) + 1) / (MOST_HANDLES + 3) * (0.9 + 0.9j)
+    path = tmp_path / "a.npz"
+    np.savez(
+        path,
+        outline=corners,
+        cage=(corners - 0.5 - 0.5j) * 1.4 + 0.5 + 0.5j,
+        handles=handles,
+        targets=handles,
+        k_max=0.6,
+        sigma_a_max=3.0,
+        sigma_b_min=0.3,
+    )
+    begun = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    assert "1,001 handles are too many" in refusal(
+        capsys, "deform", path, "--out", tmp_path / "out"
+    )
+    assert resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - begun < 50_000  # kilobytes
