@@ -17,8 +17,8 @@ from engine.baselines.triangulated_domain import TriangulatedDomain, factorised
 from engine.errors import EngineError
 
 MOST_STEPS = 40
-SHORTEST = 2.0**-20  # part of a Newton step
-FARTHEST = 2.0  # by which a logarithm changes in a step
+SMALLEST_PART = 2.0**-20  # of a Newton step
+LARGEST_CHANGE = 2.0  # of a logarithm, in a step
 FLOOR = 1e-9  # of the Hessian's diagonal, where all triangles around a vertex are beyond flat
 ENOUGH = 1e-10  # angle defect, in radians, at which the search ends
 
@@ -80,7 +80,7 @@ class Flattening:
         )
 
     def flatten(self, lengths: Floats) -> tuple[Complexes, float]:
-        """Lay a metric out in the plane, given by the lengths (m, 3) of the half-edges.
+        """Lay a metric out in the plane, given by the lengths (m, 3) of half-edges, equal in twins.
 
         Returns
         -------
@@ -103,8 +103,9 @@ class Flattening:
             if np.abs(defect).max(initial=0.0) <= ENOUGH:
                 break
             direction = factorised(self._hessian(cotangents)).solve(-defect)
-            slope, part = float(direction @ defect), min(1.0, FARTHEST / np.abs(direction).max())
-            while part > SHORTEST:
+            slope = float(direction @ defect)
+            part = min(1.0, LARGEST_CHANGE / np.abs(direction).max())
+            while part > SMALLEST_PART:
                 tried = logarithms.copy()
                 tried[inner] += part * direction
                 angles, cotangents = _angles(_scaled(lengths, tried, corners))
@@ -113,7 +114,7 @@ class Flattening:
                 if float(direction @ after) <= -0.5 * slope:
                     break
                 part /= 2
-            if part <= SHORTEST:
+            if part <= SMALLEST_PART:
                 break
             logarithms, defect = tried, after
         scaled = _scaled(lengths, logarithms, corners)

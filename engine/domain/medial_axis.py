@@ -22,6 +22,7 @@ from engine.geometry import (
     constrained_delaunay,
     contains,
     distance_to_boundary,
+    edges,
 )
 
 # Of the length of the whole boundary: the longest of its segments that are triangulated.
@@ -52,14 +53,15 @@ class MedialAxis(NamedTuple):
 
 
 def medial_axis(loops: Sequence[Complexes]) -> MedialAxis:
-    """Return the medial axis of a shape given by its loops, with a spur into each convex corner.
+    """Return the medial axis of a shape, with a spur into each convex corner.
 
-    A node stands for a triangle: at its circumcentre, which is as far from the boundary as from the
-    corners if the circle is empty. Where the samples are too far apart for that, it is between the
-    midpoints of the sides that the triangle shares. The triangulation has no inner points, so that
-    without holes the graph is a tree.
+    The loops are its outline, counter-clockwise, and those of its holes. A node stands for a
+    triangle: at its circumcentre, which is as far from the boundary as from the corners if the
+    circle is empty. Where the samples are too far apart for that, it is between the midpoints of
+    the sides that the triangle shares. The triangulation has no inner points, so that without holes
+    the graph is a tree.
     """
-    step = STEP * sum(float(abs(np.diff(loop, append=loop[0])).sum()) for loop in loops)
+    step = STEP * sum(float(abs(edges(loop)).sum()) for loop in loops)
 
     def is_short(pieces: Pieces) -> Booleans:
         return np.asarray(pieces.lengths <= step)

@@ -20,7 +20,7 @@ from engine.geometry import (
 # Built meshes have as many triangles as are aimed at, but for a few percent.
 MOST_MESH_TRIANGLES = 2 * MOST_TRIANGLES
 # Farther out than any picture goes, and squares still have digits to spare.
-FARTHEST = 1e7
+OUTERMOST = 1e7
 # Of the diagonal: how near a vertex of the cage may come. Samples of the outline are graded towards
 # it, so that this bounds their number; a built cage keeps 300 times that distance.
 NEAREST = 1e-6
@@ -59,8 +59,8 @@ def require_domain(domain: Domain) -> None:
 
 
 def _require_near(points: Complexes, name: str) -> None:
-    if not (np.abs(points.real) <= FARTHEST).all() or not (np.abs(points.imag) <= FARTHEST).all():
-        raise EngineError(f"The {name} lies farther from the origin than {FARTHEST:,.0f} pixels.")
+    if not np.abs([points.real, points.imag]).max(initial=0.0) <= OUTERMOST:
+        raise EngineError(f"The {name} lies farther from the origin than {OUTERMOST:,.0f} pixels.")
 
 
 def _require_tiling(domain: Domain) -> None:

@@ -14,6 +14,7 @@ from engine.maps.cauchy import (
     evaluate as evaluate,
 )
 from engine.maps.certificate import (
+    ROUNDING as ROUNDING,
     Certificate as Certificate,
     Enclosures as Enclosures,
     certify as certify,

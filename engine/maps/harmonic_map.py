@@ -69,7 +69,7 @@ class HarmonicMap:
 
     @classmethod
     def similarity(
-        cls, cage: Complexes, holes: tuple[Hole, ...] = (), factor: complex = 1, shift: complex = 0
+        cls, cage: Complexes, holes: tuple[Hole, ...], *, factor: complex = 1, shift: complex = 0
     ) -> Self:
         """Return the map z ↦ factor · z + shift."""
         inside = np.zeros(sum(len(hole.cage) for hole in holes), dtype=np.complex128)

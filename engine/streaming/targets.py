@@ -147,6 +147,7 @@ class _Film:
             bend = _table([between, -0.5 * self._moments[-1], -0.5 * last], self.rank).sum(axis=0)
             is_straight = self.largest(bend[None]) <= tolerance
             if is_straight or end - start <= SHORTEST:
+                # The middle of a jump is where it is for no time at all.
                 self._middles.append(between if is_straight else None)
                 self.append(end, last)
             else:

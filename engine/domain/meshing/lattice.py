@@ -27,9 +27,9 @@ class Lattice(NamedTuple):
 
 
 def lattice_inside(loops: Sequence[Complexes], spacing: float) -> Lattice:
-    """Fill the inside of a simple polygon, less its holes, with a lattice (scan conversion).
+    """Fill a simple polygon, less its holes, with points so far apart (scan conversion).
 
-    Points within rounding of the boundary may fall on either side.
+    Those within rounding of the boundary may fall on either side.
     """
     starts, ends = np.concatenate(loops), loop_ends(loops)
     origin = complex(starts.real.min(), starts.imag.min())

@@ -8,7 +8,7 @@ import numpy as np
 
 from engine.arrays import Booleans, Complexes, Floats, Indices, Integers
 
-SHORTEST = 0.03  # of the longest way; what rises less is no limb
+SHORTEST_LIMB = 0.03  # of the longest way; what rises less is no limb
 SLENDEREST = 1.0  # length² over area: what has less is plump; the corner of a square has 0.8
 ALIKE = 0.1  # of the longest way; limbs whose lengths differ less are told apart by their tips
 
@@ -57,7 +57,7 @@ def rank_limbs(vertices: Complexes, edges: Integers, areas: Floats, ways: Floats
     taken. Cost: O(e log e), and a loop over the pairs of peaks that are neighbours.
     """
     peaks = _peaks(edges, ways)
-    tree, parts = _join(peaks, edges, ways, shortest=SHORTEST * ways.max())
+    tree, parts = _join(peaks, edges, ways, shortest=SHORTEST_LIMB * ways.max())
     while (below := ways < tree.bottoms[parts]).any():
         parts[below] = tree.parents[parts[below]]
     tips = vertices[tree.tips]

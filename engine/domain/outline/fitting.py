@@ -11,7 +11,7 @@ from engine.arrays import Complexes, Floats
 from engine.domain.outline.crossings import edges_that_cross
 from engine.domain.outline.curve import arc_lengths, at_arc_lengths, smooth_curve
 from engine.domain.outline.margin import MarginCurve
-from engine.domain.outline.simplify import FARTHEST, choose_vertices
+from engine.domain.outline.simplify import LONGEST_SPAN, choose_vertices
 from engine.geometry import as_xy, contains, edges, region, signed_area
 
 FEWEST_EDGES = 40
@@ -53,7 +53,7 @@ class Candidates:
     @property
     def fewest_edges(self) -> int:
         """The number of edges below which no polygon with such edges follows the curve."""
-        return -(-len(self.points) // FARTHEST)
+        return -(-len(self.points) // LONGEST_SPAN)
 
 
 def fit_polygon(candidates: Candidates, corners: Complexes) -> Complexes | None:
@@ -105,4 +105,6 @@ def _faults(polygon: Complexes, corners: Complexes) -> Complexes:
         return np.asarray(polygon[crossing | sharp])
     if signed_area(polygon) > 0:
         return corners[~contains(polygon, corners)]
-    return np.asarray(corners[shapely.contains_xy(region(polygon), corners.real, corners.imag)])
+    hole = region(polygon)
+    shapely.prepare(hole)
+    return np.asarray(corners[shapely.contains_xy(hole, corners.real, corners.imag)])

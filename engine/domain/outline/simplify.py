@@ -4,7 +4,7 @@ import numpy as np
 
 from engine.arrays import Complexes, Floats, Indices
 
-FARTHEST = 40  # points along the curve that one edge may span
+LONGEST_SPAN = 40  # points along the curve, of one edge
 FIDELITY = 3.0  # cost of an edge with the whole tolerance as root mean square error, in edges
 LAST_RESORT = 1e3  # cost of an edge that is too short, in edges
 
@@ -49,7 +49,7 @@ def _edge_costs(
 ) -> Floats:
     """Return the cost (k, n) of the edge from point i to point i + k + 1."""
     n = len(curve)
-    spans = min(FARTHEST, n // 3)
+    spans = min(LONGEST_SPAN, n // 3)
     costs = np.empty((spans, n))
     # Row s: what is s points further along, and how far away from each point.
     further = np.arange(n) + np.arange(spans + 1)[:, None]

@@ -14,7 +14,7 @@ Holes = Literal["keep", "fill"]
 Enclosed = Literal["auto", "keep", "remove"]
 
 SMALLEST_RADIUS, LARGEST_RADIUS = 0.5, 4096.0  # pixels of a stroke
-FARTHEST = 1e5  # pixels from the picture's corner that a stroke may go
+FARTHEST_STROKE = 1e5  # pixels from the picture's corner that a stroke may go
 # Of all strokes together: points, and rows of pixels of the discs that they are drawn as, which
 # take a minute.
 MOST_STROKE_POINTS, MOST_ROWS = 1_000_000, 1e9
@@ -83,9 +83,9 @@ class Stroke:
                 f"The radius of a brush is {SMALLEST_RADIUS:g} to {LARGEST_RADIUS:g} pixels, not "
                 f"{self.radius:g}."
             )
-        if max(np.abs(points.real).max(), np.abs(points.imag).max()) > FARTHEST:
+        if max(np.abs(points.real).max(), np.abs(points.imag).max()) > FARTHEST_STROKE:
             raise EngineError(
-                f"A stroke goes farther from the picture than {FARTHEST:,.0f} pixels."
+                f"A stroke goes farther from the picture than {FARTHEST_STROKE:,.0f} pixels."
             )
         discs = len(points) + np.abs(np.diff(points)).sum() / _spacing(self.radius)
         object.__setattr__(self, "rows", float(discs * (2 * self.radius + 3)))

@@ -16,7 +16,7 @@ NOISE_REACH = 2  # pixels: what is varied within is noise
 # Brightness, blueness, redness of red, green, blue.
 TONES = ((0.299, 0.587, 0.114), (-0.169, -0.331, 0.5), (0.5, -0.419, -0.081))
 HUES = (1, 2)  # which of them are the last two
-ROUNDING = 0.5  # levels of noise that every picture has
+PICTURE_NOISE = 0.5  # levels that every picture has
 
 
 class Tile(NamedTuple):
@@ -84,7 +84,7 @@ class Mixture(NamedTuple):
         near = np.abs(tile.depth) <= width + 1
         _, varied = _local(front, near, NOISE_REACH, tones_of(np.full(3, 128.0)))
         behind = tile.background.reshape(-1, 3)[band]
-        noise = (varied + tile.noise).reshape(-1, 3)[band] / 2 + ROUNDING**2
+        noise = (varied + tile.noise).reshape(-1, 3)[band] / 2 + PICTURE_NOISE**2
         way, off = (tones.reshape(-1, 3)[band] - behind for tones in (front, tile.tones))
         return cls(band, nearest.ravel()[band], way, off, noise)
 

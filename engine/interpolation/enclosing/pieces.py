@@ -20,13 +20,10 @@ import numpy as np
 import numpy.typing as npt
 
 from engine.arrays import Booleans, Complexes, Floats, Indices
-from engine.maps import Boundary, HarmonicMap, Span
+from engine.maps import ROUNDING, Boundary, HarmonicMap, Span
 
 type_ = TypeVar("type_", bound=np.generic)
 number = TypeVar("number", np.float64, np.complex128)
-
-# Relative error of F and G themselves, from rounding; generous.
-ROUNDING = 1e-11
 
 
 class EdgeCurves(NamedTuple, Generic[number]):

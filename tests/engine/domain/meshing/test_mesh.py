@@ -1,6 +1,6 @@
 import numpy as np
 
-from engine.domain.meshing.mesh import Mesh
+from engine.domain.meshing.mesh import Mesh, sides_of
 
 RHOMBUS = Mesh(
     vertices=np.array([0, 1, 0.5 + np.sqrt(0.75) * 1j, 1.5 + np.sqrt(0.75) * 1j]),
@@ -27,6 +27,16 @@ def test_edges_are_undirected_and_unique() -> None:
     edges = RHOMBUS.edges()
     assert edges.dtype == np.int32
     np.testing.assert_array_equal(edges, [[0, 1], [0, 2], [1, 2], [1, 3], [2, 3]])
+
+
+def test_sides_are_edges_and_twins_run_along_one_of_them_in_opposite_directions() -> None:
+    sides, numbers, twins = sides_of(RHOMBUS.triangles)
+    np.testing.assert_array_equal(sides, RHOMBUS.edges())
+    ends = np.stack([RHOMBUS.triangles, np.roll(RHOMBUS.triangles, -1, axis=1)], axis=-1)
+    np.testing.assert_array_equal(sides[numbers], np.sort(ends, axis=-1))
+    np.testing.assert_array_equal(twins, [[1, 4]])
+    here, there = ends.reshape(-1, 2)[twins[0]]
+    np.testing.assert_array_equal(here, there[::-1])
 
 
 def test_a_mesh_is_read_only_and_keeps_the_given_arrays_writable() -> None:
