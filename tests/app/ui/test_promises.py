@@ -120,6 +120,24 @@ def test_layers_are_chosen_at_once_and_both_drags_come_to_rest(window, bent):
         check_at_rest(bent.document, goal, figure=identity)
 
 
+def test_a_save_has_a_drag_on_each_of_many_layers(window, bent, tmp_path, monkeypatch):
+    for _ in range(8):
+        layering.duplicate(window.session, 0)
+        window.frames()
+    path, goals = tmp_path / "a.lissom", {}
+    with held_up(monkeypatch, "app.editor.actions.posing.solving._take_steps"):
+        for figure in bent.document.figures:
+            layering.choose(window.session, figure.id)
+            goals[figure.id] = drag_bar(window, bent)
+        assert len(bent.pulls) == len(goals) == 9
+        saving.write(window.session, path, None)
+        assert not path.exists()
+    window.until(lambda: not bent.pending)
+    saved = load_project(path)
+    for identity, goal in goals.items():
+        check_at_rest(saved, goal, figure=identity)
+
+
 def test_a_picture_is_exported_as_it_comes_to_rest(window, bent, tmp_path):
     goal = drag_bar(window, bent)
     out = tmp_path / "last.png"
