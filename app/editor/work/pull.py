@@ -82,6 +82,8 @@ class Pull(Promise):
         What all of that comes to; None as long as there is no start.
     position : int
         Of the history when something was wished last.
+    in_key : bool
+        Whether it makes or changes a key, as the person wanted when it began.
     is_held : bool
         Whether the hand still pulls.
     drag : Drag, optional
@@ -111,6 +113,7 @@ class Pull(Promise):
     wishes: dict[object, WishFrom] = field(default_factory=dict)
     targets: Mapping[int, Target] | None = None
     position: int = 0
+    in_key: bool = True
     is_held: bool = True
     drag: Drag | None = None
     solved: Mapping[int, Target] | None = None

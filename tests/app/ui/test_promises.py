@@ -12,7 +12,16 @@ from PIL import Image
 from app.document.commands import handle_commands, key_commands, scene_commands
 from app.document.keyframe import Target
 from app.editor import layering
-from app.editor.actions import editing, exporting, keys, playback, posing, rebuilding, saving
+from app.editor.actions import (
+    editing,
+    exporting,
+    keys,
+    playback,
+    posing,
+    rebuilding,
+    saving,
+    viewing,
+)
 from app.editor.dialogs import Question
 from app.editor.poses import copying, flipping, library
 from app.storage import load_project
@@ -91,6 +100,19 @@ def test_moved_and_copied_keys_come_to_rest_too(window, bent, is_seen, monkeypat
     for frame in (30, 48):
         check_at_rest(bent.document, goal, frame=frame)
     assert bent.figure.key(30).pose.phi is bent.figure.key(48).pose.phi
+
+
+@pytest.mark.parametrize("auto_key", [True, False])
+def test_a_drag_is_in_a_key_as_was_wanted_when_it_began(window, bent, monkeypatch, auto_key):
+    if not auto_key:
+        viewing.toggle_auto_key(window.session)
+    with held_up(monkeypatch, "app.editor.actions.posing.solving._take_steps"):
+        goal = drag_bar(window, bent)
+        viewing.toggle_auto_key(window.session)
+    window.settle()
+    assert (bent.unkeyed is None) == auto_key
+    if auto_key:
+        check_at_rest(bent.document, goal)
 
 
 def test_a_handle_that_comes_or_goes_meanwhile_keeps_its_place(window, bent):

@@ -86,7 +86,7 @@ def free_turn(session: Session, identity: int) -> None:
 @with_project
 def pull_again(session: Session, project: Project, *, gesture: object) -> None:
     """Let the pose that is shown follow its own wishes once more, as under other limits."""
-    if _pose_here(session, project) is not None:
+    if pose_here(session, project) is not None:
         pull(session, {}, gesture=gesture)
         let_go(session)
 
@@ -145,8 +145,15 @@ def _begin(session: Session, project: Project, gesture: object) -> Pull:
         session.jobs.drop(POSING)
         earlier.clip, earlier.start, earlier.is_held = project.clip, start, True
         return earlier
-    before = _pose_here(session, project)
-    begun = Pull(clip=project.clip, frame=frame, gesture=gesture, start=start, before=before)
+    before = pose_here(session, project)
+    begun = Pull(
+        clip=project.clip,
+        frame=frame,
+        gesture=gesture,
+        start=start,
+        before=before,
+        in_key=session.preferences.auto_key,
+    )
     project.pending.append(begun)
     return begun
 
@@ -156,7 +163,7 @@ def _start(session: Session, project: Project, earlier: Pull | None) -> Start | 
 
     An earlier pull of the same pose, which is not at rest yet, says what was wished last.
     """
-    pose, shown, figure = _pose_here(session, project), project.puppet.shown, project.figure
+    pose, shown, figure = pose_here(session, project), project.puppet.shown, project.figure
     if pose is not None:
         if earlier is not None and earlier.kept is not None and earlier.targets is not None:
             is_its_own = earlier.kept.phi is pose.phi
@@ -175,7 +182,7 @@ def _start(session: Session, project: Project, earlier: Pull | None) -> Start | 
     )
 
 
-def _pose_here(session: Session, project: Project) -> Pose | None:
+def pose_here(session: Session, project: Project) -> Pose | None:
     """Return the pose that the figure rests in at the present frame; None for an in-between."""
     if project.unkeyed is not None:
         return project.unkeyed
