@@ -346,6 +346,21 @@ def test_undo_takes_back_first_what_was_done_since_a_drag_that_is_not_seen_yet(
         posing.mirror_handles(window.session)
         editing.undo(window.session)
         editing.undo(window.session)
-        assert not bent.pulls
+        assert bent.document is before
     window.settle()
+    assert not bent.pulls
+    assert bent.document is before
+
+
+def test_a_drag_that_was_undone_before_anything_was_seen_is_done_again(window, bent, monkeypatch):
+    before = bent.document
+    with held_up(monkeypatch, "app.editor.actions.posing.solving._take_steps"):
+        goal = drag_bar(window, bent)
+        assert bent.pulls[-1].kept is None
+        editing.undo(window.session)
+        assert bent.document is before
+        editing.redo(window.session)
+    window.settle()
+    check_at_rest(bent.document, goal)
+    editing.undo(window.session)
     assert bent.document is before
