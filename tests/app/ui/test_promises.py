@@ -12,7 +12,16 @@ from PIL import Image
 from app.document.commands import handle_commands, key_commands, scene_commands
 from app.document.keyframe import Target
 from app.editor import layering
-from app.editor.actions import editing, exporting, keys, playback, posing, rebuilding, saving
+from app.editor.actions import (
+    editing,
+    exporting,
+    keys,
+    playback,
+    posing,
+    rebuilding,
+    saving,
+    viewing,
+)
 from app.editor.dialogs import Question
 from app.editor.poses import copying, flipping, library
 from app.storage import load_project
@@ -75,6 +84,15 @@ def test_a_drag_comes_to_rest_whatever_follows(window, bent, name):
         assert bent.history.undo_label is not None
         editing.undo(window.session)
     assert not bent.pulls
+
+
+def test_a_drag_that_began_with_auto_key_makes_a_key(window, bent, monkeypatch):
+    with held_up(monkeypatch, "app.editor.actions.posing.solving._take_steps"):
+        goal = drag_bar(window, bent)
+        window.act(viewing.toggle_auto_key)
+    window.settle()
+    check_at_rest(bent.document, goal)
+    assert bent.history.unkeyed is None
 
 
 @pytest.mark.parametrize("is_seen", [True, False])

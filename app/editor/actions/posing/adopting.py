@@ -71,7 +71,7 @@ def _adopt_first(session: Session, project: Project, pull: Pull, pose: Pose) -> 
         return False
     pull.frame = pull.frame if pull.frame in frames else min(frames)
     pose = pull.brought_to(pose)(figure, retargeted(figure, pose))
-    if not session.preferences.auto_key:
+    if not pull.is_keyed:
         unkeyed = UnkeyedPose(figure=pull.figure, frame=pull.frame, pose=pose)
         project.history.pose(unkeyed, gesture=pull.gesture)
         return True

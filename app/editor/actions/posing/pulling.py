@@ -146,7 +146,14 @@ def _begin(session: Session, project: Project, gesture: object) -> Pull:
         earlier.clip, earlier.start, earlier.is_held = project.clip, start, True
         return earlier
     before = _pose_here(session, project)
-    begun = Pull(clip=project.clip, frame=frame, gesture=gesture, start=start, before=before)
+    begun = Pull(
+        clip=project.clip,
+        frame=frame,
+        gesture=gesture,
+        start=start,
+        before=before,
+        is_keyed=session.preferences.auto_key,
+    )
     project.pending.append(begun)
     return begun
 
