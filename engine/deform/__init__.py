@@ -18,5 +18,5 @@ from engine.deform.model import (
     newton_direction as newton_direction,
     projected_hessian as projected_hessian,
 )
-from engine.deform.rest import ActiveBound as ActiveBound
+from engine.deform.rest import ActiveBound as ActiveBound, Way as Way
 from engine.deform.state import State as State, Statistics as Statistics, Status as Status

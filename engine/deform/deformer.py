@@ -141,11 +141,14 @@ class Deformer(HeldShape):
             and (state.schedule.idle >= PATIENCE or (not last.leashed and last.length > FULL))
         )
 
-    def settle(self, state: State, wish: Wish, *, at_most: int = 600) -> tuple[State, int]:
+    def settle(
+        self, state: State, wish: Wish, *, ways: tuple[Way, ...] = tuple(Way), at_most: int = 600
+    ) -> tuple[State, int]:
         """Find the pose of least energy for a wish; return the number of steps too.
 
-        At most `at_most` steps are taken. The energy is never above that of the present map, once
-        that is within the bounds.
+        It is searched for along these ways; that from the present map alone stays in its valley. At
+        most `at_most` steps are taken. The energy is never above that of the present map, once that
+        is within the bounds.
         """
         count = 0
         if not (self._goes_on(state, wish) and state.status.is_final):
@@ -154,7 +157,7 @@ class Deformer(HeldShape):
                 if state.status.is_final:
                     return state, count
             if len(wish.positions) > 0 and count < at_most:
-                state = begin_searches(self, state, wish, tuple(Way))
+                state = begin_searches(self, state, wish, ways)
         while count < at_most:
             state, count = self.step(state, wish), count + 1
             if state.status.is_final:

@@ -56,7 +56,7 @@ MISFIT = 0.12
 
 def begin_searches(shape: HeldShape, state: State, wish: Wish, ways: tuple[Way, ...]) -> State:
     """Return the state at the beginning of the searches along these ways."""
-    if state.map.is_same(shape.at_rest):
+    if Way.REST in ways and state.map.is_same(shape.at_rest):
         ways = tuple(way for way in ways if way is not Way.HERE)
     state = replace(
         state,
@@ -109,10 +109,10 @@ def _search(shape: HeldShape, state: State, wish: Wish) -> Search:
         first = rigidly_aligned(shape.handles, wish, shape.at_rest, turn)
         if way is Way.REST and len(state.ways) > 1:
             most = MOST_STEPS_REST
-    elif outcome is None:
-        most = MOST_STEPS_HERE
-    else:
+    elif outcome is not None:
         first, turn = outcome.map, outcome.turn
+    elif len(state.ways) > 1:
+        most = MOST_STEPS_HERE
     certificate = certify(first, shape.boundary, shape.bounds)
     within = shape.bounds.towards_identity(ROUNDING)
     keeps = within.allow(k=certificate.k, sigma_a=certificate.sigma_a, sigma_b=certificate.sigma_b)
