@@ -77,7 +77,7 @@ class Rig:
         certificate = certify(self.figure.map_of(pose), deformer.boundary, deformer.bounds)
         if certificate.certified:
             return deformer
-        bounds = deformer.bounds
+        bounds = self.figure.bounds
         wider = Bounds(
             k=max(bounds.k, 1.0 - (1.0 - LEEWAY) * (1.0 - certificate.k)),
             sigma_a=max(bounds.sigma_a, (1.0 + LEEWAY) * certificate.sigma_a),

@@ -90,7 +90,8 @@ def begin_search(
     jet = objective.jet(*harmonic_map.columns)
     energy = objective.energy(jet)
     reach = FIRST_REACH if way is Way.WIDENING else inf
-    own = Walls.around(inside, len(jet.a))
+    own = Walls.at(inside, objective.boundary)
+    outermost = Walls.at(limits, objective.boundary)
     return Search(
         handles=objective.handles,
         wish=objective.wish,
@@ -101,7 +102,7 @@ def begin_search(
         limits=limits,
         inside=own,
         reach=reach,
-        walls=walls_around(rung(own, reach), limits, jet.a, jet.b),
+        walls=walls_around(rung(own, reach), outermost, jet.a, jet.b),
         weight=HERE_PER_ENERGY * energy if way is Way.HERE else _first_weight(energy),
         energy=energy,
     )
@@ -221,7 +222,8 @@ def widened(search: Search, jet: Jet) -> Search:
     """Return the search with its walls on the next rung."""
     weight = max(LOWER * search.weight, WIDENED_PER_ENERGY * search.energy)
     wider = replace(search, reach=next_reach(search.inside, search.reach), weight=weight)
-    walls = walls_around(wider.rung, wider.limits, jet.a, jet.b)
+    outermost = Walls.at(wider.limits, wider.boundary)
+    walls = walls_around(wider.rung, outermost, jet.a, jet.b)
     return replace(wider, walls=walls)
 
 
