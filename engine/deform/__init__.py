@@ -12,6 +12,7 @@ from engine.deform.handles import (
     Wish as Wish,
     require_held as require_held,
 )
+from engine.deform.hands import PULL as PULL, Hand as Hand
 from engine.deform.model import (
     Objective as Objective,
     line_search as line_search,

@@ -34,6 +34,9 @@ LEAST_TIGHTENING = 0.1
 SOFTNESS = 0.003
 # One sample in so many enters the sketch of the Hessian.
 STRIDE = 6
+# A hand that gives in stops at bounds by itself, with full steps, after which the weight would fall
+# and the shape stick to them: the barrier weighs at least this much.
+LEAST_GIVING = 0.03
 
 
 def follow_hand(shape: HeldShape, state: State, wish: Wish) -> State:
@@ -122,6 +125,8 @@ def _prepare(shape: HeldShape, state: State, wish: Wish) -> _Step:
         schedule = replace(schedule, weight=max(schedule.weight, LEAST_TIGHTENING))
     else:
         handles = shape.handles
+        if wish.hands is not None:
+            schedule = replace(schedule, weight=max(schedule.weight, LEAST_GIVING))
         wish, leashed = cut_to_leash(handles, shape.boundary.size, schedule.leash, jet, wish)
     # On the way into the bounds the walls move with the map, and dual variables would lag.
     barrier = Barrier(
@@ -130,7 +135,9 @@ def _prepare(shape: HeldShape, state: State, wish: Wish) -> _Step:
     return _Step(
         jet=jet,
         barrier=barrier,
-        objective=replace(free, handles=handles, wish=wish, barrier=barrier, stride=STRIDE),
+        objective=replace(
+            free, handles=handles, wish=wish, barrier=barrier, stride=STRIDE, secant=True
+        ),
         limits=limits,
         required=required,
         schedule=schedule,

@@ -56,7 +56,10 @@ MISFIT = 0.12
 
 def begin_searches(shape: HeldShape, state: State, wish: Wish, ways: tuple[Way, ...]) -> State:
     """Return the state at the beginning of the searches along these ways."""
-    if Way.REST in ways and state.map.is_same(shape.at_rest):
+    if wish.hands is not None:
+        # From where the hands are is found what all ways find, in half the steps.
+        ways = (Way.HERE,)
+    elif Way.REST in ways and state.map.is_same(shape.at_rest):
         ways = tuple(way for way in ways if way is not Way.HERE)
     state = replace(
         state,

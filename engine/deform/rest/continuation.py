@@ -145,6 +145,7 @@ def _objective(search: Search) -> tuple[Objective, Barrier, Jet]:
         handles=search.handles,
         wish=search.wish,
         stride=STRIDE if search.gain > SKETCHED * search.energy else 1,
+        secant=search.wish.hands is not None and search.wish.hands.hold_all,
     )
     jet = objective.jet(*search.map.columns)
     barrier = Barrier(walls=search.walls, weight=search.weight, duals=search.duals)
