@@ -69,7 +69,8 @@ class Wish(NamedTuple):
         """
         if self.hands is None:
             return self
-        return Wish(positions - self.errors(positions), self.rotations)
+        given = self.hands.given(positions - self.positions)
+        return Wish(self.positions + self.hands.at_handles(given), self.rotations)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

@@ -7,7 +7,7 @@ energy becomes 2 Λ e₀ |ē| − Λ e₀² beyond e₀ (Huber 1964), which is t
 Λ |ē − s|² + 2 Λ e₀ |s| over all s: the hand gives in by s, and its handles keep their formation.
 """
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -25,13 +25,13 @@ class Hand(NamedTuple):
 
     Parameters
     ----------
-    handles : sequence of int
+    handles : collection of int
         Which they are.
     pull : float
         Its largest force, per L.
     """
 
-    handles: Sequence[int]
+    handles: Collection[int]
     pull: float = PULL
 
 
@@ -75,7 +75,7 @@ class Hands(NamedTuple):
                 raise EngineError("A hand pulls at nothing; leave it out.")
             if not all(0 <= handle < len(stiffness) for handle in handles):
                 raise EngineError(f"A hand pulls at handles {list(handles)} of {len(stiffness)}.")
-            weights[number, handles] = stiffness[handles]
+            weights[number, list(handles)] = stiffness[list(handles)]
         twice = np.flatnonzero(np.count_nonzero(weights, axis=0) > 1)
         if len(twice):
             raise EngineError(f"Two hands pull at handle {twice[0]}; let one of them do it.")
