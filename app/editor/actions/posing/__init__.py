@@ -27,6 +27,7 @@ from app.editor.actions.posing.pulling import (
     end_at as end_at,
     free_turn as free_turn,
     give_up as give_up,
+    insist as insist,
     let_go as let_go,
     nudge as nudge,
     pin_here as pin_here,
@@ -41,3 +42,4 @@ from app.editor.actions.posing.settling import (
     tried_clips as tried_clips,
 )
 from app.editor.actions.posing.solving import POSING as POSING, STEPS as STEPS
+from app.editor.actions.posing.stopping import give_in as give_in
