@@ -79,7 +79,7 @@ class Pull(Promise):
     before : Pose, optional
         The one that the key or the frame had; None for a new key.
     is_keyed : bool
-        Whether a key has the pose, as was chosen when it began.
+        Whether a key has the pose, as the person wanted when it began.
     wishes : dict of object to WishFrom
         By the gestures that they are of, in order; each knows what was wished before it.
     hands : dict of object to Hand

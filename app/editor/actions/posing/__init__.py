@@ -31,6 +31,7 @@ from app.editor.actions.posing.pulling import (
     let_go as let_go,
     nudge as nudge,
     pin_here as pin_here,
+    pose_here as pose_here,
     pull as pull,
     pull_again as pull_again,
     take_back as take_back,
