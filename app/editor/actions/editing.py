@@ -62,6 +62,8 @@ def undo(session: Session, project: Project) -> None:
     position = project.history.position
     # What was done since they were wished is taken back before them.
     unseen = [pull for pull in project.pulls if pull.kept is None and pull.position >= position]
+    # What the hand has let go can be done again: it becomes a step before that step is undone.
+    unseen = [pull for pull in unseen if not posing.adopt_wish(session, project, pull)]
     for pull in unseen or [pull for pull in project.pulls if pull.is_held]:
         posing.give_up(session, project, pull)
     if unseen:

@@ -11,6 +11,7 @@ from app.editor.session import EntryMark, Hint, Mark, Session
 from app.editor.tools.entry import TypedWay
 from app.editor.tools.tool import Spot, Tool
 from app.editor.work import Start
+from engine.deform import Hand
 
 
 @dataclass(slots=True, kw_only=True, eq=False)
@@ -82,11 +83,17 @@ class Pulling(Tool):
             known = pulled & targets.keys()
             return {i: replace(targets[i], position=places[i] + way) for i in known}
 
-        posing.pull(session, as_far, gesture=self)
+        posing.pull(session, as_far, gesture=self, hand=Hand(pulled))
 
     def end(self, session: Session, _: complex) -> None:
-        """Let the handles go; a click selects the one that it was on alone, or its group."""
-        posing.let_go(session)
+        """Let the handles go where they have come to, or keep the wish.
+
+        A click selects the one that it was on alone, or its group.
+        """
+        if session.insists:
+            posing.insist(session)
+        else:
+            posing.let_go(session)
         if not self.moved and self.taken is not None:
             editing.select(session, self.project.figure.together_with(self.taken))
 
@@ -102,7 +109,11 @@ class Pulling(Tool):
     @property
     def ways(self) -> tuple[Hint, ...]:
         """What can be done until it ends."""
-        return (Hint("type", "a number of pixels"), Hint("X or Y", "to keep to an axis"))
+        return (
+            Hint("type", "a number of pixels"),
+            Hint("X or Y", "to keep to an axis"),
+            Hint("let go", "to keep the wish beyond its reach", "alt"),
+        )
 
 
 def _movable(project: Project) -> frozenset[int]:

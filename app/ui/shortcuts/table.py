@@ -218,7 +218,7 @@ MENUS: dict[str, dict[str, Binding]] = {
             "Suggest handles",
             do(posing.suggest_handles),
             icon=icons.ICON_FA_WAND_MAGIC_SPARKLES,
-            hint="Put handles at the tips of limbs and in the middle of the body",
+            hint="Put handles on body and head and at tips and joints of limbs, each with a name",
         ),
         "pin here": Binding(
             "Pin here",

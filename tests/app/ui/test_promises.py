@@ -86,6 +86,15 @@ def test_a_drag_comes_to_rest_whatever_follows(window, bent, name):
     assert not bent.pulls
 
 
+def test_a_drag_that_began_with_auto_key_makes_a_key(window, bent, monkeypatch):
+    with held_up(monkeypatch, "app.editor.actions.posing.solving._take_steps"):
+        goal = drag_bar(window, bent)
+        window.act(viewing.toggle_auto_key)
+    window.settle()
+    check_at_rest(bent.document, goal)
+    assert bent.history.unkeyed is None
+
+
 @pytest.mark.parametrize("is_seen", [True, False])
 def test_moved_and_copied_keys_come_to_rest_too(window, bent, is_seen, monkeypatch):
     if is_seen:
@@ -386,6 +395,21 @@ def test_undo_takes_back_first_what_was_done_since_a_drag_that_is_not_seen_yet(
         posing.mirror_handles(window.session)
         editing.undo(window.session)
         editing.undo(window.session)
-        assert not bent.pulls
+        assert bent.document is before
     window.settle()
+    assert not bent.pulls
+    assert bent.document is before
+
+
+def test_a_drag_that_was_undone_before_anything_was_seen_is_done_again(window, bent, monkeypatch):
+    before = bent.document
+    with held_up(monkeypatch, "app.editor.actions.posing.solving._take_steps"):
+        goal = drag_bar(window, bent)
+        assert bent.pulls[-1].kept is None
+        editing.undo(window.session)
+        assert bent.document is before
+        editing.redo(window.session)
+    window.settle()
+    check_at_rest(bent.document, goal)
+    editing.undo(window.session)
     assert bent.document is before
