@@ -78,6 +78,8 @@ class Pull(Promise):
         None as long as the in-between that it begins with is not worked out.
     before : Pose, optional
         The one that the key or the frame had; None for a new key.
+    is_keyed : bool
+        Whether a key has the pose, as the person wanted when it began.
     wishes : dict of object to WishFrom
         By the gestures that they are of, in order; each knows what was wished before it.
     hands : dict of object to Hand
@@ -112,6 +114,7 @@ class Pull(Promise):
     gesture: object
     start: Start | None
     before: Pose | None
+    is_keyed: bool
     wishes: dict[object, WishFrom] = field(default_factory=dict)
     hands: dict[object, Hand] = field(default_factory=dict)
     targets: Mapping[int, Target] | None = None

@@ -5,7 +5,11 @@ Out: poses in the document, step by step; handles and the anchor.
 Imports: `app.editor`, `app.document`, `app.motion`, `app.solving`.
 """
 
-from app.editor.actions.posing.adopting import as_key as as_key, retargeted as retargeted
+from app.editor.actions.posing.adopting import (
+    adopt_wish as adopt_wish,
+    as_key as as_key,
+    retargeted as retargeted,
+)
 from app.editor.actions.posing.handles import (
     add_handle as add_handle,
     anchor_at as anchor_at,
@@ -27,6 +31,7 @@ from app.editor.actions.posing.pulling import (
     let_go as let_go,
     nudge as nudge,
     pin_here as pin_here,
+    pose_here as pose_here,
     pull as pull,
     pull_again as pull_again,
     take_back as take_back,

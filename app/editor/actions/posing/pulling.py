@@ -102,7 +102,7 @@ def pull_again(
 
     Some handles a hand pulls to where they are asked.
     """
-    if _pose_here(session, project) is not None:
+    if pose_here(session, project) is not None:
         pull(session, asked, gesture=gesture, hand=Hand(frozenset(asked)) if asked else None)
         let_go(session)
 
@@ -154,8 +154,15 @@ def _begin(session: Session, project: Project, gesture: object) -> Pull:
         session.jobs.drop(POSING)
         earlier.clip, earlier.start, earlier.is_held = project.clip, start, True
         return earlier
-    before = _pose_here(session, project)
-    begun = Pull(clip=project.clip, frame=frame, gesture=gesture, start=start, before=before)
+    before = pose_here(session, project)
+    begun = Pull(
+        clip=project.clip,
+        frame=frame,
+        gesture=gesture,
+        start=start,
+        before=before,
+        is_keyed=session.preferences.auto_key,
+    )
     project.pending.append(begun)
     return begun
 
@@ -165,7 +172,7 @@ def _start(session: Session, project: Project, earlier: Pull | None) -> Start | 
 
     An earlier pull of the same pose, which is not at rest yet, says what was wished last.
     """
-    pose, shown, figure = _pose_here(session, project), project.puppet.shown, project.figure
+    pose, shown, figure = pose_here(session, project), project.puppet.shown, project.figure
     if pose is not None:
         if earlier is not None and earlier.kept is not None and earlier.targets is not None:
             is_its_own = earlier.kept.phi is pose.phi
@@ -184,7 +191,7 @@ def _start(session: Session, project: Project, earlier: Pull | None) -> Start | 
     )
 
 
-def _pose_here(session: Session, project: Project) -> Pose | None:
+def pose_here(session: Session, project: Project) -> Pose | None:
     """Return the pose that the figure rests in at the present frame; None for an in-between."""
     if project.unkeyed is not None:
         return project.unkeyed
