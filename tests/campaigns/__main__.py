@@ -20,6 +20,7 @@ from app.cli.process import use_one_thread
 CAMPAIGNS = {
     "kills": ("processes killed", 1200),
     "faults": ("full disks and ended windows", 200),
+    "taps": ("taps", 200),
     "shapes": ("shapes", 500),
     "minima": ("requests", 96),
     "series": ("pairs of poses", 200),

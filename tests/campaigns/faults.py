@@ -277,7 +277,7 @@ def ended_windows(rng: np.random.Generator, count: int) -> dict[str, float]:
     if shutil.which("Xvfb") is None:
         return {"windows ended": 0}
     ends = []
-    with _screen() as screen:
+    with virtual_screen() as screen:
         for _ in range(count):
             number = int(rng.choice([signal.SIGTERM, signal.SIGHUP, signal.SIGINT]))
             ends.append(
@@ -294,7 +294,7 @@ def lost_displays(rng: np.random.Generator, count: int) -> dict[str, float]:
         return {"windows ended": 0}
     ends = []
     for _ in range(count):
-        with _screen() as screen:
+        with virtual_screen() as screen:
             ends.append(_end_window(rng, screen, lambda _, s=screen: s.server.kill(), 1))
     return _told(ends)
 
@@ -370,7 +370,8 @@ def _end_window_at(
 
 
 @contextmanager
-def _screen() -> Iterator[Screen]:
+def virtual_screen() -> Iterator[Screen]:
+    """Start an X server on whatever number is free, and end it."""
     ours, theirs = os.pipe()
     command = ["Xvfb", "-displayfd", str(theirs), "-screen", "0", "1280x800x24", "-noreset"]
     server = subprocess.Popen(command, pass_fds=[theirs], stderr=subprocess.DEVNULL)
@@ -403,7 +404,7 @@ def refused_gl(_: np.random.Generator, __: int) -> dict[str, float]:
             tried += 1
         expect(_contents(Path(name)) == {}, "something was written")
     if shutil.which("Xvfb") is not None:
-        with _screen() as screen:
+        with virtual_screen() as screen:
             for variables in WITHOUT_GL:
                 words = _run_app([], {**variables, "DISPLAY": screen.name})
                 expect("the window cannot be opened" in words, words)
