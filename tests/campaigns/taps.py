@@ -20,8 +20,8 @@ from documents import altered
 
 from app.document.settings import FrameRange
 from app.storage.project_file import load_project, save_project
-from tests.campaigns.faults import PATIENCE, ROOT, virtual_screen
 from tests.campaigns.kills import expect
+from tests.campaigns.windows import PATIENCE, ROOT, screen
 
 LOW, HIGH, LAST = range(1, 111), range(138, 248), 249  # frames to tap on, the last one
 # A window that rests after each picture, and tells where frames 0 and 1 are on the ruler.
@@ -89,10 +89,10 @@ def tapped(
         path = Path(home) / "taps.lissom"
         save_project(path, altered(still_document(), frames=FrameRange(0, LAST)))
         before = path.read_bytes()
-        screen = stack.enter_context(virtual_screen())
+        shown = stack.enter_context(screen())
         environment = {
             **os.environ,
-            "DISPLAY": screen.name,
+            "DISPLAY": shown.name,
             "HOME": home,
             "XDG_CONFIG_HOME": home,
             "LIBGL_ALWAYS_SOFTWARE": "1",
