@@ -59,7 +59,9 @@ def main(argv: Sequence[str] | None = None) -> int:
         fail(str(error))
     except ImportError as error:
         fail(f"a library cannot be loaded ({error}); give it more memory, or install Lissom again")
-    except MemoryError:
+    except (MemoryError, RuntimeError) as error:
+        if isinstance(error, RuntimeError) and "start new thread" not in str(error):
+            raise
         fail(
             "not enough memory for this; ask for fewer triangles or a smaller picture, or allow "
             "Lissom more of it"

@@ -48,10 +48,9 @@ def require_memory() -> None:
     MemoryError
         If the system lets this process have too little of it, as by `ulimit -v`.
     """
-    if sys.platform != "win32":
-        allowed, _ = resource.getrlimit(resource.RLIMIT_AS)
-        if allowed != resource.RLIM_INFINITY and allowed < LEAST_MEMORY:
-            raise MemoryError
+    # Where there is no limit, it is −1.
+    if sys.platform != "win32" and 0 <= resource.getrlimit(resource.RLIMIT_AS)[0] < LEAST_MEMORY:
+        raise MemoryError
 
 
 def mend_streams() -> None:

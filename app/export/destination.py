@@ -125,7 +125,7 @@ def data_file(out: Path, name: str) -> Path | None:
     """Return where the data of a format go, beside its file; None where it has none."""
     format_ = EXPORT_FORMATS[name]
     stem = out.stem if out.suffix.lower() in format_.suffixes else out.name
-    return out.with_name(f"{stem}{format_.data_suffix}") if format_.data_suffix else None
+    return out.parent / f"{stem}{format_.data_suffix}" if format_.data_suffix else None
 
 
 def suited(out: Path, name: str) -> Path:

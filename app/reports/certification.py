@@ -7,7 +7,7 @@ from functools import reduce
 
 import numpy as np
 
-from app.document import Clip, Extremes, Variant, intervals, time_of, transits
+from app.document import HOLD, Clip, Extremes, Transit, Variant, intervals, time_of, transits
 from app.motion import Animation
 from engine.arrays import Floats
 from engine.interpolation import Inbetweens, Proof, prove
@@ -17,8 +17,8 @@ TIMES = 65  # in each interval, at which in-betweens are measured
 CLOSER = 15  # more, between the neighbours of each worst one
 # Of the larger k, σ_a or σ_b: what the quadrature and the integral equation may add.
 ACCURACY = 1e-6
-# By how much proven values may be beyond the limits and count as within: of k, and of σ_a and σ_b
-# as a share of the larger σ_a. By as much enclosures are wider than what they enclose.
+# By how much proven values may be beyond the limits and count as within: of k, and as a share of
+# σ_a and of σ_b. By as much enclosures are wider than what they enclose.
 BEYOND = 0.002
 
 
@@ -46,7 +46,7 @@ class IntervalReport:
     `limits` is what they are to keep: the keys' own distortion, but where the motion passes through
     a key, the figure's bounds, or what the keys around have beyond them. `proof` encloses the
     in-betweens at all times. `unsettled` are the frames about which it cannot tell that they do not
-    fold; where none does, those at which it is less tight.
+    fold, `loose` others at which it is less tight.
     """
 
     first: int
@@ -57,6 +57,7 @@ class IntervalReport:
     limits: Extremes
     proof: Proof
     unsettled: tuple[int, ...]
+    loose: tuple[int, ...]
 
     @property
     def excess(self) -> Extremes:
@@ -90,7 +91,7 @@ class IntervalReport:
         is_proven = (
             excess.k <= BEYOND
             and excess.sigma_a <= BEYOND * limits.sigma_a
-            and excess.sigma_b <= BEYOND * limits.sigma_a
+            and excess.sigma_b <= BEYOND * limits.sigma_b
         )
         return Verdict.PROVEN if is_proven else Verdict.MEASURED
 
@@ -139,35 +140,47 @@ def certify_clip(clip: Clip, variant: Variant | None = None) -> Report:
         for key in clip.keys
     )
     animation = Animation(clip, variant, points=boundary.points)
-    reports = []
-    for (first, last), transit in zip(intervals(clip), transits(clip), strict=True):
-        ends = [
-            Extremes.measured(*clip.figure.map_of(key.pose).derivatives(boundary.points))
-            for key in (clip.keys[first], clip.keys[last], *transit.keys)
-        ]
-        bound = ends[0].joined(ends[1])
-        limits = bound
-        if transit.is_joined:
-            bounds = clip.figure.bounds
-            limits = Extremes(bounds.k, bounds.sigma_a, bounds.sigma_b)
-            for end in ends:
-                limits = limits.joined(end)
-        inbetweens = animation.sampler.inbetweens_of(transit, clip.figure.bounds, animation.variant)
-        reached = bound.joined(_measured(inbetweens))
-        proof = prove(inbetweens)
-        reports.append(
-            IntervalReport(
-                first=clip.keys[first].frame,
-                last=clip.keys[last].frame,
-                reached=reached,
-                keys=bound,
-                correction=inbetweens.correction,
-                limits=limits,
-                proof=proof,
-                unsettled=_frames(clip, first, proof.unsettled),
-            )
-        )
-    return Report(keys=keys, intervals=tuple(reports))
+    reports = tuple(
+        _interval_report(clip, animation, boundary, pair, transit)
+        for pair, transit in zip(intervals(clip), transits(clip), strict=True)
+    )
+    return Report(keys=keys, intervals=reports)
+
+
+def _interval_report(
+    clip: Clip, animation: Animation, boundary: Boundary, pair: tuple[int, int], transit: Transit
+) -> IntervalReport:
+    """Prove and measure one interval, between the keys of these indices."""
+    figure, (start, end) = clip.figure, (clip.keys[index] for index in pair)
+    # A key that is held is all that is seen until the next one.
+    held = start.easing == HOLD
+    ends = [
+        Extremes.measured(*figure.map_of(key.pose).derivatives(boundary.points))
+        for key in ((start, start) if held else (start, end, *transit.keys))
+    ]
+    bound = ends[0].joined(ends[1])
+    limits = bound
+    if transit.is_joined:
+        bounds = figure.bounds
+        own = Extremes(bounds.k, bounds.sigma_a, bounds.sigma_b)
+        limits = reduce(Extremes.joined, ends, own)
+    inbetweens = (
+        animation.sampler.inbetweens(start.pose, start.pose, animation.variant)
+        if held
+        else animation.sampler.inbetweens_of(transit, figure.bounds, animation.variant)
+    )
+    proof = prove(inbetweens)
+    return IntervalReport(
+        first=start.frame,
+        last=end.frame,
+        reached=bound.joined(_measured(inbetweens)),
+        keys=bound,
+        correction=inbetweens.correction,
+        limits=limits,
+        proof=proof,
+        unsettled=_frames(clip, pair[0], proof.unsettled),
+        loose=_frames(clip, pair[0], proof.loose),
+    )
 
 
 def _measured(inbetweens: Inbetweens) -> Extremes:

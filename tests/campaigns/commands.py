@@ -1,12 +1,15 @@
-"""Commands upon damaged files, each in a process of its own, and upon their own inputs.
+"""Commands upon damaged files, each in a process of its own.
 
 The damage knows what it damages: arrays change their numbers, kinds and shapes, pictures their
 chunks with checksums that fit, meshes and scripts their words. Each command does what it is asked
 or tells in one line why not, in bounded time and memory.
 """
 
+import importlib
 import io
+import json
 import os
+import re
 import resource
 import signal
 import struct
@@ -26,15 +29,19 @@ import numpy.typing as npt
 from animations import moving_document
 from hostile_files import changed
 from layered import blob, openraster
+from PIL import Image
 
 from app.cli.main import main
 from app.storage import draw_thumbnail, save_project
 from tests.campaigns.kills import expect
+from tests.campaigns.slowest import note
 
 PATIENCE = 120  # seconds of the processor
 MEMORY = 3 * 1024**3  # bytes of addresses beyond those of this process
 FACTORS = (0.0, -1.0, 1e-300, 1e-9, 1e9, 1e154, 1e300, np.nan, np.inf)
 KINDS = ("f2", "f4", "f8", "c8", "c16", "i1", "i4", "i8", "u1", "u8", "?", "U3", ">f8", ">i4")
+MILD = (-1.0, 0.0, 0.1, 0.5, 1.0, 1.01, 2.0, 30.0)
+NUMBER = re.compile(rb"(?<![\w.])-?\d+(?:\.\d+)?(?![\w.])")
 PACKINGS = (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED, zipfile.ZIP_LZMA, zipfile.ZIP_BZIP2)
 CHUNKS = (b"eXIf", b"iCCP", b"tEXt", b"zTXt", b"iTXt", b"gAMA", b"tRNS", b"PLTE", b"acTL", b"IDAT")
 
@@ -118,20 +125,58 @@ def _pictures() -> dict[str, bytes]:
 
 
 @cache
+def drawings() -> dict[str, bytes]:
+    """Return what scripts pose: a blob, and a ring with an arm upon it."""
+    file, ring = io.BytesIO(), np.array(blob(120, 90))
+    blob(120, 90).save(file, "PNG")
+    y, x = np.mgrid[:90, :120]
+    ring[np.hypot(x - 60, y - 45) < 20] = 0
+    stack = '<layer name="arm" src="data/0.png" x="50" y="5"/><layer name="ring" src="data/1.png"/>'
+    layers = openraster((140, 100), stack, [blob(80, 30), Image.fromarray(ring)])
+    return {"drawing.png": file.getvalue(), "layers.ora": layers}
+
+
+@cache
 def _scripts() -> dict[str, bytes]:
-    keys = '[{"frame": 0}, {"frame": 6, "targets": {"a": [70, 50]}, "ease": "in-out"}]'
-    bounds = '"bounds": {"k": 0.5, "sigma_a": 2.0, "sigma_b": 0.5}'
-    handles = '"handles": {"a": [60, 45], "b": [40, 45]}'
-    return {"a.json": f'{{"schema": 1, "fps": 24, {bounds}, {handles}, "keys": {keys}}}'.encode()}
+    keys = [{"frame": 0}, {"frame": 6, "targets": {"a": [70, 50]}, "ease": "in-out"}]
+    bounds = {"k": 0.5, "sigma_a": 2.0, "sigma_b": 0.5}
+    handles = {"a": [60, 45], "b": [40, 45]}
+    script = {"schema": 1, "fps": 24, "bounds": bounds, "handles": handles, "keys": keys}
+    return {"a.json": json.dumps(script).encode()}
+
+
+@cache
+def _scenes() -> dict[str, bytes]:
+    ring = {
+        "layer": "ring",
+        "handles": {"left": [10, 55], "right": [110, 55]},
+        "keys": [{"frame": 3 * k, "targets": {"right": [110 - 9 * k, 60]}} for k in range(3)],
+    }
+    arm = {
+        "layer": "arm",
+        "handles": {"hand": [120, 80], "shoulder": {"at": [60, 80], "front": 0.5, "extent": 30}},
+        "keys": [{"frame": 0}, {"frame": 6, "targets": {"hand": [110, 95]}, "ease": "out"}],
+        "attach": {"to": "ring", "at": [60, 80], "turn": True},
+        "visible": [[0, True], [5, False]],
+    }
+    scene = {"schema": 1, "loop": True, "variant": "nu", "figures": [ring, arm]}
+    return {"scene.json": json.dumps(scene).encode()}
 
 
 @cache
 def _projects() -> dict[str, bytes]:
     with tempfile.TemporaryDirectory() as name:
-        path = Path(name) / "a.lissom"
+        path, scene = Path(name) / "a.lissom", Path(name) / "scene.lissom"
         small = draw_thumbnail(np.asarray(blob(40, 30)))
         save_project(path, moving_document(), thumbnail=small)
-        return {"a.lissom": path.read_bytes()}
+        drawing, script = Path(name) / "a.ora", Path(name) / "a.json"
+        drawing.write_bytes(drawings()["layers.ora"])
+        script.write_bytes(_scenes()["scene.json"])
+        # Elsewhere, so that this process stays small.
+        words = ["pose", str(drawing), str(script), *FEW, "--out", str(scene)]
+        made = forked(words, Path(name) / "told")
+        expect(made.status == 0, made.said)
+        return {each.name: each.read_bytes() for each in (path, scene)}
 
 
 @cache
@@ -142,9 +187,10 @@ def _meshes() -> dict[str, bytes]:
     return {"a.obj": "\n".join(lines).encode()}
 
 
+FEW = ("--triangles", "1000")
 INTERPOLATE = ("interpolate", "IN", "--times", "0,0.4", "--out", "OUT", "--variant")
 CALLS = {
-    "domain": Call(("domain", "IN", "--triangles", "1000", "--out", "OUT"), _pictures),
+    "domain": Call(("domain", "IN", *FEW, "--out", "OUT"), _pictures),
     "deform": Call(("deform", "IN", "--out", "OUT"), _cases),
     **{
         f"interpolate {variant}": Call((*INTERPOLATE, variant), files)
@@ -157,22 +203,27 @@ CALLS = {
     "interpolate meshes": Call(
         ("interpolate", *INTERPOLATE[1:2], *INTERPOLATE[1:], "arap"), _meshes
     ),
-    "pose": Call(("pose", "DRAWING", "IN", "--triangles", "1000", "--out", "OUT"), _scripts),
+    "pose": Call(("pose", "drawing.png", "IN", *FEW, "--out", "OUT"), _scripts),
+    "pose layers": Call(("pose", "layers.ora", "IN", *FEW, "--out", "OUT"), _scenes),
     "certify": Call(("certify", "IN"), _projects),
     "export": Call(("export", "IN", "--format", "gif", "--out", "OUT.gif"), _projects),
+    "export sheets": Call(("export", "IN", "--format", "spritesheet", "--out", "OUT"), _projects),
+    "export models": Call(("export", "IN", "--format", "glb", "--out", "OUT"), _projects),
     "thumbnail": Call(("thumbnail", "IN", "--out", "OUT"), _projects),
 }
 
 
 def damaged(content: bytes, rng: np.random.Generator) -> bytes:
     """Return the contents of a file with one to three faults that fit what it is."""
-    for _ in range(rng.integers(1, 4)):
+    for _ in range(1 + rng.binomial(2, 0.25)):
         if content[:4] == b"PK\3\4" and rng.random() < 0.8:
             content = _damaged_zip(content, rng)
         elif content.startswith(b"\x89PNG") and rng.random() < 0.8:
             content = _damaged_png(content, rng)
         elif content[:2] == b"v " and rng.random() < 0.8:
             content = _damaged_words(content, rng)
+        elif content[:1] == b"{" and rng.random() < 0.5:
+            content = _damaged_number(content, rng)
         else:
             step = (int(rng.integers(16)), rng.random(), rng.random(), int(rng.integers(256)))
             content = changed(content, [step])
@@ -255,6 +306,16 @@ def _damaged_words(content: bytes, rng: np.random.Generator) -> bytes:
     return b" ".join(words)
 
 
+def _damaged_number(content: bytes, rng: np.random.Generator) -> bytes:
+    """Change one number of JSON to another that may do as well."""
+    numbers = list(NUMBER.finditer(content))
+    if not numbers:
+        return content
+    found = numbers[rng.integers(len(numbers))]
+    other = float(found[0]) * rng.choice(MILD) + rng.integers(2)
+    return content[: found.start()] + f"{other:g}".encode() + content[found.end() :]
+
+
 class Ended(NamedTuple):
     """How a command ended, what it said, and what it took."""
 
@@ -302,7 +363,8 @@ def many(call: Call, rng: np.random.Generator, count: int) -> dict[str, float]:
     kept = Path(tempfile.gettempdir()) / "lissom-found"
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        blob(120, 90).save(folder / "drawing.png")
+        for drawing, data in drawings().items():
+            (folder / drawing).write_bytes(data)
         for number in range(-len(call.files()), count):
             # First all as they are, which must work.
             file = list(call.files())[number if number < 0 else rng.integers(len(call.files()))]
@@ -310,9 +372,10 @@ def many(call: Call, rng: np.random.Generator, count: int) -> dict[str, float]:
             content = call.files()[file]
             path.write_bytes(damaged(content, rng) if number >= 0 else content)
             places = {"IN": str(path), "OUT": str(out), "OUT.gif": f"{out}.gif"}
-            places["DRAWING"] = str(folder / "drawing.png")
+            places |= {drawing: str(folder / drawing) for drawing in drawings()}
             ended = forked([places.get(word, word) for word in call.words], folder / "told")
             ends.append(ended)
+            note(f"{call.words[0]} {file} {number}", ended.seconds)
             lines = [line for line in ended.said.splitlines() if "lissom: error:" in line]
             fine = ended.status in (0, 1, 3) or (ended.status == 2 and len(lines) == 1)
             fine &= number >= 0 or ended.status != 2
@@ -325,7 +388,6 @@ def many(call: Call, rng: np.random.Generator, count: int) -> dict[str, float]:
     return {
         "inputs": count,
         "refused": sum(ended.status == 2 for ended in ends),
-        "slowest, s": max(ended.seconds for ended in ends),
         "most memory, MB": max(ended.kilobytes for ended in ends) / 1024,
     }
 
@@ -334,6 +396,9 @@ def campaign(seed: int, amount: int) -> Iterator[tuple[str, dict[str, float]]]:
     """Run each command upon its share of so many damaged files, and yield the figures of each."""
     signal.signal(signal.SIGXCPU, signal.SIG_DFL)
     commands = {call.words[0] for call in CALLS.values()}
+    for command in commands:
+        # Once, and not in every process.
+        importlib.import_module(f"app.cli.commands.{command}")
     for number, (name, call) in enumerate(CALLS.items()):
         alike = sum(each.words[0] == call.words[0] for each in CALLS.values())
         share = max(1, amount // len(commands) // alike)

@@ -1,4 +1,4 @@
-"""Disks that are full, places that may not be written to, signals to the window, no OpenGL.
+"""Disks that are full, places that may not be written to, little memory, no OpenGL.
 
 Each fault is a real one, in a process of its own: limits and permissions of the system, a disk in
 memory that is as good as full, a screen that nobody looks at. What was there stays whole, and what
@@ -8,18 +8,14 @@ went wrong is told in one line that says what to do.
 import os
 import re
 import resource
-import select
 import shutil
-import signal
 import subprocess
 import sys
 import tempfile
-import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from functools import partial
 from pathlib import Path
-from typing import NamedTuple
 
 import numpy as np
 
@@ -36,12 +32,13 @@ from app.storage.preferences import (
 )
 from app.storage.project_file import load_project, save_project
 from tests.campaigns.kills import FORMATS, LAYERED, expect, export_friend, number_of, numbered
+from tests.campaigns.slowest import timed
+from tests.campaigns.windows import screen
 
 ROOT = Path(__file__).parents[2]
 NOBODY, UNKNOWN_PERSON = 65534, 54321  # ids of people; the latter has no entry anywhere
 LEFT = 20_000  # bytes that are free on a disk that is as good as full
 PATIENCE = 120.0  # seconds for anything to happen
-MOST_SECONDS = 15.0  # from a signal to the end of the window, on a busy machine
 
 
 def words_of(work: Callable[[], object], *prepare: Callable[[], object]) -> str:
@@ -242,148 +239,40 @@ def _expect_words(work: Callable[[], object], words: str) -> None:
     expect(words in told, told)
 
 
-# Runs the window, and adds markers all the time from when a project is open; tells each.
-EDIT = """
-import sys, threading, time
-from app.cli.commands import window
-from app.cli.main import main
-from app.editor import do
-from app.editor.actions import keys, playback
-
-class Edited(window.Window):
-    def __init__(self, *arguments):
-        super().__init__(*arguments)
-        threading.Thread(target=self.edit, daemon=True).start()
-    def edit(self):
-        session, number = self.session, 0
-        while session.project is None:
-            time.sleep(0.01)
-        while number < session.project.document.frames.last:
-            self.ask(do(playback.seek, number))
-            self.ask(do(keys.mark_here))
-            self.wake()
-            while not any(m.frame == number for m in session.project.document.markers):
-                time.sleep(0.01)
-            print(number, flush=True)
-            number += 1
-
-window.Window = Edited
-raise SystemExit(main(sys.argv[1:]))
-"""
-
-
-def ended_windows(rng: np.random.Generator, count: int) -> dict[str, float]:
-    """End windows, in which somebody edits all the time, by signals at random moments."""
-    if shutil.which("Xvfb") is None:
-        return {"windows ended": 0}
-    ends = []
-    with _screen() as screen:
-        for _ in range(count):
-            number = int(rng.choice([signal.SIGTERM, signal.SIGHUP, signal.SIGINT]))
-            ends.append(
-                _end_window(
-                    rng, screen, lambda window, n=number: window.send_signal(n), 128 + number
-                )
+def small_memory(rng: np.random.Generator, count: int) -> dict[str, float]:
+    """Let commands have little memory: they do what they are asked, or tell in one line."""
+    ended = 0
+    for number in timed(range(count)):
+        words, limit = WITH_LIMITS[number % len(WITH_LIMITS)], int(rng.integers(40, 1500))
+        with tempfile.TemporaryDirectory() as name:
+            own = [word.format(samples=sample_images(), out=f"{name}/out") for word in words]
+            size = limit * 1_000_000
+            done = subprocess.run(
+                [sys.executable, "-m", "app", *own],
+                cwd=ROOT,
+                env={**os.environ, "HOME": name, "XDG_CONFIG_HOME": name},
+                preexec_fn=lambda size=size: resource.setrlimit(resource.RLIMIT_AS, (size, size)),
+                capture_output=True,
+                text=True,
+                timeout=PATIENCE,
+                check=False,
             )
-    return _told(ends)
+            what = f"{words[0]} with {limit} MB ends with {done.returncode}: {done.stderr[-500:]}"
+            told = [line for line in done.stderr.splitlines() if "lissom: error:" in line]
+            expect(done.returncode == 0 or (done.returncode == 2 and len(told) == 1), what)
+            expect("Traceback" not in done.stderr, what)
+            expect(not (done.returncode and Path(name, "out").is_file()), what)
+            ended += done.returncode == 0
+    return {"commands": count, "had enough": ended}
 
 
-def lost_displays(rng: np.random.Generator, count: int) -> dict[str, float]:
-    """End the X servers of windows, in which somebody edits all the time, at random moments."""
-    if shutil.which("Xvfb") is None:
-        return {"windows ended": 0}
-    ends = []
-    for _ in range(count):
-        with _screen() as screen:
-            ends.append(_end_window(rng, screen, lambda _, s=screen: s.server.kill(), 1))
-    return _told(ends)
-
-
-def _told(ends: list[tuple[float, int]]) -> dict[str, float]:
-    longest, lost = (max(column) for column in zip(*ends, strict=True))
-    return {
-        "windows ended": len(ends),
-        "longest until the end, s": longest,
-        "most edits lost": lost,
-    }
-
-
-class Screen(NamedTuple):
-    """An X server that nobody looks at, and its name."""
-
-    server: subprocess.Popen[bytes]
-    name: str
-
-
-def _end_window(
-    rng: np.random.Generator,
-    screen: Screen,
-    end: Callable[[subprocess.Popen[str]], None],
-    status: int,
-) -> tuple[float, int]:
-    """End a window; return the seconds that it takes, and how many edits are lost."""
-    with tempfile.TemporaryDirectory() as home:
-        return _end_window_at(rng, screen, end, status, Path(home))
-
-
-def _end_window_at(
-    rng: np.random.Generator,
-    screen: Screen,
-    end: Callable[[subprocess.Popen[str]], None],
-    status: int,
-    home: Path,
-) -> tuple[float, int]:
-    environment = {
-        **os.environ,
-        "DISPLAY": screen.name,
-        "HOME": str(home),
-        "XDG_CONFIG_HOME": str(home),
-        "LIBGL_ALWAYS_SOFTWARE": "1",
-    }
-    with subprocess.Popen(
-        [sys.executable, "-c", EDIT, str(sample_images() / "bar.png")],
-        cwd=ROOT,
-        env=environment,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-    ) as process:
-        try:
-            expect(bool(select.select([process.stdout], [], [], PATIENCE)[0]), "no window")
-            first = process.stdout.readline()
-            time.sleep(rng.uniform(0, 2))
-            begun = time.monotonic()
-            end(process)
-            told, said = process.communicate(timeout=PATIENCE)
-            seconds = time.monotonic() - begun
-        finally:
-            process.kill()
-    last = int((first + told).split()[-1])
-    expect(process.returncode == status, f"it ends with {process.returncode}: {said}")
-    expect("your unsaved work was kept" in said, said)
-    expect("Traceback" not in said, said)
-    expect(seconds < MOST_SECONDS, f"it takes {seconds} s to end")
-    (kept,) = find_leftovers(home / "lissom")
-    names = len(load_leftover(kept)[0].markers)
-    expect(names >= last + 1, f"{last + 1} markers were set, {names} kept")
-    return seconds, max(0, last + 1 - names)
-
-
-@contextmanager
-def _screen() -> Iterator[Screen]:
-    ours, theirs = os.pipe()
-    command = ["Xvfb", "-displayfd", str(theirs), "-screen", "0", "1280x800x24", "-noreset"]
-    server = subprocess.Popen(command, pass_fds=[theirs], stderr=subprocess.DEVNULL)
-    os.close(theirs)
-    try:
-        expect(bool(select.select([ours], [], [], PATIENCE)[0]), "Xvfb does not start")
-        yield Screen(server, f":{os.read(ours, 16).decode().strip()}")
-    finally:
-        os.close(ours)
-        server.terminate()
-        server.wait()
-
-
+WITH_LIMITS = (
+    ("domain", "{samples}/giraffe.png", "--out", "{out}"),
+    ("export", "{samples}/friend.lissom", "--frames", "0:3", "--size", "160x120", "--out", "{out}"),
+    ("thumbnail", "{samples}/dragon.lissom", "--out", "{out}"),
+    ("pose", "{samples}/ring.png", "{samples}/ring.json", "--out", "{out}"),
+    ("export", "{samples}/giraffe.lissom", "--format", "glb", "--out", "{out}"),
+)
 WITHOUT_GL = (
     {"MESA_GL_VERSION_OVERRIDE": "2.1"},
     {"MESA_GLSL_VERSION_OVERRIDE": "120"},
@@ -403,9 +292,9 @@ def refused_gl(_: np.random.Generator, __: int) -> dict[str, float]:
             tried += 1
         expect(_contents(Path(name)) == {}, "something was written")
     if shutil.which("Xvfb") is not None:
-        with _screen() as screen:
+        with screen() as shown:
             for variables in WITHOUT_GL:
-                words = _run_app([], {**variables, "DISPLAY": screen.name})
+                words = _run_app([], {**variables, "DISPLAY": shown.name})
                 expect("the window cannot be opened" in words, words)
                 expect("lissom doctor" in words, words)
                 tried += 1
@@ -438,8 +327,7 @@ FEW = 10  # with which only the quick ones are tried, as in the tests
 KINDS = (
     ("full disks", full_disks, 0.8),
     ("refused places", refused_places, 0.0),
-    ("signals to the window", ended_windows, 0.1),
-    ("displays that go away", lost_displays, 0.1),
+    ("little memory", small_memory, 0.2),
     ("no OpenGL", refused_gl, 0.0),
 )
 

@@ -78,8 +78,8 @@ def _interval_block(interval: IntervalReport) -> dict[str, Any]:
             **_named(interval.proof),
             "excess": list(_named(interval.excess).values()),
             "never_folds": interval.proof.never_folds,
-            "unsettled_frames": list(interval.unsettled) if interval.may_fold else [],
-            "loose_frames": [] if interval.may_fold else list(interval.unsettled),
+            "unsettled_frames": list(interval.unsettled),
+            "loose_frames": list(interval.loose),
         },
     }
 
@@ -136,10 +136,10 @@ def _interval_lines(interval: IntervalReport) -> list[str]:
             "MAY FOLD" if interval.may_fold else WORDS[interval.verdict],
         ),
     ]
-    if interval.unsettled:
-        frames = ", ".join(map(str, interval.unsettled))
-        what = "  may fold" if interval.may_fold else "  less tight"
-        lines.append(f"{what:<16} frame{'s' * (len(interval.unsettled) > 1)} {frames}")
+    for what, found in (("  may fold", interval.unsettled), ("  less tight", interval.loose)):
+        if found:
+            frames = ", ".join(map(str, found))
+            lines.append(f"{what:<16} frame{'s' * (len(found) > 1)} {frames}")
     return lines
 
 

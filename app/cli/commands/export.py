@@ -36,7 +36,7 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.figure is not None:
         document = _alone(document, arguments.figure)
     name = arguments.project.stem
-    out = arguments.out.with_name(arguments.out.name.replace(PROJECT, name))
+    out = arguments.out.parent / arguments.out.name.replace(PROJECT, name)
     request = ExportRequest(
         out=out,
         settings=_settings(document.export, arguments, out),

@@ -16,8 +16,9 @@ the motion passes through its keys:
   proven    every moment is proven to be within; exit status 0
   measured  in-betweens never fold, but that they are within is measured only; exit status 3
   over      some are not within, or may fold, or a keyframe is not certified; exit status 1
-Proven values are enclosures, and count as within up to .002 (k) or .2 % of sigma_a (both sigmas)
-beyond. Around holes the metric variant meets its Equation (13) by least squares only.
+Proven values are enclosures, and count as within up to .002 (k) or .2 % (both sigmas) beyond. Where
+a key is held, nothing but that key counts until the next one. Around holes the metric variant meets
+its Equation (13) by least squares only.
 
 examples:
   lissom certify wave.lissom

@@ -50,6 +50,7 @@ Value = TypeVar("Value")
 @with_project
 def maintain(session: Session, project: Project) -> None:
     """Ask the worker for what is missing, and settle what is drawn; once a frame."""
+    posing.give_in(session, project, rebuilding.loosen)
     posing.maintain(session, project)
     project.extent.recall(extent_source(project.document))
     rebuilding.maintain(session)

@@ -12,6 +12,9 @@ import moderngl
 
 from app.errors import LissomError
 
+if sys.platform != "win32":
+    import resource
+
 # What others need to name; only this package imports ModernGL.
 Context = moderngl.Context
 GlError = moderngl.Error
@@ -22,6 +25,8 @@ AUTOMATIC: Final[tuple[Backend, ...]] = (
     ("native",) if sys.platform in {"win32", "darwin"} else ("egl", "osmesa")
 )
 LIBGL: Final = "libGL.so.1"
+# Bytes of addresses. With less, software OpenGL ends the process in the midst of its work.
+LEAST_MEMORY: Final = 1_500_000_000
 OPENGL: Final = 330  # the version that every shader is written for
 REMEDIES: Final[dict[Backend, str]] = {
     "egl": "install EGL: sudo apt install libegl1 libgl1 libgl1-mesa-dri",
@@ -56,7 +61,10 @@ def create_context(backend: Backend | None = None) -> moderngl.Context:
     ------
     LissomError
         If none works; the message says what to install.
+    MemoryError
+        If the system lets this process have too little to draw.
     """
+    _require_memory()
     wanted = (backend,) if backend else AUTOMATIC
     problems = []
     for name in wanted:
@@ -74,7 +82,10 @@ def window_context() -> moderngl.Context:
     ------
     LissomError
         If it cannot draw what Lissom draws; the message says what to install.
+    MemoryError
+        If the system lets this process have too little to draw.
     """
+    _require_memory()
     try:
         return moderngl.create_context(require=OPENGL)
     except Exception as error:  # moderngl's loaders raise nothing more specific
@@ -82,6 +93,11 @@ def window_context() -> moderngl.Context:
             f"the window has no OpenGL to draw with: {error} ({REMEDIES['native']}); the command "
             "line works without a window"
         ) from error
+
+
+def _require_memory() -> None:
+    if sys.platform != "win32" and 0 <= resource.getrlimit(resource.RLIMIT_AS)[0] < LEAST_MEMORY:
+        raise MemoryError
 
 
 def is_software(context: moderngl.Context) -> bool:

@@ -16,7 +16,7 @@ import numpy as np
 
 from engine.arrays import Floats, Indices, freeze
 from engine.deform.model.energy import Radial
-from engine.maps import Limits
+from engine.maps import Boundary, Limits
 
 # A dual variable stays within this factor of weight / c. Measured: with much more, samples whose
 # dual variable has all but vanished stop every step by curvature that the Hessian does not see.
@@ -34,8 +34,13 @@ class Walls(NamedTuple):
 
     @classmethod
     def around(cls, limits: Limits, count: int) -> "Walls":
-        """Return the same walls for all of `count` samples."""
+        """Return the same walls for all of `count` samples, or those of each."""
         return cls(*(np.full(count, x) for x in (limits.k, limits.sigma_a, limits.sigma_b)))
+
+    @classmethod
+    def at(cls, limits: Limits, boundary: Boundary) -> "Walls":
+        """Return walls at the limits of a boundary's samples."""
+        return cls.around(limits.at(boundary), len(boundary.points))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

@@ -20,9 +20,10 @@ from engine.interpolation.inbetweens import Inbetweens
 from engine.interpolation.proof.enclosing_cells import CellEnclosures, Cells
 from engine.maps import Enclosures
 
-# Cells are cut until the enclosure is this close to what is attained: of k, and of σ over the
-# largest stretch.
+# Cells are cut until the enclosure is this close to what is attained: of k, and as a share of σ_a
+# and of σ_b.
 TIGHTNESS = 0.0005
+LEAST = 0.05  # of σ_a: what σ_b counts as at least there
 SHORTEST = 2.0**-24  # pieces of time are not cut below this
 DEEPEST = 40
 NAMED = 2.0**-8  # how short a stretch of time is that is named as one where something folds
@@ -38,15 +39,17 @@ class Proof:
     ----------
     k, sigma_a, sigma_b : float
         k and σ_a are never larger, σ_b is never smaller; infinite, and 0, where nothing is proven.
-    unsettled : tuple of (float, float)
-        Stretches of time, from 0 to 1, in which an in-between folds or is not proven not to, or
-        some enclosure is not within `TIGHTNESS` of what is attained.
+    unsettled, loose : tuple of (float, float)
+        Stretches of time, from 0 to 1: those in which an in-between folds or is not proven not to,
+        none if none ever does, and others in which some enclosure is not within `TIGHTNESS` of what
+        is attained.
     """
 
     k: float
     sigma_a: float
     sigma_b: float
     unsettled: tuple[tuple[float, float], ...]
+    loose: tuple[tuple[float, float], ...]
 
     @property
     def never_folds(self) -> bool:
@@ -100,7 +103,8 @@ def _bisect(pieces: Subdivision, enclosures: CellEnclosures) -> Proof:
         k=k,
         sigma_a=sigma_a,
         sigma_b=max(sigma_b, 0.0) if k < 1 else 0.0,
-        unsettled=_merged([*unsettled, rest]),
+        unsettled=_merged([*unsettled, rest.at(~unfolded[loose])]),
+        loose=_merged([rest.at(unfolded[loose])]),
     )
 
 
@@ -119,10 +123,10 @@ def _cut(pieces: Subdivision, chosen: Cells, by_time: Booleans) -> Cells:
 
 def _are_tight(enclosed: Enclosures, attained: Enclosures) -> Booleans:
     """Tell which cells are no worse than what is attained anywhere; not a number is not."""
-    slack = TIGHTNESS * attained.sigma_a
+    sigma_a, sigma_b = attained.sigma_a, attained.sigma_b
     tight: Booleans = enclosed.k <= attained.k + TIGHTNESS
-    tight &= enclosed.sigma_a <= attained.sigma_a + slack
-    tight &= enclosed.sigma_b >= attained.sigma_b - slack
+    tight &= enclosed.sigma_a <= sigma_a + TIGHTNESS * sigma_a
+    tight &= enclosed.sigma_b >= sigma_b - TIGHTNESS * np.maximum(sigma_b, LEAST * sigma_a)
     return tight
 
 

@@ -166,12 +166,22 @@ def test_closed_streams_and_poor_alphabets_stop_nothing(tmp_path):
     assert out.exists()
 
 
-@pytest.mark.parametrize("limit", [150_000_000, LEAST_MEMORY - 1])
-def test_too_little_memory_is_told_in_one_line(tmp_path, limit):
+@pytest.mark.parametrize(
+    ("command", "limit"),
+    [
+        ("domain", 150_000_000),
+        ("domain", LEAST_MEMORY - 1),
+        # With which software OpenGL ended the process in other ways.
+        ("export", 700_000_000),
+        ("export", 1_200_000_000),
+    ],
+)
+def test_too_little_memory_is_told_in_one_line(tmp_path, command, limit):
     def lessen():
         resource.setrlimit(resource.RLIMIT_AS, (limit, limit))
 
-    ended = run("domain", SAMPLE, "--out", tmp_path / "out", preexec_fn=lessen)
+    given = SAMPLE if command == "domain" else sample_images() / "friend.lissom"
+    ended = run(command, given, "--out", tmp_path / "out", preexec_fn=lessen)
     assert ended.returncode == 2
     assert ended.stderr.startswith("lissom: error: not enough memory")
     assert ended.stderr.count("\n") == 1
@@ -186,6 +196,10 @@ def test_a_library_that_cannot_be_loaded_is_told_in_one_line(monkeypatch, capsys
     monkeypatch.undo()
     monkeypatch.setattr(process.threading.Thread, "start", _no_thread)
     words = ("domain", SAMPLE, "--out", tmp_path / "out")
+    assert "not enough memory" in refusal(capsys, *words)
+    # Nor later.
+    monkeypatch.undo()
+    monkeypatch.setattr("app.cli.commands.domain.run", _no_thread)
     assert "not enough memory" in refusal(capsys, *words)
 
 

@@ -149,6 +149,18 @@ def test_a_name_chooses_its_format(project, tmp_path):
     assert (tmp_path / "a.mp4").read_bytes()[4:8] == b"ftyp"
 
 
+@pytest.mark.parametrize("here", [".", "", "./"])
+def test_frames_go_where_one_is_and_files_have_a_name(project, tmp_path, monkeypatch, capsys, here):
+    monkeypatch.chdir(tmp_path)
+    assert main(["export", str(project), "--out", here, "--frames", "1:2"]) == 0
+    assert [path.name for path in tmp_path.glob("*.png")] != []
+    for name in ("gif", "spritesheet", "glb"):
+        with pytest.raises(SystemExit) as leaving:
+            main(["export", str(project), "--out", here, "--format", name])
+        assert leaving.value.code == 2
+        assert "it is a folder; name a file" in capsys.readouterr().err
+
+
 def test_a_model_needs_no_graphics_and_tells_how_good_it_is(project, tmp_path, capsys, monkeypatch):
     monkeypatch.setattr("app.cli.commands.export.create_context", None)
     export(project, "--out", tmp_path / "{name}.glb", "--triangles", 600)

@@ -5,7 +5,7 @@ import shutil
 import numpy as np
 import pytest
 
-from tests.campaigns.faults import lost_displays
+from tests.campaigns.windows import lost_displays
 
 
 @pytest.mark.skipif(shutil.which("Xvfb") is None, reason="there is no X server to end")

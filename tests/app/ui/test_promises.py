@@ -111,6 +111,19 @@ def test_moved_and_copied_keys_come_to_rest_too(window, bent, is_seen, monkeypat
     assert bent.figure.key(30).pose.phi is bent.figure.key(48).pose.phi
 
 
+@pytest.mark.parametrize("auto_key", [True, False])
+def test_a_drag_is_in_a_key_as_was_wanted_when_it_began(window, bent, monkeypatch, auto_key):
+    if not auto_key:
+        viewing.toggle_auto_key(window.session)
+    with held_up(monkeypatch, "app.editor.actions.posing.solving._take_steps"):
+        goal = drag_bar(window, bent)
+        viewing.toggle_auto_key(window.session)
+    window.settle()
+    assert (bent.unkeyed is None) == auto_key
+    if auto_key:
+        check_at_rest(bent.document, goal)
+
+
 def test_a_handle_that_comes_or_goes_meanwhile_keeps_its_place(window, bent):
     goal = drag_bar(window, bent)
     posing.add_handle(window.session, complex(bent.puppet.shown.handle_places.mean()))
@@ -136,6 +149,24 @@ def test_layers_are_chosen_at_once_and_both_drags_come_to_rest(window, bent):
     window.settle()
     for identity, goal in goals.items():
         check_at_rest(bent.document, goal, figure=identity)
+
+
+def test_a_save_has_a_drag_on_each_of_many_layers(window, bent, tmp_path, monkeypatch):
+    for _ in range(8):
+        layering.duplicate(window.session, 0)
+        window.frames()
+    path, goals = tmp_path / "a.lissom", {}
+    with held_up(monkeypatch, "app.editor.actions.posing.solving._take_steps"):
+        for figure in bent.document.figures:
+            layering.choose(window.session, figure.id)
+            goals[figure.id] = drag_bar(window, bent)
+        assert len(bent.pulls) == len(goals) == 9
+        saving.write(window.session, path, None)
+        assert not path.exists()
+    window.until(lambda: not bent.pending)
+    saved = load_project(path)
+    for identity, goal in goals.items():
+        check_at_rest(saved, goal, figure=identity)
 
 
 def test_a_picture_is_exported_as_it_comes_to_rest(window, bent, tmp_path):

@@ -2,6 +2,7 @@
 
 import errno
 import gc
+import itertools
 import os
 import sys
 import threading
@@ -20,6 +21,9 @@ from app.document.settings import ExportSettings
 from app.editor.actions import cutting, editing, exporting, files, keys, playback, posing, saving
 from app.editor.dialogs import Question
 from app.editor.layering import pictures
+from app.export.writers.gif import GifWriter
+from app.export.writers.png import PngSequence
+from app.export.writers.video import VideoWriter
 from app.motion import inbetweens
 from app.storage.assets import sample_images
 from app.ui.window import exporter
@@ -302,6 +306,56 @@ def test_a_cancel_is_answered_at_once_whatever_is_being_prepared(
 def is_gone(reference):
     gc.collect()
     return reference() is None
+
+
+WRITERS = {"png": PngSequence, "mp4": VideoWriter, "gif": GifWriter}
+# At which frame, and where in its way to the disk, the worker is when the hand cancels.
+STAGES = {
+    "the first is encoded": ("encode", 0),
+    "the first is written": ("add", 0),
+    "one in the middle is written": ("add", FRAMES // 2),
+    "the last is encoded": ("encode", FRAMES - 1),
+    "the last is written": ("add", FRAMES - 1),
+    "the end is written": ("finish", 0),
+}
+
+
+@pytest.mark.parametrize("stage", STAGES)
+@pytest.mark.parametrize("name", ["frames", "bar.mp4", "bar.gif"])
+@pytest.mark.usefixtures("project")
+def test_a_cancel_is_answered_at_once_whatever_frame_is_made(window, tmp_path, held, name, stage):
+    session, out = window.session, tmp_path / name
+    format_ = "png" if name == "frames" else name[4:]
+    settings = ExportSettings(format=format_, size=SIZE, background="#ffffff")
+    exporting.set_export(session, settings)
+    window.settle()
+    verb, at = STAGES[stage]
+    calls = itertools.count()
+    worker = held(WRITERS[format_], verb, lambda: next(calls) == at)
+    window.act(exporting.start, out)
+    window.until(worker.begun.is_set)
+    window.frames(20)  # what can be drawn until then, is
+    run = session.export
+    assert run is not None
+    assert at <= run.done <= FRAMES
+    window.act(exporting.cancel)
+    window.frames()
+    assert not worker.has_waited_in_vain
+    assert session.export is None
+    worker.end.set()
+    window.until(lambda: not export_threads())
+    written = sorted(path for path in tmp_path.rglob("*") if path.is_file())
+    if format_ == "png":
+        assert [path.name for path in written] == [
+            f"frame_{i:04d}.png" for i in range(len(written))
+        ]
+        assert all(map(is_whole, written))
+    else:
+        assert written == []
+    stays = "Frames that were written stay" if written else "Nothing was written"
+    assert f"The export was cancelled. {stays}." in texts(window)
+    window.act(exporting.start, out)
+    window.until(lambda: any("Exported 9 frames" in text for text in texts(window)))
 
 
 @pytest.mark.usefixtures("project")
