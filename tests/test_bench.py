@@ -1,5 +1,6 @@
 """The bench, cut short: parts in one call, and parts that fail."""
 
+import importlib
 import os
 import subprocess
 import sys
@@ -34,14 +35,20 @@ def test_parts_that_draw_are_measured_in_one_call():
 
 
 def test_all_parts_are_tried_though_some_fail(tmp_path):
-    # Of all parts only the deformer's does without Pillow.
+    # Only the deformer's does without Pillow.
     (tmp_path / "PIL.py").write_text("raise ImportError('Pillow is broken')")
-    done = bench(PYTHONPATH=str(tmp_path))
+    done = bench("domain", "deform", "export", PYTHONPATH=str(tmp_path))
     assert done.returncode == 1
     assert rows_of_tables(done.stdout) == [6]
-    assert done.stderr.count("\nImportError: Pillow is broken") == len(PARTS) - 1
-    failed = [part for part in PARTS if part != "deform"]
-    assert done.stderr.splitlines()[-1] == f"failed: {', '.join(failed)}"
+    assert done.stderr.count("\nImportError: Pillow is broken") == 2
+    assert done.stderr.splitlines()[-1] == "failed: domain, export"
+
+
+def test_every_part_is_there():
+    for part in PARTS:
+        module = importlib.import_module(f"tests.bench.{part}")
+        assert callable(module.tables)
+        assert isinstance(module.BRIEF, module.Extent)
 
 
 def test_a_part_that_is_not_there_is_refused():

@@ -9,7 +9,7 @@ from numpy.testing import assert_allclose
 from app.document.queries.fronts import is_visible
 from app.document.queries.timeline import clip_of, exported_frames
 from app.motion import Animation, Joints, PaintOrder
-from app.reports.certification import certify_clip
+from app.reports.certification import Verdict, certify_clip
 from app.solving.script import load_pose_script
 from app.storage.pictures import read_openraster
 from app.storage.project_file import load_project
@@ -112,5 +112,5 @@ def test_a_sample_begins_and_ends_as_it_was_drawn(name):
 @pytest.mark.parametrize("name", ["character", "giraffe"])
 def test_a_sample_keeps_its_bounds(name):
     report = certify_clip(clip_of(load_project(SAMPLES / f"{name}.lissom"), 0))
-    assert report.certified
+    assert report.verdict is Verdict.PROVEN
     assert all(np.isfinite(interval.reached.sigma_a) for interval in report.intervals)

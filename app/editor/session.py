@@ -198,6 +198,9 @@ class Session:
     pointer: ToolInHand | None = None
     cutting: CutTool | None = None  # what is in hand that cuts out; None poses
     snaps: bool = False  # whether what the pointer does goes in steps
+    insists: bool = False  # whether what it pulls beyond its reach is wanted there all the same
+    # Whether the timeline has the pointer, or else the focus: what is chosen there is meant.
+    in_timeline: bool = False
     copied: tuple[CopiedKeys, ...] = ()  # of each figure whose keys were copied together
     space_used: bool = False  # Space was held to move the view
     hovered: int | None = None  # the handle under the pointer

@@ -1,6 +1,6 @@
 """Poses from handles: drags that go on step by step, and poses to begin them with."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Self
 
@@ -9,7 +9,7 @@ import numpy as np
 from app.document import Clip, Figure, Pose, Target, resting_pose, time_of
 from app.motion import Animation, PoseSampler
 from engine.arrays import Booleans, Complexes
-from engine.deform import Deformer, Handles, State, Wish
+from engine.deform import Deformer, Hand, Handles, State, Wish
 from engine.errors import EngineError
 from engine.maps import Boundary, Bounds, HarmonicMap, certify
 
@@ -56,12 +56,24 @@ class Rig:
         """The points of the figure that a drag holds where they are."""
         return _pins(self.figure)
 
-    def wish(self, targets: Mapping[int, Target], pins: tuple[Target, ...]) -> Wish:
-        """Return where handles are wanted, as the deformer takes it."""
-        wanted = [*(targets[handle.id] for handle in self.figure.handles), *pins]
+    def wish(
+        self, targets: Mapping[int, Target], pins: tuple[Target, ...], hands: Sequence[Hand] = ()
+    ) -> Wish:
+        """Return where handles are wanted, as the deformer takes it.
+
+        Hands are told by the ids of the handles that they pull; those that are gone are left out.
+        """
+        index = {handle.id: i for i, handle in enumerate(self.figure.handles)}
+        pulling = [
+            Hand([index[i] for i in sorted(hand.handles) if i in index], hand.pull)
+            for hand in hands
+            if not index.keys().isdisjoint(hand.handles)
+        ]
+        wanted = [*(targets[identity] for identity in index), *pins]
         return self.deformer.handles.wish(
             np.array([target.position for target in wanted], dtype=np.complex128),
             [np.nan if target.rotation is None else target.rotation for target in wanted],
+            pulling,
         )
 
     def beginning_at(self, shape: HarmonicMap) -> State:
@@ -77,7 +89,7 @@ class Rig:
         certificate = certify(self.figure.map_of(pose), deformer.boundary, deformer.bounds)
         if certificate.certified:
             return deformer
-        bounds = deformer.bounds
+        bounds = self.figure.bounds
         wider = Bounds(
             k=max(bounds.k, 1.0 - (1.0 - LEEWAY) * (1.0 - certificate.k)),
             sigma_a=max(bounds.sigma_a, (1.0 + LEEWAY) * certificate.sigma_a),
@@ -125,15 +137,28 @@ class Drag:
         """Whether more steps would change nothing."""
         return self.state.status.is_final
 
-    def towards(self, targets: Mapping[int, Target], steps: int) -> "Drag":
+    def towards(
+        self, targets: Mapping[int, Target], steps: int, hands: Sequence[Hand] = ()
+    ) -> "Drag":
         """Return the drag after some steps towards the targets, or fewer if it comes to rest."""
-        wish = self.rig.wish(targets, self.pins)
+        wish = self.rig.wish(targets, self.pins, hands)
         state = self.state
         for _ in range(steps):
             state = self.deformer.step(state, wish)
             if state.status.is_final:
                 break
         return replace(self, state=state)
+
+    def let_go(self, targets: Mapping[int, Target], hands: Sequence[Hand]) -> Mapping[int, Target]:
+        """Return the targets of the handles that hands have pulled, once these let go here."""
+        wish = self.rig.wish(targets, self.pins, hands)
+        left = wish.let_go(self.deformer.positions(self.state)).positions
+        pulled = {identity for hand in hands for identity in hand.handles}
+        return {
+            handle.id: replace(targets[handle.id], position=complex(place))
+            for handle, place in zip(self.rig.figure.handles, left, strict=False)
+            if handle.id in pulled
+        }
 
     def pose(self, targets: Mapping[int, Target]) -> Pose:
         """Return where the drag is, as a pose with these wishes."""

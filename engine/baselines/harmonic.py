@@ -8,7 +8,7 @@ import numpy as np
 from engine.arrays import Complexes
 from engine.baselines.frames import MeshFrame
 from engine.baselines.triangulated_domain import TriangulatedDomain
-from engine.deform import Deformer
+from engine.deform import Deformer, Way
 from engine.errors import EngineError
 from engine.interpolation import Prepared
 from engine.maps import Boundary, HarmonicMap, derivatives_of
@@ -21,8 +21,8 @@ class HandleInbetweens:
     """The shape is deformed anew, by handles whose targets move straight from key to key.
 
     Chen and Weber (2015) keep their bounds in each frame, but handles that go straight go where
-    nobody would pull them. A keyframe comes out as far as it is a pose of least energy for these
-    handles: the search begins at the keyframe that is nearer in time, and may end elsewhere.
+    nobody would pull them. The search begins at the keyframe that is nearer in time and stays in
+    its valley: a keyframe comes out as far as it is a minimum of the energy for these handles.
     """
 
     domain: TriangulatedDomain
@@ -35,7 +35,7 @@ class HandleInbetweens:
         handles = self.deformer.handles
         targets = (1.0 - time) * self.first(handles.points) + time * self.second(handles.points)
         start = self.deformer.resume(self.first if time < 0.5 else self.second)
-        state, _ = self.deformer.settle(start, handles.wish(targets))
+        state, _ = self.deformer.settle(start, handles.wish(targets), ways=(Way.HERE,))
         return _frame(self.domain, state.map(self.domain.points))
 
 

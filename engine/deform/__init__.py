@@ -12,11 +12,12 @@ from engine.deform.handles import (
     Wish as Wish,
     require_held as require_held,
 )
+from engine.deform.hands import PULL as PULL, Hand as Hand
 from engine.deform.model import (
     Objective as Objective,
     line_search as line_search,
     newton_direction as newton_direction,
     projected_hessian as projected_hessian,
 )
-from engine.deform.rest import ActiveBound as ActiveBound
+from engine.deform.rest import ActiveBound as ActiveBound, Way as Way
 from engine.deform.state import State as State, Statistics as Statistics, Status as Status

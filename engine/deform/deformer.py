@@ -32,13 +32,6 @@ class Deformer(HeldShape):
     To add, move or remove handles or to change the bounds, make another deformer over the same
     boundary and go on with the same state. A new handle does not move anything if its target is
     where its point is now, see `positions`.
-
-    Parameters
-    ----------
-    boundary : Boundary
-        Of the shape, as sampled.
-    handles : Handles
-    bounds : Bounds
     """
 
     def start(self, harmonic_map: HarmonicMap | None = None) -> State:
@@ -112,7 +105,7 @@ class Deformer(HeldShape):
         s samples in the Hessian, n the number of cage vertices; then 22 n³ for its factors. Far
         from walls both serve some steps, and each of those costs 32 m n for m samples a round.
         """
-        if len(wish.positions) == 0 and self.allows(state.certificate):
+        if len(wish.positions) == 0 and self.allows(state):
             return replace(state, limits=self.bounds, status=Status.CONVERGED, wish=wish)
         if not self._goes_on(state, wish):
             state = replace(state, search=None, outcome=None, ways=())
@@ -128,7 +121,8 @@ class Deformer(HeldShape):
         """Tell whether the last step was towards this wish, with these handles and bounds."""
         return (
             state.handles is self.handles
-            and state.limits == self.bounds
+            and self.bounds.include(state.limits)
+            and state.limits.include(self.bounds)
             and wish.is_same(state.wish)
         )
 
@@ -137,24 +131,27 @@ class Deformer(HeldShape):
         last = state.statistics
         return (
             last is not None
-            and self.allows(state.certificate)
+            and self.allows(state)
             and (state.schedule.idle >= PATIENCE or (not last.leashed and last.length > FULL))
         )
 
-    def settle(self, state: State, wish: Wish, *, at_most: int = 600) -> tuple[State, int]:
+    def settle(
+        self, state: State, wish: Wish, *, ways: tuple[Way, ...] = tuple(Way), at_most: int = 600
+    ) -> tuple[State, int]:
         """Find the pose of least energy for a wish; return the number of steps too.
 
-        At most `at_most` steps are taken. The energy is never above that of the present map, once
-        that is within the bounds.
+        It is searched for along these ways; that from the present map alone stays in its valley. At
+        most `at_most` steps are taken. The energy is never above that of the present map, once that
+        is within the bounds.
         """
         count = 0
         if not (self._goes_on(state, wish) and state.status.is_final):
-            while count < at_most and not self.allows(state.certificate):
+            while count < at_most and not self.allows(state):
                 state, count = follow_hand(self, state, wish), count + 1
                 if state.status.is_final:
                     return state, count
             if len(wish.positions) > 0 and count < at_most:
-                state = begin_searches(self, state, wish, tuple(Way))
+                state = begin_searches(self, state, wish, ways)
         while count < at_most:
             state, count = self.step(state, wish), count + 1
             if state.status.is_final:

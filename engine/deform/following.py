@@ -19,8 +19,14 @@ from engine.deform.handles import Wish
 from engine.deform.held_shape import HeldShape
 from engine.deform.model import Barrier, Jet, Objective
 from engine.deform.state import State, Statistics, Status
-from engine.deform.steering import Schedule, cut_to_leash, place_walls, tightening_limits
-from engine.maps import Bounds, Certificate, Limits
+from engine.deform.steering import (
+    Schedule,
+    cut_to_leash,
+    place_walls,
+    proven_at,
+    tightening_limits,
+)
+from engine.maps import Limits
 
 # On the way into tightened bounds the barrier weighs at least this much, and the handles are this
 # much softer.
@@ -28,6 +34,9 @@ LEAST_TIGHTENING = 0.1
 SOFTNESS = 0.003
 # One sample in so many enters the sketch of the Hessian.
 STRIDE = 6
+# A hand that gives in stops at bounds by itself, with full steps, after which the weight would fall
+# and the shape stick to them: the barrier weighs at least this much.
+LEAST_GIVING = 0.03
 
 
 def follow_hand(shape: HeldShape, state: State, wish: Wish) -> State:
@@ -44,7 +53,7 @@ def follow_hand(shape: HeldShape, state: State, wish: Wish) -> State:
     free = replace(step.objective, handles=shape.handles, wish=wish, barrier=None)
     schedule = step.schedule.after(
         length=taken.length,
-        shortfall=_excess(taken.certificate, shape.bounds)
+        shortfall=_excess(shape.bounds.at(state.boundary), taken)
         if step.tightening
         else free.handle_error(step.jet),
         moving=step.leashed or step.tightening,
@@ -104,8 +113,8 @@ def _prepare(shape: HeldShape, state: State, wish: Wish) -> _Step:
     free = Objective(boundary=state.boundary, handles=shape.handles, wish=wish)
     jet = free.jet(*state.map.columns)
     a, b = jet.a, jet.b
-    limits = tightening_limits(shape.bounds, state.limits, a, b)
-    walls, required = place_walls(limits, a, b, state.certificate)
+    limits = tightening_limits(shape.bounds, state.limits, state.boundary, a, b)
+    walls, required = place_walls(limits, state.boundary, a, b, state.certificate)
     same = wish.is_same(state.wish)
     schedule = state.schedule if same else state.schedule.for_new_wish()
     tightening = limits is not shape.bounds
@@ -116,6 +125,8 @@ def _prepare(shape: HeldShape, state: State, wish: Wish) -> _Step:
         schedule = replace(schedule, weight=max(schedule.weight, LEAST_TIGHTENING))
     else:
         handles = shape.handles
+        if wish.hands is not None:
+            schedule = replace(schedule, weight=max(schedule.weight, LEAST_GIVING))
         wish, leashed = cut_to_leash(handles, shape.boundary.size, schedule.leash, jet, wish)
     # On the way into the bounds the walls move with the map, and dual variables would lag.
     barrier = Barrier(
@@ -124,7 +135,9 @@ def _prepare(shape: HeldShape, state: State, wish: Wish) -> _Step:
     return _Step(
         jet=jet,
         barrier=barrier,
-        objective=replace(free, handles=handles, wish=wish, barrier=barrier, stride=STRIDE),
+        objective=replace(
+            free, handles=handles, wish=wish, barrier=barrier, stride=STRIDE, secant=True
+        ),
         limits=limits,
         required=required,
         schedule=schedule,
@@ -133,10 +146,11 @@ def _prepare(shape: HeldShape, state: State, wish: Wish) -> _Step:
     )
 
 
-def _excess(certificate: Certificate, bounds: Bounds) -> float:
+def _excess(bounds: Limits, taken: CertifiedStep) -> float:
     """Return by how much a map is outside its bounds; more than any distance of handles."""
+    reached = proven_at(taken.certificate, taken.jet.a, taken.jet.b)
     return 1e3 + max(
-        certificate.k - bounds.k,
-        (certificate.sigma_a - bounds.sigma_a) / bounds.sigma_a,
-        (bounds.sigma_b - certificate.sigma_b) / bounds.sigma_b,
+        np.max(reached.k - bounds.k),
+        np.max((reached.sigma_a - bounds.sigma_a) / bounds.sigma_a),
+        np.max((bounds.sigma_b - reached.sigma_b) / bounds.sigma_b),
     )

@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from engine.arrays import Complexes, Floats, as_points, readonly
+from engine.deform.hands import Hand, Hands
 from engine.errors import EngineError
 from engine.geometry import Hole, box_diagonal, require_inside
 from engine.maps import Boundary
@@ -36,16 +37,40 @@ class Wish(NamedTuple):
     rotations : float64, shape (h,)
         Angle in radians of the closest rotation, arg f_z, at each handle; NaN where it is free.
         Angles that differ by whole turns are the same wish.
+    hands : Hands or None
+        Those that pull at some of the handles; all others are held.
     """
 
     positions: Complexes
     rotations: Floats
+    hands: Hands | None = None
 
     def is_same(self, other: "Wish | None") -> bool:
         """Tell whether another wish asks for the same."""
-        return other is not None and all(
-            np.array_equal(one, two, equal_nan=True) for one, two in zip(self, other, strict=True)
+        if other is None or (self.hands is None) != (other.hands is None):
+            return False
+        ours, theirs = [*self[:2], *(self.hands or ())], [*other[:2], *(other.hands or ())]
+        return all(
+            np.array_equal(one, two, equal_nan=True) for one, two in zip(ours, theirs, strict=True)
         )
+
+    def errors(self, positions: Complexes) -> Complexes:
+        """Return what handles at some positions lack (h,), but for what hands give in by."""
+        errors: Complexes = positions - self.positions
+        if self.hands is not None:
+            errors = errors - self.hands.at_handles(self.hands.given(errors))
+        return errors
+
+    def let_go(self, positions: Complexes) -> "Wish":
+        """Return the wish of hands that let go where they have come to.
+
+        Each handle is then wanted a hair beyond its place, in the direction of its pull: the same
+        pose, where the hands have brought it to rest, is that of least energy.
+        """
+        if self.hands is None:
+            return self
+        given = self.hands.given(positions - self.positions)
+        return Wish(self.positions + self.hands.at_handles(given), self.rotations)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -129,14 +154,26 @@ class Handles:
             hessian=readonly(factor * self.hessian),
         )
 
-    def wish(self, positions: Complexes, rotations: npt.ArrayLike | None = None) -> Wish:
+    def wish(
+        self,
+        positions: Complexes,
+        rotations: npt.ArrayLike | None = None,
+        hands: Sequence[Hand] = (),
+    ) -> Wish:
         """Check what is asked of the handles.
+
+        Parameters
+        ----------
+        positions : complex128, shape (h,)
+        rotations : array_like of float, shape (h,), optional
+        hands : sequence of Hand
+            Those that pull at some of the handles, with bounded force.
 
         Raises
         ------
         EngineError
-            If there are not as many targets as handles, one is not finite or absurdly far away, or
-            two handles at one point are to be at different places.
+            If there are not as many targets as handles, one is not finite or absurdly far away, two
+            handles at one point are to be at different places, or hands pull at what is not there.
         """
         targets = as_points(positions, "targets")
         if len(targets) != len(self.points):
@@ -153,8 +190,9 @@ class Handles:
         for i, j in self.coincident:
             if abs(targets[i] - targets[j]) > APART * size:
                 raise _told_twice(i, j, "targets")
+        pulling = Hands.of(hands, self.stiffness, size)
         if rotations is None:
-            return Wish(targets, np.full(len(targets), np.nan))
+            return Wish(targets, np.full(len(targets), np.nan), pulling)
         angles = np.asarray(rotations, dtype=np.float64)
         if angles.shape != targets.shape or np.isinf(angles).any():
             raise EngineError(
@@ -164,7 +202,7 @@ class Handles:
         for i, j in self.coincident:
             if abs(np.exp(1j * angles[i]) - np.exp(1j * angles[j])) > APART:
                 raise _told_twice(i, j, "rotations")
-        return Wish(targets, angles)
+        return Wish(targets, angles, pulling)
 
 
 def _told_twice(i: int, j: int, what: str) -> EngineError:

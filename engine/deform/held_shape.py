@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from engine.deform.handles import Handles, Wish
 from engine.deform.model import Jet, Objective
 from engine.deform.state import State
-from engine.maps import Boundary, Bounds, Certificate, HarmonicMap
+from engine.maps import Boundary, HarmonicMap, Limits
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -17,22 +17,24 @@ class HeldShape:
     boundary : Boundary
         Of the shape, as sampled.
     handles : Handles
-    bounds : Bounds
+    bounds : Bounds or Limits
+        Limits may differ from sample to sample.
     """
 
     boundary: Boundary
     handles: Handles
-    bounds: Bounds
+    bounds: Limits
 
     @property
     def at_rest(self) -> HarmonicMap:
         """The identity."""
         return HarmonicMap.identity(self.boundary.cage, self.boundary.holes)
 
-    def allows(self, certificate: Certificate) -> bool:
-        """Tell whether a map with this certificate is within the bounds."""
-        return self.bounds.allow(
-            k=certificate.k, sigma_a=certificate.sigma_a, sigma_b=certificate.sigma_b
+    def allows(self, state: State) -> bool:
+        """Tell whether a state's map is proven to be within the bounds."""
+        proven = state.certificate
+        return self.bounds.include(state.limits) or self.bounds.allow(
+            k=proven.k, sigma_a=proven.sigma_a, sigma_b=proven.sigma_b
         )
 
     def measured(self, state: State, wish: Wish) -> tuple[Objective, Jet]:

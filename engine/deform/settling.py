@@ -15,7 +15,7 @@ import numpy as np
 
 from engine.deform.handles import Wish
 from engine.deform.held_shape import HeldShape
-from engine.deform.model import MARGIN, Jet, Objective
+from engine.deform.model import MARGIN, Jet, Objective, Walls
 from engine.deform.rest import (
     MOST_STEPS,
     WORTH_A_JUMP,
@@ -23,7 +23,7 @@ from engine.deform.rest import (
     Way,
     advance,
     begin_search,
-    exceeds_first_rung,
+    exceed_first_rung,
 )
 from engine.deform.state import State, Statistics, Status
 from engine.deform.steering import (
@@ -56,7 +56,10 @@ MISFIT = 0.12
 
 def begin_searches(shape: HeldShape, state: State, wish: Wish, ways: tuple[Way, ...]) -> State:
     """Return the state at the beginning of the searches along these ways."""
-    if state.map.is_same(shape.at_rest):
+    if wish.hands is not None:
+        # From where the hands are is found what all ways find, in half the steps.
+        ways = (Way.HERE,)
+    elif Way.REST in ways and state.map.is_same(shape.at_rest):
         ways = tuple(way for way in ways if way is not Way.HERE)
     state = replace(
         state,
@@ -109,19 +112,21 @@ def _search(shape: HeldShape, state: State, wish: Wish) -> Search:
         first = rigidly_aligned(shape.handles, wish, shape.at_rest, turn)
         if way is Way.REST and len(state.ways) > 1:
             most = MOST_STEPS_REST
-    elif outcome is None:
-        most = MOST_STEPS_HERE
-    else:
+    elif outcome is not None:
         first, turn = outcome.map, outcome.turn
-    certificate = certify(first, shape.boundary, shape.bounds)
-    within = shape.bounds.towards_identity(ROUNDING)
-    keeps = within.allow(k=certificate.k, sigma_a=certificate.sigma_a, sigma_b=certificate.sigma_b)
+    elif len(state.ways) > 1:
+        most = MOST_STEPS_HERE
+    limits = shape.bounds.towards_identity(ROUNDING)
+    certificate = certify(first, shape.boundary, limits)
+    if not certificate.certified:
+        limits = shape.bounds
+        certificate = certify(first, shape.boundary, limits)
     search = begin_search(
         Objective(boundary=shape.boundary, handles=shape.handles, wish=wish),
         first,
         certificate,
         inside=shape.bounds.towards_identity(MARGIN),
-        limits=within if keeps else shape.bounds,
+        limits=limits,
         way=way,
     )
     return replace(
@@ -153,9 +158,8 @@ def _may_pay(shape: HeldShape, way: Way, outcome: Search) -> bool:
     # Handles that are wanted far away, past each other: there are many valleys, and those that wide
     # and widening bounds lead to may differ.
     farthest = float(np.abs(targets - shape.handles.points).max(initial=0.0))
-    return (
-        farthest > FAR * size and exceeds_first_rung(shape.bounds) and common.correlation < TANGLED
-    )
+    walls = Walls.at(shape.bounds, shape.boundary)
+    return farthest > FAR * size and exceed_first_rung(walls) and common.correlation < TANGLED
 
 
 def _concluded(state: State, objective: Objective, search: Search, outcome: Search) -> State:

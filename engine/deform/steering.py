@@ -9,7 +9,7 @@ import numpy as np
 from engine.arrays import Complexes, Floats
 from engine.deform.handles import Handles, Wish
 from engine.deform.model import MARGIN, Jet, Walls
-from engine.maps import Certificate, HarmonicMap, Limits
+from engine.maps import Boundary, Certificate, HarmonicMap, Limits
 
 # The leash: a handle is pulled towards a point at most this far (of L) ahead of it, and turned by
 # at most this angle; farther away the quadratic model says nothing. Both times the part of the
@@ -124,7 +124,7 @@ def cut_to_leash(
     turn = np.angle(np.exp(1j * wish.rotations) * jet.fz.conj())
     near = np.angle(jet.fz) + np.clip(turn, -most, most)
     leashed = bool(np.any(cut < 1.0) or np.any(np.abs(turn) > most))
-    return Wish(positions + cut * pull, near), leashed
+    return Wish(positions + cut * pull, near, wish.hands), leashed
 
 
 def rigidly_aligned(
@@ -194,62 +194,79 @@ def limits_for(certificate: Certificate, bounds: Limits) -> Limits:
     """Return the bounds, widened as far as the map of a certificate needs it."""
     k, sigma_a, sigma_b = certificate.k, certificate.sigma_a, certificate.sigma_b
     return Limits(
-        k=max(bounds.k, k + FOLLOW * (1 - k)),
-        sigma_a=max(bounds.sigma_a, sigma_a * (1 + FOLLOW)),
-        sigma_b=min(bounds.sigma_b, sigma_b * (1 - FOLLOW)),
+        k=np.maximum(bounds.k, k + FOLLOW * (1 - k)),
+        sigma_a=np.maximum(bounds.sigma_a, sigma_a * (1 + FOLLOW)),
+        sigma_b=np.minimum(bounds.sigma_b, sigma_b * (1 - FOLLOW)),
     )
 
 
-def tightening_limits(bounds: Limits, before: Limits, a: Floats, b: Floats) -> Limits:
+def tightening_limits(
+    bounds: Limits, before: Limits, boundary: Boundary, a: Floats, b: Floats
+) -> Limits:
     """Return the bounds, or limits that close in on a map that is outside of them."""
-    k, sigma_a, sigma_b = _extremes(a, b)
-    if k < bounds.k and sigma_a < bounds.sigma_a and sigma_b > bounds.sigma_b:
+    at, k, sigma_a, sigma_b = bounds.at(boundary), b / a, a + b, a - b
+    too_bent, too_long, too_short = k >= at.k, sigma_a >= at.sigma_a, sigma_b <= at.sigma_b
+    if not (too_bent.any() or too_long.any() or too_short.any()):
         return bounds
+    # Where nothing is outside, nothing bounds the worst of it from below.
+    worst_k = k.max(where=too_bent, initial=-np.inf)
+    worst_a = sigma_a.max(where=too_long, initial=0.0)
+    worst_b = sigma_b.min(where=too_short, initial=np.inf)
+    near = Limits(
+        k=1 - (1 - FOLLOW) * (1 - worst_k),
+        sigma_a=worst_a * (1 + FOLLOW),
+        sigma_b=worst_b * (1 - FOLLOW),
+    )
     return Limits(
-        k=bounds.k if k < bounds.k else min(before.k, k + FOLLOW * (1 - k)),
-        sigma_a=bounds.sigma_a
-        if sigma_a < bounds.sigma_a
-        else min(before.sigma_a, sigma_a * (1 + FOLLOW)),
-        sigma_b=bounds.sigma_b
-        if sigma_b > bounds.sigma_b
-        else max(before.sigma_b, sigma_b * (1 - FOLLOW)),
+        k=np.maximum(bounds.k, np.minimum(before.k, near.k)),
+        sigma_a=np.maximum(bounds.sigma_a, np.minimum(before.sigma_a, near.sigma_a)),
+        sigma_b=np.minimum(bounds.sigma_b, np.maximum(before.sigma_b, near.sigma_b)),
     )
 
 
 def place_walls(
-    limits: Limits, a: Floats, b: Floats, certificate: Certificate
+    limits: Limits, boundary: Boundary, a: Floats, b: Floats, certificate: Certificate
 ) -> tuple[Walls, Limits]:
     """Return the walls of the samples, and the bounds that the next map must keep everywhere."""
-    inner = limits.towards_identity(MARGIN)
+    at, inner = limits.at(boundary), limits.towards_identity(MARGIN).at(boundary)
     k, sigma_a, sigma_b = b / a, a + b, a - b
     rounding = LEAST_SLACK * sigma_a
     # A map may start between the walls and the limits.
     walls = Walls(
-        k=np.maximum(inner.k, k + np.maximum((limits.k - k) / 4, LEAST_SLACK)),
+        k=np.maximum(inner.k, k + np.maximum((at.k - k) / 4, LEAST_SLACK)),
         sigma_a=np.maximum(
-            inner.sigma_a, sigma_a + np.maximum((limits.sigma_a - sigma_a) / 4, rounding)
+            inner.sigma_a, sigma_a + np.maximum((at.sigma_a - sigma_a) / 4, rounding)
         ),
         sigma_b=np.minimum(
-            inner.sigma_b, sigma_b - np.maximum((sigma_b - limits.sigma_b) / 4, rounding)
+            inner.sigma_b, sigma_b - np.maximum((sigma_b - at.sigma_b) / 4, rounding)
         ),
     )
     outermost, required = (
         Limits(
-            k=float((walls.k - kept * (walls.k - k)).max()),
-            sigma_a=float((walls.sigma_a - kept * (walls.sigma_a - sigma_a)).max()),
-            sigma_b=float((walls.sigma_b - kept * (walls.sigma_b - sigma_b)).min()),
+            k=limits.k + np.max(walls.k - kept * (walls.k - k) - at.k),
+            sigma_a=limits.sigma_a
+            + np.max(walls.sigma_a - kept * (walls.sigma_a - sigma_a) - at.sigma_a),
+            sigma_b=limits.sigma_b
+            + np.min(walls.sigma_b - kept * (walls.sigma_b - sigma_b) - at.sigma_b),
         )
         for kept in (0.0, KEPT)
     )
     # Between its samples the present map may have less slack than that.
+    reached = proven_at(certificate, a, b)
     for asked in (required, outermost, limits.towards_identity(ROUNDING)):
-        within = limits.allow(k=asked.k, sigma_a=asked.sigma_a, sigma_b=asked.sigma_b)
-        if within and asked.allow(
-            k=certificate.k, sigma_a=certificate.sigma_a, sigma_b=certificate.sigma_b
-        ):
+        if limits.include(asked) and asked.at(boundary).include(reached):
             return walls, asked
     return walls, limits
 
 
-def _extremes(a: Floats, b: Floats) -> tuple[float, float, float]:
-    return float((b / a).max()), float((a + b).max()), float((a - b).min())
+def proven_at(certificate: Certificate, a: Floats, b: Floats) -> Limits:
+    """Return about what is proven around each sample of a map.
+
+    That is as much beyond it as the worst that is proven is beyond the worst sample.
+    """
+    k, sigma_a, sigma_b = b / a, a + b, a - b
+    return Limits(
+        k=certificate.k + (k - k.max()),
+        sigma_a=certificate.sigma_a + (sigma_a - sigma_a.max()),
+        sigma_b=certificate.sigma_b + (sigma_b - sigma_b.min()),
+    )

@@ -15,7 +15,10 @@ from engine.domain.build import (
     texture as texture,
     texture_coordinates as texture_coordinates,
 )
-from engine.domain.medial_axis import suggest_handles as suggest_handles
+from engine.domain.limbs import (
+    SuggestedHandle as SuggestedHandle,
+    suggest_handles as suggest_handles,
+)
 from engine.domain.outline import HoleMap as HoleMap, find_holes as find_holes
 from engine.domain.picture import (
     MOST_STROKE_POINTS as MOST_STROKE_POINTS,

@@ -3,24 +3,55 @@
 from dataclasses import dataclass
 from math import isfinite
 
+import numpy as np
+
+from engine.arrays import Floats
 from engine.errors import EngineError
+from engine.geometry import next_on_loop
+from engine.maps.boundary import Boundary
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Limits:
     """Limits that hold at every point of a shape: k ≤ `k`, σ_a ≤ `sigma_a`, σ_b ≥ `sigma_b`.
 
-    Any numbers. What a person allows are `Bounds`; the solver also holds maps to limits that the
-    identity does not keep, as on the way of an enlarged map into tighter bounds.
+    Any numbers, or arrays (s,) of one for each of a shape's own samples: a segment between two of
+    them is held to the wider of both. What a person allows are `Bounds`; the solver also holds maps
+    to limits that the identity does not keep, as on the way of an enlarged map into tighter bounds.
     """
 
-    k: float
-    sigma_a: float
-    sigma_b: float
+    k: float | Floats
+    sigma_a: float | Floats
+    sigma_b: float | Floats
 
-    def allow(self, *, k: float, sigma_a: float, sigma_b: float) -> bool:
+    def allow(self, *, k: float | Floats, sigma_a: float | Floats, sigma_b: float | Floats) -> bool:
         """Tell whether distortions up to these values are within the limits; NaN never is."""
-        return bool(k <= self.k and sigma_a <= self.sigma_a and sigma_b >= self.sigma_b)
+        return bool(
+            np.all(k <= self.k)
+            and np.all(sigma_a <= self.sigma_a)
+            and np.all(sigma_b >= self.sigma_b)
+        )
+
+    def include(self, limits: "Limits") -> bool:
+        """Tell whether what keeps to other limits keeps to these."""
+        return self.allow(k=limits.k, sigma_a=limits.sigma_a, sigma_b=limits.sigma_b)
+
+    def at(self, boundary: Boundary) -> "Limits":
+        """Return the limits at all samples of a boundary, those that were added included."""
+        if not any(map(np.ndim, (self.k, self.sigma_a, self.sigma_b))):
+            return self
+        own, ends = boundary.own_samples
+        first = np.searchsorted(own, np.arange(len(boundary.points)), side="right") - 1
+        is_own = boundary.weights > 0
+        second = np.where(is_own, first, next_on_loop(np.array(ends[:-1]), len(own))[first])
+        k, sigma_a, sigma_b = (
+            np.broadcast_to(limit, len(own)) for limit in (self.k, self.sigma_a, self.sigma_b)
+        )
+        return Limits(
+            k=np.maximum(k[first], k[second]),
+            sigma_a=np.maximum(sigma_a[first], sigma_a[second]),
+            sigma_b=np.minimum(sigma_b[first], sigma_b[second]),
+        )
 
     def towards_identity(self, fraction: float) -> "Limits":
         """Return the limits moved by a fraction of what lies between them and the identity."""

@@ -180,17 +180,27 @@ class _Segments:
 def _bisect(
     boundary: Boundary, coefficients: Complexes, segments: _Segments, limits: Limits
 ) -> tuple[Certificate, Indices, Enclosures]:
-    limit = np.array([limits.k, limits.sigma_a, -limits.sigma_b])
+    at = limits.at(boundary)
+    limit = np.empty((3, len(boundary.points)))
+    limit[0], limit[1], limit[2] = at.k, at.sigma_a, np.negative(at.sigma_b)
+    limit = np.maximum(limit, limit[:, boundary.following])
     attained, proven = np.full((2, 3), -inf)
+    kept = np.ones(3, dtype=bool)
     turned, bisected, shorter = np.zeros(len(boundary.points)), 0, 1
     broken: list[Indices] = []
     worst, clear, delta = _enclose(segments)
     enclosures = Enclosures(worst[0], worst[1], -worst[2])
     while True:
-        attained = _largest(attained, _distortions(*np.abs(segments.ends[1:, 0])))
+        distortions, its = _distortions(*np.abs(segments.ends[1:, 0])), limit[:, segments.origins]
+        attained = _largest(attained, distortions)
+        kept &= (distortions <= its).all(axis=1)
+        # How good enclosures must be. As long as a limit is kept at all points seen, they must try
+        # to keep it too.
+        goal = (attained + TIGHTNESS * np.array([1.0, attained[1], attained[1]]))[:, None]
+        goal = np.where(kept[:, None], np.minimum(goal, its), goal)
         # All said positively: what is not a number is neither tight nor within.
-        tight = clear & (worst <= _goal(attained, limit)[:, None]).all(axis=0)
-        within = clear & (worst <= limit[:, None]).all(axis=0)
+        tight = clear & (worst <= goal).all(axis=0)
+        within = clear & (worst <= its).all(axis=0)
         loose = ~tight
         count = int(np.count_nonzero(loose))
         bisected += count
@@ -207,7 +217,9 @@ def _bisect(
         shorter *= parts
         worst, clear, delta = _enclose(segments)
     turns = np.add.reduceat(turned, boundary.starts)
-    return _conclude(proven, turns, limits), np.unique(np.concatenate(broken)), enclosures
+    segments_broken = np.unique(np.concatenate(broken))
+    certificate = _conclude(proven, turns, limits, keeps=len(segments_broken) == 0)
+    return certificate, segments_broken, enclosures
 
 
 def _largest(before: Floats, distortions: Floats) -> Floats:
@@ -234,14 +246,7 @@ def _enclose(segments: _Segments) -> tuple[Floats, Booleans, Floats]:
     return of_ends.max(axis=1), least.min(axis=0) > 0, delta
 
 
-def _goal(attained: Floats, limit: Floats) -> Floats:
-    """Return how good enclosures must be, (3,), for the extremes that are attained or a limit."""
-    goal = attained + TIGHTNESS * np.array([1.0, attained[1], attained[1]])
-    # As long as a limit is kept at all points seen, the enclosure must try to keep it too.
-    return np.where(attained <= limit, np.minimum(goal, limit), goal)
-
-
-def _conclude(proven: Floats, turns: Floats, limits: Limits) -> Certificate:
+def _conclude(proven: Floats, turns: Floats, limits: Limits, *, keeps: bool) -> Certificate:
     winding = None
     if np.isfinite(turns).all():
         windings = np.round(turns / (2 * pi)).astype(int)
@@ -260,6 +265,6 @@ def _conclude(proven: Floats, turns: Floats, limits: Limits) -> Certificate:
         sigma_a=sigma_a,
         sigma_b=sigma_b,
         winding=winding,
-        certified=injective and limits.allow(k=k, sigma_a=sigma_a, sigma_b=sigma_b),
+        certified=injective and keeps,
         limits=limits,
     )

@@ -129,7 +129,7 @@ def _follow(figure: Figure, handle: Handle, pose: Pose) -> Pose:
     return replace(pose, targets={**pose.targets, handle.id: target})
 
 
-def free_name(figure: Figure, after: int = 0) -> str:
-    """Return a name that no handle has, for the next handle but `after`."""
+def free_name(figure: Figure) -> str:
+    """Return a name that no handle has, for the next handle."""
     taken = {handle.name for handle in figure.handles}
-    return numbered("handle", taken, figure.next_handle + 1 + after)
+    return numbered("handle", taken, figure.next_handle + 1)

@@ -120,7 +120,9 @@ def swap_hole(session: Session, project: Project, place: complex) -> None:
         return
     swapped = project.figure.cut_out.swapped
     others = tuple(other for other in swapped if holes.number_at(other) != number)
-    change(session, swapped=others if len(others) < len(swapped) else (*swapped, point))
+    # Its middle, not the point at its rim where the click may have been.
+    named = (*swapped, holes.middles[number])
+    change(session, swapped=others if len(others) < len(swapped) else named)
 
 
 def forget_strokes(session: Session) -> None:

@@ -62,6 +62,8 @@ def undo(session: Session, project: Project) -> None:
     position = project.history.position
     # What was done since they were wished is taken back before them.
     unseen = [pull for pull in project.pulls if pull.kept is None and pull.position >= position]
+    # What the hand has let go can be done again: it becomes a step before that step is undone.
+    unseen = [pull for pull in unseen if not posing.adopt_wish(session, project, pull)]
     for pull in unseen or [pull for pull in project.pulls if pull.is_held]:
         posing.give_up(session, project, pull)
     if unseen:
@@ -124,8 +126,24 @@ def select(_: Session, project: Project, handles: frozenset[int]) -> None:
 
 @with_project
 def select_all(session: Session, project: Project) -> None:
-    """Select every handle."""
-    select(session, frozenset(handle.id for handle in project.figure.handles))
+    """Select every handle or, in the timeline, the keys of all layers that are posed."""
+    if session.in_timeline:
+        posed = [figure for figure in project.document.figures if not figure.still]
+        choose_keys_of(session, {figure.id: figure.key_frames for figure in posed})
+    else:
+        select(session, frozenset(handle.id for handle in project.figure.handles))
+
+
+@with_project
+def deselect(_: Session, project: Project) -> None:
+    """Let no handles and no keys be selected."""
+    project.selected, project.chosen_of = frozenset(), {}
+
+
+@with_project
+def deselect_keys(_: Session, project: Project) -> None:
+    """Let no keys be selected; handles stay as they are."""
+    project.chosen_of = {}
 
 
 @with_project

@@ -1,9 +1,10 @@
 """Other bounds and another domain: the worker solves the keys again, one job for each."""
 
+from collections.abc import Mapping
 from dataclasses import replace
 from functools import partial
 
-from app.document import figure_commands, loosened
+from app.document import Target, figure_commands, loosened
 from app.editor import promises
 from app.editor.action import do
 from app.editor.actions import editing, posing
@@ -43,8 +44,11 @@ def _set_bounds(session: Session, project: Project, bounds: Bounds) -> None:
 
 
 @with_project
-def loosen(session: Session, project: Project) -> None:
-    """Allow the next looser stretch, and pull the pose that is shown to its targets again."""
+def loosen(session: Session, project: Project, asked: Mapping[int, Target] | None = None) -> None:
+    """Allow the next looser stretch, and pull the pose that is shown to its targets again.
+
+    Handles that a hand could not bring to where they were asked are pulled there once more.
+    """
     bounds = loosened(project.figure.bounds)
     if bounds is None:
         return
@@ -52,7 +56,7 @@ def loosen(session: Session, project: Project) -> None:
     gesture = object()
     # What was allowed still is, so that no key has to be solved again.
     project.history.do(figure_commands.set_bounds(project.active, bounds), gesture=gesture)
-    posing.pull_again(session, gesture=gesture)
+    posing.pull_again(session, asked or {}, gesture=gesture)
 
 
 @with_project

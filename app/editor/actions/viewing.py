@@ -166,6 +166,11 @@ def _scale(session: Session, step: float) -> None:
     session.preferences = replace(session.preferences, scale=scale)
 
 
+def attend(session: Session, in_timeline: bool) -> None:  # noqa: FBT001 - the only argument
+    """Note whether the person is in the timeline, and not in the drawing."""
+    session.in_timeline = in_timeline
+
+
 def toggle_auto_key(session: Session) -> None:
     """Let posing make and change keys by itself, or leave that to the person."""
     auto_key = not session.preferences.auto_key

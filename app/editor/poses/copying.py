@@ -1,12 +1,12 @@
 """Copying poses and keys, and pasting them, as they are or onto the selected handles."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from functools import partial
 
-from app.document import Figure, Keyframe, Target
+from app.document import Figure, Keyframe, Pose, Target
 from app.editor import promises
 from app.editor.action import do
-from app.editor.actions import posing
+from app.editor.actions import playback, posing
 from app.editor.poses import putting
 from app.editor.project import Project
 from app.editor.session import CopiedKeys, Session, with_project
@@ -17,21 +17,36 @@ COPYING = Kind("Copying a pose", "The pose could not be copied", "hand")
 
 @with_project
 def copy(session: Session, project: Project) -> None:
-    """Copy the chosen keys, or else the pose that is shown; one on its way comes to rest first."""
-    keys = putting.shown_keys(project)
-    if len(project.chosen_of) > 1 or (project.chosen_of and not project.chosen):
-        figures = [(project.document.figure(i), at) for i, at in project.chosen_of.items()]
-        session.copied = tuple(
-            CopiedKeys(figure, tuple(map(figure.key, sorted(at)))) for figure, at in figures
-        )
-    elif keys:
-        _copy(session, project.figure, keys)
+    """Copy the pose at the playhead or, in the timeline, the keys that are chosen there."""
+    if copies_keys(session, project):
+        copy_keys(session)
     else:
-        putting.find_pose(session, project, COPYING, partial(_copy, session))
+        frame = playback.current_frame(session, project)
+        putting.take_pose(session, project, COPYING, partial(_copy, session, frame))
 
 
-def _copy(session: Session, figure: Figure, keys: tuple[Keyframe, ...]) -> None:
-    session.copied = (CopiedKeys(figure, keys),)
+def copies_keys(session: Session, project: Project) -> bool:
+    """Tell whether keys would be copied, and not the pose at the playhead."""
+    return session.in_timeline and bool(project.chosen_of)
+
+
+@with_project
+def copy_keys(session: Session, project: Project) -> None:
+    """Copy the chosen keys; poses on their way come to rest in the copies, too."""
+    figures = [(project.document.figure(i), at) for i, at in project.chosen_of.items()]
+    keys = [CopiedKeys(figure, tuple(map(figure.key, sorted(at)))) for figure, at in figures]
+    _take(session, keys)
+
+
+def _copy(session: Session, frame: int, figure: Figure, pose: Pose) -> None:
+    _take(session, [CopiedKeys(figure, (Keyframe(frame=frame, pose=pose),))])
+
+
+def _take(session: Session, copied: Sequence[CopiedKeys]) -> None:
+    session.copied = tuple(copied)
+    first, *more = (key for each in copied for key in each.keys)
+    what = f"{1 + len(more)} keys" if more else f"Pose at frame {first.frame}"
+    session.tell(f"{what} copied.", topic="copy")
 
 
 def copied_for(session: Session, project: Project) -> Mapping[int, CopiedKeys]:

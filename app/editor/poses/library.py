@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from functools import partial
 
-from app.document import Figure, Keyframe, Target, pose_commands
+from app.document import Figure, Keyframe, Pose, Target, pose_commands
 from app.editor.actions import editing, playback, posing
 from app.editor.poses import putting
 from app.editor.project import PoseBlend, Project
@@ -16,20 +16,17 @@ KEEPING = Kind("Keeping a pose", "The pose could not be kept", "hand")
 
 @with_project
 def keep(session: Session, project: Project) -> None:
-    """Put the pose of the chosen key into the library, or else the one that is shown."""
-    keys = putting.shown_keys(project)
-    if keys:
-        _keep(session, project, project.figure, keys)
-    else:
-        putting.find_pose(session, project, KEEPING, partial(_keep, session, project))
+    """Put the pose at the playhead into the library."""
+    putting.take_pose(session, project, KEEPING, partial(_keep, session, project))
 
 
-def _keep(session: Session, project: Project, figure: Figure, keys: tuple[Keyframe, ...]) -> None:
+def _keep(session: Session, project: Project, figure: Figure, pose: Pose) -> None:
     if figure.domain is not project.figure.domain:
         session.tell("The pose was not kept: the shape changed meanwhile.")
         return
-    for key in putting.fitted(project, project.active, keys, figure.bounds):
-        editing.edit(session, pose_commands.keep_pose(project.active, key.pose))
+    taken = [Keyframe(frame=0, pose=pose)]
+    (key,) = putting.fitted(project, project.active, taken, figure.bounds)
+    editing.edit(session, pose_commands.keep_pose(project.active, key.pose))
     project.picked_pose = project.figure.library[-1].name
 
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 
 from app.document import Figure, Keyframe, Pose, key_commands
 from app.editor.actions import playback, posing
@@ -11,7 +12,7 @@ from app.editor.work import Kind
 from app.solving import Rig
 from engine.maps import Bounds, certify
 
-Putting = Callable[[Figure, tuple[Keyframe, ...]], None]
+Putting = Callable[[Figure, Pose], None]
 
 
 def put(
@@ -100,27 +101,11 @@ def _fitted(project: Project, figure: Figure, pose: Pose, bounds: Bounds) -> Pos
     return replace(pose, certificate=proven)
 
 
-def shown_keys(project: Project) -> tuple[Keyframe, ...]:
-    """Return the keys that are chosen, or else one with the pose that is shown.
-
-    There are none where an in-between is shown.
-    """
-    if project.chosen:
-        return tuple(project.figure.key(frame) for frame in sorted(project.chosen))
-    shown = project.puppet.shown
-    pose = project.unkeyed or (shown.pose if shown is not None else None)
-    return () if pose is None else (_as_key(pose),)
-
-
-def find_pose(session: Session, project: Project, kind: Kind, take: Putting) -> None:
-    """Let the worker find the pose that is nearest to the in-between that is shown."""
+def take_pose(session: Session, project: Project, kind: Kind, take: Putting) -> None:
+    """Hand over the pose at the playhead; for an in-between, the worker finds the nearest one."""
+    figure, pose = project.figure, posing.pose_here(session, project)
+    if pose is not None:
+        take(figure, pose)
+        return
     clip, frame = project.clip, playback.current_frame(session, project)
-
-    def fitted(pose: Pose) -> None:
-        take(clip.figure, (_as_key(pose),))
-
-    posing.fit_pose(session, project, clip, frame, fitted, kind=kind)
-
-
-def _as_key(pose: Pose) -> Keyframe:
-    return Keyframe(frame=0, pose=pose)
+    posing.fit_pose(session, project, clip, frame, partial(take, figure), kind=kind)

@@ -38,8 +38,18 @@ def type_in(session: Session, characters: str) -> None:
 
 def end(session: Session, place: complex) -> None:
     """End what the pointer does where it is."""
+    _end(session, place, insists=False)
+
+
+def end_insisting(session: Session, place: complex) -> None:
+    """End what the pointer does where it is; what it pulls is wanted there, however far that is."""
+    _end(session, place, insists=True)
+
+
+def _end(session: Session, place: complex, *, insists: bool) -> None:
     gesture, session.pointer = session.pointer, None
     if gesture:
+        session.insists = insists
         gesture.end(session, place)
 
 

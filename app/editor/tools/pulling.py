@@ -11,6 +11,7 @@ from app.editor.session import EntryMark, Hint, Mark, Session
 from app.editor.tools.entry import TypedWay
 from app.editor.tools.tool import Spot, Tool
 from app.editor.work import Start
+from engine.deform import Hand
 
 
 @dataclass(slots=True, kw_only=True, eq=False)
@@ -19,6 +20,8 @@ class Pulling(Tool):
 
     start: complex  # where it was pressed
     handles: frozenset[int] = frozenset()  # those that are pulled, by id
+    taken: int | None = None  # the one that was there already under the pointer
+    at_target: bool = False  # whether they are pulled from where they are wanted
     entry: TypedWay = field(default_factory=TypedWay)  # what is typed meanwhile
     place: complex | None = None  # where it is; None before it has moved
     moved: bool = False  # whether it has gone farther than a click may, or a way was typed
@@ -42,7 +45,9 @@ class Pulling(Tool):
         if spot.handle is not None:
             if spot.alt:
                 return None
-            pulling = cls(project=project, start=spot.place)
+            pulling = cls(
+                project=project, start=spot.place, taken=spot.handle, at_target=spot.at_target
+            )
             if spot.handle not in project.selected:
                 editing.select(session, project.figure.together_with(spot.handle))
             pulling.handles = _movable(project)
@@ -73,14 +78,24 @@ class Pulling(Tool):
         way = self.entry.way((self.start if self.place is None else self.place) - self.start)
 
         def as_far(start: Start, targets: Mapping[int, Target]) -> Mapping[int, Target]:
+            wanted = {i: target.position for i, target in start.targets.items()}
+            places = wanted if self.at_target else start.places
             known = pulled & targets.keys()
-            return {i: replace(targets[i], position=start.places[i] + way) for i in known}
+            return {i: replace(targets[i], position=places[i] + way) for i in known}
 
-        posing.pull(session, as_far, gesture=self)
+        posing.pull(session, as_far, gesture=self, hand=Hand(pulled))
 
     def end(self, session: Session, _: complex) -> None:
-        """Let the handles go."""
-        posing.let_go(session)
+        """Let the handles go where they have come to, or keep the wish.
+
+        A click selects the one that it was on alone, or its group.
+        """
+        if session.insists:
+            posing.insist(session)
+        else:
+            posing.let_go(session)
+        if not self.moved and self.taken is not None:
+            editing.select(session, self.project.figure.together_with(self.taken))
 
     @property
     def marks(self) -> tuple[Mark, ...]:
@@ -94,7 +109,11 @@ class Pulling(Tool):
     @property
     def ways(self) -> tuple[Hint, ...]:
         """What can be done until it ends."""
-        return (Hint("type", "a number of pixels"), Hint("X or Y", "to keep to an axis"))
+        return (
+            Hint("type", "a number of pixels"),
+            Hint("X or Y", "to keep to an axis"),
+            Hint("let go", "to keep the wish beyond its reach", "alt"),
+        )
 
 
 def _movable(project: Project) -> frozenset[int]:

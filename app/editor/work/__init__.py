@@ -14,4 +14,5 @@ from app.editor.work.pull import (
     Start as Start,
     WishFrom as WishFrom,
     targets_of as targets_of,
+    wherever as wherever,
 )

@@ -2,12 +2,14 @@
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
+from functools import partial
 
 import numpy as np
 
 from app.document import Clip, Figure, History, Pose, Settled, Target
 from app.editor.work.promise import Promise
 from app.solving import Drag
+from engine.deform import Hand
 
 # Newton steps towards one wish; a drag comes to rest in far fewer.
 MOST_STEPS = 600
@@ -76,8 +78,12 @@ class Pull(Promise):
         None as long as the in-between that it begins with is not worked out.
     before : Pose, optional
         The one that the key or the frame had; None for a new key.
+    is_keyed : bool
+        Whether a key has the pose, as the person wanted when it began.
     wishes : dict of object to WishFrom
         By the gestures that they are of, in order; each knows what was wished before it.
+    hands : dict of object to Hand
+        By the gestures that pull handles, told by their ids, until the pose has come to rest.
     targets : mapping of int to Target, optional
         What all of that comes to; None as long as there is no start.
     position : int
@@ -86,8 +92,8 @@ class Pull(Promise):
         Whether the hand still pulls.
     drag : Drag, optional
         Where the solver is; None until its first steps are done.
-    solved : mapping of int to Target, optional
-        The targets that these steps were towards.
+    solved : tuple of mapping of int to Target and tuple of Hand, optional
+        The targets that these steps were towards, and the hands that pulled.
     steps : int
         Newton steps towards the present targets.
     newest : Pose, optional
@@ -108,12 +114,14 @@ class Pull(Promise):
     gesture: object
     start: Start | None
     before: Pose | None
+    is_keyed: bool
     wishes: dict[object, WishFrom] = field(default_factory=dict)
+    hands: dict[object, Hand] = field(default_factory=dict)
     targets: Mapping[int, Target] | None = None
     position: int = 0
     is_held: bool = True
     drag: Drag | None = None
-    solved: Mapping[int, Target] | None = None
+    solved: tuple[Mapping[int, Target], tuple[Hand, ...]] | None = None
     steps: int = 0
     newest: Pose | None = None
     kept: Pose | None = None
@@ -121,15 +129,39 @@ class Pull(Promise):
     ready: Pose | None = None
     is_left: bool = False
 
-    def wish(self, gesture: object, wish: WishFrom) -> None:
+    def wish(self, gesture: object, wish: WishFrom, hand: Hand | None = None) -> None:
         """Wish something else of a gesture, in place of what it wished before."""
         self.wishes[gesture] = wish
+        if hand is not None:
+            self.hands[gesture] = hand
         self.aim()
 
     def forget(self, gesture: object) -> None:
         """Take back what a gesture wished."""
         del self.wishes[gesture]
+        self.hands.pop(gesture, None)
         self.aim()
+
+    def insist(self) -> None:
+        """Let what hands pulled be wanted where they let go, however far that is."""
+        self.hands = {}
+        self.steps = 0
+
+    def settle_for(self, places: Mapping[int, Target]) -> None:
+        """Let what hands pulled be wanted at these places from now on."""
+        targets = self.targets or {}
+        moves = {i: place.position - targets[i].position for i, place in places.items()}
+        for gesture in self.hands:
+            self.wishes[gesture] = partial(_moved, self.wishes[gesture], moves)
+        self.hands = {}
+        self.aim()
+
+    @property
+    def reached(self) -> Mapping[int, Target]:
+        """Where handles that hands pull would be wanted if these let go now, by their ids."""
+        if self.drag is None or self.targets is None or not self.hands:
+            return {}
+        return self.drag.let_go(self.targets, tuple(self.hands.values()))
 
     def aim(self) -> None:
         """Work out the targets anew."""
@@ -146,12 +178,14 @@ class Pull(Promise):
     def is_at_rest(self) -> bool:
         """Whether the solver has found the pose, and moves nothing any more."""
         is_over = self.drag is not None and self.drag.is_over
-        return self.steps >= MOST_STEPS or (is_over and self.solved == self.targets)
+        towards = (self.targets, tuple(self.hands.values()))
+        return self.steps >= MOST_STEPS or (is_over and self.solved == towards)
 
     @property
     def is_settled(self) -> bool:
-        """Whether the document has the pose at rest."""
-        return self.is_at_rest and self.kept is self.newest
+        """Whether the document has the pose at rest, and hands that let go have given in."""
+        is_done = self.is_held or not self.hands
+        return self.is_at_rest and self.kept is self.newest and is_done
 
     def is_in(self, history: History) -> bool:
         """Tell whether the document, as it is now, has a pose of it, or is to have the first."""
@@ -186,6 +220,23 @@ class Pull(Promise):
             return replace(pose, targets=targets)
 
         return of
+
+
+def _moved(
+    wish: WishFrom, moves: Mapping[int, complex], start: Start, targets: Mapping[int, Target]
+) -> Mapping[int, Target]:
+    """Return what is wished, moved as far as hands have given in."""
+    return {
+        i: replace(wished, position=wished.position + moves.get(i, 0.0))
+        for i, wished in wish(start, targets).items()
+    }
+
+
+def wherever(
+    wishes: Mapping[int, Target], _: Start, targets: Mapping[int, Target]
+) -> Mapping[int, Target]:
+    """Return wishes that do not depend on where a pull begins."""
+    return {i: wish for i, wish in wishes.items() if i in targets}
 
 
 def targets_of(start: Start, wishes: Iterable[WishFrom]) -> Mapping[int, Target]:

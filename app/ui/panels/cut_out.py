@@ -93,6 +93,12 @@ def _background(session: Session, look: Look, project: Project, cut_out: CutOut)
         "removes vivid colours, but not white, grey and black, which eyes and paper have too; a "
         "click below changes one of them"
     )
+    if project.puppet.cut.value.leftover is not None:
+        small(
+            look,
+            "Parts inside have the background's colour and stay: tinted blue while a tool is in "
+            "hand.",
+        )
     if cut_out.mask is not None:
         small(look, "A mask was loaded: it takes the place of all this.")
     return actions

@@ -26,7 +26,7 @@ class Binding:
     # asked.
     needs_project: bool = True
     # What it would do now, in words that follow the label in its menu.
-    detail: Callable[[Session, Project], str | None] | None = None
+    detail: Callable[[Session, Project], str] | None = None
     possible: Test | None = None  # whether it can be done now; always where there is none
     active: Callable[[Session], object] | None = None  # whether what it switches is on
     repeats: bool = False  # whether it is done again while the key is held
@@ -43,8 +43,8 @@ class Binding:
     def title(self, session: Session) -> str:
         """Return the text of its menu entry now; its id is the label."""
         project = session.project
-        detail = self.detail(session, project) if self.detail and project else None
-        return f"{self.label} “{detail}”###{self.label}" if detail else self.label
+        detail = self.detail(session, project) if self.detail and project else ""
+        return f"{self.label} {detail}###{self.label}" if detail else self.label
 
     def is_possible(self, session: Session) -> bool:
         """Tell whether it can be done now."""

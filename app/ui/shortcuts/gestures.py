@@ -16,6 +16,7 @@ class Gesture:
 GESTURES = (
     Gesture("Click the shape", "Add a handle"),
     Gesture("Drag a handle", "Pose"),
+    Gesture(with_key(ALT, "let go of a handle"), "Want it there, however far"),
     Gesture("Drag the ring around a handle", "Turn the shape there"),
     Gesture(with_key(ALT, "drag a handle"), "Turn the shape there"),
     Gesture(with_key(CTRL, "turn"), "Turn by steps of 15°"),

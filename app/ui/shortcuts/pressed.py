@@ -3,7 +3,7 @@
 from imgui_bundle import imgui
 
 from app.editor import Action, Session, do
-from app.editor.actions import playback, posing
+from app.editor.actions import playback, posing, viewing
 from app.ui.shortcuts.keys import CTRL
 from app.ui.shortcuts.table import BINDINGS
 
@@ -17,7 +17,8 @@ def pressed(session: Session) -> list[Action]:
         return []
     if _close_menu() or imgui.get_io().want_text_input:
         return []
-    actions = []
+    # First, as what is copied or selected depends on it.
+    actions = _attend(session)
     for binding in BINDINGS.values():
         # What is typed during a drag is for the tool in hand.
         keys = [key for key in binding.chords() if session.pointer is None or not _is_typed(key)]
@@ -27,6 +28,17 @@ def pressed(session: Session) -> list[Action]:
         if any(imgui.shortcut(chord, flags) for chord in keys) and binding.is_possible(session):
             actions.append(binding.action)
     return actions + _nudges(session) + _space(session)
+
+
+def _attend(session: Session) -> list[Action]:
+    """Note whether the timeline or the drawing has the pointer, or else the focus."""
+    context = imgui.get_current_context()
+    for window in (context.hovered_window, context.nav_window):
+        title = window.root_window.name.rpartition("###")[2] if window is not None else ""
+        if title in {"Timeline", "Viewport"}:
+            in_timeline = title == "Timeline"
+            return [do(viewing.attend, in_timeline)] if in_timeline != session.in_timeline else []
+    return []
 
 
 def _is_typed(key: int) -> bool:

@@ -20,15 +20,33 @@ from app.editor.actions import (
     viewing,
 )
 from app.editor.poses import copying, flipping, library
+from app.ui.panel import is_in_front
 from app.ui.shortcuts.binding import Binding
 
 
-def _undo_label(_: Session, project: Project) -> str | None:
-    return project.history.undo_label
+def _undo_label(_: Session, project: Project) -> str:
+    label = project.history.undo_label
+    return "" if label is None else f"“{label}”"
 
 
-def _redo_label(_: Session, project: Project) -> str | None:
-    return project.history.redo_label
+def _redo_label(_: Session, project: Project) -> str:
+    label = project.history.redo_label
+    return "" if label is None else f"“{label}”"
+
+
+def _copied(session: Session, project: Project) -> str:
+    count = project.count_chosen if copying.copies_keys(session, project) else 0
+    return f"{count} keys" if count > 1 else "pose"
+
+
+def _all(session: Session, _: Project) -> str:
+    return "keys" if session.in_timeline else "handles"
+
+
+def _can_deselect(session: Session, project: Project) -> bool:
+    """Tell whether something is selected, and nothing is under way that Esc ends first."""
+    in_hand = (session.pointer, session.cutting, project.timing.gesture)
+    return in_hand == (None, None, None) and bool(project.selected or project.chosen_of)
 
 
 def _selected(_: Session, project: Project) -> bool:
@@ -64,10 +82,22 @@ def _brushes(session: Session, _: Project) -> bool:
 @with_project
 def _rename_layer(session: Session, project: Project) -> None:
     """Ask for the name of the layer that is posed, in the list of layers."""
-    for panel in hello_imgui.get_runner_params().docking_params.dockable_windows:
-        if panel.label.endswith("###Layers"):
-            panel.focus_window_at_next_frame = True
+    _bring_to_front("Layers")
     layering.ask_name(session, project.active)
+
+
+def _export(session: Session) -> None:
+    """Show what the export makes; where that is seen already, ask where to and begin."""
+    if _bring_to_front("Export"):
+        exporting.ask(session)
+
+
+def _bring_to_front(title: str) -> bool:
+    """Show a panel; return whether it was in front already."""
+    for panel in hello_imgui.get_runner_params().docking_params.dockable_windows:
+        if panel.label.endswith(f"###{title}"):
+            panel.focus_window_at_next_frame = True
+    return is_in_front(title)
 
 
 def _overlay(label: str, name: OverlayName, keys: str, **more: Any) -> Binding:
@@ -89,7 +119,7 @@ MENUS: dict[str, dict[str, Binding]] = {
         "open": Binding("Open…", do(files.ask_open), "Ctrl+O", needs_project=False),
         "save": Binding("Save", do(saving.save), "Ctrl+S", parted=True),
         "save as": Binding("Save as…", do(saving.save_as), "Ctrl+Shift+S"),
-        "export": Binding("Export…", do(exporting.ask), "Ctrl+E", parted=True),
+        "export": Binding("Export…", do(_export), "Ctrl+E", parted=True),
         "export again": Binding("Export again", do(exporting.repeat), "Ctrl+Shift+E"),
         "copy picture": Binding("Copy picture", do(exporting.copy_picture), "Ctrl+Shift+C"),
         "unsaved work": Binding(
@@ -115,10 +145,8 @@ MENUS: dict[str, dict[str, Binding]] = {
             repeats=True,
             detail=_redo_label,
         ),
-        "copy pose": Binding("Copy pose", do(copying.copy), "Ctrl+C", parted=True),
-        "paste pose": Binding(
-            "Paste pose", do(copying.paste), "Ctrl+V", possible=copying.copied_for
-        ),
+        "copy": Binding("Copy", do(copying.copy), "Ctrl+C", parted=True, detail=_copied),
+        "paste": Binding("Paste", do(copying.paste), "Ctrl+V", possible=copying.copied_for),
         "paste flipped": Binding(
             "Paste flipped",
             do(flipping.paste),
@@ -146,7 +174,10 @@ MENUS: dict[str, dict[str, Binding]] = {
             icon=icons.ICON_FA_PLUS,
             hint="Put this pose into the library of poses",
         ),
-        "select all": Binding("Select all handles", do(editing.select_all), "Ctrl+A", parted=True),
+        "select all": Binding(
+            "Select all", do(editing.select_all), "Ctrl+A", parted=True, detail=_all
+        ),
+        "deselect": Binding("Deselect", do(editing.deselect), "Escape", possible=_can_deselect),
         "cut out": Binding(
             "Cut out by a brush",
             do(cutting.begin_or_swap),
@@ -187,7 +218,7 @@ MENUS: dict[str, dict[str, Binding]] = {
             "Suggest handles",
             do(posing.suggest_handles),
             icon=icons.ICON_FA_WAND_MAGIC_SPARKLES,
-            hint="Put handles at the tips of limbs and in the middle of the body",
+            hint="Put handles on body and head and at tips and joints of limbs, each with a name",
         ),
         "pin here": Binding(
             "Pin here",

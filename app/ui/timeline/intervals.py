@@ -93,12 +93,14 @@ def _draw_still(track: Track) -> None:
 def _interval(track: Track, bar: _Bar, left: float, right: float) -> list[Action]:
     actions: list[Action] = []
     low, high = ImVec2(left + 1, track.bar_top), ImVec2(right - 1, track.bar_bottom)
-    clicked = track.button(bar.name, low, high)
+    clicked = track.button(bar.name, low, high, right=True)
     popup = f"easing {bar.key.frame}"
     if is_pressed():
         actions += begin_box(track)
     if clicked and is_plain_click():
         imgui.open_popup(popup)
+    if imgui.is_item_clicked(imgui.MouseButton_.right):
+        imgui.open_popup("menu of track")
     easing = bar.key.easing
     name = NAMES.get(easing.name, easing.name)
     is_open = imgui.is_popup_open(popup)

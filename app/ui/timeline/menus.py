@@ -5,6 +5,7 @@ from imgui_bundle import imgui
 from app.document import PRESETS, Keyframe, Passing
 from app.editor import Action, Project, Session, do
 from app.editor.actions import keys, playback
+from app.editor.poses import copying
 from app.ui.shortcuts import BINDINGS, bound_item
 from app.ui.style import Look, shortened, tip
 from app.ui.timeline.easing_curve import LABELS
@@ -32,6 +33,10 @@ def key_menu(track: Track, figure: int, key: Keyframe) -> list[Action]:
     delete = BINDINGS["delete"]
     if imgui.menu_item_simple(f"Delete{many}###Delete", delete.keys_in_words):
         actions.append(delete.action)
+    if imgui.menu_item_simple(f"Copy{many}###Copy", BINDINGS["copy"].keys_in_words):
+        actions.append(do(copying.copy_keys))
+    actions += _paste_items(track.session, key.frame)
+    imgui.separator()
     if imgui.menu_item_simple("Go to this key", "Click"):
         actions.append(do(playback.scrub, key.frame))
     if imgui.begin_menu("Passing"):
@@ -52,6 +57,12 @@ def key_menu(track: Track, figure: int, key: Keyframe) -> list[Action]:
     return actions
 
 
+def _paste_items(session: Session, frame: int) -> list[Action]:
+    """Draw what pastes at a frame, where the playhead goes then."""
+    pasted = [action for name in ("paste", "paste flipped") for action in bound_item(session, name)]
+    return [do(playback.scrub, frame), *pasted] if pasted else []
+
+
 def track_menu(track: Track) -> list[Action]:
     """Draw the menu of a place between the keys, if it is open."""
     actions: list[Action] = []
@@ -61,6 +72,7 @@ def track_menu(track: Track) -> list[Action]:
     frame = track.project.document.frames.clamp(round(track.frame(opened.x)))
     if imgui.menu_item_simple(f"Insert key at frame {frame}###Insert key"):
         actions.append(do(keys.insert_at, frame))
+    actions += _paste_items(track.session, frame)
     if imgui.menu_item_simple(f"Add marker at frame {frame}###Add marker"):
         actions.append(do(keys.add_marker, frame))
     imgui.separator()

@@ -106,14 +106,16 @@ def _go_on(track: Track) -> list[Action]:
     moves = [do(timeline_pointing.move, track.pointed, row)] if goes_on else []
     if imgui.is_mouse_down(imgui.MouseButton_.left):
         return [*moves, *_pull(track)] if goes_on else []
-    if not goes_on:
-        moves = _click(gesture)
+    if not was_dragged():
+        moves += _click(gesture)
     return [*moves, do(timeline_pointing.end)]
 
 
 def _click(gesture: TimeGesture) -> list[Action]:
     """Return what a press on something does that is let go where it was."""
     match gesture:
+        case Scrub():
+            return [do(editing.deselect_keys)]
         case KeyDrag(pressed=frame, copies=False):
             # The key alone, and its pose.
             return [do(editing.choose_keys, frozenset({frame})), do(playback.scrub, frame)]

@@ -46,7 +46,8 @@ def go_on(session: Session, look: Look, screen: Screen) -> list[Action]:
         actions.append(do(pointing.type_in, characters))
     is_entered = any(map(imgui.is_key_pressed, (imgui.Key.enter, imgui.Key.keypad_enter)))
     if is_entered or not imgui.is_mouse_down(imgui.MouseButton_.left):
-        actions.append(do(pointing.end, pointer))
+        end = pointing.end_insisting if io.key_alt else pointing.end
+        actions.append(do(end, pointer))
     return actions
 
 

@@ -55,24 +55,32 @@ def mark_all(
 
 
 def _handles(session: Session, project: Project, shown: Shown) -> list[HandleMark]:
+    figure, wishes = shown.clip.figure, unreached(project, shown)
+    return [
+        HandleMark(
+            place=_on(shown, place),
+            wish=_on(shown, wishes[handle.id]) if handle.id in wishes else None,
+            anchor=handle.position == figure.anchor,
+            selected=handle.id in project.selected,
+            hovered=handle.id == session.hovered,
+            locked=handle.locked,
+        )
+        for handle, place in zip(figure.handles, shown.handle_places.tolist(), strict=True)
+    ]
+
+
+def unreached(project: Project, shown: Shown) -> dict[int, complex]:
+    """Return where handles that have not arrived are wanted, by their ids."""
     figure, targets = shown.clip.figure, shown.pose.targets if shown.pose else {}
     if project.pull and project.pull.targets is not None:
         targets = project.pull.targets
-    marks = []
-    for handle, place in zip(figure.handles, shown.handle_places.tolist(), strict=True):
-        wish = targets.get(handle.id)
-        lags = wish is not None and falls_short(figure, abs(wish.position - place))
-        marks.append(
-            HandleMark(
-                place=_on(shown, place),
-                wish=_on(shown, wish.position) if lags and wish is not None else None,
-                anchor=handle.position == figure.anchor,
-                selected=handle.id in project.selected,
-                hovered=handle.id == session.hovered,
-                locked=handle.locked,
-            )
-        )
-    return marks
+    places = zip(figure.handles, shown.handle_places.tolist(), strict=True)
+    wanted = ((handle.id, targets.get(handle.id), place) for handle, place in places)
+    return {
+        identity: target.position
+        for identity, target, place in wanted
+        if target is not None and falls_short(figure, abs(target.position - place))
+    }
 
 
 def find_anchor(project: Project, shown: Shown) -> complex | None:

@@ -1,5 +1,6 @@
 """The drawing, and everything that the pointer does to it."""
 
+from dataclasses import replace
 from functools import partial
 from typing import NamedTuple
 
@@ -15,6 +16,7 @@ from app.ui.viewport.cut_view import draw_brush
 from app.ui.viewport.gesture import draw_coming_strokes, go_on
 from app.ui.viewport.grips import draw_axis, draw_ring, find_ring, lay_axis
 from app.ui.viewport.hints import draw_badges, draw_cutting, hint_at
+from app.ui.viewport.marks import unreached
 from app.ui.viewport.screen import GRIP, Screen
 from app.ui.viewport.split_view import SplitTextures, divide, draw_divider, draw_pictures
 
@@ -47,6 +49,7 @@ def draw(session: Session, look: Look, project: Project, pictures: SplitTextures
     on_canvas, ring = imgui.is_item_hovered(), find_ring(session, screen)
     on_ring = on_canvas and handles.hovered is None and ring is not None and ring.is_pointed(look)
     spot = screen.spot(look, handles.hovered, on_ring=on_ring, on_axis=axis.is_hot)
+    spot = replace(spot, at_target=handles.at_target)
     if handles.is_pressed or axis.is_pressed or _is_canvas_pressed():
         actions.append(do(pointing.press, spot))
     actions += _navigate(screen)
@@ -100,28 +103,34 @@ class _Handles(NamedTuple):
     """The handle under the pointer, whether it was pressed, and what menus of handles ask for."""
 
     hovered: int | None
+    at_target: bool  # whether the pointer is where that is wanted, and not where it is
     is_pressed: bool
     actions: list[Action]
 
 
 def _lay_handles(session: Session, look: Look, screen: Screen) -> _Handles:
-    """Lay a button over each handle."""
-    hovered, pressed, actions = None, False, list[Action]()
+    """Lay a button over each handle, and over where it is wanted if it has not arrived there."""
+    hovered, at_target, pressed, actions = None, False, False, list[Action]()
     is_hidden = not session.overlays.handles or session.cutting is not None
     if is_hidden or screen.project.playhead.since is not None:
-        return _Handles(hovered, pressed, actions)
-    radius = ImVec2(GRIP * look.em, GRIP * look.em)
-    handles = zip(screen.shown.clip.figure.handles, screen.shown.handle_places, strict=True)
+        return _Handles(hovered, at_target, pressed, actions)
+    radius, shown = ImVec2(GRIP * look.em, GRIP * look.em), screen.shown
+    identities = [handle.id for handle in shown.clip.figure.handles]
+    places = zip(identities, shown.handle_places.tolist(), strict=True)
+    grips = [("target", *target) for target in unreached(screen.project, shown).items()]
+    grips += [("handle", *place) for place in places]
     # The one that is drawn last lies on top.
-    for handle, place in reversed(list(handles)):
-        imgui.set_cursor_screen_pos(screen.point(complex(place)) - radius)
-        imgui.invisible_button(f"handle {handle.id}", radius * 2, LEFT_OR_RIGHT)
-        hovered = handle.id if in_hand() else hovered
+    for what, identity, place in reversed(grips):
+        imgui.set_cursor_screen_pos(screen.point(place) - radius)
+        imgui.invisible_button(f"{what} {identity}", radius * 2, LEFT_OR_RIGHT)
+        if in_hand():
+            hovered, at_target = identity, what == "target"
         pressed = pressed or is_pressed()
         if session.pointer is None and imgui.is_item_clicked(imgui.MouseButton_.right):
-            imgui.open_popup(f"menu of handle {handle.id}")
-        actions += _menu(screen, handle.id)
-    return _Handles(hovered, pressed, actions)
+            imgui.open_popup(f"menu of handle {identity}")
+    for identity in identities:
+        actions += _menu(screen, identity)
+    return _Handles(hovered, at_target, pressed, actions)
 
 
 def _menu(screen: Screen, identity: int) -> list[Action]:

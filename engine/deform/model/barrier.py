@@ -16,7 +16,7 @@ import numpy as np
 
 from engine.arrays import Floats, Indices, freeze
 from engine.deform.model.energy import Radial
-from engine.maps import Limits
+from engine.maps import Boundary, Limits
 
 # A dual variable stays within this factor of weight / c. Measured: with much more, samples whose
 # dual variable has all but vanished stop every step by curvature that the Hessian does not see.
@@ -34,8 +34,13 @@ class Walls(NamedTuple):
 
     @classmethod
     def around(cls, limits: Limits, count: int) -> "Walls":
-        """Return the same walls for all of `count` samples."""
+        """Return the same walls for all of `count` samples, or those of each."""
         return cls(*(np.full(count, x) for x in (limits.k, limits.sigma_a, limits.sigma_b)))
+
+    @classmethod
+    def at(cls, limits: Limits, boundary: Boundary) -> "Walls":
+        """Return walls at the limits of a boundary's samples."""
+        return cls.around(limits.at(boundary), len(boundary.points))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -134,23 +139,6 @@ class Barrier:
         slopes[0] = self.walls.k
         slopes[2] = -1.0
         return slopes
-
-
-def with_walls_between(walls: Walls, segments: Indices, ends: Indices) -> Walls:
-    """Return walls with those of a sample more in each of some segments: the nearer of both ends'.
-
-    Parameters
-    ----------
-    walls : Walls
-    segments, ends : intp, shape (s,)
-        The samples at which these segments start, ascending, and end.
-    """
-    k, sigma_a, sigma_b = walls
-    return Walls(
-        k=np.insert(k, segments + 1, np.minimum(k[segments], k[ends])),
-        sigma_a=np.insert(sigma_a, segments + 1, np.minimum(sigma_a[segments], sigma_a[ends])),
-        sigma_b=np.insert(sigma_b, segments + 1, np.maximum(sigma_b[segments], sigma_b[ends])),
-    )
 
 
 def with_samples_between(duals: Floats, segments: Indices, ends: Indices) -> Floats:

@@ -58,7 +58,7 @@ def projected_hessian(objective: Objective, jet: Jet, radial: Radial) -> Floats:
     samples, entries, hard = _quadrature(objective, radial)
     last = len(samples) - hard
     calm = _Quadrature(samples[:last], entries[:, :last])
-    hessian = objective.handles.hessian.copy()
+    hessian = _held_hessian(objective, jet).copy()
     _add(
         objective,
         hessian,
@@ -81,7 +81,7 @@ def single_hessian(objective: Objective, jet: Jet, radial: Radial) -> Singles | 
     quadrature = _quadrature(objective, radial)
     if quadrature.hard or objective.boundary.holes or len(objective.wish.positions) < 2:
         return None
-    hessian = objective.handles.hessian.astype(np.float32)
+    hessian = _held_hessian(objective, jet).astype(np.float32)
     further = [*_turning_roots(objective, jet), _damping_root(objective, jet, quadrature)]
     _add(objective, hessian, jet, quadrature, further, single=True)
     return hessian
@@ -98,7 +98,7 @@ def hessian_product(objective: Objective, jet: Jet, radial: Radial, change: Jet)
     around_a = np.maximum(radial.around_a, 0.0)
     by_f = radial.aa * f.real + radial.ab * g.real - 1j * around_a * f.imag
     by_g = radial.ab * f.real + radial.bb * g.real - 1j * radial.around_b * g.imag
-    pull = 2.0 * objective.handles.stiffness * change.positions
+    pull = 2.0 * objective.handles.stiffness * objective.held_change(jet, change.positions)
     rows, coordinates = objective.boundary.basis_derivatives, objective.handles.basis_coordinates
     by_phi = (by_f * frame_f) @ rows + pull.conj() @ coordinates
     by_psi = (by_g * frame_g) @ rows + pull @ coordinates
@@ -248,6 +248,12 @@ def _quadrature(objective: Objective, radial: Radial) -> "_Quadrature":
         np.hstack([summed[:, some], alone]),
         int(np.count_nonzero(hard)),
     )
+
+
+def _held_hessian(objective: Objective, jet: Jet) -> Floats:
+    """Return the Hessian of the energy of the handles' positions, (u, u)."""
+    rows, held = objective.giving_rows(jet), objective.handles.hessian
+    return held - rows.T @ rows if len(rows) else held
 
 
 def _damping_root(objective: Objective, jet: Jet, calm: "_Quadrature") -> Complexes:

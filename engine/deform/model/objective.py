@@ -40,6 +40,9 @@ class Objective:
         One sample in so many enters the Hessian; more than one make a sketch of it, two to three
         times faster. Its steps overshoot in directions that show between the samples only, unless
         products with the Hessian over all samples mend them.
+    secant : bool
+        Whether hands that give in are as stiff along their pull as across, where the Hessian has
+        nothing: steps then lead no farther than to their targets.
     """
 
     boundary: Boundary
@@ -47,6 +50,7 @@ class Objective:
     wish: Wish
     barrier: Barrier | None = None
     stride: int = 1
+    secant: bool = False
 
     @cached_property
     def turning(self) -> Booleans:
@@ -99,8 +103,11 @@ class Objective:
     def energy(self, jet: Jet) -> float:
         """Return the objective without its barrier."""
         with np.errstate(over="ignore", invalid="ignore"):
-            pull = np.abs(jet.positions - self.wish.positions) ** 2
+            pull = np.abs(self.wish.errors(jet.positions)) ** 2
             value = self.boundary.weights @ jet.density + self.handles.stiffness @ pull
+            if self.wish.hands is not None:
+                lacking = jet.positions - self.wish.positions
+                value += self.wish.hands.work(self.wish.hands.given(lacking))
             if self.turning.any():
                 value += self.turning_stiffness @ self.turning_angles(jet) ** 2
         return np.inf if np.isnan(value) else float(value)
@@ -126,7 +133,7 @@ class Objective:
 
     def gradient(self, jet: Jet, radial: Radial) -> Floats:
         """Return the gradient (u,)."""
-        pull = 2.0 * self.handles.stiffness * (jet.positions - self.wish.positions)
+        pull = 2.0 * self.handles.stiffness * self.wish.errors(jet.positions)
         by_phi = pull.conj() @ self.handles.basis_coordinates
         by_psi = pull @ self.handles.basis_coordinates
         if self.turning.any():
@@ -136,6 +143,32 @@ class Objective:
         by_handles = self.by_unknowns(by_phi, by_psi)
         gradient: Floats = by_handles + self.sampled_gradient(jet, radial.a, radial.b_per_b)
         return gradient
+
+    def held_change(self, jet: Jet, changes: Complexes) -> Complexes:
+        """Return by how much more the handles (h,) lack after they have moved, to first order."""
+        hands = self.wish.hands
+        if hands is None:
+            return changes
+        directions, across = hands.bend(jet.positions - self.wish.positions)
+        along = across if self.secant else 1.0
+        moves = directions.conj() * (hands.shares @ changes)
+        given = directions * (along * moves.real + 1j * across * moves.imag)
+        return changes - hands.at_handles(given)
+
+    def giving_rows(self, jet: Jet) -> Floats:
+        """Return the rows (s, u) whose Gram matrix hands take from the Hessian of the handles."""
+        hands = self.wish.hands
+        if hands is None:
+            return np.empty((0, len(self.handles.hessian)))
+        directions, across = hands.bend(jet.positions - self.wish.positions)
+        rows = []
+        for hand in np.flatnonzero(across):
+            means = hands.shares[hand] @ self.handles.basis_coordinates
+            stiffness, share = 2.0 * hands.stiffness[hand], across[hand]
+            for turn, part in ((1.0, share if self.secant else 1.0), (1.0j, share)):
+                pull = turn * directions[hand] * np.sqrt(stiffness * part)
+                rows.append(self.by_unknowns(pull.conj() * means, pull * means))
+        return np.array(rows).reshape(-1, len(self.handles.hessian))
 
     def sampled_gradient(
         self, jet: Jet, by_a: Floats, b_per_b: Floats, samples: Indices | slice = slice(None)

@@ -7,7 +7,7 @@ Imports: `engine.maps`, and the energy, barrier, handles and Newton models of `e
 
 from engine.deform.rest.continuation import advance as advance, begin_search as begin_search
 from engine.deform.rest.optimality import ActiveBound as ActiveBound
-from engine.deform.rest.rungs import exceeds_first_rung as exceeds_first_rung
+from engine.deform.rest.rungs import exceed_first_rung as exceed_first_rung
 from engine.deform.rest.search import (
     MOST_STEPS as MOST_STEPS,
     OPTIMAL as OPTIMAL,

@@ -90,7 +90,8 @@ def begin_search(
     jet = objective.jet(*harmonic_map.columns)
     energy = objective.energy(jet)
     reach = FIRST_REACH if way is Way.WIDENING else inf
-    own = Walls.around(inside, len(jet.a))
+    own = rung(Walls.at(inside, objective.boundary), reach)
+    outermost = Walls.at(limits, objective.boundary)
     return Search(
         handles=objective.handles,
         wish=objective.wish,
@@ -99,9 +100,9 @@ def begin_search(
         certificate=certificate,
         boundary=objective.boundary,
         limits=limits,
-        inside=own,
+        within=inside,
         reach=reach,
-        walls=walls_around(rung(own, reach), limits, jet.a, jet.b),
+        walls=walls_around(own, outermost, jet.a, jet.b),
         weight=HERE_PER_ENERGY * energy if way is Way.HERE else _first_weight(energy),
         energy=energy,
     )
@@ -144,6 +145,7 @@ def _objective(search: Search) -> tuple[Objective, Barrier, Jet]:
         handles=search.handles,
         wish=search.wish,
         stride=STRIDE if search.gain > SKETCHED * search.energy else 1,
+        secant=search.wish.hands is not None and search.wish.hands.hold_all,
     )
     jet = objective.jet(*search.map.columns)
     barrier = Barrier(walls=search.walls, weight=search.weight, duals=search.duals)
@@ -221,7 +223,8 @@ def widened(search: Search, jet: Jet) -> Search:
     """Return the search with its walls on the next rung."""
     weight = max(LOWER * search.weight, WIDENED_PER_ENERGY * search.energy)
     wider = replace(search, reach=next_reach(search.inside, search.reach), weight=weight)
-    walls = walls_around(wider.rung, wider.limits, jet.a, jet.b)
+    outermost = Walls.at(wider.limits, wider.boundary)
+    walls = walls_around(wider.rung, outermost, jet.a, jet.b)
     return replace(wider, walls=walls)
 
 

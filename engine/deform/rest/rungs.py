@@ -10,17 +10,15 @@ from math import exp, inf, tanh
 import numpy as np
 
 from engine.deform.model import Walls
-from engine.maps import Limits
 
 # The first rung; each next one is this many times as wide.
 FIRST_REACH = 0.35
 WIDER = 1.4
 
 
-def exceeds_first_rung(limits: Limits) -> bool:
-    """Tell whether limits are wider than the first rung."""
-    first = rung(Walls.around(limits, 1), FIRST_REACH)
-    return not is_same(first, Walls.around(limits, 1))
+def exceed_first_rung(walls: Walls) -> bool:
+    """Tell whether walls are wider than the first rung."""
+    return not is_same(rung(walls, FIRST_REACH), walls)
 
 
 def rung(inside: Walls, reach: float) -> Walls:

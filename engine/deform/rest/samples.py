@@ -11,9 +11,9 @@ from dataclasses import replace
 import numpy as np
 
 from engine.arrays import Floats, Indices
-from engine.deform.model import MARGIN, Jet, Walls, with_samples_between, with_walls_between
+from engine.deform.model import MARGIN, Jet, Walls, with_samples_between
 from engine.deform.rest.search import Search
-from engine.maps import Enclosures, Limits
+from engine.maps import Enclosures
 
 # The wall of a sample that is beyond them stands this part of its way to the bound farther out.
 OUTWARDS = 0.1
@@ -25,7 +25,7 @@ BULGE_PER_MARGIN = 0.9
 MOST_SAMPLES = 4
 
 
-def walls_around(inside: Walls, limits: Limits, a: Floats, b: Floats) -> Walls:
+def walls_around(inside: Walls, limits: Walls, a: Floats, b: Floats) -> Walls:
     """Return the inner walls, moved out a little where a sample is beyond or next to them."""
     k, sigma_a, sigma_b = b / a, a + b, a - b
     return Walls(
@@ -48,13 +48,14 @@ def resolved(search: Search, jet: Jet, enclosures: Enclosures, broken: Indices) 
     broken : Indices
         The segments where bounds were broken.
     """
-    boundary, limits = search.boundary, search.limits
+    boundary, limits = search.boundary, Walls.at(search.limits, search.boundary)
     a, b = jet.a, jet.b
     at_samples = np.array([b / a, a + b, b - a])
     ends = np.maximum(at_samples, at_samples[:, boundary.following])
     proven = np.array([enclosures.k, enclosures.sigma_a, -enclosures.sigma_b])
-    limit = np.array([[limits.k], [limits.sigma_a], [-limits.sigma_b]])
-    way = np.array([[limits.k], [limits.sigma_a - 1.0], [1.0 - limits.sigma_b]])
+    limit = np.array([limits.k, limits.sigma_a, -limits.sigma_b])
+    limit = np.maximum(limit, limit[:, boundary.following])
+    way = np.array([limits.k, limits.sigma_a - 1.0, 1.0 - limits.sigma_b])
     allowed = np.maximum(BULGE_PER_SLACK * (limit - ends), BULGE_PER_MARGIN * MARGIN * np.abs(way))
     # By how much each segment bulges more than it may.
     excess = ((proven - ends) / allowed).max(axis=0)
@@ -69,21 +70,14 @@ def resolved(search: Search, jet: Jet, enclosures: Enclosures, broken: Indices) 
     new = segments + np.arange(len(segments)) + 1
     alone = boundary.span.without_constant(search.map.coefficients)
     f, g = (finer.derivatives[new] @ alone).T
-    ends_of = boundary.following[segments]
-    search = replace(search, inside=with_walls_between(search.inside, segments, ends_of))
-    nearest = Walls(*(each[new] for each in search.rung))
-    walls = walls_around(nearest, limits, np.abs(f), np.abs(g))
     duals = search.duals
     if duals is not None:
-        duals = with_samples_between(duals, segments, ends_of)
-    return replace(
-        search,
-        boundary=finer,
-        walls=Walls(
-            *(
-                np.insert(old, segments + 1, its)
-                for old, its in zip(search.walls, walls, strict=True)
-            )
-        ),
-        duals=duals,
+        duals = with_samples_between(duals, segments, boundary.following[segments])
+    old, search = search.walls, replace(search, boundary=finer, duals=duals)
+    inside, outermost = (
+        Walls(*(each[new] for each in walls))
+        for walls in (search.rung, Walls.at(search.limits, finer))
     )
+    between = walls_around(inside, outermost, np.abs(f), np.abs(g))
+    walls = (np.insert(each, segments + 1, its) for each, its in zip(old, between, strict=True))
+    return replace(search, walls=Walls(*walls))

@@ -428,7 +428,7 @@ def test_what_could_not_be_written_again_is_refused(tmp_path, members, field, me
         ("figures/0/cage.npy", npy(np.zeros(12, complex))[:-1], "cut short"),
         ("figures/0/cage.npy", npy(np.zeros(12, complex)) + b"x", "cut short"),
         ("figures/0/cage.npy", npy(np.ones(2, complex)), "at least 3"),
-        ("figures/0/cage.npy", npy(np.ones(11, complex)), "cage does not run once"),
+        ("figures/0/cage.npy", npy(np.ones(11, complex)), "cage repeats a vertex"),
         ("figures/0/cage.npy", npy(np.full(12, complex("nan"))), "cage must be finite"),
         ("figures/0/outline.npy", npy(np.ones(12, complex)), "outline repeats a vertex"),
         ("figures/0/outline.npy", npy(np.array([0, 2, 2j, 1 + 2j, 0.5])), "crosses"),

@@ -190,7 +190,7 @@ def test_menus_messages_and_dialogs(window, tmp_path, check):
     def open_menu(robot):
         robot.set_ref("##MainMenuBar")
         robot.menu_action(OPEN, "Edit")
-        robot.mouse_move("//$FOCUSED/Copy pose")
+        robot.mouse_move("//$FOCUSED/###Copy")
 
     window.run(open_menu)
     check("menu")

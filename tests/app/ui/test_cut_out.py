@@ -1,5 +1,7 @@
 """Cutting out by hand in the window: brush, pipette, mask, holes, and how the mesh follows."""
 
+from dataclasses import replace
+
 import numpy as np
 import pictures
 import pytest
@@ -306,3 +308,66 @@ def test_a_click_opens_what_the_background_shows_through(window, tmp_path, colou
     path = tmp_path / "ring.lissom"
     save_project(path, project.document)
     assert not differences(project.document, load_project(path))
+
+
+@pytest.fixture
+def line_art(window, tmp_path):
+    """A thick black line around white paper, on white paper, and a small pocket in the line."""
+    x, y = pictures.plane(SIZE, SIZE)
+    radius = np.hypot(x - SIZE / 2, y - SIZE / 2)
+    line = (radius < 50) & (radius > 36) & (np.hypot(x - SIZE / 2, y - 17) > 1.5)
+    rgba = pictures.on_plain(pictures.painted(line, (20, 20, 20)), (255, 255, 255))
+    Image.fromarray(rgba).save(tmp_path / "line art.png")
+    return window.open(tmp_path / "line art.png")
+
+
+def pixel(window, place):
+    at = window.point(place)
+    return np.asarray(window.picture().convert("RGB"))[round(at.y), round(at.x)].astype(int)
+
+
+POCKET = complex(SIZE / 2, SIZE - 17)
+
+
+def test_a_click_opens_a_pocket_that_is_too_small_for_a_hole_of_the_mesh(window, line_art):
+    window.act(cutting.take_up, "holes")
+    click(window, POCKET + 0.5)
+    assert len(line_art.figure.cut_out.swapped) == 1
+    rest(window)
+    at = SIZE - 1 - int(POCKET.imag), int(POCKET.real)
+    assert not kept(line_art)[at]
+    assert kept(line_art)[SIZE // 2, SIZE // 2]
+    assert not line_art.figure.domain.holes
+    click(window, POCKET - 0.5)
+    rest(window)
+    assert kept(line_art)[at]
+
+
+@pytest.mark.usefixtures("line_art")
+def test_paper_that_is_left_inside_is_tinted(window):
+    places = (MIDDLE, POCKET)
+    assert [tuple(pixel(window, place)) for place in places] == [(255, 255, 255)] * 2
+    window.act(cutting.take_up, "holes")
+    elsewhere = MIDDLE + 20j  # of the mark in the middle
+    red, _, blue = pixel(window, elsewhere)
+    assert blue > red + 60
+    red, _, blue = pixel(window, complex(3, 3))
+    assert red > blue + 60  # what is removed
+    window.act(cutting.set_enclosed, "remove")
+    rest(window)
+    red, _, blue = pixel(window, elsewhere)
+    assert red > blue + 60
+
+
+@pytest.mark.usefixtures("line_art")
+def test_the_canvas_suits_lines_whose_paper_was_removed(window):
+    """In the dark theme they are seen as long as their paper is there, and must be without it."""
+    window.session.preferences = replace(window.session.preferences, theme="dark")
+    outside = complex(-10, SIZE / 2)
+    assert pixel(window, outside).max() < 80
+    window.act(cutting.set_enclosed, "remove")
+    rest(window)
+    assert pixel(window, outside).min() > 200
+    window.act(editing.undo)
+    rest(window)
+    assert pixel(window, outside).max() < 80

@@ -1,9 +1,12 @@
 """Handles that are suggested, locked, grouped, mirrored and pinned, through the widgets."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
+from app.document.commands import key_commands
 from app.document.keyframe import Target
 from app.editor.actions import editing, playback, posing
 
@@ -135,9 +138,6 @@ def test_a_group_is_taken_together(window, bar, play):
     play(lambda robot: robot.item_click("**/###ungroup"))
     assert {handle.group for handle in bar.figure.handles} == {""}
     click(window, moved[1])
-    assert bar.selected == {0, 1}, "what is selected stays so, to be dragged"
-    editing.select(window.session, frozenset())
-    click(window, moved[1])
     assert bar.selected == {1}
 
 
@@ -181,3 +181,87 @@ def test_partners_are_made_and_found_by_their_names(window, bar, play):
     play(lambda robot: robot.item_click("**/###mirrored"))
     assert bar.selected == {other.id}
     np.testing.assert_equal(len(bar.figure.handles), 2)
+
+
+def test_a_click_on_one_of_several_selected_leaves_it_alone_selected(window, bent):
+    before = bent.document
+    editing.select(window.session, frozenset({0, 1}))
+    seen = []
+
+    def press(robot):
+        robot.mouse_move_to_pos(window.point(places(bent)[1]))
+        robot.mouse_down(0)
+        robot.yield_(2)
+        seen.append(bent.selected)
+        robot.mouse_up(0)
+
+    window.run(press)
+    assert seen == [{0, 1}], "until it is let go both might be dragged"
+    assert bent.selected == {1}
+    assert bent.document is before
+    editing.select(window.session, frozenset({0, 1}))
+    start = places(bent)
+    drag(window, start[1], start[1] + 20 + 10j)
+    assert bent.selected == {0, 1}
+    targets = bent.figure.key(24).pose.targets
+    for identity in (0, 1):
+        assert abs(targets[identity].position - start[identity] - 20 - 10j) < 1.5
+
+
+def test_a_click_on_one_of_several_selected_selects_its_group(window, bent):
+    editing.select(window.session, frozenset({0, 1}))
+    editing.group(window.session)
+    click(window, places(bent)[1])
+    assert bent.selected == {0, 1}
+
+
+@pytest.fixture
+def short(window, bent):
+    """The bar with a handle that is wanted elsewhere, and has not arrived."""
+    place, pose = places(bent)[1], bent.figure.key(24).pose
+    targets = {**pose.targets, 1: Target(position=place - 120 + 80j)}
+    wished = key_commands.pose_key(0, 24, replace(pose, targets=targets))
+    editing.edit(window.session, wished)
+    window.settle()
+    assert abs(targets[1].position - place) > 4 * window.grip(bent)
+    return bent
+
+
+WAY = -15 + 12j
+
+
+@pytest.mark.parametrize("at_target", [True, False])
+def test_a_handle_that_has_not_arrived_is_taken_where_it_is_wanted_too(window, short, at_target):
+    place, target = places(short)[1], short.figure.key(24).pose.targets[1].position
+    begin = target if at_target else place
+    drag(window, begin, begin + WAY)
+    assert short.selected == {1}
+    assert abs(short.figure.key(24).pose.targets[1].position - begin - WAY) < 1.5
+    editing.undo(window.session)
+    assert short.figure.key(24).pose.targets[1].position == target
+
+
+def test_where_a_handle_is_wanted_it_is_selected_and_has_its_menu(window, short):
+    before = short.document
+    editing.select(window.session, frozenset({0}))
+    target = short.figure.key(24).pose.targets[1].position
+    click(window, target)
+    assert short.selected == {1}
+    assert short.document is before
+
+    def lock(robot):
+        robot.mouse_move_to_pos(window.point(target))
+        robot.mouse_click(1)
+        robot.item_click("//$FOCUSED/Lock")
+
+    window.run(lock)
+    assert short.figure.handle(1).locked
+
+
+def test_a_handle_is_taken_only_where_something_is_seen_of_it(window, short):
+    target = short.figure.key(24).pose.targets[1].position
+    editing.select(window.session, frozenset({1}))
+    posing.pin_here(window.session)
+    window.settle()
+    click(window, target)
+    assert not short.selected

@@ -12,7 +12,16 @@ from PIL import Image
 from app.document.commands import handle_commands, key_commands, scene_commands
 from app.document.keyframe import Target
 from app.editor import layering
-from app.editor.actions import editing, exporting, keys, playback, posing, rebuilding, saving
+from app.editor.actions import (
+    editing,
+    exporting,
+    keys,
+    playback,
+    posing,
+    rebuilding,
+    saving,
+    viewing,
+)
 from app.editor.dialogs import Question
 from app.editor.poses import copying, flipping, library
 from app.storage import load_project
@@ -77,6 +86,15 @@ def test_a_drag_comes_to_rest_whatever_follows(window, bent, name):
     assert not bent.pulls
 
 
+def test_a_drag_that_began_with_auto_key_makes_a_key(window, bent, monkeypatch):
+    with held_up(monkeypatch, "app.editor.actions.posing.solving._take_steps"):
+        goal = drag_bar(window, bent)
+        window.act(viewing.toggle_auto_key)
+    window.settle()
+    check_at_rest(bent.document, goal)
+    assert bent.history.unkeyed is None
+
+
 @pytest.mark.parametrize("is_seen", [True, False])
 def test_moved_and_copied_keys_come_to_rest_too(window, bent, is_seen, monkeypatch):
     if is_seen:
@@ -91,6 +109,19 @@ def test_moved_and_copied_keys_come_to_rest_too(window, bent, is_seen, monkeypat
     for frame in (30, 48):
         check_at_rest(bent.document, goal, frame=frame)
     assert bent.figure.key(30).pose.phi is bent.figure.key(48).pose.phi
+
+
+@pytest.mark.parametrize("auto_key", [True, False])
+def test_a_drag_is_in_a_key_as_was_wanted_when_it_began(window, bent, monkeypatch, auto_key):
+    if not auto_key:
+        viewing.toggle_auto_key(window.session)
+    with held_up(monkeypatch, "app.editor.actions.posing.solving._take_steps"):
+        goal = drag_bar(window, bent)
+        viewing.toggle_auto_key(window.session)
+    window.settle()
+    assert (bent.unkeyed is None) == auto_key
+    if auto_key:
+        check_at_rest(bent.document, goal)
 
 
 def test_a_handle_that_comes_or_goes_meanwhile_keeps_its_place(window, bent):
@@ -118,6 +149,24 @@ def test_layers_are_chosen_at_once_and_both_drags_come_to_rest(window, bent):
     window.settle()
     for identity, goal in goals.items():
         check_at_rest(bent.document, goal, figure=identity)
+
+
+def test_a_save_has_a_drag_on_each_of_many_layers(window, bent, tmp_path, monkeypatch):
+    for _ in range(8):
+        layering.duplicate(window.session, 0)
+        window.frames()
+    path, goals = tmp_path / "a.lissom", {}
+    with held_up(monkeypatch, "app.editor.actions.posing.solving._take_steps"):
+        for figure in bent.document.figures:
+            layering.choose(window.session, figure.id)
+            goals[figure.id] = drag_bar(window, bent)
+        assert len(bent.pulls) == len(goals) == 9
+        saving.write(window.session, path, None)
+        assert not path.exists()
+    window.until(lambda: not bent.pending)
+    saved = load_project(path)
+    for identity, goal in goals.items():
+        check_at_rest(saved, goal, figure=identity)
 
 
 def test_a_picture_is_exported_as_it_comes_to_rest(window, bent, tmp_path):
@@ -346,6 +395,21 @@ def test_undo_takes_back_first_what_was_done_since_a_drag_that_is_not_seen_yet(
         posing.mirror_handles(window.session)
         editing.undo(window.session)
         editing.undo(window.session)
-        assert not bent.pulls
+        assert bent.document is before
     window.settle()
+    assert not bent.pulls
+    assert bent.document is before
+
+
+def test_a_drag_that_was_undone_before_anything_was_seen_is_done_again(window, bent, monkeypatch):
+    before = bent.document
+    with held_up(monkeypatch, "app.editor.actions.posing.solving._take_steps"):
+        goal = drag_bar(window, bent)
+        assert bent.pulls[-1].kept is None
+        editing.undo(window.session)
+        assert bent.document is before
+        editing.redo(window.session)
+    window.settle()
+    check_at_rest(bent.document, goal)
+    editing.undo(window.session)
     assert bent.document is before

@@ -2,6 +2,7 @@
 
 import errno
 import gc
+import itertools
 import os
 import sys
 import threading
@@ -20,6 +21,9 @@ from app.document.settings import ExportSettings
 from app.editor.actions import cutting, editing, exporting, files, keys, playback, posing, saving
 from app.editor.dialogs import Question
 from app.editor.layering import pictures
+from app.export.writers.gif import GifWriter
+from app.export.writers.png import PngSequence
+from app.export.writers.video import VideoWriter
 from app.motion import inbetweens
 from app.storage.assets import sample_images
 from app.ui.window import exporter
@@ -144,7 +148,7 @@ def test_another_format_asks_before_it_replaces_a_file(window, project, tmp_path
     assert question(window).title == "Replace the file?"
     answer(window, "Cancel")
     assert (tmp_path / "bar.webp").read_bytes() == b"precious"
-    assert project.export_to == tmp_path / "bar.gif"
+    assert project.exports_to == {"gif": tmp_path / "bar.gif"}
 
 
 def test_dots_in_the_name_of_a_folder_are_no_endings(window, project, tmp_path):
@@ -153,7 +157,7 @@ def test_dots_in_the_name_of_a_folder_are_no_endings(window, project, tmp_path):
     window.settle()
     finish(window)
     assert [path.name for path in tmp_path.iterdir()] == ["shot.010"]
-    assert project.export_to == tmp_path / "shot.010"
+    assert project.exports_to == {"png": tmp_path / "shot.010"}
 
 
 @pytest.mark.usefixtures("project")
@@ -223,7 +227,7 @@ def test_export_is_cancelled_while_it_is_prepared(window, project, tmp_path):
     exporting.cancel(window.session)
     window.settle()
     assert window.session.export is None
-    assert project.export_to is None
+    assert not project.exports_to
     assert list(tmp_path.iterdir()) == []
 
 
@@ -302,6 +306,56 @@ def test_a_cancel_is_answered_at_once_whatever_is_being_prepared(
 def is_gone(reference):
     gc.collect()
     return reference() is None
+
+
+WRITERS = {"png": PngSequence, "mp4": VideoWriter, "gif": GifWriter}
+# At which frame, and where in its way to the disk, the worker is when the hand cancels.
+STAGES = {
+    "the first is encoded": ("encode", 0),
+    "the first is written": ("add", 0),
+    "one in the middle is written": ("add", FRAMES // 2),
+    "the last is encoded": ("encode", FRAMES - 1),
+    "the last is written": ("add", FRAMES - 1),
+    "the end is written": ("finish", 0),
+}
+
+
+@pytest.mark.parametrize("stage", STAGES)
+@pytest.mark.parametrize("name", ["frames", "bar.mp4", "bar.gif"])
+@pytest.mark.usefixtures("project")
+def test_a_cancel_is_answered_at_once_whatever_frame_is_made(window, tmp_path, held, name, stage):
+    session, out = window.session, tmp_path / name
+    format_ = "png" if name == "frames" else name[4:]
+    settings = ExportSettings(format=format_, size=SIZE, background="#ffffff")
+    exporting.set_export(session, settings)
+    window.settle()
+    verb, at = STAGES[stage]
+    calls = itertools.count()
+    worker = held(WRITERS[format_], verb, lambda: next(calls) == at)
+    window.act(exporting.start, out)
+    window.until(worker.begun.is_set)
+    window.frames(20)  # what can be drawn until then, is
+    run = session.export
+    assert run is not None
+    assert at <= run.done <= FRAMES
+    window.act(exporting.cancel)
+    window.frames()
+    assert not worker.has_waited_in_vain
+    assert session.export is None
+    worker.end.set()
+    window.until(lambda: not export_threads())
+    written = sorted(path for path in tmp_path.rglob("*") if path.is_file())
+    if format_ == "png":
+        assert [path.name for path in written] == [
+            f"frame_{i:04d}.png" for i in range(len(written))
+        ]
+        assert all(map(is_whole, written))
+    else:
+        assert written == []
+    stays = "Frames that were written stay" if written else "Nothing was written"
+    assert f"The export was cancelled. {stays}." in texts(window)
+    window.act(exporting.start, out)
+    window.until(lambda: any("Exported 9 frames" in text for text in texts(window)))
 
 
 @pytest.mark.usefixtures("project")
@@ -416,7 +470,7 @@ def test_export_goes_on_when_another_project_is_opened(window, tmp_path):
     finish(window)
     assert len(list(out.iterdir())) == FRAMES
     assert all(map(is_whole, out.iterdir()))
-    assert other.export_to is None
+    assert not other.exports_to
     assert other.document.export == ExportSettings()
     assert any("Exported 9 frames" in text for text in texts(window))
 
@@ -531,7 +585,7 @@ def test_the_pose_that_is_shown_is_exported_and_copied(window, project, tmp_path
     with Image.open(clipboard) as image:
         assert np.array_equal(np.asarray(image), pixels)
     assert [path for path in session.folder.iterdir() if path.suffix == ".png"] == []
-    assert project.export_to == out
+    assert project.exports_to["picture"] == out
 
 
 @pytest.mark.usefixtures("project")

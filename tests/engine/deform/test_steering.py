@@ -19,6 +19,7 @@ from engine.deform.steering import (
 from engine.maps import Bounds, Certificate, Limits
 
 BOUNDS = Bounds(k=0.5, sigma_a=2.0, sigma_b=0.5)
+BOUNDARY = star_boundary()
 A, B = np.array([1.0, 1.2]), np.array([0.1, 0.3])
 
 
@@ -51,15 +52,15 @@ def test_a_drag_without_progress_is_at_rest():
 
 
 def test_a_step_keeps_some_slack_of_the_map():
-    walls, required = place_walls(BOUNDS, A, B, certificate())
+    walls, required = place_walls(BOUNDS, BOUNDARY, A, B, certificate())
     assert 0.25 < required.k < walls.k[1] < BOUNDS.k
     assert 1.5 < required.sigma_a < walls.sigma_a[1] < BOUNDS.sigma_a
     assert 0.9 > required.sigma_b > walls.sigma_b[1] > BOUNDS.sigma_b
     # A map that has less slack between its samples may keep it.
-    walls, required = place_walls(BOUNDS, A, B, certificate(k=0.4999))
+    walls, required = place_walls(BOUNDS, BOUNDARY, A, B, certificate(k=0.4999))
     assert required.k >= 0.4999
     # A sample between walls and bounds gets walls around it, and another one keeps its own.
-    walls, _ = place_walls(BOUNDS, np.ones(2), np.array([0.49999, 0.1]), certificate())
+    walls, _ = place_walls(BOUNDS, BOUNDARY, np.ones(2), np.array([0.49999, 0.1]), certificate())
     assert 0.49999 < walls.k[0] < 0.5
     assert walls.k[1] == BOUNDS.towards_identity(MARGIN).k
 
@@ -69,22 +70,24 @@ def test_limits_close_in_and_never_open():
     assert wide.k > 0.7
     assert wide.sigma_a > 2.5
     assert wide.sigma_b < 0.3
-    nearer = tightening_limits(BOUNDS, wide, np.array([1.5]), np.array([0.9]))
+    nearer = tightening_limits(BOUNDS, wide, BOUNDARY, np.array([1.5]), np.array([0.9]))
     assert 0.6 < nearer.k < 0.7
     assert nearer.sigma_a < wide.sigma_a
     assert nearer.sigma_b == BOUNDS.sigma_b
-    assert tightening_limits(BOUNDS, nearer, np.array([1.6]), np.array([1.1])).k == nearer.k
-    assert tightening_limits(BOUNDS, nearer, A, B) == BOUNDS
+    assert (
+        tightening_limits(BOUNDS, nearer, BOUNDARY, np.array([1.6]), np.array([1.1])).k == nearer.k
+    )
+    assert tightening_limits(BOUNDS, nearer, BOUNDARY, A, B) == BOUNDS
 
 
 def test_limits_may_be_far_from_the_identity():
     # A map twice as large under σ_b ≥ 0.95: its walls' slack reaches far beyond 1.
     a, b = np.array([2.0]), np.array([0.01])
     large = certificate(k=0.01, sigma_a=2.02, sigma_b=1.98)
-    _, required = place_walls(Limits(k=0.5, sigma_a=5.0, sigma_b=0.95), a, b, large)
+    _, required = place_walls(Limits(k=0.5, sigma_a=5.0, sigma_b=0.95), BOUNDARY, a, b, large)
     assert 1.0 < required.sigma_b < 1.98
     small = certificate(k=0.01, sigma_a=0.42, sigma_b=0.38)
-    _, required = place_walls(Limits(k=0.5, sigma_a=1.05, sigma_b=0.2), 0.2 * a, b, small)
+    _, required = place_walls(Limits(k=0.5, sigma_a=1.05, sigma_b=0.2), BOUNDARY, 0.2 * a, b, small)
     assert 0.42 < required.sigma_a < 1.0
 
 
@@ -127,7 +130,7 @@ def test_the_barrier_is_convex_for_a_map_at_its_limits_to_the_last_digit():
         k, sigma_a, sigma_b = (b / a).item(), (a + b).item(), (a - b).item()
         at_limits = Limits(k=k, sigma_a=sigma_a, sigma_b=sigma_b)
         held = certificate(k=k, sigma_a=sigma_a, sigma_b=sigma_b)
-        walls, required = place_walls(at_limits, a, b, held)
+        walls, required = place_walls(at_limits, BOUNDARY, a, b, held)
         barrier = Barrier(walls=walls, weight=1e-2)
         assert np.all(barrier.slacks(a, b) > 0)
         bent = barrier.derivatives(a, b)

@@ -5,7 +5,11 @@ Out: poses in the document, step by step; handles and the anchor.
 Imports: `app.editor`, `app.document`, `app.motion`, `app.solving`.
 """
 
-from app.editor.actions.posing.adopting import as_key as as_key, retargeted as retargeted
+from app.editor.actions.posing.adopting import (
+    adopt_wish as adopt_wish,
+    as_key as as_key,
+    retargeted as retargeted,
+)
 from app.editor.actions.posing.handles import (
     add_handle as add_handle,
     anchor_at as anchor_at,
@@ -23,9 +27,11 @@ from app.editor.actions.posing.pulling import (
     end_at as end_at,
     free_turn as free_turn,
     give_up as give_up,
+    insist as insist,
     let_go as let_go,
     nudge as nudge,
     pin_here as pin_here,
+    pose_here as pose_here,
     pull as pull,
     pull_again as pull_again,
     take_back as take_back,
@@ -37,3 +43,4 @@ from app.editor.actions.posing.settling import (
     tried_clips as tried_clips,
 )
 from app.editor.actions.posing.solving import POSING as POSING, STEPS as STEPS
+from app.editor.actions.posing.stopping import give_in as give_in

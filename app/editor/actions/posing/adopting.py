@@ -27,6 +27,18 @@ def adopt(session: Session, project: Project, pull: Pull, pose: Pose) -> None:
         project.pending.remove(pull)
 
 
+def adopt_wish(session: Session, project: Project, pull: Pull) -> bool:
+    """Let the document have what a released pull wishes of a key, before any pose is found for it.
+
+    Returns whether it has; a pull whose start is not known yet, or that several gestures made,
+    has nothing that could be one step.
+    """
+    if pull.is_held or pull.before is None or pull.targets is None or len(pull.wishes) != 1:
+        return False
+    adopt(session, project, pull, replace(pull.before, targets=pull.targets))
+    return pull in project.pending
+
+
 def _follow_copies(session: Session, pull: Pull, pose: Pose) -> None:
     """Let what was copied of a pose on its way go on to another one, too."""
     kept = pull.kept
@@ -59,7 +71,7 @@ def _adopt_first(session: Session, project: Project, pull: Pull, pose: Pose) -> 
         return False
     pull.frame = pull.frame if pull.frame in frames else min(frames)
     pose = pull.brought_to(pose)(figure, retargeted(figure, pose))
-    if not session.preferences.auto_key:
+    if not pull.is_keyed:
         unkeyed = UnkeyedPose(figure=pull.figure, frame=pull.frame, pose=pose)
         project.history.pose(unkeyed, gesture=pull.gesture)
         return True

@@ -9,6 +9,7 @@ from app.document import (
     Handle,
     figure_commands,
     handle_commands,
+    layer_commands,
     mirrored_name,
     pairs_by_name,
 )
@@ -55,18 +56,19 @@ def remove_handles(
 
 @with_project
 def suggest_handles(session: Session, project: Project) -> None:
-    """Put handles at the tips of limbs and in the middle of the body, where there are none yet."""
+    """Put handles on the body, at tips and joints of limbs, where there are none yet."""
     figure = project.figure
-    places = domains.suggest_handles(figure.domain.loops)
+    suggested = domains.suggest_handles(figure.domain.loops)
     near = NEAR * box_diagonal(figure.domain.outline)
     taken = np.array([handle.position for handle in figure.handles], dtype=np.complex128)
-    free = [place for place in places if not (np.abs(taken - place) < near).any()]
+    free = [handle for handle in suggested if not (np.abs(taken - handle.place) < near).any()]
     if not free:
         session.tell("There are handles already where Lissom would put them.")
         return
+    names = {handle.name for handle in figure.handles}
     handles = [
-        Handle(id=0, name=handle_commands.free_name(figure, number), position=complex(place))
-        for number, place in enumerate(free)
+        Handle(id=0, name=layer_commands.numbered_name(name, names), position=place)
+        for place, name in free
     ]
     gesture = object()
     _change_handles(project, handle_commands.add_handles(project.active, handles), gesture)

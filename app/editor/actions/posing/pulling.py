@@ -10,7 +10,8 @@ from app.editor.actions.posing.adopting import adopt
 from app.editor.actions.posing.solving import POSING, go_on
 from app.editor.project import Project
 from app.editor.session import Session, with_project
-from app.editor.work import Pull, Start, WishFrom
+from app.editor.work import Pull, Start, WishFrom, wherever
+from engine.deform import Hand
 
 
 @with_project
@@ -20,12 +21,13 @@ def pull(
     wish: WishFrom | Mapping[int, Target],
     *,
     gesture: object | None = None,
+    hand: Hand | None = None,
 ) -> None:
     """Wish handles elsewhere in the pose of the present frame; the others keep their wishes.
 
     Pulls of one gesture are one step of undo, in which the later wish takes the place of the
     earlier; without one, each is a step until it is let go. An in-between that is not there yet is
-    worked out first; what is wished of it meanwhile is not lost.
+    worked out first; what is wished of it meanwhile is not lost. A hand pulls with bounded force.
     """
     if project.puppet.shown is None:
         return
@@ -33,8 +35,8 @@ def pull(
     if held is None or not held.is_held:
         let_go(session)
         held = _begin(session, project, gesture or object())
-    wanted = wish if callable(wish) else partial(_wherever, wish)
-    held.wish(gesture or object(), wanted)
+    wanted = wish if callable(wish) else partial(wherever, wish)
+    held.wish(gesture or object(), wanted, hand)
     held.position = project.history.position
     go_on(session, project)
 
@@ -44,6 +46,15 @@ def let_go(session: Session, project: Project) -> None:  # noqa: ARG001 - of an 
     """End the pull; the solver goes on until the pose rests."""
     for pull in project.pulls:
         pull.is_held = False
+
+
+@with_project
+def insist(session: Session, project: Project) -> None:  # noqa: ARG001 - of an action
+    """End the pull, and let its handles be wanted where they are pulled to, however far that is."""
+    for pull in project.pulls:
+        if pull.is_held:
+            pull.is_held = False
+            pull.insist()
 
 
 def wish(session: Session, wishes: Mapping[int, Target]) -> None:
@@ -84,10 +95,15 @@ def free_turn(session: Session, identity: int) -> None:
 
 
 @with_project
-def pull_again(session: Session, project: Project, *, gesture: object) -> None:
-    """Let the pose that is shown follow its own wishes once more, as under other limits."""
-    if _pose_here(session, project) is not None:
-        pull(session, {}, gesture=gesture)
+def pull_again(
+    session: Session, project: Project, asked: Mapping[int, Target], *, gesture: object
+) -> None:
+    """Let the pose that is shown follow its own wishes once more, as under other limits.
+
+    Some handles a hand pulls to where they are asked.
+    """
+    if pose_here(session, project) is not None:
+        pull(session, asked, gesture=gesture, hand=Hand(frozenset(asked)) if asked else None)
         let_go(session)
 
 
@@ -120,13 +136,6 @@ def end_at(session: Session, project: Project, pull: Pull, pose: Pose) -> None:
     adopt(session, project, pull, pose)
 
 
-def _wherever(
-    wishes: Mapping[int, Target], _: Start, targets: Mapping[int, Target]
-) -> Mapping[int, Target]:
-    """Return wishes that do not depend on where a pull begins."""
-    return {i: wish for i, wish in wishes.items() if i in targets}
-
-
 def _once(session: Session, wish: WishFrom | Mapping[int, Target]) -> None:
     pull(session, wish)
     let_go(session)
@@ -145,8 +154,15 @@ def _begin(session: Session, project: Project, gesture: object) -> Pull:
         session.jobs.drop(POSING)
         earlier.clip, earlier.start, earlier.is_held = project.clip, start, True
         return earlier
-    before = _pose_here(session, project)
-    begun = Pull(clip=project.clip, frame=frame, gesture=gesture, start=start, before=before)
+    before = pose_here(session, project)
+    begun = Pull(
+        clip=project.clip,
+        frame=frame,
+        gesture=gesture,
+        start=start,
+        before=before,
+        is_keyed=session.preferences.auto_key,
+    )
     project.pending.append(begun)
     return begun
 
@@ -156,11 +172,11 @@ def _start(session: Session, project: Project, earlier: Pull | None) -> Start | 
 
     An earlier pull of the same pose, which is not at rest yet, says what was wished last.
     """
-    pose, shown, figure = _pose_here(session, project), project.puppet.shown, project.figure
+    pose, shown, figure = pose_here(session, project), project.puppet.shown, project.figure
     if pose is not None:
         if earlier is not None and earlier.kept is not None and earlier.targets is not None:
             is_its_own = earlier.kept.phi is pose.phi
-            targets = earlier.targets if is_its_own else pose.targets
+            targets = {**earlier.targets, **earlier.reached} if is_its_own else pose.targets
             pose = replace(pose, targets=targets)
         return Start.of(figure, pose)
     frame = playback.current_frame(session, project)
@@ -175,7 +191,7 @@ def _start(session: Session, project: Project, earlier: Pull | None) -> Start | 
     )
 
 
-def _pose_here(session: Session, project: Project) -> Pose | None:
+def pose_here(session: Session, project: Project) -> Pose | None:
     """Return the pose that the figure rests in at the present frame; None for an in-between."""
     if project.unkeyed is not None:
         return project.unkeyed

@@ -13,6 +13,7 @@ from app.editor.session import Session
 from app.editor.work import MOST_STEPS, Kind, Pull, Start, WishFrom, targets_of
 from app.motion import PoseSampler
 from app.solving import Drag, Rig, pose_at
+from engine.deform import Hand
 
 POSING = Kind("Posing", "This pose could not be found", "hand")
 # While the hand moves: Newton steps of one job at most, and the seconds after which it begins no
@@ -53,7 +54,8 @@ def go_on(session: Session, project: Project) -> None:
         None if puppet is None else puppet.store.sampler,
     )
     aim = pull.targets if pull.targets is not None else tuple(pull.wishes.values())
-    work = partial(_take_steps, pull.drag, begin, aim, _pace(pull), session.clock)
+    hands = tuple(pull.hands.values())
+    work = partial(_take_steps, pull.drag, begin, aim, hands, _pace(pull), session.clock)
     ask_worker(session, POSING, work, partial(_note, session, project, pull), failed)
 
 
@@ -95,6 +97,7 @@ class _Steps(NamedTuple):
 
     drag: Drag
     targets: Mapping[int, Target]
+    hands: tuple[Hand, ...]
     taken: int
     seconds: float
     start: Start | None
@@ -104,6 +107,7 @@ def _take_steps(
     drag: Drag | None,
     begin: Callable[[], tuple[Drag, Pose]],
     aim: Mapping[int, Target] | Sequence[WishFrom],
+    hands: tuple[Hand, ...],
     pace: _Pace,
     clock: Callable[[], float],
 ) -> _Steps:
@@ -120,9 +124,9 @@ def _take_steps(
         raise ValueError("a drag that goes on has targets")
     taken = 0
     while taken == 0 or (taken < pace.most and not drag.is_over and clock() - begun < pace.seconds):
-        drag = drag.towards(targets, 1)
+        drag = drag.towards(targets, 1, hands)
         taken += 1
-    return _Steps(drag, targets, taken, clock() - begun, start)
+    return _Steps(drag, targets, hands, taken, clock() - begun, start)
 
 
 def _begin(
@@ -144,9 +148,10 @@ def _note(session: Session, project: Project, pull: Pull, steps: _Steps) -> None
     if pull.start is None:
         pull.start = steps.start
         pull.aim()
-    if pull.targets == steps.targets:
+    towards = (steps.targets, steps.hands)
+    if (pull.targets, tuple(pull.hands.values())) == towards:
         pull.steps += steps.taken
-    pull.drag, pull.solved = steps.drag, steps.targets
+    pull.drag, pull.solved = steps.drag, towards
     pull.newest = steps.drag.pose(steps.targets)
     if pull.kept is None or is_here(session, project, pull):
         adopt(session, project, pull, pull.newest)

@@ -43,13 +43,11 @@ def test_a_pose_is_pasted_at_another_frame_as_one_step(session):
         assert project.document is before
 
 
-def test_the_one_chosen_key_is_copied_wherever_the_playhead_is(session):
+def test_in_the_timeline_the_one_chosen_key_is_copied_wherever_the_playhead_is(session):
     editing.choose_keys(session, frozenset({6}))
-    copying.copy(session)
-    assert session.copied[0].keys == (session.project.figure.key(6),)
-    editing.choose_keys(session, frozenset())
-    copying.copy(session)
-    assert session.copied[0].keys[0].pose is session.project.figure.key(0).pose
+    for session.in_timeline, frame in ((True, 6), (False, 0)):
+        copying.copy(session)
+        assert session.copied[0].keys[0].pose is session.project.figure.key(frame).pose
 
 
 def test_several_keys_are_pasted_with_their_ways_and_distances(session):
@@ -57,7 +55,7 @@ def test_several_keys_are_pasted_with_their_ways_and_distances(session):
     editing.edit_figure(session, key_commands.set_easing, {0}, HOLD)
     before = project.document
     editing.choose_keys(session, frozenset({0, 6}))
-    copying.copy(session)
+    copying.copy_keys(session)
     go(session, 4)
     copying.paste(session)
     assert project.figure.key_frames == {0, 4, 6, 10}

@@ -29,7 +29,7 @@ def session(tmp_path):
 def test_keys_are_flipped_with_their_turns_and_what_is_in_front(session):
     project, before = session.project, session.project.document
     editing.choose_keys(session, frozenset({0, 6}))
-    copying.copy(session)
+    copying.copy_keys(session)
     playback.scrub(session, 20)
     flipping.paste(session)
     settle(session)

@@ -208,6 +208,7 @@ def test_handles_that_go_while_they_are_dragged_are_let_be(session):
     for spot in (AT_RIGHT, replace(AT_RIGHT, alt=True)):
         drag(session, spot, RIGHT + 15j)
         posing.remove_handles(session, frozenset({1}))
+        settle(session)
         before = session.project.document
         pointing.move(session, RIGHT + 20)
         pointing.end(session, RIGHT + 20)

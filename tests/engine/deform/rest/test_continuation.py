@@ -9,7 +9,8 @@ from numpy.testing import assert_allclose, assert_array_equal
 from shapes import regular_polygon
 
 from engine.deform import Deformer, Handles, Objective, Status
-from engine.deform.rest import Way, advance, exceeds_first_rung
+from engine.deform.model import Walls
+from engine.deform.rest import Way, advance, exceed_first_rung
 from engine.deform.rest.continuation import AT_A_SADDLE, CENTRED, LOWER, is_centred, lowered
 from engine.deform.rest.rungs import FIRST_REACH, is_same, rung
 from engine.deform.rest.samples import resolved
@@ -102,8 +103,8 @@ def test_walls_open_from_rungs_that_do_not_depend_on_the_bounds():
     assert all(looser > tight for tight, looser in pairwise(rungs))
     assert_array_equal(wide.rung, wide.inside)
     # Within bounds as tight as the first rung there is nothing to open.
-    assert not exceeds_first_rung(Bounds(k=0.2, sigma_a=1.3, sigma_b=0.8))
-    assert exceeds_first_rung(Bounds(k=0.2, sigma_a=1.6, sigma_b=0.8))
+    assert not exceed_first_rung(Walls.around(Bounds(k=0.2, sigma_a=1.3, sigma_b=0.8), 1))
+    assert exceed_first_rung(Walls.around(Bounds(k=0.2, sigma_a=1.6, sigma_b=0.8), 1))
 
 
 def test_a_cage_that_is_denser_than_it_is_far_comes_to_rest():

@@ -116,3 +116,23 @@ def test_a_picture_of_one_colour_is_all_background() -> None:
     background = flood_background(np.full((50, 70, 3), 99, dtype=np.uint8), 0)
     assert background.mask.all()
     assert background.agreement == 1
+
+
+def test_every_pocket_that_is_seen_is_found_whatever_its_size_and_shade() -> None:
+    """A sheet that darkens by 30 levels towards one side, as photographed, beyond the tolerance."""
+    x, y = pictures.plane(600, 450)
+    widths = (4, 6, 12, 40)
+    mask = (np.abs(x - 300) < 240) & (np.abs(y - 225) < 150)
+    places = [complex(100 + 130 * i, 225) for i in range(4)]
+    pockets = np.zeros_like(mask)
+    for place, width in zip(places, widths, strict=True):
+        pockets |= (np.abs(x - place.real) < width / 2) & (np.abs(y - place.imag) < 60)
+    for shade, quality in ((0, 0), (0, 60), (30, 0), (30, 85)):
+        drawing = mask & ~pockets
+        darker = np.where(drawing, 0, shade * x / 600)[..., None]
+        rgb = (on_paper(drawing) - darker).astype(np.uint8)
+        background = flood_background(jpeg(rgb, quality) if quality else rgb, 18)
+        core = ndimage.binary_erosion(pockets) if quality else pockets
+        reached = x < (600 if not shade else 500)  # as far as the paper around was flooded
+        assert background.enclosed[core & reached].mean() > 0.97, (shade, quality)
+        assert not background.enclosed[mask & ~ndimage.binary_dilation(pockets, iterations=2)].any()

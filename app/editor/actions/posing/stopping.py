@@ -1,0 +1,69 @@
+"""Hands that have let go: handles beyond their reach are wanted where they came to from then on."""
+
+from collections.abc import Callable, Mapping
+
+from app.document import Target, falls_short, find_shortfall, loosened
+from app.editor.action import do
+from app.editor.actions import playback
+from app.editor.project import Project
+from app.editor.session import Session, with_project
+from app.editor.work import Pull
+
+# Lets the drawing stretch further, and pulls handles once more to where they were asked.
+Loosen = Callable[[Session, Mapping[int, Target]], None]
+
+
+def give_in(session: Session, project: Project, loosen: Loosen) -> None:
+    """Let hands that have let go give in once the pose has come to rest; once a frame."""
+    for pull in project.pulls:
+        if pull.hands and pull.is_at_rest and not pull.is_held:
+            asked, places = pull.targets, pull.reached
+            pull.settle_for(places)
+            if asked is not None and pull.is_in(project.history):
+                _tell(session, pull, {i: asked[i] for i in places}, places, loosen)
+
+
+def _tell(
+    session: Session,
+    pull: Pull,
+    asked: Mapping[int, Target],
+    places: Mapping[int, Target],
+    loosen: Loosen,
+) -> None:
+    """Tell what stopped handles short of where they were pulled, and offer the remedy."""
+    figure, pose = pull.clip.figure, pull.newest
+    lacks = {i: abs(place.position - asked[i].position) for i, place in places.items()}
+    short = [i for i, lack in lacks.items() if falls_short(figure, lack)]
+    if not short or pose is None:
+        return
+    name, others = figure.handle(short[0]).name, len(short) - 1
+    who, its = (f"{name} and {others} more", "their") if others else (name, "its")
+    if not find_shortfall(figure, pose).at_limits:
+        session.tell(f"{who} stopped where the other handles hold the shape.", topic="stopped")
+    elif loosened(figure.bounds) is None:
+        session.tell(f"{who} stopped at {its} stretch limit.", topic="stopped")
+    else:
+        session.tell(
+            f"{who} stopped at {its} stretch limit.",
+            topic="stopped",
+            label="Loosen",
+            action=do(_loosen, pull.figure, pull.frame, asked, loosen),
+        )
+
+
+@with_project
+def _loosen(
+    session: Session,
+    project: Project,
+    figure: int,
+    frame: int,
+    asked: Mapping[int, Target],
+    loosen: Loosen,
+) -> None:
+    """Let a figure stretch further, and pull it once more to where the hand went."""
+    if figure != project.active:
+        session.tell("Another layer is posed now. Choose the one that was pulled, and pull again.")
+        return
+    if playback.current_frame(session, project) != frame:
+        playback.seek(session, frame)
+    loosen(session, asked)

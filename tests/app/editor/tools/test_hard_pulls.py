@@ -1,0 +1,218 @@
+"""Handles that are dragged beyond their reach: what follows and stays, and what is wanted then."""
+
+import numpy as np
+import pytest
+from animations import still_document
+from PIL import Image, ImageDraw
+from sessions import session_of, settle
+
+from app.document import NATURAL, RUBBERY
+from app.document.commands import figure_commands, handle_commands
+from app.editor.actions import editing, playback, posing
+from app.editor.actions.upkeep import maintain
+from app.editor.tools import Spot, pointing
+from engine.geometry import box_diagonal
+
+MOVES = 12  # of the pointer, a picture for each
+
+
+def drawn(*shapes):
+    """Return a picture of lines and dots with rounded ends: of places, and how thick they are."""
+    image = Image.new("RGBA", (200, 160), (0, 0, 0, 0))
+    draw = ImageDraw.Draw(image)
+    for places, width in shapes:
+        draw.line(places, (90, 140, 200, 255), width)
+        for x, y in places:
+            r = width / 2
+            draw.ellipse((x - r, y - r, x + r, y + r), (90, 140, 200, 255))
+    return np.asarray(image)
+
+
+# Pictures, and where their handles are, y up.
+SHAPES = {
+    "person": (
+        drawn(
+            ([(100, 30), (100, 34)], 40),
+            ([(100, 40), (100, 100)], 30),
+            ([(100, 70), (30, 60)], 16),
+            ([(100, 70), (170, 60)], 16),
+            ([(94, 100), (80, 148)], 16),
+            ([(106, 100), (120, 148)], 16),
+        ),
+        [172 + 100j, 28 + 100j, 80 + 12j, 120 + 12j, 100 + 130j, 100 + 70j],
+    ),
+    "snake": (
+        drawn(([(185, 130), (150, 40), (110, 120), (70, 40), (20, 110)], 22)),
+        [185 + 30j, 150 + 118j, 110 + 42j, 70 + 118j, 20 + 50j],
+    ),
+    "tree": (
+        drawn(
+            ([(60, 150), (60, 30)], 30), ([(60, 60), (180, 25)], 14), ([(60, 90), (120, 130)], 12)
+        ),
+        [180 + 135j, 120 + 30j, 60 + 10j, 60 + 130j],
+    ),
+}
+
+
+@pytest.fixture(params=SHAPES)
+def session(request, tmp_path):
+    """A drawing with handles, the first of which is at the end of a limb."""
+    picture, places = SHAPES[request.param]
+    document = still_document(picture)
+    document = figure_commands.set_bounds(0, NATURAL.bounds)(document)
+    for place in places:
+        document = handle_commands.add_handle(0, place)(document)
+    return session_of(document, tmp_path, picture)
+
+
+def outwards(project):
+    """Return the first handle, and the way that leads from all others to it."""
+    places = [handle.position for handle in project.figure.handles]
+    away = places[0] - np.mean(places[1:])
+    return project.figure.handles[0].id, complex(away / abs(away))
+
+
+def where(project):
+    """Return where handles are, and the outline, in the key that is pulled."""
+    figure, pose = project.figure, project.figure.key(0).pose
+    f, points = figure.map_of(pose), [handle.position for handle in figure.handles]
+    ids = [handle.id for handle in figure.handles]
+    return dict(zip(ids, f(np.array(points)).tolist(), strict=True)), f(figure.domain.outline)
+
+
+def picture(session):
+    """Let one picture pass, with a step of the worker in it."""
+    maintain(session)
+    assert session.jobs.settle()
+    session.jobs.deliver()
+
+
+def drag(session, identity, way, *, rests=30):
+    """Drag a handle some way, and hold it there for some pictures."""
+    start = complex(where(session.project)[0][identity])
+    editing.select(session, frozenset({identity}))
+    pointing.press(session, Spot(place=start, handle=identity))
+    for share in np.linspace(0, 1, MOVES + 1)[1:]:
+        pointing.move(session, start + share * way)
+        picture(session)
+    for _ in range(rests):
+        picture(session)
+    return start + way
+
+
+def per_mille(session, lengths):
+    size = box_diagonal(session.project.figure.domain.outline)
+    return 1000 * float(np.max(np.abs(lengths))) / size
+
+
+def test_a_hand_beyond_reach_moves_a_limb_and_leaves_the_rest(session):
+    project = session.project
+    size = box_diagonal(project.figure.domain.outline)
+    hand, out = outwards(project)
+    before, _ = where(project)
+    asked = drag(session, hand, 1.2 * size * out)
+    pointing.end(session, asked)
+    _, released = where(project)
+    settle(session)
+    after, rests = where(project)
+    assert per_mille(session, [after[i] - before[i] for i in before if i != hand]) < 3
+    assert per_mille(session, after[hand] - asked) > 50
+    # Nothing creeps once the hand has let go.
+    assert per_mille(session, rests - released) < 10
+    # It is wanted where it came to, a hair farther out.
+    wanted = project.figure.key(0).pose.targets[hand].position
+    assert per_mille(session, wanted - after[hand]) < 1
+    assert ((wanted - after[hand]) / (asked - after[hand])).real > 0
+    (toast,) = [toast for toast in session.toasts if "stopped" in toast.text]
+    name = project.figure.handle(hand).name
+    assert toast.text == f"{name} stopped at its stretch limit."
+    # All of that is one step, and the pose is found again from its own wishes.
+    posing.pull_again(session, {}, gesture=object())
+    settle(session)
+    assert per_mille(session, where(project)[1] - rests) < 1
+    editing.undo(session)
+    editing.undo(session)
+    settle(session)
+    assert where(project)[0] == before
+
+
+@pytest.mark.parametrize("session", ["person"], indirect=True)
+def test_loosen_pulls_once_more_to_where_the_hand_went(session):
+    project = session.project
+    size = box_diagonal(project.figure.domain.outline)
+    hand, out = outwards(project)
+    asked = drag(session, hand, 1.2 * size * out)
+    pointing.end(session, asked)
+    settle(session)
+    short = abs(where(project)[0][hand] - asked)
+    playback.scrub(session, 10)
+    settle(session)
+    (toast,) = [toast for toast in session.toasts if "stopped" in toast.text]
+    assert toast.label == "Loosen"
+    toast.action.apply(session)
+    settle(session)
+    assert playback.current_frame(session, project) == 0
+    assert project.figure.bounds == RUBBERY.bounds
+    assert abs(where(project)[0][hand] - asked) < 0.7 * short
+
+
+@pytest.mark.parametrize("session", ["person"], indirect=True)
+def test_alt_keeps_the_wish_and_pulls_as_strongly_as_it_takes(session):
+    project = session.project
+    size = box_diagonal(project.figure.domain.outline)
+    hand, out = outwards(project)
+    before, _ = where(project)
+    asked = drag(session, hand, 1.2 * size * out)
+    pointing.end_insisting(session, asked)
+    settle(session)
+    after, _ = where(project)
+    assert project.figure.key(0).pose.targets[hand].position == asked
+    assert per_mille(session, [after[i] - before[i] for i in before if i != hand]) > 10
+    assert not [toast for toast in session.toasts if "stopped" in toast.text]
+
+
+@pytest.mark.parametrize("session", ["person"], indirect=True)
+@pytest.mark.parametrize("rests", [0, 2])
+def test_the_next_drag_does_not_pull_on_at_what_the_hand_has_left(session, rests):
+    project = session.project
+    size = box_diagonal(project.figure.domain.outline)
+    hand, out = outwards(project)
+    before, _ = where(project)
+    pointing.end(session, drag(session, hand, 1.2 * size * out, rests=rests))
+    for _ in range(rests):
+        picture(session)
+    other = project.figure.handles[1].id
+    pointing.end(session, drag(session, other, 0.03 * size, rests=rests))
+    settle(session)
+    after, _ = where(project)
+    rest = [i for i in before if i not in (hand, other)]
+    assert per_mille(session, [after[i] - before[i] for i in rest]) < 3
+    assert per_mille(session, after[other] - before[other] - 0.03 * size) < 1
+
+
+@pytest.mark.parametrize("session", ["person"], indirect=True)
+def test_a_drag_within_reach_is_wanted_where_it_was_let_go(session):
+    project = session.project
+    hand, out = outwards(project)
+    asked = drag(session, hand, -0.05 * box_diagonal(project.figure.domain.outline) * out)
+    pointing.end(session, asked)
+    settle(session)
+    assert project.figure.key(0).pose.targets[hand].position == asked
+    assert per_mille(session, where(project)[0][hand] - asked) < 1
+    assert not session.toasts
+
+
+@pytest.mark.parametrize("session", ["person"], indirect=True)
+def test_all_handles_together_take_the_whole_drawing_along(session):
+    project = session.project
+    way = 0.8 * box_diagonal(project.figure.domain.outline) * np.exp(1j)
+    _, before = where(project)
+    handles = [handle.id for handle in project.figure.handles]
+    start = complex(where(project)[0][handles[0]])
+    editing.select(session, frozenset(handles))
+    pointing.press(session, Spot(place=start, handle=handles[0]))
+    pointing.move(session, start + way)
+    pointing.end(session, start + way)
+    settle(session)
+    assert per_mille(session, where(project)[1] - before - way) < 1
+    assert not session.toasts

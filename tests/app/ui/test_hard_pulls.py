@@ -1,0 +1,85 @@
+"""A handle that is dragged beyond its reach, by the pointer, with what is told and offered then."""
+
+import numpy as np
+import pytest
+
+from app.document import NATURAL, RUBBERY
+from app.editor.actions import editing, posing
+from app.storage.assets import sample_images
+
+HAND, OUT = 0, 500 + 40j  # pixels of the picture
+
+
+@pytest.fixture
+def bar(window):
+    """The bar, held at its left end and in its middle; its right end is the hand."""
+    project = window.open(sample_images() / "bar.png")
+    width, height = project.document.canvas
+    for share in (0.9, 0.5, 0.1):
+        posing.add_handle(window.session, complex(share * width, height / 2))
+        window.frames(2)
+    editing.select(window.session, frozenset())
+    window.settle()
+    assert project.figure.bounds == NATURAL.bounds
+    return project
+
+
+def places(bar):
+    return np.array(bar.puppet.shown.handle_places)
+
+
+def told(window):
+    return [toast.text for toast in window.session.toasts if "stopped" in toast.text]
+
+
+def drag(window, bar, way, *, key=None):
+    start = complex(places(bar)[HAND])
+
+    def play(robot):
+        robot.mouse_move_to_pos(window.point(start))
+        robot.mouse_down(0)
+        robot.mouse_move_to_pos(window.point(start + way / 2))
+        robot.mouse_move_to_pos(window.point(start + way))
+        robot.yield_(2)
+        assert "to keep the wish beyond its reach" in window.session.hint
+        if key is not None:
+            robot.key_down(int(key))
+        robot.mouse_up(0)
+        if key is not None:
+            robot.key_up(int(key))
+
+    window.run(play)
+    window.settle()
+    return start + way
+
+
+def test_the_rest_stays_and_loosen_lets_it_come_nearer(window, bar):
+    start = places(bar)
+    asked = drag(window, bar, OUT)
+    reached = places(bar)
+    assert np.abs(reached[1:] - start[1:]).max() < 3
+    short = abs(asked - reached[HAND])
+    assert short > 50
+    wanted = bar.figure.keys[0].pose.targets[HAND].position
+    assert abs(wanted - reached[HAND]) < 2
+    (text,) = told(window)
+    assert text == f"{bar.figure.handles[HAND].name} stopped at its stretch limit."
+    window.run(lambda robot: robot.item_click("**/Loosen"))
+    window.settle()
+    assert bar.figure.bounds == RUBBERY.bounds
+    assert abs(asked - places(bar)[HAND]) < 0.7 * short
+    # Looser limits and what comes of them are one step, and so was the drag.
+    editing.undo(window.session)
+    window.settle()
+    assert np.abs(places(bar) - reached).max() < 1e-6
+    editing.undo(window.session)
+    window.settle()
+    assert np.abs(places(bar) - start).max() < 1e-6
+
+
+def test_alt_while_releasing_keeps_the_wish(window, bar):
+    start = places(bar)
+    asked = drag(window, bar, OUT, key=window.Key.mod_alt)
+    assert bar.figure.keys[0].pose.targets[HAND].position == pytest.approx(asked, abs=3)
+    assert np.abs(places(bar)[1:] - start[1:]).max() > 3
+    assert not told(window)

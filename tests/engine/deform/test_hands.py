@@ -1,0 +1,212 @@
+"""Hands that pull with bounded force: their energy, where they lead, and where they let go."""
+
+import numpy as np
+import pytest
+from deform_shapes import BAR_POINTS, STAR_POINTS, bar, star, star_boundary
+from numpy.testing import assert_allclose, assert_array_equal
+
+from engine.deform import Hand, Handles, Objective, Status, projected_hessian
+from engine.deform.model.hessian import hessian_product
+from engine.errors import EngineError
+from engine.maps import Bounds
+
+FORCE = 10.0
+BOUNDS = Bounds(k=0.5, sigma_a=2.0, sigma_b=0.5)
+BOUNDARY = star_boundary()
+SIZE = BOUNDARY.size
+WEIGHTS = [1.0, 2.0, 1.0, 0.5, 1.0, 3.0]
+HANDLES = Handles.place(BOUNDARY, STAR_POINTS, WEIGHTS)
+OUT = STAR_POINTS.copy()
+OUT[1] *= 1 + 0.5 * SIZE / abs(OUT[1])
+TWO = (Hand([1, 3], FORCE), Hand([4], FORCE / 2))
+
+
+def objective(targets, hands, **more):
+    wish = HANDLES.wish(targets, None, hands)
+    return Objective(boundary=BOUNDARY, handles=HANDLES, wish=wish, **more)
+
+
+def coefficients(seed=0):
+    """Return a map near the identity."""
+    rng, cage = np.random.default_rng(seed), BOUNDARY.cage
+    noise = 0.02 * (rng.normal(size=(2, len(cage))) + 1j * rng.normal(size=(2, len(cage))))
+    return cage + noise[0], noise[1]
+
+
+def settled(deformer, wish, state=None):
+    state = deformer.start() if state is None else state
+    for _ in range(500):
+        state = deformer.step(state, wish)
+        if state.status.is_final:
+            return state
+    raise AssertionError("the shape does not come to rest")
+
+
+def pixels(one, other):
+    """Return how far points are from others at most, if a drawing has a diagonal of 1,000."""
+    return 1000 * float(np.abs(one - other).max()) / SIZE
+
+
+@pytest.mark.parametrize("away", [1e-4, 3e-3, 0.1, 1.0, 1e5])
+def test_a_hand_pulls_as_it_was_until_its_force_is_spent_and_no_stronger_then(away):
+    jet = objective(OUT, ()).jet(*coefficients())
+    stiffness, gives = HANDLES.stiffness[1], FORCE / (2 * HANDLES.stiffness[1] * SIZE)
+    arrived, wanted = OUT.copy(), OUT.copy()
+    arrived[1] = jet.positions[1]
+    wanted[1] = arrived[1] + away * SIZE * np.exp(0.7j)
+    pulled, others = objective(wanted, (Hand([1], FORCE),)), objective(arrived, ()).energy(jet)
+    far = away * SIZE
+    huber = stiffness * (2 * gives * far - gives**2 if far > gives else far**2)
+    assert_allclose(pulled.energy(jet), others + huber, rtol=1e-9)
+    force = 2 * stiffness * abs(pulled.wish.errors(jet.positions)[1])
+    assert_allclose(force, min(FORCE / SIZE, 2 * stiffness * far), rtol=1e-7)
+
+
+@pytest.mark.parametrize("hands", [TWO, (Hand([0, 1, 2, 3, 4, 5], 3.0),)])
+def test_its_gradient_and_its_hessian_are_those_of_its_energy(hands):
+    mine = objective(1.4 * STAR_POINTS * np.exp(0.3j), hands)
+    jet = mine.jet(*coefficients())
+    assert np.count_nonzero(mine.wish.hands.given(jet.positions - mine.wish.positions)) == len(
+        hands
+    )
+    gradient = mine.gradient(jet, mine.radial(jet))
+    rng, step = np.random.default_rng(1), 1e-5
+    for _ in range(5):
+        direction = rng.normal(size=len(gradient))
+        change = mine.change(direction)
+        there, back = (jet.advanced(sign * step, change) for sign in (1, -1))
+        assert_allclose(
+            (mine.energy(there) - mine.energy(back)) / (2 * step), gradient @ direction, rtol=1e-6
+        )
+        # The Hessian of the handles alone: positions are linear in the unknowns.
+        positions = [moved.positions for moved in (there, back)]
+        pull = [2 * HANDLES.stiffness * mine.wish.errors(place) for place in positions]
+        curved = 2 * HANDLES.stiffness * mine.held_change(jet, change.positions)
+        assert_allclose(
+            (pull[0] - pull[1]) / (2 * step), curved, rtol=1e-5, atol=1e-6 * np.abs(curved).max()
+        )
+
+
+@pytest.mark.parametrize("secant", [False, True])
+def test_the_matrix_and_the_products_of_its_hessian_agree(secant):
+    mine = objective(1.4 * STAR_POINTS * np.exp(0.3j), TWO, secant=secant)
+    jet = mine.jet(*coefficients())
+    radial = mine.radial(jet)
+    upper = projected_hessian(mine, jet, radial)
+    hessian = np.triu(upper) + np.triu(upper, 1).T
+    assert np.linalg.eigvalsh(hessian).min() > -1e-4
+    direction = np.random.default_rng(2).normal(size=len(hessian))
+    product = hessian_product(mine, jet, radial, mine.change(direction))
+    assert_allclose(product, hessian @ direction, rtol=0, atol=2e-3 * np.abs(product).max())
+
+
+def test_a_hand_beyond_reach_moves_what_it_holds_and_nothing_else():
+    deformer = star(BOUNDS)
+    held = settled(deformer, deformer.handles.wish(OUT))
+    others = [0, 2, 3, 4, 5]
+    assert pixels(deformer.positions(held)[others], STAR_POINTS[others]) > 10
+    wish = deformer.handles.wish(OUT, None, (Hand([1]),))
+    state = settled(deformer, wish)
+    assert state.status is Status.AT_LIMITS
+    assert state.certificate.sigma_a > 0.99 * BOUNDS.sigma_a
+    places = deformer.positions(state)
+    assert pixels(places[others], STAR_POINTS[others]) < 3
+    assert pixels(places[1], OUT[1]) > 100
+    # All of its force is in use, and no more.
+    force = 2 * deformer.handles.stiffness[1] * abs(wish.errors(places)[1])
+    assert_allclose(force, 10.0 / SIZE, rtol=1e-9)
+    # A wish that is within reach is met like any other.
+    near = STAR_POINTS.copy()
+    near[1] *= 1.1
+    one, two = (
+        settled(deformer, deformer.handles.wish(near, None, hands)) for hands in ((), (Hand([1]),))
+    )
+    assert pixels(deformer.positions(one), deformer.positions(two)) < 0.01
+
+
+def test_what_a_hand_lets_go_stays_where_it_is_and_is_found_again():
+    deformer = star(BOUNDS)
+    wish = deformer.handles.wish(OUT, None, (Hand([1]),))
+    state = settled(deformer, wish)
+    places, shape = deformer.positions(state), state.map(BOUNDARY.outline)
+    left = wish.let_go(places)
+    assert left.hands is None
+    assert_array_equal(left.positions[[0, 2, 3, 4, 5]], STAR_POINTS[[0, 2, 3, 4, 5]])
+    beyond = left.positions[1] - places[1]
+    assert_allclose(np.angle(beyond / (OUT[1] - places[1])), 0, atol=1e-9)
+    assert pixels(left.positions[1], places[1]) < 1
+    for start in (state, None):
+        assert pixels(settled(deformer, left, start).map(BOUNDARY.outline), shape) < 0.5
+    # A wish that nothing bounds stays as it is.
+    assert left.let_go(places) is left
+
+
+def test_a_hand_that_comes_back_leaves_nothing_behind():
+    deformer = star(BOUNDS)
+    state = deformer.start()
+    for share in [*np.linspace(0, 1, 12), *np.linspace(1, 0, 12)]:
+        targets = STAR_POINTS + share * (OUT - STAR_POINTS)
+        wish = deformer.handles.wish(targets, None, (Hand([1]),))
+        state = deformer.step(deformer.step(state, wish), wish)
+    state = settled(deformer, deformer.handles.wish(STAR_POINTS, None, (Hand([1]),)), state)
+    assert pixels(state.map(BOUNDARY.outline), BOUNDARY.outline) < 1e-3
+
+
+def test_handles_that_one_hand_pulls_keep_their_formation_and_pull_as_one():
+    deformer = star(BOUNDS)
+    targets = STAR_POINTS.copy()
+    targets[[1, 2]] += 0.6 * SIZE * np.exp(2.2j)
+    states = []
+    for hands in ((Hand([1, 2]),), (Hand([1]), Hand([2]))):
+        wish = deformer.handles.wish(targets, None, hands)
+        states.append((wish, deformer.positions(settled(deformer, wish))))
+    (wish, places), (wish_of_two, places_of_two) = states
+    force = (2 * deformer.handles.stiffness * wish.errors(places))[[1, 2]].sum()
+    assert_allclose(abs(force), 10.0 / SIZE, rtol=1e-9)
+    # Two hands pull twice as strongly, and do not keep the handles as they are to each other.
+    force = (2 * deformer.handles.stiffness * wish_of_two.errors(places_of_two))[[1, 2]]
+    assert_allclose(np.abs(force), 10.0 / SIZE, rtol=1e-9)
+    asked = targets[1] - targets[2]
+    assert (
+        pixels(places[1] - places[2], asked)
+        < 5
+        < pixels(places_of_two[1] - places_of_two[2], asked)
+    )
+    left = wish.let_go(places)
+    assert_allclose(left.positions[1] - left.positions[2], asked, rtol=1e-12)
+
+
+@pytest.mark.parametrize("far", [0.3, 5.0])
+def test_a_pull_of_everything_moves_the_whole_shape(far):
+    deformer = bar()
+    way = far * deformer.boundary.size * np.exp(0.4j)
+    wish = deformer.handles.wish(BAR_POINTS + way, None, (Hand([0, 1, 2]),))
+    state = settled(deformer, wish)
+    assert state.status is Status.CONVERGED
+    outline = deformer.boundary.outline
+    assert_allclose(state.map(outline), outline + way, rtol=0, atol=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("hands", "told"),
+    [
+        ((Hand([1], 0.0),), "positive force, not 0"),
+        ((Hand([1], np.nan),), "positive force, not nan"),
+        ((Hand([9]),), r"pulls at handles \[9\] of 6"),
+        ((Hand([-1]),), r"pulls at handles \[-1\] of 6"),
+        ((Hand([]),), "pulls at nothing"),
+        ((Hand([1, 2]), Hand([2])), "Two hands pull at handle 2"),
+    ],
+)
+def test_hands_that_cannot_pull_are_refused(hands, told):
+    with pytest.raises(EngineError, match=told):
+        HANDLES.wish(OUT, None, hands)
+
+
+def test_a_hand_of_unbounded_force_holds():
+    deformer = star(BOUNDS)
+    wishes = [deformer.handles.wish(OUT, None, hands) for hands in ((), (Hand([1], np.inf),))]
+    assert wishes[0].is_same(wishes[1])
+    assert not wishes[0].is_same(deformer.handles.wish(OUT, None, (Hand([1]),)))
+    other = deformer.handles.wish(OUT, None, (Hand([2]),))
+    assert not other.is_same(deformer.handles.wish(OUT, None, (Hand([1]),)))
