@@ -35,6 +35,7 @@ GESTURES = (
     Gesture("Esc", "Cancel a drag"),
     Gesture("Drag while cutting out", "Keep or remove a part of the picture"),
     Gesture(with_key(ALT, "drag while cutting out"), "The opposite"),
+    Gesture("Drag with the knife", "Part what touches"),
     Gesture("Drag a key", "Move it in time"),
     Gesture(with_key(CTRL, "drag a key"), "Copy it"),
     Gesture("Click between keys", "Change the easing"),
