@@ -1,22 +1,20 @@
 """The drawing, and everything that the pointer does to it."""
 
 from dataclasses import replace
-from functools import partial
 from typing import NamedTuple
 
-from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui, imgui_ctx
+from imgui_bundle import ImVec2, imgui, imgui_ctx
 
-from app.document import handle_commands
 from app.editor import Action, Project, Session, do
-from app.editor.actions import editing, posing, viewing
+from app.editor.actions import editing, viewing
 from app.editor.tools import pointing
-from app.ui.shortcuts import ALT, CTRL, with_key
 from app.ui.style import Look, density, in_hand, is_pressed
 from app.ui.viewport.cut_view import draw_brush
 from app.ui.viewport.gesture import draw_coming_strokes, go_on
 from app.ui.viewport.grips import draw_axis, draw_ring, find_ring, lay_axis
 from app.ui.viewport.hints import draw_badges, draw_mode, hint_at
 from app.ui.viewport.marks import unreached
+from app.ui.viewport.menus import canvas_menu, handle_menu
 from app.ui.viewport.screen import GRIP, Screen
 from app.ui.viewport.split_view import SplitTextures, divide, draw_divider, draw_pictures
 
@@ -52,6 +50,7 @@ def draw(session: Session, look: Look, project: Project, pictures: SplitTextures
     spot = replace(spot, at_target=handles.at_target)
     if handles.is_pressed or axis.is_pressed or _is_canvas_pressed():
         actions.append(do(pointing.press, spot))
+    actions += canvas_menu(session, is_pointed=on_canvas and handles.hovered is None)
     actions += _navigate(screen)
     actions += handles.actions
     actions += go_on(session, look, screen)
@@ -130,29 +129,8 @@ def _lay_handles(session: Session, look: Look, screen: Screen) -> _Handles:
         pressed = pressed or is_pressed()
         if session.pointer is None and imgui.is_item_clicked(imgui.MouseButton_.right):
             imgui.open_popup(f"menu of handle {identity}")
+            if identity not in screen.project.selected:
+                actions.append(do(editing.select, frozenset({identity})))
     for identity in identities:
-        actions += _menu(screen, identity)
+        actions += handle_menu(session, screen, identity)
     return _Handles(hovered, at_target, pressed, actions)
-
-
-def _menu(screen: Screen, identity: int) -> list[Action]:
-    actions: list[Action] = []
-    if not imgui.begin_popup(f"menu of handle {identity}"):
-        return actions
-    handle, chosen = screen.project.figure.handle(identity), frozenset({identity})
-    target = screen.shown.pose.targets.get(identity) if screen.shown.pose else None
-    item = imgui.internal.menu_item_ex  # as menu_item_simple, with icons in a column
-    if item("Delete", icons.ICON_FA_TRASH, with_key(ALT, "click")):
-        actions.append(do(posing.remove_handles, chosen))
-    if item("Unlock" if handle.locked else "Lock", icons.ICON_FA_LOCK):
-        lock = partial(handle_commands.lock_handles, locked=not handle.locked)
-        actions.append(do(editing.edit_figure, lock, chosen))
-    is_anchor = handle.position == screen.project.figure.anchor
-    label = "Automatic anchor" if is_anchor else "Make it the anchor"
-    if item(label, icons.ICON_FA_ANCHOR, with_key(CTRL, "click")):
-        actions.append(do(posing.anchor_at, identity))
-    is_turned = target is not None and target.rotation is not None
-    if item("Let it turn freely", icons.ICON_FA_ROTATE, enabled=is_turned):
-        actions.append(do(posing.free_turn, identity))
-    imgui.end_popup()
-    return actions
