@@ -2,10 +2,13 @@
 
 import pytest
 from bars import BENT
-from imgui_bundle import ImVec2, imgui
+from harness import FRAME
+from imgui_bundle import ImVec2, hello_imgui, imgui
 
 from app.editor.actions import editing, playback
+from app.storage.assets import sample_images
 from app.ui.shortcuts import BINDINGS
+from app.ui.style import tip
 from app.ui.viewport.menus import CANVAS
 
 RIGHT = 1
@@ -118,3 +121,44 @@ def test_a_number_between_keys_makes_a_key_as_a_drag_does(window, bent):
     window.run(play)
     window.settle()
     assert bent.figure.key(BENT // 2).pose.targets[1].position.real == pytest.approx(321.0)
+
+
+def tooltip_at(window, place, seconds=0.5):
+    """Return the box of the tooltip that there is half a second after the pointer came."""
+    imgui.get_io().add_mouse_pos_event(place.x, place.y)
+    window.frames(round(seconds / FRAME))
+    windows = imgui.get_current_context().windows
+    found = [each for each in windows if each.name.startswith("##Tooltip") and each.active]
+    return found[0].rect() if found else None
+
+
+def test_a_tab_that_is_an_icon_has_its_name_in_a_tooltip(window):
+    window.open(sample_images() / "bar.png")
+    assert tooltip_at(window, ImVec2(400, 200)) is None
+    tab = imgui.internal.find_window_by_name("###Poses").dc.dock_tab_item_rect
+    assert tooltip_at(window, tab.get_center()) is not None
+
+
+def test_a_long_tooltip_wraps(window):
+    window.open(sample_images() / "bar.png")
+    told = []
+    width = 30 * window.text_height()
+
+    def draw():
+        imgui.set_next_window_pos(ImVec2(100, 100))
+        imgui.begin("probe")
+        imgui.button("long", ImVec2(200, 100))
+        tip("What a click does here takes a sentence or two to say. " * 3, "Ctrl+Shift+S")
+        imgui.end()
+
+    calls = hello_imgui.get_runner_params().callbacks
+    usual = calls.show_gui
+    calls.show_gui = hello_imgui.sequence_functions(usual, draw)
+    try:
+        window.frames(3)
+        told.append(tooltip_at(window, ImVec2(200, 200)))
+    finally:
+        calls.show_gui = usual
+    (box,) = told
+    assert box is not None
+    assert box.get_width() < width
