@@ -20,7 +20,7 @@ from engine.arrays import Bytes
 
 HeatMap = Literal["none", "k", "sigma_a", "sigma_b"]
 CurveKind = Literal["relative", "absolute"]
-CutTool = Literal["keep", "remove", "pick", "holes"]
+CutTool = Literal["keep", "remove", "knife", "pick", "holes"]
 Tone = Literal["info", "good", "error"]
 P = ParamSpec("P")
 
@@ -98,6 +98,13 @@ class StrokeMark:
     keeps: bool
 
 
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class KnifeMark:
+    """A line of the knife, in the plane, that is not done yet."""
+
+    points: tuple[complex, ...]
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class JointMark:
     """The way from an anchor to the pointer, and the layer there, which may be refused."""
@@ -108,7 +115,7 @@ class JointMark:
     is_refused: bool
 
 
-Mark = BoxMark | SweepMark | EntryMark | StrokeMark | JointMark
+Mark = BoxMark | SweepMark | EntryMark | StrokeMark | KnifeMark | JointMark
 
 
 @dataclass(frozen=True, slots=True, eq=False)

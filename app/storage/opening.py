@@ -36,17 +36,27 @@ class Cut:
         None where the subject has too many parts.
     is_all : bool
         Whether every pixel is kept.
+    leftover : bool, shape (h, w), optional
+        Those of the subject that look like the removed background; None where there are none.
     """
 
     kept: Booleans
     texture: Bytes
     holes: HoleMap | None
     is_all: bool
+    leftover: Booleans | None = None
 
     @classmethod
-    def of(cls, kept: Booleans, texture: Bytes, holes: HoleMap | None = None) -> Self:
-        """Return a cut, with its `is_all` found once: pictures are large."""
-        return cls(kept, texture, holes, bool(kept.all()))
+    def of(
+        cls,
+        kept: Booleans,
+        texture: Bytes,
+        holes: HoleMap | None = None,
+        enclosed: Booleans | None = None,
+    ) -> Self:
+        """Return a cut, with what is asked of it often found once: pictures are large."""
+        leftover = None if enclosed is None or not (enclosed & kept).any() else enclosed & kept
+        return cls(kept, texture, holes, bool(kept.all()), leftover)
 
 
 def open_picture(path: Path, meshing: Meshing, cut_out: CutOut = CutOut()) -> OpenedScene:
@@ -80,4 +90,4 @@ def cut_picture(picture: Picture, cut_out: CutOut) -> Cut:
         holes = find_holes(subject.mask, subject.enclosed, opens=subject.opens)
     except EngineError:
         holes = None
-    return Cut.of(subject.mask, texture(picture.rgba, subject), holes)
+    return Cut.of(subject.mask, texture(picture.rgba, subject), holes, subject.enclosed)

@@ -1,4 +1,4 @@
-"""Cutting the subject out of its picture by hand: colour, brush, mask and holes."""
+"""Cutting the subject out of its picture by hand: colour, brush, knife, mask and holes."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -21,7 +21,8 @@ from app.storage import (
     read_file,
     write_atomically,
 )
-from engine.domain import Mask, Stroke
+from engine.domain import Mask, Slit, Stroke
+from engine.geometry import distance_to_segments
 
 WRITING = Kind("Saving the mask", "The mask was not saved")
 MASKS = (".png",)
@@ -111,6 +112,24 @@ def brush(session: Session, stroke: Stroke) -> None:
     editing.edit_figure(session, figure_commands.brush, stroke)
 
 
+def part(session: Session, slit: Slit) -> None:
+    """Part what touches along a line of the knife."""
+    editing.edit_figure(session, figure_commands.part, slit)
+
+
+@with_project
+def join_again(session: Session, project: Project, place: complex, reach: float) -> None:
+    """Take away the line of the knife that is nearest to a place, and no farther than `reach`."""
+    slits, point = project.figure.cut_out.slits, np.array([place - project.figure.corner])
+    away = [
+        float(distance_to_segments(point, slit.points[:-1], slit.points[1:]).min())
+        for slit in slits
+    ]
+    if min(away, default=np.inf) <= reach:
+        nearest = away.index(min(away))
+        change(session, slits=slits[:nearest] + slits[nearest + 1 :])
+
+
 @with_project
 def swap_hole(session: Session, project: Project, place: complex) -> None:
     """Keep the hole at a place that would be filled, or fill one that would be kept."""
@@ -120,12 +139,14 @@ def swap_hole(session: Session, project: Project, place: complex) -> None:
         return
     swapped = project.figure.cut_out.swapped
     others = tuple(other for other in swapped if holes.number_at(other) != number)
-    change(session, swapped=others if len(others) < len(swapped) else (*swapped, point))
+    # Its middle, not the point at its rim where the click may have been.
+    named = (*swapped, holes.middles[number])
+    change(session, swapped=others if len(others) < len(swapped) else named)
 
 
 def forget_strokes(session: Session) -> None:
-    """Take away all strokes and the mask."""
-    change(session, strokes=(), mask=None)
+    """Take away all strokes, the knife's lines and the mask."""
+    change(session, strokes=(), slits=(), mask=None)
 
 
 def ask_mask(session: Session) -> None:

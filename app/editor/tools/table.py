@@ -4,7 +4,7 @@ from typing import Final
 
 from app.editor.session import Session
 from app.editor.tools.anchoring import Anchoring
-from app.editor.tools.cutting_tools import Brushing, Pointing
+from app.editor.tools.cutting_tools import Brushing, Parting, Pointing
 from app.editor.tools.joining import Joining
 from app.editor.tools.mirroring import Mirroring
 from app.editor.tools.moving import Moving
@@ -13,7 +13,7 @@ from app.editor.tools.selecting import Choosing, Selecting
 from app.editor.tools.tool import Tool
 from app.editor.tools.turning import Turning
 
-CUTTING_TOOLS: Final[tuple[type[Tool], ...]] = (Brushing, Pointing)
+CUTTING_TOOLS: Final[tuple[type[Tool], ...]] = (Brushing, Parting, Pointing)
 MOVING_TOOLS: Final[tuple[type[Tool], ...]] = (Mirroring, Moving, Anchoring)
 # A press is for the first that takes it; hints are told in this order.
 TOOLS: Final[tuple[type[Tool], ...]] = (

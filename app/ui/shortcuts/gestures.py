@@ -16,6 +16,7 @@ class Gesture:
 GESTURES = (
     Gesture("Click the shape", "Add a handle"),
     Gesture("Drag a handle", "Pose"),
+    Gesture(with_key(ALT, "let go of a handle"), "Want it there, however far"),
     Gesture("Drag the ring around a handle", "Turn the shape there"),
     Gesture(with_key(ALT, "drag a handle"), "Turn the shape there"),
     Gesture(with_key(CTRL, "turn"), "Turn by steps of 15°"),
@@ -34,6 +35,7 @@ GESTURES = (
     Gesture("Esc", "Cancel a drag"),
     Gesture("Drag while cutting out", "Keep or remove a part of the picture"),
     Gesture(with_key(ALT, "drag while cutting out"), "The opposite"),
+    Gesture("Drag with the knife", "Part what touches"),
     Gesture("Drag a key", "Move it in time"),
     Gesture(with_key(CTRL, "drag a key"), "Copy it"),
     Gesture("Click between keys", "Change the easing"),

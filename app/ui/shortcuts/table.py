@@ -21,6 +21,7 @@ from app.editor.actions import (
 )
 from app.editor.poses import copying, flipping, library
 from app.editor.tools import moving
+from app.ui.panel import is_in_front
 from app.ui.shortcuts.binding import Binding
 
 
@@ -87,10 +88,22 @@ def _brushes(session: Session, _: Project) -> bool:
 @with_project
 def _rename_layer(session: Session, project: Project) -> None:
     """Ask for the name of the layer that is posed, in the list of layers."""
-    for panel in hello_imgui.get_runner_params().docking_params.dockable_windows:
-        if panel.label.endswith("###Layers"):
-            panel.focus_window_at_next_frame = True
+    _bring_to_front("Layers")
     layering.ask_name(session, project.active)
+
+
+def _export(session: Session) -> None:
+    """Show what the export makes; where that is seen already, ask where to and begin."""
+    if _bring_to_front("Export"):
+        exporting.ask(session)
+
+
+def _bring_to_front(title: str) -> bool:
+    """Show a panel; return whether it was in front already."""
+    for panel in hello_imgui.get_runner_params().docking_params.dockable_windows:
+        if panel.label.endswith(f"###{title}"):
+            panel.focus_window_at_next_frame = True
+    return is_in_front(title)
 
 
 def _overlay(label: str, name: OverlayName, keys: str, **more: Any) -> Binding:
@@ -112,7 +125,7 @@ MENUS: dict[str, dict[str, Binding]] = {
         "open": Binding("Open…", do(files.ask_open), "Ctrl+O", needs_project=False),
         "save": Binding("Save", do(saving.save), "Ctrl+S", parted=True),
         "save as": Binding("Save as…", do(saving.save_as), "Ctrl+Shift+S"),
-        "export": Binding("Export…", do(exporting.ask), "Ctrl+E", parted=True),
+        "export": Binding("Export…", do(_export), "Ctrl+E", parted=True),
         "export again": Binding("Export again", do(exporting.repeat), "Ctrl+Shift+E"),
         "copy picture": Binding("Copy picture", do(exporting.copy_picture), "Ctrl+Shift+C"),
         "unsaved work": Binding(

@@ -1,4 +1,8 @@
-"""The picture at rest while it is cut out: what is removed lies under a veil."""
+"""The picture at rest while it is cut out: what is removed lies under a veil.
+
+What stays although it looks like the background lies under a veil of another colour: on paper of
+that colour nobody would see it.
+"""
 
 import math
 
@@ -9,11 +13,12 @@ from app.editor import Project, Session
 from app.editor.actions import cutting
 from app.render import Disc, Renderer
 from app.render.gpu import GpuMesh, GpuPicture, PosedMesh, PositionBuffer, singles
+from app.storage import Cut
 from app.ui.style import Look, Palette, ink, outlined
 from app.ui.viewport.marks import plain
-from engine.arrays import Booleans, Bytes, Complexes, Integers
+from engine.arrays import Bytes, Complexes, Integers
 
-VEIL = (214, 48, 72, 150)
+VEIL, LEFTOVER = (214, 48, 72, 150), (40, 110, 240, 150)
 FINEST = 1024  # pixels of the veil's longer side
 HOLE = 7.0  # pixels: radius of the mark in a hole
 SQUARE: Integers = np.array([[0, 1, 2], [0, 2, 3]], dtype=np.int32)
@@ -55,18 +60,18 @@ class CutView:
 
     def __init__(self, renderer: Renderer, project: Project, figure: int) -> None:
         self.puppet = project.puppets[figure]
-        self._kept = self.puppet.cut.value.kept
+        self._cut = self.puppet.cut.value
         picture = self.puppet.picture
         corners = project.document.figure(figure).corner + _corners(*picture.size)
         self._sheet = _Sheet(renderer, picture.rgba, corners)
-        self._veil = _Sheet(renderer, _veil(self._kept), corners)
+        self._veil = _Sheet(renderer, _veil(self._cut), corners)
 
     def meshes(self) -> tuple[PosedMesh, ...]:
         """Return the picture, and the veil over what is removed of it now."""
-        kept = self.puppet.cut.value.kept
-        if kept is not self._kept:
-            self._kept = kept
-            self._veil.write(_veil(kept))
+        cut = self.puppet.cut.value
+        if cut is not self._cut:
+            self._cut = cut
+            self._veil.write(_veil(cut))
         return (self._sheet.pose, self._veil.pose)
 
     def release(self) -> None:
@@ -117,8 +122,11 @@ def _corners(width: float, height: float) -> Complexes:
     return np.array([0, width, width + 1j * height, 1j * height])
 
 
-def _veil(kept: Booleans) -> Bytes:
-    step = math.ceil(max(kept.shape) / FINEST)
-    veil = np.zeros((*kept[::step, ::step].shape, 4), dtype=np.uint8)
-    veil[~kept[::step, ::step]] = VEIL
+def _veil(cut: Cut) -> Bytes:
+    step = math.ceil(max(cut.kept.shape) / FINEST)
+    kept = cut.kept[::step, ::step]
+    veil = np.zeros((*kept.shape, 4), dtype=np.uint8)
+    veil[~kept] = VEIL
+    if cut.leftover is not None:
+        veil[cut.leftover[::step, ::step]] = LEFTOVER
     return veil

@@ -11,7 +11,8 @@ from app.render.gpu import GpuMesh, GpuPicture, PosedMesh
 from app.storage import Picture
 from app.ui.viewport.backdrop import measure_brightness
 from app.ui.viewport.cut_view import CutView
-from engine.arrays import Floats
+from engine.arrays import Bytes, Floats
+from engine.domain import find_seam
 from engine.maps import distortion
 
 
@@ -40,9 +41,16 @@ class Drawing:
         self._drawn_meshes: dict[tuple[PosableMesh, int], DrawnMesh] = {}
         self._heated: dict[PosedMesh, tuple[Vertices, HeatMap]] = {}
         self._cut_view: CutView | None = None
-        # Of the picture behind all others: what the backdrop must differ from.
-        (first, *_) = project.document.figures
-        self.brightness = measure_brightness(project.puppets[first.id].cut.value.texture)
+        self._measured: tuple[Bytes, Floats] | None = None
+
+    @property
+    def brightness(self) -> Floats:
+        """That of the picture behind all others, as it is cut out: the backdrop must differ."""
+        (first, *_) = self.project.document.figures
+        texture = self.project.puppets[first.id].cut.value.texture
+        if self._measured is None or self._measured[0] is not texture:
+            self._measured = texture, measure_brightness(texture)
+        return self._measured[1]
 
     def drawn_mesh(self, figure: int, mesh: PosableMesh, number: int = 0) -> DrawnMesh:
         """Return the copy of a figure's mesh with this number, which is posed by itself."""
@@ -110,6 +118,7 @@ class Drawing:
                 self._picture(figure),
                 rest=drawn.vertices - self.project.document.figure(figure).corner,
                 triangles=drawn.triangles,
+                seam=find_seam(mesh.domain),
             )
         return self._meshes[mesh]
 

@@ -10,7 +10,7 @@ from app.editor.actions import editing, viewing
 from app.editor.tools import pointing
 from app.ui.style import Look, density, in_hand, is_pressed
 from app.ui.viewport.cut_view import draw_brush
-from app.ui.viewport.gesture import draw_coming_strokes, go_on
+from app.ui.viewport.gesture import draw_coming_strokes, draw_slits, go_on
 from app.ui.viewport.grips import draw_axis, draw_ring, find_ring, lay_axis
 from app.ui.viewport.hints import draw_badges, draw_mode, hint_at
 from app.ui.viewport.marks import unreached
@@ -68,6 +68,7 @@ def draw(session: Session, look: Look, project: Project, pictures: SplitTextures
     if session.cutting is None:
         return actions + draw_badges(session, look, project, corner, parts.room)
     draw_coming_strokes(look, screen)
+    draw_slits(look, screen)
     if on_canvas or session.pointer is not None:
         draw_brush(session, look, imgui.get_mouse_pos(), screen.scale)
     return actions + draw_mode(look, "Cutting out", corner, parts.room)

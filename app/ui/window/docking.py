@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 from imgui_bundle import ImVec2, hello_imgui, imgui
 
-from app.ui.panel import Panel
+from app.ui.panel import Panel, is_in_front
 from app.ui.style import FONT_SIZE
 
 SIDE, BOTTOM = 24.8, 12.2  # em: what tabs and timeline take at first
@@ -111,17 +111,12 @@ class Docking:
         }
         left = room - sum(icon + around for _, icon in widths.values())
         # The one in front first, then the others in their order.
-        for other in sorted(together, key=self._is_in_front, reverse=True):
+        for other in sorted(together, key=lambda each: is_in_front(each.title), reverse=True):
             title, icon = widths[other]
             left -= title - icon
             if other is panel or left < 0:
                 break
         return panel.labels[1] if left >= 0 else panel.labels[-1]
-
-    def _is_in_front(self, panel: Panel) -> bool:
-        window = imgui.internal.find_window_by_name(panel.label)
-        node = None if window is None else window.dock_node
-        return window is not None and node is not None and node.selected_tab_id == window.tab_id
 
 
 def _splits(room: ImVec2, em: float) -> list[hello_imgui.DockingSplit]:

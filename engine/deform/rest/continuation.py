@@ -90,7 +90,7 @@ def begin_search(
     jet = objective.jet(*harmonic_map.columns)
     energy = objective.energy(jet)
     reach = FIRST_REACH if way is Way.WIDENING else inf
-    own = Walls.at(inside, objective.boundary)
+    own = rung(Walls.at(inside, objective.boundary), reach)
     outermost = Walls.at(limits, objective.boundary)
     return Search(
         handles=objective.handles,
@@ -100,10 +100,12 @@ def begin_search(
         certificate=certificate,
         boundary=objective.boundary,
         limits=limits,
-        inside=own,
+        within=inside,
         reach=reach,
-        walls=walls_around(rung(own, reach), outermost, jet.a, jet.b),
-        weight=HERE_PER_ENERGY * energy if way is Way.HERE else _first_weight(energy),
+        walls=walls_around(own, outermost, jet.a, jet.b),
+        weight=HERE_PER_ENERGY * energy
+        if way is Way.HERE
+        else max(FIRST_LEAST, FIRST_PER_ENERGY * energy),
         energy=energy,
     )
 
@@ -226,7 +228,3 @@ def widened(search: Search, jet: Jet) -> Search:
     outermost = Walls.at(wider.limits, wider.boundary)
     walls = walls_around(wider.rung, outermost, jet.a, jet.b)
     return replace(wider, walls=walls)
-
-
-def _first_weight(energy: float) -> float:
-    return max(FIRST_LEAST, FIRST_PER_ENERGY * energy)

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import ndimage
 
-from engine.arrays import Booleans, Integers
+from engine.arrays import Booleans, Complexes, Integers
 from engine.domain.outline.cage import offset_cage
 from engine.domain.outline.fitting import Candidates, fit_polygon
 from engine.domain.outline.margin import curve_at_margin, distance_field
@@ -19,7 +19,9 @@ from engine.domain.picture import WholePiece, WorkingGrid, join_parts, working_g
 from engine.errors import EngineError
 from engine.geometry import Hole, deepest_point
 
-SMALLEST_HOLE = 0.012  # radius of the largest disc in a hole that is kept, of the diagonal
+# Radii of the largest disc, of the diagonal: in a hole that is kept, and in a part inside that
+# looks like the background, and is seen through or not although the mesh has no hole there.
+SMALLEST_HOLE, SMALLEST_POCKET = 0.012, 0.003
 SHARE = 0.25  # of that radius: the margin at most, and the offset from outline to cage
 FEWEST_EDGES = 16
 FRAME = 2  # cells of the subject around a hole that is cut out
@@ -35,7 +37,7 @@ class HoleMap:
     piece : WholePiece
         In cells of the grid.
     middles : dict of int to complex
-        Of the holes that are large enough to be kept, by their numbers.
+        Of the holes that are large enough to be kept or to be seen through, by their numbers.
     shut : frozenset of int
         Of these, the ones that are parts of the subject where nothing else is said.
     """
@@ -46,7 +48,7 @@ class HoleMap:
     shut: frozenset[int]
 
     def number_at(self, point: complex) -> int:
-        """Return the number of the hole that a point is in, if it can be kept; else 0."""
+        """Return the number of the hole that a point is in, if it has a middle; else 0."""
         numbers = self.piece.numbers_at(self.grid.to_cells(np.array([point])))
         return int(numbers[0]) if len(numbers) and int(numbers[0]) in self.middles else 0
 
@@ -77,12 +79,17 @@ def find_holes(mask: Booleans, enclosed: Booleans | None = None, *, opens: bool 
     for number, (rows, columns) in enumerate(windows, start=1):
         depth = ndimage.distance_transform_edt(np.pad(piece.holes[rows, columns] == number, 1))
         row, column = np.unravel_index(int(np.argmax(depth)), depth.shape)
-        if depth[row, column] >= SMALLEST_HOLE * grid.diagonal:
-            cell = complex(columns.start + column - 0.5, rows.start + row - 0.5)
-            middle = middles[number] = complex(grid.to_picture(np.array([cell]))[0])
-            pixel = int(len(mask) - middle.imag), int(middle.real)
-            if enclosed is not None and enclosed[pixel] and not opens:
-                shut.add(number)
+        radius = depth[row, column] / grid.diagonal
+        if radius < SMALLEST_POCKET:
+            continue
+        cell = complex(columns.start + column - 0.5, rows.start + row - 0.5)
+        middle = complex(grid.to_picture(np.array([cell]))[0])
+        pixel = int(len(mask) - middle.imag), int(middle.real)
+        is_pocket = enclosed is not None and bool(enclosed[pixel])
+        if is_pocket or radius >= SMALLEST_HOLE:
+            middles[number] = middle
+        if is_pocket and not opens:
+            shut.add(number)
     return HoleMap(grid=grid, piece=piece, middles=middles, shut=frozenset(shut))
 
 
@@ -130,7 +137,18 @@ def trace_hole(
     if outline is None:
         return None
     try:
-        cage = offset_cage(outline, offset, hole=True)
+        return hole_in(outline, offset).moved(corner)
     except EngineError:
         return None
-    return Hole(outline=outline, cage=cage, centre=deepest_point(cage)).moved(corner)
+
+
+def hole_in(outline: Complexes, offset: float) -> Hole:
+    """Return the hole with this outline, and a cage in it at most at this offset.
+
+    Raises
+    ------
+    EngineError
+        If the outline comes too close to itself to leave room for a cage.
+    """
+    cage = offset_cage(outline, offset, hole=True)
+    return Hole(outline=outline, cage=cage, centre=deepest_point(cage))

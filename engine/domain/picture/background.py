@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import ndimage
 
-from engine.arrays import Booleans, Bytes
+from engine.arrays import Booleans, Bytes, Indices, Integers
 from engine.domain.picture.cut_out import BackgroundColour
 from engine.domain.picture.grid import block_factor, reduce_blocks, repeat_blocks
 from engine.domain.picture.parts import WITH_CORNERS, touching
@@ -16,7 +16,10 @@ CHANNEL_WIDTH = 0.006  # of the diagonal: the flood passes no channel that is na
 # What a lossy encoder leaves around edges: islands of fewer pixels, no farther from the
 # background's colour. JPEG at quality 50 to 95 left 5,404 of them around ten drawings, one larger.
 SMALLEST_ISLAND, NOISE_LEVELS = 25, 54
+BAND = 512  # rows in which they are looked for at once
 VIVID = 48  # levels between a colour's channels: white, grey and black have fewer
+SEEN_WIDTH = 0.002  # of the diagonal: narrower places inside are not looked for
+NEARBY_STEP, NEARBY_REACH = 8, 5  # pixels, and steps: where the paper beside a place is measured
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -28,8 +31,8 @@ class Background:
     mask : bool, shape (h, w)
         True on the background.
     enclosed : bool, shape (h, w)
-        True on what has the same colour inside of something else: wide places, and where the
-        colour is vivid whatever has it.
+        True on what has the same colour inside of something else, or that of the background
+        nearby: places wide enough to be seen, and where the colour is vivid whatever has it.
     colour : uint8, shape (3,)
     agreement : float
         Share of the border's pixels that have the background's colour.
@@ -66,21 +69,23 @@ def flood_background(
     morphological opening); then the thin remains that touch it are added, without what lies
     behind them. Pictures above 1,400 pixels are flooded in blocks and refined to pixels after.
     Islands of a few pixels that hardly differ from the background are an encoder's noise.
+    Inside, the colour is also compared with the background's nearby: a photographed sheet is darker
+    towards its edges, and all of its pockets are to be found wherever it was flooded.
     """
     wanted = _border_colour(rgb) if colour is None else np.array(colour, dtype=np.uint8)
     alike = _alike(rgb, wanted, tolerance)
     agreement = float(_border(alike).mean())
     factor = block_factor(alike.shape, WORKING_SIDE)
-    flooded, enclosed = _flood(reduce_blocks(alike, factor, np.logical_and))
+    flooded = _flood(reduce_blocks(alike, factor, np.logical_and))
     if factor > 1:
         flooded = _refined(flooded, factor, alike)
-        enclosed = _refined(enclosed, factor, alike) & ~flooded
-    noise = _noise(flooded | enclosed, rgb, wanted)
-    if noise.any() and enclosed.any():
-        enclosed = touching(noise | enclosed, enclosed)
-    flooded |= noise & ~enclosed
+    flooded |= _noise(flooded, rgb, wanted)
+    enclosed = _pockets(rgb, wanted, tolerance, flooded, alike)
+    del alike  # large pictures leave little room
+    if enclosed.any():
+        enclosed |= _noise(flooded | enclosed, rgb, wanted)
     if _is_vivid(wanted):
-        enclosed |= alike & ~flooded
+        enclosed |= _alike(rgb, wanted, tolerance) & ~flooded
     return Background(mask=flooded, enclosed=enclosed, colour=wanted, agreement=agreement)
 
 
@@ -90,8 +95,9 @@ def _is_vivid(colour: Bytes) -> bool:
 
 def _refined(blocks: Booleans, factor: int, alike: Booleans) -> Booleans:
     """Return those of the pixels `alike` that are in blocks or beside them."""
-    near = ndimage.binary_dilation(blocks, WITH_CORNERS)
-    return repeat_blocks(near, factor, alike.shape) & alike
+    near = repeat_blocks(ndimage.binary_dilation(blocks, WITH_CORNERS), factor, alike.shape)
+    near &= alike
+    return near
 
 
 def _border(values: np.ndarray) -> np.ndarray:
@@ -120,34 +126,73 @@ def _alike(rgb: Bytes, colour: Bytes, tolerance: int) -> Booleans:
 
 def _noise(background: Booleans, rgb: Bytes, colour: Bytes) -> Booleans:
     """Return the islands in a background that are an encoder's noise."""
-    labels, count = ndimage.label(~background, WITH_CORNERS)
-    is_noise = np.bincount(labels.ravel(), minlength=count + 1) < SMALLEST_ISLAND
-    is_noise[0] = False
-    noise = is_noise[labels]
-    if not is_noise.any():
-        return noise
-    rows, columns = np.nonzero(noise)
-    islands = labels[rows, columns]
-    faint = _alike(rgb[rows, columns][None], colour, NOISE_LEVELS)[0]
-    is_noise[islands[~faint]] = False
-    noise[rows, columns] = is_noise[islands]
+    noise = np.zeros_like(background)
+    # Labels take as much memory as pictures do, and no island leaves the rows that are added to a
+    # band: what does has more pixels within it already.
+    for top in range(0, len(noise), BAND):
+        band = slice(max(0, top - SMALLEST_ISLAND), top + BAND + SMALLEST_ISLAND)
+        inner = slice(top - band.start, top - band.start + BAND)
+        noise[top : top + BAND] = _noise_in(background[band], rgb[band], colour)[inner]
     return noise
 
 
-def _flood(alike: Booleans) -> tuple[Booleans, Booleans]:
-    """Flood pixels `alike` from the border, past no narrow channel; and all other wide places."""
+def _noise_in(background: Booleans, rgb: Bytes, colour: Bytes) -> Booleans:
+    labels, _ = ndimage.label(~background, WITH_CORNERS)
+    places = np.flatnonzero(~background)
+    islands = labels.ravel()[places]
+    is_noise = np.bincount(islands, minlength=1) < SMALLEST_ISLAND
+    noise = np.zeros_like(background)
+    places = places[is_noise[islands]]
+    islands = labels.ravel()[places]
+    faint = _alike(rgb.reshape(-1, 3)[places][None], colour, NOISE_LEVELS)[0]
+    is_noise[islands[~faint]] = False
+    noise.ravel()[places] = is_noise[islands]
+    return noise
+
+
+def _flood(alike: Booleans) -> Booleans:
+    """Flood pixels `alike` from the border, past no narrow channel."""
     radius = max(1.0, CHANNEL_WIDTH / 2 * float(np.hypot(*alike.shape)))
     wide = _opened(alike, radius)
     frame = np.ones_like(wide)
     frame[1:-1, 1:-1] = False
     flooded = touching(wide, frame)
-    enclosed = wide & ~flooded
     thin = alike & ~wide
-    flooded |= touching(thin | flooded, flooded) & thin
-    if enclosed.any():
-        thin &= ~flooded
-        enclosed |= touching(thin | enclosed, enclosed) & thin
-    return flooded, enclosed
+    return flooded | touching(thin | flooded, flooded) & thin
+
+
+def _pockets(
+    rgb: Bytes, colour: Bytes, tolerance: int, flooded: Booleans, alike: Booleans
+) -> Booleans:
+    """Return the places that are no part of the flood, but look like it."""
+    pockets = alike & ~flooded
+    if flooded.any():
+        # What is within the tolerance of a flooded pixel is within twice that of the colour.
+        near = _alike(rgb, colour, 2 * tolerance) & ~flooded & ~pockets
+        rows, columns = np.nonzero(near)
+        apart = np.abs(rgb[rows, columns] - _nearby(rgb, flooded, rows, columns))
+        near[rows, columns] = (apart <= tolerance).all(axis=1)
+        pockets |= near
+    if not pockets.any():
+        return pockets
+    factor = block_factor(pockets.shape, WORKING_SIDE)
+    blocks = reduce_blocks(pockets, factor, np.logical_and)
+    width = max(1, round(SEEN_WIDTH * float(np.hypot(*blocks.shape))))
+    seen = touching(blocks, ndimage.minimum_filter(blocks, width, mode="constant"))
+    return _refined(seen, factor, pockets) if factor > 1 else seen
+
+
+def _nearby(rgb: Bytes, flooded: Booleans, rows: Indices, columns: Indices) -> Integers:
+    """Return the colour (n, 3) of the flooded background that is nearest to each of n pixels."""
+    step = NEARBY_STEP if flooded[::NEARBY_STEP, ::NEARBY_STEP].any() else 1
+    sheet, paper = rgb[::step, ::step], flooded[::step, ::step]
+    nearest = ndimage.distance_transform_edt(~paper, return_distances=False, return_indices=True)
+    at = tuple(nearest[:, rows // step, columns // step])
+    weight = ndimage.uniform_filter(paper.astype(np.float64), NEARBY_REACH)[at]
+    sums = (np.where(paper, sheet[..., channel], 0.0) for channel in range(3))
+    means = [ndimage.uniform_filter(each, NEARBY_REACH)[at] / weight for each in sums]
+    nearby: Integers = np.rint(np.column_stack(means)).astype(np.int32)
+    return nearby
 
 
 def _opened(area: Booleans, radius: float) -> Booleans:

@@ -8,6 +8,7 @@ from PIL import Image
 from scipy import ndimage
 
 from engine.arrays import Booleans, Bytes
+from engine.domain.picture import background
 from engine.domain.picture.background import flood_background
 
 PAPER = (240, 235, 220)
@@ -98,7 +99,40 @@ def test_small_parts_stay_that_differ_clearly_and_pale_ones_that_are_not_so_smal
     assert [name for name, (place, _, _) in places.items() if subject[place]] == ["clear", "pale"]
 
 
+def test_islands_are_the_same_in_whatever_bands_they_are_looked_for(monkeypatch) -> None:
+    rng = np.random.default_rng(0)
+    grey = 255 - 40 * ndimage.binary_dilation(rng.random((200, 60)) > 0.93).astype(np.uint8)
+    rgb = np.repeat(grey[..., None], 3, axis=2)
+    found = []
+    for band in (1, 7, 64, 1000):
+        monkeypatch.setattr(background, "BAND", band)
+        found.append(flood_background(rgb, 18).mask)
+        assert_array_equal(found[-1], found[0])
+    assert np.count_nonzero(found[0]) > np.count_nonzero(grey == 255)
+    assert not found[0].all()
+
+
 def test_a_picture_of_one_colour_is_all_background() -> None:
     background = flood_background(np.full((50, 70, 3), 99, dtype=np.uint8), 0)
     assert background.mask.all()
     assert background.agreement == 1
+
+
+def test_every_pocket_that_is_seen_is_found_whatever_its_size_and_shade() -> None:
+    """A sheet that darkens by 30 levels towards one side, as photographed, beyond the tolerance."""
+    x, y = pictures.plane(600, 450)
+    widths = (4, 6, 12, 40)
+    mask = (np.abs(x - 300) < 240) & (np.abs(y - 225) < 150)
+    places = [complex(100 + 130 * i, 225) for i in range(4)]
+    pockets = np.zeros_like(mask)
+    for place, width in zip(places, widths, strict=True):
+        pockets |= (np.abs(x - place.real) < width / 2) & (np.abs(y - place.imag) < 60)
+    for shade, quality in ((0, 0), (0, 60), (30, 0), (30, 85)):
+        drawing = mask & ~pockets
+        darker = np.where(drawing, 0, shade * x / 600)[..., None]
+        rgb = (on_paper(drawing) - darker).astype(np.uint8)
+        background = flood_background(jpeg(rgb, quality) if quality else rgb, 18)
+        core = ndimage.binary_erosion(pockets) if quality else pockets
+        reached = x < (600 if not shade else 500)  # as far as the paper around was flooded
+        assert background.enclosed[core & reached].mean() > 0.97, (shade, quality)
+        assert not background.enclosed[mask & ~ndimage.binary_dilation(pockets, iterations=2)].any()
