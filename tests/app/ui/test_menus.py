@@ -9,7 +9,7 @@ from app.editor.actions import editing, playback
 from app.storage.assets import sample_images
 from app.ui.shortcuts import BINDINGS
 from app.ui.style import tip
-from app.ui.viewport.menus import CANVAS
+from app.ui.viewport.viewport import CANVAS
 
 RIGHT = 1
 
