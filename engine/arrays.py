@@ -5,11 +5,14 @@ are small, and a second thread on a busy core can make a solver's step a hundred
 one thread results repeat bit for bit.
 """
 
+from collections.abc import Iterable
+from dataclasses import fields, is_dataclass
 from typing import TypeVar
 
 import numpy as np
 import numpy.typing as npt
 import scipy.linalg  # noqa: F401  brings a BLAS of its own
+from scipy.sparse import bsr_array, csc_array, csr_array
 from threadpoolctl import threadpool_limits
 
 from engine.errors import EngineError
@@ -52,6 +55,34 @@ def ragged(counts: Indices) -> tuple[Indices, Indices]:
     group = np.repeat(np.arange(len(counts)), counts)
     place = np.arange(len(group)) - np.repeat(np.cumsum(counts) - counts, counts)
     return group, place
+
+
+def held_bytes(*things: object, but: Iterable[object] = ()) -> int:
+    """Return the memory of the arrays that things are made of, each counted once, in bytes.
+
+    Things are arrays, also sparse ones, dataclasses, and tuples of them; what `but` is made of is
+    not counted.
+    """
+    others = _arrays_in(but)
+    return sum(size for array, size in _arrays_in(things).items() if array not in others)
+
+
+def _arrays_in(things: Iterable[object]) -> dict[int, int]:
+    """Return the sizes of arrays in memory, by their ids; those of views are not their own."""
+    sizes, waiting = {}, list(things)
+    while waiting:
+        thing = waiting.pop()
+        while isinstance(thing, np.ndarray) and isinstance(thing.base, np.ndarray):
+            thing = thing.base
+        if isinstance(thing, np.ndarray):
+            sizes[id(thing)] = thing.nbytes
+        elif isinstance(thing, bsr_array | csc_array | csr_array):
+            waiting += [thing.data, thing.indices, thing.indptr]
+        elif isinstance(thing, tuple | list):
+            waiting += thing
+        elif is_dataclass(thing):
+            waiting += [getattr(thing, field.name) for field in fields(thing)]
+    return sizes
 
 
 def ratio(numerator: Floats, denominator: Floats) -> Floats:

@@ -69,6 +69,7 @@ from app.document.settings import (
     STRETCHES as STRETCHES,
     VARIANTS as VARIANTS,
     ExportSettings as ExportSettings,
+    FormatPictures as FormatPictures,
     FrameRange as FrameRange,
     Framing as Framing,
     Marker as Marker,

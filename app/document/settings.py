@@ -1,8 +1,8 @@
 """What is chosen once for a document: stretch, frames, interpolation, meshing, export."""
 
 import re
-from dataclasses import dataclass, field
-from typing import Final, Literal, NamedTuple, get_args
+from dataclasses import dataclass, field, replace
+from typing import Final, Literal, NamedTuple, Self, get_args
 
 from app.document.checks import NOTHING, Unknown, require, require_size
 from app.export_formats import EXPORT_FORMATS, FormatSettings
@@ -110,6 +110,31 @@ class Marker:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class FormatPictures:
+    """What the pictures of a format are like that was chosen before: size and background."""
+
+    format: str
+    size: tuple[int, int] | None
+    background: str
+
+    def __post_init__(self) -> None:
+        _require_pictures(self.format, self.size, self.background)
+
+
+def _require_pictures(name: str, size: tuple[int, int] | None, background: str) -> None:
+    require(
+        name in EXPORT_FORMATS,
+        f"The export format is one of {', '.join(EXPORT_FORMATS)}, not {name!r}.",
+    )
+    if size is not None:
+        require_size(size, "export")
+    require(
+        re.fullmatch(r"transparent|#[0-9a-fA-F]{6}", background) is not None,
+        f"The background is 'transparent' or a colour '#rrggbb', not {background!r}.",
+    )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class ExportSettings(FormatSettings):
     """What the person last chose for exports.
 
@@ -128,6 +153,8 @@ class ExportSettings(FormatSettings):
     names : str
         Of the files of frames, without their ending: "#" for each digit of the frame's number, and
         "{name}" for that of the project.
+    earlier : tuple of FormatPictures
+        What other formats had when they were chosen last.
     sheet, shapes
         What single formats ask.
     """
@@ -138,18 +165,10 @@ class ExportSettings(FormatSettings):
     framing: Framing = "fit"
     frames: FrameRange | None = None
     names: str = FRAME_NAMES
+    earlier: tuple[FormatPictures, ...] = ()
 
     def __post_init__(self) -> None:
-        require(
-            self.format in EXPORT_FORMATS,
-            f"The export format is one of {', '.join(EXPORT_FORMATS)}, not {self.format!r}.",
-        )
-        if self.size is not None:
-            require_size(self.size, "export")
-        require(
-            re.fullmatch(r"transparent|#[0-9a-fA-F]{6}", self.background) is not None,
-            f"The background is 'transparent' or a colour '#rrggbb', not {self.background!r}.",
-        )
+        _require_pictures(self.format, self.size, self.background)
         require(
             self.framing in FRAMINGS,
             f"The framing is one of {', '.join(FRAMINGS)}, not {self.framing!r}.",
@@ -159,6 +178,31 @@ class ExportSettings(FormatSettings):
             and not self.names.startswith("."),
             f"File names of frames have '#' for each digit of the number, as in {FRAME_NAMES}, and "
             f"nothing that file names cannot hold, unlike {self.names!r}.",
+        )
+
+    def in_format(self, name: str) -> Self:
+        """Return the settings for another format, with the pictures that it had last.
+
+        One that is chosen for the first time takes over what this one has, but for a background
+        that this one needs alone.
+        """
+        if name == self.format:
+            return self
+        others = {each.format: each for each in self.earlier}
+        others[self.format] = FormatPictures(
+            format=self.format, size=self.size, background=self.background
+        )
+        is_needed = not EXPORT_FORMATS[self.format].is_transparent
+        is_let_go = is_needed and EXPORT_FORMATS[name].is_transparent
+        background = "transparent" if is_let_go else self.background
+        usual = FormatPictures(format=name, size=self.size, background=background)
+        chosen = others.pop(name, usual)
+        return replace(
+            self,
+            format=name,
+            size=chosen.size,
+            background=chosen.background,
+            earlier=tuple(others.values()),
         )
 
 

@@ -23,6 +23,7 @@ class FileDialog:
     # Of the files that it lists, such as ".png"; none where a folder is to be written.
     suffixes: tuple[str, ...]
     writes: bool  # whether it asks for a file to write, and not for one to read
+    verb: str = "Save"  # on the button of one that writes
     chosen: Callable[[Path], Action]  # returns the action for a path
     marked: str = ""  # the entry of our browser's list that is marked
     # Tells by its name whether a file that is there may lie in the folder to write to.

@@ -170,9 +170,11 @@ class Project:
     stale: tuple[Figure, float] | None = None
     unbuildable: Figure | None = None  # one whose cut-out is known to give no domain
     brush: float | None = None  # radius in pixels of the picture; None until somebody chooses it
-    export_to: Path | None = None  # where the next export goes: as the last one, or as was told
-    # Where exports may take the place of other files: the person agreed, or they are an export's.
-    replaceable: Path | None = None
+    # Where the next export of a format goes: as its last one, or as was told; the newest last.
+    exports_to: dict[str, Path] = field(default_factory=dict)
+    # The format and the place of one that may take the place of other files: the person agreed, or
+    # they are an export's.
+    replaceable: tuple[str, Path] | None = None
 
     playhead: Playhead = field(default_factory=Playhead)
     moved_at: float = -inf  # the clock's seconds when the playhead was last seen to move

@@ -132,7 +132,7 @@ class Hint:
 
     how: str
     what: str
-    key: Literal["", "ctrl", "shift", "alt"] = ""
+    key: Literal["", "ctrl", "shift", "alt", "ctrl+shift"] = ""
 
 
 class ToolInHand(Protocol):
@@ -204,6 +204,7 @@ class Session:
     last_split: Split = Split(method=Variant.LINEAR)  # as it was when it was put away
     pointer: ToolInHand | None = None
     cutting: CutTool | None = None  # what is in hand that cuts out; None poses
+    moves: bool = False  # whether a drag, or an arrow, moves the whole figure
     snaps: bool = False  # whether what the pointer does goes in steps
     insists: bool = False  # whether what it pulls beyond its reach is wanted there all the same
     # Whether the timeline has the pointer, or else the focus: what is chosen there is meant.

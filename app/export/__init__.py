@@ -10,6 +10,7 @@ from app.export.clipboard import (
     put_on_clipboard as put_on_clipboard,
 )
 from app.export.destination import (
+    FRAMES as FRAMES,
     PROJECT as PROJECT,
     FrameNames as FrameNames,
     data_file as data_file,

@@ -12,6 +12,7 @@ from app.errors import LissomError
 from app.export_formats import EXPORT_FORMATS
 from app.storage import check_writable
 
+FRAMES: Final = " frames"  # what the name of a folder for them ends in
 # Stands for the project's name.
 PROJECT: Final = "{name}"
 # A name's last dot is no ending where a number follows, as in v1.2.
@@ -131,16 +132,17 @@ def data_file(out: Path, name: str) -> Path | None:
 def suited(out: Path, name: str) -> Path:
     """Return a path with the ending of a format, in place of that of another one.
 
-    Any other dot belongs to the name: a folder `shot.010` stays as it is.
+    A folder of frames ends in a word. Any other dot belongs to the name: a folder `shot.010` stays
+    as it is.
     """
     suffixes = EXPORT_FORMATS[name].suffixes
     if out.suffix.lower() in suffixes or (not suffixes and out.is_dir()):
         return out
     is_of_another = out.suffix.lower() in _all_suffixes()
-    stem = out.stem if is_of_another else out.name
-    if suffixes:
-        return out.with_name(f"{stem}{suffixes[0]}")
-    return out.with_name(f"{stem} frames") if is_of_another else out
+    if not (suffixes or is_of_another):
+        return out
+    stem = (out.stem if is_of_another else out.name).removesuffix(FRAMES) or out.stem
+    return out.with_name(stem + (suffixes[0] if suffixes else FRAMES))
 
 
 def folder_within(chosen: Path, name: str, is_frame: Callable[[str], bool]) -> Path:

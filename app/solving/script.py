@@ -4,6 +4,7 @@ import json
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from itertools import pairwise
+from math import inf
 from pathlib import Path
 from typing import Any
 
@@ -30,7 +31,7 @@ OWN_FIELDS = ("anchor", "handles", "keys")
 FIGURE_FIELDS = ("layer", "variant", "bounds", *OWN_FIELDS, "attach", "visible")
 HANDLE_FIELDS = ("at", "front", "extent")
 JOINT_FIELDS = ("to", "at", "turn")
-KEY_FIELDS = ("frame", "targets", "ease", "passing", "front")
+KEY_FIELDS = ("frame", "targets", "pull", "ease", "passing", "front")
 BOUND_FIELDS = ("k", "sigma_a", "sigma_b")
 
 
@@ -40,6 +41,7 @@ class PoseKey:
 
     frame: int
     targets: Mapping[str, complex]
+    pull: float = inf  # how strongly each of them is pulled at most, over the shape's diagonal
     ease: Easing = LINEAR
     passing: Passing = Passing.THROUGH
     fronts: Mapping[str, float] = field(default_factory=dict)
@@ -243,8 +245,13 @@ def _key(content: object, where: str, handles: Mapping[str, ScriptHandle]) -> Po
             raise LissomError(
                 f"{where} names the handle {name!r}, but the handles are {', '.join(handles)}"
             )
+    pull = as_number(key["pull"], f"{where}.pull") if "pull" in key else inf
+    if not pull > 0:
+        raise LissomError(f"{where}.pull must be positive, not {pull:g}")
     ease, passing = _passage(key, where)
-    return PoseKey(frame=frame, targets=targets, ease=ease, passing=passing, fronts=fronts)
+    return PoseKey(
+        frame=frame, targets=targets, pull=pull, ease=ease, passing=passing, fronts=fronts
+    )
 
 
 def _passage(key: JsonObject, where: str) -> tuple[Easing, Passing]:

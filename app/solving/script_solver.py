@@ -1,6 +1,6 @@
 """From a new document and a pose script to an animation, solved as the window would solve it."""
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
 
@@ -23,6 +23,7 @@ from app.errors import LissomError
 from app.solving.drag import Drag, Rig
 from app.solving.script import FigureScript, PoseKey, PoseScript
 from app.storage import still_figure
+from engine.deform import Hand
 from engine.errors import EngineError
 
 # A drag that is not at rest by then creeps along a bound.
@@ -176,16 +177,23 @@ def _solve(rig: Rig, start: Pose, key: PoseKey) -> tuple[Pose, list[str]]:
     targets = {**start.targets, **named}
     if all(start.targets[i].position == target.position for i, target in targets.items()):
         return start, []
-    drag = Drag.begin(rig, start)
-    for _ in range(MOST_STEPS // STEPS_AT_ONCE):
-        drag = drag.towards(targets, STEPS_AT_ONCE)
-        if drag.is_over:
-            break
-    pose = drag.pose(targets)
-    shortfall = find_shortfall(figure, pose)
+    hands = tuple(Hand((identity,), key.pull) for identity in named)
+    drag = _at_rest(Drag.begin(rig, start), targets, hands)
+    shortfall = find_shortfall(figure, drag.pose(targets))
+    left = {**targets, **drag.let_go(targets, hands)}
+    pose = (drag if left == targets else _at_rest(drag, left)).pose(left)
     notices = [
         f"frame {key.frame}: {figure.handle(identity).name!r} is {lag:.1f} px short of "
         f"its target, {shortfall.reason}"
         for identity, lag in shortfall.lags.items()
     ]
     return pose, notices
+
+
+def _at_rest(drag: Drag, targets: Mapping[int, Target], hands: Sequence[Hand] = ()) -> Drag:
+    """Return the drag at rest."""
+    for _ in range(MOST_STEPS // STEPS_AT_ONCE):
+        drag = drag.towards(targets, STEPS_AT_ONCE, hands)
+        if drag.is_over:
+            break
+    return drag

@@ -4,6 +4,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Literal
 
+from imgui_bundle import imgui
+
 from app.editor import Action, Project, Session
 from app.ui.style import Look
 
@@ -32,3 +34,10 @@ class Panel:
     def label(self) -> str:
         """The name of the panel's window, whatever is shown of it."""
         return self.labels[0]
+
+
+def is_in_front(title: str) -> bool:
+    """Tell whether a panel is seen, and not the tab of another one in its place."""
+    window = imgui.internal.find_window_by_name(f"###{title}")
+    node = None if window is None else window.dock_node
+    return window is not None and (node is None or node.selected_tab_id == window.tab_id)

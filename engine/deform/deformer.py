@@ -32,14 +32,6 @@ class Deformer(HeldShape):
     To add, move or remove handles or to change the bounds, make another deformer over the same
     boundary and go on with the same state. A new handle does not move anything if its target is
     where its point is now, see `positions`.
-
-    Parameters
-    ----------
-    boundary : Boundary
-        Of the shape, as sampled.
-    handles : Handles
-    bounds : Bounds or Limits
-        Limits may differ from sample to sample.
     """
 
     def start(self, harmonic_map: HarmonicMap | None = None) -> State:

@@ -92,14 +92,6 @@ class CauchyIntegral:
             places=freeze(places),
         )
 
-    @property
-    def nbytes(self) -> int:
-        """Memory that the arrays take, in bytes."""
-        own = [self.leaves, self.counts, self.offsets, self.places]
-        for near in self.near:
-            own += [near.data, near.indices, near.indptr]
-        return self.expansions.nbytes + sum(array.nbytes for array in own)
-
     def __call__(self, densities: Floats) -> tuple[Complexes, Complexes]:
         """Return g and g' of some densities.
 

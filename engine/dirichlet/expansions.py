@@ -46,11 +46,6 @@ class Translation(NamedTuple):
     sources: Indices
     matrices: AnyComplexes
 
-    @property
-    def nbytes(self) -> int:
-        """Memory that the arrays take, in bytes."""
-        return self.targets.nbytes + self.sources.nbytes + self.matrices.nbytes
-
     def add(self, given: npt.NDArray[np.inexact], into: AnyComplexes) -> None:
         """Add what is given (c, length, j) at the sources to the targets' (q, TERMS, j)."""
         count, _, length = self.matrices.shape
@@ -80,13 +75,6 @@ class Conversion(NamedTuple):
     columns: AnyComplexes
     rows: AnyComplexes
     sums: csr_array
-
-    @property
-    def nbytes(self) -> int:
-        """Memory that the arrays take, in bytes."""
-        own = self.targets.nbytes + self.sources.nbytes + self.columns.nbytes + self.rows.nbytes
-        sums = (self.sums.data, self.sums.indices, self.sums.indptr)
-        return own + sum(int(array.nbytes) for array in sums)
 
     def add(self, moments: AnyComplexes, into: AnyComplexes) -> None:
         """Add what moments (c, TERMS, j) are at the targets to polynomials (q, TERMS, j)."""
@@ -140,13 +128,6 @@ class Expansions:
             far=tuple(_converted(acting, single=single)),
             direct=tuple(_direct(panels, acting, single=single)),
         )
-
-    @property
-    def nbytes(self) -> int:
-        """Memory that the arrays take, in bytes."""
-        translations = sum(each.nbytes for each in (*self.joined, *self.direct))
-        conversions = sum(each.nbytes for each in self.far)
-        return self.panels.nbytes + self.squares.nbytes + translations + conversions
 
     def __call__(self, densities: Floats) -> AnyComplexes:
         """Return the polynomials (q, TERMS, j) of the squares, of densities (N, j)."""

@@ -23,7 +23,7 @@ import numpy as np
 import shapely
 from scipy.spatial import cKDTree
 
-from engine.arrays import Complexes, Floats
+from engine.arrays import Complexes, Floats, held_bytes
 from engine.dirichlet.boundary_operator import BoundaryOperator
 from engine.dirichlet.cauchy_integral import CauchyIntegral
 from engine.dirichlet.panels import Panels
@@ -126,7 +126,7 @@ class HilbertTransform:
     @property
     def nbytes(self) -> int:
         """Memory that the arrays take, in bytes."""
-        return self.solver.nbytes
+        return held_bytes(self.solver)
 
     @property
     def nodes(self) -> Complexes:
@@ -178,7 +178,7 @@ class Extension:
     @property
     def nbytes(self) -> int:
         """Memory beyond the transform's own, in bytes."""
-        return self.integral.nbytes
+        return held_bytes(self.integral)
 
     def extend(self, real_parts: Floats) -> Extended:
         """Return holomorphic functions with given real parts on the boundary.

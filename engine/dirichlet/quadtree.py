@@ -51,13 +51,6 @@ class Squares:
     leaves: Indices
     levels: tuple[slice, ...]
 
-    @property
-    def nbytes(self) -> int:
-        """Memory that the arrays take, in bytes."""
-        of_points = (self.order, self.starts, self.ends)
-        of_squares = (self.centre, self.radius, self.parent, self.quadrant, self.leaves)
-        return sum(array.nbytes for array in (*of_points, *of_squares))
-
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Grid:

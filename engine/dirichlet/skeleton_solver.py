@@ -17,7 +17,7 @@ import numpy as np
 import scipy.linalg
 from scipy.sparse import csc_array
 
-from engine.arrays import Floats, Indices, freeze
+from engine.arrays import Floats, Indices, freeze, held_bytes
 from engine.dirichlet.boundary_operator import BoundaryOperator
 from engine.dirichlet.panels import NODES
 from engine.dirichlet.partition import partition
@@ -105,8 +105,7 @@ class SkeletonSolver:
     @property
     def nbytes(self) -> int:
         """Memory that the arrays take, in bytes."""
-        every = ((self.rest, self.top, self.roots), *self.boxes)
-        return sum(array.nbytes for arrays in every for array in arrays)
+        return held_bytes(self)
 
     def __call__(self, right: Floats) -> Floats:
         """Return the solutions for right-hand sides (N, j)."""

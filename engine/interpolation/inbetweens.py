@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from engine.arrays import Complexes, Floats, Indices
+from engine.arrays import Complexes, Floats, Indices, held_bytes
 from engine.interpolation.blends import Blend
 from engine.interpolation.passage import Derivatives, Passage, weighted
 from engine.interpolation.periods import Closing
@@ -89,7 +89,7 @@ class Inbetweens:
     @property
     def nbytes(self) -> int:
         """Memory beyond the sites' and the keyframes' own, in bytes."""
-        return self.blend.nbytes + (0 if self.scale is None else self.scale.nbytes)
+        return held_bytes(self, but=(self.sites, self.passage.keyframes))
 
     def rho(self, time: float) -> float:
         """Return ρ; 1 where Ψ is not scaled."""

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from engine.arrays import held_bytes
 from engine.dirichlet import Extension, HilbertTransform
 from engine.errors import EngineError
 from engine.interpolation.blends import BLENDS
@@ -47,8 +48,7 @@ class Prepared:
     @property
     def nbytes(self) -> int:
         """Memory that all of it takes, in bytes."""
-        known = sum(key.nbytes for key in self.keyframes)
-        return self.sites.nbytes + known + sum(each.nbytes for each in self.intervals)
+        return held_bytes(self)
 
     def frame(self, time: float) -> Frame:
         """Return the in-between at a time from 0 to the number of intervals.

@@ -7,7 +7,7 @@ from functools import partial
 import numpy as np
 import numpy.typing as npt
 
-from engine.arrays import Complexes, Floats, as_points, freeze
+from engine.arrays import Complexes, Floats, as_points, freeze, held_bytes
 from engine.errors import EngineError
 from engine.geometry import ON_OUTLINE, Hole, deepest_point, diameter, require_inside
 from engine.interpolation.periods import PeriodBasis
@@ -87,14 +87,7 @@ class Sites:
     @property
     def nbytes(self) -> int:
         """Memory that the arrays take, in bytes."""
-        basis = 0 if self.period_basis is None else self.period_basis.nbytes
-        return (
-            self.points.nbytes
-            + self.boundary.nbytes
-            + self.paths.nbytes
-            + self.arguments.nbytes
-            + basis
-        )
+        return held_bytes(self)
 
 
 def prepare_sites(

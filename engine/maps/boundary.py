@@ -163,15 +163,6 @@ class Boundary:
         own = np.flatnonzero(self.weights)
         return own, np.searchsorted(own, [*self.starts, len(self.points)]).tolist()
 
-    @property
-    def nbytes(self) -> int:
-        """Memory that the arrays take, in bytes."""
-        arrays = (
-            *(self.points, self.derivatives, self.bending_kernel, self.vertex_coordinates),
-            *(self.basis, self.basis_derivatives),
-        )
-        return sum(array.nbytes for array in arrays)
-
     def refined(self, segments: Indices) -> Self:
         """Return the boundary with one more sample in the middle of each given segment (s,)."""
         segments = np.unique(segments)

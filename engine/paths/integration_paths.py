@@ -45,12 +45,6 @@ class IntegrationPaths:
     around: Indices
     cornered: Booleans
 
-    @property
-    def nbytes(self) -> int:
-        """Memory that the arrays take, in bytes."""
-        own = (self.nodes, self.steps, self.places, self.around, self.cornered)
-        return sum(array.nbytes for array in (*own, self.tree.parent, self.tree.down, self.tree.up))
-
     def step_integrals(self, values: Complexes, derivatives: Complexes) -> Complexes:
         """Integrate along each step by the Hermite rule.
 

@@ -2,11 +2,10 @@
 
 from bisect import bisect_right
 from dataclasses import dataclass
-from itertools import pairwise
 
 import numpy as np
 
-from engine.arrays import Floats, Singles
+from engine.arrays import Floats, Singles, held_bytes
 from engine.errors import EngineError
 from engine.interpolation import chebyshev
 
@@ -68,13 +67,7 @@ class Series:
     @property
     def nbytes(self) -> int:
         """Memory that the arrays take, in bytes."""
-        whole: int = sum(piece.rows.nbytes + piece.functions.nbytes for piece in self.pieces)
-        shared: int = sum(
-            after.rows[0].nbytes
-            for before, after in pairwise(self.pieces)
-            if np.may_share_memory(before.rows, after.rows)
-        )
-        return whole - shared
+        return held_bytes(self)
 
     def covers(self, time: float) -> bool:
         """Tell whether the series knows the values at a time."""

@@ -26,6 +26,7 @@ CAMPAIGNS = {
     "faults": ("full disks and limits of memory", 200),
     "windows": ("windows ended or set against each other", 60),
     "outputs": ("outputs upon inputs and other things", 600),
+    "taps": ("taps", 200),
     "shapes": ("shapes", 500),
     "minima": ("requests", 96),
     "series": ("pairs of poses", 200),

@@ -1,8 +1,11 @@
+from dataclasses import dataclass
+
 import numpy as np
 import pytest
 from numpy.testing import assert_array_equal
+from scipy.sparse import csr_array
 
-from engine.arrays import as_points, freeze, readonly
+from engine.arrays import as_points, freeze, held_bytes, readonly
 from engine.errors import EngineError
 
 
@@ -59,3 +62,19 @@ def test_an_array_is_frozen_in_place_and_keeps_its_order_of_memory(order):
     assert frozen.flags.f_contiguous == (order == "F")
     with pytest.raises(ValueError, match="read-only"):
         array[0] = 1
+
+
+def test_memory_is_counted_once_and_not_what_others_hold():
+    @dataclass
+    class Thing:
+        own: object
+        others: tuple[object, ...] = ()
+
+    whole, other = np.zeros(100), np.zeros(7)
+    sparse = csr_array(np.eye(5))
+    in_sparse = sparse.data.nbytes + sparse.indices.nbytes + sparse.indptr.nbytes
+    thing = Thing(whole, (whole[::2], Thing(other), "name", None, sparse))
+    assert held_bytes(thing) == 800 + 56 + in_sparse
+    # A view keeps all of what it looks at.
+    assert held_bytes(whole[:1]) == held_bytes(whole, thing, but=(other, sparse)) == 800
+    assert held_bytes(thing, but=(thing,)) == held_bytes() == 0

@@ -239,8 +239,9 @@ def _random_stroke(rng: np.random.Generator) -> Stroke:
 
 
 def _random_export(rng: np.random.Generator) -> ExportSettings:
-    return ExportSettings(
-        format=tuple(EXPORT_FORMATS)[rng.integers(len(EXPORT_FORMATS))],
+    first, second = (tuple(EXPORT_FORMATS)[i] for i in rng.integers(len(EXPORT_FORMATS), size=2))
+    settings = ExportSettings(
+        format=first,
         size=None if rng.random() < 0.5 else (int(rng.integers(1, 5000)), 1080),
         background=["transparent", "#12aBef"][rng.integers(2)],
         framing=FRAMINGS[rng.integers(2)],
@@ -255,6 +256,7 @@ def _random_export(rng: np.random.Generator) -> ExportSettings:
             triangles=int(rng.integers(100, 9999)), tolerance=[None, 0.1][rng.integers(2)]
         ),
     )
+    return settings.in_format(second)
 
 
 def hand_made_cut_out() -> CutOut:

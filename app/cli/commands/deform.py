@@ -10,7 +10,8 @@ import numpy.typing as npt
 from app.cli.hole_arrays import HOLE_ARRAYS, hole_arrays, read_holes
 from app.errors import LissomError
 from app.storage import check_writable, read_arrays, write_arrays
-from engine.deform import Deformer, Handles, require_held
+from engine.arrays import Complexes
+from engine.deform import Deformer, Hand, Handles, require_held
 from engine.maps import Boundary, Bounds, HarmonicMap
 
 LIMITS = ("k_max", "sigma_a_max", "sigma_b_min")
@@ -22,7 +23,7 @@ def run(arguments: argparse.Namespace) -> int:
     case = read_arrays(
         arguments.case,
         required=("outline", "cage", "handles", "targets", *LIMITS),
-        optional=("phi", "psi", "logs", "path", *HOLE_ARRAYS),
+        optional=("phi", "psi", "logs", "path", "pull", *HOLE_ARRAYS),
     )
     k, sigma_a, sigma_b = (_scalar(case, name) for name in LIMITS)
     bounds = Bounds(k=k, sigma_a=sigma_a, sigma_b=sigma_b)
@@ -30,7 +31,9 @@ def run(arguments: argparse.Namespace) -> int:
     points = require_held(case["handles"], outline, cage, holes)
     boundary = Boundary.sample(outline, cage, holes)
     handles = Handles.place(boundary, points)
-    wishes = [handles.wish(row) for row in _rows(case, len(handles.points))]
+    rows = _rows(case, len(handles.points))
+    hands = _hands(case, handles.points)
+    wishes = [handles.wish(row, None, hands) for row in rows]
     deformer = Deformer(boundary=boundary, handles=handles, bounds=bounds)
     state, tried = deformer.start(_start(case, boundary)), 0
     for wish in wishes[:-1]:
@@ -78,6 +81,25 @@ def _rows(case: Mapping[str, npt.NDArray[Any]], count: int) -> list[npt.NDArray[
     if path.ndim != 2 or path.shape[1] != count:
         raise LissomError(f"path must have one column for each of {count} handles: {path.shape}")
     return [*path, case["targets"]]
+
+
+def _hands(case: Mapping[str, npt.NDArray[Any]], points: Complexes) -> list[Hand]:
+    """Return the hands that pull, each at one handle, where the case asks for bounded force.
+
+    One force for all is of those that are wanted elsewhere than where they are at rest.
+    """
+    if "pull" not in case:
+        return []
+    pull, count = case["pull"], len(points)
+    if pull.dtype.kind not in "biuf" or pull.shape not in ((), (1,), (count,)):
+        raise LissomError(
+            f"pull must be one number, or one for each of {count} handles, not of shape "
+            f"{pull.shape}, {pull.dtype}"
+        )
+    forces = np.broadcast_to(pull.astype(np.float64), count)
+    if pull.shape != (count,) and case["targets"].shape == points.shape:
+        forces = np.where(case["targets"] == points, np.inf, forces)
+    return [Hand([handle], force) for handle, force in enumerate(forces.tolist())]
 
 
 def _start(case: Mapping[str, npt.NDArray[Any]], boundary: Boundary) -> HarmonicMap | None:

@@ -109,8 +109,9 @@ def _settings(own: ExportSettings, arguments: argparse.Namespace, out: Path) -> 
     """Return the project's settings with those that were given in their place."""
     one = arguments.frame
     frames = arguments.frames if one is None else (one, one)
+    name = arguments.format or _format_of(out, own, is_one=one is not None)
+    own = own if name is None else own.in_format(name)
     given = {
-        "format": arguments.format or _format_of(out, own, is_one=one is not None),
         "size": arguments.size,
         "background": arguments.background,
         "framing": arguments.framing,

@@ -15,6 +15,10 @@ CASE.npz holds the shape and what is asked of it:
   hole_outlines, hole_outline_sizes, hole_cages, hole_cage_sizes, hole_centres
                                   optional, the holes, as lissom domain writes them
   path         (s, h) complex128  optional, positions of the handles on the way to the targets
+  pull         (h,) or scalar     optional, the strongest force of each handle over the diagonal of
+                                  the outline's box, infinite where it is held, as all are without;
+                                  a scalar is for those that are wanted elsewhere than at rest: 10
+                                  moves a limb as far as it goes, and nothing else
 
 MAP.npz holds outline, cage, the arrays of the holes, and
   phi, psi     (n,)   complex128  the map: the coefficients of the cage, then those of each hole's

@@ -23,6 +23,9 @@ keeps its target of the key before, at first its place in the picture. Each key 
 from the key before; where the bounds hold a handle back, the key is kept and a notice says by how
 much.
 
+A key with "pull": 10 pulls the handles that it names with no more force than that, as the hand does
+in the window: what is beyond their reach moves nothing else, and is wanted where it came to.
+
 A handle may say what is painted in front around it, from -1 (behind) to 1, and how far around, in
 pixels: {"at": [120, 880], "front": 0.5, "extent": 60}; a key with "front": {"nose": 1} says it from
 there on.

@@ -18,6 +18,7 @@ from app.editor.session import ExportRun, Session, with_project
 from app.editor.work import Afterwards, Kind
 from app.errors import LissomError, shown_name
 from app.export import (
+    FRAMES,
     ExportRequest,
     FrameNames,
     KeptPoses,
@@ -40,23 +41,28 @@ COPYING = Kind("Copying the picture", "The picture was not copied", "export")
 
 def ask(session: Session) -> None:
     """Ask where to export to, and begin."""
-    _ask(session, lambda path: do(start_at, path))
+    _ask(session, "Export", lambda path: do(start_at, path))
 
 
 def choose(session: Session) -> None:
     """Ask where the next export goes; it does not begin yet."""
-    _ask(session, lambda path: do(export_to, path))
+    _ask(session, "Choose", lambda path: do(export_to, path))
 
 
 @with_project
 def export_to(_: Session, project: Project, out: Path) -> None:
-    """Note where the next export goes, as the person chose it."""
-    project.export_to = out
+    """Note where the next export of this format goes, as the person chose it."""
     name = project.document.export.format
+    _note_place(project, name, out)
     data = data_file(out, name)
     if EXPORT_FORMATS[name].suffixes and not (data is not None and data.exists()):
         # The dialog has asked already whether it is to be replaced.
-        project.replaceable = out
+        project.replaceable = name, out
+
+
+def _note_place(project: Project, name: str, out: Path) -> None:
+    project.exports_to.pop(name, None)
+    project.exports_to[name] = out
 
 
 def start_at(session: Session, out: Path) -> None:
@@ -68,7 +74,7 @@ def start_at(session: Session, out: Path) -> None:
 @with_project
 def replace_files(session: Session, project: Project, out: Path) -> None:
     """Export, and replace what is there."""
-    project.replaceable = out
+    project.replaceable = project.document.export.format, out
     start(session, out)
 
 
@@ -83,11 +89,13 @@ def repeat(session: Session, project: Project) -> None:
 
 
 def destination(project: Project) -> Path | None:
-    """Return where the next export goes, with the ending of its format; None if that is open."""
-    out = project.export_to
-    if out is None:
-        return None
-    return suited(out, project.document.export.format)
+    """Return where the next export goes, as its format was exported last; None if that is open.
+
+    For the first time it goes where the last one of another format went, under a name that suits.
+    """
+    name, places = project.document.export.format, project.exports_to
+    newest = next(reversed(places.values()), None)
+    return places.get(name) or (suited(newest, name) if newest else None)
 
 
 @with_project
@@ -98,7 +106,8 @@ def start(session: Session, project: Project, out: Path) -> None:
     settings = project.document.export
     request = _request(session, project, out, settings)
     check_request(project.document, request)
-    there = [] if project.replaceable == out else replaced_files(project.document, request)
+    is_replaceable = project.replaceable == (settings.format, out)
+    there = [] if is_replaceable else replaced_files(project.document, request)
     if there:
         what = "file" if len(there) == 1 else f"{len(there)} files"
         which = there[0] if len(there) == 1 else f"{there[0]} … {there[-1]}"
@@ -119,11 +128,12 @@ def _begin(session: Session, project: Project, request: ExportRequest) -> None:
 
     def begun(run: ExportRun) -> None:
         session.export = run
-        project.export_to = out
+        _note_place(project, settings.format, out)
         folder = out.parent if EXPORT_FORMATS[settings.format].suffixes else out
         session.preferences = replace(session.preferences, exported=folder)
         # Another pose is another picture, which may not take this one's place without a question.
-        project.replaceable = None if EXPORT_FORMATS[settings.format].is_still else out
+        is_still = EXPORT_FORMATS[settings.format].is_still
+        project.replaceable = None if is_still else (settings.format, out)
 
     _prepare(session, project, request, begun)
 
@@ -340,21 +350,21 @@ def open_folder(session: Session, folder: Path) -> None:
 
 
 @with_project
-def _ask(session: Session, project: Project, chosen: Callable[[Path], Action]) -> None:
+def _ask(session: Session, project: Project, verb: str, chosen: Callable[[Path], Action]) -> None:
     if session.export is not None:
         return
     settings = project.document.export
     suffixes = EXPORT_FORMATS[settings.format].suffixes
     out = destination(project)
     if out is None:
-        name = f"{project.name}{suffixes[0]}" if suffixes else f"{project.name} frames"
-        out = session.usual_folder / name
+        out = session.usual_folder / f"{project.name}{suffixes[0] if suffixes else FRAMES}"
     session.dialog = FileDialog(
         title="Export into a file" if suffixes else "Export into a folder",
         folder=out.parent,
         name=out.name,
         suffixes=suffixes,
         writes=True,
+        verb=verb,
         chosen=chosen,
         is_frame=FrameNames(pattern=settings.names, project=project.name).fits,
     )

@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterator
 from functools import partial
 from typing import TypeVar
 
-from app.document import Clip, clip_of, time_of
+from app.document import Clip, clip_of, resting_pose, time_of
 from app.editor.actions import playback, posing, rebuilding, viewing
 from app.editor.failures import report
 from app.editor.project import Project, Puppet
@@ -136,11 +136,15 @@ def _make_frames(session: Session, project: Project) -> Iterator[Job]:
 
 def _awaits_frame(session: Session, project: Project) -> bool:
     """Tell whether the first frame of the interval at the playhead is on its way."""
+    if GLIMPSING not in session.jobs.kinds:
+        return False
     frame = playback.current_frame(session, project)
-    return GLIMPSING in session.jobs.kinds and any(
-        not puppet.store.is_exact(clip, frame)
-        and puppet.store.interval(clip, time_of(clip, frame).interval) is None
-        for clip, puppet in _clips(project)
+    moments = ((time_of(clip, frame), clip, puppet) for clip, puppet in _clips(project))
+    return any(
+        resting_pose(clip, moment) is None
+        and not puppet.store.is_exact(clip, frame)
+        and puppet.store.interval(clip, moment.interval) is None
+        for moment, clip, puppet in moments
     )
 
 

@@ -7,8 +7,10 @@ import zlib
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 from PIL import Image, ImageFile, ImageOps, UnidentifiedImageError
 
 from app.errors import LissomError
@@ -110,7 +112,7 @@ def decode_pictures(files: Sequence[tuple[bytes, str]]) -> list[Picture]:
 def decode_mask(data: bytes, name: str) -> Mask:
     """Decode a mask: what is light, and not transparent, is kept."""
     rgba = decode_picture(data, name).rgba
-    light: Booleans = rgba[..., :3].mean(axis=2) >= HALF
+    light: Booleans = rgba[..., :3].sum(axis=2, dtype=np.uint16) >= 3 * HALF
     return Mask.of(light & (rgba[..., 3] >= HALF))
 
 
@@ -177,22 +179,35 @@ def _decoded(data: bytes) -> Picture:
     if frames > 1:
         notices.append(f"used the first of {frames} frames")
     is_deep = _is_deep(file)
-    file.load()
+    rgba = _load(file)
     image: Image.Image = file
     profile = image.info.get("icc_profile")
     image, notice = upright(image)
     if notice:
         notices.append(notice)
     if image.mode.startswith("I;16") or image.mode in {"I", "F"}:
-        greys = np.nan_to_num(np.asarray(image, dtype=np.float64))
-        image = Image.fromarray(_scale_deep_grey(greys, is_float=image.mode == "F"))
+        image = Image.fromarray(_scale_deep_grey(np.asarray(image), is_float=image.mode == "F"))
         notices.append("reduced its deep greys to 8 bits")
     elif is_deep:
         notices.append("reduced its deep colours to 8 bits per channel")
     image, notice = to_srgb(image, profile)
     if notice:
         notices.append(notice)
-    return Picture(rgba=_pixels(image), suffix=suffix, notices=tuple(notices))
+    rgba = _pixels(image) if rgba is None or image is not file else freeze(rgba)
+    return Picture(rgba=rgba, suffix=suffix, notices=tuple(notices))
+
+
+def _load(file: ImageFile.ImageFile) -> Bytes | None:
+    """Decode a picture; return its pixels (h, w, 4) if they are RGBA, so that they are there once.
+
+    Some decoders have a place of their own for them; None then.
+    """
+    rgba = place = None
+    if file.mode == "RGBA":
+        rgba = np.zeros((file.height, file.width, 4), dtype=np.uint8)
+        file.im = place = Image.frombuffer("RGBA", file.size, rgba, "raw", "RGBA", 0, 1).im
+    file.load()
+    return rgba if file.im is place else None
 
 
 def upright(image: Image.Image) -> tuple[Image.Image, str]:
@@ -207,14 +222,13 @@ def upright(image: Image.Image) -> tuple[Image.Image, str]:
 
 def _pixels(image: Image.Image) -> Bytes:
     """Return the pixels (h, w, 4) of a picture in sRGB."""
-    image = image if image.mode == "RGBA" else image.convert("RGBA")
     width, height = image.size
     rgba = np.empty((height, width, 4), dtype=np.uint8)
     # Pillow hands pixels out in small pieces; band by band these stay in the processor's cache, and
     # it takes a fifth of the time.
     for top in range(0, height, BAND):
         bottom = min(top + BAND, height)
-        rgba[top:bottom] = np.asarray(image.crop((0, top, width, bottom)))
+        rgba[top:bottom] = np.asarray(image.crop((0, top, width, bottom)).convert("RGBA"))
     return freeze(rgba)
 
 
@@ -234,12 +248,18 @@ def _is_deep(image: ImageFile.ImageFile) -> bool:
     return False
 
 
-def _scale_deep_grey(greys: Floats, *, is_float: bool) -> Bytes:
+def _scale_deep_grey(greys: npt.NDArray[Any], *, is_float: bool) -> Bytes:
     """Map greys of more than 8 bits to 0 … 255.
 
     Integers are 16 bits wide whatever their largest value; floating-point files write white as 1,
     255 or 65535, whichever holds all of their values.
     """
-    largest = float(greys.max(initial=0.0))
+
+    def bands() -> Iterator[Floats]:
+        for top in range(0, len(greys), BAND):
+            yield np.nan_to_num(greys[top : top + BAND].astype(np.float64))
+
+    largest = max(float(band.max(initial=0.0)) for band in bands())
     white = next((w for w in (1.0, 255.0) if is_float and largest <= w), max(65535.0, largest))
-    return np.rint(np.clip(greys / white, 0.0, 1.0) * 255.0).astype(np.uint8)
+    scaled = [np.rint(np.clip(band / white, 0.0, 1.0) * 255.0).astype(np.uint8) for band in bands()]
+    return np.concatenate(scaled)

@@ -15,6 +15,7 @@ from app.document import (
     Easing,
     ExportSettings,
     Figure,
+    FormatPictures,
     FrameRange,
     Handle,
     KeptPose,
@@ -84,6 +85,18 @@ EXPORT = part(
     Field("framing", TEXT),
     Field("frames", optional(RANGE)),
     Field("names", TEXT, earlier=FRAME_NAMES),
+    Field(
+        "earlier",
+        several(
+            part(
+                FormatPictures,
+                Field("format", TEXT),
+                Field("size", optional(SIZE)),
+                Field("background", TEXT),
+            )
+        ),
+        usual=(),
+    ),
     *(
         Field(name, _options(usual), earlier=usual)
         for name, usual in FormatSettings().options().items()

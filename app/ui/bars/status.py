@@ -7,7 +7,8 @@ from imgui_bundle import ImColor, imgui, imspinner
 
 from app.document import Extremes, find_shortfall, loosened
 from app.editor import Action, Kind, Project, Session, do, promises
-from app.editor.actions import rebuilding, upkeep
+from app.editor.actions import exporting, rebuilding, upkeep
+from app.errors import shown_name
 from app.ui.style import Look, shortened, tip
 
 WORDS = {"k": "Shear", "σa": "Stretch", "σb": "Squeeze"}
@@ -60,7 +61,15 @@ def draw_status(session: Session, look: Look) -> list[Action]:
     hint = session.hint if held_back or slowed else session.hint or "Ready"
     room = end - imgui.get_cursor_pos_x() - gap
     waiting = promises.waits_for(session.project) if session.project else ""
-    if slow or waiting:
+    exported = _export(session)
+    if exported:
+        _spinner(look)
+        imgui.text_unformatted(shortened(exported, max(room - 6 * look.em, 0.0)))
+        imgui.same_line(0, 0.8 * look.em)
+        if imgui.small_button("Cancel"):
+            actions.append(do(exporting.cancel))
+        tip("Give the export up")
+    elif slow or waiting:
         _spinner(look)
         share = session.jobs.share_of(slow[0]) if slow else None
         how_far = "" if share is None else f" {share:.0%}"
@@ -110,6 +119,17 @@ def limit_of_motion(session: Session) -> str:
     where = f"{', '.join(told[:-1])} and {told[-1]}" if len(told) > 1 else told[0]
     noun = "frame" if len(frames) == 1 else "frames"
     return f"The motion {verb} at {noun} {where} to keep within the stretch limit"
+
+
+def _export(session: Session) -> str:
+    """Return in words how far the export is that is drawn; else ""."""
+    run = session.export
+    if run is None:
+        return ""
+    if run.for_clipboard:
+        return "Copying the picture…"
+    total, name = len(run.plan.times), shown_name(run.plan.out.name)
+    return f"Exporting {name}: {run.done} of {total}" if run.done < total else f"Finishing {name}…"
 
 
 def _cancel(session: Session, look: Look, slow: Sequence[Kind]) -> list[Action]:

@@ -76,7 +76,7 @@ class FileBrowser:
         is_accepted |= any(imgui.is_key_pressed(key, repeat=False) for key in ENTER)
         folder, path = _folder_meant(now), _path_meant(now)
         possible = path is not None or (folder is not None and not now.writes)
-        text = "Save" if now.writes else "Open"
+        text = now.verb if now.writes else "Open"
         if main_button(look, text, BUTTON * look.em, enabled=possible):
             is_accepted = True
             # What is saved goes by the name that is there, even where a folder is marked.

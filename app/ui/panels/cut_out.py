@@ -175,7 +175,7 @@ def _state(session: Session, look: Look, project: Project) -> list[Action]:
         if progress(renewal.progress, renewal.now):
             actions.append(do(rebuilding.cancel))
     elif session.cutting is not None:
-        hint, keys = "Show the drawing as it is posed", BINDINGS["stop cutting"].keys_in_words
+        hint, keys = "Show the drawing as it is posed", BINDINGS["pose"].keys_in_words
         if text_button("Back to posing###done", FILL, hint, keys):
             actions.append(do(cutting.take_up, None))
     if project.figure.is_stale and project.figure is project.unbuildable:

@@ -126,9 +126,9 @@ def _names(look: Look, settings: ExportSettings) -> ExportSettings:
 
 
 def _with_format(settings: ExportSettings, name: str) -> ExportSettings:
-    has_background = settings.background != "transparent" or EXPORT_FORMATS[name].is_transparent
-    background = settings.background if has_background else WHITE
-    return replace(settings, format=name, background=background)
+    chosen = settings.in_format(name)
+    lacks_one = chosen.background == "transparent" and not EXPORT_FORMATS[name].is_transparent
+    return replace(chosen, background=WHITE) if lacks_one else chosen
 
 
 def _background(look: Look, settings: ExportSettings) -> ExportSettings:

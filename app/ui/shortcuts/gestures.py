@@ -16,6 +16,7 @@ class Gesture:
 GESTURES = (
     Gesture("Click the shape", "Add a handle"),
     Gesture("Drag a handle", "Pose"),
+    Gesture(with_key(ALT, "let go of a handle"), "Want it there, however far"),
     Gesture("Drag the ring around a handle", "Turn the shape there"),
     Gesture(with_key(ALT, "drag a handle"), "Turn the shape there"),
     Gesture(with_key(CTRL, "turn"), "Turn by steps of 15°"),
@@ -26,8 +27,9 @@ GESTURES = (
     Gesture("Drag the anchor onto another layer", "Hang this layer on it"),
     Gesture(with_key(SHIFT, "click a handle"), "Select several"),
     Gesture("Drag beside the shape", "Select by a box"),
+    Gesture(with_key(CTRL, with_key(SHIFT, "drag beside the shape")), "Move the whole figure"),
     Gesture("Right click a handle", "Menu"),
-    Gesture("Arrows, with Shift ×10", "Nudge the selection"),
+    Gesture("Arrows, with Shift ×10", "Nudge the selection, or the whole figure"),
     Gesture("Middle drag, or Space and drag", "Move the view"),
     Gesture("Wheel", "Zoom at the pointer"),
     Gesture("Esc", "Cancel a drag"),

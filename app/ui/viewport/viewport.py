@@ -15,7 +15,7 @@ from app.ui.style import Look, density, in_hand, is_pressed
 from app.ui.viewport.cut_view import draw_brush
 from app.ui.viewport.gesture import draw_coming_strokes, draw_slits, go_on
 from app.ui.viewport.grips import draw_axis, draw_ring, find_ring, lay_axis
-from app.ui.viewport.hints import draw_badges, draw_cutting, hint_at
+from app.ui.viewport.hints import draw_badges, draw_mode, hint_at
 from app.ui.viewport.marks import unreached
 from app.ui.viewport.screen import GRIP, Screen
 from app.ui.viewport.split_view import SplitTextures, divide, draw_divider, draw_pictures
@@ -55,22 +55,24 @@ def draw(session: Session, look: Look, project: Project, pictures: SplitTextures
     actions += _navigate(screen)
     actions += handles.actions
     actions += go_on(session, look, screen)
+    is_over = on_canvas or handles.hovered is not None or axis.is_hot
+    if session.moves and is_over and session.cutting is None:
+        imgui.set_mouse_cursor(imgui.MouseCursor_.resize_all)
     if handles.hovered != session.hovered:
         actions.append(do(pointing.hover, handles.hovered))
     draw_axis(look, axis)
     if ring is not None:
         draw_ring(look, ring, is_pointed=on_ring and session.pointer is None)
-    is_over = on_canvas or handles.hovered is not None or axis.is_hot
     hint = hint_at(session, screen, spot) if is_over else ""
     if hint != session.hint:
         actions.append(do(pointing.explain, hint))
     if session.cutting is None:
-        return actions + draw_badges(look, project, corner, parts.room)
+        return actions + draw_badges(session, look, project, corner, parts.room)
     draw_coming_strokes(look, screen)
     draw_slits(look, screen)
     if on_canvas or session.pointer is not None:
         draw_brush(session, look, imgui.get_mouse_pos(), screen.scale)
-    return actions + draw_cutting(look, corner, parts.room)
+    return actions + draw_mode(look, "Cutting out", corner, parts.room)
 
 
 def _fit(session: Session, room: ImVec2) -> list[Action]:

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 from imgui_bundle import ImVec2, hello_imgui, imgui
 
-from app.ui.panel import Panel
+from app.ui.panel import Panel, is_in_front
 from app.ui.style import FONT_SIZE
 
 SIDE, BOTTOM = 24.8, 12.2  # em: what tabs and timeline take at first
@@ -105,7 +105,7 @@ class Docking:
             texts = [other.labels[number].split("###")[0] for other in together]
             if sum(imgui.calc_text_size(text).x + around for text in texts) <= room:
                 return panel.labels[number]
-        fronts = [other for other in together if self._is_in_front(other)]
+        fronts = [other for other in together if is_in_front(other.title)]
         texts = [
             (title if other in fronts else icon).split("###")[0]
             for other in together
@@ -113,11 +113,6 @@ class Docking:
         ]
         fits = sum(imgui.calc_text_size(text).x + around for text in texts) <= room
         return panel.labels[1] if fits and panel in fronts else panel.labels[-1]
-
-    def _is_in_front(self, panel: Panel) -> bool:
-        window = imgui.internal.find_window_by_name(panel.label)
-        node = None if window is None else window.dock_node
-        return window is not None and node is not None and node.selected_tab_id == window.tab_id
 
 
 def _splits(room: ImVec2, em: float) -> list[hello_imgui.DockingSplit]:

@@ -35,6 +35,7 @@ from app.ui.window.exporter import Exporter
 from app.ui.window.memory import FreeMemory
 from app.ui.window.modifiers import release_stuck_modifiers
 from app.ui.window.shell import Shell
+from app.ui.window.taps import Taps
 from app.ui.window.title import NAME, window_title
 from engine.arrays import Bytes
 
@@ -90,6 +91,7 @@ class Window:
         self._renderer: Renderer | None = None
         self._shell = Shell(session, self._panels(), self._thumbnail)
         self._memory = FreeMemory(session)
+        self._taps = Taps()
         self._title = NAME
         self._is_open = False
         self._dropped: object = None
@@ -105,6 +107,10 @@ class Window:
         calls.pre_new_frame = hello_imgui.sequence_functions(
             partial(self._shell.attempt, self._begin_frame), calls.pre_new_frame
         )
+        calls.pre_new_frame = hello_imgui.sequence_functions(
+            calls.pre_new_frame, self._taps.hold_back
+        )
+        calls.post_new_frame = self._taps.give_back
         return params
 
     def run(
@@ -173,7 +179,7 @@ class Window:
     @property
     def awaits_worker(self) -> bool:
         """Whether the next frame can wait, up to `PAUSE`, for the worker or for some input."""
-        return self._shell.awaits_worker
+        return self._shell.awaits_worker and not self._taps.are_left
 
     def ask(self, action: Action) -> None:
         """Do something in the next frame, as if a panel had asked for it."""

@@ -10,7 +10,6 @@ from engine.deform.model.barrier import (
     Barrier as Barrier,
     Walls as Walls,
     with_samples_between as with_samples_between,
-    with_walls_between as with_walls_between,
 )
 from engine.deform.model.hessian import (
     projected_hessian as projected_hessian,

@@ -141,23 +141,6 @@ class Barrier:
         return slopes
 
 
-def with_walls_between(walls: Walls, segments: Indices, ends: Indices) -> Walls:
-    """Return walls with those of a sample more in each of some segments: the nearer of both ends'.
-
-    Parameters
-    ----------
-    walls : Walls
-    segments, ends : intp, shape (s,)
-        The samples at which these segments start, ascending, and end.
-    """
-    k, sigma_a, sigma_b = walls
-    return Walls(
-        k=np.insert(k, segments + 1, np.minimum(k[segments], k[ends])),
-        sigma_a=np.insert(sigma_a, segments + 1, np.minimum(sigma_a[segments], sigma_a[ends])),
-        sigma_b=np.insert(sigma_b, segments + 1, np.maximum(sigma_b[segments], sigma_b[ends])),
-    )
-
-
 def with_samples_between(duals: Floats, segments: Indices, ends: Indices) -> Floats:
     """Return dual variables (3, m) with those of a sample more in each of some segments.
 

@@ -90,7 +90,7 @@ def begin_search(
     jet = objective.jet(*harmonic_map.columns)
     energy = objective.energy(jet)
     reach = FIRST_REACH if way is Way.WIDENING else inf
-    own = Walls.at(inside, objective.boundary)
+    own = rung(Walls.at(inside, objective.boundary), reach)
     outermost = Walls.at(limits, objective.boundary)
     return Search(
         handles=objective.handles,
@@ -100,9 +100,9 @@ def begin_search(
         certificate=certificate,
         boundary=objective.boundary,
         limits=limits,
-        inside=own,
+        within=inside,
         reach=reach,
-        walls=walls_around(rung(own, reach), outermost, jet.a, jet.b),
+        walls=walls_around(own, outermost, jet.a, jet.b),
         weight=HERE_PER_ENERGY * energy if way is Way.HERE else _first_weight(energy),
         energy=energy,
     )

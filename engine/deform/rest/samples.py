@@ -11,7 +11,7 @@ from dataclasses import replace
 import numpy as np
 
 from engine.arrays import Floats, Indices
-from engine.deform.model import MARGIN, Jet, Walls, with_samples_between, with_walls_between
+from engine.deform.model import MARGIN, Jet, Walls, with_samples_between
 from engine.deform.rest.search import Search
 from engine.maps import Enclosures
 
@@ -70,22 +70,14 @@ def resolved(search: Search, jet: Jet, enclosures: Enclosures, broken: Indices) 
     new = segments + np.arange(len(segments)) + 1
     alone = boundary.span.without_constant(search.map.coefficients)
     f, g = (finer.derivatives[new] @ alone).T
-    ends_of = boundary.following[segments]
-    search = replace(search, inside=with_walls_between(search.inside, segments, ends_of))
-    nearest = Walls(*(each[new] for each in search.rung))
-    outermost = Walls(*(each[new] for each in Walls.at(search.limits, finer)))
-    walls = walls_around(nearest, outermost, np.abs(f), np.abs(g))
     duals = search.duals
     if duals is not None:
-        duals = with_samples_between(duals, segments, ends_of)
-    return replace(
-        search,
-        boundary=finer,
-        walls=Walls(
-            *(
-                np.insert(old, segments + 1, its)
-                for old, its in zip(search.walls, walls, strict=True)
-            )
-        ),
-        duals=duals,
+        duals = with_samples_between(duals, segments, boundary.following[segments])
+    old, search = search.walls, replace(search, boundary=finer, duals=duals)
+    inside, outermost = (
+        Walls(*(each[new] for each in walls))
+        for walls in (search.rung, Walls.at(search.limits, finer))
     )
+    between = walls_around(inside, outermost, np.abs(f), np.abs(g))
+    walls = (np.insert(each, segments + 1, its) for each, its in zip(old, between, strict=True))
+    return replace(search, walls=Walls(*walls))

@@ -66,7 +66,7 @@ class Search:
         With the samples that were added.
     limits : Limits
         What the certificates are for.
-    inside : Walls
+    within : Limits
         Where the walls of the samples stand in the end, but for those that are beyond.
     reach : float
         Of the rung that the walls stand on (`rungs.rung`).
@@ -99,7 +99,7 @@ class Search:
     certificate: Certificate
     boundary: Boundary
     limits: Limits
-    inside: Walls
+    within: Limits
     reach: float
     walls: Walls
     weight: float
@@ -113,6 +113,11 @@ class Search:
     turn: float = 0.0
     most: int = MOST_STEPS
     best: "Search | None" = None
+
+    @property
+    def inside(self) -> Walls:
+        """Where the walls stand in the end."""
+        return Walls.at(self.within, self.boundary)
 
     @property
     def rung(self) -> Walls:

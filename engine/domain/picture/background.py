@@ -16,6 +16,7 @@ CHANNEL_WIDTH = 0.006  # of the diagonal: the flood passes no channel that is na
 # What a lossy encoder leaves around edges: islands of fewer pixels, no farther from the
 # background's colour. JPEG at quality 50 to 95 left 5,404 of them around ten drawings, one larger.
 SMALLEST_ISLAND, NOISE_LEVELS = 25, 54
+BAND = 512  # rows in which they are looked for at once
 VIVID = 48  # levels between a colour's channels: white, grey and black have fewer
 SEEN_WIDTH = 0.002  # of the diagonal: narrower places inside are not looked for
 NEARBY_STEP, NEARBY_REACH = 8, 5  # pixels, and steps: where the paper beside a place is measured
@@ -80,10 +81,11 @@ def flood_background(
         flooded = _refined(flooded, factor, alike)
     flooded |= _noise(flooded, rgb, wanted)
     enclosed = _pockets(rgb, wanted, tolerance, flooded, alike)
+    del alike  # large pictures leave little room
     if enclosed.any():
         enclosed |= _noise(flooded | enclosed, rgb, wanted)
     if _is_vivid(wanted):
-        enclosed |= alike & ~flooded
+        enclosed |= _alike(rgb, wanted, tolerance) & ~flooded
     return Background(mask=flooded, enclosed=enclosed, colour=wanted, agreement=agreement)
 
 
@@ -93,8 +95,9 @@ def _is_vivid(colour: Bytes) -> bool:
 
 def _refined(blocks: Booleans, factor: int, alike: Booleans) -> Booleans:
     """Return those of the pixels `alike` that are in blocks or beside them."""
-    near = ndimage.binary_dilation(blocks, WITH_CORNERS)
-    return repeat_blocks(near, factor, alike.shape) & alike
+    near = repeat_blocks(ndimage.binary_dilation(blocks, WITH_CORNERS), factor, alike.shape)
+    near &= alike
+    return near
 
 
 def _border(values: np.ndarray) -> np.ndarray:
@@ -123,6 +126,17 @@ def _alike(rgb: Bytes, colour: Bytes, tolerance: int) -> Booleans:
 
 def _noise(background: Booleans, rgb: Bytes, colour: Bytes) -> Booleans:
     """Return the islands in a background that are an encoder's noise."""
+    noise = np.zeros_like(background)
+    # Labels take as much memory as pictures do, and no island leaves the rows that are added to a
+    # band: what does has more pixels within it already.
+    for top in range(0, len(noise), BAND):
+        band = slice(max(0, top - SMALLEST_ISLAND), top + BAND + SMALLEST_ISLAND)
+        inner = slice(top - band.start, top - band.start + BAND)
+        noise[top : top + BAND] = _noise_in(background[band], rgb[band], colour)[inner]
+    return noise
+
+
+def _noise_in(background: Booleans, rgb: Bytes, colour: Bytes) -> Booleans:
     labels, _ = ndimage.label(~background, WITH_CORNERS)
     places = np.flatnonzero(~background)
     islands = labels.ravel()[places]

@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy import ndimage
 
-from engine.arrays import Booleans, Bytes, readonly
+from engine.arrays import Booleans, Bytes, freeze
 from engine.domain.picture.background import Background, flood_background
 from engine.domain.picture.cut_out import BackgroundColour, CutOut, Mask, Stroke, paint
 from engine.errors import EngineError
@@ -81,35 +81,35 @@ def subject_mask(rgba: Bytes, cut_out: CutOut | None = None) -> Subject:
         raise EngineError(f"A picture must be uint8 (h, w, 4), not {rgba.dtype} {rgba.shape}.")
     if rgba.size == 0:
         raise EngineError("The picture has no pixels; give one with a drawing.")
-    alpha = np.ascontiguousarray(rgba[..., 3])  # what is looked at often is not to lie scattered
-    present, visible = alpha > 0, alpha >= VISIBLE_ALPHA
-    del alpha
-    if not visible.any():
+    seen = int(np.count_nonzero(_of_alpha(rgba, VISIBLE_ALPHA)))
+    if not seen:
         raise EngineError("The picture is fully transparent; give one with a visible drawing.")
     notices: tuple[str, ...] = ()
     background: Background | None = None
+    # A mask takes a quarter of a picture's memory: none is held that can be had again.
     if cut_out.mask is not None:
-        subject = _masked(present, cut_out.mask)
+        subject = _masked(_of_alpha(rgba, 1), cut_out.mask)
     elif isinstance(cut_out.background, tuple):
         subject, notices, background = _without_colour(rgba, cut_out.tolerance, cut_out.background)
-    elif np.count_nonzero(visible) < OPAQUE_SHARE * visible.size:
-        subject, notices = _without_transparency(present, visible)
+    elif seen < OPAQUE_SHARE * rgba[..., 3].size:
+        subject, notices = _without_transparency(rgba)
     elif cut_out.background == "none":
-        subject = visible
+        subject = _of_alpha(rgba, VISIBLE_ALPHA)
     else:
         subject, notices, background = _without_background(rgba[..., :3], cut_out.tolerance)
-        subject &= visible
+        subject &= _of_alpha(rgba, VISIBLE_ALPHA)
     within = _enclosed(subject, background, cut_out)
+    del background
     subject, notices = within.subject, notices + within.notices
     if cut_out.strokes:
-        subject, notices = _brushed(subject, cut_out.strokes) & present, ()
+        subject, notices = _brushed(subject, cut_out.strokes) & _of_alpha(rgba, 1), ()
     _require_size(subject)
     area = within.area
     return Subject(
-        mask=readonly(subject),
-        cut=bool((visible > subject).any()),
+        mask=freeze(subject),
+        cut=bool((_of_alpha(rgba, VISIBLE_ALPHA) > subject).any()),
         notices=notices,
-        enclosed=None if area is None else readonly(area & (subject == within.subject)),
+        enclosed=None if area is None else freeze(area & (subject == within.subject)),
         opens=within.opens,
         swapped=within.swapped,
     )
@@ -203,21 +203,34 @@ def _without_colour(
     return visible & ~flooded, (notice,), background
 
 
-def _without_transparency(present: Booleans, visible: Booleans) -> tuple[Booleans, tuple[str, ...]]:
+def _of_alpha(rgba: Bytes, least: int) -> Booleans:
+    """Return the pixels (h, w) of at least this alpha."""
+    enough: Booleans = rgba[..., 3] >= least
+    return enough
+
+
+def _without_transparency(rgba: Bytes) -> tuple[Booleans, tuple[str, ...]]:
     """Return all that is not fully transparent; a wide and nearly invisible haze is left out.
 
     So are nearly invisible islands: what scaling by a sharp filter leaves around edges.
     """
-    labels, count = _labelled(present)
-    seen = np.zeros(count + 1, dtype=np.bool_)
-    for rows, shown in zip(labels, visible, strict=True):  # all at once take eight bytes a pixel
-        seen[rows[shown]] = True
-    for row, numbers in zip(present, labels, strict=True):
-        row[...] = seen[numbers]
+    present, visible = _seen_parts(rgba), _of_alpha(rgba, VISIBLE_ALPHA)
     faint = int(np.count_nonzero(present) - np.count_nonzero(visible))
     if np.count_nonzero(present) <= FAINT_GROWTH * np.count_nonzero(visible):
         return present, ()
     return visible, (f"{faint:,} nearly invisible pixels (alpha below {VISIBLE_ALPHA}) left out",)
+
+
+def _seen_parts(rgba: Bytes) -> Booleans:
+    """Return all parts that are not fully transparent and have something visible."""
+    present = _of_alpha(rgba, 1)
+    labels, count = _labelled(present)
+    seen = np.zeros(count + 1, dtype=np.bool_)
+    for numbers, row in zip(labels, rgba, strict=True):  # all at once take eight bytes a pixel
+        seen[numbers[row[:, 3] >= VISIBLE_ALPHA]] = True
+    for row, numbers in zip(present, labels, strict=True):
+        row[...] = seen[numbers]
+    return present
 
 
 def _labelled(mask: Booleans) -> tuple[npt.NDArray[Any], int]:

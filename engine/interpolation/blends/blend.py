@@ -58,11 +58,6 @@ class Blend(ABC):
         """Prepare it for one time in [0, 1], without holes; at others it may be wrong."""
         return cls.of(interval)
 
-    @property
-    def nbytes(self) -> int:
-        """Memory beyond the keyframes' own, in bytes."""
-        return self.passage.nbytes
-
     @abstractmethod
     def values(self, times: Floats) -> tuple[Complexes, Complexes]:
         """Return f_z and conj(f_z̄) at times (t,) and the nodes of the paths, each (t, s)."""

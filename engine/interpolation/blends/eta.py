@@ -48,12 +48,6 @@ class EtaBlend(Blend):
             conj_eta_z=tuple(derivatives),
         )
 
-    @property
-    def nbytes(self) -> int:
-        """Memory beyond the keyframes' own, in bytes."""
-        known = sum(array.nbytes for array in (*self.conj_eta, *self.conj_eta_z))
-        return self.passage.nbytes + known
-
     def values(self, times: Floats) -> tuple[Complexes, Complexes]:
         """Return f_z and conj(f_z̄) at times (t,), each (t, s)."""
         fz = np.exp(self.passage.log_fz_at(times))

@@ -40,11 +40,6 @@ class LinearBlend(Blend):
             known.append(Derivatives(*map(freeze, parts)))
         return cls(passage=interval.passage, bounds=interval.bounds, known=tuple(known))
 
-    @property
-    def nbytes(self) -> int:
-        """Memory beyond the keyframes' own, in bytes."""
-        return self.passage.nbytes + sum(array.nbytes for each in self.known for array in each)
-
     def values(self, times: Floats) -> tuple[Complexes, Complexes]:
         """Return f_z and conj(f_z̄) at times (t,), each (t, s)."""
         weights = self.passage.course.at(times).T

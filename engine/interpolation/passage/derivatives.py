@@ -87,11 +87,6 @@ class Passage:
         positions: Complexes = self.course.at(times).T @ known
         return positions
 
-    @property
-    def nbytes(self) -> int:
-        """Memory beyond the keyframes' own, in bytes."""
-        return sum(residual.nbytes for residual in self.residuals)
-
     def at(self, which: Indices) -> Self:
         """Return the same at some of the nodes (c,) only."""
         return replace(

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from engine.arrays import Complexes, Indices, freeze
+from engine.arrays import Complexes, Indices, freeze, held_bytes
 from engine.errors import EngineError
 from engine.geometry import next_on_loop
 from engine.interpolation.sites import Sites
@@ -63,9 +63,7 @@ class KeyframeSamples:
     @property
     def nbytes(self) -> int:
         """Memory that the arrays take, in bytes."""
-        at_nodes = (self.log_fz, self.log_fz_z, self.nu, self.nu_z)
-        at_points = (self.positions, self.phi_error, self.psi_error)
-        return sum(array.nbytes for array in (*at_nodes, *at_points))
+        return held_bytes(self, but=(self.map,))
 
 
 def sample_keyframes(maps: Sequence[HarmonicMap], sites: Sites) -> tuple[KeyframeSamples, ...]:

@@ -96,12 +96,6 @@ class PeriodBasis:
             shares=freeze(shares),
         )
 
-    @property
-    def nbytes(self) -> int:
-        """Memory that the arrays take, in bytes."""
-        arrays = (self.basis, self.on_boundary, self.coefficients, self.inverse, self.at_nodes)
-        return sum(array.nbytes for array in arrays) + self.slopes.nbytes
-
 
 def _moments(values: Complexes, loops: Loops, centres: Complexes) -> Complexes:
     """Integrate functions (c, b) times low powers of z − c_j over each loop, (moments, b)."""

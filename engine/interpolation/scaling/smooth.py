@@ -73,11 +73,6 @@ class Scaling:
         """The smallest ρ that it may have."""
         return math.exp(float((self.logarithms - self.excess).min()))
 
-    @property
-    def nbytes(self) -> int:
-        """Memory that the arrays take, in bytes."""
-        return self.logarithms.nbytes + self.excess.nbytes
-
     def __call__(self, time: float) -> float:
         """Return ρ in (0, 1] at a time in [0, 1]."""
         return float(self.at(np.array([time]))[0])

@@ -45,11 +45,6 @@ class Residual:
             modes_z=freeze(np.ascontiguousarray(self.modes_z[:, which])),
         )
 
-    @property
-    def nbytes(self) -> int:
-        """Memory that the arrays take, in bytes."""
-        return self.modes.nbytes + self.modes_z.nbytes + self.series.coefficients.nbytes
-
     def add_to(self, logarithm: Complexes, logarithm_z: Complexes, time: float) -> None:
         """Add it to log f_z and its derivative, each (s,), in place."""
         coefficients = self.series(time)

@@ -81,6 +81,21 @@ def test_a_request_that_the_bounds_forbid_is_no_error(write, tmp_path):
     assert np.abs(got["handles_mapped"] - 3 * STAR_POINTS).max() > 0.5
 
 
+@pytest.mark.parametrize("pull", [10.0, np.array([np.inf, 10, *4 * [np.inf]])])
+def test_on_request_handles_pull_with_bounded_force(write, tmp_path, pull):
+    far = STAR_POINTS.copy()
+    far[1] *= 3
+    limits = {"targets": far, "sigma_a_max": 2.0, "k_max": 0.5, "sigma_b_min": 0.5}
+    others = [0, 2, 3, 4, 5]
+    held = deform(write(**limits), tmp_path / "held.npz")
+    assert np.abs(held["handles_mapped"] - far)[others].max() > 0.03
+    got = deform(write(**limits, pull=pull), tmp_path / "map.npz")
+    assert got["certified"]
+    assert str(got["status"]) == "at the limits"
+    assert np.abs(got["handles_mapped"][1] - far[1]) > 0.3
+    assert np.abs(got["handles_mapped"] - far)[others].max() < 0.02
+
+
 @pytest.mark.parametrize("seed", range(4))
 def test_what_is_certified_can_be_started_from(write, tmp_path, seed):
     # At a bound to the last digits.
@@ -130,6 +145,9 @@ DOUBLE = np.array([0.0, 0.0])
         ({"phi": CAGE[:4], "psi": CAGE[:4]}, "as many coefficients"),
         ({"path": np.zeros((3, 2))}, "path must have one column"),
         ({"path": np.full((3, 6), np.inf)}, "finite"),
+        ({"pull": np.ones(5)}, "pull must be one number, or one for each of 6 handles"),
+        ({"pull": 0.0}, "positive force, not 0"),
+        ({"pull": np.array([1, 1, 1, 1, np.nan, 1])}, "positive force, not nan"),
     ],
 )
 def test_bad_input_is_one_line(write, tmp_path, capsys, changes, message):

@@ -26,7 +26,10 @@ NAMES = FrameNames(pattern="frame_####", project="walk")
         ("walk.GIF", "gif", "walk.GIF"),
         ("walk.png", "apng", "walk.png"),
         ("walk.apng", "spritesheet", "walk.png"),
-        ("walk frames", "mp4", "walk frames.mp4"),
+        ("walk frames", "mp4", "walk.mp4"),
+        ("walk frames.mp4", "png", "walk frames"),
+        ("walk frames", "png", "walk frames"),
+        (" frames", "gif", " frames.gif"),
     ],
 )
 def test_only_the_endings_of_formats_give_way_to_each_other(tmp_path, name, format_, wanted):

@@ -399,7 +399,7 @@ def test_a_session_streams_what_it_plays_and_stops_while_a_hand_pulls(document, 
     project.puppet.store = IntervalStore(mesh=store.mesh)
     prepare(project.puppet.store, clip)
     project.history = History(document, saved=True)
-    pull = Pull(clip=clip, frame=13, gesture=object(), start=None, before=None)
+    pull = Pull(clip=clip, frame=13, gesture=object(), start=None, before=None, is_keyed=True)
     project.pending.append(pull)
     assert not list(missing(session, project))
 

@@ -1,10 +1,14 @@
 import copy
 import json
+import re
 
+import numpy as np
 import pytest
+from animations import still_document
 
 from app.document.easing import PRESETS
 from app.errors import LissomError
+from app.solving import pose_document
 from app.solving.script import ScriptHandle, ScriptJoint, load_pose_script, parse_pose_script
 from engine.maps.bounds import Bounds
 
@@ -91,6 +95,9 @@ def test_what_is_left_out_has_its_documented_default():
         (["keys", 1, "frame"], 31, "out of order: frame 30 after 31"),
         (["keys", 1, "targets", "tail"], [1, 2], "names the handle 'tail'"),
         (["keys", 1, "target"], {}, "unknown field 'target'"),
+        (["keys", 1, "pull"], "hard", r"keys\[1\].pull"),
+        (["keys", 1, "pull"], 0, r"keys\[1\].pull must be positive, not 0"),
+        (["keys", 1, "pull"], 10**400, r"keys\[1\].pull"),
         (["keys", 1, "ease"], "bouncy", "no easing 'bouncy'"),
         (["keys", 1, "ease"], [0, 0, 2, 1], "four numbers from 0 to 1"),
         (["keys", 1, "ease"], [10**400, 0, 1, 1], "four numbers from 0 to 1"),
@@ -178,3 +185,29 @@ def test_bad_files_are_refused_with_their_name(tmp_path, text, message):
         load_pose_script(path)
     with pytest.raises(LissomError, match="No such file"):
         load_pose_script(tmp_path / "missing.json")
+
+
+def test_a_key_on_request_pulls_with_bounded_force():
+    picture = np.zeros((80, 240, 4), np.uint8)
+    picture[20:60, 20:220] = 255
+    document = still_document(picture)
+    handles = {"end": [210, 40], "middle": [120, 40], "start": [30, 40]}
+    posed = {}
+    for pull in ({}, {"pull": 10}):
+        far = {"frame": 8, "targets": {"end": [500, 60]}, **pull}
+        after = {"frame": 16, "targets": {"start": [32, 44]}}
+        script = {"schema": 1, "handles": handles, "keys": [{"frame": 0}, far, after]}
+        script["bounds"] = {"k": 0.5, "sigma_a": 2, "sigma_b": 0.5}
+        told, notices = pose_document(document, parse_pose_script(script), lambda _: None)
+        posed[bool(pull)] = told.figures[0], notices
+    (held, _), (pulled, notices) = posed[False], posed[True]
+    for figure, far in ((held, True), (pulled, False)):
+        for key in figure.keys[1:]:
+            assert (abs(figure.lags(key.pose)[1]) > 5) == far
+    # It is told how far short it is, and it is wanted where it came to.
+    assert len(notices) == 1
+    assert re.fullmatch(r"frame 8: 'end' is \d+\.\d px short .* by the limits", notices[0])
+    wanted = pulled.keys[1].pose.targets[0].position
+    assert wanted.real < 450
+    assert pulled.lags(pulled.keys[1].pose)[0] < 1
+    assert pulled.keys[2].pose.targets[0].position == wanted

@@ -24,7 +24,7 @@ def ready(window, bent, tmp_path, monkeypatch):
     monkeypatch.setattr("app.editor.actions.exporting.put_on_clipboard", lambda _: None)
     export = replace(bent.document.export, format="picture", framing="canvas")
     editing.edit(window.session, scene_commands.set_export(export))
-    bent.export_to = tmp_path / "picture.png"
+    bent.exports_to["picture"] = tmp_path / "picture.png"
     saving.write(window.session, tmp_path / "a.lissom", None)
     playback.scrub(window.session, 0)
     window.settle()

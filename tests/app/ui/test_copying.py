@@ -119,6 +119,9 @@ def test_in_the_timeline_the_chosen_keys_are_copied(window, bent, play):
 
 
 def test_where_the_pointer_is_in_neither_the_focus_tells(window, play):
+    window.show_tab("Handle")
+    window.frames(2)
+
     def over_a_tab(hand):
         hand.robot.mouse_move("###Handle")
 

@@ -437,9 +437,9 @@ def test_export_is_started_repeated_and_told(window, project, tab, tmp_path):
         session.dialog = replace(session.dialog, folder=tmp_path, name="frames")
 
     tab("Export", choose)
-    window.run(lambda robot: robot.item_click("//###dialog/Save"))
+    window.run(lambda robot: robot.item_click("//###dialog/Choose"))
     window.frames(2)
-    assert project.export_to == tmp_path / "frames"
+    assert project.exports_to == {"png": tmp_path / "frames"}
     assert not (tmp_path / "frames").exists()
     tab("Export", lambda robot: robot.item_click("**/###start"))
     window.until(lambda: session.export is None)
@@ -451,7 +451,7 @@ def test_export_is_started_repeated_and_told(window, project, tab, tmp_path):
 
 
 def test_export_that_cannot_begin_is_told(window, project, tab, tmp_path):
-    project.export_to = tmp_path / "missing" / "frames"
+    project.exports_to["png"] = tmp_path / "missing" / "frames"
     tab("Export", lambda robot: robot.item_click("**/###start"))
     assert window.session.export is None
     assert any("does not exist" in toast.text for toast in window.session.toasts)

@@ -333,7 +333,9 @@ def test_handle_out_of_reach_is_told_and_freed_again(window, bent, monkeypatch):
         robot.mouse_down(0)
         for step in range(1, steps + 1):
             robot.mouse_move_to_pos(window.point(start + (end - start) * step / steps))
+        robot.key_down(imgui.Key.mod_alt)  # which keeps a wish that is out of reach
         robot.mouse_up(0)
+        robot.key_up(imgui.Key.mod_alt)
 
     viewing.look_from(session, replace(bent.view(session.screen), scale=0.3))
     window.frames(2)

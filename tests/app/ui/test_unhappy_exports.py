@@ -148,7 +148,7 @@ def test_another_format_asks_before_it_replaces_a_file(window, project, tmp_path
     assert question(window).title == "Replace the file?"
     answer(window, "Cancel")
     assert (tmp_path / "bar.webp").read_bytes() == b"precious"
-    assert project.export_to == tmp_path / "bar.gif"
+    assert project.exports_to == {"gif": tmp_path / "bar.gif"}
 
 
 def test_dots_in_the_name_of_a_folder_are_no_endings(window, project, tmp_path):
@@ -157,7 +157,7 @@ def test_dots_in_the_name_of_a_folder_are_no_endings(window, project, tmp_path):
     window.settle()
     finish(window)
     assert [path.name for path in tmp_path.iterdir()] == ["shot.010"]
-    assert project.export_to == tmp_path / "shot.010"
+    assert project.exports_to == {"png": tmp_path / "shot.010"}
 
 
 @pytest.mark.usefixtures("project")
@@ -227,7 +227,7 @@ def test_export_is_cancelled_while_it_is_prepared(window, project, tmp_path):
     exporting.cancel(window.session)
     window.settle()
     assert window.session.export is None
-    assert project.export_to is None
+    assert not project.exports_to
     assert list(tmp_path.iterdir()) == []
 
 
@@ -470,7 +470,7 @@ def test_export_goes_on_when_another_project_is_opened(window, tmp_path):
     finish(window)
     assert len(list(out.iterdir())) == FRAMES
     assert all(map(is_whole, out.iterdir()))
-    assert other.export_to is None
+    assert not other.exports_to
     assert other.document.export == ExportSettings()
     assert any("Exported 9 frames" in text for text in texts(window))
 
@@ -585,7 +585,7 @@ def test_the_pose_that_is_shown_is_exported_and_copied(window, project, tmp_path
     with Image.open(clipboard) as image:
         assert np.array_equal(np.asarray(image), pixels)
     assert [path for path in session.folder.iterdir() if path.suffix == ".png"] == []
-    assert project.export_to == out
+    assert project.exports_to["picture"] == out
 
 
 @pytest.mark.usefixtures("project")

@@ -8,6 +8,7 @@ from PIL import Image
 from scipy import ndimage
 
 from engine.arrays import Booleans, Bytes
+from engine.domain.picture import background
 from engine.domain.picture.background import flood_background
 
 PAPER = (240, 235, 220)
@@ -96,6 +97,19 @@ def test_small_parts_stay_that_differ_clearly_and_pale_ones_that_are_not_so_smal
         rgb[row : row + size, column : column + size] = level
     subject = ~flood_background(rgb, 18).mask
     assert [name for name, (place, _, _) in places.items() if subject[place]] == ["clear", "pale"]
+
+
+def test_islands_are_the_same_in_whatever_bands_they_are_looked_for(monkeypatch) -> None:
+    rng = np.random.default_rng(0)
+    grey = 255 - 40 * ndimage.binary_dilation(rng.random((200, 60)) > 0.93).astype(np.uint8)
+    rgb = np.repeat(grey[..., None], 3, axis=2)
+    found = []
+    for band in (1, 7, 64, 1000):
+        monkeypatch.setattr(background, "BAND", band)
+        found.append(flood_background(rgb, 18).mask)
+        assert_array_equal(found[-1], found[0])
+    assert np.count_nonzero(found[0]) > np.count_nonzero(grey == 255)
+    assert not found[0].all()
 
 
 def test_a_picture_of_one_colour_is_all_background() -> None:

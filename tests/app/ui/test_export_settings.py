@@ -1,0 +1,167 @@
+"""Exports as a person makes them: in one format after another, from any tab."""
+
+from dataclasses import replace
+
+import pytest
+from imgui_bundle import imgui
+
+from app.document.settings import ExportSettings
+from app.editor.actions import exporting, keys, saving
+from app.editor.dialogs import FileDialog
+from app.export_formats import EXPORT_FORMATS
+from app.storage import load_project
+
+CTRL_E = int(imgui.Key.mod_ctrl) | int(imgui.Key.e)
+SIZE = (60, 24)
+
+
+@pytest.fixture
+def choose(window, bent, monkeypatch):
+    """Choose a format in the list of the tab, and return what is exported then."""
+    begin_combo, found = imgui.begin_combo, []
+
+    def see(label, *more):
+        is_open = begin_combo(label, *more)
+        if label == "##format" and not is_open:
+            found.append((imgui.get_item_rect_min() + imgui.get_item_rect_max()) / 2)
+        return is_open
+
+    # Of what drops down the robot knows no place by name.
+    monkeypatch.setattr(imgui, "begin_combo", see)
+
+    def choose(name):
+        def click(robot):
+            robot.mouse_move_to_pos(found[-1])
+            robot.mouse_click(0)
+            robot.item_click(f"//##Combo_00/{EXPORT_FORMATS[name].label}")
+
+        window.show_tab("Export")
+        window.run(click)
+        window.frames(2)
+        assert bent.document.export.format == name
+        return bent.document.export
+
+    return choose
+
+
+def test_the_format_is_seen_before_a_place_is_asked_for(window, bent, tmp_path):
+    session = window.session
+    keys.set_last_frame(session, 24)
+    exporting.set_export(session, ExportSettings(format="gif", size=SIZE))
+    window.show_tab("Handle")
+    seen = []
+
+    def press(robot):
+        for _ in range(2):
+            seen.append((session.export_frame is not None, session.dialog is not None))
+            robot.key_press(CTRL_E)
+            robot.yield_(3)
+
+    window.run(press)
+    assert seen == [(False, False), (True, False)], "whether the tab is in front, and it asks where"
+    assert isinstance(session.dialog, FileDialog)
+    assert session.dialog.name == "bar.gif"
+    session.dialog = replace(session.dialog, folder=tmp_path)
+    window.run(lambda robot: robot.item_click("//###dialog/Export"))
+    window.until(lambda: (tmp_path / "bar.gif").exists() and session.export is None)
+    # To choose a place begins nothing.
+    window.show_tab("Export")
+    window.run(lambda robot: robot.item_click("//Export/**/###choose output"))
+    session.dialog = replace(session.dialog, folder=tmp_path, name="other.gif")
+    window.run(lambda robot: robot.item_click("//###dialog/Choose"))
+    window.settle()
+    assert bent.exports_to == {"gif": tmp_path / "other.gif"}
+    assert [path.name for path in tmp_path.iterdir()] == ["bar.gif"]
+
+
+def test_each_format_has_the_pictures_that_it_had_last(window, bent, tmp_path, choose):
+    settings = replace(bent.document.export, size=SIZE)
+    exporting.set_export(window.session, settings)
+    assert choose("mp4").background == "#ffffff"
+    # Chosen for the first time: as large as what was chosen before.
+    assert bent.document.export.size == SIZE
+    film = replace(bent.document.export, size=(128, 64), background="#203040")
+    exporting.set_export(window.session, film)
+    assert choose("webm").background == "transparent", "only MP4 needs one"
+    for name, size, background in (
+        ("png", SIZE, "transparent"),
+        ("mp4", (128, 64), "#203040"),
+        ("png", SIZE, "transparent"),
+    ):
+        chosen = choose(name)
+        assert (chosen.size, chosen.background) == (size, background)
+    saving.write(window.session, tmp_path / "a.lissom", None)
+    window.settle()
+    again = load_project(tmp_path / "a.lissom").export
+    assert again == bent.document.export
+    assert again.in_format("mp4").background == "#203040"
+    # A background that was chosen where it need not be goes along.
+    exporting.set_export(window.session, replace(bent.document.export, background="#ff0000"))
+    assert choose("mov").background == "#ff0000"
+
+
+def test_names_do_not_grow_from_format_to_format(window, bent, tmp_path, choose):
+    exporting.set_export(window.session, ExportSettings(size=SIZE))
+    exporting.export_to(window.session, tmp_path / "walk frames")
+    for name, file in (
+        ("mp4", "walk.mp4"),
+        ("png", "walk frames"),
+        ("gif", "walk.gif"),
+        ("mp4", "walk.mp4"),
+        ("png", "walk frames"),
+        ("spritesheet", "walk.png"),
+    ):
+        choose(name)
+        out = exporting.destination(bent)
+        assert out == tmp_path / file
+        exporting.export_to(window.session, out)
+    # A name of one's own is that format's alone.
+    choose("gif")
+    exporting.export_to(window.session, tmp_path / "wave.gif")
+    choose("mp4")
+    assert exporting.destination(bent) == tmp_path / "walk.mp4"
+    choose("webp")
+    assert exporting.destination(bent) == tmp_path / "wave.webp", "beside the newest one"
+
+
+def test_another_format_of_the_same_name_asks_before_it_replaces(window, tmp_path, choose):
+    session = window.session
+    keys.set_last_frame(session, 24)
+    exporting.set_export(session, ExportSettings(format="spritesheet", size=SIZE))
+    window.act(exporting.start_at, tmp_path / "walk.png")
+    window.until(lambda: (tmp_path / "walk.json").exists() and session.export is None)
+    sheet = (tmp_path / "walk.png").read_bytes()
+    choose("apng")
+    window.show_tab("Export")
+    window.run(lambda robot: robot.item_click("//Export/**/###start"))
+    window.settle()
+    assert (tmp_path / "walk.png").read_bytes() == sheet
+    assert session.dialog.title == "Replace the file?"
+
+
+def test_the_status_bar_tells_how_far_an_export_is_whatever_tab_is_in_front(
+    window, bent, tmp_path, monkeypatch
+):
+    session, written = window.session, []
+    draw = imgui.text_unformatted
+    monkeypatch.setattr(imgui, "text_unformatted", lambda text: (written.append(text), draw(text)))
+    exporting.set_export(session, ExportSettings(size=SIZE))
+    window.show_tab("Handle")
+    window.clock.cost = 0.02
+    try:
+        window.act(exporting.start, tmp_path / "walk frames")
+        window.until(lambda: session.export is not None and session.export.done > 2)
+        total = len(session.export.plan.times)
+        told = [text for text in written if text.startswith("Exporting walk frames: ")]
+        assert told
+        assert all(text.endswith(f" of {total}") for text in told)
+        window.run(lambda robot: robot.item_click("//**/Cancel"))
+    finally:
+        window.clock.cost = 0.0
+    window.frames()
+    assert session.export is None
+    assert any("was cancelled" in toast.text for toast in session.toasts)
+    written.clear()
+    window.frames(2)
+    assert not any("walk frames" in text for text in written)
+    assert bent.exports_to == {"png": tmp_path / "walk frames"}
