@@ -14,7 +14,7 @@ from engine.arrays import Complexes, Floats, Indices, Integers
 from engine.domain.build import Domain
 from engine.geometry import ON_OUTLINE, box_diagonal, loop_ends
 
-FARTHEST = 2.0  # sizes of a triangle beyond it, that it tells of
+FARTHEST = 8.0  # sizes of a triangle beyond it, that it tells of
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -62,18 +62,22 @@ def _on_sides(domain: Domain, corners: Complexes, shifts: Complexes) -> tuple[In
         np.split(shifts, np.cumsum([len(loop) for loop in domain.loops])[:-1])
     )
     sides = np.flatnonzero((shifts != 0) | (shifts_at_ends != 0))
-    others = domain.mesh.vertices[len(corners) :]
     tolerance = ON_OUTLINE * box_diagonal(domain.outline)
-    found: list[Indices] = []
-    moves: list[Complexes] = []
+    vertices = domain.mesh.vertices
+    # In order of x, so that only few have to be looked at for each side.
+    by_x = len(corners) + np.argsort(vertices.real[len(corners) :])
+    x = vertices.real[by_x]
+    found, moves = [np.empty(0, dtype=np.intp)], [np.empty(0, dtype=np.complex128)]
     for side in sides:
-        along = ends[side] - corners[side]
-        share = (others - corners[side]) / along
+        start, along = corners[side], ends[side] - corners[side]
+        reach = sorted((start.real, ends[side].real))
+        first, last = np.searchsorted(x, [reach[0] - tolerance, reach[1] + tolerance])
+        share = (vertices[by_x[first:last]] - start) / along
         near = np.abs(share.imag) * abs(along) <= tolerance
-        inner = np.flatnonzero(near & (share.real > 0) & (share.real < 1))
-        found.append(inner + len(corners))
+        near &= (share.real > 0) & (share.real < 1)
+        found.append(by_x[first:last][near])
         move = shifts_at_ends[side] - shifts[side]
-        moves.append(shifts[side] + share.real[inner] * move)
+        moves.append(shifts[side] + share.real[near] * move)
     return np.concatenate(found), np.concatenate(moves)
 
 
@@ -90,8 +94,10 @@ def _beside(domain: Domain, moved: Indices, places: Complexes) -> Seam:
     chosen = order[np.flatnonzero(np.diff(index[order], prepend=-1))]
     corners, weights = around[chosen], weights[chosen]
     # Meshes have corners where triangles are far smaller than a slit: a larger one nearby is taken.
-    middles, areas = vertices[triangles].mean(axis=1), domain.mesh.areas()
-    for row in np.flatnonzero(weights.min(axis=1) < -FARTHEST):
+    tiny = np.flatnonzero(weights.min(axis=1) < -FARTHEST)
+    middles = vertices[triangles].mean(axis=1) if len(tiny) else vertices
+    areas = domain.mesh.areas() if len(tiny) else np.empty(0)
+    for row in tiny:
         far = np.abs(middles - vertices[moved[row]])
         far[areas < np.abs(places[row] - vertices[moved[row]]) ** 2 / 4] = np.inf
         corners[row] = triangles[int(far.argmin())]
