@@ -1,5 +1,6 @@
 """Small files take little memory, and large ones no more than what is in them and a share."""
 
+import json
 import subprocess
 import sys
 import tracemalloc
@@ -99,9 +100,9 @@ def test_a_quarter_of_the_machine_is_usual(budget, monkeypatch):
     assert cores._budget() == 10_240_000
 
 
-@pytest.mark.parametrize("kind", ["png", "ora", "jpg", "deep.png"])
+@pytest.mark.parametrize("kind", ["png", "ora", "jpg", "deep.png", "scene.ora"])
 def test_opening_takes_little_beyond_what_is_decoded(tmp_path, kind):
-    side, count = (4_000, 3) if kind == "ora" else (5_000, 1)
+    side, count = (4_000, 3) if kind.endswith("ora") else (5_000, 1)
     drawn = Image.new("RGBA", (side, side))
     drawn.paste((200, 60, 30, 255), (side // 4, side // 4, 3 * side // 4, 3 * side // 4))
     path = tmp_path / f"a.{kind}"
@@ -116,12 +117,18 @@ def test_opening_takes_little_beyond_what_is_decoded(tmp_path, kind):
         path.write_bytes(openraster((side, side), stack, [drawn] * count))
     words = ["domain", path, "--out", tmp_path / "out", "--triangles", "1000"]
     words += ["--layer", "0"] if kind == "ora" else []
+    if kind == "scene.ora":
+        script = tmp_path / "script.json"
+        keys = [{"frame": 0}]
+        figure = {"layer": "0", "handles": {}, "keys": keys}
+        script.write_text(json.dumps({"schema": 1, "figures": [figure]}))
+        words[:2] = ["pose", path, script]
     told = subprocess.run(
         [sys.executable, "-c", RUN, *map(str, words)], capture_output=True, text=True, check=True
     ).stdout
     decoded = 4 * side * side * count
     # While some are decoded they are there twice; masks take four bytes a pixel.
-    most = 1.1 if kind in {"png", "ora"} else 1.6
+    most = {"png": 1.1, "ora": 1.1, "scene.ora": 2.6}.get(kind, 1.6)
     assert int(told.split()[-1]) <= BASE + decoded + most * 4 * side * side
 
 
