@@ -162,8 +162,7 @@ def _interval_report(
     limits = bound
     if transit.is_joined:
         bounds = figure.bounds
-        own = Extremes(bounds.k, bounds.sigma_a, bounds.sigma_b)
-        limits = reduce(Extremes.joined, ends, own)
+        limits = reduce(Extremes.joined, ends, Extremes(bounds.k, bounds.sigma_a, bounds.sigma_b))
     inbetweens = (
         animation.sampler.inbetweens(start.pose, start.pose, animation.variant)
         if held

@@ -37,6 +37,7 @@ from engine.errors import EngineError
 READERS = {".ora": read_openraster, ".psd": read_photoshop}
 # However many layers share the triangles, each gets so many.
 FEWEST_TRIANGLES = 4_000
+LARGEST_FLAT = 1_024  # pixels: from twice as many on layers are made smaller before they are laid
 WHOLE = CutOut(background="none")  # only what is transparent is left out
 
 
@@ -88,7 +89,7 @@ def open_pictures(paths: Sequence[Path], meshing: Meshing) -> OpenedScene:
 
 
 def flattened(document: Document, textures: Mapping[int, Bytes]) -> Bytes:
-    """Return all layers that are seen at first as one picture, as they were drawn.
+    """Return all layers that are seen at first as one picture, as drawn; a large one is reduced.
 
     Parameters
     ----------
@@ -100,20 +101,28 @@ def flattened(document: Document, textures: Mapping[int, Bytes]) -> Bytes:
     uint8, shape (h, w, 4)
         With straight alpha.
     """
+    factor = max(1, max(document.canvas) // LARGEST_FLAT)
     if len(document.figures) == 1:
-        return textures[document.figures[0].id]
-    flat = Image.new("RGBA", document.canvas)
+        return np.asarray(_reduced(textures[document.figures[0].id], factor))
+    flat = Image.new("RGBA", [-(-side // factor) for side in document.canvas])
     for figure in document.exported:
         if not is_visible(figure, document.frames.first):
             continue
-        layer = Image.fromarray(textures[figure.id])
+        layer = _reduced(textures[figure.id], factor)
         layer.putalpha(layer.getchannel("A").point(lambda a, o=figure.opacity: round(o * a)))
-        corner = figure.corner
+        corner = figure.corner / factor
         place = round(corner.real), round(flat.height - corner.imag - layer.height)
         moved = Image.new("RGBA", flat.size)
         moved.paste(layer, place)
         flat = Image.alpha_composite(flat, moved)
     return readonly(np.asarray(flat))
+
+
+def _reduced(rgba: Bytes, factor: int) -> Image.Image:
+    """Return a picture with so many of its pixels each way in one."""
+    # Some rows at a time: all of it would be there twice.
+    rows = (rgba[top : top + factor] for top in range(0, len(rgba), factor))
+    return Image.fromarray(np.concatenate([Image.fromarray(row).reduce(factor) for row in rows]))
 
 
 def layer_figure(
@@ -187,6 +196,7 @@ def _scene(drawing: LayeredPicture, meshing: Meshing, *, is_cut_out: bool) -> Op
     made = side_by_side(
         lambda numbered: layer_figure(numbered[1], numbered[0], each, is_cut_out=is_cut_out),
         enumerate(drawing.layers),
+        (layer.picture.size for layer in drawing.layers),
     )
     figures = tuple(figure for figure, _ in made)
     if all(figure.still for figure in figures):

@@ -74,7 +74,7 @@ def full_disks(rng: np.random.Generator, count: int) -> dict[str, float]:
     document = load_project(sample_images() / LAYERED)
     works = {"project": 0.4, "unsaved work": 0.3, "preferences": 0.1, "export": 0.2}
     kinds = rng.choice(list(works), count, p=list(works.values()))
-    for kind in kinds:
+    for kind in timed(kinds):
         with tempfile.TemporaryDirectory() as name:
             if kind == "export":
                 _full_export(rng, Path(name))

@@ -32,6 +32,7 @@ from app.storage.assets import sample_images
 from app.storage.autosave import find_leftovers, load_leftover
 from app.storage.files.atomic import PART, atomic_file, clear_abandoned
 from app.storage.project_file import load_project, save_project
+from tests.campaigns.slowest import note
 
 LAYERED = "friend.lissom"
 FRIEND = sample_images() / LAYERED
@@ -71,6 +72,7 @@ class Victim:
 
     def __init__(self, work: Callable[[Callable[[int, float], None]], int | None]) -> None:
         ours, theirs = os.pipe()
+        self._begun = time.perf_counter()
         self._process = os.fork()
         if self._process == 0:
             status = 3
@@ -92,6 +94,7 @@ class Victim:
         """Kill it, or ask it to end; return whether that ended it, and all else that it told."""
         os.kill(self._process, number)
         status = os.waitstatus_to_exitcode(os.waitpid(self._process, 0)[1])
+        note(signal.Signals(number).name, time.perf_counter() - self._begun)
         killed = -number if number == signal.SIGKILL else 128 + number
         expect(status in (0, killed), f"it ended by itself, with {status}")
         with os.fdopen(self._told, "rb") as told:

@@ -20,6 +20,7 @@ from engine.deform.steering import rigidly_aligned
 from engine.domain import build_domain
 from engine.geometry import contains
 from engine.maps import Boundary, Bounds, certify
+from tests.campaigns.slowest import timed
 
 DRAWINGS = ("character", "giraffe", "dragon", "s", "bar", "ring")
 BOUNDS = (
@@ -47,7 +48,7 @@ class Request(NamedTuple):
 def campaign(seed: int, amount: int) -> Iterator[tuple[str, dict[str, float]]]:
     """Solve so many requests, hard and easy in turns, and yield what was found of each sort."""
     found: dict[str, list[tuple[float, int, int]]] = {}
-    for number, request in enumerate(requests(seed, amount)):
+    for number, request in enumerate(timed(requests(seed, amount))):
         deformer, wish = request.deformer, request.deformer.handles.wish(request.targets)
         state, tried = deformer.settle(deformer.start(), wish)
         assert state.status in (Status.CONVERGED, Status.AT_LIMITS, Status.UNFINISHED)

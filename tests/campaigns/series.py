@@ -9,6 +9,7 @@ from collections.abc import Iterator
 from settled_poses import SHAPES, series_of
 
 from engine.variant import Variant
+from tests.campaigns.slowest import timed
 
 FIRST = 1000  # seeds below are those of the tests
 TOLD_EVERY = 20  # pairs of poses
@@ -18,7 +19,7 @@ def campaign(seed: int, amount: int) -> Iterator[tuple[str, dict[str, float]]]:
     """Build the series of so many pairs of poses in all variants, and yield the worst of them."""
     names = sorted(SHAPES)
     least, most, over, failures = 1.0, 0.0, 0.0, 0
-    for number in range(amount):
+    for number in timed(range(amount)):
         name, pose = names[number % len(names)], FIRST * seed + number
         for variant in Variant:
             covered, missed, stated = series_of(name, pose, variant)

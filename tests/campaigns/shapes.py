@@ -21,6 +21,7 @@ from engine.errors import EngineError
 from engine.interpolation import prepare
 from engine.maps import Boundary, Bounds, HarmonicMap
 from engine.variant import Variant
+from tests.campaigns.slowest import timed
 
 CANVAS = 160
 TRIANGLES = 1500
@@ -59,7 +60,7 @@ def campaign(seed: int, amount: int) -> Iterator[tuple[str, dict[str, float]]]:
     for name, (make, share, extremes) in KINDS.items():
         count = max(1, round(share * amount))
         total: dict[str, float] = {}
-        for number in range(count):
+        for number in timed(range(count)):
             try:
                 figures = shape_figures(seed, name, make, number, extremes)
             except Exception as error:  # noqa: BLE001 - told below

@@ -13,7 +13,7 @@ def timed(inputs: Iterable[T]) -> Iterator[T]:
     for each in inputs:
         begun = time.perf_counter()
         yield each
-        note(str(each), time.perf_counter() - begun)
+        note(str(getattr(each, "name", each)), time.perf_counter() - begun)
 
 
 def note(name: str, seconds: float) -> None:

@@ -248,6 +248,7 @@ def _puppets(document: Document, pictures: Mapping[int, Picture]) -> dict[int, P
             clip_of(document, identity), pictures[identity], among=len(document.figures)
         ),
         pictures,
+        (picture.size for picture in pictures.values()),
     )
     return dict(zip(pictures, made, strict=True))
 

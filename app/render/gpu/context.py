@@ -61,8 +61,6 @@ def create_context(backend: Backend | None = None) -> moderngl.Context:
     ------
     LissomError
         If none works; the message says what to install.
-    MemoryError
-        If the system lets this process have too little to draw.
     """
     _require_memory()
     wanted = (backend,) if backend else AUTOMATIC
@@ -82,8 +80,6 @@ def window_context() -> moderngl.Context:
     ------
     LissomError
         If it cannot draw what Lissom draws; the message says what to install.
-    MemoryError
-        If the system lets this process have too little to draw.
     """
     _require_memory()
     try:

@@ -45,11 +45,14 @@ def _budget() -> int:
         return int(SHARE * USUAL)
 
 
-def side_by_side(work: Callable[[In], Out], items: Iterable[In]) -> list[Out]:
+def side_by_side(
+    work: Callable[[In], Out], items: Iterable[In], sizes: Iterable[tuple[int, int]]
+) -> list[Out]:
     """Return what a function makes of items, in their order; of its errors the first is raised.
 
     Decoders and most of NumPy let other threads go on, so that these are as many as there are
-    cores.
+    cores, unless a picture of these widths and heights is large.
     """
-    with ThreadPoolExecutor(min(MOST_WORKERS, os.cpu_count() or 1)) as pool:
+    is_large = any(PIXEL * width * height > LARGE for width, height in sizes)
+    with ThreadPoolExecutor(1 if is_large else min(MOST_WORKERS, os.cpu_count() or 1)) as pool:
         return list(pool.map(work, items))

@@ -15,7 +15,7 @@ from PIL import Image, ImageFile, ImageOps, UnidentifiedImageError
 
 from app.errors import LissomError
 from app.storage.pictures.colour import to_srgb
-from app.storage.pictures.cores import LARGE, PIXEL, require_memory, side_by_side
+from app.storage.pictures.cores import require_memory, side_by_side
 from engine.arrays import Booleans, Bytes, Floats, freeze
 from engine.domain import Mask
 
@@ -104,9 +104,7 @@ def decode_pictures(files: Sequence[tuple[bytes, str]]) -> list[Picture]:
     except LissomError as error:
         raise LissomError(f"{files[0][1]} is too large: {error}") from error
     with _only_bombs_told():
-        if any(PIXEL * width * height > LARGE for width, height in sizes):
-            return [_decode(*file) for file in files]
-        return side_by_side(lambda file: _decode(*file), files)
+        return side_by_side(lambda file: _decode(*file), files, sizes)
 
 
 def decode_mask(data: bytes, name: str) -> Mask:
@@ -198,10 +196,7 @@ def _decoded(data: bytes) -> Picture:
 
 
 def _load(file: ImageFile.ImageFile) -> Bytes | None:
-    """Decode a picture; return its pixels (h, w, 4) if they are RGBA, so that they are there once.
-
-    Some decoders have a place of their own for them; None then.
-    """
+    """Decode a picture; return its pixels (h, w, 4) where they are RGBA, and there only once."""
     rgba = place = None
     if file.mode == "RGBA":
         rgba = np.zeros((file.height, file.width, 4), dtype=np.uint8)

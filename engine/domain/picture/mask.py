@@ -107,7 +107,10 @@ def subject_mask(rgba: Bytes, cut_out: CutOut | None = None) -> Subject:
     area = within.area
     return Subject(
         mask=freeze(subject),
-        cut=bool((_of_alpha(rgba, VISIBLE_ALPHA) > subject).any()),
+        cut=any(
+            bool(((row[:, 3] >= VISIBLE_ALPHA) > kept).any())
+            for row, kept in zip(rgba, subject, strict=True)
+        ),
         notices=notices,
         enclosed=None if area is None else freeze(area & (subject == within.subject)),
         opens=within.opens,
@@ -214,6 +217,10 @@ def _without_transparency(rgba: Bytes) -> tuple[Booleans, tuple[str, ...]]:
 
     So are nearly invisible islands: what scaling by a sharp filter leaves around edges.
     """
+    present = _of_alpha(rgba, 1)
+    if np.count_nonzero(present) == np.count_nonzero(_of_alpha(rgba, VISIBLE_ALPHA)):
+        return present, ()
+    del present
     present, visible = _seen_parts(rgba), _of_alpha(rgba, VISIBLE_ALPHA)
     faint = int(np.count_nonzero(present) - np.count_nonzero(visible))
     if np.count_nonzero(present) <= FAINT_GROWTH * np.count_nonzero(visible):
