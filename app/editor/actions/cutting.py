@@ -21,14 +21,15 @@ from app.storage import (
     read_file,
     write_atomically,
 )
-from engine.domain import Mask, Slit, Stroke
-from engine.geometry import distance_to_segments
+from engine.domain import SLIT_WIDTH, Mask, Slit, Stroke
+from engine.geometry import box_diagonal, distance_to_segments
 
 WRITING = Kind("Saving the mask", "The mask was not saved")
 MASKS = (".png",)
 SMALLEST_BRUSH, LARGEST_BRUSH = 1.0, 1000.0  # pixels of the picture
 BRUSH_STEP = 1.25
 FIRST_BRUSH = 0.03  # of the picture's longer side
+BESIDE = 1.25  # widths of a slit: a handle that is nearer to the knife's line may be in it
 DROP = 2  # pixels around the one that is picked whose colour counts
 
 
@@ -112,8 +113,20 @@ def brush(session: Session, stroke: Stroke) -> None:
     editing.edit_figure(session, figure_commands.brush, stroke)
 
 
-def part(session: Session, slit: Slit) -> None:
-    """Part what touches along a line of the knife."""
+@with_project
+def part(session: Session, project: Project, slit: Slit) -> None:
+    """Part what touches along a line of the knife, which may go through no handle."""
+    figure = project.figure
+    width = SLIT_WIDTH * box_diagonal(figure.domain.outline)
+    for handle in figure.handles:
+        place = np.array([handle.position - figure.corner])
+        away = distance_to_segments(place, slit.points[:-1], slit.points[1:]).min()
+        if away < BESIDE * width:
+            session.tell(
+                f"The knife's line goes through {handle.name}. Draw it beside, or move the handle.",
+                tone="error",
+            )
+            return
     editing.edit_figure(session, figure_commands.part, slit)
 
 

@@ -20,7 +20,7 @@ SLIT_WIDTH = 0.002  # of the diagonal of the subject's box
 TREMOR = 0.7  # slit widths: by what a hand trembles is left out
 NEAR_EDGE = 0.02  # of the diagonal: an end that is no farther inside is led out
 BLUNT = 2.0  # mitre limit at the bends of a line
-SAMPLES = 1000  # of a part, which tell how much of it is drawn
+SAMPLES, MOST_SAMPLES = 1_000, 1e6  # of a part and of its box, which tell how much of it is drawn
 SPECK = 2e-4  # of the subject's area: smaller pieces that lines cut off are dropped
 THIN = 1.5  # slit widths: thinner strips beside a line are dropped
 LEAST_STRIP, MOST_STRIP = 0.25, 4.0  # squares of slit widths: of them all, and of the drawing
@@ -97,7 +97,10 @@ def part(
 def _drawn_area(part: shapely.Polygon, mask: Booleans) -> float:
     """Return about how much of a part belongs to the subject, in cells."""
     left, low, right, high = shapely.bounds(part)
-    spacing = float(np.sqrt(part.area / SAMPLES))
+    # Slivers of hardly any area may be long.
+    spacing = float(np.sqrt(max(part.area / SAMPLES, (right - left) * (high - low) / MOST_SAMPLES)))
+    if not spacing:
+        return 0.0
     x, y = np.meshgrid(np.arange(left, right, spacing), np.arange(low, high, spacing))
     inside = shapely.contains_xy(part, x, y)
     columns, rows = x[inside].astype(int), y[inside].astype(int)

@@ -456,6 +456,18 @@ def test_a_line_of_the_knife_is_saved_taken_away_and_refused(window, boots, tmp_
     assert boots.figure.domain.closed is None
 
 
+def test_a_line_of_the_knife_through_a_handle_is_refused_at_once(window, boots):
+    document = boots.document
+    window.act(cutting.take_up, "knife")
+    stroke(window, 30 + 3j, 30 + 60j)
+    assert boots.document is document
+    name = boots.figure.handles[0].name
+    assert any(f"goes through {name}" in toast.text for toast in window.session.toasts)
+    stroke(window, 33 + 3j, 33 + 60j)
+    rest(window)
+    assert boots.figure.domain.closed is not None
+
+
 def test_a_line_of_the_knife_is_shown_while_it_is_drawn_and_can_be_cancelled(window, boots):
     window.act(cutting.take_up, "knife")
     before, document = pixel(window, 60 + 40j), boots.document

@@ -1,6 +1,7 @@
 """The knife: slits along lines, as wide as is said, closed where they are painted."""
 
 import itertools
+import tracemalloc
 
 import numpy as np
 import pictures
@@ -12,7 +13,7 @@ from engine.arrays import Booleans, Complexes
 from engine.domain import CutOut, Domain, Slit, build_domain, find_seam, require_domain
 from engine.domain.meshing.mesh import signed_areas
 from engine.domain.outline import Enclosure, enclose
-from engine.domain.outline.knife import SLIT_WIDTH
+from engine.domain.outline.knife import SLIT_WIDTH, _drawn_area
 from engine.errors import EngineError
 from engine.geometry import as_xy, region
 
@@ -206,3 +207,13 @@ def test_a_line_beside_the_drawing_may_cut_off_some_of_the_margin(beside) -> Non
 def test_lines_that_are_none_are_refused(points, message: str) -> None:
     with pytest.raises(EngineError, match=message):
         Slit(points=np.array(points, dtype=np.complex128))
+
+
+def test_slivers_that_are_long_take_neither_memory_nor_sense() -> None:
+    sliver = shapely.Polygon([(20, 20), (380, 380), (380 + 1e-7, 380), (20 + 1e-7, 20)])
+    tracemalloc.start()
+    area = _drawn_area(sliver, block())
+    _, peak = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    assert area < 1
+    assert peak < 1e8
