@@ -5,7 +5,5 @@ Out: places for handles, and their names.
 Imports: `engine.geometry`, `engine.domain.meshing`.
 """
 
-from engine.domain.limbs.handle_places import (
-    SuggestedHandle as SuggestedHandle,
-    suggest_handles as suggest_handles,
-)
+from engine.domain.limbs.handle_places import suggest_handles as suggest_handles
+from engine.domain.limbs.names import SuggestedHandle as SuggestedHandle

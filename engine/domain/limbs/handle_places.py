@@ -1,12 +1,12 @@
 """Where handles are useful: on the body, at the tips of its limbs, and where these bend."""
 
 from collections.abc import Iterator, Sequence
-from typing import NamedTuple
 
 import numpy as np
 
 from engine.arrays import Complexes, Floats, Indices
 from engine.domain.limbs.medial_axis import medial_axis
+from engine.domain.limbs.names import Limb, SuggestedHandle, named_legs, named_limbs
 from engine.domain.limbs.skeleton import Skeleton
 from engine.geometry import box_diagonal
 
@@ -36,31 +36,6 @@ FORK = 0.5  # parts of the middle's radius: where limbs leave the trunk it is at
 APART = 0.9
 # Parts of the height: feet are so near to the ground.
 GROUND = 0.12
-SIDES = (
-    "right",
-    "upper right",
-    "top",
-    "upper left",
-    "left",
-    "lower left",
-    "bottom",
-    "lower right",
-)
-
-
-class SuggestedHandle(NamedTuple):
-    """A place for a handle, and what is there in words."""
-
-    place: complex
-    name: str
-
-
-class _Limb(NamedTuple):
-    """Where a limb of the body is held."""
-
-    tip: complex
-    joints: list[complex]
-    is_leg: bool
 
 
 def suggest_handles(loops: Sequence[Complexes]) -> list[SuggestedHandle]:
@@ -88,9 +63,9 @@ def suggest_handles(loops: Sequence[Complexes]) -> list[SuggestedHandle]:
     legs = [limb for limb in limbs if limb.is_leg]
     if len(legs) < 2:
         legs = []
-    found += _named_legs(legs)
+    found += named_legs(legs)
     others = [limb for limb in limbs if limb not in legs]
-    found += _named_limbs(others, complex(body.places[body.middle]))
+    found += named_limbs(others, complex(body.places[body.middle]))
     around = body.around_holes([handle.place for handle in found])
     found += [SuggestedHandle(place, f"around {number}") for number, place in enumerate(around, 1)]
     return found
@@ -200,7 +175,7 @@ class _Body:
             found.append(SuggestedHandle(complex(head + CROWN * up), "head"))
         return found
 
-    def limbs(self) -> Iterator[_Limb]:
+    def limbs(self) -> Iterator[Limb]:
         """Yield the limbs."""
         trunk = np.unique([self.middle, *self.trunk])
         taken = list(self.places[self.trunk])
@@ -209,7 +184,7 @@ class _Body:
             if end in self.in_head:
                 # Ears and horns; what is thick is a nose.
                 if self.radii[tip] <= THIN_ON_HEAD * self.radii[self.head]:
-                    yield _Limb(complex(self.places[tip]), [], is_leg=False)
+                    yield Limb(complex(self.places[tip]), [], is_leg=False)
                 continue
             away = np.abs(self.places[path][:, None] - self.places[trunk])
             leaving = int(np.flatnonzero((away <= self.radii[trunk]).any(axis=1))[-1])
@@ -224,7 +199,7 @@ class _Body:
                 if all(abs(at - other) > 1.2 * radius for other in [*taken, place]):
                     joints.append(at)
             taken += [place, *joints]
-            yield _Limb(place, joints, is_leg)
+            yield Limb(place, joints, is_leg)
 
     def _end(self, path: Indices) -> complex:
         """Return where a limb's tip is held; a round end beyond its middle, where a face may be."""
@@ -293,31 +268,3 @@ class _Body:
                 return
             chosen.append(int(ring[away.argmax()]))
             yield complex(self.places[chosen[-1]])
-
-
-def _named_legs(legs: list[_Limb]) -> Iterator[SuggestedHandle]:
-    """Yield the handles of legs: of a left and a right one, or by numbers from the left."""
-    legs = sorted(legs, key=lambda leg: leg.tip.real)
-    names = ["left {}", "right {}"]
-    if len(legs) != 2:
-        names = [f"{{}} {number}" for number in range(1, len(legs) + 1)]
-    for leg, name in zip(legs, names, strict=True):
-        yield from _named(leg, name, "foot", "knee")
-
-
-def _named_limbs(limbs: list[_Limb], middle: complex) -> Iterator[SuggestedHandle]:
-    """Yield the handles of other limbs, named by the side on which their tips are."""
-    counts: dict[str, int] = {}
-    for limb in sorted(limbs, key=lambda limb: -limb.tip.imag):
-        sector = round(float(np.angle(limb.tip - middle)) / (np.pi / 4)) % 8
-        side = SIDES[sector]
-        counts[side] = counts.get(side, 0) + 1
-        number = f" {counts[side]}" if counts[side] > 1 else ""
-        yield from _named(limb, f"{side} {{}}{number}", "tip", "bend")
-
-
-def _named(limb: _Limb, name: str, tip: str, joint: str) -> Iterator[SuggestedHandle]:
-    yield SuggestedHandle(limb.tip, name.format(tip))
-    for letter, place in zip("abc", limb.joints, strict=False):
-        one = joint if len(limb.joints) == 1 else f"{joint} {letter}"
-        yield SuggestedHandle(place, name.format(one))
