@@ -7,8 +7,11 @@ import pytest
 from numpy.testing import assert_allclose
 
 from app.document.queries.fronts import is_visible
+from app.document.queries.shortfall import Extremes
 from app.document.queries.timeline import clip_of, exported_frames
 from app.motion import Animation, Joints, PaintOrder
+from app.motion.interval_store import IntervalStore
+from app.motion.posable_mesh import PosableMesh
 from app.reports.certification import Verdict, certify_clip
 from app.solving.script import load_pose_script
 from app.storage.pictures import read_openraster
@@ -107,6 +110,23 @@ def test_a_sample_begins_and_ends_as_it_was_drawn(name):
         assert_allclose(document.figures[0].map_of(key.pose)(vertices), vertices, rtol=0, atol=1e-2)
     assert exported_frames(document).last == document.frames.last - 1
     assert document.export.framing == "fit"
+
+
+@pytest.mark.parametrize("name", [*NAMES, *LAYERED])
+def test_no_pose_of_a_sample_sits_at_its_limits(name):
+    for figure in load_project(SAMPLES / f"{name}.lissom").figures:
+        uses = (use for pose in figure.poses for use in Extremes.of(pose).uses(figure.bounds))
+        assert max(use.share for use in uses) < 0.9, figure.name
+
+
+def test_no_motion_of_the_friend_is_slowed_down_by_its_limits():
+    document = load_project(SAMPLES / "friend.lissom")
+    for figure in document.figures:
+        if len(figure.keys) > 2:
+            store = IntervalStore(mesh=PosableMesh.coarse(figure.domain))
+            clip = clip_of(document, figure.id)
+            store.take(store.preparing(clip, store.missing(clip, 0))())
+            assert min(store.velocity_shares(clip).values(), default=1.0) > 0.6, figure.name
 
 
 @pytest.mark.parametrize("name", ["character", "giraffe"])

@@ -25,6 +25,7 @@ from app.document.figure import (
 from app.document.handle_pairs import mirrored_name as mirrored_name, pairs_by_name as pairs_by_name
 from app.document.history import History as History, UnkeyedPose as UnkeyedPose
 from app.document.keyframe import (
+    HOLDS as HOLDS,
     MOST_TURNS as MOST_TURNS,
     Handle as Handle,
     KeptPose as KeptPose,

@@ -249,8 +249,8 @@ def _figure_bytes_only_in(old: Figure, new: Figure | None) -> int:
     if new is None or old.cut_out.mask is not new.cut_out.mask:
         size += old.cut_out.nbytes
     elif old.cut_out is not new.cut_out:
-        kept = {id(stroke) for stroke in new.cut_out.strokes}
-        size += sum(s.points.nbytes for s in old.cut_out.strokes if id(s) not in kept)
+        kept = {id(line) for line in new.cut_out.lines}
+        size += sum(line.points.nbytes for line in old.cut_out.lines if id(line) not in kept)
     if new is None or old.domain is not new.domain:
         mesh = old.domain.mesh
         size += sum(loop.nbytes for loop in (*old.domain.loops, *old.domain.cages))

@@ -14,6 +14,8 @@ from engine.arrays import Complexes, as_points, freeze
 from engine.maps import Certificate, HarmonicMap
 
 HEAVIEST = 1e6
+# How firmly a handle holds, in words: the weights that they stand for.
+HOLDS = {"Soft": 0.1, "Normal": 1.0, "Firm": 10.0}
 # A locked handle pulls so many times as strongly: a free one that is dragged as far as the limits
 # let it moves it by less than a tenth of a pixel.
 LOCK = 1e4

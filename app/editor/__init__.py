@@ -26,6 +26,7 @@ from app.editor.session import (
     HeatMap as HeatMap,
     Hint as Hint,
     JointMark as JointMark,
+    KnifeMark as KnifeMark,
     Mark as Mark,
     Overlays as Overlays,
     Session as Session,

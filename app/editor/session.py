@@ -20,7 +20,7 @@ from engine.arrays import Bytes
 
 HeatMap = Literal["none", "k", "sigma_a", "sigma_b"]
 CurveKind = Literal["relative", "absolute"]
-CutTool = Literal["keep", "remove", "pick", "holes"]
+CutTool = Literal["keep", "remove", "knife", "pick", "holes"]
 Tone = Literal["info", "good", "error"]
 P = ParamSpec("P")
 
@@ -98,6 +98,13 @@ class StrokeMark:
     keeps: bool
 
 
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class KnifeMark:
+    """A line of the knife, in the plane, that is not done yet."""
+
+    points: tuple[complex, ...]
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class JointMark:
     """The way from an anchor to the pointer, and the layer there, which may be refused."""
@@ -108,7 +115,7 @@ class JointMark:
     is_refused: bool
 
 
-Mark = BoxMark | SweepMark | EntryMark | StrokeMark | JointMark
+Mark = BoxMark | SweepMark | EntryMark | StrokeMark | KnifeMark | JointMark
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -125,7 +132,7 @@ class Hint:
 
     how: str
     what: str
-    key: Literal["", "ctrl", "shift", "alt"] = ""
+    key: Literal["", "ctrl", "shift", "alt", "ctrl+shift"] = ""
 
 
 class ToolInHand(Protocol):
@@ -197,6 +204,7 @@ class Session:
     last_split: Split = Split(method=Variant.LINEAR)  # as it was when it was put away
     pointer: ToolInHand | None = None
     cutting: CutTool | None = None  # what is in hand that cuts out; None poses
+    moves: bool = False  # whether a drag, or an arrow, moves the whole figure
     snaps: bool = False  # whether what the pointer does goes in steps
     insists: bool = False  # whether what it pulls beyond its reach is wanted there all the same
     # Whether the timeline has the pointer, or else the focus: what is chosen there is meant.

@@ -1,7 +1,7 @@
 """A figure as other programs play it: a light textured mesh, and few shapes that it blends."""
 
 import math
-from collections.abc import Generator, Mapping
+from collections.abc import Callable, Generator, Mapping
 from dataclasses import dataclass, replace
 from typing import Final, TypeVar
 
@@ -14,6 +14,7 @@ from app.export.plan import ExportPlan
 from app.export.poses import Poses
 from app.motion import PaintOrder, box_around
 from engine.arrays import Bytes, Complexes, Floats, Integers, freeze
+from engine.domain import Seam, find_seam
 from engine.domain.meshing import in_order_of, triangulate
 from engine.streaming import ShapeTargets, build_targets
 
@@ -107,15 +108,17 @@ def moving_shapes(
     found = []
     for index, clip in enumerate(clips):
         figure, mesh = clip.figure, clip.figure.domain.mesh
+        seam = find_seam(figure.domain)
+        places = mesh.vertices if seam is None else seam.closed(mesh.vertices)
         steps = build_targets(
-            poses[figure.id].positions,
-            mesh.vertices,
+            _painted(seam, poses[figure.id]),
+            places,
             times,
             tolerance=DEFAULT_TOLERANCE if tolerance is None else tolerance,
             most=MOST_TARGETS if tolerance is None else None,
         )
         motion = yield from _share(steps, plan.span, (index, len(clips)))
-        texture, uv = _cut_out(pictures[figure.id], mesh.vertices - figure.corner)
+        texture, uv = _cut_out(pictures[figure.id], places - figure.corner)
         order = PaintOrder(mesh)
         orders = [(frame, order.triangles(clip, frame)) for frame in numbers]
         sights = [(frame, is_visible(figure, frame)) for frame in numbers]
@@ -130,6 +133,13 @@ def moving_shapes(
         )
         found.append(shape)
     return found
+
+
+def _painted(seam: Seam | None, poses: Poses) -> Callable[[float], Complexes]:
+    """Return where vertices are painted at a time: with slits closed."""
+    if seam is None:
+        return poses.positions
+    return lambda frame: seam.closed(poses.positions(frame))
 
 
 def _changes(values: list[tuple[int, Value]]) -> list[tuple[int, Value]]:

@@ -28,6 +28,7 @@ from app.render.gpu import (
 )
 from app.storage import Cancellation
 from engine.arrays import Bytes
+from engine.domain import find_seam
 from engine.domain.meshing import Mesh
 
 _SMALL: Final = 0.75  # pixels of the frame per pixel of the picture
@@ -117,7 +118,10 @@ class Painter:
                 rest = mesh.vertices - figure.corner
                 texture = GpuPicture(context, pictures[figure.id])
                 owned.callback(texture.release)
-                gpu_mesh = GpuMesh(programs, texture, rest=rest, triangles=mesh.triangles)
+                seam = find_seam(figure.domain)
+                gpu_mesh = GpuMesh(
+                    programs, texture, rest=rest, triangles=mesh.triangles, seam=seam
+                )
                 owned.callback(gpu_mesh.release)
                 self._drawn.append(DrawnMesh(gpu_mesh, by_shader=False))
                 owned.callback(self._drawn[-1].release)

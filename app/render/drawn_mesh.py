@@ -53,11 +53,14 @@ class DrawnMesh:
     def _positioned(self, vertices: Vertices) -> PosedMesh:
         if isinstance(vertices, Streamed) and self._by_shader and _fits(vertices.series):
             if self._series is None or self._series_pose is None:
-                self._series = SeriesBuffer(self._context, self._mesh.count, MOST_ROWS)
+                self._series = SeriesBuffer(
+                    self._context, self._mesh.count, MOST_ROWS, seam=self._mesh.seam
+                )
                 self._series_pose = PosedMesh(self._mesh, self._series)
             self._series.place(vertices.series, vertices.time)
             return self._series_pose
-        self._written.write(singles(vertices.positions))
+        seam, positions = self._mesh.seam, vertices.positions
+        self._written.write(singles(positions if seam is None else seam.closed(positions)))
         return self._pose
 
 

@@ -19,15 +19,21 @@ from engine.domain.limbs import (
     SuggestedHandle as SuggestedHandle,
     suggest_handles as suggest_handles,
 )
-from engine.domain.outline import HoleMap as HoleMap, find_holes as find_holes
+from engine.domain.outline import (
+    SLIT_WIDTH as SLIT_WIDTH,
+    HoleMap as HoleMap,
+    find_holes as find_holes,
+)
 from engine.domain.picture import (
     MOST_STROKE_POINTS as MOST_STROKE_POINTS,
     CutOut as CutOut,
     Mask as Mask,
+    Slit as Slit,
     Stroke as Stroke,
     Subject as Subject,
     subject_mask as subject_mask,
 )
+from engine.domain.seam import Seam as Seam, find_seam as find_seam
 from engine.domain.validity import (
     MOST_MESH_TRIANGLES as MOST_MESH_TRIANGLES,
     require_domain as require_domain,

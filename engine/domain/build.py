@@ -32,18 +32,28 @@ class Domain:
     holes : tuple of Hole
         Whose outlines are the rest of the domain's boundary, and whose cages carry coordinates of
         their own.
+    closed : complex128, shape (m,), optional
+        Where the vertices of the `loops`, one loop after the other, are painted: those on both
+        sides of a slit meet in its middle. None where there is no slit.
     """
 
     outline: Complexes
     cage: Complexes
     mesh: Mesh
     holes: tuple[Hole, ...] = ()
+    closed: Complexes | None = None
 
     def moved(self, by: complex) -> "Domain":
         """Return the domain elsewhere in the plane."""
         mesh = Mesh(vertices=self.mesh.vertices + by, triangles=self.mesh.triangles)
         holes = tuple(hole.moved(by) for hole in self.holes)
-        return Domain(outline=self.outline + by, cage=self.cage + by, mesh=mesh, holes=holes)
+        return Domain(
+            outline=self.outline + by,
+            cage=self.cage + by,
+            mesh=mesh,
+            holes=holes,
+            closed=None if self.closed is None else self.closed + by,
+        )
 
     def contains(self, points: Complexes) -> Booleans:
         """Tell for each point (p,) whether it lies in the domain."""
@@ -113,13 +123,20 @@ def build_domain(
         )
     cut_out = cut_out or CutOut()
     subject = subject_mask(rgba, cut_out)
-    enclosure = enclose(subject.mask, detail=detail, holes=cut_out.holes, swapped=subject.swapped)
+    enclosure = enclose(
+        subject.mask,
+        detail=detail,
+        holes=cut_out.holes,
+        swapped=subject.swapped,
+        slits=[slit.points for slit in cut_out.slits],
+    )
     loops = [hole.outline for hole in enclosure.holes]
     domain = Domain(
         outline=enclosure.outline,
         cage=enclosure.cage,
         mesh=mesh_inside(enclosure.outline, *loops, triangles=triangles),
         holes=enclosure.holes,
+        closed=enclosure.closed,
     )
     return domain, subject.notices + enclosure.notices
 

@@ -24,6 +24,8 @@ OUTERMOST = 1e7
 # Of the diagonal: how near a vertex of the cage may come. Samples of the outline are graded towards
 # it, so that this bounds their number; a built cage keeps 300 times that distance.
 NEAREST = 1e-6
+# Of the diagonal: how far from its vertices the outline is painted; a built one is within .0022.
+FARTHEST_CLOSED = 0.01
 # Of the outline's area.
 SAME_AREA = 1e-9
 
@@ -54,6 +56,13 @@ def require_domain(domain: Domain) -> None:
     room = distance_to_boundary(domain.outline, np.concatenate(domain.cages), domain.loops[1:])
     if room.min() < NEAREST * box_diagonal(domain.outline):
         raise EngineError("The cage comes too near the outline; it must keep a distance.")
+    if domain.closed is not None:
+        corners = np.concatenate(domain.loops)
+        away = np.inf
+        if len(domain.closed) == len(corners):
+            away = float(np.abs(domain.closed - corners).max())
+        if not away <= FARTHEST_CLOSED * box_diagonal(domain.outline):
+            raise EngineError("The slits are not closed beside the outline's own vertices.")
     _require_near(domain.mesh.vertices, "mesh")
     _require_tiling(domain)
 

@@ -180,10 +180,11 @@ class _Segments:
 def _bisect(
     boundary: Boundary, coefficients: Complexes, segments: _Segments, limits: Limits
 ) -> tuple[Certificate, Indices, Enclosures]:
+    # Where it is the same for all samples one column will do, at less cost.
     at = limits.at(boundary)
-    limit = np.empty((3, len(boundary.points)))
-    limit[0], limit[1], limit[2] = at.k, at.sigma_a, np.negative(at.sigma_b)
-    limit = np.maximum(limit, limit[:, boundary.following])
+    limit = np.atleast_2d(np.array([at.k, at.sigma_a, np.negative(at.sigma_b)]).T).T
+    if limit.shape[1] > 1:
+        limit = np.maximum(limit, limit[:, boundary.following])
     attained, proven = np.full((2, 3), -inf)
     kept = np.ones(3, dtype=bool)
     turned, bisected, shorter = np.zeros(len(boundary.points)), 0, 1
@@ -191,7 +192,8 @@ def _bisect(
     worst, clear, delta = _enclose(segments)
     enclosures = Enclosures(worst[0], worst[1], -worst[2])
     while True:
-        distortions, its = _distortions(*np.abs(segments.ends[1:, 0])), limit[:, segments.origins]
+        distortions = _distortions(*np.abs(segments.ends[1:, 0]))
+        its = limit[:, segments.origins] if limit.shape[1] > 1 else limit
         attained = _largest(attained, distortions)
         kept &= (distortions <= its).all(axis=1)
         # How good enclosures must be. As long as a limit is kept at all points seen, they must try

@@ -14,23 +14,30 @@ from app.document.model import Document
 from app.document.settings import FrameRange, Meshing
 from engine.arrays import Bytes, Complexes
 from engine.domain.build import build_domain
+from engine.domain.picture.cut_out import CutOut, Slit
 
 BLOB = soft_blob()  # 120 × 90 pixels, soft edges, bright colours hidden where it is transparent
 
+# A knife's line from below into its middle.
+PARTED = CutOut(slits=(Slit(points=np.array([60.0, 61 + 50j])),))
 
-def still_document(picture: Bytes = BLOB, *, triangles: int = 1_000) -> Document:
+
+def still_document(
+    picture: Bytes = BLOB, *, triangles: int = 1_000, cut_out: CutOut | None = None
+) -> Document:
     """A document of a picture as it was opened, with frames 0 to 48."""
     height, width, _ = picture.shape
     stream = io.BytesIO()
     Image.fromarray(picture).save(stream, "PNG")
     file = PictureFile(data=stream.getvalue(), suffix=".png", size=(width, height))
-    domain, _ = build_domain(picture, triangles=triangles, detail="normal")
-    return Document(figures=(new_figure(file, domain, Meshing(triangles=triangles)),))
+    domain, _ = build_domain(picture, triangles=triangles, detail="normal", cut_out=cut_out)
+    figure = new_figure(file, domain, Meshing(triangles=triangles), cut_out or CutOut())
+    return Document(figures=(figure,))
 
 
-def moving_document(last: int = 6) -> Document:
+def moving_document(last: int = 6, cut_out: CutOut | None = None) -> Document:
     """The blob as it was drawn in frame 0, turned and bent in the last frame."""
-    document = still_document()
+    document = still_document(cut_out=cut_out)
     cage, first = document.figures[0].domain.cage, document.figures[0].keys[0]
     middle = cage.mean()
     z = cage - middle

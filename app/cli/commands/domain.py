@@ -21,7 +21,7 @@ from app.storage import (
     write_arrays,
     write_atomically,
 )
-from engine.domain import build_domain, texture_coordinates
+from engine.domain import Slit, build_domain, texture_coordinates
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -33,6 +33,9 @@ def run(arguments: argparse.Namespace) -> int:
     if is_layered(arguments.picture) and cut_out.background == "auto":
         # What is drawn on a layer is all that it shows, as in a scene.
         cut_out = replace(cut_out, background="none")
+    height = picture.size[1]
+    slits = (np.array([complex(z.real, height - z.imag) for z in line]) for line in arguments.knife)
+    cut_out = replace(cut_out, slits=tuple(Slit(points=points) for points in slits))
     domain, remedies = build_domain(
         picture.rgba, triangles=arguments.triangles, detail=arguments.detail, cut_out=cut_out
     )
@@ -55,6 +58,7 @@ def run(arguments: argparse.Namespace) -> int:
             "uv": coordinates,
             "image_size": np.array(picture.size),
             "corner": np.array(corner),
+            "closed": np.concatenate(domain.loops) if domain.closed is None else domain.closed,
         },
     )
     kept = f", {len(holes)} {'hole' if len(holes) == 1 else 'holes'}" if holes else ""

@@ -1,6 +1,7 @@
 """What is said to `lissom domain`."""
 
 import argparse
+from math import isfinite
 
 from app.cli.options import add_cut_out_options, add_meshing_options, add_out, input_file, output
 
@@ -10,7 +11,8 @@ OpenRaster (.ora) or Photoshop (.psd) drawing that --layer names. Transparent pi
 from an opaque picture, other than a layer, a plain background is removed. Whatever else had to be
 done (parts bridged, holes filled, specks dropped) is told on standard error. Holes stay holes, the
 largest first, if a disc fits into them that is as wide as 2.4 % of the drawing's diagonal; with
---holes fill none does.
+--holes fill none does. A knife parts what touches, boots or a tail over a flank, by a slit along a
+line: of 0.2 % of the drawing's diagonal, from an edge to a place inside.
 
 DOMAIN.npz holds, in pixels of the picture, or of the whole canvas where it is a layer of one, with
 the origin at the lower left corner and y up:
@@ -21,6 +23,8 @@ the origin at the lower left corner and y up:
   uv          (v, 2)  float64     u right, v up; [0, 1] spans the picture
   image_size  (2,)    int64       width, height
   corner      ()      complex128  where the picture's lower left corner is: 0, or a layer's own
+  closed      (m,)    complex128  where the vertices of outline and holes are painted: the sides of
+                                  slits meet; the outline's own where nothing was parted
 and of the holes that are kept, all empty where there are none:
   hole_outlines       (a,)  complex128  clockwise, one hole after the other
   hole_cages          (b,)  complex128  the cage in each hole, clockwise
@@ -34,6 +38,7 @@ examples:
   lissom domain cup.png --out cup.npz --holes fill
   lissom domain donut.jpg --out donut.npz --enclosed remove
   lissom domain friend.ora --layer "left arm" --out arm.npz
+  lissom domain boots.png --out boots.npz --knife 450,1060,450,540
   lissom domain photo.jpg --out photo.npz --background "#8fb0d0" --tolerance 40
 """
 
@@ -50,8 +55,30 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_meshing_options(parser)
     add_cut_out_options(parser)
     parser.add_argument(
+        "--knife",
+        metavar="X,Y,X,Y,...",
+        type=_line,
+        action="append",
+        default=[],
+        help="part what touches along a line from outside to a place inside, in pixels of the "
+        "picture from its upper left corner, y down; may be given several times",
+    )
+    parser.add_argument(
         "--preview",
         metavar="PREVIEW.png",
         type=output,
         help="also draw picture, outline, cage and mesh",
     )
+
+
+def _line(text: str) -> tuple[complex, ...]:
+    """Return the places of a polyline, as they are said: x to the right and y down, in turn."""
+    try:
+        numbers = [float(number) for number in text.split(",")]
+    except ValueError:
+        numbers = []
+    if len(numbers) < 4 or len(numbers) % 2 or not all(map(isfinite, numbers)):
+        raise argparse.ArgumentTypeError(
+            f"expected x,y,x,y,... of at least two places in pixels, not {text!r}"
+        )
+    return tuple(map(complex, numbers[::2], numbers[1::2]))

@@ -7,7 +7,7 @@ from app.document.commands.command import figure_command
 from app.document.figure import Figure
 from app.document.keyframe import Pose
 from app.document.settings import Meshing
-from engine.domain import CutOut, Domain, Stroke
+from engine.domain import CutOut, Domain, Slit, Stroke
 from engine.maps import Bounds
 from engine.variant import Variant
 
@@ -44,6 +44,13 @@ def brush(figure: Figure, stroke: Stroke) -> Figure:
     """Keep or remove a part of the picture; the domain stays until it is replaced."""
     strokes = (*figure.cut_out.strokes, stroke)
     return replace(figure, cut_out=replace(figure.cut_out, strokes=strokes), is_stale=True)
+
+
+@figure_command("Cut by the knife")
+def part(figure: Figure, slit: Slit) -> Figure:
+    """Part what touches along a line; the domain stays until it is replaced."""
+    slits = (*figure.cut_out.slits, slit)
+    return replace(figure, cut_out=replace(figure.cut_out, slits=slits), is_stale=True)
 
 
 @figure_command("Change cut-out")

@@ -38,11 +38,14 @@ class Transit:
         """Whether it depends on other keys than the two."""
         return len(self.keys) > 2
 
+    @property
+    def is_even(self) -> bool:
+        """Whether it goes straight from key to key, as quickly as the easing says."""
+        return self.start == self.end == 1.0
+
     def weight(self, share: float) -> float:
         """Return which share of the way is done after a share of the interval's time."""
-        if isinstance(self.start, Joint) or isinstance(self.end, Joint):
-            return share
-        if self.start == self.end == 1.0:
+        if self.is_even or isinstance(self.start, Joint) or isinstance(self.end, Joint):
             return share
         # The cubic from 0 to 1 with these slopes at its ends.
         rest = 1.0 - share

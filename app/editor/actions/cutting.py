@@ -1,4 +1,4 @@
-"""Cutting the subject out of its picture by hand: colour, brush, mask and holes."""
+"""Cutting the subject out of its picture by hand: colour, brush, knife, mask and holes."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -21,13 +21,15 @@ from app.storage import (
     read_file,
     write_atomically,
 )
-from engine.domain import Mask, Stroke
+from engine.domain import SLIT_WIDTH, Mask, Slit, Stroke
+from engine.geometry import box_diagonal, distance_to_segments
 
 WRITING = Kind("Saving the mask", "The mask was not saved")
 MASKS = (".png",)
 SMALLEST_BRUSH, LARGEST_BRUSH = 1.0, 1000.0  # pixels of the picture
 BRUSH_STEP = 1.25
 FIRST_BRUSH = 0.03  # of the picture's longer side
+BESIDE = 1.25  # widths of a slit: a handle that is nearer to the knife's line may be in it
 DROP = 2  # pixels around the one that is picked whose colour counts
 
 
@@ -112,6 +114,36 @@ def brush(session: Session, stroke: Stroke) -> None:
 
 
 @with_project
+def part(session: Session, project: Project, slit: Slit) -> None:
+    """Part what touches along a line of the knife, which may go through no handle."""
+    figure = project.figure
+    width = SLIT_WIDTH * box_diagonal(figure.domain.outline)
+    for handle in figure.handles:
+        place = np.array([handle.position - figure.corner])
+        away = distance_to_segments(place, slit.points[:-1], slit.points[1:]).min()
+        if away < BESIDE * width:
+            session.tell(
+                f"The knife's line goes through {handle.name}. Draw it beside, or move the handle.",
+                tone="error",
+            )
+            return
+    editing.edit_figure(session, figure_commands.part, slit)
+
+
+@with_project
+def join_again(session: Session, project: Project, place: complex, reach: float) -> None:
+    """Take away the line of the knife that is nearest to a place, and no farther than `reach`."""
+    slits, point = project.figure.cut_out.slits, np.array([place - project.figure.corner])
+    away = [
+        float(distance_to_segments(point, slit.points[:-1], slit.points[1:]).min())
+        for slit in slits
+    ]
+    if min(away, default=np.inf) <= reach:
+        nearest = away.index(min(away))
+        change(session, slits=slits[:nearest] + slits[nearest + 1 :])
+
+
+@with_project
 def swap_hole(session: Session, project: Project, place: complex) -> None:
     """Keep the hole at a place that would be filled, or fill one that would be kept."""
     holes, point = project.puppet.cut.value.holes, place - project.figure.corner
@@ -126,8 +158,8 @@ def swap_hole(session: Session, project: Project, place: complex) -> None:
 
 
 def forget_strokes(session: Session) -> None:
-    """Take away all strokes and the mask."""
-    change(session, strokes=(), mask=None)
+    """Take away all strokes, the knife's lines and the mask."""
+    change(session, strokes=(), slits=(), mask=None)
 
 
 def ask_mask(session: Session) -> None:

@@ -9,11 +9,13 @@ from app.document import (
     Command,
     Document,
     FrameRange,
+    Handle,
     UnkeyedPose,
     changed_stretches,
     clip_of,
     handle_commands,
     key_commands,
+    layer_commands,
     pairs_by_name,
 )
 from app.editor.actions import playback, posing
@@ -262,3 +264,25 @@ def _forget_what_is_gone(project: Project) -> None:
     if project.playhead.frame not in document.frames:
         frame = document.frames.clamp(project.playhead.frame)
         project.playhead = replace(project.playhead, frame=frame)
+
+
+def depth_now(session: Session, project: Project, handle: Handle) -> float:
+    """Return what is painted in front around a handle at the present frame, from −1 to 1."""
+    return _fronts_here(session, project).get(handle.id, handle.front)
+
+
+@with_project
+def set_depth(session: Session, project: Project, identity: int, front: float) -> None:
+    """Set what is painted in front around a handle, in the present key if it says so already."""
+    if identity in _fronts_here(session, project):
+        frame = playback.current_frame(session, project)
+        edit_figure(session, layer_commands.key_front, frame, identity, front)
+    else:
+        extent = project.figure.handle(identity).extent
+        edit_figure(session, layer_commands.set_front, identity, front, extent)
+
+
+def _fronts_here(session: Session, project: Project) -> Mapping[int, float]:
+    """Return what the key at the present frame says, if there is one."""
+    frame, figure = playback.current_frame(session, project), project.figure
+    return figure.key(frame).fronts if frame in figure.key_frames else {}

@@ -5,7 +5,7 @@ Out: a session that the tool in hand has changed, and that forgets it where it i
 Imports: `app.editor.actions`.
 """
 
-from app.editor.tools import pointing as pointing
+from app.editor.tools import moving as moving, pointing as pointing
 from app.editor.tools.entry import ERASE as ERASE
 from app.editor.tools.table import TOOLS as TOOLS, tools_of as tools_of
 from app.editor.tools.tool import Spot as Spot

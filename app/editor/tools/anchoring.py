@@ -20,7 +20,11 @@ class Anchoring(Tool):
             return ()
         if spot.handle is not None:
             return (Hint("click", "for the anchor", "ctrl"),)
-        return (Hint("click", "to put the anchor here", "ctrl"),) if spot.on_shape else ()
+        return (
+            (Hint("click", "for the anchor, which stays calm between keys", "ctrl"),)
+            if spot.on_shape
+            else ()
+        )
 
     @classmethod
     def press(cls, session: Session, project: Project, spot: Spot) -> Self | None:

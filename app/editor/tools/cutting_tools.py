@@ -1,4 +1,4 @@
-"""Cutting out by hand: a round brush that keeps or removes, a pipette, and clicks on holes."""
+"""Cutting out by hand: a round brush, a knife, a pipette, and clicks on holes."""
 
 from dataclasses import dataclass
 from typing import Self
@@ -7,11 +7,12 @@ import numpy as np
 
 from app.editor.actions import cutting
 from app.editor.project import Project
-from app.editor.session import Hint, Mark, Session, StrokeMark
+from app.editor.session import Hint, KnifeMark, Mark, Session, StrokeMark
 from app.editor.tools.tool import Spot, Tool
-from engine.domain import Stroke
+from engine.domain import Slit, Stroke
 
 STEP = 0.12  # of the brush's radius: points of a stroke are no nearer together
+REACH = 8.0  # pixels of the screen: a click so near to a line is on it
 
 
 @dataclass(slots=True, kw_only=True, eq=False)
@@ -60,6 +61,53 @@ class Brushing(Tool):
     def marks(self) -> tuple[Mark, ...]:
         """What it covers."""
         return (StrokeMark(points=tuple(self.places), radius=self.radius, keeps=self.keeps),)
+
+
+@dataclass(slots=True, kw_only=True, eq=False)
+class Parting(Tool):
+    """The pointer draws a line along which the knife parts; a click with Alt takes one away."""
+
+    places: list[complex]
+    parts: bool
+
+    @classmethod
+    def hints(cls, session: Session, _: Project, __: Spot) -> tuple[Hint, ...]:
+        """Tell how a line is drawn, and how one is taken away."""
+        if session.cutting != "knife":
+            return ()
+        return (
+            Hint("drag", "from outside to where it hangs together"),
+            Hint("click", "on a line to take it away", "alt"),
+        )
+
+    @classmethod
+    def press(cls, session: Session, project: Project, spot: Spot) -> Self | None:
+        """Begin a line; with Alt, a click on one."""
+        if session.cutting != "knife":
+            return None
+        return cls(project=project, places=[spot.place], parts=not spot.alt)
+
+    def move(self, session: Session, place: complex) -> None:
+        """Go on to the pointer."""
+        if self.is_away(session, self.places[-1], place):
+            self.places.append(place)
+
+    def end(self, session: Session, place: complex) -> None:
+        """Part what it goes through, or take a line away."""
+        view = self.project.view(session.screen)
+        if not self.parts:
+            cutting.join_again(session, place, REACH / view.scale)
+            return
+        if place != self.places[-1]:
+            self.places.append(place)
+        if len(self.places) < 2 or not self.is_away(session, self.places[0], place):
+            return  # a click is no line
+        cutting.part(session, Slit(points=np.array(self.places) - self.project.figure.corner))
+
+    @property
+    def marks(self) -> tuple[Mark, ...]:
+        """The line."""
+        return (KnifeMark(points=tuple(self.places)),) if self.parts else ()
 
 
 @dataclass(slots=True, kw_only=True, eq=False)

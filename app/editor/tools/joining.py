@@ -3,15 +3,13 @@
 from dataclasses import dataclass, replace
 from typing import Self
 
-import numpy as np
-
 from app.editor import layering
 from app.editor.project import Project
 from app.editor.session import Hint, JointMark, Mark, Session
 from app.editor.tools.anchoring import Anchoring
-from app.editor.tools.choosing import Choosing
 from app.editor.tools.pulling import Pulling
-from app.editor.tools.tool import Spot, Tool
+from app.editor.tools.selecting import Choosing
+from app.editor.tools.tool import Spot, Tool, on_scene
 
 FREE_HAND = (Choosing, Pulling, Anchoring)
 
@@ -51,8 +49,8 @@ class Joining(Tool):
         self.place = place
         self.moved = self.moved or self.is_away(session, self.spot.place, place)
         if self.moved and project.active == self.child:
-            on_scene = _on_scene(project, place)
-            self.parent = parent = layering.figure_at(project, on_scene, besides=self.child)
+            there = on_scene(project, place)
+            self.parent = parent = layering.figure_at(project, there, besides=self.child)
             self.is_circle = parent is not None and layering.hangs_on(project, parent, self.child)
 
     def end(self, session: Session, place: complex) -> None:
@@ -69,7 +67,7 @@ class Joining(Tool):
             joint = project.document.figure(self.child).attachment
             turns = joint is None or joint.turns
             # On both of them the joint is just there; else by the anchor.
-            there = _on_scene(project, place)
+            there = on_scene(project, place)
             is_on_both = layering.is_at(project, self.child, there)
             layering.hang(session, self.child, self.parent, turns, there if is_on_both else None)
         else:
@@ -105,9 +103,3 @@ def _takes_anchor(session: Session, project: Project, spot: Spot) -> bool:
     """Tell whether a press takes the anchor of a layer, in a scene of several."""
     is_free = not (spot.shift or spot.alt or spot.on_ring) and session.overlays.handles
     return spot.on_anchor and is_free and len(project.document.figures) > 1
-
-
-def _on_scene(project: Project, place: complex) -> complex:
-    """Return where a place of the layer by itself is in the scene."""
-    shown = project.puppet.shown
-    return place if shown is None else complex(shown.placement.on(np.array([place]))[0])

@@ -71,11 +71,16 @@ class Pulling(Tool):
         self.moved = self.moved or self.entry.value is not None
         self._pull(session)
 
+    @property
+    def way(self) -> complex:
+        """How far the pointer has come, or what was typed in place of that."""
+        return self.entry.way((self.start if self.place is None else self.place) - self.start)
+
     def _pull(self, session: Session) -> None:
         pulled = self.handles & {handle.id for handle in self.project.figure.handles}
         if not (self.moved and pulled):
             return
-        way = self.entry.way((self.start if self.place is None else self.place) - self.start)
+        way = self.way
 
         def as_far(start: Start, targets: Mapping[int, Target]) -> Mapping[int, Target]:
             wanted = {i: target.position for i, target in start.targets.items()}

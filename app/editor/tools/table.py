@@ -4,19 +4,21 @@ from typing import Final
 
 from app.editor.session import Session
 from app.editor.tools.anchoring import Anchoring
-from app.editor.tools.choosing import Choosing
-from app.editor.tools.cutting_tools import Brushing, Pointing
+from app.editor.tools.cutting_tools import Brushing, Parting, Pointing
 from app.editor.tools.joining import Joining
 from app.editor.tools.mirroring import Mirroring
+from app.editor.tools.moving import Moving
 from app.editor.tools.pulling import Pulling
-from app.editor.tools.selecting import Selecting
+from app.editor.tools.selecting import Choosing, Selecting
 from app.editor.tools.tool import Tool
 from app.editor.tools.turning import Turning
 
-CUTTING_TOOLS: Final[tuple[type[Tool], ...]] = (Brushing, Pointing)
+CUTTING_TOOLS: Final[tuple[type[Tool], ...]] = (Brushing, Parting, Pointing)
+MOVING_TOOLS: Final[tuple[type[Tool], ...]] = (Mirroring, Moving, Anchoring)
 # A press is for the first that takes it; hints are told in this order.
 TOOLS: Final[tuple[type[Tool], ...]] = (
     Mirroring,
+    Moving,
     Joining,
     Choosing,
     Pulling,
@@ -27,5 +29,7 @@ TOOLS: Final[tuple[type[Tool], ...]] = (
 
 
 def tools_of(session: Session) -> tuple[type[Tool], ...]:
-    """Return the tools of what the person does now: cut out, or pose."""
-    return TOOLS if session.cutting is None else CUTTING_TOOLS
+    """Return the tools of what the person does now: cut out, move, or pose."""
+    if session.cutting is not None:
+        return CUTTING_TOOLS
+    return MOVING_TOOLS if session.moves else TOOLS

@@ -5,6 +5,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Self
 
+import numpy as np
+
 from app.editor.actions import editing
 from app.editor.project import Project
 from app.editor.session import Hint, Mark, Session
@@ -96,3 +98,9 @@ class Tool(ABC):
     def is_away(self, session: Session, start: complex, place: complex) -> bool:
         """Tell whether the pointer has gone farther than a click may."""
         return abs(place - start) * self.project.view(session.screen).scale > CLICK
+
+
+def on_scene(project: Project, place: complex) -> complex:
+    """Return where a place of the layer that is posed, by itself, is in the scene."""
+    shown = project.puppet.shown
+    return place if shown is None else complex(shown.placement.on(np.array([place]))[0])

@@ -84,6 +84,11 @@ class Pull(Promise):
         By the gestures that they are of, in order; each knows what was wished before it.
     hands : dict of object to Hand
         By the gestures that pull handles, told by their ids, until the pose has come to rest.
+    ways : dict of object to complex
+        By the gestures that move the figure as a whole. The solver knows nothing of that: what it
+        finds is moved, as exactly as it is.
+    rests : bool
+        Whether the pose that it begins with is at rest: merely moved, it stays as it is.
     targets : mapping of int to Target, optional
         What all of that comes to; None as long as there is no start.
     position : int
@@ -96,8 +101,10 @@ class Pull(Promise):
         The targets that these steps were towards, and the hands that pulled.
     steps : int
         Newton steps towards the present targets.
+    found : Pose, optional
+        Where the solver is, as a pose; at first the one that was there before.
     newest : Pose, optional
-        Where the solver is, as a pose.
+        The same, moved as the figure is moved.
     kept : Pose, optional
         What the document has of it; None as long as that is nothing.
     tried : Pose, optional
@@ -117,12 +124,15 @@ class Pull(Promise):
     is_keyed: bool
     wishes: dict[object, WishFrom] = field(default_factory=dict)
     hands: dict[object, Hand] = field(default_factory=dict)
+    ways: dict[object, complex] = field(default_factory=dict)
+    rests: bool = True
     targets: Mapping[int, Target] | None = None
     position: int = 0
     is_held: bool = True
     drag: Drag | None = None
     solved: tuple[Mapping[int, Target], tuple[Hand, ...]] | None = None
     steps: int = 0
+    found: Pose | None = None
     newest: Pose | None = None
     kept: Pose | None = None
     tried: Pose | None = None
@@ -136,10 +146,27 @@ class Pull(Promise):
             self.hands[gesture] = hand
         self.aim()
 
+    def move(self, gesture: object, way: complex) -> None:
+        """Let a gesture move the figure as a whole, so far from where it began."""
+        self.ways[gesture] = way
+        self.wish(gesture, _nothing)
+        pose = self.found or self.before
+        if pose is not None:
+            self.take(pose)
+
+    def take(self, pose: Pose) -> Pose:
+        """Take note of where the solver is; return that as it is moved."""
+        way = sum(self.ways.values())
+        self.found = pose
+        self.newest = _moved_pose(self.clip.figure, pose, way) if way else pose
+        return self.newest
+
     def forget(self, gesture: object) -> None:
         """Take back what a gesture wished."""
         del self.wishes[gesture]
         self.hands.pop(gesture, None)
+        if self.ways.pop(gesture, None) and self.found is not None:
+            self.take(self.found)
         self.aim()
 
     def insist(self) -> None:
@@ -149,8 +176,8 @@ class Pull(Promise):
 
     def settle_for(self, places: Mapping[int, Target]) -> None:
         """Let what hands pulled be wanted at these places from now on."""
-        targets = self.targets or {}
-        moves = {i: place.position - targets[i].position for i, place in places.items()}
+        asked = self.asked or {}
+        moves = {i: place.position - asked[i].position for i, place in places.items()}
         for gesture in self.hands:
             self.wishes[gesture] = partial(_moved, self.wishes[gesture], moves)
         self.hands = {}
@@ -161,7 +188,15 @@ class Pull(Promise):
         """Where handles that hands pull would be wanted if these let go now, by their ids."""
         if self.drag is None or self.targets is None or not self.hands:
             return {}
-        return self.drag.let_go(self.targets, tuple(self.hands.values()))
+        return self._moved(self.drag.let_go(self.targets, tuple(self.hands.values())))
+
+    @property
+    def asked(self) -> Mapping[int, Target] | None:
+        """The targets, moved as the figure is; None as long as there is no start."""
+        return None if self.targets is None else self._moved(self.targets)
+
+    def _moved(self, targets: Mapping[int, Target]) -> Mapping[int, Target]:
+        return _moved_targets(targets, dict.fromkeys(targets, sum(self.ways.values())))
 
     def aim(self) -> None:
         """Work out the targets anew."""
@@ -175,8 +210,15 @@ class Pull(Promise):
         return self.clip.figure.id
 
     @property
+    def is_rigid(self) -> bool:
+        """Whether there is nothing to be solved, as a pose at rest is but moved."""
+        return self.rests and bool(self.ways) and self.ways.keys() == self.wishes.keys()
+
+    @property
     def is_at_rest(self) -> bool:
         """Whether the solver has found the pose, and moves nothing any more."""
+        if self.is_rigid:
+            return self.found is not None
         is_over = self.drag is not None and self.drag.is_over
         towards = (self.targets, tuple(self.hands.values()))
         return self.steps >= MOST_STEPS or (is_over and self.solved == towards)
@@ -226,10 +268,27 @@ def _moved(
     wish: WishFrom, moves: Mapping[int, complex], start: Start, targets: Mapping[int, Target]
 ) -> Mapping[int, Target]:
     """Return what is wished, moved as far as hands have given in."""
+    return _moved_targets(wish(start, targets), moves)
+
+
+def _moved_targets(
+    targets: Mapping[int, Target], moves: Mapping[int, complex]
+) -> Mapping[int, Target]:
     return {
-        i: replace(wished, position=wished.position + moves.get(i, 0.0))
-        for i, wished in wish(start, targets).items()
+        i: replace(target, position=target.position + moves.get(i, 0.0))
+        for i, target in targets.items()
     }
+
+
+def _moved_pose(figure: Figure, pose: Pose, way: complex) -> Pose:
+    """Return a pose of a figure moved, with all that is wanted of it; it is as distorted."""
+    targets = _moved_targets(pose.targets, dict.fromkeys(pose.targets, way))
+    return replace(pose.with_map(figure.map_of(pose).moved(1.0, way)), targets=targets)
+
+
+def _nothing(_: Start, __: Mapping[int, Target]) -> Mapping[int, Target]:
+    """Return no wishes: those that there are stay."""
+    return {}
 
 
 def wherever(

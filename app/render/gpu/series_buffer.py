@@ -8,6 +8,7 @@ import numpy as np
 
 from app.errors import LissomError
 from app.render.gpu.mesh import VertexSource
+from engine.domain import Seam
 from engine.streaming import Series, SeriesPiece
 
 _RESERVED: Final = 2  # attributes of a mesh that are not the series'
@@ -25,6 +26,8 @@ class SeriesBuffer(VertexSource):
         Number of vertices, v.
     rows : int
         The most rows that a piece may have.
+    seam : Seam, optional
+        How slits are closed.
 
     Raises
     ------
@@ -32,7 +35,9 @@ class SeriesBuffer(VertexSource):
         If the context has not that many attributes.
     """
 
-    def __init__(self, context: moderngl.Context, count: int, rows: int) -> None:
+    def __init__(
+        self, context: moderngl.Context, count: int, rows: int, *, seam: Seam | None = None
+    ) -> None:
         if rows > most_rows(context):
             raise LissomError(
                 f"this machine's graphics take {most_rows(context)} rows of a series, not {rows}"
@@ -41,7 +46,7 @@ class SeriesBuffer(VertexSource):
         buffer = context.buffer(reserve=16 * pairs * count, dynamic=True)
         attribute = (buffer, f"{4 * pairs}f", "rows")
         super().__init__("series.glsl", attribute, (("ROW_PAIRS", pairs),))
-        self._count, self._pairs = count, pairs
+        self._count, self._pairs, self._seam = count, pairs, seam
         self._weights = np.zeros((pairs, 2), dtype=np.float32)
         self._piece: SeriesPiece | None = None
 
@@ -69,6 +74,8 @@ class SeriesBuffer(VertexSource):
         # The rows of a vertex side by side: one place in memory for each.
         interleaved = np.zeros((count, 2 * self._pairs, 2), dtype=np.float32)
         interleaved[:, :rows] = piece.rows.reshape(rows, count, 2).transpose(1, 0, 2)
+        if self._seam is not None:
+            interleaved = self._seam.closed(interleaved)
         self._buffer.write(interleaved.data)
         self._piece = piece
 

@@ -1,5 +1,6 @@
 """The document as `project.json`, except for its figures' pictures and arrays."""
 
+from collections.abc import Sequence
 from dataclasses import astuple
 from importlib.metadata import version
 from operator import attrgetter
@@ -51,7 +52,7 @@ from app.storage.json_values import (
 from app.storage.pictures import require_memory
 from app.storage.project.archive import Archive
 from app.storage.project.members import FigureMembers
-from engine.domain import CutOut, Stroke
+from engine.domain import CutOut, Slit, Stroke
 from engine.maps import Boundary, Bounds, HarmonicMap, certify
 
 SCHEMA = 2
@@ -61,6 +62,11 @@ FARTHEST_POSE, MOST_COEFFICIENT = 1_000, 1e6
 SIZE = pair(WHOLE, WHOLE, "two whole numbers")
 RANGE = pair(WHOLE, WHOLE, "two whole numbers", make=FrameRange, of=astuple)
 MARKER = record(Marker, Field("frame", WHOLE), Field("name", TEXT))
+
+
+def _counts(lines: Sequence[Stroke] | Sequence[Slit]) -> tuple[int, ...]:
+    """Return how many points each of some lines has."""
+    return tuple(len(line.points) for line in lines)
 
 
 def _options(usual: FormatOptions) -> Codec:
@@ -157,6 +163,8 @@ DOMAIN = part(
     Field("strokes", several(STROKE), attrgetter("cut_out.strokes"), earlier=()),
     Field("holes", TEXT, attrgetter("cut_out.holes"), earlier="fill"),
     Field("swapped", several(POINT), attrgetter("cut_out.swapped"), earlier=()),
+    Field("slits", several(WHOLE), lambda figure: _counts(figure.cut_out.slits), usual=()),
+    Field("parted", FLAG, lambda figure: figure.domain.closed is not None, usual=False),
     Field("stale", FLAG, attrgetter("is_stale"), earlier=False),
 )
 SWITCH = pair(WHOLE, FLAG, "a frame and true or false", make=Switch, of=astuple)
@@ -252,7 +260,8 @@ def _bring_up_to_schema_2(content: JsonObject) -> None:
 def _read_figure(fields: dict[str, Any], archive: Archive) -> Figure:
     """Return the figure with these fields; what holds of its maps is proven anew."""
     members, made = FigureMembers(archive, fields["id"]), fields.pop("domain")
-    picture, domain = members.picture(**fields["picture"]), members.domain()
+    picture = members.picture(**fields["picture"])
+    domain = members.domain(parted=made.pop("parted"))
     boundary = Boundary.sample(domain.outline, domain.cage, domain.holes)
 
     def pose(kind: Literal["keys", "poses"], index: int, given: tuple[Any, ...]) -> Pose:
@@ -296,11 +305,7 @@ def _require_near(f: HarmonicMap, boundary: Boundary, side: int, what: str) -> N
 
 def _cut_out(fields: dict[str, Any], members: FigureMembers, size: tuple[int, int]) -> CutOut:
     strokes = fields.pop("strokes")
-    points = members.strokes() if strokes else np.empty(0, dtype=np.complex128)
-    counts = [stroke.pop("points") for stroke in strokes]
-    if min(counts, default=1) < 1 or sum(counts) != len(points):
-        raise LissomError("the strokes of a cut-out do not have as many points as there are")
-    ways = np.split(points, np.cumsum(counts)[:-1]) if counts else []
+    ways = members.lines("strokes", [stroke.pop("points") for stroke in strokes])
     return CutOut(
         **fields
         | {
@@ -308,5 +313,6 @@ def _cut_out(fields: dict[str, Any], members: FigureMembers, size: tuple[int, in
             "strokes": tuple(
                 Stroke(points=way, **stroke) for stroke, way in zip(strokes, ways, strict=True)
             ),
+            "slits": tuple(Slit(points=way) for way in members.lines("slits", fields["slits"])),
         }
     )

@@ -3,9 +3,11 @@
 They are in a folder of the figure: the picture byte for byte as `source.*`, the arrays of the
 domain, what was cut out by hand, and phi and psi of each key under `keys/` and of the library's
 poses under `poses/`. Where the domain has holes, their outlines and cages are under `holes/`, their
-centres beside it, and the coefficients of a map's logarithms beside its phi and psi.
+centres beside it, and the coefficients of a map's logarithms beside its phi and psi. Where it was
+parted by a knife, `closed.npy` tells where its loops are painted.
 """
 
+from collections.abc import Sequence
 from typing import Any, Literal
 
 import numpy as np
@@ -22,7 +24,7 @@ from engine.domain.outline import LARGEST_OUTLINE
 from engine.geometry import Hole
 from engine.maps import HarmonicMap
 
-CENTRES = "hole_centres.npy"
+CENTRES, CLOSED = "hole_centres.npy", "closed.npy"
 
 
 def figure_members(figure: Figure) -> dict[str, bytes]:
@@ -38,6 +40,10 @@ def figure_members(figure: Figure) -> dict[str, bytes]:
         arrays["mask.npy"] = cut_out.mask.bits
     if cut_out.strokes:
         arrays["strokes.npy"] = np.concatenate([stroke.points for stroke in cut_out.strokes])
+    if cut_out.slits:
+        arrays["slits.npy"] = np.concatenate([slit.points for slit in cut_out.slits])
+    if figure.domain.closed is not None:
+        arrays[CLOSED] = figure.domain.closed
     if holes:
         arrays[CENTRES] = np.array([hole.centre for hole in holes], dtype=np.complex128)
     for index, hole in enumerate(holes):
@@ -76,8 +82,8 @@ class FigureMembers:
             )
         return picture
 
-    def domain(self) -> Domain:
-        """Return the domain."""
+    def domain(self, *, parted: bool) -> Domain:
+        """Return the domain, which was parted by a knife or not."""
         outline, cage, vertices = (
             as_points(self._points(f"{name}.npy", most), name, at_least=3)
             for name, most in (
@@ -94,6 +100,7 @@ class FigureMembers:
             cage=cage,
             mesh=Mesh(vertices=vertices, triangles=triangles),
             holes=self._holes(),
+            closed=self._points(CLOSED) if parted else None,
         )
         require_domain(domain)
         return domain
@@ -103,9 +110,14 @@ class FigureMembers:
         most = -(-size[0] * size[1] // 8)
         return Mask(bits=self._archive.bytes(f"{self._folder}/mask.npy", most=most), size=size)
 
-    def strokes(self) -> Complexes:
-        """Return the points of all strokes of the cut-out."""
-        return self._points("strokes.npy", MOST_STROKE_POINTS)
+    def lines(self, kind: Literal["strokes", "slits"], counts: Sequence[int]) -> list[Complexes]:
+        """Return the points of the lines of a kind that were drawn by hand, so many of each."""
+        if not counts:
+            return []
+        points = self._points(f"{kind}.npy", MOST_STROKE_POINTS)
+        if min(counts) < 1 or sum(counts) != len(points):
+            raise LissomError(f"the {kind} of a cut-out do not have as many points as there are")
+        return np.split(points, np.cumsum(counts)[:-1])
 
     def map(self, domain: Domain, kind: Literal["keys", "poses"], index: int) -> HarmonicMap:
         """Return the map of a key, or of a pose of the library."""

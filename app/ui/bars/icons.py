@@ -8,7 +8,7 @@ from app.ui.style import Look
 
 # By their names in the table of shortcuts; there is a gap between two groups.
 GROUPS = (
-    ("fit",),
+    ("fit", "move"),
     ("handles", "wireframe", "outline", "heat map", "split view", "onion skin", "motion paths"),
     ("auto-key",),
 )

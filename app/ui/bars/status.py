@@ -3,7 +3,7 @@
 from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
-from imgui_bundle import ImColor, imgui, imspinner
+from imgui_bundle import ImColor, ImVec2, imgui, imspinner
 
 from app.document import Extremes, find_shortfall, loosened
 from app.editor import Action, Kind, Project, Session, do, promises
@@ -200,8 +200,13 @@ def _distortion(project: Project) -> Fact | None:
 
 
 def _spinner(look: Look) -> None:
-    colour = ImColor(look.palette.accent)
+    colour, start, style = ImColor(look.palette.accent), imgui.get_cursor_pos(), imgui.get_style()
+    radius = 0.35 * look.em
+    up = radius + style.frame_padding.y - imgui.get_text_line_height() / 2
+    imgui.set_cursor_pos_y(start.y - up)
     imspinner.spinner_ang(
-        "##busy", 0.35 * look.em, 0.14 * look.em, colour, ImColor(0, 0, 0, 0), speed=6.0, angle=4.5
+        "##busy", radius, 0.14 * look.em, colour, ImColor(0, 0, 0, 0), speed=6.0, angle=4.5
     )
-    imgui.same_line()
+    # Beside it and not on its line, on which texts stand lower.
+    beside = imgui.get_item_rect_size().x + style.item_spacing.x
+    imgui.set_cursor_pos(start + ImVec2(beside, 0))

@@ -1,4 +1,4 @@
-"""Cutting the subject out of its picture: by colour, by brush, by a mask; and its holes."""
+"""Cutting the subject out of its picture: by colour, by brush, knife and mask; and its holes."""
 
 from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui
 
@@ -27,9 +27,15 @@ TOLERANCES = Scale(left=0, right=120)
 BRUSHES = Scale(left=cutting.SMALLEST_BRUSH, right=cutting.LARGEST_BRUSH / 2, logarithmic=True)
 BACKGROUNDS = (("auto", "Automatic"), ("none", "None"), ("colour", "Colour"))
 ENCLOSED = (("auto", "Automatic"), ("keep", "Keep"), ("remove", "Remove"))
-BRUSH_TOOLS: tuple[tuple[CutTool, str, str, str], ...] = (
+HAND_TOOLS: tuple[tuple[CutTool, str, str, str], ...] = (
     ("keep", icons.ICON_FA_PAINTBRUSH, "Keep", "Brush over what belongs to the drawing"),
     ("remove", icons.ICON_FA_ERASER, "Remove", "Brush over what is to go"),
+    (
+        "knife",
+        icons.ICON_FA_SCISSORS,
+        "Knife",
+        "Draw a line between what touches, from outside inwards, to pose both sides apart",
+    ),
 )
 
 
@@ -44,7 +50,7 @@ def draw(session: Session, look: Look, project: Project) -> list[Action]:
         look,
         icons.ICON_FA_TRASH,
         "forget strokes",
-        "Take away all strokes and the mask",
+        "Take away all strokes, lines of the knife and the mask",
         enabled=cut_out.is_by_hand,
     ):
         actions.append(do(cutting.forget_strokes))
@@ -106,8 +112,8 @@ def _background(session: Session, look: Look, project: Project, cut_out: CutOut)
 
 def _brush(session: Session, look: Look, project: Project) -> list[Action]:
     actions: list[Action] = []
-    widths = beside(len(BRUSH_TOOLS))
-    for (tool, icon, name, hint), width in zip(BRUSH_TOOLS, widths, strict=True):
+    widths = beside(len(HAND_TOOLS))
+    for (tool, icon, name, hint), width in zip(HAND_TOOLS, widths, strict=True):
         actions += _tool(session, look, tool, f"{icon}  {name}", hint, width=width)
     label(look, "Size")
     keys = " and ".join(BINDINGS[name].keys_in_words for name in ("smaller brush", "larger brush"))
@@ -129,8 +135,11 @@ def _mask(look: Look, cut_out: CutOut) -> list[Action]:
     if text_button(f"{icons.ICON_FA_FLOPPY_DISK}  Save mask…", next(widths), hint):
         actions.append(do(cutting.ask_mask_path))
     count = len(cut_out.strokes)
-    if count:
-        small(look, "1 stroke" if count == 1 else f"{count:,} strokes")
+    told = ["1 stroke" if count == 1 else f"{count:,} strokes"] if count else []
+    if lines := len(cut_out.slits):
+        told.append("1 line of the knife" if lines == 1 else f"{lines:,} lines of the knife")
+    if told:
+        small(look, ", ".join(told))
     return actions
 
 
@@ -166,7 +175,7 @@ def _state(session: Session, look: Look, project: Project) -> list[Action]:
         if progress(renewal.progress, renewal.now):
             actions.append(do(rebuilding.cancel))
     elif session.cutting is not None:
-        hint, keys = "Show the drawing as it is posed", BINDINGS["stop cutting"].keys_in_words
+        hint, keys = "Show the drawing as it is posed", BINDINGS["pose"].keys_in_words
         if text_button("Back to posing###done", FILL, hint, keys):
             actions.append(do(cutting.take_up, None))
     if project.figure.is_stale and project.figure is project.unbuildable:

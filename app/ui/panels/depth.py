@@ -17,7 +17,7 @@ def draw(session: Session, look: Look, project: Project, handle: Handle) -> list
     figure, frame = project.figure, playback.current_frame(session, project)
     key = figure.key(frame) if frame in figure.key_frames else None
     imgui.begin_group()
-    actions = _depth(look, handle, key) + _extent(look, figure, handle)
+    actions = _depth(session, look, project, handle) + _extent(look, figure, handle)
     if len(figure.keys) > 1:
         actions += _from_key(look, handle, key)
     imgui.end_group()
@@ -30,17 +30,15 @@ def draw(session: Session, look: Look, project: Project, handle: Handle) -> list
     return actions
 
 
-def _depth(look: Look, handle: Handle, key: Keyframe | None) -> list[Action]:
+def _depth(session: Session, look: Look, project: Project, handle: Handle) -> list[Action]:
     label(look, "Depth")
     hint = "Where the drawing lies over itself: −1 paints this part behind, 1 in front"
-    front = key.fronts.get(handle.id, handle.front) if key else handle.front
+    front = editing.depth_now(session, project, handle)
     entered = slider(look, "depth", front, DEPTHS, text="%.2f", hint=hint)
     if entered is None:
         return []
     value = round(min(max(entered.value, -1.0), 1.0), 2)
-    if key is not None and handle.id in key.fronts:
-        return [_set_in_key(key, handle, value)]
-    return [_set(handle, value, handle.extent)]
+    return [do(editing.set_depth, handle.id, value)]
 
 
 def _extent(look: Look, figure: Figure, handle: Handle) -> list[Action]:

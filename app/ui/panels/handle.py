@@ -4,9 +4,17 @@ import math
 from collections.abc import Sequence
 from dataclasses import replace
 
-from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui, imgui_ctx
+from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui
 
-from app.document import Handle, Shortfall, Target, figure_commands, find_shortfall, handle_commands
+from app.document import (
+    HOLDS,
+    Handle,
+    Shortfall,
+    Target,
+    figure_commands,
+    find_shortfall,
+    handle_commands,
+)
 from app.editor import Action, Project, Session, do, layering
 from app.editor.actions import editing, posing
 from app.ui.panels import depth
@@ -31,8 +39,6 @@ from app.ui.style import (
 )
 
 MOST_ROWS = 5.5
-# In words: the weights that they stand for.
-HOLDS = {"Soft": 0.1, "Normal": 1.0, "Firm": 10.0}
 WEIGHTS = Scale(left=0.01, right=100.0, logarithmic=True)
 
 
@@ -173,12 +179,16 @@ def _firmness(session: Session, look: Look, chosen: Sequence[Handle]) -> list[Ac
 
 
 def _wish(look: Look, project: Project, handle: Handle) -> list[Action]:
+    """Draw where the pose wants a handle; as many lines between keys, where it wants nothing."""
     actions: list[Action] = []
     shown = project.puppet.shown
-    if shown is None or shown.pose is None or handle.id not in shown.pose.targets:
-        small(look, "Between keys it goes with the shape. Drag it to make a key here.")
+    identities = [each.id for each in shown.clip.figure.handles] if shown else []
+    if shown is None or handle.id not in identities:
         return actions
-    target = shown.pose.targets[handle.id]
+    target = shown.pose.targets.get(handle.id) if shown.pose else None
+    is_wanted = target is not None
+    if target is None:
+        target = Target(position=complex(shown.handle_places[identities.index(handle.id)]))
     hint = "Where this pose wants it, in pixels from the upper left corner"
     wished = _point(look, project, "Target", target.position, hint)
     if wished is not None:
@@ -186,11 +196,12 @@ def _wish(look: Look, project: Project, handle: Handle) -> list[Action]:
     actions += _turn(look, project, handle, target)
     shortfall = _shortfall(project)
     lag = shortfall.lags.get(handle.id)
-    if lag is not None:
+    if lag is None:
+        small(look, "" if is_wanted else "Between keys it goes with the shape.")
+    else:
         is_coming = project.pull is not None and not project.pull.is_at_rest
         why = "on its way" if is_coming else shortfall.reason
-        with imgui_ctx.push_text_wrap_pos(0.0):
-            imgui.text_colored(look.palette.warning, f"{lag:.0f} px short of its target, {why}")
+        small(look, f"{lag:.0f} px short of its target, {why}", look.palette.warning)
     return actions
 
 
@@ -239,18 +250,18 @@ def _anchor(look: Look, project: Project, chosen: list[Handle]) -> list[Action]:
     figure = project.figure
     holder = next((h.name for h in figure.handles if h.position == figure.anchor), None)
     if figure.anchor is None:
-        small(look, "Automatic: in-betweens follow the middle of the shape.")
+        small(look, "Automatic: the middle of the shape stays calm between keys.")
     elif holder is not None:
         name = shortened(holder, 12 * look.em)
-        small(look, f"In-betweens follow “{name}”: it goes the straightest way.")
+        small(look, f"“{name}” stays calm between keys: it goes the straightest way.")
     else:
         anchor = figure.anchor
         y = project.document.canvas[1] - anchor.imag
-        small(look, f"In-betweens follow the point {anchor.real:.0f}, {y:.0f}.")
+        small(look, f"The point {anchor.real:.0f}, {y:.0f} stays calm between keys.")
     is_chosen = len(chosen) == 1 and chosen[0].position != figure.anchor
     halves, actions = beside(2), list[Action]()
     text = f"{icons.ICON_FA_ANCHOR}  Follow this handle###anchor here"
-    hint, keys = "Let in-betweens follow the selected handle", with_key(CTRL, "click")
+    hint, keys = "Let this point stay calm between keys", with_key(CTRL, "click")
     if text_button(text, next(halves), hint, keys, enabled=is_chosen):
         actions.append(do(posing.anchor_at, chosen[0].id))
     has_own = figure.anchor is not None

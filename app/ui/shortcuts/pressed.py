@@ -4,6 +4,7 @@ from imgui_bundle import imgui
 
 from app.editor import Action, Session, do
 from app.editor.actions import playback, posing, viewing
+from app.editor.tools import moving
 from app.ui.shortcuts.keys import CTRL
 from app.ui.shortcuts.table import BINDINGS
 
@@ -61,11 +62,12 @@ def _close_menu() -> bool:
 
 
 def _nudges(session: Session) -> list[Action]:
-    if session.project is None or not session.project.selected:
+    if session.project is None or not (session.moves or session.project.selected):
         return []
+    nudge = moving.nudge if session.moves else posing.nudge
     step = 10.0 if imgui.get_io().key_shift else 1.0
     return [
-        do(posing.nudge, step * direction)
+        do(nudge, step * direction)
         for key, direction in ARROWS.items()
         if imgui.is_key_pressed(key)
     ]

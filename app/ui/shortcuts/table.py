@@ -20,6 +20,7 @@ from app.editor.actions import (
     viewing,
 )
 from app.editor.poses import copying, flipping, library
+from app.editor.tools import moving
 from app.ui.panel import is_in_front
 from app.ui.shortcuts.binding import Binding
 
@@ -45,16 +46,21 @@ def _all(session: Session, _: Project) -> str:
 
 def _can_deselect(session: Session, project: Project) -> bool:
     """Tell whether something is selected, and nothing is under way that Esc ends first."""
-    in_hand = (session.pointer, session.cutting, project.timing.gesture)
-    return in_hand == (None, None, None) and bool(project.selected or project.chosen_of)
+    in_hand = session.pointer or session.cutting or session.moves or project.timing.gesture
+    return not in_hand and bool(project.selected or project.chosen_of)
 
 
 def _selected(_: Session, project: Project) -> bool:
     return bool(project.selected)
 
 
-def _none_selected(_: Session, project: Project) -> bool:
-    return not project.selected
+def _frees_arrows(session: Session, project: Project) -> bool:
+    return not (session.moves or project.selected)
+
+
+def _can_pose(session: Session, _: Project) -> bool:
+    is_posing = session.cutting is None and not session.moves
+    return not is_posing and session.pointer is None
 
 
 def _grouped(_: Session, project: Project) -> bool:
@@ -178,12 +184,20 @@ MENUS: dict[str, dict[str, Binding]] = {
             "Select all", do(editing.select_all), "Ctrl+A", parted=True, detail=_all
         ),
         "deselect": Binding("Deselect", do(editing.deselect), "Escape", possible=_can_deselect),
+        "move": Binding(
+            "Move the whole figure",
+            do(moving.take_up),
+            "V",
+            icon=icons.ICON_FA_UP_DOWN_LEFT_RIGHT,
+            hint="Drags and arrows move all of the figure, as it is, in this frame",
+            active=lambda session: session.moves,
+            parted=True,
+        ),
         "cut out": Binding(
             "Cut out by a brush",
             do(cutting.begin_or_swap),
             "X",
             active=lambda session: session.cutting is not None,
-            parted=True,
         ),
         "smaller brush": Binding(
             "Smaller brush",
@@ -199,12 +213,7 @@ MENUS: dict[str, dict[str, Binding]] = {
             possible=_brushes,
             repeats=True,
         ),
-        "stop cutting": Binding(
-            "Stop cutting out",
-            do(cutting.take_up, None),
-            "Escape",
-            possible=lambda session, _: session.cutting is not None and session.pointer is None,
-        ),
+        "pose": Binding("Back to posing", do(moving.pose), "Escape", possible=_can_pose),
         "delete": Binding(
             "Delete",
             do(editing.delete),
@@ -389,11 +398,11 @@ MENUS: dict[str, dict[str, Binding]] = {
             "Previous key",
             do(playback.to_key, -1),
             "DownArrow",
-            possible=_none_selected,
+            possible=_frees_arrows,
             repeats=True,
         ),
         "next key": Binding(
-            "Next key", do(playback.to_key, 1), "UpArrow", possible=_none_selected, repeats=True
+            "Next key", do(playback.to_key, 1), "UpArrow", possible=_frees_arrows, repeats=True
         ),
         "insert key": Binding(
             "Insert key",

@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import AbstractContextManager
 
-from imgui_bundle import ImVec2, imgui, imgui_ctx
+from imgui_bundle import ImVec2, ImVec4, imgui, imgui_ctx
 
 from app.ui.style.theme import SMALL, Look
 
@@ -34,10 +34,10 @@ def heading(look: Look, text: str, *, framed: bool = False) -> None:
     bold(look, text)
 
 
-def small(look: Look, text: str) -> None:
-    """Write a remark, smaller and dimmer than the text, wrapped to the panel."""
+def small(look: Look, text: str, colour: ImVec4 | None = None) -> None:
+    """Write a remark, smaller than the text and by default dimmer, wrapped to the panel."""
     with sized(SMALL), imgui_ctx.push_text_wrap_pos(0.0):
-        imgui.text_colored(look.palette.dim, text)
+        imgui.text_colored(colour or look.palette.dim, text)
 
 
 def label(look: Look, text: str) -> None:
@@ -79,10 +79,14 @@ def begin_tip() -> bool:
 def tip(text: str, keys: str = "") -> None:
     """Explain the last item where the pointer rests on it, and name its keys."""
     if begin_tip():
+        room = TIP_ROOM[0] * imgui.get_font_size()
+        imgui.push_text_wrap_pos(room)
         imgui.text_unformatted(text)
         if keys:
-            imgui.same_line()
+            if imgui.calc_text_size(f"{text}  {keys}").x < room:
+                imgui.same_line()
             imgui.text_disabled(keys)
+        imgui.pop_text_wrap_pos()
         imgui.end_tooltip()
 
 

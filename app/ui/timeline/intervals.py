@@ -5,7 +5,7 @@ from itertools import pairwise
 
 from imgui_bundle import ImVec2, imgui
 
-from app.document import HOLD, Keyframe, closes
+from app.document import HOLD, LINEAR, Keyframe, Transit, closes, transits
 from app.editor import Action
 from app.ui.style import SMALL, in_hand, ink, is_pressed, sized, tip
 from app.ui.timeline.easing_curve import draw_curve, easing_popup, fill_curve
@@ -27,6 +27,15 @@ class _Bar:
     end: float
     low: float
     high: float
+    way: Transit
+
+    @property
+    def told(self) -> str:
+        """How time runs in it, in words: by its easing, or by how its keys are passed."""
+        easing = self.key.easing
+        if easing == LINEAR and not self.way.is_even:
+            return "smooth"
+        return NAMES.get(easing.name, easing.name)
 
 
 def draw_intervals(track: Track) -> list[Action]:
@@ -44,7 +53,7 @@ def draw_intervals(track: Track) -> list[Action]:
 
 def _bars(track: Track) -> list[_Bar]:
     clip = track.project.clip
-    keys = clip.keys
+    keys, ways = clip.keys, transits(clip)
     bars = [
         _Bar(
             name=f"interval {key.frame}",
@@ -53,8 +62,9 @@ def _bars(track: Track) -> list[_Bar]:
             end=following.frame,
             low=key.frame,
             high=following.frame,
+            way=way,
         )
-        for key, following in pairwise(keys)
+        for (key, following), way in zip(pairwise(keys), ways, strict=False)
     ]
     if closes(clip):
         frames, last, period = clip.frames, keys[-1], clip.period
@@ -71,6 +81,7 @@ def _bars(track: Track) -> list[_Bar]:
                     end=end + shift,
                     low=low,
                     high=high,
+                    way=ways[-1],
                 )
             )
     return bars
@@ -101,14 +112,12 @@ def _interval(track: Track, bar: _Bar, left: float, right: float) -> list[Action
         imgui.open_popup(popup)
     if imgui.is_item_clicked(imgui.MouseButton_.right):
         imgui.open_popup("menu of track")
-    easing = bar.key.easing
-    name = NAMES.get(easing.name, easing.name)
     is_open = imgui.is_popup_open(popup)
     hot = is_open or (in_hand() and track.project.timing.gesture is None)
     if track.project.timing.gesture is None and not is_open:
-        tip(f"{name.capitalize()}: click to change how time runs here")
+        tip(f"{bar.told.capitalize()}: click to change how time runs here")
     _draw_bar(track, bar, low, high, hot=hot)
-    _label(track, name, bar.key.turns, low, high)
+    _label(track, bar.told, bar.key.turns, low, high)
     if not bar.name.endswith("again"):
         actions += easing_popup(popup, track.look, track.project, bar.key)
     return actions

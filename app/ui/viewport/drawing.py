@@ -12,6 +12,7 @@ from app.storage import Picture
 from app.ui.viewport.backdrop import measure_brightness
 from app.ui.viewport.cut_view import CutView
 from engine.arrays import Bytes, Floats
+from engine.domain import find_seam
 from engine.maps import distortion
 
 
@@ -117,6 +118,7 @@ class Drawing:
                 self._picture(figure),
                 rest=drawn.vertices - self.project.document.figure(figure).corner,
                 triangles=drawn.triangles,
+                seam=find_seam(mesh.domain),
             )
         return self._meshes[mesh]
 

@@ -1,6 +1,6 @@
 """What the pointer has begun in the viewport: what is drawn of it, and how it goes on."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 from imgui_bundle import ImVec2, imgui
 
@@ -9,6 +9,7 @@ from app.editor import (
     BoxMark,
     EntryMark,
     JointMark,
+    KnifeMark,
     Mark,
     Session,
     StrokeMark,
@@ -19,6 +20,8 @@ from app.editor.tools import ERASE, pointing
 from app.ui.style import Look, ink, outlined, tag_size, write_tag
 from app.ui.viewport.marks import moved_loops
 from app.ui.viewport.screen import Screen
+from engine.domain import SLIT_WIDTH
+from engine.geometry import box_diagonal
 
 DIGITS = "0123456789.,-"
 AXES = ((imgui.Key.x, "x"), (imgui.Key.y, "y"))
@@ -62,6 +65,8 @@ def draw_marks(look: Look, screen: Screen, marks: Iterable[Mark]) -> None:
                 draw_list.add_rect(low, high, ink(accent, 0.8))
             case StrokeMark():
                 _draw_stroke(look, screen, mark)
+            case KnifeMark():
+                _draw_slit(look, screen, mark.points)
             case JointMark():
                 _draw_joint(look, screen, mark)
             case EntryMark():
@@ -76,6 +81,22 @@ def draw_coming_strokes(look: Look, screen: Screen) -> None:
         places = tuple(complex(place) for place in stroke.points + figure.corner)
         mark = StrokeMark(points=places, radius=stroke.radius, keeps=stroke.keeps)
         _draw_stroke(look, screen, mark)
+
+
+def draw_slits(look: Look, screen: Screen) -> None:
+    """Draw the lines along which the knife has parted, or is about to."""
+    figure = screen.project.figure
+    for slit in figure.cut_out.slits:
+        _draw_slit(look, screen, (slit.points + figure.corner).tolist())
+
+
+def _draw_slit(look: Look, screen: Screen, places: Sequence[complex]) -> None:
+    """Draw a line of the knife, as wide as the slit that comes of it."""
+    width = SLIT_WIDTH * box_diagonal(screen.project.figure.domain.outline) * screen.scale
+    points = [screen.point(place) for place in places]
+    draw_list = imgui.get_window_draw_list()
+    for tone, breadth in outlined(look, ink(look.palette.accent), 0.1):
+        draw_list.add_polyline(list(points), tone, max(breadth, width), 0)
 
 
 def _typed() -> str:

@@ -1,5 +1,7 @@
 """What the viewport says: what can be done under the pointer and next, and what is special now."""
 
+from functools import reduce
+
 from imgui_bundle import ImVec2, imgui
 
 from app.document import Figure
@@ -15,7 +17,7 @@ HINTS = (
     "Drag a handle to pose; a second one holds another part in place.",
     "Move the playhead, then drag again: that makes the second key.",
 )
-KEYS = {"ctrl": CTRL, "shift": SHIFT, "alt": ALT}
+KEYS = {"ctrl": (CTRL,), "shift": (SHIFT,), "alt": (ALT,), "ctrl+shift": (SHIFT, CTRL)}
 
 
 def hint_at(session: Session, screen: Screen, spot: Spot) -> str:
@@ -25,12 +27,12 @@ def hint_at(session: Session, screen: Screen, spot: Spot) -> str:
         return _sentence([*map(_in_words, session.pointer.ways), "Esc takes it back"])
     if session.cutting is None and project.playhead.since is not None:
         return "Space stops"
-    if session.cutting is None and not session.overlays.handles:
+    if not (session.cutting or session.moves or session.overlays.handles):
         return "The handles are hidden: H shows them"
     told = [
         _in_words(hint) for tool in tools_of(session) for hint in tool.hints(session, project, spot)
     ]
-    if session.cutting is not None:
+    if session.cutting is not None or session.moves:
         return _sentence([*told, "Esc goes back"])
     if spot.handle is not None:
         return f"{screen.shown.clip.figure.handle(spot.handle).name}: {', '.join(told)}"
@@ -45,25 +47,30 @@ def _sentence(parts: list[str]) -> str:
 
 
 def _in_words(hint: Hint) -> str:
-    return f"{with_key(KEYS[hint.key], hint.how) if hint.key else hint.how} {hint.what}"
+    how = reduce(lambda told, key: with_key(key, told), KEYS.get(hint.key, ()), hint.how)
+    return f"{how} {hint.what}"
 
 
-def draw_badges(look: Look, project: Project, corner: ImVec2, room: ImVec2) -> list[Action]:
-    """Tell what is special now: a pose that no key holds, or what to do next."""
+def draw_badges(
+    session: Session, look: Look, project: Project, corner: ImVec2, room: ImVec2
+) -> list[Action]:
+    """Tell what is special now: a pose that no key holds, a tool in hand, or what to do next."""
     top = corner + ImVec2(room.x / 2, look.em)
     if project.unkeyed is not None:
         return _pill(look, "Unkeyed pose", top, BINDINGS["insert key"])
+    if session.moves:
+        return draw_mode(look, "Moving the whole figure", corner, room)
     step = first_step(project)
     if step is None:
         return []
     return _pill(look, HINTS[step], corner + ImVec2(room.x / 2, room.y - 3.2 * look.em))
 
 
-def draw_cutting(look: Look, corner: ImVec2, room: ImVec2) -> list[Action]:
-    """Tell that the picture is shown at rest, to be cut out, and how to go back."""
-    keys = BINDINGS["stop cutting"].keys_in_words
+def draw_mode(look: Look, what: str, corner: ImVec2, room: ImVec2) -> list[Action]:
+    """Tell what drags do instead of posing, and how to go back."""
+    keys = BINDINGS["pose"].keys_in_words
     place = corner + ImVec2(room.x / 2, look.em)
-    return _pill(look, f"Cutting out: {keys} goes back to posing", place)
+    return _pill(look, f"{what}: {keys} goes back to posing", place)
 
 
 def first_step(project: Project) -> int | None:

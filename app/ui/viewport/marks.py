@@ -72,8 +72,8 @@ def _handles(session: Session, project: Project, shown: Shown) -> list[HandleMar
 def unreached(project: Project, shown: Shown) -> dict[int, complex]:
     """Return where handles that have not arrived are wanted, by their ids."""
     figure, targets = shown.clip.figure, shown.pose.targets if shown.pose else {}
-    if project.pull and project.pull.targets is not None:
-        targets = project.pull.targets
+    if project.pull and project.pull.asked is not None:
+        targets = project.pull.asked
     places = zip(figure.handles, shown.handle_places.tolist(), strict=True)
     wanted = ((handle.id, targets.get(handle.id), place) for handle, place in places)
     return {

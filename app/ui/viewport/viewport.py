@@ -1,21 +1,20 @@
 """The drawing, and everything that the pointer does to it."""
 
 from dataclasses import replace
-from functools import partial
 from typing import NamedTuple
 
 from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui, imgui_ctx
 
-from app.document import handle_commands
+from app.document import HOLDS, Handle, handle_commands
 from app.editor import Action, Project, Session, do
 from app.editor.actions import editing, posing, viewing
 from app.editor.tools import pointing
-from app.ui.shortcuts import ALT, CTRL, with_key
+from app.ui.shortcuts import ALT, CTRL, bound_item, with_key
 from app.ui.style import Look, density, in_hand, is_pressed
 from app.ui.viewport.cut_view import draw_brush
-from app.ui.viewport.gesture import draw_coming_strokes, go_on
+from app.ui.viewport.gesture import draw_coming_strokes, draw_slits, go_on
 from app.ui.viewport.grips import draw_axis, draw_ring, find_ring, lay_axis
-from app.ui.viewport.hints import draw_badges, draw_cutting, hint_at
+from app.ui.viewport.hints import draw_badges, draw_mode, hint_at
 from app.ui.viewport.marks import unreached
 from app.ui.viewport.screen import GRIP, Screen
 from app.ui.viewport.split_view import SplitTextures, divide, draw_divider, draw_pictures
@@ -24,6 +23,14 @@ ZOOM_STEP = 1.15  # a notch of the wheel
 SMALLEST_ZOOM, LARGEST_ZOOM = 0.02, 64.0
 LEFT_OR_RIGHT = imgui.ButtonFlags_.mouse_button_left | imgui.ButtonFlags_.mouse_button_right
 ANY_BUTTON = LEFT_OR_RIGHT | imgui.ButtonFlags_.mouse_button_middle
+# By their names in the table of shortcuts; a line parts two groups.
+CANVAS = (
+    ("insert key", "copy", "paste", "paste flipped"),
+    ("suggest handles", "select all", "move"),
+    ("fit", "fit motion", "actual size"),
+    ("handles", "outline", "onion skin"),
+)
+DEPTHS = {"In front": 1.0, "In its usual order": 0.0, "Behind": -1.0}
 
 
 def draw(session: Session, look: Look, project: Project, pictures: SplitTextures) -> list[Action]:
@@ -52,24 +59,28 @@ def draw(session: Session, look: Look, project: Project, pictures: SplitTextures
     spot = replace(spot, at_target=handles.at_target)
     if handles.is_pressed or axis.is_pressed or _is_canvas_pressed():
         actions.append(do(pointing.press, spot))
+    actions += _canvas_menu(session, is_pointed=on_canvas and handles.hovered is None)
     actions += _navigate(screen)
     actions += handles.actions
     actions += go_on(session, look, screen)
+    is_over = on_canvas or handles.hovered is not None or axis.is_hot
+    if session.moves and is_over and session.cutting is None:
+        imgui.set_mouse_cursor(imgui.MouseCursor_.resize_all)
     if handles.hovered != session.hovered:
         actions.append(do(pointing.hover, handles.hovered))
     draw_axis(look, axis)
     if ring is not None:
         draw_ring(look, ring, is_pointed=on_ring and session.pointer is None)
-    is_over = on_canvas or handles.hovered is not None or axis.is_hot
     hint = hint_at(session, screen, spot) if is_over else ""
     if hint != session.hint:
         actions.append(do(pointing.explain, hint))
     if session.cutting is None:
-        return actions + draw_badges(look, project, corner, parts.room)
+        return actions + draw_badges(session, look, project, corner, parts.room)
     draw_coming_strokes(look, screen)
+    draw_slits(look, screen)
     if on_canvas or session.pointer is not None:
         draw_brush(session, look, imgui.get_mouse_pos(), screen.scale)
-    return actions + draw_cutting(look, corner, parts.room)
+    return actions + draw_mode(look, "Cutting out", corner, parts.room)
 
 
 def _fit(session: Session, room: ImVec2) -> list[Action]:
@@ -128,29 +139,77 @@ def _lay_handles(session: Session, look: Look, screen: Screen) -> _Handles:
         pressed = pressed or is_pressed()
         if session.pointer is None and imgui.is_item_clicked(imgui.MouseButton_.right):
             imgui.open_popup(f"menu of handle {identity}")
+            if identity not in screen.project.selected:
+                actions.append(do(editing.select, frozenset({identity})))
     for identity in identities:
-        actions += _menu(screen, identity)
+        actions += _handle_menu(session, screen, identity)
     return _Handles(hovered, at_target, pressed, actions)
 
 
-def _menu(screen: Screen, identity: int) -> list[Action]:
+def _canvas_menu(session: Session, *, is_pointed: bool) -> list[Action]:
+    """Draw the menu of the canvas, if it is open; a right click opens it where it is pointed."""
+    is_free = is_pointed and session.pointer is None and session.cutting is None
+    if is_free and imgui.is_mouse_clicked(imgui.MouseButton_.right):
+        imgui.open_popup("menu of the canvas")
+    actions: list[Action] = []
+    if not imgui.begin_popup("menu of the canvas"):
+        return actions
+    for number, names in enumerate(CANVAS):
+        if number:
+            imgui.separator()
+        for name in names:
+            actions += bound_item(session, name)
+    imgui.end_popup()
+    return actions
+
+
+def _handle_menu(session: Session, screen: Screen, identity: int) -> list[Action]:
+    """Draw the menu of a handle, if it is open: what it does is done with all that are selected."""
     actions: list[Action] = []
     if not imgui.begin_popup(f"menu of handle {identity}"):
         return actions
-    handle, chosen = screen.project.figure.handle(identity), frozenset({identity})
+    figure, handle = screen.project.figure, screen.project.figure.handle(identity)
+    chosen = screen.project.selected | {identity}
     target = screen.shown.pose.targets.get(identity) if screen.shown.pose else None
     item = imgui.internal.menu_item_ex  # as menu_item_simple, with icons in a column
     if item("Delete", icons.ICON_FA_TRASH, with_key(ALT, "click")):
         actions.append(do(posing.remove_handles, chosen))
-    if item("Unlock" if handle.locked else "Lock", icons.ICON_FA_LOCK):
-        lock = partial(handle_commands.lock_handles, locked=not handle.locked)
-        actions.append(do(editing.edit_figure, lock, chosen))
-    is_anchor = handle.position == screen.project.figure.anchor
-    label = "Automatic anchor" if is_anchor else "Make it the anchor"
+    actions += bound_item(session, "pin here") + bound_item(session, "lock")
+    actions += _hold(handle, chosen) + _depth(session, screen, handle)
+    imgui.separator()
+    label = "Automatic anchor" if handle.position == figure.anchor else "Make it the anchor"
     if item(label, icons.ICON_FA_ANCHOR, with_key(CTRL, "click")):
         actions.append(do(posing.anchor_at, identity))
     is_turned = target is not None and target.rotation is not None
     if item("Let it turn freely", icons.ICON_FA_ROTATE, enabled=is_turned):
         actions.append(do(posing.free_turn, identity))
     imgui.end_popup()
+    return actions
+
+
+def _hold(handle: Handle, chosen: frozenset[int]) -> list[Action]:
+    """Draw how firmly it holds."""
+    if not imgui.begin_menu("Hold"):
+        return []
+    weigh = handle_commands.weigh_handles
+    actions = [
+        do(editing.edit_figure, weigh, chosen, weight)
+        for word, weight in HOLDS.items()
+        if imgui.menu_item(word, "", handle.weight == weight)[0]
+    ]
+    imgui.end_menu()
+    return actions
+
+
+def _depth(session: Session, screen: Screen, handle: Handle) -> list[Action]:
+    """Draw whether it is painted in front where the drawing lies over itself."""
+    if not imgui.begin_menu("Depth"):
+        return []
+    front = editing.depth_now(session, screen.project, handle)
+    actions = [
+        do(editing.set_depth, handle.id, depth)
+        for word, depth in DEPTHS.items()
+        if imgui.menu_item(word, "", front == depth)[0]
+    ]
+    imgui.end_menu()
     return actions

@@ -90,7 +90,7 @@ class Docking:
     ) -> str:
         """Return the fullest of the panel's labels with which all tabs beside it fit.
 
-        Where not all titles do, the tab in front has its own, and the others are icons.
+        Where not all titles do, the tab in front has its own, and others as far as there is room.
         """
         together = [
             other
@@ -105,14 +105,18 @@ class Docking:
             texts = [other.labels[number].split("###")[0] for other in together]
             if sum(imgui.calc_text_size(text).x + around for text in texts) <= room:
                 return panel.labels[number]
-        fronts = [other for other in together if is_in_front(other.title)]
-        texts = [
-            (title if other in fronts else icon).split("###")[0]
+        widths = {
+            other: [imgui.calc_text_size(text.split("###")[0]).x for text in other.labels[1:]]
             for other in together
-            for title, icon in [other.labels[1:]]
-        ]
-        fits = sum(imgui.calc_text_size(text).x + around for text in texts) <= room
-        return panel.labels[1] if fits and panel in fronts else panel.labels[-1]
+        }
+        left = room - sum(icon + around for _, icon in widths.values())
+        # The one in front first, then the others in their order.
+        for other in sorted(together, key=lambda each: is_in_front(each.title), reverse=True):
+            title, icon = widths[other]
+            left -= title - icon
+            if other is panel or left < 0:
+                break
+        return panel.labels[1] if left >= 0 else panel.labels[-1]
 
 
 def _splits(room: ImVec2, em: float) -> list[hello_imgui.DockingSplit]:

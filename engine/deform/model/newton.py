@@ -218,13 +218,12 @@ def newton_models(objective: Objective, jet: Jet) -> Iterator[Model]:
     """
     radial = objective.radial(jet)
     hessian = projected_hessian(objective, jet, radial)
-    removed = negative_part(objective, jet, radial)
-    for part in KEPT_NEGATIVE:
+    gradient, removed = objective.gradient(jet, radial), negative_part(objective, jet, radial)
+    for part in (*KEPT_NEGATIVE, 0.0):
         bent = hessian.copy()
         bent[: len(removed), : len(removed)] -= part * removed
-        factor = factor_of(bent, SHIFT)
+        factor = factor_of(bent, SHIFT) if part else factor_shifted(hessian)
         if factor is not None:
-            gradient = objective.gradient(jet, radial)
             yield Model(
                 objective=objective,
                 gradient=gradient,
@@ -232,17 +231,6 @@ def newton_models(objective: Objective, jet: Jet) -> Iterator[Model]:
                 factor=factor,
                 exact=part == 1.0,
             )
-    yield _model(objective, jet, radial, hessian)
-
-
-def _model(objective: Objective, jet: Jet, radial: Radial, hessian: Floats) -> Model:
-    return Model(
-        objective=objective,
-        gradient=objective.gradient(jet, radial),
-        hessian=hessian,
-        factor=factor_shifted(hessian),
-        exact=False,
-    )
 
 
 def line_search(

@@ -103,7 +103,9 @@ def begin_search(
         within=inside,
         reach=reach,
         walls=walls_around(own, outermost, jet.a, jet.b),
-        weight=HERE_PER_ENERGY * energy if way is Way.HERE else _first_weight(energy),
+        weight=HERE_PER_ENERGY * energy
+        if way is Way.HERE
+        else max(FIRST_LEAST, FIRST_PER_ENERGY * energy),
         energy=energy,
     )
 
@@ -226,7 +228,3 @@ def widened(search: Search, jet: Jet) -> Search:
     outermost = Walls.at(wider.limits, wider.boundary)
     walls = walls_around(wider.rung, outermost, jet.a, jet.b)
     return replace(wider, walls=walls)
-
-
-def _first_weight(energy: float) -> float:
-    return max(FIRST_LEAST, FIRST_PER_ENERGY * energy)

@@ -12,3 +12,4 @@ from engine.domain.outline.enclosure import (
     enclose as enclose,
 )
 from engine.domain.outline.holes import HoleMap as HoleMap, find_holes as find_holes
+from engine.domain.outline.knife import SLIT_WIDTH as SLIT_WIDTH

@@ -9,7 +9,8 @@ import numpy as np
 from engine.arrays import Booleans, Complexes, Indices, readonly
 from engine.domain.outline.cage import offset_cage
 from engine.domain.outline.fitting import Candidates, fit_polygon
-from engine.domain.outline.holes import SMALLEST_HOLE, trace_hole
+from engine.domain.outline.holes import SMALLEST_HOLE, hole_in, trace_hole
+from engine.domain.outline.knife import part
 from engine.domain.outline.margin import DistanceField, MarginCurve, curve_at_margin, distance_field
 from engine.domain.picture import Holes, WholePiece, join_parts, working_grid
 from engine.errors import EngineError
@@ -49,12 +50,16 @@ class Enclosure:
         Inside the outline and apart, the largest first.
     notices : tuple of str
         What had to be done to the subject, in words.
+    closed : complex128, shape (m,), optional
+        Where the vertices of the outline, and then of the holes' outlines, are painted: those on
+        both sides of a slit meet. None where nothing was parted.
     """
 
     outline: Complexes
     cage: Complexes
     holes: tuple[Hole, ...]
     notices: tuple[str, ...]
+    closed: Complexes | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -78,7 +83,12 @@ class _Fit:
 
 
 def enclose(
-    mask: Booleans, *, detail: Detail, holes: Holes = "keep", swapped: Sequence[complex] = ()
+    mask: Booleans,
+    *,
+    detail: Detail,
+    holes: Holes = "keep",
+    swapped: Sequence[complex] = (),
+    slits: Sequence[Complexes] = (),
 ) -> Enclosure:
     """Find the outline of a subject, and the cage around it.
 
@@ -94,6 +104,8 @@ def enclose(
         largest first, as long as all loops together have few vertices.
     swapped : sequence of complex
         Points in holes that are treated the other way, in pixels of the picture, y up.
+    slits : sequence of complex128, each of shape (n,)
+        Lines along which the subject is parted, in pixels of the picture, y up.
 
     Returns
     -------
@@ -104,7 +116,8 @@ def enclose(
     Raises
     ------
     EngineError
-        If the subject falls into too many parts, or is too intricate for an outline.
+        If the subject falls into too many parts, or is too intricate for an outline; if a slit
+        cuts off a part of it, or parts nothing.
     """
     grid = working_grid(mask)
     piece = join_parts(grid.mask, grid.diagonal)
@@ -116,10 +129,18 @@ def enclose(
     kept, crowded = _kept_holes(piece, wanted, fit, margin, grid.diagonal)
     small = np.setdiff1d(wanted, [*kept, *crowded])
     filled = np.setdiff1d(every, wanted)
+    closed = None
+    outline, cage, open_holes = fit.outline, fit.cage, tuple(kept.values())
+    if slits:
+        lines = [grid.to_cells(slit) for slit in slits]
+        outline, cage, open_holes, closed = _parted(
+            fit, open_holes, lines, grid.mask, grid.diagonal
+        )
     return Enclosure(
-        outline=readonly(grid.to_picture(fit.outline)),
-        cage=readonly(grid.to_picture(fit.cage)),
-        holes=tuple(hole.moved(grid.origin, grid.cell) for hole in kept.values()),
+        outline=readonly(grid.to_picture(outline)),
+        cage=readonly(grid.to_picture(cage)),
+        holes=tuple(hole.moved(grid.origin, grid.cell) for hole in open_holes),
+        closed=None if closed is None else readonly(grid.to_picture(closed)),
         notices=(
             *piece.notices,
             *piece.told_filled(filled),
@@ -128,6 +149,30 @@ def enclose(
             *_told(fit.draft, int(np.count_nonzero(piece.mask))),
         ),
     )
+
+
+def _parted(
+    fit: _Fit,
+    holes: Sequence[Hole],
+    lines: Sequence[Complexes],
+    mask: Booleans,
+    diagonal: float,
+) -> tuple[Complexes, Complexes, tuple[Hole, ...], Complexes]:
+    """Part an outline and its holes; return both with cages, and where they are painted."""
+    loops, closed = part([fit.outline, *(hole.outline for hole in holes)], lines, mask, diagonal)
+    untouched = {hole.outline.tobytes(): hole for hole in holes}
+    offset = fit.draft.offset
+    try:
+        cage = offset_cage(loops[0], offset)
+        found = tuple(untouched.get(loop.tobytes()) or hole_in(loop, offset) for loop in loops[1:])
+    except EngineError as error:
+        raise EngineError(
+            "The knife's line leaves too little room beside it; draw it farther from edges and "
+            "other lines."
+        ) from error
+    if sum(map(len, loops)) > LARGEST_OUTLINE:
+        raise EngineError("There are too many of the knife's lines; draw fewer or shorter ones.")
+    return loops[0], cage, found, np.concatenate(closed)
 
 
 def _kept_holes(

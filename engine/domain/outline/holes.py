@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import ndimage
 
-from engine.arrays import Booleans, Integers
+from engine.arrays import Booleans, Complexes, Integers
 from engine.domain.outline.cage import offset_cage
 from engine.domain.outline.fitting import Candidates, fit_polygon
 from engine.domain.outline.margin import curve_at_margin, distance_field
@@ -137,7 +137,18 @@ def trace_hole(
     if outline is None:
         return None
     try:
-        cage = offset_cage(outline, offset, hole=True)
+        return hole_in(outline, offset).moved(corner)
     except EngineError:
         return None
-    return Hole(outline=outline, cage=cage, centre=deepest_point(cage)).moved(corner)
+
+
+def hole_in(outline: Complexes, offset: float) -> Hole:
+    """Return the hole with this outline, and a cage in it at most at this offset.
+
+    Raises
+    ------
+    EngineError
+        If the outline comes too close to itself to leave room for a cage.
+    """
+    cage = offset_cage(outline, offset, hole=True)
+    return Hole(outline=outline, cage=cage, centre=deepest_point(cage))

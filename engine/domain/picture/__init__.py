@@ -13,6 +13,7 @@ from engine.domain.picture.cut_out import (
     Enclosed as Enclosed,
     Holes as Holes,
     Mask as Mask,
+    Slit as Slit,
     Stroke as Stroke,
 )
 from engine.domain.picture.grid import WorkingGrid as WorkingGrid, working_grid as working_grid

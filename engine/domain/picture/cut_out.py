@@ -83,12 +83,27 @@ class Stroke:
                 f"The radius of a brush is {SMALLEST_RADIUS:g} to {LARGEST_RADIUS:g} pixels, not "
                 f"{self.radius:g}."
             )
-        if max(np.abs(points.real).max(), np.abs(points.imag).max()) > FARTHEST_STROKE:
-            raise EngineError(
-                f"A stroke goes farther from the picture than {FARTHEST_STROKE:,.0f} pixels."
-            )
+        _require_near(points, "A stroke")
         discs = len(points) + np.abs(np.diff(points)).sum() / _spacing(self.radius)
         object.__setattr__(self, "rows", float(discs * (2 * self.radius + 3)))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Slit:
+    """A line along which a knife parts what touches.
+
+    Parameters
+    ----------
+    points : complex128, shape (n,)
+        Its way, in pixels of the picture, y up; at least two.
+    """
+
+    points: Complexes
+
+    def __post_init__(self) -> None:
+        points = as_points(self.points, "knife's line", at_least=2)
+        _require_near(points, "The knife's line")
+        object.__setattr__(self, "points", points)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -115,6 +130,8 @@ class CutOut:
     swapped : tuple of complex
         Points in holes, and in enclosed parts, that are treated the other way, in pixels of the
         picture, y up.
+    slits : tuple of Slit
+        Where it is parted by a knife, and shows the picture all the same.
     """
 
     tolerance: int = 18
@@ -124,6 +141,7 @@ class CutOut:
     strokes: tuple[Stroke, ...] = ()
     holes: Holes = "keep"
     swapped: tuple[complex, ...] = ()
+    slits: tuple[Slit, ...] = ()
 
     def __post_init__(self) -> None:
         if not 0 <= self.tolerance <= 255:
@@ -146,20 +164,32 @@ class CutOut:
             )
         if self.holes not in {"fill", "keep"}:
             raise EngineError(f"Holes are one of 'fill' and 'keep', not {self.holes!r}.")
-        points = sum(len(stroke.points) for stroke in self.strokes)
+        points = sum(len(line.points) for line in self.lines)
         if points > MOST_STROKE_POINTS or sum(stroke.rows for stroke in self.strokes) > MOST_ROWS:
             raise EngineError("There are too many strokes; save the mask and load it instead.")
 
     @property
     def is_by_hand(self) -> bool:
-        """Whether there is a mask or a stroke."""
-        return self.mask is not None or bool(self.strokes)
+        """Whether there is a mask, a stroke or a line of the knife."""
+        return self.mask is not None or bool(self.strokes) or bool(self.slits)
 
     @property
     def nbytes(self) -> int:
         """Bytes of its arrays."""
         mask = 0 if self.mask is None else self.mask.bits.nbytes
-        return mask + sum(stroke.points.nbytes for stroke in self.strokes)
+        return mask + sum(line.points.nbytes for line in self.lines)
+
+    @property
+    def lines(self) -> "tuple[Stroke | Slit, ...]":
+        """All that was drawn by hand."""
+        return (*self.strokes, *self.slits)
+
+
+def _require_near(points: Complexes, name: str) -> None:
+    if max(np.abs(points.real).max(), np.abs(points.imag).max()) > FARTHEST_STROKE:
+        raise EngineError(
+            f"{name} goes farther from the picture than {FARTHEST_STROKE:,.0f} pixels."
+        )
 
 
 def paint(kept: Booleans, stroke: Stroke) -> None:

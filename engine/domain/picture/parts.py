@@ -97,9 +97,9 @@ def join_parts(mask: Booleans, diagonal: float) -> WholePiece:
     return WholePiece(mask=filled, holes=holes, hole_areas=hole_areas, notices=tuple(notices))
 
 
-def touching(area: Booleans, seeds: Booleans, *, corners: bool = False) -> Booleans:
-    """Return the components of `area`, joined by edges or by corners too, that have a seed."""
-    labels, count = ndimage.label(area, WITH_CORNERS if corners else None)
+def touching(area: Booleans, seeds: Booleans) -> Booleans:
+    """Return the components of `area`, joined by edges, that have a seed."""
+    labels, count = ndimage.label(area)
     chosen = np.zeros(count + 1, dtype=np.bool_)
     chosen[labels[seeds]] = True
     chosen[0] = False

@@ -1,4 +1,5 @@
 import numpy as np
+import pictures
 import pytest
 from layered import blob, openraster
 from numpy.testing import assert_allclose, assert_array_equal
@@ -45,7 +46,7 @@ def test_the_file_is_as_documented(drawing, tmp_path, capsys):
         domain = dict(file)
     of_holes = {"outlines", "outline_sizes", "cages", "cage_sizes", "centres"}
     assert set(domain) == {
-        *("outline", "cage", "vertices", "triangles", "uv", "image_size", "corner"),
+        *("outline", "cage", "vertices", "triangles", "uv", "image_size", "corner", "closed"),
         *(f"hole_{name}" for name in of_holes),
     }
     assert all(len(domain[f"hole_{name}"]) == 0 for name in of_holes)
@@ -53,6 +54,7 @@ def test_the_file_is_as_documented(drawing, tmp_path, capsys):
     assert domain["corner"] == 0
     assert np.issubdtype(domain["image_size"].dtype, np.integer)
     outline, cage, vertices = domain["outline"], domain["cage"], domain["vertices"]
+    assert_array_equal(domain["closed"], outline)
     assert outline.dtype == cage.dtype == vertices.dtype == np.complex128
     assert domain["triangles"].dtype == np.int32
     assert domain["uv"].dtype == np.float64
@@ -252,3 +254,27 @@ def test_which_layer_is_asked_for_where_there_are_several(layered, drawing, tmp_
     alone.write_bytes(openraster((90, 70), '<layer name="blob" src="data/0.png"/>', [blob(90, 70)]))
     words = ["domain", alone, "--out", out, "--triangles", "1000"]
     assert main(list(map(str, words))) == 0
+
+
+def test_a_knife_parts_along_a_line_in_pixels_from_the_upper_left_corner(tmp_path, capsys):
+    mask = np.zeros((300, 200), dtype=np.bool_)
+    mask[20:-20, 20:-20] = True
+    Image.fromarray(pictures.painted(mask)).save(tmp_path / "block.png")
+    out = tmp_path / "block.npz"
+    words = ["domain", tmp_path / "block.png", "--out", out, "--triangles", "1000"]
+    # From below, up to 100 pixels under the upper edge.
+    assert main([*map(str, words), "--knife", "100,300,100,200,100,100"]) == 0
+    with np.load(out) as file:
+        domain = dict(file)
+    inside = polygon.contains(domain["outline"], np.array([100 + 50j, 100 + 180j, 100 + 210j]))
+    assert inside.tolist() == [False, False, True]
+    moved = np.abs(domain["closed"] - domain["outline"])
+    assert 0 < moved.max() < 0.0025 * np.hypot(260, 160)
+    for line, message in (
+        ("100,300,100,0", "cuts off a part"),
+        ("250,300,250,0", "does not touch"),
+        ("100,300,100", "at least two places"),
+        ("100,300,100,nan", "at least two places"),
+        ("100,300", "at least two places"),
+    ):
+        assert message in error_of([*words, "--knife", line], capsys)

@@ -3,6 +3,7 @@ import pty
 import signal
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -137,6 +138,17 @@ def test_options_stand_in_for_the_projects_own_settings(document, tmp_path, caps
     assert [frame.shape for frame in frames] == [(50, 40, 4)] * 5
     assert all(frame[0, 0].tolist() == [0, 0, 0, 0] for frame in frames)
     assert "5 frames of 40 × 50 pixels, 48 a second" in capsys.readouterr().out
+
+
+def test_a_format_has_the_pictures_that_it_had_last_in_the_project(document, tmp_path):
+    frames = replace(document.export, size=(60, 45))
+    film = replace(frames.in_format("mp4"), size=(120, 90), background="#ffffff")
+    project = tmp_path / "film.lissom"
+    save_project(project, altered(document, export=film))
+    export(project, "--format", "png", "--frames", "0:0", "--out", tmp_path / "frames")
+    frame = pixels(tmp_path / "frames" / "frame_0000.png")
+    assert frame.shape == (45, 60, 4)
+    assert not frame[0, 0].any()
 
 
 def test_a_name_chooses_its_format(project, tmp_path):

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from animations import moving_document
+from animations import PARTED, moving_document
 from documents import altered
 from numpy.testing import assert_allclose, assert_array_equal
 from PIL import Image
@@ -31,6 +31,7 @@ from app.export_formats import ShapeDetail
 from app.motion import Animation
 from app.storage import decode_picture, load_project, sample_images
 from engine.arrays import Complexes, Floats
+from engine.domain import find_seam
 
 TOLERANCE = 0.5
 PIXELS = 100  # a metre
@@ -166,6 +167,22 @@ def test_the_picture_is_where_the_mesh_shows_it(giraffe, tmp_path):
     # What is not seen has colours of what is near it: none is black here.
     beside = texture[(texture[..., 3] == 0) & np.roll(texture[..., 3] > 0, 1, axis=0)]
     assert beside[:, :3].max(axis=1).min() > 0
+
+
+def test_a_slit_is_closed_in_a_model(tmp_path):
+    out = tmp_path / "parted.glb"
+    document, _ = exported(moving_document(cut_out=PARTED), out, settings(tolerance=0.01))
+    gltf, figure = read(out), document.figures[0]
+    seam = find_seam(figure.domain)
+    primitive = gltf.meshes[0].primitives[0]
+    rest = places(gltf, primitive.attributes.POSITION) + complex(*gltf.asset.extras["origin"])
+    wanted = seam.closed(figure.domain.mesh.vertices)
+    assert np.abs(wanted - figure.domain.mesh.vertices).max() > 0.05
+    assert_allclose(rest, wanted, rtol=0, atol=1e-3)
+    animation = animation_of(clip_of(document, figure.id))
+    last = document.frames.last
+    moved = seam.closed(animation.positions(last))
+    assert np.abs(played(gltf, 0, last / document.fps) - moved).max() < 0.02
 
 
 def test_materials_and_order_are_those_of_a_drawing(giraffe):

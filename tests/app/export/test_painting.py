@@ -8,7 +8,8 @@ from pathlib import Path
 import moderngl
 import numpy as np
 import pytest
-from animations import BLOB, Sliding, still_document
+from animations import BLOB, PARTED, Sliding, still_document
+from documents import altered
 from numpy.testing import assert_array_equal
 
 from app.document.model import Document
@@ -75,6 +76,20 @@ def test_the_drawing_at_rest_is_the_picture_and_nothing_hidden(gl, document):
     assert frame.shape == BLOB.shape
     assert_array_equal(frame[SEEN], BLOB[SEEN])
     assert not frame[BLOB[..., 3] == 0].any()
+
+
+@pytest.mark.parametrize("triangles", [1_000, 40_000])
+def test_a_slit_is_not_seen_as_long_as_its_sides_lie_together(gl, triangles):
+    document = still_document(triangles=triangles, cut_out=PARTED)
+    domain = document.figures[0].domain
+    assert not domain.contains(np.array([60.5 + 25j])).any()
+    assert_array_equal(still(gl, document)[SEEN], BLOB[SEEN])
+    with drawing(gl, document, Sliding(document, 3)) as draw:
+        moved = draw(1.0)
+    assert_array_equal(moved[:, 3:][SEEN[:, :-3]], BLOB[:, :-3][SEEN[:, :-3]])
+    # Without its seam it is.
+    naked = altered(document, domain=replace(domain, closed=None))
+    assert (still(gl, naked)[SEEN] != BLOB[SEEN]).any()
 
 
 def test_whole_pixels_of_motion_move_whole_pixels(gl, document):

@@ -16,6 +16,7 @@ from app.render.scene import Backdrop, Ghost, Heat, Scene, Wireframe
 from app.render.view import View
 from app.storage.assets import shader_source
 from engine.arrays import Complexes
+from engine.domain import Seam
 from engine.streaming import MOST_ROWS, Series, SeriesPiece
 
 WIDTH, HEIGHT = 120, 90
@@ -60,11 +61,22 @@ def streamed_pose(easel: Easel, mesh: GpuMesh, series: Series, time: float) -> P
     return easel.pose(mesh, series.values(time).astype(float).view(complex))
 
 
-@pytest.mark.parametrize("rows", [2, 7, 12])
-def test_the_shader_places_vertices_as_the_processor_does(easel, rows):
-    _, rest = blob_mesh(easel)
+def some_seam(mesh: GpuMesh) -> Seam:
+    """A seam of every seventh triangle's first corner."""
+    moved, first = np.unique(mesh.triangles[::7, 0], return_index=True)
+    return Seam(
+        vertices=moved.astype(np.intp),
+        corners=mesh.triangles[::7][first],
+        weights=np.tile([1.5, -0.2, -0.3], (len(moved), 1)),
+    )
+
+
+@pytest.mark.parametrize(("rows", "is_parted"), [(2, False), (7, True), (7, False), (12, False)])
+def test_the_shader_places_vertices_as_the_processor_does(easel, rows, is_parted):
+    mesh, rest = blob_mesh(easel)
+    seam = some_seam(mesh) if is_parted else None
     series = bending(rest, rows)
-    source = SeriesBuffer(easel.gl, len(rest), rows + 1)
+    source = SeriesBuffer(easel.gl, len(rest), rows + 1, seam=seam)
     ((name, value),) = source.constants
     program = easel.gl.program(
         vertex_shader=f"#version 330 core\n#define {name} {value}\n{shader_source(source.shader)}"
@@ -80,8 +92,10 @@ def test_the_shader_places_vertices_as_the_processor_does(easel, rows):
         set_uniforms(program, source.uniforms)
         binding.transform(feedback, vertices=len(rest))
         placed = np.frombuffer(feedback.read(), np.float32)
-        assert_allclose(placed, series.values(time), rtol=0, atol=1e-6 * SIZE)
-        if time in (0.0, 1.0):
+        wanted = series.values(time).reshape(-1, 2)
+        wanted = wanted if seam is None else seam.closed(wanted)
+        assert_allclose(placed, wanted.ravel(), rtol=0, atol=1e-6 * SIZE)
+        if seam is None and time in (0.0, 1.0):
             assert_array_equal(placed, series.pieces[-int(time)].rows[-int(time)])
     for owned in (binding, feedback, target, program, source):
         owned.release()

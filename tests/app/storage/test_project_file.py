@@ -25,7 +25,7 @@ from app.errors import LissomError
 from app.storage.assets import sample_images
 from app.storage.project.archive import MIMETYPE
 from app.storage.project_file import load_project, load_thumbnail, save_project
-from engine.domain.picture.cut_out import CutOut
+from engine.domain.picture.cut_out import CutOut, Slit
 from engine.maps import Boundary, certify
 
 CAGE, MESH = disc_domain().cage, disc_domain().mesh
@@ -373,6 +373,7 @@ def test_every_field_is_needed(tmp_path, members):
     kept |= {"names", "sheet", "shapes"}  # of exports; earlier versions did not write them
     # Of the cut-out, likewise.
     kept |= {"background", "enclosed", "mask", "strokes", "holes", "swapped", "stale"}
+    kept |= {"slits", "parted"}
     missing = [way for way in ways(known) if way[-1] not in kept]
     assert len(missing) > 60
     for way in missing:
@@ -569,3 +570,36 @@ def test_no_damage_gets_through(tmp_path):
         else:
             assert not differences(document, full_document())
     assert refused > 200
+
+
+def test_a_domain_that_was_parted_comes_back_so_and_needs_what_closes_it(tmp_path):
+    whole = full_document()
+    (first, second) = whole.figures
+    loops = np.concatenate(first.domain.loops)
+    slits = (Slit(points=np.array([-5 + 20j, 1 / 3])), Slit(points=np.array([3.0 + 199j, 4, 5])))
+    parted = replace(
+        first,
+        cut_out=replace(first.cut_out, slits=slits),
+        domain=replace(first.domain, closed=loops + 0.01),
+    )
+    document = replace(whole, figures=(parted, second))
+    path = tmp_path / "a.lissom"
+    save_project(path, document)
+    assert not differences(load_project(path), document)
+    members = read_members(path)
+    name = "figures/0/closed.npy"
+    for content, message in (
+        (npy(loops[1:]), "closed beside"),
+        (npy(loops + 1000.0), "closed beside"),
+        (npy(np.full(len(loops), complex("nan"))), "closed beside"),
+    ):
+        with pytest.raises(LissomError, match=message):
+            load_project(pack(tmp_path / "b", members | {name: content}))
+    for counts, message in (([2, 2], "slits of a cut-out"), ([4, 1], "at least 2"), (3, "a list")):
+        broken = with_json(members, "figures", 0, "domain", "slits", value=counts)
+        with pytest.raises(LissomError, match=message):
+            load_project(pack(tmp_path / "b", broken))
+    for lost in (name, "figures/0/slits.npy"):
+        fewer = {other: content for other, content in members.items() if other != lost}
+        with pytest.raises(LissomError, match=f"lacks {lost}"):
+            load_project(pack(tmp_path / "b", fewer))

@@ -9,6 +9,7 @@ from documents import differences
 from imgui_bundle import imgui
 from PIL import Image
 
+from app.document import Target
 from app.editor.actions import cutting, editing, posing, rebuilding
 from app.storage.project_file import load_project, save_project
 from app.ui.style import TOAST
@@ -371,3 +372,120 @@ def test_the_canvas_suits_lines_whose_paper_was_removed(window):
     window.act(editing.undo)
     rest(window)
     assert pixel(window, outside).max() < 80
+
+
+@pytest.fixture
+def boots(window, tmp_path):
+    """A block with a handle left and right of the middle of its lower half, and a key of each."""
+    mask = np.zeros((SIZE, SIZE), dtype=np.bool_)
+    mask[10:-10, 10:-10] = True
+    Image.fromarray(pictures.painted(mask)).save(tmp_path / "boots.png")
+    project = window.open(tmp_path / "boots.png")
+    for place in (complex(30, 30), complex(90, 30), complex(60, 100)):
+        posing.add_handle(window.session, place)
+        window.settle()
+    return project
+
+
+FROM_BELOW = (complex(60, 3), complex(60, 40), complex(60, 70))
+
+
+def test_a_knife_parts_what_touches_and_nothing_is_seen_of_it_at_rest(window, boots):
+    document, outline = boots.document, len(boots.figure.domain.outline)
+    before = pixel(window, 60 + 40j)
+    window.act(cutting.take_up, "knife")
+    stroke(window, *FROM_BELOW)
+    (slit,) = boots.figure.cut_out.slits
+    assert slit.points[0] == pytest.approx(FROM_BELOW[0], abs=1)
+    assert boots.history.undo_label == "Cut by the knife"
+    rest(window)
+    figure = boots.figure
+    assert not figure.is_stale
+    assert len(figure.domain.outline) > outline + 8
+    assert len(figure.handles) == 3
+    window.act(cutting.take_up, None)
+    for place in (60 + 40j, 60 + 12j, 60 + 66j):
+        assert tuple(pixel(window, place)) == tuple(before)
+    # Both sides can be pulled apart.
+    targets = figure.keys[0].pose.targets
+    wishes = {0: Target(position=15 + 30j), 1: Target(position=105 + 30j), 2: targets[2]}
+    posing.wish(window.session, wishes)
+    window.settle()
+    reached = boots.puppet.shown.handle_places
+    assert abs(reached[1] - reached[0]) == pytest.approx(90, abs=0.5)
+    assert boots.figure.keys[0].pose.certificate.certified
+    sides = boots.puppet.shown.mesh.posed(boots.puppet.shown.pose)[: len(figure.domain.outline)]
+    beside = np.abs(figure.domain.outline - (60 + 20j)) < 8
+    assert np.ptp(sides[beside].real) > 10
+    assert pixel(window, 60 + 15j).min() > 200  # the canvas
+    window.act(editing.undo)
+    window.act(editing.undo)
+    assert boots.document is document
+
+
+def test_a_line_of_the_knife_is_saved_taken_away_and_refused(window, boots, tmp_path):
+    window.act(cutting.take_up, "knife")
+    stroke(window, *FROM_BELOW)
+    rest(window)
+    path = tmp_path / "boots.lissom"
+    save_project(path, boots.document)
+    assert not differences(boots.document, load_project(path))
+    (read,) = load_project(path).figures
+    assert len(read.cut_out.slits) == 1
+    assert read.domain.closed is not None
+    stroke(window, 40 + 3j)  # a click is no line
+    assert len(boots.figure.cut_out.slits) == 1
+    stroke(window, 3 + 60j, 117 + 62j)
+    rest(window)
+    assert any("cuts off a part" in toast.text for toast in window.session.toasts)
+    assert boots.figure.is_stale
+    window.act(editing.undo)
+    rest(window)
+    assert not boots.figure.is_stale
+
+    def alt_click(robot):
+        robot.mouse_move_to_pos(window.point(61 + 50j))
+        robot.key_down(imgui.Key.mod_alt)
+        robot.mouse_down()
+        robot.mouse_up()
+        robot.key_up(imgui.Key.mod_alt)
+
+    window.run(alt_click)
+    assert boots.figure.cut_out.slits == ()
+    rest(window)
+    assert boots.figure.domain.closed is None
+
+
+def test_a_line_of_the_knife_through_a_handle_is_refused_at_once(window, boots):
+    document = boots.document
+    window.act(cutting.take_up, "knife")
+    stroke(window, 30 + 3j, 30 + 60j)
+    assert boots.document is document
+    name = boots.figure.handles[0].name
+    assert any(f"goes through {name}" in toast.text for toast in window.session.toasts)
+    stroke(window, 33 + 3j, 33 + 60j)
+    rest(window)
+    assert boots.figure.domain.closed is not None
+
+
+def test_a_line_of_the_knife_is_shown_while_it_is_drawn_and_can_be_cancelled(window, boots):
+    window.act(cutting.take_up, "knife")
+    before, document = pixel(window, 60 + 40j), boots.document
+
+    def play(robot):
+        robot.mouse_move_to_pos(window.point(FROM_BELOW[0]))
+        robot.mouse_down()
+        for place in FROM_BELOW[1:]:
+            robot.mouse_move_to_pos(window.point(place))
+        shown.append(window.session.pointer.marks)
+        robot.key_press(window.Key.escape)
+        robot.mouse_up()
+
+    shown: list[object] = []
+    window.run(play)
+    ((mark,),) = shown
+    assert len(mark.points) >= 3
+    assert boots.document is document
+    assert tuple(pixel(window, 60 + 40j)) == tuple(before)
+    stroke(window, *FROM_BELOW)
+    assert tuple(pixel(window, 60 + 40j)) != tuple(before)

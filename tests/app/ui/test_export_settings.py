@@ -142,9 +142,17 @@ def test_another_format_of_the_same_name_asks_before_it_replaces(window, tmp_pat
 def test_the_status_bar_tells_how_far_an_export_is_whatever_tab_is_in_front(
     window, bent, tmp_path, monkeypatch
 ):
-    session, written = window.session, []
-    draw = imgui.text_unformatted
+    session, written, heights = window.session, [], set()
+    draw, draw_fact = imgui.text_unformatted, imgui.text_colored
+
+    def see_fact(colour, text):
+        draw_fact(colour, text)
+        if text == "2 handles":
+            heights.add(imgui.get_item_rect_min().y)
+
     monkeypatch.setattr(imgui, "text_unformatted", lambda text: (written.append(text), draw(text)))
+    monkeypatch.setattr(imgui, "text_colored", see_fact)
+    window.frames()
     exporting.set_export(session, ExportSettings(size=SIZE))
     window.show_tab("Handle")
     window.clock.cost = 0.02
@@ -165,3 +173,4 @@ def test_the_status_bar_tells_how_far_an_export_is_whatever_tab_is_in_front(
     window.frames(2)
     assert not any("walk frames" in text for text in written)
     assert bent.exports_to == {"png": tmp_path / "walk frames"}
+    assert len(heights) == 1, "nothing moves up and down meanwhile"

@@ -79,7 +79,7 @@ def test_a_loop_takes_few_clicks_and_drags(window, tmp_path):
     person.show_tab("Export")
     session.preferences = type(session.preferences)(folder=tmp_path)
     person.click("//Export/**/###start")
-    person.click("//###dialog/Save")
+    person.click("//###dialog/Export")
     while session.export is not None or session.jobs.kinds:
         window.settle()
     exported = sorted(next(tmp_path.glob("* frames")).glob("*.png"))

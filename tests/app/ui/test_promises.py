@@ -86,15 +86,6 @@ def test_a_drag_comes_to_rest_whatever_follows(window, bent, name):
     assert not bent.pulls
 
 
-def test_a_drag_that_began_with_auto_key_makes_a_key(window, bent, monkeypatch):
-    with held_up(monkeypatch, "app.editor.actions.posing.solving._take_steps"):
-        goal = drag_bar(window, bent)
-        window.act(viewing.toggle_auto_key)
-    window.settle()
-    check_at_rest(bent.document, goal)
-    assert bent.history.unkeyed is None
-
-
 @pytest.mark.parametrize("is_seen", [True, False])
 def test_moved_and_copied_keys_come_to_rest_too(window, bent, is_seen, monkeypatch):
     if is_seen:

@@ -108,6 +108,25 @@ def test_all_tabs_fit_and_the_one_in_front_has_its_title(window, size, scale):
     window.resize((1280, 800))
 
 
+def test_tabs_have_their_names_as_far_as_there_is_room(window):
+    window.open(sample_images() / "ring.png")
+    window.show_tab("Export")
+    named = []
+    for width in (380, 450, 520, 640, 800):
+        node = _docked("Handle")
+        imgui.internal.dock_builder_set_node_size(node.id_, ImVec2(width, node.size.y))
+        window.frames(4)
+        bar = _docked("Handle").tab_bar
+        assert bar.width_all_tabs_ideal <= bar.bar_rect.get_width()
+        titles = [tab.window.name.split("###") for tab in bar.tabs]
+        named.append(sum(shown.endswith(title) for shown, title in titles))
+    assert named[0] < 3
+    assert named[-1] == len(bar.tabs)
+    assert sorted(named) == named
+    assert len(set(named)) > 3
+    window.resize((1280, 800))
+
+
 def test_themes_change_nothing_else_at_a_larger_scale(window):
     window.resize((1280, 800), 2.0)
     viewing.show_shortcuts(window.session)

@@ -15,6 +15,7 @@ from app.editor.actions import editing, keys, playback, rebuilding, timeline_poi
 from app.editor.timeline_view import Strip
 from app.ui.bars.status import limit_of_motion
 from app.ui.style import PALETTES
+from app.ui.timeline import intervals
 from app.ui.viewport.marks import mark_all
 from engine.maps import Bounds
 
@@ -707,3 +708,28 @@ def test_undo_and_redo_name_their_step_and_show_where_it_was(window, project):
     editing.redo(session)
     assert here() == 12
     window.frames(2)
+
+
+def labels(window, monkeypatch):
+    """What the bars between keys say."""
+    told = []
+
+    def label(_, name, *__):
+        told.append(name)
+
+    with monkeypatch.context() as patched:
+        patched.setattr(intervals, "_label", label)
+        window.frames(1)
+    return told
+
+
+@pytest.mark.usefixtures("project")
+def test_only_what_goes_straight_is_called_linear(window, monkeypatch):
+    assert labels(window, monkeypatch) == ["smooth"] * 3
+    window.act(keys.set_passing, {0: {24}}, Passing.CORNER)
+    window.settle()
+    assert labels(window, monkeypatch) == ["smooth", "smooth", "linear"]
+    window.act(keys.set_passing, {0: {12}}, Passing.STOP)
+    window.act(keys.set_easing, {0: {24}}, HOLD)
+    window.settle()
+    assert labels(window, monkeypatch) == ["smooth", "smooth", "hold"]

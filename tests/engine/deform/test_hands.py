@@ -3,12 +3,13 @@
 import numpy as np
 import pytest
 from deform_shapes import BAR_POINTS, STAR_POINTS, bar, star, star_boundary
+from holed_shapes import plate
 from numpy.testing import assert_allclose, assert_array_equal
 
-from engine.deform import Hand, Handles, Objective, Status, projected_hessian
+from engine.deform import Deformer, Hand, Handles, Objective, Status, projected_hessian
 from engine.deform.model.hessian import hessian_product
 from engine.errors import EngineError
-from engine.maps import Bounds
+from engine.maps import Boundary, Bounds
 
 FORCE = 10.0
 BOUNDS = Bounds(k=0.5, sigma_a=2.0, sigma_b=0.5)
@@ -174,6 +175,28 @@ def test_handles_that_one_hand_pulls_keep_their_formation_and_pull_as_one():
     )
     left = wish.let_go(places)
     assert_allclose(left.positions[1] - left.positions[2], asked, rtol=1e-12)
+
+
+def test_around_a_hole_a_hand_pulls_as_bounded():
+    shape = plate(1)
+    boundary = Boundary.sample(shape.outline, shape.cage, shape.holes)
+    points = 0.97 * shape.outline[[0, len(shape.outline) // 3, 2 * len(shape.outline) // 3]]
+    handles = Handles.place(boundary, points)
+    far = points.copy()
+    far[0] *= 1 + boundary.size / abs(far[0])
+    wish = handles.wish(far, None, (Hand([0]),))
+    deformer = Deformer(boundary=boundary, handles=handles, bounds=BOUNDS)
+    state = settled(deformer, wish)
+    assert state.status is Status.AT_LIMITS
+    places = deformer.positions(state)
+    assert np.abs(places - points)[1:].max() < 3e-3 * boundary.size
+    mine = Objective(boundary=boundary, handles=handles, wish=wish)
+    jet = mine.jet(*state.map.columns)
+    gradient = mine.gradient(jet, mine.radial(jet))
+    direction = np.random.default_rng(3).normal(size=len(gradient))
+    change = mine.change(direction)
+    there, back = (mine.energy(jet.advanced(sign * 1e-6, change)) for sign in (1, -1))
+    assert_allclose((there - back) / 2e-6, gradient @ direction, rtol=1e-5)
 
 
 @pytest.mark.parametrize("far", [0.3, 5.0])

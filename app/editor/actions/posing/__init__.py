@@ -29,6 +29,7 @@ from app.editor.actions.posing.pulling import (
     give_up as give_up,
     insist as insist,
     let_go as let_go,
+    move as move,
     nudge as nudge,
     pin_here as pin_here,
     pose_here as pose_here,

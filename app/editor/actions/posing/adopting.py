@@ -33,9 +33,9 @@ def adopt_wish(session: Session, project: Project, pull: Pull) -> bool:
     Returns whether it has; a pull whose start is not known yet, or that several gestures made,
     has nothing that could be one step.
     """
-    if pull.is_held or pull.before is None or pull.targets is None or len(pull.wishes) != 1:
+    if pull.is_held or pull.before is None or pull.asked is None or len(pull.wishes) != 1:
         return False
-    adopt(session, project, pull, replace(pull.before, targets=pull.targets))
+    adopt(session, project, pull, pull.newest or replace(pull.before, targets=pull.asked))
     return pull in project.pending
 
 
@@ -77,7 +77,7 @@ def _adopt_first(session: Session, project: Project, pull: Pull, pose: Pose) -> 
         return True
     for frame in frames:
         found = UnkeyedPose(figure=pull.figure, frame=frame, pose=pose)
-        command = replace(as_key(session, project, found), label="Pose")
+        command = replace(as_key(session, project, found), label="Move" if pull.ways else "Pose")
         project.history.do(command, gesture=pull.gesture)
     left = project.history.unkeyed
     if left is not None and (left.figure, left.frame) == (pull.figure, pull.frame):

@@ -1,6 +1,6 @@
 """Pulling handles: the wish comes from the pointer, the worker's solver follows."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from functools import partial
 
@@ -29,14 +29,35 @@ def pull(
     earlier; without one, each is a step until it is let go. An in-between that is not there yet is
     worked out first; what is wished of it meanwhile is not lost. A hand pulls with bounded force.
     """
+    wanted = wish if callable(wish) else partial(wherever, wish)
+    _change(session, project, gesture, lambda held, by: held.wish(by, wanted, hand))
+
+
+@with_project
+def move(
+    session: Session, project: Project, way: complex, *, gesture: object | None = None
+) -> None:
+    """Move the pose of the present frame with all its targets, as it is, so far from the start.
+
+    As with pulls, those of one gesture are one step of undo.
+    """
+    _change(session, project, gesture, lambda held, by: held.move(by, way))
+
+
+def _change(
+    session: Session,
+    project: Project,
+    gesture: object | None,
+    change: Callable[[Pull, object], None],
+) -> None:
+    """Change what is pulled by a gesture, or begin to."""
     if project.puppet.shown is None:
         return
     held = project.pull
     if held is None or not held.is_held:
         let_go(session)
         held = _begin(session, project, gesture or object())
-    wanted = wish if callable(wish) else partial(wherever, wish)
-    held.wish(gesture or object(), wanted, hand)
+    change(held, gesture or object())
     held.position = project.history.position
     go_on(session, project)
 
@@ -162,6 +183,7 @@ def _begin(session: Session, project: Project, gesture: object) -> Pull:
         start=start,
         before=before,
         is_keyed=session.preferences.auto_key,
+        rests=earlier is None or earlier.is_settled,
     )
     project.pending.append(begun)
     return begun
@@ -174,9 +196,9 @@ def _start(session: Session, project: Project, earlier: Pull | None) -> Start | 
     """
     pose, shown, figure = pose_here(session, project), project.puppet.shown, project.figure
     if pose is not None:
-        if earlier is not None and earlier.kept is not None and earlier.targets is not None:
+        if earlier is not None and earlier.kept is not None and earlier.asked is not None:
             is_its_own = earlier.kept.phi is pose.phi
-            targets = {**earlier.targets, **earlier.reached} if is_its_own else pose.targets
+            targets = {**earlier.asked, **earlier.reached} if is_its_own else pose.targets
             pose = replace(pose, targets=targets)
         return Start.of(figure, pose)
     frame = playback.current_frame(session, project)

@@ -86,6 +86,8 @@ class _Pace(NamedTuple):
 
 def _pace(pull: Pull) -> _Pace:
     """Return the pace: while the hand moves, every step is shown; at rest, it is hurried."""
+    if pull.is_rigid:
+        return _Pace(0, 0.0)
     return _Pace(STEPS, HASTE) if pull.steps == 0 else _Pace(MOST_STEPS, REST)
 
 
@@ -123,7 +125,9 @@ def _take_steps(
     else:
         raise ValueError("a drag that goes on has targets")
     taken = 0
-    while taken == 0 or (taken < pace.most and not drag.is_over and clock() - begun < pace.seconds):
+    while taken < pace.most and (
+        taken == 0 or not (drag.is_over or clock() - begun >= pace.seconds)
+    ):
         drag = drag.towards(targets, 1, hands)
         taken += 1
     return _Steps(drag, targets, hands, taken, clock() - begun, start)
@@ -152,7 +156,7 @@ def _note(session: Session, project: Project, pull: Pull, steps: _Steps) -> None
     if (pull.targets, tuple(pull.hands.values())) == towards:
         pull.steps += steps.taken
     pull.drag, pull.solved = steps.drag, towards
-    pull.newest = steps.drag.pose(steps.targets)
+    newest = pull.take(steps.drag.pose(steps.targets))
     if pull.kept is None or is_here(session, project, pull):
-        adopt(session, project, pull, pull.newest)
+        adopt(session, project, pull, newest)
     go_on(session, project)

@@ -17,7 +17,7 @@ def give_in(session: Session, project: Project, loosen: Loosen) -> None:
     """Let hands that have let go give in once the pose has come to rest; once a frame."""
     for pull in project.pulls:
         if pull.hands and pull.is_at_rest and not pull.is_held:
-            asked, places = pull.targets, pull.reached
+            asked, places = pull.asked, pull.reached
             pull.settle_for(places)
             if asked is not None and pull.is_in(project.history):
                 _tell(session, pull, {i: asked[i] for i in places}, places, loosen)

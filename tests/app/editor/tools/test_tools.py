@@ -71,6 +71,7 @@ ON_RING = Spot(place=LEFT + 20, on_shape=True, on_ring=True)
         (replace(ON_SHAPE, shift=True), "Selecting"),
         (BESIDE, "Selecting"),
         (replace(BESIDE, ctrl=True), "Selecting"),
+        (replace(BESIDE, ctrl=True, shift=True), "Moving"),
     ],
 )
 def test_a_press_is_for_one_tool(session, spot, name):
@@ -224,7 +225,7 @@ def test_there_is_a_hint_wherever_something_can_be_done(session, spot):
     hints = [hint for tool in TOOLS for hint in tool.hints(session, session.project, spot)]
     assert hints
     for hint in hints:
-        held = {hint.key: True} if hint.key else {}
+        held = dict.fromkeys(filter(None, hint.key.split("+")), True)
         there = ON_RING if "its ring" in hint.how else spot
         pointing.press(session, replace(there, **held))
         named = type(session.pointer)

@@ -1,0 +1,93 @@
+"""Moving the whole figure as it is, and all that hangs on it."""
+
+from dataclasses import dataclass
+from typing import Self
+
+from app.document import Figure
+from app.editor import layering
+from app.editor.actions import posing
+from app.editor.project import Project
+from app.editor.session import Hint, Session, with_project
+from app.editor.tools.pulling import Pulling
+from app.editor.tools.tool import Spot, on_scene
+
+
+@dataclass(slots=True, kw_only=True, eq=False)
+class Moving(Pulling):
+    """The pointer moves a figure; the last one was posed before it."""
+
+    last: int
+    is_free: bool  # whether the figure can be moved
+
+    @classmethod
+    def hints(cls, session: Session, project: Project, spot: Spot) -> tuple[Hint, ...]:
+        """Tell what moves."""
+        if session.moves:
+            return (Hint("drag", f"to move all of {_carrier(project, spot.figure).name}"),)
+        return (Hint("drag", "to move all of it", "ctrl+shift"),) if _is_beside(spot) else ()
+
+    @classmethod
+    def press(cls, session: Session, project: Project, spot: Spot) -> Self | None:
+        """Take hold of what is pressed with the tool in hand, or from beside it by keys."""
+        is_by_keys = spot.ctrl and spot.shift and _is_beside(spot)
+        if not is_by_keys and (spot.ctrl or not session.moves):
+            return None
+        start, last = on_scene(project, spot.place), project.active
+        is_free = _choose_carrier(session, project, spot.figure if session.moves else None)
+        return cls(project=project, start=start, last=last, is_free=is_free)
+
+    def _pull(self, session: Session) -> None:
+        if self.moved and self.is_free:
+            posing.move(session, self.way, gesture=self)
+
+    def cancel(self, session: Session) -> None:
+        """Take it back, and pose what was posed before."""
+        layering.choose(session, self.last)
+        Pulling.cancel(self, session)
+
+    @property
+    def ways(self) -> tuple[Hint, ...]:
+        """What can be done until it ends."""
+        return (Hint("type", "a number of pixels"), Hint("X or Y", "to keep to an axis"))
+
+
+@with_project
+def take_up(session: Session, _: Project) -> None:
+    """Let drags and arrows move the whole figure, or pose it again."""
+    if session.pointer is None:
+        session.moves = session.cutting is not None or not session.moves
+        session.cutting = None
+
+
+@with_project
+def pose(session: Session, _: Project) -> None:
+    """Put away whatever is in hand instead of posing."""
+    session.cutting, session.moves = None, False
+
+
+@with_project
+def nudge(session: Session, project: Project, step: complex) -> None:
+    """Move the figure that is posed, with all that it hangs on, by a few pixels."""
+    if _choose_carrier(session, project, None):
+        posing.move(session, step)
+        posing.let_go(session)
+
+
+def _is_beside(spot: Spot) -> bool:
+    return spot.handle is None and not (spot.on_shape or spot.on_ring)
+
+
+def _carrier(project: Project, figure: int | None) -> Figure:
+    """Return what a figure, by default the one that is posed, hangs on in the end; or itself."""
+    return project.document.carriers(project.active if figure is None else figure)[-1]
+
+
+def _choose_carrier(session: Session, project: Project, figure: int | None) -> bool:
+    """Choose what moves with all that hangs on it; tell why, and return False, if it stays."""
+    carrier = _carrier(project, figure)
+    if carrier.still or carrier.locked:
+        what = "a still picture" if carrier.still else "locked"
+        session.tell(f"{carrier.name} is {what}: it stays where it is, with all that hangs on it.")
+        return False
+    layering.choose(session, carrier.id)
+    return True

@@ -1,0 +1,264 @@
+"""Moving a figure as a whole: exactly as it is, with all that it wants."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from animations import moving_document, still_document
+from sessions import session_of, settle
+
+from app.document.commands import figure_commands, handle_commands
+from app.editor import layering
+from app.editor.actions import editing, playback, posing
+from app.editor.actions.upkeep import maintain
+from app.editor.tools import Spot, moving, pointing
+from app.storage import Preferences
+from app.ui.viewport.marks import unreached
+
+LEFT, RIGHT, BESIDE = 40 + 45j, 80 + 45j, 5 + 5j
+WAY = 30 - 12j
+
+
+def with_handles(document):
+    for place in (LEFT, RIGHT):
+        document = handle_commands.add_handle(0, place)(document)
+    return document
+
+
+@pytest.fixture
+def session(tmp_path):
+    """A blob with two handles, one of which is pulled beyond its reach, at frame 0."""
+    session = session_of(with_handles(still_document()), tmp_path)
+    settle(session)
+    posing.wish(session, {1: replace(target(session, 1), position=RIGHT + 70)})
+    settle(session)
+    return session
+
+
+def pose_of(session, number=0):
+    return session.project.figure.keys[number].pose
+
+
+def target(session, identity):
+    return pose_of(session).targets[identity]
+
+
+def drag(session, way=WAY, *, end=True, **held):
+    spot = Spot(place=BESIDE, **held)
+    pointing.press(session, spot)
+    for share in (0.3, 0.7, 1.0):
+        pointing.move(session, spot.place + share * way)
+        maintain(session)
+    if end:
+        pointing.end(session, spot.place + way)
+    maintain(session)
+
+
+def is_moved(session, pose, before, way):
+    """Tell whether a pose is another one, moved, and nothing else."""
+    f, g = (session.project.figure.map_of(each) for each in (pose, before))
+    places = session.project.figure.domain.mesh.vertices
+    np.testing.assert_allclose(f(places), g(places) + way, rtol=0, atol=1e-9)
+    assert pose.targets.keys() == before.targets.keys()
+    for identity, wanted in pose.targets.items():
+        assert abs(wanted.position - before.targets[identity].position - way) < 1e-9
+        assert wanted.rotation == before.targets[identity].rotation
+    assert pose.certificate == before.certificate
+    return True
+
+
+def test_a_drag_from_beside_moves_all_of_it_in_one_step(session):
+    document, before = session.project.document, pose_of(session)
+    drag(session, ctrl=True, shift=True)
+    assert is_moved(session, pose_of(session), before, WAY), "at once, not as a solver finds it"
+    assert not session.project.pending
+    settle(session)
+    assert is_moved(session, pose_of(session), before, WAY)
+    assert session.project.history.undo_label == "Move"
+    editing.undo(session)
+    assert session.project.document is document
+    editing.redo(session)
+    assert is_moved(session, pose_of(session), before, WAY)
+
+
+@pytest.mark.parametrize("at", [{"handle": 0}, {"on_shape": True}, {}])
+def test_with_the_tool_it_does_so_from_anywhere(session, at):
+    before = pose_of(session)
+    moving.take_up(session)
+    drag(session, **at)
+    assert is_moved(session, pose_of(session), before, WAY)
+    assert len(session.project.figure.handles) == 2
+    moving.pose(session)
+    pointing.press(session, Spot(place=LEFT, handle=0))
+    assert type(session.pointer).__name__ == "Pulling"
+
+
+def test_ctrl_click_still_sets_the_anchor(session):
+    moving.take_up(session)
+    pointing.press(session, Spot(place=LEFT + 5j, on_shape=True, ctrl=True))
+    assert session.project.figure.anchor is not None
+
+
+def test_escape_in_the_middle_takes_it_back(session):
+    project, document = session.project, session.project.document
+    before = unreached(project, project.puppet.shown)
+    assert before
+    drag(session, end=False, ctrl=True, shift=True)
+    assert project.document is not document
+    marked = unreached(project, project.puppet.shown)
+    assert marked == pytest.approx({i: place + WAY for i, place in before.items()})
+    pointing.cancel(session)
+    settle(session)
+    assert project.document is document
+    assert not project.pending
+
+
+def test_numbers_and_axes_are_typed(session):
+    before = pose_of(session)
+    moving.take_up(session)
+    pointing.press(session, Spot(place=LEFT))
+    pointing.type_in(session, "y40")
+    pointing.end(session, LEFT)
+    settle(session)
+    # Pixels are counted downwards.
+    assert is_moved(session, pose_of(session), before, -40j)
+
+
+def test_each_arrow_is_a_step(session):
+    project, before, document = session.project, pose_of(session), session.project.document
+    for step in (1, 10j, -1):
+        moving.nudge(session, step)
+        maintain(session)
+    assert is_moved(session, pose_of(session), before, 10j)
+    for _ in range(3):
+        editing.undo(session)
+    assert project.document is document
+
+
+@pytest.fixture
+def joined(tmp_path):
+    """Two blobs, the second of which hangs on the first, and is posed."""
+    session = session_of(with_handles(still_document()), tmp_path)
+    session.project.history.do(figure_commands.set_anchor(0, LEFT))
+    settle(session)
+    layering.duplicate(session, 0)
+    layering.hang(session, 1, 0)
+    layering.choose(session, 1)
+    settle(session)
+    return session
+
+
+def places_of(session, figure):
+    """Where all points of a layer are in the scene."""
+    shown = session.project.puppets[figure].shown
+    return shown.placement.on(shown.positions)
+
+
+def test_a_layer_moves_what_it_hangs_on(joined):
+    project, before = joined.project, [places_of(joined, figure) for figure in (0, 1)]
+    drag(joined, end=False, ctrl=True, shift=True)
+    settle(joined)
+    assert project.active == 0
+    for figure in (0, 1):
+        np.testing.assert_allclose(places_of(joined, figure), before[figure] + WAY, atol=1e-3)
+    pointing.cancel(joined)
+    settle(joined)
+    assert project.active == 1
+    np.testing.assert_allclose(places_of(joined, 1), before[1], atol=1e-3)
+    moving.nudge(joined, 4)
+    settle(joined)
+    assert project.active == 0
+    np.testing.assert_allclose(places_of(joined, 1), before[1] + 4, atol=1e-3)
+
+
+def test_a_layer_stays_that_hangs_on_a_locked_one(joined):
+    layering.lock(joined, 0)
+    document = joined.project.document
+    drag(joined, ctrl=True, shift=True)
+    moving.nudge(joined, 1)
+    assert joined.project.document is document
+    assert "is locked" in joined.toasts[-1].text
+
+
+def test_the_layer_that_is_pressed_moves_and_no_other(tmp_path):
+    session = session_of(with_handles(still_document()), tmp_path)
+    settle(session)
+    layering.duplicate(session, 0)
+    layering.choose(session, 0)
+    settle(session)
+    moving.take_up(session)
+    before = places_of(session, 0)
+    drag(session, figure=1, on_shape=True)
+    settle(session)
+    assert session.project.active == 1
+    np.testing.assert_allclose(places_of(session, 0), before, atol=1e-6)
+    assert session.project.history.undo_label == "Move"
+
+
+def test_an_arrow_is_undone_before_it_is_seen(session):
+    project, before, document = session.project, pose_of(session), session.project.document
+    moving.nudge(session, 10)
+    editing.undo(session)
+    assert project.document is document
+    editing.redo(session)
+    assert is_moved(session, pose_of(session), before, 10)
+
+
+def test_a_drawing_without_handles_moves_too(tmp_path):
+    session = session_of(still_document(), tmp_path)
+    settle(session)
+    before = pose_of(session)
+    drag(session, ctrl=True, shift=True)
+    assert is_moved(session, pose_of(session), before, WAY)
+
+
+@pytest.mark.parametrize("auto_key", [True, False])
+@pytest.mark.parametrize("is_there", [True, False])
+def test_an_in_between_becomes_a_pose_of_its_own(tmp_path, auto_key, is_there):
+    """Also where it was not worked out yet when the hand began."""
+    session = session_of(with_handles(moving_document(6)), tmp_path)
+    session.preferences = Preferences(auto_key=auto_key)
+    settle(session)
+    project = session.project
+    playback.seek(session, 3)
+    if is_there:
+        settle(session)
+    middle = project.puppet.shown.handle_places.mean()
+    drag(session, ctrl=True, shift=True)
+    settle(session)
+    frames = [key.frame for key in project.figure.keys]
+    assert frames == ([0, 3, 6] if auto_key else [0, 6])
+    assert (project.unkeyed is None) == auto_key
+    if is_there:
+        moved = project.puppet.shown.handle_places.mean()
+        assert abs(moved - middle - WAY) < 0.01 * abs(WAY)
+    editing.undo(session)
+    assert [key.frame for key in project.figure.keys] == [0, 6]
+    assert project.unkeyed is None
+
+
+def test_a_pose_on_its_way_gets_there_elsewhere(session):
+    """The hand lets a handle go, and moves all of it before the pose has come to rest."""
+    wished = {1: replace(target(session, 1), position=RIGHT + 12j)}
+    posing.wish(session, wished)
+    settle(session)
+    rested = pose_of(session)
+    editing.undo(session)
+    posing.wish(session, wished)
+    maintain(session)
+    assert session.jobs.settle()
+    session.jobs.deliver()
+    drag(session, ctrl=True, shift=True)
+    settle(session)
+    now = pose_of(session)
+    for identity, wanted in now.targets.items():
+        assert abs(wanted.position - rested.targets[identity].position - WAY) < 1e-9
+    np.testing.assert_allclose(now.phi, rested.phi + WAY, atol=0.2)
+
+
+def test_a_handle_is_pulled_on_after_that(session):
+    drag(session, ctrl=True, shift=True)
+    posing.wish(session, {0: replace(target(session, 0), position=LEFT + WAY + 5)})
+    settle(session)
+    assert abs(target(session, 0).position - (LEFT + WAY + 5)) < 1e-9
+    assert abs(target(session, 1).position - (RIGHT + 70 + WAY)) < 1e-9

@@ -1,0 +1,164 @@
+"""The menus of the drawing, tooltips, and a panel that stays where it is between keys."""
+
+import pytest
+from bars import BENT
+from harness import FRAME
+from imgui_bundle import ImVec2, hello_imgui, imgui
+
+from app.editor.actions import editing, playback
+from app.storage.assets import sample_images
+from app.ui.shortcuts import BINDINGS
+from app.ui.style import tip
+from app.ui.viewport.viewport import CANVAS
+
+RIGHT = 1
+
+
+def open_menu(robot, point):
+    robot.mouse_move_to_pos(point)
+    robot.mouse_click(RIGHT)
+    robot.yield_(2)
+
+
+def on_handle(window, bent, *items):
+    place = window.point(bent.puppet.shown.handle_places[0])
+
+    def play(robot):
+        open_menu(robot, place)
+        robot.menu_click(f"//$FOCUSED/{'/'.join(items)}")
+
+    window.run(play)
+    window.settle()
+
+
+def test_a_handle_is_pinned_by_its_menu(window, bent):
+    assert bent.selected == {1}
+    place = complex(bent.puppet.shown.handle_places[0])
+    on_handle(window, bent, "Pin here")
+    assert bent.selected == {0}, "what the menu is of is selected"
+    assert bent.figure.key(BENT).pose.targets[0].position == pytest.approx(place, abs=0.1)
+
+
+def test_how_firmly_a_handle_holds_is_in_its_menu(window, bent):
+    editing.select(window.session, frozenset({0, 1}))
+    on_handle(window, bent, "Hold", "Firm")
+    assert [handle.weight for handle in bent.figure.handles] == [10.0, 10.0]
+
+
+def test_the_depth_of_a_handle_is_in_its_menu(window, bent):
+    on_handle(window, bent, "Depth", "Behind")
+    assert [handle.front for handle in bent.figure.handles] == [-1.0, 0.0]
+    window.act(editing.edit_figure, editing.layer_commands.key_front, BENT, 0, 0.0)
+    on_handle(window, bent, "Depth", "In front")
+    assert dict(bent.figure.key(BENT).fronts) == {0: 1.0}
+    assert bent.figure.handle(0).front == -1.0
+
+
+def test_a_handle_is_locked_by_its_menu(window, bent):
+    on_handle(window, bent, "Lock")
+    assert [handle.locked for handle in bent.figure.handles] == [True, False]
+
+
+def test_the_canvas_has_a_menu(window, bent):
+    width, height = bent.document.canvas
+    beside = window.point(complex(width / 4, -height / 3))
+    found = []
+
+    def play(robot):
+        open_menu(robot, beside)
+        for name in (name for group in CANVAS for name in group):
+            label = BINDINGS[name].label
+            if any(robot.item_exists(f"//$FOCUSED/{before}{label}") for before in ("", "###")):
+                found.append(name)
+        robot.item_click(f"//$FOCUSED/{BINDINGS['move'].label}")
+
+    window.run(play)
+    assert found == [name for group in CANVAS for name in group]
+    assert window.session.moves
+
+
+def test_a_right_click_in_a_drag_still_takes_it_back(window, bent):
+    document, place = bent.document, window.point(bent.puppet.shown.handle_places[1])
+
+    def play(robot):
+        robot.mouse_move_to_pos(place)
+        robot.mouse_down(0)
+        robot.mouse_move_to_pos(place + ImVec2(20, 10))
+        robot.mouse_down(RIGHT)
+        robot.mouse_up(RIGHT)
+        robot.mouse_up(0)
+
+    window.run(play)
+    window.settle()
+    assert bent.document is document
+    assert not imgui.get_current_context().open_popup_stack.size()
+
+
+@pytest.mark.usefixtures("bent")
+def test_the_panel_stays_between_keys(window):
+    """All that is below the target of a handle is where it was."""
+    window.show_tab("Handle")
+    heights, names = [], ("##target x", "##turns", "##depth")
+
+    def look(robot):
+        heights.append([robot.item_info(f"Handle/{name}").rect_full.min.y for name in names])
+
+    for frame in (BENT, BENT // 2, 0):
+        playback.seek(window.session, frame)
+        window.settle()
+        window.run(look)
+    assert heights[0] == heights[1] == heights[2]
+
+
+def test_a_number_between_keys_makes_a_key_as_a_drag_does(window, bent):
+    window.show_tab("Handle")
+    playback.seek(window.session, BENT // 2)
+    window.settle()
+
+    def play(robot):
+        robot.item_input_value("**/##target x", 321.0)
+
+    window.run(play)
+    window.settle()
+    assert bent.figure.key(BENT // 2).pose.targets[1].position.real == pytest.approx(321.0)
+
+
+def tooltip_at(window, place, seconds=0.5):
+    """Return the box of the tooltip that there is half a second after the pointer came."""
+    imgui.get_io().add_mouse_pos_event(place.x, place.y)
+    window.frames(round(seconds / FRAME))
+    windows = imgui.get_current_context().windows
+    found = [each for each in windows if each.name.startswith("##Tooltip") and each.active]
+    return found[0].rect() if found else None
+
+
+def test_a_tab_that_is_an_icon_has_its_name_in_a_tooltip(window):
+    window.open(sample_images() / "bar.png")
+    assert tooltip_at(window, ImVec2(400, 200)) is None
+    tab = imgui.internal.find_window_by_name("###Poses").dc.dock_tab_item_rect
+    assert tooltip_at(window, tab.get_center()) is not None
+
+
+def test_a_long_tooltip_wraps(window):
+    window.open(sample_images() / "bar.png")
+    told = []
+    width = 30 * window.text_height()
+
+    def draw():
+        imgui.set_next_window_pos(ImVec2(100, 100))
+        imgui.begin("probe")
+        imgui.button("long", ImVec2(200, 100))
+        tip("What a click does here takes a sentence or two to say. " * 3, "Ctrl+Shift+S")
+        imgui.end()
+
+    calls = hello_imgui.get_runner_params().callbacks
+    usual = calls.show_gui
+    calls.show_gui = hello_imgui.sequence_functions(usual, draw)
+    try:
+        window.frames(3)
+        told.append(tooltip_at(window, ImVec2(200, 200)))
+    finally:
+        calls.show_gui = usual
+    (box,) = told
+    assert box is not None
+    assert box.get_width() < width
