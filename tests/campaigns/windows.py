@@ -32,6 +32,7 @@ ROOT = Path(__file__).parents[2]
 PATIENCE = 120.0  # seconds for anything to happen
 MOST_SECONDS = 15.0  # from a signal to the end of the window, on a busy machine
 KEPT_EVERY = 1.0  # seconds between two looks at what is unsaved; the usual 20 would take long
+IDLE = 5.0  # seconds after which a window in which nothing happens looks again
 MOST_LOST = 10.0  # seconds of edits then, on a busy machine
 
 # Runs the window, and does in it what is said on standard input, or edits on and on; tells each.
@@ -340,7 +341,7 @@ def _against_each_other(rng: np.random.Generator, shown: Screen, home: Path) -> 
                 expect(number_of(load_project(path)) == in_file, "what was saved was replaced")
             for each, last in zip(windows, (number + 1, number + 2), strict=True):
                 each.do("edit", last)
-            time.sleep(3 * KEPT_EVERY)
+            time.sleep(3 * KEPT_EVERY + IDLE)
             for each in windows:
                 each.end()
     found = {number_of(load_leftover(each)[0]) for each in find_leftovers(home / "lissom")}
