@@ -244,21 +244,19 @@ class Pull(Promise):
 
     def brought_to(self, pose: Pose) -> Settled:
         """Return how a figure of any step of history has a pose of this pull."""
-        then = {handle.id: handle for handle in self.clip.figure.handles}
+        then = {handle.id: handle.position for handle in self.clip.figure.handles}
 
         def of(figure: Figure, earlier: Pose) -> Pose:
-            if earlier.targets.keys() == then.keys() and all(
-                then[handle.id].position == handle.position for handle in figure.handles
-            ):
+            now = {handle.id: handle.position for handle in figure.handles}
+            if now == then and earlier.targets.keys() == then.keys():
                 return pose
             # Handles came, went or were put elsewhere since: of those nothing is wished yet.
-            places = Start.of(figure, replace(pose, targets=earlier.targets)).places
+            start = Start.of(figure, replace(pose, targets=earlier.targets))
             targets = {}
-            for handle in figure.handles:
-                known = then.get(handle.id)
-                is_same = known is not None and known.position == handle.position
-                here = replace(earlier.targets[handle.id], position=places[handle.id])
-                targets[handle.id] = pose.targets[handle.id] if is_same else here
+            for identity, position in now.items():
+                here = replace(start.targets[identity], position=start.places[identity])
+                is_same = then.get(identity) == position
+                targets[identity] = pose.targets[identity] if is_same else here
             return replace(pose, targets=targets)
 
         return of
