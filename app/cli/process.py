@@ -161,7 +161,9 @@ class Endings:
             if self._wake is not None:
                 self._wake()
             try:
-                end_within(PATIENCE, _INTERRUPTED + told[0])
+                name = signal.Signals(told[0]).name
+                words = f"lissom: interrupted by {name}, while something was still at work\n"
+                end_within(PATIENCE, _INTERRUPTED + told[0], "" if self._wake else words)
             except RuntimeError:  # there is no memory for another thread
                 os._exit(_INTERRUPTED + told[0])
             # A signal that comes just before the main thread begins to wait does not end that wait.
@@ -199,11 +201,13 @@ def has_threads_left() -> bool:
     return any(not thread.daemon for thread in others)
 
 
-def end_within(seconds: float, status: int) -> None:
-    """End the process after so many seconds at the latest, whatever hangs in it."""
+def end_within(seconds: float, status: int, words: str = "") -> None:
+    """End the process after so many seconds at the latest, whatever hangs in it; then say why."""
 
     def end() -> None:
         time.sleep(seconds)
+        with suppress(OSError):
+            os.write(2, words.encode())
         os._exit(status)
 
     threading.Thread(target=end, daemon=True).start()

@@ -340,7 +340,7 @@ def test_an_interrupt_is_answered_at_once_whatever_is_being_prepared(tmp_path, n
         assert process.stdout.readline() == "stuck\n"
         process.send_signal(signal.SIGINT)
         _, said = process.communicate()
-    # After ten seconds the process would end without a word.
+    # After ten seconds the process would end in any case.
     assert "interrupted by SIGINT" in said
     assert process.returncode == 130
     assert all(path.suffix == ".png" for path in out.parent.rglob("*") if path.is_file())

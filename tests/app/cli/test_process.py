@@ -84,7 +84,9 @@ def test_what_hangs_after_a_signal_does_not_keep_the_process():
         before="process.PATIENCE = 0.1", work="time.sleep(60)", after="time.sleep(60)"
     ) as process:
         process.send_signal(signal.SIGTERM)
-        assert process.communicate()[0] == ""
+        out, said = process.communicate()
+    assert out == ""
+    assert said == "lissom: interrupted by SIGTERM, while something was still at work\n"
     assert process.returncode == 143
 
 
