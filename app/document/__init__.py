@@ -16,7 +16,6 @@ from app.document.commands import (
     pose_commands as pose_commands,
     scene_commands as scene_commands,
 )
-from app.document.easing import HOLD as HOLD, LINEAR as LINEAR, PRESETS as PRESETS, Easing as Easing
 from app.document.figure import (
     Figure as Figure,
     PictureFile as PictureFile,
@@ -30,7 +29,6 @@ from app.document.keyframe import (
     Handle as Handle,
     KeptPose as KeptPose,
     Keyframe as Keyframe,
-    Passing as Passing,
     Pose as Pose,
     Target as Target,
 )
@@ -77,5 +75,16 @@ from app.document.settings import (
     Meshing as Meshing,
     loosened as loosened,
     stretch_of as stretch_of,
+)
+from app.document.timing import (
+    HOLD as HOLD,
+    LINEAR as LINEAR,
+    PRESETS as PRESETS,
+    SPRINGS as SPRINGS,
+    Easing as Easing,
+    Passing as Passing,
+    Spring as Spring,
+    Track as Track,
+    TrackKey as TrackKey,
 )
 from engine.variant import Baseline as Baseline, Variant as Variant

@@ -21,6 +21,7 @@ from app.document.handle_pairs import pairs_by_name
 from app.document.keyframe import Handle, KeptPose, Keyframe, Pose
 from app.document.layering import Attachment, Switch, require_in_order
 from app.document.settings import NATURAL, VARIANTS, Meshing
+from app.document.timing import Spring, Track
 from app.errors import LissomError
 from engine.arrays import Booleans, Complexes
 from engine.deform import MOST_HANDLES
@@ -67,6 +68,10 @@ class Figure:
     # The point of the picture whose place and turn are blended directly; None lets the engine
     # choose it.
     anchor: complex | None = None
+    # Whether handles that two keys have at one place stay there in between.
+    stillness: bool = True
+    tracks: tuple[Track, ...] = ()  # no handle has two
+    springs: tuple[Spring, ...] = ()  # no handle has two
     variant: Variant = Variant.METRIC  # it may be given by its name
     bounds: Bounds = NATURAL.bounds  # distortion that the solver allows in new poses
     library: tuple[KeptPose, ...] = ()  # poses that are kept to be used again
@@ -113,6 +118,7 @@ class Figure:
         self._check_handles()
         self._check_keys()
         self._check_library()
+        self._check_clocks()
         if self.mirror is not None:
             require_place(complex(self.mirror), "The axis of mirroring")
         require(
@@ -263,6 +269,17 @@ class Figure:
         require_distinct((kept.name for kept in self.library), "Two poses have the name {!r}.")
         for kept in self.library:
             self._check_pose(kept.pose, f"The pose {kept.name!r}")
+
+    def _check_clocks(self) -> None:
+        known = {handle.id for handle in self.handles}
+        tracked = [identity for track in self.tracks for identity in track.handles]
+        following = [spring.handle for spring in self.springs]
+        for what, identities in (("track", tracked), ("spring", following)):
+            for identity in identities:
+                require(
+                    identity in known, f"A {what} is of the handle {identity}, which is not there."
+                )
+            require_distinct(identities, f"Two {what}s are of the handle {{!r}}.")
 
     def _check_pose(self, pose: Pose, what: str) -> None:
         require(

@@ -3,13 +3,12 @@
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from enum import StrEnum
 from types import MappingProxyType
 
 import numpy as np
 
 from app.document.checks import FARTHEST, NOTHING, Unknown, require, require_place
-from app.document.easing import HOLD, LINEAR, Easing
+from app.document.timing import HOLD, LINEAR, Easing, Passing, require_passing
 from engine.arrays import Complexes, as_points, freeze
 from engine.maps import Certificate, HarmonicMap
 
@@ -21,19 +20,6 @@ HOLDS = {"Soft": 0.1, "Normal": 1.0, "Firm": 10.0}
 LOCK = 1e4
 MOST_TURNS = 20
 NO_FRONTS: Mapping[int, float] = MappingProxyType({})
-
-
-class Passing(StrEnum):
-    """How the motion passes a key; the values are the names in files.
-
-    Through at one velocity, where it comes from one key and goes on to another; in a corner, coming
-    and going straight; or with a stop. To hold is to have no motion until the next key.
-    """
-
-    THROUGH = "through"
-    CORNER = "corner"
-    STOP = "stop"
-    HOLD = "hold"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -52,6 +38,8 @@ class Handle:
     # Whether it holds its place: it is not dragged, and hardly gives in to others.
     locked: bool = False
     group: str = ""  # those of one group are taken together; "" is none
+    # Whether it moves as it likes between two keys that have it at one place; else it stays there.
+    free: bool = False
     unknown: Unknown = field(default_factory=lambda: NOTHING, repr=False, hash=False)
 
     def __post_init__(self) -> None:
@@ -171,11 +159,7 @@ class Keyframe:
             abs(self.turns) <= MOST_TURNS,
             f"There may be {MOST_TURNS} whole turns on the way to a key, not {self.turns}.",
         )
-        require(
-            self.passing in (Passing.THROUGH, Passing.CORNER, Passing.STOP),
-            "A key is passed through, in a corner or with a stop, not "
-            f"{str(self.passing)!r}; to hold is an easing.",
-        )
+        require_passing(self.passing)
         object.__setattr__(self, "passing", Passing(self.passing))
         object.__setattr__(self, "fronts", MappingProxyType(dict(self.fronts)))
         for front in self.fronts.values():

@@ -121,3 +121,20 @@ class Document:
                 )
         for figure in self.figures:
             self.carriers(figure.id)
+            self._check_clocks(figure)
+
+    def _check_clocks(self, figure: Figure) -> None:
+        """Refuse what does not come round in a loop."""
+        period = self.frames.last - self.frames.first
+        for track in figure.tracks if self.loop else ():
+            require(
+                track.delay <= period,
+                f"A track of {figure.name!r} is late by {track.delay} frames, which is longer than "
+                f"the loop of {period}.",
+            )
+        for spring in figure.springs if self.loop else ():
+            require(
+                spring.damping > 0 or not spring.enabled,
+                f"A spring of {figure.name!r} has no damping, so that it never comes round in a "
+                "loop; give it some.",
+            )

@@ -19,7 +19,7 @@ from app.document.commands import (
     pose_commands,
     scene_commands,
 )
-from app.document.easing import HOLD, PRESETS, Easing
+from app.document.timing import HOLD, PRESETS, Easing
 from app.document.figure import PictureFile, new_figure
 from app.document.keyframe import Handle, KeptPose, Keyframe, Passing, Pose, Target
 from app.document.layering import Attachment, Switch

@@ -5,9 +5,9 @@ from collections.abc import Collection, Iterable, Sequence
 from dataclasses import replace
 
 from app.document.commands.command import figure_command
-from app.document.easing import HOLD, LINEAR, Easing
 from app.document.figure import Figure
 from app.document.keyframe import Keyframe, Passing, Pose
+from app.document.timing import HOLD, LINEAR, Easing
 from app.errors import LissomError
 
 

@@ -19,6 +19,7 @@ class Clip:
     figure: Figure
     frames: FrameRange  # of the scene
     loop: bool
+    fps: float  # springs swing in seconds
     # A method that the figure's own variant is compared with, in place of it.
     baseline: Baseline | None = None
 
@@ -35,7 +36,12 @@ class Clip:
 
 def clip_of(document: Document, figure: int) -> Clip:
     """Return the clip of the figure with this id."""
-    return Clip(figure=document.figure(figure), frames=document.frames, loop=document.loop)
+    return Clip(
+        figure=document.figure(figure),
+        frames=document.frames,
+        loop=document.loop,
+        fps=document.fps,
+    )
 
 
 def closes(clip: Clip) -> bool:

@@ -6,12 +6,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from app.document.easing import HOLD
 from app.document.figure import Figure
 from app.document.keyframe import Keyframe, Passing, Pose
 from app.document.queries.clips import Clip, closes, intervals
 from app.document.queries.remembered import remembered
 from app.document.settings import FrameRange
+from app.document.timing import HOLD
 from engine.interpolation import Joint
 from engine.variant import Baseline
 
@@ -72,7 +72,7 @@ def _transits(
     loop: bool,  # noqa: FBT001 - a field of the clip
     baseline: Baseline | None,
 ) -> tuple[Transit, ...]:
-    clip = Clip(figure=figure, frames=frames, loop=loop, baseline=baseline)
+    clip = Clip(figure=figure, frames=frames, loop=loop, fps=1.0, baseline=baseline)
     passed = [_passed(clip, index) for index in range(len(clip.keys))]
     found = []
     for first, last in intervals(clip):

@@ -22,7 +22,7 @@ from app.document import (
     pose_commands as poses,
     scene_commands as settings,
 )
-from app.document.easing import HOLD, LINEAR, PRESETS
+from app.document.timing import HOLD, LINEAR, PRESETS
 from app.document.figure import PictureFile
 from app.document.keyframe import MOST_TURNS, Handle, Keyframe, Target
 from app.document.model import Document

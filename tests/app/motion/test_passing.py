@@ -9,7 +9,7 @@ from documents import altered
 from numpy.testing import assert_allclose
 
 from app.document.commands import key_commands
-from app.document.easing import LINEAR, PRESETS, Easing
+from app.document.timing import LINEAR, PRESETS, Easing
 from app.document.keyframe import Keyframe, Passing
 from app.document.queries.clips import clip_of
 from app.document.settings import FrameRange

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from animations import still_document
 
-from app.document.easing import PRESETS
+from app.document.timing import PRESETS
 from app.errors import LissomError
 from app.solving import pose_document
 from app.solving.script import ScriptHandle, ScriptJoint, load_pose_script, parse_pose_script

@@ -14,7 +14,7 @@ from layered import openraster
 from PIL import Image, ImageDraw
 
 from app.document.commands import figure_commands, handle_commands, key_commands, layer_commands
-from app.document.easing import PRESETS, Easing
+from app.document.timing import PRESETS, Easing
 from app.document.keyframe import Target
 from app.document.settings import VARIANTS, ExportSettings, FrameRange, Meshing
 from app.editor import layering

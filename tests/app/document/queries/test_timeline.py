@@ -10,7 +10,7 @@ from numpy.testing import assert_allclose
 
 from app.document.commands.handle_commands import add_handle
 from app.document.commands.key_commands import pose_key
-from app.document.easing import HOLD, PRESETS
+from app.document.timing import HOLD, PRESETS
 from app.document.keyframe import Keyframe, Passing
 from app.document.playhead import Playhead
 from app.document.queries.clips import clip_of, closes, intervals

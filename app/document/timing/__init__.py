@@ -1,0 +1,16 @@
+"""How time runs between keys, and clocks of single handles: tracks and springs.
+
+In: numbers and ids of handles.
+Out: frozen values, checked as they are made.
+Imports: `app.errors`, and the checks of `app.document`.
+"""
+
+from app.document.timing.easing import (
+    HOLD as HOLD,
+    LINEAR as LINEAR,
+    PRESETS as PRESETS,
+    Easing as Easing,
+)
+from app.document.timing.passing import Passing as Passing, require_passing as require_passing
+from app.document.timing.springs import SPRINGS as SPRINGS, Spring as Spring
+from app.document.timing.tracks import Track as Track, TrackKey as TrackKey

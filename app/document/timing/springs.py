@@ -1,0 +1,56 @@
+"""Springs: handles that follow their place in the motion late, and swing about it."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from types import MappingProxyType
+
+from app.document.checks import NOTHING, Unknown, require
+
+FASTEST_SWING = 1000.0  # Hz
+MOST_DAMPING = 100.0  # of the critical one
+MOST_LAG = 10_000.0  # frames
+MOST_STRENGTH = 10.0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Spring:
+    """How a handle follows: a damped oscillator that the motion of its own place drives."""
+
+    handle: int  # its id
+    frequency: float  # in Hz
+    damping: float  # 1 is critical: it comes back without swinging over
+    lag: float = 0.0  # frames
+    strength: float = 1.0  # how far it swings, 1 as the oscillator does
+    enabled: bool = True
+    unknown: Unknown = field(default_factory=lambda: NOTHING, repr=False, hash=False)
+
+    def __post_init__(self) -> None:
+        require(
+            0 < self.frequency <= FASTEST_SWING,
+            f"The frequency of a spring is above 0 and at most {FASTEST_SWING:,.0f} Hz, not "
+            f"{self.frequency:g}.",
+        )
+        require(
+            0 <= self.damping <= MOST_DAMPING,
+            f"The damping of a spring is from 0 to {MOST_DAMPING:g}, not {self.damping:g}.",
+        )
+        require(
+            0 <= self.lag <= MOST_LAG,
+            f"The lag of a spring is from 0 to {MOST_LAG:,.0f} frames, not {self.lag:g}.",
+        )
+        require(
+            0 <= self.strength <= MOST_STRENGTH,
+            f"The strength of a spring is from 0 to {MOST_STRENGTH:g}, not {self.strength:g}.",
+        )
+
+
+# By name: frequency and damping. Measured on the samples' tails and ears; the others are between.
+SPRINGS: Mapping[str, tuple[float, float]] = MappingProxyType(
+    {
+        "tail": (1.6, 0.18),
+        "ear": (3.0, 0.25),
+        "hair": (2.2, 0.35),
+        "cloth": (1.3, 0.5),
+        "jelly": (4.5, 0.12),
+    }
+)

@@ -1,0 +1,71 @@
+"""Tracks: keys of single handles, beside those of whole poses."""
+
+import math
+from dataclasses import dataclass, field
+from itertools import pairwise
+
+from app.document.checks import NOTHING, Unknown, require, require_distinct, require_place
+from app.document.timing.easing import HOLD, LINEAR, Easing
+from app.document.timing.passing import Passing, require_passing
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class TrackKey:
+    """Where a track wants its handles at a frame, and the way from there to its next key."""
+
+    frame: int
+    # Of a track with the pose, by how much the handle is beside its place in the base motion, in
+    # the frame that turns with the shape there; of a planted one, its place in the picture. Pixels.
+    place: complex
+    # By how much the shape turns there beyond the base motion, in radians; where the track turns.
+    turn: float = 0.0
+    easing: Easing = LINEAR
+    passing: Passing = Passing.THROUGH
+    unknown: Unknown = field(default_factory=lambda: NOTHING, repr=False, hash=False)
+
+    def __post_init__(self) -> None:
+        require_place(self.place, "A track's key")
+        require(math.isfinite(self.turn), f"A track's turn must be finite, not {self.turn}.")
+        require_passing(self.passing)
+        object.__setattr__(self, "passing", Passing(self.passing))
+
+    @property
+    def shown_passing(self) -> Passing:
+        """How the motion passes the key, by a hold too."""
+        return Passing.HOLD if self.easing == HOLD else self.passing
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Track:
+    """A clock of one handle's own, or of some that move together, over the figure's motion.
+
+    It acts from its first key to its last one, both included, and nowhere else.
+    """
+
+    # The ids of its handles. Its keys are of the first one; the others are moved by as much.
+    handles: tuple[int, ...]
+    planted: bool = False  # whether its keys are places in the picture, and not beside the pose
+    keys: tuple[TrackKey, ...]  # in the order of their frames; there is always one
+    delay: int = 0  # frames by which it is late; in a loop it comes round
+    # How far around its handles the body gives, from 0, hardly, to 1, as it likes.
+    reach: float = 1.0
+    turns: bool = False  # whether its keys turn the shape at the handles, too
+    enabled: bool = True
+    unknown: Unknown = field(default_factory=lambda: NOTHING, repr=False, hash=False)
+
+    def __post_init__(self) -> None:
+        require(len(self.handles) > 0, "A track is of at least one handle.")
+        require_distinct(self.handles, "A track has the handle {!r} twice.")
+        require(len(self.keys) > 0, "A track has at least one key; remove the track instead.")
+        for before, after in pairwise(key.frame for key in self.keys):
+            require(after != before, f"A track has two keys at frame {before}.")
+            require(after > before, f"A track's keys at {before} and {after} are mixed up.")
+        require(self.delay >= 0, f"A track is late by 0 frames or more, not by {self.delay}.")
+        require(
+            0 <= self.reach <= 1, f"The reach of a track is between 0 and 1, not {self.reach:g}."
+        )
+
+    @property
+    def key_frames(self) -> frozenset[int]:
+        """The frames that have a key, without the delay."""
+        return frozenset(key.frame for key in self.keys)
