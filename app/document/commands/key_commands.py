@@ -6,8 +6,8 @@ from dataclasses import replace
 
 from app.document.commands.command import figure_command
 from app.document.figure import Figure
-from app.document.keyframe import Keyframe, Passing, Pose
-from app.document.timing import HOLD, LINEAR, Easing
+from app.document.keyframe import Keyframe, Pose
+from app.document.timing import HOLD, LINEAR, Easing, Passing
 from app.errors import LissomError
 
 

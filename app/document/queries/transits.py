@@ -7,11 +7,11 @@ from typing import NamedTuple
 import numpy as np
 
 from app.document.figure import Figure
-from app.document.keyframe import Keyframe, Passing, Pose
+from app.document.keyframe import Keyframe, Pose
 from app.document.queries.clips import Clip, closes, intervals
 from app.document.queries.remembered import remembered
 from app.document.settings import FrameRange
-from app.document.timing import HOLD
+from app.document.timing import HOLD, Passing
 from engine.interpolation import Joint
 from engine.variant import Baseline
 
