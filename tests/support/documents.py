@@ -19,12 +19,12 @@ from app.document.commands import (
     pose_commands,
     scene_commands,
 )
-from app.document.timing import HOLD, PRESETS, Easing
 from app.document.figure import PictureFile, new_figure
 from app.document.keyframe import Handle, KeptPose, Keyframe, Passing, Pose, Target
 from app.document.layering import Attachment, Switch
 from app.document.model import Document
 from app.document.settings import FRAMINGS, VARIANTS, ExportSettings, FrameRange, Marker, Meshing
+from app.document.timing import HOLD, PRESETS, Easing
 from app.export_formats import EXPORT_FORMATS, ShapeDetail, SheetLayout
 from engine.domain.build import Domain
 from engine.domain.meshing.mesh import Mesh

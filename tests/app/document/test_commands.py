@@ -22,11 +22,11 @@ from app.document import (
     pose_commands as poses,
     scene_commands as settings,
 )
-from app.document.timing import HOLD, LINEAR, PRESETS
 from app.document.figure import PictureFile
 from app.document.keyframe import MOST_TURNS, Handle, Keyframe, Target
 from app.document.model import Document
 from app.document.settings import NATURAL, VARIANTS, ExportSettings, FrameRange, Marker, Meshing
+from app.document.timing import HOLD, LINEAR, PRESETS
 from app.errors import LissomError
 from engine.errors import EngineError
 from engine.maps.bounds import Bounds

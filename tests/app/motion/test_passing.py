@@ -9,10 +9,10 @@ from documents import altered
 from numpy.testing import assert_allclose
 
 from app.document.commands import key_commands
-from app.document.timing import LINEAR, PRESETS, Easing
 from app.document.keyframe import Keyframe, Passing
 from app.document.queries.clips import clip_of
 from app.document.settings import FrameRange
+from app.document.timing import LINEAR, PRESETS, Easing
 from app.errors import LissomError, told_to
 from app.motion.inbetweens import Animation, PoseSampler
 from app.motion.interval_store import IntervalStore

@@ -14,9 +14,9 @@ from layered import openraster
 from PIL import Image, ImageDraw
 
 from app.document.commands import figure_commands, handle_commands, key_commands, layer_commands
-from app.document.timing import PRESETS, Easing
 from app.document.keyframe import Target
 from app.document.settings import VARIANTS, ExportSettings, FrameRange, Meshing
+from app.document.timing import PRESETS, Easing
 from app.editor import layering
 from app.editor.actions import (
     cutting,

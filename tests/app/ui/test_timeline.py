@@ -8,9 +8,9 @@ from imgui_bundle import ImVec2, imgui
 from projects import project_of
 
 from app.document import exported_frames, figure_commands, key_commands
-from app.document.timing import HOLD, LINEAR, PRESETS
 from app.document.keyframe import Handle, Keyframe, Passing, Target
 from app.document.settings import FrameRange
+from app.document.timing import HOLD, LINEAR, PRESETS
 from app.editor.actions import editing, keys, playback, rebuilding, timeline_pointing
 from app.editor.timeline_view import Strip
 from app.ui.bars.status import limit_of_motion

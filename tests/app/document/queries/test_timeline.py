@@ -10,12 +10,12 @@ from numpy.testing import assert_allclose
 
 from app.document.commands.handle_commands import add_handle
 from app.document.commands.key_commands import pose_key
-from app.document.timing import HOLD, PRESETS
 from app.document.keyframe import Keyframe, Passing
 from app.document.playhead import Playhead
 from app.document.queries.clips import clip_of, closes, intervals
 from app.document.queries.timeline import Moment, exported_frames, frame_times, time_of
 from app.document.settings import FrameRange
+from app.document.timing import HOLD, PRESETS
 from app.errors import LissomError
 
 EMPTY = disc_document()

@@ -8,12 +8,12 @@ from numpy import random
 from numpy.testing import assert_allclose
 
 from app.document.commands import key_commands
-from app.document.timing import HOLD, LINEAR, PRESETS, Easing
 from app.document.keyframe import Keyframe, Passing
 from app.document.queries.clips import clip_of
 from app.document.queries.timeline import time_of
 from app.document.queries.transits import transits
 from app.document.settings import FrameRange
+from app.document.timing import HOLD, LINEAR, PRESETS, Easing
 from app.errors import LissomError
 from engine.interpolation import Joint
 
