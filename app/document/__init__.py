@@ -42,6 +42,7 @@ from app.document.queries import (
     Front as Front,
     Moment as Moment,
     Shortfall as Shortfall,
+    TrackPlace as TrackPlace,
     Transit as Transit,
     changed_stretches as changed_stretches,
     clip_of as clip_of,
@@ -56,6 +57,7 @@ from app.document.queries import (
     is_visible as is_visible,
     resting_pose as resting_pose,
     time_of as time_of,
+    track_at as track_at,
     transits as transits,
 )
 from app.document.settings import (

@@ -1,4 +1,4 @@
-"""What follows from a document: which keys a moment blends, what is in front, what falls short.
+"""What follows from a document: which keys a moment blends, where tracks are, what falls short.
 
 In: figures, poses and handles.
 Out: answers; nothing is changed.
@@ -32,4 +32,5 @@ from app.document.queries.timeline import (
     resting_pose as resting_pose,
     time_of as time_of,
 )
+from app.document.queries.tracks import TrackPlace as TrackPlace, track_at as track_at
 from app.document.queries.transits import Transit as Transit, transits as transits

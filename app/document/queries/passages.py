@@ -1,0 +1,105 @@
+"""How the motion reaches each of some keys, and leaves it, by their passings and easings."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from math import isfinite
+from typing import Generic, NamedTuple, Protocol, TypeVar
+
+from app.document.timing import HOLD, Easing, Passing
+from engine.interpolation import Joint
+
+# How an interval leaves a key, or reaches it: by the joint with which the motion passes it, or at a
+# share of a straight blend's pace, 1 at a corner and 0 at a stop.
+Passed = Joint | float
+
+
+class Timed(Protocol):
+    """A key, of a pose or of a track."""
+
+    @property
+    def frame(self) -> int:
+        """Its frame."""
+
+    @property
+    def easing(self) -> Easing:
+        """How time runs until the next key."""
+
+    @property
+    def passing(self) -> Passing:
+        """How the motion passes it, other than by a hold."""
+
+
+Key = TypeVar("Key", bound=Timed)
+
+
+class Step(NamedTuple):
+    """From one key to another, by their indices, and in how many frames."""
+
+    first: int
+    last: int
+    frames: int
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Passages(Generic[Key]):
+    """Keys that follow each other in time, and how the motion goes through them."""
+
+    keys: tuple[Key, ...]
+    # How many frames lead from the last key to the first one again; 0 where it is the first one
+    # again, and None where it leads nowhere.
+    gap: int | None
+    is_same: Callable[[Key, Key], bool]  # whether two keys have what moves alike
+
+    def ends(self, index: int) -> tuple[Passed, Passed]:
+        """Return how a key is reached, and how it is left."""
+        keys = self.keys
+        before, after = self._moving(self.arriving(index)), self._moving(self.leaving(index))
+        reached = keys[index if before is None else before.last]
+        left = keys[index if after is None else after.first]
+        end_pace = 1.0 if before is None else keys[before.first].easing.paces[1]
+        start_pace = 1.0 if after is None else left.easing.paces[0]
+        stops = _rest(end_pace), _rest(start_pace)
+        if before and after and reached.passing is left.passing is Passing.THROUGH:
+            if self.is_same(left, keys[before.first]) or self.is_same(left, keys[after.last]):
+                # What is given twice is meant to be kept: past it the motion would swing beyond.
+                return stops
+            joint = Joint(before.frames, after.frames)
+            if end_pace == start_pace == 0.0:
+                return joint, joint
+            if 0.0 in (end_pace, start_pace):
+                return stops
+            if isfinite(end_pace) and isfinite(start_pace):
+                joint = joint._replace(end_pace=end_pace, start_pace=start_pace)
+                return joint, joint
+            return 1.0, 1.0
+        return (
+            stops[0] if reached.passing is Passing.STOP else 1.0,
+            stops[1] if left.passing is Passing.STOP else 1.0,
+        )
+
+    def arriving(self, index: int) -> Step | None:
+        """Return the step that leads to a key."""
+        last = len(self.keys) - 1
+        if index > 0:
+            return Step(index - 1, index, self.keys[index].frame - self.keys[index - 1].frame)
+        if self.gap is None:
+            return None
+        return Step(last, 0, self.gap) if self.gap else self.arriving(last)
+
+    def leaving(self, index: int) -> Step | None:
+        """Return the step that leads on from a key."""
+        last = len(self.keys) - 1
+        if index < last:
+            return Step(index, index + 1, self.keys[index + 1].frame - self.keys[index].frame)
+        if self.gap is None:
+            return None
+        return Step(last, 0, self.gap) if self.gap else self.leaving(0)
+
+    def _moving(self, step: Step | None) -> Step | None:
+        """Return a step, unless there is no motion in it."""
+        return None if step is None or self.keys[step.first].easing == HOLD else step
+
+
+def _rest(pace: float) -> float:
+    """Return 0 where a blend must stop at a key, and 1 where its easing stops there by itself."""
+    return 1.0 if pace == 0.0 else 0.0

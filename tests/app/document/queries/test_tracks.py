@@ -1,0 +1,206 @@
+"""Where tracks want their handles: at keys, between them, late, and around loops."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from documents import altered, disc_document
+from hypothesis import given, strategies as st
+from numpy.testing import assert_allclose
+
+from app.document.queries.clips import clip_of
+from app.document.queries.tracks import track_at
+from app.document.settings import FrameRange
+from app.document.timing import HOLD, LINEAR, PRESETS, Easing, Passing, Track, TrackKey
+
+EMPTY = disc_document()
+PLACES = [0j, 3 + 1j, -2 + 4j, 1 / 3 - 0.1j, 7 - 5j]
+STEP = 1e-4  # frames, for slopes
+
+
+def track_of(*frames, places=PLACES, delay=0, turns=(), **changes):
+    """Return a track with keys at some frames; `changes` has values for each of them."""
+    keys = [
+        TrackKey(frame=frame, place=place, **{name: each[i] for name, each in changes.items()})
+        for i, (frame, place) in enumerate(zip(frames, places, strict=False))
+    ]
+    if turns:
+        keys = [replace(key, turn=turn) for key, turn in zip(keys, turns, strict=True)]
+    return Track(handles=(0,), keys=tuple(keys), delay=delay, turns=bool(turns))
+
+
+def clip(last=48, first=0, *, loop=False):
+    keys = (replace(EMPTY.figures[0].keys[0], frame=first),)
+    return clip_of(altered(EMPTY, keys=keys, frames=FrameRange(first, last), loop=loop), 0)
+
+
+def places(track, frames, shown=None):
+    return np.array([track_at(track, shown or clip(), frame).place for frame in frames])
+
+
+def slopes(track, frame, shown=None):
+    """Return the velocities just before a frame and just after it, in pixels a frame."""
+    before, at, after = places(track, (frame - STEP, frame, frame + STEP), shown)
+    return (at - before) / STEP, (after - at) / STEP
+
+
+easings = st.sampled_from([*PRESETS.values(), Easing((0.1, 0.2, 0.6, 0.7))])
+numbers = st.floats(-1e3, 1e3)
+
+
+@given(
+    st.sets(st.integers(0, 90), min_size=1, max_size=6),
+    st.data(),
+    st.integers(0, 90),
+    st.booleans(),
+)
+def test_a_keys_own_place_and_turn_are_given_to_the_bit(frames, data, delay, loop):
+    keys = tuple(
+        TrackKey(
+            frame=frame,
+            place=complex(data.draw(numbers), data.draw(numbers)),
+            turn=data.draw(numbers),
+            easing=data.draw(easings),
+            passing=data.draw(st.sampled_from(["through", "corner", "stop"])),
+        )
+        for frame in sorted(frames)
+    )
+    track = Track(handles=(0,), keys=keys, delay=delay, turns=True)
+    shown = clip(91, loop=loop)  # a frame longer than from the first possible key to the last
+    for key in keys:
+        assert track_at(track, shown, key.frame + delay) == (key.place, key.turn)
+    unturned = replace(track, turns=False)
+    assert track_at(unturned, shown, keys[0].frame + delay).turn == 0.0
+
+
+def test_nothing_is_wanted_before_the_first_key_and_after_the_last():
+    track = track_of(10, 20, 30)
+    for frame in (-1, 0, 9, 9.999, 30.001, 48, 70):
+        assert track_at(track, clip(), frame) is None
+    assert track_at(replace(track, enabled=False), clip(), 20) is None
+    alone = track_of(10)
+    wanted = [frame for frame in np.arange(0, 48, 0.5) if track_at(alone, clip(), frame)]
+    assert wanted == [10.0]
+
+
+def test_a_key_between_two_others_is_passed_at_the_slope_of_the_parabola_through_them():
+    track = track_of(0, 10, 30, 36)
+    for one, two, three in ((0, 1, 2), (1, 2, 3)):
+        frames = np.array([track.keys[i].frame for i in (one, two, three)], float)
+        parabola = np.polyfit(frames - frames[1], PLACES[one : three + 1], 2)
+        for slope in slopes(track, frames[1]):
+            assert_allclose(slope, parabola[1], rtol=0, atol=1e-3)
+    # Before the first key and after the last one there is no motion to go on with: they are left
+    # and reached as straight as the other end of their interval lets them.
+    assert_allclose(slopes(track, STEP)[1], (PLACES[1] - PLACES[0]) / 10, rtol=0, atol=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "passes"),
+    [
+        ("in", "linear", True),
+        ("linear", "out", True),
+        ("in-out", "in-out", True),
+        ("in-out", "linear", False),
+        ("linear", "in", False),
+    ],
+)
+def test_easings_beside_a_key_agree_on_its_velocity(before, after, passes):
+    track = track_of(0, 10, 30, easing=[PRESETS[before], PRESETS[after], LINEAR])
+    coming, going = slopes(track, 10)
+    assert_allclose(coming, going, rtol=0, atol=1e-3)
+    assert (abs(going) > 0.1) == (passes and before != "in-out")
+
+
+def test_a_corner_comes_and_goes_straight():
+    passings = [Passing.CORNER] * 3
+    track = track_of(0, 10, 30, passing=passings)
+    frames = np.linspace(0, 30, 61)
+    straight = np.interp(frames, [0, 10, 30], PLACES[:3])
+    assert_allclose(places(track, frames), straight, rtol=0, atol=1e-14)
+
+
+def test_a_stop_and_a_place_that_is_given_twice_come_to_rest():
+    stopped = track_of(0, 10, 30, passing=["through", "stop", "through"])
+    twice = track_of(0, 10, 20, 30, places=[0, 5 + 1j, 5.004 + 1j, 2j])
+    for track, frame in ((stopped, 10), (twice, 10), (twice, 20)):
+        assert_allclose(slopes(track, frame), [0, 0], rtol=0, atol=2e-3)
+    assert_allclose(places(twice, np.linspace(10, 20, 9)), 5 + 1j, rtol=0, atol=0.005)
+
+
+def test_a_place_rests_while_the_turn_goes_on():
+    track = track_of(0, 10, 30, places=[5, 5, 9], turns=(0.0, 1.0, 2.0))
+    assert_allclose(places(track, np.linspace(0, 10, 9)), 5, rtol=0, atol=0)
+    turns = [track_at(track, clip(), frame).turn for frame in (10 - STEP, 10, 10 + STEP)]
+    assert_allclose(np.diff(turns) / STEP, 0.25 / 3 * np.ones(2), rtol=0, atol=1e-4)
+
+
+def test_a_held_place_stays_until_the_next_key():
+    track = track_of(0, 10, 20, easing=[LINEAR, HOLD, LINEAR])
+    assert [track_at(track, clip(), frame).place for frame in (10, 15, 19.99)] == [PLACES[1]] * 3
+    assert track_at(track, clip(), 20).place == PLACES[2]
+    # It is reached and left as where nothing moves.
+    assert_allclose(slopes(track, 10)[0], (PLACES[1] - PLACES[0]) / 10, rtol=0, atol=1e-3)
+
+
+def test_a_late_track_does_the_same_later():
+    frames = np.linspace(0, 30, 41)
+    late = track_of(0, 10, 30, delay=7)
+    assert (places(late, frames + 7.0) == places(track_of(0, 10, 30), frames + 7.0 - 7.0)).all()
+    assert track_at(late, clip(), 6.9) is None
+    # Past the end of what does not loop, nobody sees it.
+    assert track_at(track_of(40, 48, delay=4), clip(), 43) is None
+
+
+def test_in_a_loop_a_late_track_comes_round():
+    track, shown = track_of(30, 40, 46, delay=10), clip(loop=True)
+    acting = [frame for frame in range(49) if track_at(track, shown, frame)]
+    assert acting == [*range(9), *range(40, 49)]
+    assert track_at(track, shown, 2).place == PLACES[1]  # the key at 40
+    assert track_at(track, shown, 8).place == PLACES[2]
+    assert track_at(track, shown, 0) == track_at(track, shown, 48)
+    assert_allclose(*slopes(track, 0, shown), rtol=0, atol=1e-3)
+    for frame in (-3, 49.5, 100, 1_000.25):
+        assert track_at(track, shown, frame) == track_at(track, shown, frame % 48)
+
+
+def test_the_last_frame_of_a_loop_is_its_first_one_for_keys_at_either():
+    shown = clip(58, 10, loop=True)
+    for track in (track_of(50, 58), track_of(10, 18)):
+        assert track_at(track, shown, 10) == track_at(track, shown, 58)
+        assert track_at(track, shown, 10) is not None
+    assert track_at(track_of(50, 58), shown, 11) is None
+
+
+@pytest.mark.parametrize("delay", [0, 5, 48])
+def test_a_track_over_all_of_a_loop_passes_its_seam_as_it_passes_its_keys(delay):
+    track = track_of(0, 10, 30, 48, places=[*PLACES[:3], PLACES[0]], delay=delay)
+    shown = clip(loop=True)
+    coming = (places(track, [delay - STEP], shown)[0] - PLACES[0]) / -STEP
+    going = (places(track, [delay + STEP], shown)[0] - PLACES[0]) / STEP
+    parabola = np.polyfit([-18.0, 0.0, 10.0], [PLACES[2], PLACES[0], PLACES[1]], 2)
+    assert_allclose([coming, going], parabola[1], rtol=0, atol=1e-3)
+    # With other ends it jumps there, and neither end is bent by the other one.
+    open_ended = track_of(0, 10, 30, 48)
+    assert [track_at(open_ended, shown, frame).place for frame in (0, 48)] == [
+        PLACES[0],
+        PLACES[3],
+    ]
+    assert_allclose(slopes(open_ended, STEP, shown)[1], 0.3 + 0.1j, rtol=0, atol=1e-3)
+
+
+@given(
+    st.lists(st.tuples(st.integers(1, 20), st.integers(-3, 3)), min_size=2, max_size=6),
+    st.data(),
+)
+def test_a_track_is_continuous_and_its_slope_too_where_keys_are_passed_through(steps, data):
+    frames = np.cumsum([length for length, _ in steps]).tolist()
+    easing = [data.draw(st.sampled_from(list(PRESETS.values())[:4])) for _ in steps]
+    track = track_of(
+        *frames, places=[complex(x, -0.5 * x) for _, x in steps], easing=easing, delay=3
+    )
+    shown = clip(130)
+    for key in track.keys[1:-1]:
+        frame = key.frame + 3
+        coming, going = slopes(track, frame, shown)
+        assert_allclose(coming, going, rtol=0, atol=0.02)
