@@ -11,4 +11,4 @@ from engine.deform.relative.corrector import (
     Corrected as Corrected,
     Corrector as Corrector,
 )
-from engine.deform.relative.rigid import RigidMotion as RigidMotion, best_rigid as best_rigid
+from engine.deform.relative.rigid import best_rigid as best_rigid

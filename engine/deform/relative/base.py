@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from engine.arrays import Complexes, Floats
-from engine.deform.relative.rigid import RigidMotion
+from engine.geometry import RigidMotion
 
 # λ L² of a point that is to be where it is wanted, and of one that is only held where the base has
 # it: the energy relative to the base sees no rigid motion.

@@ -82,6 +82,24 @@ class Corrector:
         """What does not depend on the base."""
         return Rows.of(self.boundary, self.points)
 
+    def measured(self, phi: Complexes, psi: Complexes) -> Base:
+        """Return a map of the span, by its coefficients (n,), at the samples and the points."""
+        boundary, points = self.boundary, self._of_points
+        span = boundary.span
+        alone = span.without_constant(phi)
+        return Base(
+            f=boundary.derivatives @ alone,
+            g=boundary.derivatives @ span.without_constant(psi),
+            positions=points[0] @ phi + (points[0] @ psi).conj(),
+            fz=points[1] @ alone,
+        )
+
+    @cached_property
+    def _of_points(self) -> tuple[Complexes, Complexes]:
+        """The functions of the span and their derivatives at the points, (h, n) each."""
+        span = self.boundary.span
+        return span.coordinates(self.points), span.derivatives(self.points)
+
     def correct(self, base: Base, pins: Pins, limits: Limits) -> Corrected:
         """Return the map of the span that brings the points of a base where they are wanted.
 

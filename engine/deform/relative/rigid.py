@@ -1,23 +1,11 @@
 """The rigid motion that brings points nearest to where they are wanted."""
 
-from typing import NamedTuple
-
 import numpy as np
 
 from engine.arrays import Complexes, Floats
+from engine.geometry import HERE, RigidMotion
 
 TOWARDS_REST = 1e-3  # how strongly all points together pull towards no motion
-
-
-class RigidMotion(NamedTuple):
-    """z ↦ factor · z + shift, the factor of modulus 1."""
-
-    factor: complex = 1.0 + 0j
-    shift: complex = 0j
-
-    def on(self, places: Complexes) -> Complexes:
-        """Return where places come to."""
-        return self.factor * places + self.shift
 
 
 def best_rigid(
@@ -37,7 +25,7 @@ def best_rigid(
         A point that stays.
     """
     if not len(places) or not weights.any():
-        return RigidMotion()
+        return HERE
     total = weights + TOWARDS_REST / len(places)
     wanted = places + offsets * weights / total
     if pivot is None:
