@@ -25,6 +25,7 @@ from app.editor.timeline_view import Timing
 from app.editor.work import Afterwards, Derived, Promise, Pull
 from app.motion import (
     Box,
+    CorrectedFrames,
     IntervalStore,
     Joints,
     MotionPaths,
@@ -97,6 +98,7 @@ class Puppet:
     store: IntervalStore
     fine: IntervalStore | None = None
     shown: Shown | None = None  # None before the first frame of the window
+    corrected: CorrectedFrames | None = None  # the corrections of its frames
     rig: Rig | None = None  # for the poses to come; None before the first of them
     cut: Derived[CutOut, Cut]  # what is left of the picture, as the newest cut-out has it
     # That made small, for the list of layers.

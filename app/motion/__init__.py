@@ -5,6 +5,10 @@ Out: where the vertices are, and how far they reach.
 Imports: `app.document`.
 """
 
+from app.motion.corrected_frames import (
+    CorrectedFrames as CorrectedFrames,
+    corrected_clip as corrected_clip,
+)
 from app.motion.extent import (
     Box as Box,
     box_around as box_around,

@@ -7,6 +7,8 @@ import numpy as np
 
 from app.document import Document, FrameRange, clip_of, exported_frames, framed_frames
 from app.errors import LissomError
+from app.motion.corrected_frames import CorrectedFrames
+from app.motion.inbetweens import is_corrected
 from app.motion.interval_store import IntervalStore
 from app.motion.joints import Joints
 from engine.arrays import Complexes
@@ -45,15 +47,20 @@ def extent_source(document: Document) -> tuple[object, ...]:
             figure.bounds,
             figure.attachment,
             figure in document.exported,
+            is_corrected(clip_of(document, figure.id))
+            and (figure.stillness, figure.handles, figure.tracks, figure.springs),
         )
         for figure in document.figures
     ]
     frames = framed_frames(document, exported_frames(document))
-    return (*motions, document.frames, document.loop, frames)
+    return (*motions, document.frames, document.loop, document.fps, frames)
 
 
 def measure_extent(
-    document: Document, stores: Mapping[int, IntervalStore], joints: Joints | None = None
+    document: Document,
+    stores: Mapping[int, IntervalStore],
+    joints: Joints | None = None,
+    corrected: Mapping[int, CorrectedFrames] | None = None,
 ) -> Box:
     """Return the box around all that an export of a document shows.
 
@@ -63,6 +70,8 @@ def measure_extent(
         One for each figure, by its id, that has its in-betweens.
     joints : Joints, optional
         What is true of them is used again.
+    corrected : mapping of int to CorrectedFrames, optional
+        Whole, by the figures' ids.
     """
     clips = {figure: clip_of(document, figure) for figure in stores}
     frames = framed_frames(document, exported_frames(document))
@@ -70,7 +79,9 @@ def measure_extent(
     joints = Joints(document, {figure: each for figure, each in samplers.items() if each}, joints)
 
     def place(figure: int, frame: int) -> Complexes | None:
-        positions = stores[figure].positions(clips[figure], frame)
+        own = corrected.get(figure) if corrected else None
+        correction = own.at(clips[figure], frame) if own else None
+        positions = stores[figure].positions(clips[figure], frame, correction)
         return None if positions is None else joints.placement(figure, frame).on(positions)
 
     box = motion_box(document, frames, place)

@@ -8,7 +8,7 @@ from itertools import chain
 from typing import Literal
 
 from app.document import Clip, Moment, Pose, intervals, resting_pose, time_of, transits
-from app.motion.inbetweens import Pair, PoseSampler, pair_of
+from app.motion.inbetweens import Correction, Pair, PoseSampler, pair_of
 from app.motion.intervals import (
     AnyInbetweens,
     Build,
@@ -26,7 +26,8 @@ from engine.interpolation import Joint
 BUDGET = 2**30  # bytes of one store
 SPARE = 64  # the part of it that may be taken by what no present clip needs: a 64th
 EXPECTED = 100  # bytes a vertex that a series is thought to take before one is built
-IntervalPart = Literal["frame", "in-betweens", "fine", "series"]  # of what is made of a clip
+# Of what is made of a clip.
+IntervalPart = Literal["frame", "in-betweens", "fine", "series", "correction"]
 
 
 @dataclass(slots=True, kw_only=True, eq=False)
@@ -78,9 +79,31 @@ class IntervalStore:
         return self._find(clip, time_of(clip, frame)) is not None
 
     def vertices(
-        self, clip: Clip, frame: float, instead: Pose | OneFrame | None = None
+        self,
+        clip: Clip,
+        frame: float,
+        instead: Pose | OneFrame | None = None,
+        correction: Correction | None = None,
     ) -> Vertices | None:
-        """Return where the vertices are at a frame, or what is shown instead; None if not there."""
+        """Return where the vertices are at a frame, or what is shown instead; None if not there.
+
+        Parameters
+        ----------
+        clip : Clip
+        frame : float
+        instead : Pose or OneFrame, optional
+        correction : Correction, optional
+            Of the frame.
+        """
+        vertices = self._uncorrected(clip, frame, instead)
+        if vertices is None or correction is None:
+            return vertices
+        positions = correction.on(vertices.positions, self.mesh.coordinates)
+        return Placed(positions=positions, triangles=vertices.triangles)
+
+    def _uncorrected(
+        self, clip: Clip, frame: float, instead: Pose | OneFrame | None
+    ) -> Vertices | None:
         moment = time_of(clip, frame)
         triangles = self.mesh.order.triangles(clip, frame)
         found = instead or self._find(clip, moment)
@@ -106,9 +129,11 @@ class IntervalStore:
             return known or resting
         return known.one if known.one and known.one.weight == moment.weight else None
 
-    def positions(self, clip: Clip, frame: float) -> Complexes | None:
+    def positions(
+        self, clip: Clip, frame: float, correction: Correction | None = None
+    ) -> Complexes | None:
         """Return the same, worked out."""
-        vertices = self.vertices(clip, frame)
+        vertices = self.vertices(clip, frame, correction=correction)
         return None if vertices is None else vertices.positions
 
     def nearest(self, clip: Clip, moment: Moment) -> Pose | OneFrame:

@@ -6,6 +6,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from app.document import Clip, Document, Pose, resting_pose, time_of
+from app.motion.corrected_frames import CorrectedFrames
+from app.motion.inbetweens import Correction
 from app.motion.interval_store import IntervalStore
 from app.motion.intervals import OneFrame
 from app.motion.joints import Hinge, Joints, along
@@ -29,13 +31,15 @@ class Shown:
     # What is shown instead until the in-between is there: one of its two keys, or another of their
     # in-betweens; or what was drawn of another domain.
     stand_in: Pose | OneFrame | Domain | None = None
+    correction: Correction | None = None  # what is added to the motion from key to key
+    is_rough: bool = False  # whether that only stands in for the frame's own
     # Where the figure is in the scene; all else is where it is by itself.
     placement: RigidMotion = HERE
 
     @property
     def is_current(self) -> bool:
         """Whether it shows what it should, and nothing that stands in for it."""
-        return self.stand_in is None
+        return self.stand_in is None and not self.is_rough
 
     @property
     def positions(self) -> Complexes:
@@ -77,6 +81,7 @@ def show(
     pose: Pose | None,
     stores: Sequence[IntervalStore],
     earlier: Shown | None,
+    corrected: CorrectedFrames | None = None,
 ) -> Shown:
     """Return the best there is to draw; the earlier one itself if nothing changed.
 
@@ -93,8 +98,13 @@ def show(
         Where to look for it, the preferred one first; at least one.
     earlier : Shown, optional
         What was drawn before.
+    corrected : CorrectedFrames, optional
+        Of the clip's frames; a pose that is shown instead is not corrected.
     """
     domain, moment = clip.figure.domain, time_of(clip, frame)
+    correction, is_rough = None, False
+    if corrected is not None and pose is None:
+        correction, is_rough = corrected.at(clip, frame), not corrected.is_exact(clip, frame)
     pose = pose or resting_pose(clip, moment)
     fitting = [store for store in stores if store.mesh.source is domain]
     exact = [store for store in fitting if pose is not None or store.is_exact(clip, frame)]
@@ -110,11 +120,12 @@ def show(
         earlier is not None
         and (earlier.clip, earlier.mesh, earlier.pose) == (clip, mesh, pose)
         and (earlier.frame == frame or pose is not None)
+        and (earlier.correction, earlier.is_rough) == (correction, is_rough)
         and earlier.stand_in is near
         and earlier.vertices.triangles is triangles
     ):
         return earlier if earlier.frame == frame else replace(earlier, frame=frame)
-    vertices = store.vertices(clip, frame, near or pose)
+    vertices = store.vertices(clip, frame, near or pose, None if near else correction)
     if vertices is None:
         raise ValueError("what is exact has vertices")
     return Shown(
@@ -125,6 +136,8 @@ def show(
         vertices=vertices,
         handles=_locate(clip, mesh, earlier),
         stand_in=near,
+        correction=correction,
+        is_rough=is_rough,
     )
 
 

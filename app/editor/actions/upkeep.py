@@ -16,6 +16,7 @@ from app.motion import (
     IntervalStore,
     Joints,
     PosableMesh,
+    corrected_clip,
     extent_source,
     hang_shown,
     joints_source,
@@ -36,6 +37,7 @@ SKETCHING = Kind("In-betweens", UNMADE)
 COMPARING = Kind("Other in-betweens", "The in-betweens to compare with cannot be made")
 REFINING = Kind("Finer in-betweens", "The in-betweens cannot be made in full detail")
 STREAMING = Kind("Smooth playback", "Playback cannot be made smooth")
+CORRECTING = Kind("Corrections", "The handles cannot be held still, or on their tracks")
 CUTTING = Kind("Cutting out", "The picture cannot be cut out so")
 SHRINKING = Kind("Small pictures", "The picture of a layer cannot be made small", "hand")
 HANGING = Kind("Joints", "The joints cannot be followed between the keys")
@@ -63,6 +65,8 @@ def maintain(session: Session, project: Project) -> None:
     if not shortfalls.follows(figure):
         # Little work: of the poses that were not measured before, and there is one at a time.
         shortfalls.set(figure, measure_shortfalls(figure, shortfalls))
+    for identity, puppet in project.puppets.items():
+        puppet.corrected = corrected_clip(project.document, identity, puppet.corrected)
     _show(session, project)
     if project.awaits_extent:
         _fit_motion(session, project)
@@ -107,6 +111,7 @@ def missing(session: Session, project: Project) -> Iterator[Job]:
             if job is not None:
                 yield job
                 return
+    yield from _correct(session, project)
     if project.is_posing:
         # What follows takes longer than the hand stays where it is.
         return
@@ -146,6 +151,21 @@ def _awaits_frame(session: Session, project: Project) -> bool:
         and puppet.store.interval(clip, moment.interval) is None
         for moment, clip, puppet in moments
     )
+
+
+def _correct(session: Session, project: Project) -> Iterator[Job]:
+    """Yield what finds the corrections of some frames, those nearest to the playhead first."""
+    frame = playback.current_frame(session, project)
+    if CORRECTING in session.jobs.kinds:
+        return
+    for clip, puppet in _clips(project):
+        corrected = puppet.corrected
+        if corrected is None or puppet.store.has_failed(clip, "correction"):
+            continue
+        work = corrected.missing(project.document, frame, project.samplers)
+        if work is not None:
+            yield _interval_job(session, CORRECTING, puppet, clip, work=work, done=corrected.take)
+            return
 
 
 def _wanted(session: Session, project: Project) -> Iterator[tuple[Kind, Puppet, Clip]]:
@@ -210,7 +230,12 @@ def _stream(session: Session, project: Project) -> Iterator[Job]:
 
 def _part(kind: Kind) -> IntervalPart:
     """Return which part of a clip's in-betweens a job makes."""
-    parts: dict[Kind, IntervalPart] = {GLIMPSING: "frame", REFINING: "fine", STREAMING: "series"}
+    parts: dict[Kind, IntervalPart] = {
+        GLIMPSING: "frame",
+        REFINING: "fine",
+        STREAMING: "series",
+        CORRECTING: "correction",
+    }
     return parts.get(kind, "in-betweens")
 
 
@@ -305,10 +330,14 @@ def _measure(session: Session, project: Project) -> Iterator[Job]:
 def _span(session: Session, project: Project) -> Iterator[Job]:
     """Yield the measurement of where the motion reaches, once all in-betweens are there."""
     document, extent, source = project.document, project.extent, extent_source(project.document)
-    if extent.follows(source) or not all(each.store.has(clip) for clip, each in _clips(project)):
+    clips = _clips(project)
+    if extent.follows(source) or not all(each.store.has(clip) for clip, each in clips):
+        return
+    corrected = {clip.figure.id: each.corrected for clip, each in clips if each.corrected}
+    if not all(each.is_whole for each in corrected.values()):
         return
     stores = {figure: puppet.store.snapshot() for figure, puppet in project.puppets.items()}
-    span = partial(measure_extent, document, stores, project.joints.value)
+    span = partial(measure_extent, document, stores, project.joints.value, corrected)
     yield from _derive(session, SPANNING, extent, source, span)
 
 
@@ -332,7 +361,7 @@ def _show(session: Session, project: Project) -> None:
         if pose is not None:
             poses[figure] = pose
         stores = _stores(session, project, puppet)
-        shown[figure] = show(clip, frame, pose, stores, puppet.shown)
+        shown[figure] = show(clip, frame, pose, stores, puppet.shown, puppet.corrected)
         if twin is not None:
             earlier, other = twin.shown or shown[figure], twin.clip(document)
             # What a pose shows is the same in both.

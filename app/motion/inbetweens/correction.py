@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 import numpy as np
+import numpy.typing as npt
 
 from engine.arrays import Complexes
 from engine.geometry import HERE, RigidMotion
@@ -40,7 +41,9 @@ class Correction:
         """Memory of the coefficients."""
         return 0 if self.phi is None or self.psi is None else self.phi.nbytes + self.psi.nbytes
 
-    def on(self, positions: Complexes, coordinates: Complexes) -> Complexes:
+    def on(
+        self, positions: Complexes, coordinates: Complexes | npt.NDArray[np.complex64]
+    ) -> Complexes:
         """Return where points come to that the base motion has at positions (p,).
 
         Parameters

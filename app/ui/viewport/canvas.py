@@ -237,7 +237,9 @@ def _ghosts(
             frame = shown.frame + direction * step * choice.ghost_step
             if frame not in known.frames and not known.loop:
                 continue
-            vertices = store.vertices(known, frame)
+            corrected = project.puppet.corrected
+            correction = corrected.at(known, frame) if corrected else None
+            vertices = store.vertices(known, frame, correction=correction)
             if vertices is None or time_of(known, frame) == time_of(known, shown.frame):
                 continue
             placement = shown.placement

@@ -121,8 +121,8 @@ def test_an_outline_whose_preparation_was_ended_is_prepared_anew():
         raise LissomError(f"it was cancelled at {share:.0%}")
 
     with told_to(end), pytest.raises(LissomError, match="cancelled"):
-        _ = sibling.transform
+        _ = sibling.known.transform
     shares = []
     with told_to(shares.append):
-        assert sibling.transform is sampler.transform
+        assert sibling.known.transform is sampler.known.transform
     assert shares[-1] == 1
