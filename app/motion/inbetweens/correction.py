@@ -55,8 +55,9 @@ class Correction:
         moved = self.motion.on(positions)
         if self.phi is None or self.psi is None:
             return moved
-        both = np.column_stack([self.phi, self.psi]).astype(coordinates.dtype)
-        shift = coordinates @ both
+        # In the coordinates' own precision: what is added is small beside the places.
+        both = np.column_stack([self.phi, self.psi])
+        shift = np.matmul(coordinates, both, dtype=coordinates.dtype, casting="same_kind")
         places: Complexes = moved + shift[:, 0] + shift[:, 1].conj()
         return places
 
